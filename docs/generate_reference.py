@@ -25,7 +25,7 @@ MORE_NAMES: dict[str, tuple[str, ...]] = {
         "tides.constituents.Constituents",
         "tides.constituent_files.read_constituents",
         "tides.constituent_files.write_constituents",
-        "tides.periodic_repeat.repeat_in_time",
+        "periodic_repeat.repeat_in_time",
         "models.stratified_coast.stratified_coast_current",
     ),
     "chart": ("zones.emission_control_areas.emission_control_areas",),

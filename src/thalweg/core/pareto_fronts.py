@@ -39,13 +39,13 @@ def non_dominated_indices(
     if tolerance <= 0.0:
         least = np.concatenate([[np.inf], np.minimum.accumulate(ranked)[:-1]])[: len(ranked)]
         return np.asarray(order[ranked < least], dtype=np.int64)
-    kept: list[int] = []
+    indices: list[int] = []
     lowest = np.inf
     for index, value in zip(order, ranked):
         if value * (1.0 + tolerance) < lowest:
-            kept.append(int(index))
+            indices.append(int(index))
             lowest = value
-    return np.array(kept, dtype=np.int64)
+    return np.array(indices, dtype=np.int64)
 
 
 def lower_hull(first: ArrayLike, second: ArrayLike) -> IntArray:

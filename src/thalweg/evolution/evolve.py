@@ -253,9 +253,9 @@ def run_algorithm(
     begun, settling = clock.perf_counter(), ConvergenceTest(limits.settled)
     generation = evaluations = 0
     while True:
-        asked = strategy.ask()
-        strategy.tell(evaluator.score(asked))
-        evaluations += len(asked)
+        requested = strategy.ask()
+        strategy.tell(evaluator.score(requested))
+        evaluations += len(requested)
         now = clock.perf_counter() - begun
         front = strategy.scores[feasible_front(strategy.scores)][:, :2]
         if progress is not None:

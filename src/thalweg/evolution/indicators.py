@@ -79,14 +79,14 @@ def hypervolume_ratio(points: ArrayLike, *others: ArrayLike, reference: ArrayLik
         If no point is below the reference.
     """
     union = np.concatenate([_checked(points), *(_checked(other) for other in others)])
-    whole = hypervolume(union, reference)
-    if whole <= 0.0:
+    union_volume = hypervolume(union, reference)
+    if union_volume <= 0.0:
         raise InputError(
             "No front has a point below the reference, so there is no hypervolume to compare.",
             "The reference holds the worst values that count.",
             "Choose a reference beyond the fronts.",
         )
-    return hypervolume(points, reference) / whole
+    return hypervolume(points, reference) / union_volume
 
 
 def hypervolume_ratio_of_two(points: ArrayLike, other: ArrayLike, reference: ArrayLike) -> float:

@@ -117,7 +117,7 @@ class Mpaes(EvolutionaryAlgorithm):
             near = archive[~dominates(archive, score[None])]
             climbers.append(HillClimber(score, np.vstack([score[None], near])[: self.size]))
         climb = _ClimbingRound(climbers, np.array(base))
-        alone = replace(self.variation_settings, crossover=0.0)
+        mutation_only = replace(self.variation_settings, crossover=0.0)
         while True:
             active = np.array(
                 [k for k, c in enumerate(climb.climbers) if c.is_active], dtype=np.int64
@@ -125,7 +125,7 @@ class Mpaes(EvolutionaryAlgorithm):
             if not len(active):
                 return
             pairs = np.resize(climb.track[active], 2 * ((len(active) + 1) // 2)).reshape(-1, 2)
-            offspring = self._children(pairs, alone)
+            offspring = self._children(pairs, mutation_only)
             scores = yield offspring
             before = len(self.scores)
             for place, k in enumerate(active):
@@ -136,8 +136,8 @@ class Mpaes(EvolutionaryAlgorithm):
     def _update(self, track: IntArray, offspring, scores: FloatArray) -> None:  # type: ignore[no-untyped-def]
         """Update the archive with all offspring, and the current tracks of the climbers."""
         both = np.concatenate([self.scores, scores])
-        kept = select_survivors(both, self.size)[0]
-        chosen = np.concatenate([kept, np.setdiff1d(track, kept)])
+        survivors = select_survivors(both, self.size)[0]
+        chosen = np.concatenate([survivors, np.setdiff1d(track, survivors)])
         self._keep(chosen, offspring, scores)
         where = np.full(len(both), -1, dtype=np.int64)
         where[chosen] = np.arange(len(chosen))
@@ -150,12 +150,12 @@ class Mpaes(EvolutionaryAlgorithm):
 
     def _recombine(self, count: int):  # type: ignore[no-untyped-def]
         """Return the climbers of the next round: accepted children, or tournament winners of G."""
-        sure = replace(self.variation_settings, crossover=1.0, mutation=0.0)
+        crossover_only = replace(self.variation_settings, crossover=1.0, mutation=0.0)
         base: list[int] = []
         for _ in range(RECOMBINATION_TRIALS):
             missing = count - len(base)
             pairs = self.rng.integers(0, len(self.scores), size=((missing + 1) // 2, 2))
-            offspring = self._children(pairs, sure)
+            offspring = self._children(pairs, crossover_only)
             scores = yield offspring
             archive = self.scores[self._archive()]
             fit = [
@@ -168,17 +168,17 @@ class Mpaes(EvolutionaryAlgorithm):
             if len(base) == count:
                 break
         best = self._archive()
-        rest = count - len(base)
-        if rest:
+        remaining = count - len(base)
+        if remaining:
             crowding = crowding_distance(self.scores[best, :2])
             place = np.empty(len(best), dtype=np.int64)
             place[np.argsort(-crowding, kind="stable")] = np.arange(len(best))
-            base += best[self._binary_tournament(place, rest)].tolist()
+            base += best[self._binary_tournament(place, remaining)].tolist()
         track = np.array(base, dtype=np.int64)
-        kept = np.concatenate([best, np.setdiff1d(track, best)])
+        survivors = np.concatenate([best, np.setdiff1d(track, best)])
         where = np.full(len(self.scores), -1, dtype=np.int64)
-        where[kept] = np.arange(len(kept))
-        self.population, self.scores = self.population.take(kept), self.scores[kept]
+        where[survivors] = np.arange(len(survivors))
+        self.population, self.scores = self.population.take(survivors), self.scores[survivors]
         return where[track]
 
     def _can_join(self, child: FloatArray, archive: FloatArray, parents: IntArray) -> bool:

@@ -85,12 +85,12 @@ def least_crowded_front(scores: FloatArray, size: int) -> IntArray:
     """
     front = feasible_front(scores)
     time, cost = scores[front, TIME], scores[front, COST]
-    kept = np.arange(len(front))
-    while len(kept) > max(size, 2):
-        t, c = time[kept], cost[kept]
+    selected = np.arange(len(front))
+    while len(selected) > max(size, 2):
+        t, c = time[selected], cost[selected]
         lost = (t[2:] - t[1:-1]) * (c[:-2] - c[1:-1])
-        kept = np.delete(kept, 1 + int(np.argmin(lost)))
-    return front[kept]
+        selected = np.delete(selected, 1 + int(np.argmin(lost)))
+    return front[selected]
 
 
 def normalised(scores: FloatArray) -> FloatArray:

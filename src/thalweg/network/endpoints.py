@@ -114,11 +114,15 @@ def links_to_nodes(
         Counts of refused links by reason.
     """
     vectors = conformal_unit_vectors(lat[:n_nodes], lon[:n_nodes])
-    away = angle_to_point(vectors, conformal_unit_vectors(lat[point], lon[point])) * MEAN_RADIUS
+    separation = (
+        angle_to_point(vectors, conformal_unit_vectors(lat[point], lon[point])) * MEAN_RADIUS
+    )
     rejected: RejectionCounts = {}
     pairs = _pairs(lat, lon, point, np.empty(0, np.int32))
     for _ in range(5):
-        near = np.flatnonzero((away <= reach) & (away > _SHORTEST_LINK)).astype(np.int32)
+        near = np.flatnonzero((separation <= reach) & (separation > _SHORTEST_LINK)).astype(
+            np.int32
+        )
         pairs = _pairs(lat, lon, point, near)
         free, rejected = allowed_legs(chart, lat, lon, pairs.first, pairs.second)
         pairs = _nearest_pairs_by_sector(pairs.where(free))

@@ -227,10 +227,10 @@ def _base_variables(layers: Sequence[Layer], names: Sequence[str]) -> list[str]:
 
 def _derived(name: str, base: Samples) -> FloatArray:
     """Return a variable, or the speed [m/s] or direction [deg] derived from two components."""
-    kept = nm.canonical_name(name)
-    if kept in base:
-        return base[kept]
-    vector, part = nm.vector_of_derived_name(kept) or (nm.WIND, "speed")
+    canonical = nm.canonical_name(name)
+    if canonical in base:
+        return base[canonical]
+    vector, part = nm.vector_of_derived_name(canonical) or (nm.WIND, "speed")
     east, north = base[vector.east], base[vector.north]
     if part == "speed":
         return np.asarray(np.hypot(east, north), np.float64)
@@ -285,7 +285,7 @@ def _without_duplicates(times: FloatArray) -> FloatArray:
 
     The first and last stay exactly as they are, because a departure may equal the first one.
     """
-    kept: FloatArray = times[np.append(True, np.diff(times) > _DUPLICATE_TOLERANCE)]
-    if kept.size > 1:
-        kept[-1] = times[-1]
-    return kept
+    unique: FloatArray = times[np.append(True, np.diff(times) > _DUPLICATE_TOLERANCE)]
+    if unique.size > 1:
+        unique[-1] = times[-1]
+    return unique

@@ -263,8 +263,8 @@ def _draw_arrows(
 ) -> None:
     lat, lon = _raster_axes(area, ARROWS_ALONG_SIDE)
     lat, lon = 0.5 * (lat[1:] + lat[:-1]), 0.5 * (lon[1:] + lon[:-1])
-    got = sample_stack(layers, list(panel.arrows), time, lat[:, None], lon[None, :])
-    u, v = (got[n] for n in panel.arrows)
+    samples = sample_stack(layers, list(panel.arrows), time, lat[:, None], lon[None, :])
+    u, v = (samples[n] for n in panel.arrows)
     speed = np.hypot(u, v)
     known = speed > 1e-6
     if not known.any():

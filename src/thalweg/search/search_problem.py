@@ -256,24 +256,14 @@ def top_speed_through_water(sea: SeaArrays, top_speed: float) -> tuple[float, bo
 def make_search_problem(
     ship_on_network: ShipOnNetwork, *, ends: tuple[int, int | None] | None = None
 ) -> SearchProblem:
-    """Gather what a search reads.
+    """Return the arrays that a search reads.
 
     With ``ends`` (start and goal) the nodes between them that fall dry become several states.
 
     Parameters
     ----------
-    network : Network
-        The network.
-    fields : StationFields
-        The sea, frozen at its stations.
-    table : PerformanceTable or TableArrays
-        Speed through water [m/s].
-    setting : int
-        Setting of the ship.
-    limits : Limits
-        Limits of depth, wave height and wind speed.
-    top_speed : float
-        Upper bound of the speed through water [m/s].
+    ship_on_network : ShipOnNetwork
+        The network, the sea frozen at its stations, and the ship at one setting.
     ends : tuple of int, optional
         Start and goal nodes.
 

@@ -214,8 +214,8 @@ def _set_clearance(index: IndexArrays, pieces: CoastSegments) -> None:
         if face % 2:
             turned[..., face // 2] *= -1.0
         chord, _ = tree.query(turned.reshape(-1, 3), workers=2)
-        away = 2.0 * np.arcsin(np.minimum(chord, 2.0) / 2.0).reshape(blocks, blocks)
-        bound = np.clip(away - reach - lengths.max() - 1e-4, 0.0, MAX_CLEARANCE)
+        separation = 2.0 * np.arcsin(np.minimum(chord, 2.0) / 2.0).reshape(blocks, blocks)
+        bound = np.clip(separation - reach - lengths.max() - 1e-4, 0.0, MAX_CLEARANCE)
         fine = np.repeat(np.repeat(bound, size, 0), size, 1).astype(np.float32)
         sea = cells[face] > 0.0
         cells[face][sea] = np.maximum(cells[face][sea], fine[sea])

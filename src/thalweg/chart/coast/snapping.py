@@ -56,11 +56,11 @@ def nearest_navigable(
             _connected_to_open_sea(legs_blocked, lats, lons, free, radius == largest)
         )
         if len(k):
-            away = geodesy.distance(lat, lon, lats.ravel()[k], lons.ravel()[k])
-            best = int(np.argmin(away))
-            if away[best] <= radius:
+            separation = geodesy.distance(lat, lon, lats.ravel()[k], lons.ravel()[k])
+            best = int(np.argmin(separation))
+            if separation[best] <= radius:
                 place = lats.ravel()[k[best]], float(geodesy.wrap_longitude(lons.ravel()[k[best]]))
-                return float(place[0]), place[1], float(away[best])
+                return float(place[0]), place[1], float(separation[best])
     return None
 
 

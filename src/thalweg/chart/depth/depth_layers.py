@@ -48,9 +48,9 @@ class DepthLayers:
         InputError
             If that is too much to hold in memory.
         """
-        kept = self._kept.get(only)
-        if kept is not None and _covers(kept[0], box):
-            return kept[1]
+        cached = self._kept.get(only)
+        if cached is not None and _covers(cached[0], box):
+            return cached[1]
         cells = self._cells(box, only)
         if cells > MAX_SOUNDINGS:
             raise InputError(

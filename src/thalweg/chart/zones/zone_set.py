@@ -323,15 +323,15 @@ def _without_overlaps(zones: list[tuple[Any, float]]) -> tuple[tuple[Any, float]
     """Return zones clipped so that none overlap; the common part gets the largest factor."""
     import shapely
 
-    kept: list[tuple[Any, float]] = []
+    disjoint: list[tuple[Any, float]] = []
     for shape, factor in sorted(zones, key=lambda zone: -zone[1]):
-        rest = shape
-        for other, _ in kept:
-            if shapely.intersects(rest, other):
-                rest = shapely.difference(rest, other)
-        if not shapely.is_empty(rest):
-            kept.append((rest, factor))
-    return tuple(kept)
+        remainder = shape
+        for other, _ in disjoint:
+            if shapely.intersects(remainder, other):
+                remainder = shapely.difference(remainder, other)
+        if not shapely.is_empty(remainder):
+            disjoint.append((remainder, factor))
+    return tuple(disjoint)
 
 
 def _geodesic_parts(

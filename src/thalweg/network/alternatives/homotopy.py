@@ -98,8 +98,8 @@ def _large_land(network: Network, chart: Chart, island: float) -> FloatArray:
     begin = rings.start[:-1]
     low, high = (f.reduceat(rings.lat, begin) for f in (np.minimum, np.maximum))
     lon0 = float(network.lon[network.meta.start])
-    away = wrap_longitude(rings.lon - lon0)
-    west, east = (f.reduceat(away, begin) for f in (np.minimum, np.maximum))
+    offset = wrap_longitude(rings.lon - lon0)
+    west, east = (f.reduceat(offset, begin) for f in (np.minimum, np.maximum))
     area = ring_areas(rings)
     mine = wrap_longitude(network.lon - lon0)
     near = (low <= network.lat.max()) & (high >= network.lat.min())

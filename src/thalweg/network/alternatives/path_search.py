@@ -223,33 +223,33 @@ def _best_of_each_class(
             graph.indptr, graph.target, weight[edge], seen.crossings[edge], *tree, ranks, sums
         )
         sides.append((*tree, sums))
-    (there, came, past), (back, goes, ahead) = sides
-    total = there + back
+    (from_start, previous, crossed), (to_goal, following, to_cross) = sides
+    total = from_start + to_goal
     best = float(total[network.meta.start])
     if not np.isfinite(best):
         raise _no_path(network)
     best = float(total.min())  # the same but for rounding
     nodes = np.flatnonzero(total <= (1.0 + stretch) * best)
     nodes = nodes[np.argsort(total[nodes], kind="stable")]
-    signature = past[nodes] + ahead[nodes]
+    signature = crossed[nodes] + to_cross[nodes]
     _, first = np.unique(signature, axis=0, return_index=True)
     kinds = []
     for k in np.sort(first):
-        path = _path_through_node(came, goes, int(nodes[k]))
+        path = _path_through_node(previous, following, int(nodes[k]))
         if len(set(path)) == len(path):  # a path that visits a node twice is not an alternative
             ratio = float(total[nodes[k]] / best)
             kinds.append(_PathClass(signature[k].tobytes(), ratio, order, np.array(path)))
     return kinds
 
 
-def _path_through_node(came: IntArray, goes: IntArray, node: int) -> list[int]:
+def _path_through_node(previous: IntArray, following: IntArray, node: int) -> list[int]:
     """Return the nodes from start to goal through a node, given both trees."""
     path = [node]
-    while came[path[-1]] >= 0:
-        path.append(int(came[path[-1]]))
+    while previous[path[-1]] >= 0:
+        path.append(int(previous[path[-1]]))
     path.reverse()
-    while goes[path[-1]] >= 0:
-        path.append(int(goes[path[-1]]))
+    while following[path[-1]] >= 0:
+        path.append(int(following[path[-1]]))
     return path
 
 

@@ -214,9 +214,9 @@ def _cut_corners(rules: _LegRules, line: PolylineCoordinates) -> PolylineCoordin
     before, after = _cut_points(line, corner, low)
     cut = low > 0.0
     order = np.concatenate([corner[cut] - 0.25, corner[cut] + 0.25, corner[~cut], [0, count - 1]])
-    rest = np.concatenate([corner[~cut], [0, count - 1]])
+    remaining = np.concatenate([corner[~cut], [0, count - 1]])
     mixed = [
-        np.concatenate([before[k][cut], after[k][cut], line[k][rest]])[np.argsort(order)]
+        np.concatenate([before[k][cut], after[k][cut], line[k][remaining]])[np.argsort(order)]
         for k in (0, 1)
     ]
     return mixed[0], mixed[1]
@@ -278,8 +278,8 @@ def _move_some(
         _select_points(on, many[better]),
     )
     free = rules.allowed(ends[0], ends[1]) & rules.allowed(ends[1], ends[2])
-    beside = _select_points(here, many[better])
-    free &= rules.same_side(ends[0], beside, ends[1]) & rules.same_side(ends[1], beside, ends[2])
+    current = _select_points(here, many[better])
+    free &= rules.same_side(ends[0], current, ends[1]) & rules.same_side(ends[1], current, ends[2])
     price[np.setdiff1d(np.arange(len(many)), better[free])] = np.inf
     price = price.reshape(len(k), size)
     best = price.argmin(axis=1)

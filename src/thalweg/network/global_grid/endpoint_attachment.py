@@ -168,13 +168,13 @@ def _candidates(
         >= np.cos(min(reach / MEAN_RADIUS, np.pi)) - 1e-9
     )
     nodes = np.flatnonzero(allowed & within)
-    away, course = _distance_and_course(waters, place, nodes)
-    near = (away <= reach) & (away > _SHORTEST_LINK)
-    nodes, away, course = nodes[near], away[near], course[near]
-    order = np.argsort(away, kind="stable")
-    nodes, away, course = nodes[order], away[order], course[order]
+    separation, course = _distance_and_course(waters, place, nodes)
+    near = (separation <= reach) & (separation > _SHORTEST_LINK)
+    nodes, separation, course = nodes[near], separation[near], course[near]
+    order = np.argsort(separation, kind="stable")
+    nodes, separation, course = nodes[order], separation[order], course[order]
     sector = np.floor(course * (_SECTORS / (2.0 * np.pi))).astype(np.int64)
-    cell = sector * 1000 + np.floor(2.0 * np.log2(away)).astype(np.int64)
+    cell = sector * 1000 + np.floor(2.0 * np.log2(separation)).astype(np.int64)
     by_cell = np.argsort(cell, kind="stable")
     begins = np.append(True, np.diff(cell[by_cell]) != 0) if len(cell) else np.empty(0, bool)
     rank = np.arange(len(cell)) - np.maximum.accumulate(np.where(begins, np.arange(len(cell)), 0))
@@ -189,11 +189,11 @@ def _distance_and_course(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the distance [m] and course [rad] of nodes from a position, on a sphere."""
     here, there = conformal_unit_vectors(*place), waters.vectors[nodes]
-    away = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(there - here, axis=1), 1.0))
+    separation = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(there - here, axis=1), 1.0))
     lam = np.radians(place[1])
     east = np.array([-np.sin(lam), np.cos(lam), 0.0])
     course = np.arctan2(there @ east, there @ np.cross(here, east)) % (2.0 * np.pi)
-    return away * MEAN_RADIUS, course
+    return separation * MEAN_RADIUS, course
 
 
 def _reachable_nodes(
@@ -208,8 +208,8 @@ def _reachable_nodes(
 def _nearest_by_sector(waters: ConnectedWaters, place: Position, nodes: IntArray) -> IntArray:
     if len(nodes) <= _MAX_LINKS:
         return nodes
-    away, _ = _distance_and_course(waters, place, nodes)
-    order = np.argsort(away, kind="stable")
+    separation, _ = _distance_and_course(waters, place, nodes)
+    order = np.argsort(separation, kind="stable")
     most = np.linspace(0, len(order) - 1, _MAX_LINKS).astype(np.int64)
     return nodes[np.union1d(order[:_NEAREST_LINKS], order[most])]
 
@@ -217,14 +217,14 @@ def _nearest_by_sector(waters: ConnectedWaters, place: Position, nodes: IntArray
 def _approach(chart: Chart, waters: ConnectedWaters, place: Position) -> Attachment | None:
     """Return an approach from a position to the largest water, or None if none exists."""
     nodes = np.flatnonzero(waters.water == waters.largest)
-    away, _ = _distance_and_course(waters, place, nodes)
-    order = np.argsort(away, kind="stable")
+    separation, _ = _distance_and_course(waters, place, nodes)
+    order = np.argsort(separation, kind="stable")
     tried: list[Position] = []
     for k in order:
         goal = float(waters.lat[nodes[k]]), float(waters.lon[nodes[k]])
-        if away[k] > _FARTHEST_APPROACH or len(tried) >= _MAX_APPROACHES:
+        if separation[k] > _FARTHEST_APPROACH or len(tried) >= _MAX_APPROACHES:
             return None
-        if any(float(distance(*goal, *other)) < 0.3 * away[k] for other in tried):
+        if any(float(distance(*goal, *other)) < 0.3 * separation[k] for other in tried):
             continue
         tried.append(goal)
         path = _fine_path(chart, place, goal)
@@ -237,8 +237,8 @@ def _fine_path(
     chart: Chart, start: Position, goal: Position
 ) -> tuple[FloatArray, FloatArray] | None:
     """Return the shortest path on a fine lattice between near positions."""
-    away = float(distance(*start, *goal))
-    margin = max(away, 15.0 * NAUTICAL_MILE) / (60.0 * NAUTICAL_MILE)
+    separation = float(distance(*start, *goal))
+    margin = max(separation, 15.0 * NAUTICAL_MILE) / (60.0 * NAUTICAL_MILE)
     east = margin / max(float(np.cos(np.radians(start[0]))), 0.05)
     turn = float(wrap_longitude(start[1] - goal[1]))
     middle = goal[1] + 0.5 * turn

@@ -294,14 +294,14 @@ def _sheet_subset(sheet: _UnassembledGlobe, keep: BoolArray) -> _UnassembledGlob
         stations=stations,
         pairs=_renumbered(sheet.pairs, keep, new),
         through=_renumbered(sheet.through, keep, new),
-        canals=tuple(canal for canal, kept in zip(sheet.canals, whole) if kept),
+        canals=tuple(canal for canal, selected in zip(sheet.canals, whole) if selected),
         start=int(new[sheet.start]),
     )
 
 
 def _renumbered(pairs: Pairs, keep: BoolArray, new: np.ndarray) -> Pairs:
-    kept = pairs.where(keep[pairs.first] & keep[pairs.second])
-    return replace(kept, first=new[kept.first], second=new[kept.second])
+    selected = pairs.where(keep[pairs.first] & keep[pairs.second])
+    return replace(selected, first=new[selected.first], second=new[selected.second])
 
 
 def _network(chart: Chart, sheet: _UnassembledGlobe, options: _Options, spacing: float) -> Network:
@@ -329,8 +329,8 @@ def _no_route(
 ) -> NoRouteError:  # fmt: skip
     reached = np.flatnonzero(np.isfinite(to_start))
     lat, lon = sheet.stations.lat[reached], sheet.stations.lon[reached]
-    away = geodesy.distance(lat, lon, *ends[1])
-    best = int(np.argmin(away))
+    separation = geodesy.distance(lat, lon, *ends[1])
+    best = int(np.argmin(separation))
     nearest = float(lat[best]), float(lon[best])
     names = [geodesy.format_position(*place) for place in (*ends, nearest)]
     remedy = "Choose another start or goal, a finer chart, or more coast levels."
@@ -340,7 +340,7 @@ def _no_route(
         remedy = f"Allow the {titles}: with all canals a route exists."
     return NoRouteError(
         f"There is no path by water from {names[0]} to {names[1]} on this chart.",
-        f"The network reaches {names[2]}, {away[best] / NAUTICAL_MILE:.1f} nm from the goal.",
+        f"The network reaches {names[2]}, {separation[best] / NAUTICAL_MILE:.1f} nm from the goal.",
         remedy,
         reasons={"land": sheet.grid.rejected},
         nearest=nearest,

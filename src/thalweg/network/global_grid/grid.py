@@ -227,8 +227,10 @@ def _largest_open_gap(
         return float(2.0 * np.pi)
     east = np.cross([0.0, 0.0, 1.0], vectors[tail] + [1e-9, 0.0, 0.0])
     north = np.cross(vectors[tail], east)
-    away = vectors[head] - vectors[tail]
-    angle = np.arctan2(np.einsum("ij,ij->i", away, east), np.einsum("ij,ij->i", away, north))
+    direction = vectors[head] - vectors[tail]
+    angle = np.arctan2(
+        np.einsum("ij,ij->i", direction, east), np.einsum("ij,ij->i", direction, north)
+    )
     return float(_gaps(tail, angle).max())
 
 

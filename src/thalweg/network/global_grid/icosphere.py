@@ -129,9 +129,9 @@ def icosphere(level: int, *rules: RefinementRule) -> Icosphere:
         split = np.zeros(len(faces), bool)
         middles = grid.vertices[faces].mean(axis=1)
         for rule in rules:
-            asked = np.flatnonzero(~split & rule.reaches(middles, depth - level))
-            if len(asked):
-                split[asked] = grid.crossed_faces(faces[asked], rule.crossed)
+            candidates = np.flatnonzero(~split & rule.reaches(middles, depth - level))
+            if len(candidates):
+                split[candidates] = grid.crossed_faces(faces[candidates], rule.crossed)
         leaves.append(faces[~split])
         faces = grid.halved(faces[split])
         depth += 1

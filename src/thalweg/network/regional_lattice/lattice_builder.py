@@ -137,24 +137,30 @@ def lattice(
     distance = float(geodesy.distance(*start, *goal))
     _check(spacing, coast_levels, orientation, slack)
     if along is None:
-        wish = _make_request(chart, start, goal, distance, spacing, coast_levels, orientation, area)
+        request = _make_request(
+            chart, start, goal, distance, spacing, coast_levels, orientation, area
+        )
         slack = _default_slack(distance) if slack is None else slack
-        drawing = _grow_until_connected(wish, (di, dj), distance, slack, detour)
+        attempt = _grow_until_connected(request, (di, dj), distance, slack, detour)
     else:
         lat, lon, length = _densified(along)
-        wish = _make_request(chart, start, goal, length, spacing, coast_levels, orientation, area)
+        request = _make_request(
+            chart, start, goal, length, spacing, coast_levels, orientation, area
+        )
         side = min(max(length / 8.0, 20.0 * NAUTICAL_MILE), 300.0 * NAUTICAL_MILE)
-        wish = replace(wish, corridor=_corridor_around(lat, lon, side if width is None else width))
-        drawing = _lattice_in_corridor(wish, (di, dj), lat, lon)
-    ground = drawing.ground
+        request = replace(
+            request, corridor=_corridor_around(lat, lon, side if width is None else width)
+        )
+        attempt = _lattice_in_corridor(request, (di, dj), lat, lon)
+    ground = attempt.ground
     meta = NetworkMeta(
         kind="lattice/latlon" if ground.frame.is_mercator else "lattice/great_circle",
         spacing_m=ground.frame.largest_unit * ground.step(0),
         directions=directions,
         gap_rad=largest_angle_gap(di, dj),
-        notes=drawing.notes,
+        notes=attempt.notes,
     )
-    return drawing.draft.network(chart, ground.frame, di, dj, meta)
+    return attempt.draft.network(chart, ground.frame, di, dj, meta)
 
 
 def default_spacing(distance: float) -> float:
@@ -204,25 +210,25 @@ def _make_request(
 
 
 def _grow_until_connected(
-    wish: _LatticeRequest, offsets: _Offsets, distance: float, slack: float, detour: float
+    request: _LatticeRequest, offsets: _Offsets, distance: float, slack: float, detour: float
 ) -> _LatticeAttempt:
     """Grow and refine until start and goal connect and the slack fits; return the last lattice."""
     factor, extra = 1.01 * (1.0 + slack), 0
     while True:
-        drawing = _grow_within_budget(wish, offsets, factor * distance, extra)
-        ground, draft = drawing.ground, drawing.draft
+        attempt = _grow_within_budget(request, offsets, factor * distance, extra)
+        ground, draft = attempt.ground, attempt.draft
         to_start = draft.distances(draft.start)
         length = to_start[draft.goal]
         whole = ground.region.covers_globe
         if float(length) > detour * distance and (
             math.isfinite(length) or factor > detour * (1.0 + slack)
         ):
-            raise _no_route(wish, draft, to_start)
+            raise _no_route(request, draft, to_start)
         if math.isfinite(length):
             needed = (1.0 + slack) * float(length) / distance
             if whole or needed <= 1.005 * factor:
                 return _refine_along_paths(
-                    wish, offsets, _pruned(drawing, slack, to_start), slack, extra
+                    request, offsets, _pruned(attempt, slack, to_start), slack, extra
                 )
             factor = 1.01 * needed
             continue
@@ -233,7 +239,7 @@ def _grow_until_connected(
         elif extra < _MAX_EXTRA_LEVELS:
             extra += 1
         else:
-            raise _no_route(wish, draft, to_start)
+            raise _no_route(request, draft, to_start)
 
 
 def _densified(path: Sequence[Position]) -> tuple[FloatArray, FloatArray, float]:
@@ -258,32 +264,32 @@ def _corridor_around(lat: FloatArray, lon: FloatArray, width: float) -> Corridor
 
 
 def _lattice_in_corridor(
-    wish: _LatticeRequest, offsets: _Offsets, lat: FloatArray, lon: FloatArray
+    request: _LatticeRequest, offsets: _Offsets, lat: FloatArray, lon: FloatArray
 ) -> _LatticeAttempt:
     """Draw the lattice of a corridor, finer at coasts until it connects."""
-    out = geodesy.distance(*wish.start, lat, lon) + geodesy.distance(lat, lon, *wish.goal)
-    limit = 1.1 * float(out.max()) + 10.0 * wish.spacing
+    out = geodesy.distance(*request.start, lat, lon) + geodesy.distance(lat, lon, *request.goal)
+    limit = 1.1 * float(out.max()) + 10.0 * request.spacing
     for extra in range(_MAX_EXTRA_LEVELS + 1):
-        drawing = _grow_within_budget(wish, offsets, limit, extra, wish.corridor)
-        to_start = drawing.draft.distances(drawing.draft.start)
-        if math.isfinite(to_start[drawing.draft.goal]):
-            return _pruned(drawing, math.inf, to_start)
-    raise _no_route(wish, drawing.draft, to_start)
+        attempt = _grow_within_budget(request, offsets, limit, extra, request.corridor)
+        to_start = attempt.draft.distances(attempt.draft.start)
+        if math.isfinite(to_start[attempt.draft.goal]):
+            return _pruned(attempt, math.inf, to_start)
+    raise _no_route(request, attempt.draft, to_start)
 
 
 def _refine_along_paths(
-    wish: _LatticeRequest, offsets: _Offsets, coarse: _LatticeAttempt, slack: float, extra: int
+    request: _LatticeRequest, offsets: _Offsets, coarse: _LatticeAttempt, slack: float, extra: int
 ) -> _LatticeAttempt:
     """Build a finer lattice along the paths found on one that had to be coarse."""
     ground, stations = coarse.ground, coarse.draft.stations
     spacing = ground.frame.largest_unit * ground.step(0)
-    beyond = coarse.refused > ground.coast_budget and spacing < 1.3 * wish.spacing
+    beyond = coarse.refused > ground.coast_budget and spacing < 1.3 * request.spacing
     if not coarse.notes or beyond:
         return coarse
     corridor = Corridor.around(
         ground.frame, ground.step(0), conformal_unit_vectors(stations.lat, stations.lon)
     )
-    finer = _grow_within_budget(wish, offsets, ground.region.limit, extra, corridor)
+    finer = _grow_within_budget(request, offsets, ground.region.limit, extra, corridor)
     to_start = finer.draft.distances(finer.draft.start)
     if not math.isfinite(to_start[finer.draft.goal]):
         return coarse
@@ -291,35 +297,37 @@ def _refine_along_paths(
 
 
 def _grow_within_budget(
-    wish: _LatticeRequest,
+    request: _LatticeRequest,
     offsets: _Offsets,
     limit: float,
     extra: int,
     corridor: Corridor | None = None,
 ) -> _LatticeAttempt:
     """Draw the lattice for a region, coarsening it while it is over its budget."""
-    region = Region(wish.start, wish.goal, limit, wish.area, _chart_box(wish.chart), corridor)
-    spacing, coast, ends = wish.spacing, wish.coast_levels + max(extra - 1, 0), 2 * extra
+    region = Region(
+        request.start, request.goal, limit, request.area, _chart_box(request.chart), corridor
+    )
+    spacing, coast, ends = request.spacing, request.coast_levels + max(extra - 1, 0), 2 * extra
     notes: tuple[str, ...] = ()
     refused = 0
     if region.unbounded and corridor is None:  # only to find the paths to refine
         spacing, coast = max(spacing, _GLOBAL_SPACING), min(max(coast, 2), 3)
-        wish = replace(wish, budget=_NODE_BUDGET, coast_budget=_NODE_BUDGET)
+        request = replace(request, budget=_NODE_BUDGET, coast_budget=_NODE_BUDGET)
         notes = _coarsening_note(spacing, coast)
-    most = min(wish.coast_budget * (1 + 2 * extra), _MAX_NODE_BUDGET)
-    may_stop = wish.coast_budget < _MAX_NODE_BUDGET
+    most = min(request.coast_budget * (1 + 2 * extra), _MAX_NODE_BUDGET)
+    may_stop = request.coast_budget < _MAX_NODE_BUDGET
     while True:
-        frame = _projection(wish, region, spacing).refined(coast + ends)
+        frame = _projection(request, region, spacing).refined(coast + ends)
         ground = LatticeSpecification(
-            wish.chart, frame, region, coast, ends, wish.budget, most, may_stop
+            request.chart, frame, region, coast, ends, request.budget, most, may_stop
         )
         try:
-            draft = grow_lattice(ground, *offsets, wish.start, wish.goal)
+            draft = grow_lattice(ground, *offsets, request.start, request.goal)
             if draft.refused:
                 notes, refused = _coarsening_note(spacing, len(draft.parts) - 1), draft.refused
             return _LatticeAttempt(ground, draft, notes, refused)
         except TooManyPoints as refusal:
-            spacing, coast, ends = _coarser(wish, region, refusal, (spacing, coast, ends))
+            spacing, coast, ends = _coarser(request, region, refusal, (spacing, coast, ends))
             notes, refused = _coarsening_note(spacing, coast), refusal.count
 
 
@@ -329,7 +337,7 @@ def _coarsening_note(spacing: float, coast: int) -> tuple[str, ...]:
 
 
 def _coarser(
-    wish: _LatticeRequest, region: Region, refusal: TooManyPoints, sizes: tuple[float, int, int]
+    request: _LatticeRequest, region: Region, refusal: TooManyPoints, sizes: tuple[float, int, int]
 ) -> tuple[float, int, int]:
     """Return a larger spacing or fewer levels than those (spacing, coast, ends) refused.
 
@@ -340,16 +348,16 @@ def _coarser(
     """
     spacing, coast, ends = sizes
     level = refusal.level
-    if wish.coast_budget < _MAX_NODE_BUDGET and 1 < level <= coast:
+    if request.coast_budget < _MAX_NODE_BUDGET and 1 < level <= coast:
         return spacing, level - 1, ends
     if level > coast and ends > 0:
         return spacing, coast, ends - 1
-    if wish.budget < _MAX_NODE_BUDGET:
+    if request.budget < _MAX_NODE_BUDGET:
         return spacing * (2.0 if level == 0 and region.unbounded else 1.4), max(coast, 1), ends
-    if wish.coast_budget < _MAX_NODE_BUDGET and level > 0:
+    if request.coast_budget < _MAX_NODE_BUDGET and level > 0:
         return spacing, level - 1, ends
     raise InputError(
-        f"A lattice {wish.spacing:.0f} m apart would have over {refusal.count} nodes.",
+        f"A lattice {request.spacing:.0f} m apart would have over {refusal.count} nodes.",
         f"At most {_MAX_NODE_BUDGET} nodes are built.",
         "Give a larger spacing, fewer coast levels or a smaller area.",
     )
@@ -363,38 +371,38 @@ def _chart_box(chart: Chart) -> Box | None:
     return area.south, area.north, area.west, area.west + area.width
 
 
-def _projection(wish: _LatticeRequest, region: Region, spacing: float) -> ConformalProjection:
-    if wish.orientation == "great_circle" and not region.covers_globe:
-        return great_circle_projection(wish.start, wish.goal, spacing)
-    middle = 0.5 * (wish.start[0] + wish.goal[0])
+def _projection(request: _LatticeRequest, region: Region, spacing: float) -> ConformalProjection:
+    if request.orientation == "great_circle" and not region.covers_globe:
+        return great_circle_projection(request.start, request.goal, spacing)
+    middle = 0.5 * (request.start[0] + request.goal[0])
     closed = region.unbounded
     return mercator_projection(
-        wish.start, spacing, latitude=0.0 if closed else middle, closed=closed
+        request.start, spacing, latitude=0.0 if closed else middle, closed=closed
     )
 
 
-def _pruned(drawing: _LatticeAttempt, slack: float, to_start: FloatArray) -> _LatticeAttempt:
+def _pruned(attempt: _LatticeAttempt, slack: float, to_start: FloatArray) -> _LatticeAttempt:
     """Drop the nodes that no path within the slack passes; scale the count of a finer level."""
-    ground, draft = drawing.ground, drawing.draft
+    ground, draft = attempt.ground, attempt.draft
     total, limit = to_start, math.inf
     if not math.isinf(slack):
         total = to_start + draft.distances(draft.goal)
         limit = (1.0 + slack) * to_start[draft.goal]
         limit += 4.0 * ground.frame.largest_unit * ground.step(0)
-    kept = draft.where(np.isfinite(total) & (total <= limit))
-    share = kept.stations.n_nodes / draft.stations.n_nodes
-    return replace(drawing, draft=kept, refused=int(drawing.refused * share))
+    selected = draft.where(np.isfinite(total) & (total <= limit))
+    share = selected.stations.n_nodes / draft.stations.n_nodes
+    return replace(attempt, draft=selected, refused=int(attempt.refused * share))
 
 
 def _no_route(
-    wish: _LatticeRequest, draft: UnassembledLattice, to_start: FloatArray
+    request: _LatticeRequest, draft: UnassembledLattice, to_start: FloatArray
 ) -> NoRouteError:
     nearest = nearest_reached(draft, to_start)
-    away = float(geodesy.distance(*nearest, *wish.goal)) / NAUTICAL_MILE
-    names = [geodesy.format_position(*place) for place in (wish.start, wish.goal, nearest)]
+    separation = float(geodesy.distance(*nearest, *request.goal)) / NAUTICAL_MILE
+    names = [geodesy.format_position(*place) for place in (request.start, request.goal, nearest)]
     return NoRouteError(
         f"There is no path by water from {names[0]} to {names[1]} on this chart.",
-        f"The network reaches {names[2]}, {away:.1f} nm from the goal.",
+        f"The network reaches {names[2]}, {separation:.1f} nm from the goal.",
         "Choose another start or goal, a finer chart, or a finer spacing.",
         reasons=draft.rejected,
         nearest=nearest,

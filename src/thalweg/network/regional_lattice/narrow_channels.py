@@ -85,10 +85,10 @@ def channel_pairs(chart: Chart, stations: Stations, first: int, last: int, near:
         if not len(others) or not len(own):
             continue
         count = min(_NEIGHBOURS, len(others))
-        away, found = cKDTree(vectors[others]).query(
+        separation, found = cKDTree(vectors[others]).query(
             vectors[own], k=np.arange(1, count + 1), distance_upper_bound=reach
         )
-        row, column = np.nonzero(np.isfinite(away))
+        row, column = np.nonzero(np.isfinite(separation))
         a, b = own[row], others[found[row, column]]
         once = (b < first) | (a < b)
         parts.append(measured_pairs(lat, lon, a[once].astype(np.int32), b[once].astype(np.int32)))
@@ -135,14 +135,14 @@ def _channel_midpoints(shores: ShoreEdges, land: IntArray, widest: float) -> Flo
     found, width = [np.empty((0, 3))], widest
     while len(land):
         places = _normalised(shores[0])
-        away, middle = _facing_shore(places, land, width)
+        separation, middle = _facing_shore(places, land, width)
         last = width <= _MIN_WIDTH
-        here = (away <= width) & (last | (away > 0.5 * width))
+        here = (separation <= width) & (last | (separation > 0.5 * width))
         found.append(_one_per_cell(middle[here], _THINNING_CELL * width))
         if last:
             break
         width *= 0.5
-        near = away <= (1.0 + 2.0 * _SHORE_SPACING) * width
+        near = separation <= (1.0 + 2.0 * _SHORE_SPACING) * width
         shores, edge = _split_edges((shores[0][near], shores[1][near]), _SHORE_SPACING * width)
         land = land[near][edge]
     return np.concatenate(found)
@@ -155,14 +155,14 @@ def _facing_shore(
     from scipy.spatial import cKDTree
 
     count = min(_NEAREST_SHORE_PLACES, len(places))
-    away, found = cKDTree(places).query(
+    separation, found = cKDTree(places).query(
         places, k=np.arange(1, count + 1), distance_upper_bound=within / MEAN_RADIUS
     )
-    other = np.isfinite(away) & (land[np.minimum(found, len(land) - 1)] != land[:, None])
+    other = np.isfinite(separation) & (land[np.minimum(found, len(land) - 1)] != land[:, None])
     first = other.argmax(axis=1)
     row = np.arange(len(places))
     nearest = np.where(other[row, first], found[row, first], row)
-    apart = np.where(nearest != row, away[row, first] * MEAN_RADIUS, np.inf)
+    apart = np.where(nearest != row, separation[row, first] * MEAN_RADIUS, np.inf)
     return apart, _normalised(places + places[nearest])
 
 

@@ -200,18 +200,18 @@ def _join_level_points(
 
 
 def _pairs_subset(pairs: Pairs, keep: BoolArray, new: IntArray) -> Pairs:
-    kept = pairs.where(keep[pairs.first] & keep[pairs.second])
-    first, second = new[kept.first].astype(np.int32), new[kept.second].astype(np.int32)
-    return Pairs(first, second, kept.length, kept.course)
+    selected = pairs.where(keep[pairs.first] & keep[pairs.second])
+    first, second = new[selected.first].astype(np.int32), new[selected.second].astype(np.int32)
+    return Pairs(first, second, selected.length, selected.course)
 
 
 def _level_subset(part: LevelPairs, keep: BoolArray, new: IntArray) -> LevelPairs:
-    kept = keep[part.pairs.first] & keep[part.pairs.second]
+    selected = keep[part.pairs.first] & keep[part.pairs.second]
     place = np.cumsum(keep[part.level.node]) - 1
     return LevelPairs(
         part.level.where(keep, new),
-        place[part.point[kept]].astype(np.int32),
-        part.offset[kept],
+        place[part.point[selected]].astype(np.int32),
+        part.offset[selected],
         _pairs_subset(part.pairs, keep, new),
     )
 
@@ -262,9 +262,9 @@ def reached_sides(
 def nearest_reached(draft: UnassembledLattice, start: FloatArray) -> Position:
     """Return the position reached from the start that is nearest to the goal."""
     lat, lon = draft.stations.lat, draft.stations.lon
-    away = (
+    separation = (
         angle_to_point(conformal_unit_vectors(lat, lon), conformal_unit_vectors(lat[-1], lon[-1]))
         * MEAN_RADIUS
     )
-    best = int(np.argmin(np.where(np.isfinite(start), away, np.inf)))
+    best = int(np.argmin(np.where(np.isfinite(start), separation, np.inf)))
     return float(lat[best]), float(lon[best])

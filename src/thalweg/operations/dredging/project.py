@@ -341,10 +341,10 @@ def _base_case(data: Any, sites: Sites) -> BaseCase | None:
 
 def _check_ends(route: tuple[Position, ...], sites: Sites) -> None:
     for end, site, which in ((route[0], sites.load, "starts"), (route[-1], sites.unload, "ends")):
-        away = float(distance(*end, *site))
-        if away > _SITE_TOLERANCE:
+        separation = float(distance(*end, *site))
+        if separation > _SITE_TOLERANCE:
             raise InputError(
-                f"The route of the base case {which} {away:,.0f} m from the site.",
+                f"The route of the base case {which} {separation:,.0f} m from the site.",
                 "It runs from the loading site to the unloading site.",
                 f"Make it {which.removesuffix('s')} at {site[0]:g}, {site[1]:g}.",
                 field="base_case.route",

@@ -250,9 +250,9 @@ def _mesh_near_sites(
 
 
 def _node_at(network: Network, place: Position) -> int:
-    away = distance(network.lat, network.lon, *place)
-    nearest = int(np.argmin(away))
-    if away[nearest] > _SAME_PLACE:
+    separation = distance(network.lat, network.lon, *place)
+    nearest = int(np.argmin(separation))
+    if separation[nearest] > _SAME_PLACE:
         raise InputError(
             f"The site {place[0]:.4f}, {place[1]:.4f} is not on navigable water.",
             "It is on land, in a no-go zone or outside the chart.",

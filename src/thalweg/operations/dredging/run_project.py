@@ -187,10 +187,10 @@ def _depth_at(world: ProjectEnvironment, place: Position) -> tuple[np.ndarray, n
         depth = np.minimum(depth, np.asarray(world.chart.depths.at(*place), float))
     channels = [n for n in (nm.BED_DEPTH, nm.WATER_LEVEL) if n in sea.variables]
     lat, lon = np.full(times.shape, place[0]), np.full(times.shape, place[1])
-    got = sea.sample(channels, times, lat, lon) if channels else {}
-    if nm.BED_DEPTH in got:
-        depth = np.minimum(depth, got[nm.BED_DEPTH])
-    return times, depth + got.get(nm.WATER_LEVEL, 0.0)
+    samples = sea.sample(channels, times, lat, lon) if channels else {}
+    if nm.BED_DEPTH in samples:
+        depth = np.minimum(depth, samples[nm.BED_DEPTH])
+    return times, depth + samples.get(nm.WATER_LEVEL, 0.0)
 
 
 def no_passage_error(
@@ -204,24 +204,24 @@ def no_passage_error(
     loaded = world.loaded(load_factor)
     required = loaded.required_depth
     open_to = _passable_depth(ways, loaded) if math.isfinite(required) else -math.inf
-    asked = f"There is no route at any tide with load factor {load_factor:g} ({name})."
+    summary = f"There is no route at any tide with load factor {load_factor:g} ({name})."
     if not math.isfinite(open_to):
         unknown = _first_unknown_depth(ways.network) if ways.network.meta.kind == LINE else None
         if unknown is not None:
             return NoRouteError(
-                asked,
+                summary,
                 f"The depth of the water on its route at {format_position(*unknown)} is not known.",
                 "Correct base_case.route, or give data that cover it.",
                 nearest=unknown,
             )
         return NoRouteError(
-            asked,
+            summary,
             "The sites are not connected by water of known depth.",
             "Check the chart, the data and the detour.",
         )
     place, when = _bottleneck(ways, open_to)
     return NoRouteError(
-        asked,
+        summary,
         f"The best route is {required - open_to:.2f} m too shallow: at {format_position(*place)} "
         f"the water is highest {format_time(when)}, {open_to:.2f} m deep, and the ship needs "
         f"{required:.2f} m.",

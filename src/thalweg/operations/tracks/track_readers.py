@@ -192,9 +192,9 @@ def _one_vessel(
         return (known[0] if known else None), every
     listed = ", ".join(known[:10]) + (", ..." if len(known) > 10 else "")
     if vessel is None or names is None or str(vessel).strip() not in known:
-        asked = "none was chosen" if vessel is None else f"{vessel!r} was requested"
+        request = "none was chosen" if vessel is None else f"{vessel!r} was requested"
         raise InputError(
-            f"The tracks are of {len(known)} named ships, and {asked}.",
+            f"The tracks are of {len(known)} named ships, and {request}.",
             f"Ships: {listed or 'the file names none'}.",
             "Choose one of them (vessel, or --vessel).",
             vessels=known[:100],

@@ -39,8 +39,8 @@ def open_water_lower_front(
         time.append(k * one.exact.lower_time / HOUR)
         value.append(np.maximum(k * one.exact.lower_cost, criterion_lower_bound))
     times, values = np.concatenate(time), np.concatenate(value)
-    kept = non_dominated_indices(times, values, tolerance=ROUNDING_TOLERANCE)
-    return np.array([times[kept], values[kept]]).reshape(2, -1)
+    non_dominated = non_dominated_indices(times, values, tolerance=ROUNDING_TOLERANCE)
+    return np.array([times[non_dominated], values[non_dominated]]).reshape(2, -1)
 
 
 def correction_factors(lower: np.ndarray, time_h: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -51,8 +51,8 @@ def correction_factors(lower: np.ndarray, time_h: np.ndarray, values: np.ndarray
     """
     if not lower.size:
         return np.ones(2)
-    soonest = float(lower[0].min())  # 0 where a setting is slower than the current
-    factors = np.array([min(1.0, float(time_h.min()) / soonest) if soonest > 0.0 else 1.0, 1.0])
+    earliest = float(lower[0].min())  # 0 where a setting is slower than the current
+    factors = np.array([min(1.0, float(time_h.min()) / earliest) if earliest > 0.0 else 1.0, 1.0])
     for time, value in zip(time_h, values):
         bound = lower[1, factors[0] * lower[0] <= time].min(initial=math.inf)
         if value < bound < math.inf:

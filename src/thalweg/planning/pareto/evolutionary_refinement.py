@@ -86,12 +86,17 @@ def _seeds(
     """
     time = np.array([item.time for item in found])
     value = np.array([item.value for item in found])
-    kept = non_dominated_indices(time, value, tolerance=ROUNDING_TOLERANCE)
-    rest = np.setdiff1d(np.arange(len(found)), kept)
-    chosen = kept[evenly_spaced_subset(time[kept], value[kept], _MAX_SEEDS)]
-    if len(rest):
+    non_dominated = non_dominated_indices(time, value, tolerance=ROUNDING_TOLERANCE)
+    dominated = np.setdiff1d(np.arange(len(found)), non_dominated)
+    chosen = non_dominated[
+        evenly_spaced_subset(time[non_dominated], value[non_dominated], _MAX_SEEDS)
+    ]
+    if len(dominated):
         chosen = np.append(
-            chosen, rest[evenly_spaced_subset(time[rest], value[rest], _MAX_DOMINATED_SEEDS)]
+            chosen,
+            dominated[
+                evenly_spaced_subset(time[dominated], value[dominated], _MAX_DOMINATED_SEEDS)
+            ],
         )
     chosen = chosen[np.argsort(time[chosen], kind="stable")]
     fastest = explored.fastest
@@ -107,8 +112,8 @@ def _genome(trade_off: TradeOffContext, track: Track) -> Genome:
 
 
 def _passes_through(track: Track, place: tuple[float, float]) -> bool:
-    away = np.abs(track.lat - place[0]) + np.abs(wrap_longitude(track.lon - place[1]))
-    return bool(away.min() < 1e-9)
+    offset = np.abs(track.lat - place[0]) + np.abs(wrap_longitude(track.lon - place[1]))
+    return bool(offset.min() < 1e-9)
 
 
 def _evaluator(
@@ -154,10 +159,10 @@ def _extrapolated_one_cell(values: NDArray[np.float32]) -> NDArray[np.float32]:
     padded = np.pad(values, ((0, 0), (1, 1), (1, 1), (0, 0)), constant_values=np.nan)
     rows, columns = values.shape[1:3]
     for i, j in ((0, 1), (1, 0), (1, 2), (2, 1), (0, 0), (0, 2), (2, 0), (2, 2)):
-        beside = padded[:, i : i + rows, j : j + columns]
-        here = unknown & ~np.isnan(beside)
+        neighbours = padded[:, i : i + rows, j : j + columns]
+        here = unknown & ~np.isnan(neighbours)
         known += here
-        total[here] += beside[here]
+        total[here] += neighbours[here]
     reached = np.where(known > 0, total / np.maximum(known, 1), np.nan)
     return np.where(unknown, reached, values).astype(np.float32)
 

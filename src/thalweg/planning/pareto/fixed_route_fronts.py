@@ -76,10 +76,10 @@ def _speed_optimised(trade_off: TradeOffContext, path: AlternativePath) -> list[
     network = fixed_route(
         context.chart, path.waypoints, spacing=max(path.length / _LEGS_PER_ROUTE, 1.0)
     )
-    ahead = extend_horizon(trade_off, network)
-    if not ahead.first.found or ahead.first.arrive > ahead.latest:
+    horizon = extend_horizon(trade_off, network)
+    if not horizon.first.found or horizon.first.arrive > horizon.latest:
         return []
-    found = network_pareto_front(trade_off, network, ahead.frozen, ahead.latest, lower=False)
+    found = network_pareto_front(trade_off, network, horizon.frozen, horizon.latest, lower=False)
     name = " and ".join(path.canals) or "open sea"
     return [
         TrackCandidate(

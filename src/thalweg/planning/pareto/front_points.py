@@ -36,8 +36,14 @@ def track_from_front_point(network: Network, point: Any) -> Track:
     wait = np.where(wait < 1.0, 0.0, wait)
     setting = np.asarray(point.setting)
     lat, lon = network.stations.lat[path], network.stations.lon[path]
-    kept = np.flatnonzero(_essential_nodes(lat, lon, setting, wait))
-    return Track(lat[kept], lon[kept], float(point.path_arrive[0]), wait[kept], setting[kept[:-1]])
+    essential = np.flatnonzero(_essential_nodes(lat, lon, setting, wait))
+    return Track(
+        lat[essential],
+        lon[essential],
+        float(point.path_arrive[0]),
+        wait[essential],
+        setting[essential[:-1]],
+    )
 
 
 def _essential_nodes(lat: FloatArray, lon: FloatArray, setting: Any, wait: FloatArray) -> Any:

@@ -248,10 +248,10 @@ def _no_feasible_route_error(
 ) -> NoRouteError:
     latest = trade_off.context.latest_arrival
     by = f" by {format_time(latest)}" if math.isfinite(latest) else ""
-    soonest = min(one.first.arrive for one in explored)
+    earliest = min(one.first.arrive for one in explored)
     return NoRouteError(
         f"No route arrives{by} when the referee evaluates it in small steps.",
-        f"The earliest arrival on the network is {format_time(soonest)}.",
+        f"The earliest arrival on the network is {format_time(earliest)}.",
         "Allow more time, or relax the limits.",
         reasons=_rejections(explored),
     )

@@ -131,10 +131,10 @@ def _passing_side(route: Route, lat: FloatArray, lon: FloatArray) -> str:
     """Return the compass point of a route at its closest, seen from the middle of the land."""
     middle = 0.5 * (lat.min() + lat.max()), 0.5 * (lon.min() + lon.max())
     there = route.samples["lat"], route.samples["lon"]
-    away, course, _ = inverse(
+    separation, course, _ = inverse(
         np.full(len(there[0]), middle[0]), np.full(len(there[0]), middle[1]), *there
     )
-    nearest = float(course[int(np.nanargmin(away))])
+    nearest = float(course[int(np.nanargmin(separation))])
     return _COMPASS_POINTS[round(nearest / (math.pi / 4.0)) % 8]
 
 

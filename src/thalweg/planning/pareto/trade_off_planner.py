@@ -110,13 +110,16 @@ def _candidates(
     if not found:  # interrupted before there was a front
         return fastest
     found += _refined_candidates(trade_off, explored, found)
-    kept = non_dominated_indices(*_times_and_values(found), tolerance=ROUNDING_TOLERANCE)
-    time, value = _times_and_values([found[index] for index in kept])
+    non_dominated = non_dominated_indices(*_times_and_values(found), tolerance=ROUNDING_TOLERANCE)
+    time, value = _times_and_values([found[index] for index in non_dominated])
     steps = max(len(one.fastest.samples["time"]) for one in explored)
     most = min(max(_MAX_STEPS // max(steps, 1), _MIN_ROUTES), _MAX_ROUTES)
     if trade_off.interrupt_guard.stopped():
         most = min(most, _MAX_ROUTES_INTERRUPTED)
-    return [*fastest, *(found[kept[index]] for index in evenly_spaced_subset(time, value, most))]
+    return [
+        *fastest,
+        *(found[non_dominated[index]] for index in evenly_spaced_subset(time, value, most)),
+    ]
 
 
 def _exact_candidates(one: ExploredAlternative) -> list[TrackCandidate]:

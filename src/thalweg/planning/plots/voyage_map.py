@@ -170,8 +170,8 @@ def _shading_field(
             return waves, "significant wave height at passage [m]", "YlGnBu"
     for pair, word, colours in ((_CURRENT, "current", "PuBu"), (_WIND, "wind", "BuPu")):
         if all(name in names for name in pair):
-            got = world.sea.sample(list(pair), *at)
-            speed = np.hypot(got[pair[0]], got[pair[1]]) / KNOT
+            samples = world.sea.sample(list(pair), *at)
+            speed = np.hypot(samples[pair[0]], samples[pair[1]]) / KNOT
             if _varies(speed):
                 return speed, f"{word} speed at passage [kn]", colours
     depth = _depth(world, *at)
@@ -210,8 +210,8 @@ def _draw_arrows(
     for pair in (_CURRENT, _WIND):
         if not all(name in world.sea.variables for name in pair):
             continue
-        got = world.sea.sample(list(pair), moment, lat, wrap_longitude(lon))
-        east, north = got[pair[0]], got[pair[1]]
+        samples = world.sea.sample(list(pair), moment, lat, wrap_longitude(lon))
+        east, north = samples[pair[0]], samples[pair[1]]
         if _varies(np.hypot(east, north)):
             axes.quiver(lon, lat, east, north, color=_INK, alpha=0.45, width=0.0013)
             return

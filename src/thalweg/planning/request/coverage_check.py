@@ -112,8 +112,8 @@ class _CoverageProbe:
 
     def missing(self, lat: FloatArray, lon: FloatArray) -> list[str]:
         """Return the variables that are not known at a position at any time."""
-        got = self._sample(self.names, lat, lon)
-        lacking = [name for name in self.names if not np.isfinite(got[name]).any()]
+        samples = self._sample(self.names, lat, lon)
+        lacking = [name for name in self.names if not np.isfinite(samples[name]).any()]
         if math.isfinite(self.depth) and not np.isfinite(self._depths(lat, lon)).any():
             lacking.append("depth")
         return lacking
@@ -213,12 +213,12 @@ def _nearest_suitable_water(
     lat, lon = direct(*end.origin, bearing.ravel(), radius.ravel())
     use = np.asarray(chart.is_navigable(lat, lon), bool)
     use[use] = coverage_probe.suits(lat[use], lon[use], harbour=harbour)
-    away = radius.ravel()
+    separation = radius.ravel()
     places = np.flatnonzero(use)
-    for k in places[np.argsort(away[places], kind="stable")][:_MAX_CANDIDATES]:
+    for k in places[np.argsort(separation[places], kind="stable")][:_MAX_CANDIDATES]:
         water = chart.nearest_navigable(float(lat[k]), float(lon[k]), largest=2_000.0)
         if water is not None and water[2] < 1_000.0:
-            return float(lat[k]), float(lon[k]), float(away[k])
+            return float(lat[k]), float(lon[k]), float(separation[k])
     return None
 
 

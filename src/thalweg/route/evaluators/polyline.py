@@ -77,10 +77,10 @@ class Polyline:
 
         Cost evaluators choose settings; for them only the ends and canals are fixed.
         """
-        kept = evaluator.fixed_points(self.lat, self.lon)
+        fixed = evaluator.fixed_points(self.lat, self.lon)
         if not evaluator.chooses_settings:
-            kept[1:-1] |= np.diff(self.setting) != 0
-        return kept
+            fixed[1:-1] |= np.diff(self.setting) != 0
+        return fixed
 
     def split(self, longest: float, which: NDArray[np.bool_] | None = None) -> Polyline:
         """Return the line with a point in the middle of every leg longer than ``longest`` [m].

@@ -77,9 +77,9 @@ class Genome:
         held = np.zeros(len(track), dtype=bool)
         for position in via or ():
             lat, lon = (float(x) for x in np.asarray(position, float))
-            away = np.abs(track.lat - lat) + np.abs(wrap_longitude(track.lon - lon))
-            nearest = int(np.argmin(away))
-            if away[nearest] > 2e-9:
+            offset = np.abs(track.lat - lat) + np.abs(wrap_longitude(track.lon - lon))
+            nearest = int(np.argmin(offset))
+            if offset[nearest] > 2e-9:
                 raise InputError(
                     f"The via point ({lat:g}, {lon:g}) is not on the track.",
                     "Via points of a genome are waypoints of its track.",

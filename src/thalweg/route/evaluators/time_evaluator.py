@@ -222,10 +222,10 @@ def _least_depths(chart: Chart, legs: FloatArray) -> FloatArray:
     part, direction = (length / count)[leg], course[leg]
     a = direct(lat1[leg], lon1[leg], direction, number * part)
     b = direct(lat1[leg], lon1[leg], direction, (number + 1) * part)
-    beside = np.minimum(_CORRIDOR_HALF_WIDTH, 1e-3 * length)[leg]
+    offset = np.minimum(_CORRIDOR_HALF_WIDTH, 1e-3 * length)[leg]
     depth = np.full(len(leg), math.inf)
     for side in (-0.5 * math.pi, 0.5 * math.pi):  # a corridor: independent of the division of legs
-        ends = *direct(*a, direction + side, beside), *direct(*b, direction + side, beside)
+        ends = *direct(*a, direction + side, offset), *direct(*b, direction + side, offset)
         depth = np.minimum(depth, np.asarray(chart.depths.along(*ends), dtype=np.float64))
     least: FloatArray = np.minimum.reduceat(depth, first)
     return least

@@ -101,8 +101,8 @@ def write_geojson(route: Route, path: str | Path) -> None:
     features = [{"type": "Feature", "geometry": line, "properties": totals}]
     for row in route.waypoints():
         place = {"type": "Point", "coordinates": [row["lon"], row["lat"]]}
-        rest = {key: value for key, value in row.items() if key not in ("lat", "lon")}
-        features.append({"type": "Feature", "geometry": place, "properties": rest})
+        properties = {key: value for key, value in row.items() if key not in ("lat", "lon")}
+        features.append({"type": "Feature", "geometry": place, "properties": properties})
     text = json.dumps({"type": "FeatureCollection", "features": features}, allow_nan=False)
     write_text(path, text + "\n")
 
@@ -148,14 +148,18 @@ def _position(item: Any, number: int) -> Position:
 
 def _without_cuts(positions: list[Position]) -> list[Position]:
     """Return points without those where a line was split at the antimeridian."""
-    kept: list[Position] = []
+    remaining: list[Position] = []
     for index, (lat, lon) in enumerate(positions):
-        beside = positions[max(index - 1, 0) : index] + positions[index + 1 : index + 2]
+        neighbours = positions[max(index - 1, 0) : index] + positions[index + 1 : index + 2]
         inner = 0 < index < len(positions) - 1
-        if inner and abs(lon) == 180.0 and any(p[0] == lat and abs(p[1]) == 180.0 for p in beside):
+        if (
+            inner
+            and abs(lon) == 180.0
+            and any(p[0] == lat and abs(p[1]) == 180.0 for p in neighbours)
+        ):
             continue
-        kept.append((lat, lon))
-    return kept
+        remaining.append((lat, lon))
+    return remaining
 
 
 def _line_parts(route: Route) -> list[list[list[float]]]:

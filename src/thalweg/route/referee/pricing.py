@@ -209,10 +209,10 @@ def _control_area_of(chart: Chart, lat: FloatArray, lon: FloatArray) -> NDArray[
     """Return the first control area that contains each position; -1 for none."""
     zone = np.full(len(lat), -1)
     for number, area in enumerate(chart.zones.eca):
-        rest = np.flatnonzero(zone < 0)
-        if not len(rest):
+        remaining = np.flatnonzero(zone < 0)
+        if not len(remaining):
             break
-        zone[rest[area.contains(lat[rest], lon[rest])]] = number
+        zone[remaining[area.contains(lat[remaining], lon[remaining])]] = number
     return zone
 
 

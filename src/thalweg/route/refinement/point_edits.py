@@ -83,8 +83,8 @@ def _without_points(
     most = np.zeros(len(lines))
     np.maximum.at(most, whose, fewer)
     lenient[:, 1] += allowance * most * np.where(np.isfinite(lines.value), np.abs(lines.value), 0.0)
-    kept = ScoredTracks(lines.evaluator, lines.population, lines.price, lenient, lines.arrive)
-    after = kept.chosen(other, whose)
+    remaining = ScoredTracks(lines.evaluator, lines.population, lines.price, lenient, lines.arrive)
+    after = remaining.chosen(other, whose)
     same = (after.scores == lenient).all(axis=1)
     scores = np.where(same[:, None], lines.scores, after.scores)
     return ScoredTracks(lines.evaluator, after.population, lines.price, scores, after.arrive)
@@ -96,9 +96,9 @@ def _remove_in_place(population: Population, k: int, out: IntArray, first: BoolA
         if not first[p]:
             genes[p - 1, columns.SETTING] = genes[p, columns.SETTING]
         genes[p - 1, columns.IS_LOOKED_UP] = 0.0
-    kept = np.setdiff1d(np.arange(n), out)
-    genes[: len(kept)] = genes[kept]
-    population.count[k] = len(kept)
+    reduced = np.setdiff1d(np.arange(n), out)
+    genes[: len(reduced)] = genes[reduced]
+    population.count[k] = len(reduced)
 
 
 def split_long_legs(lines: ScoredTracks, *, legs: int) -> ScoredTracks:

@@ -90,9 +90,11 @@ def _douglas_peucker(
             continue
         normal = np.cross(points[a], points[b])
         size = float(np.linalg.norm(normal))
-        away = np.abs(points[a + 1 : b] @ normal) / size if size > 0.0 else np.ones(b - a - 1)
-        k = int(np.argmax(away))
-        if away[k] * MEAN_RADIUS > aside:
+        cross_track = (
+            np.abs(points[a + 1 : b] @ normal) / size if size > 0.0 else np.ones(b - a - 1)
+        )
+        k = int(np.argmax(cross_track))
+        if cross_track[k] * MEAN_RADIUS > aside:
             keep[a + 1 + k] = True
             spans += [(a, a + 1 + k), (a + 1 + k, b)]
     return keep

@@ -34,7 +34,7 @@ def main(source: str, folder: Path) -> None:
 def write_arrays(dataset: Any, number: int, folder: Path) -> dict[str, Any]:
     """Write the arrays of a dataset and return their names, dimensions and attributes."""
     dataset = with_valid_time(dataset)
-    kept: dict[str, Any] = {"fields": {}, "coords": {}, "attrs": json_attributes(dataset.attrs)}
+    contents: dict[str, Any] = {"fields": {}, "coords": {}, "attrs": json_attributes(dataset.attrs)}
     for name, array in dataset.variables.items():
         values = np.asarray(array.values)
         is_time = values.dtype.kind == "M"
@@ -42,7 +42,7 @@ def write_arrays(dataset: Any, number: int, folder: Path) -> dict[str, Any]:
             continue
         if is_time:
             values = values.astype("datetime64[ns]").astype(np.int64)
-        file = f"{number}-{len(kept['fields']) + len(kept['coords'])}.npy"
+        file = f"{number}-{len(contents['fields']) + len(contents['coords'])}.npy"
         np.save(folder / file, values)
         entry = {
             "file": file,
@@ -50,8 +50,8 @@ def write_arrays(dataset: Any, number: int, folder: Path) -> dict[str, Any]:
             "attrs": json_attributes(array.attrs),
             "is_time": is_time,
         }
-        kept["coords" if name in dataset.coords else "fields"][str(name)] = entry
-    return kept
+        contents["coords" if name in dataset.coords else "fields"][str(name)] = entry
+    return contents
 
 
 def with_valid_time(dataset: Any) -> Any:

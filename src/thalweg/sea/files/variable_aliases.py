@@ -146,8 +146,8 @@ def role_of_standard_name(name: str) -> tuple[str, int] | None:
         return SECOND_CHOICE_NAMES[name], 1
     if nm.is_bed_level(name):
         return BED_LEVEL, 0
-    kept = nm.canonical_name(name)
-    return (kept, 0) if kept in ROLES else None
+    canonical = nm.canonical_name(name)
+    return (canonical, 0) if canonical in ROLES else None
 
 
 def role_of_alias(name: str) -> tuple[str, int, str] | None:

@@ -146,9 +146,9 @@ def _mapped_roles(dataset: Any, mapping: Mapping[str, str]) -> dict[str, str]:
 
 
 def _role_for(name: str) -> str:
-    kept = nm.canonical_name(name)
-    if kept in variable_aliases.ROLES:
-        return kept
+    canonical = nm.canonical_name(name)
+    if canonical in variable_aliases.ROLES:
+        return canonical
     role = variable_aliases.role_of_standard_name(name)
     return role[0] if role else name
 

@@ -45,14 +45,14 @@ class BlockCache:
     def block(self, quantity: Quantity, wanted: GridWindow) -> CachedBlock:
         """Return a block that contains a window, reading it if necessary."""
         key = quantity.names
-        kept = self.blocks.get(key)
+        cached = self.blocks.get(key)
         columns = self.shape[2]
-        if kept is not None and kept.window.contains(wanted, columns):
-            return kept
+        if cached is not None and cached.window.contains(wanted, columns):
+            return cached
         misses = self.misses[key] = self.misses.get(key, -1) + 1
         window = self._window_with_margin(wanted, misses)
-        if kept is not None:
-            both = self._union(window, kept.window)
+        if cached is not None:
+            both = self._union(window, cached.window)
             window = both if both.size <= MAX_UNION_VALUES else window
         found = CachedBlock(window, quantity.read(window, columns))
         self.blocks[key] = found

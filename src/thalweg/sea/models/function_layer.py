@@ -221,10 +221,10 @@ def _variable_functions(functions: Mapping[str, FieldFunction]) -> dict[str, Var
         _convert_vector(vector, given, makers)
     _convert_bed(given, makers)
     for name, function in given.items():
-        kept = nm.canonical_name(name)
-        if kept in makers:
-            raise _given_twice_error(kept, name)
-        makers[kept] = _single_variable(kept, function)
+        canonical = nm.canonical_name(name)
+        if canonical in makers:
+            raise _given_twice_error(canonical, name)
+        makers[canonical] = _single_variable(canonical, function)
     return makers
 
 

@@ -110,9 +110,9 @@ def analyse_layer(
     rows, columns = layer.grid.shape
     lat, lon = _grid_positions(layer.grid)
     path = _cache_path(layer, names) if cache else None
-    kept = _read_cache(path, lat, lon) if path else None
-    if kept is not None:
-        return kept
+    cached = _read_cache(path, lat, lon) if path else None
+    if cached is not None:
+        return cached
     window = GridWindow(0, times.size, 0, rows, 0, columns)
     series: dict[str, Any] = {}
     for quantity in layer.quantities:

@@ -87,7 +87,7 @@ class MultiSettingShipOnNetwork:
 
 @dataclass(frozen=True, eq=False)
 class FrontQuery:
-    """What `thalweg.search.pareto_front` is asked on a network.
+    """A query of `thalweg.search.pareto_front` on a network.
 
     Attributes
     ----------
@@ -97,7 +97,7 @@ class FrontQuery:
         Time at the start and latest arrival [s since epoch].
     settings : sequence of int, optional
         Settings to choose from on every edge (default: all). The highest is taken to be the
-        fastest everywhere.
+        fastest in all conditions.
     prices : LegPrices, optional
         Prices of fuel, time, waiting and canal dues (default: 1 per kilogram of fuel).
     eca_fraction : array_like (E,), optional

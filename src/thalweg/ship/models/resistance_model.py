@@ -251,9 +251,9 @@ class ResistanceModel:
             return balance.speed_at_power(at, powers, LARGEST_SPEED_FACTOR * calm)
         if np.isinf(self.plant.largest_power):
             return np.where(np.isnan(balance.resistance(at, calm)), np.nan, calm)
-        asked = balance.brake_power(at, calm)
-        speed = np.where(np.isnan(asked), np.nan, calm)
-        weak = np.flatnonzero(asked > self.plant.largest_power)
+        required = balance.brake_power(at, calm)
+        speed = np.where(np.isnan(required), np.nan, calm)
+        weak = np.flatnonzero(required > self.plant.largest_power)
         limit = np.full(weak.size, self.plant.largest_power)
         here = {name: values[weak] for name, values in at.items()}
         speed[weak] = balance.speed_at_power(here, limit, calm[weak])

@@ -203,8 +203,8 @@ def _coarsened(axes: Sequence[AxisRange], largest: int) -> list[AxisRange]:
 
 def _on_grid(function: ConditionsFunction, axes: Sequence[AxisRange]) -> NDArray[np.float32]:
     """Evaluate on the whole grid, a slab of the first axis at a time."""
-    rest = math.prod(a.size for a in axes[1:])
-    rows = max(1, _CHUNK_SIZE // rest)
+    points_per_row = math.prod(a.size for a in axes[1:])
+    rows = max(1, _CHUNK_SIZE // points_per_row)
     grids = [a.grid for a in axes]
     slabs = []
     for first in range(0, axes[0].size, rows):
