@@ -16,7 +16,7 @@ from thalweg.cli.main import main
 from thalweg.core.errors import CoverageError, InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.geodesy import direct, distance, inverse
 from thalweg.core.time import parse_time
-from thalweg.operations.dredging.cycles import SailedLeg
+from thalweg.operations.dredging.cycle_records import SailedLeg
 from thalweg.operations.dredging.loading_curves import LoadingCurve
 from thalweg.operations.dredging.project import Project
 from thalweg.operations.dredging.project_environment import (

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from thalweg.core.file_writing import make_folder, write_csv_rows, write_text
-from thalweg.operations.dredging.cycles import CYCLE_COLUMNS, cycle_record
+from thalweg.operations.dredging.cycle_records import CYCLE_COLUMNS, cycle_record
 from thalweg.operations.plots import draw_project, draw_routes, draw_tracks, draw_waiting
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from thalweg.search.earliest_arrival import (
     check_query,
     solve_earliest_arrival,
 )
-from thalweg.search.limited_waiting import (
+from thalweg.search.restricted_waiting import (
     earliest_arrival_with_restricted_waiting,
     waiting_is_restricted,
 )

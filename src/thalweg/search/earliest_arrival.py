@@ -23,7 +23,7 @@ from thalweg.kernels.search.label_setting import (
     new_labels,
     new_search_workspace,
 )
-from thalweg.search.limited_waiting import (
+from thalweg.search.restricted_waiting import (
     earliest_arrival_with_restricted_waiting,
     waiting_is_restricted,
 )
@@ -123,7 +123,7 @@ def earliest_arrival(
     A ship waits only while it stays afloat at the required depth, except at the start; a node that
     falls dry has a label for each time it is afloat (`thalweg.search.tidal_states`). Where it may
     not wait at every node, time is minimised by rounds from where it may
-    (`thalweg.search.limited_waiting`).
+    (`thalweg.search.restricted_waiting`).
 
     A* uses a lower bound of the geodesic distance to the goal divided by the largest speed over
     ground (top speed plus largest current in the fields, or what a canal gives if that is more),

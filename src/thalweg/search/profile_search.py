@@ -24,11 +24,11 @@ from thalweg.kernels.leg.edge_sailing import NetworkArrays, ShipArrays
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.search import repeated_search as kernel
 from thalweg.kernels.search.tidal_intervals import TidalStates
-from thalweg.search.limited_waiting import (
+from thalweg.search.prepared_network import PreparedNetwork
+from thalweg.search.restricted_waiting import (
     earliest_arrival_with_restricted_waiting,
     waiting_is_restricted,
 )
-from thalweg.search.prepared_network import PreparedNetwork
 from thalweg.search.search_problem import (
     ROUNDING_FACTOR,
     SearchProblem,
@@ -172,7 +172,7 @@ class ProfileSearch:
         -------
         NetworkPassage
             The same as that of `earliest_arrival`, to within ties (where the ship may wait at some
-            nodes only, to within a wave of `thalweg.search.limited_waiting`).
+            nodes only, to within a wave of `thalweg.search.restricted_waiting`).
         """
         depart = float(depart)
         latest = min(float(arrive_by), float(self.prepared.sea.times[-1]))
@@ -214,7 +214,7 @@ class ProfileSearch:
     def _search_with_restricted_waiting(
         self, depart: float, limit: float, latest: float
     ) -> NetworkPassage:
-        """Search where waiting is allowed at some nodes only (`thalweg.search.limited_waiting`)."""
+        """Search where waiting is allowed at some nodes only (`thalweg.search.restricted_waiting`)."""
         prepared = self.prepared
         top = ROUNDING_FACTOR / self.slowness - prepared.top_current
         given = SearchProblem(prepared.network, prepared.sea, self.ship, top, prepared.top_current)

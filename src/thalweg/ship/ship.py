@@ -35,8 +35,8 @@ from thalweg.ship.model_protocol import (
     EstimatingModel,
     ShipModel,
 )
-from thalweg.ship.models.fuel_from_power import hotel_load_fuel_rate, hotel_power
 from thalweg.ship.models.function_model import FunctionModel, SpeedFunction, model_of_function
+from thalweg.ship.models.known_speed_fuel import hotel_load_fuel_rate, hotel_power
 from thalweg.ship.plugins import load_plugin
 from thalweg.ship.queries import ShipQueries
 from thalweg.ship.schema.ship_schema import ShipFile, empty_ship_file

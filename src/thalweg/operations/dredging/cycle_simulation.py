@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from thalweg.core.errors import OutsidePeriodError
 from thalweg.core.time import format_time
-from thalweg.operations.dredging.cycles import DredgingCycle
+from thalweg.operations.dredging.cycle_records import DredgingCycle
 from thalweg.operations.dredging.project import Project
 from thalweg.operations.dredging.project_environment import (
     MessageCallback,

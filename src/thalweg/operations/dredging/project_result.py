@@ -14,7 +14,7 @@ import numpy as np
 
 from thalweg.core.file_writing import write_text
 from thalweg.core.units import DAY, TONNE
-from thalweg.operations.dredging.cycles import DredgingCycle, cycle_record
+from thalweg.operations.dredging.cycle_records import DredgingCycle, cycle_record
 from thalweg.operations.dredging.project import Project
 from thalweg.planning.report.provenance import finite_or_none
 from thalweg.ship import Ship

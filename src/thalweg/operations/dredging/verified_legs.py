@@ -11,7 +11,7 @@ from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.core.limits import SITE_LEG_TIGHTENING
 from thalweg.core.types import FloatArray
 from thalweg.network.conformal_projection import conformal_unit_vectors
-from thalweg.operations.dredging.cycles import SailedLeg, leg_energy
+from thalweg.operations.dredging.cycle_records import SailedLeg, leg_energy
 from thalweg.operations.dredging.project_environment import (
     LoadedShip,
     ProjectEnvironment,

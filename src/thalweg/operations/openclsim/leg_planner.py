@@ -18,7 +18,7 @@ from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.geodesy import Position, check_position, distance, format_position
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.units import DAY
-from thalweg.operations.dredging.cycles import SailedLeg
+from thalweg.operations.dredging.cycle_records import SailedLeg
 from thalweg.operations.dredging.project import SiteNetworkOptions, Sites
 from thalweg.operations.dredging.project_environment import (
     ProjectEnvironment,

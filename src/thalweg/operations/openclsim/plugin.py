@@ -17,7 +17,7 @@ from shapely.geometry import Point, shape
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position
 from thalweg.deprecated_names import renamed_arguments
-from thalweg.operations.dredging.cycles import SailedLeg
+from thalweg.operations.dredging.cycle_records import SailedLeg
 
 try:
     from openclsim.core import LogState, Movable

@@ -21,10 +21,6 @@ from thalweg.kernels.pareto.time_expanded_labels import (
     WAITED,
     process_bins,
 )
-from thalweg.search.limited_waiting import (
-    earliest_arrival_with_restricted_waiting,
-    waiting_is_restricted,
-)
 from thalweg.search.pareto.discretisation import (
     PROGRESS_CHUNKS,
     Discretisation,
@@ -56,6 +52,10 @@ from thalweg.search.pareto.seed_paths import (
     paths_of_goal_labels,
     seed_paths,
     tighten_target,
+)
+from thalweg.search.restricted_waiting import (
+    earliest_arrival_with_restricted_waiting,
+    waiting_is_restricted,
 )
 from thalweg.search.search_problem import distance_bounds
 

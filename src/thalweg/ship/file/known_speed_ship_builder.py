@@ -8,7 +8,7 @@ from thalweg.ship.file.part_builders import build_speed_loss, hull_for_kwon, lig
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.models.fuel_from_power import fuel_estimates, fuel_rate_of_power
+from thalweg.ship.models.known_speed_fuel import fuel_estimates, fuel_rate_of_power
 from thalweg.ship.models.known_speed_model import (
     KnownSpeedModel,
     SpeedPowerLaw,

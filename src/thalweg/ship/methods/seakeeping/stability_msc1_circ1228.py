@@ -56,7 +56,7 @@ class DangerousSituations:
         Zone of successive high waves.
     synchronous_roll, parametric_roll : ndarray of bool
         Encounter period near the roll period; near it or half of it. False without roll period.
-    margins : StabilityMargins
+    margins : DangerousSituationMargins
         Distances from the first and the last three.
     known : ndarray of bool
         Whether all data were known. Where they were not every flag is False, which is not an
