@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.search.small import limits, line, make_fields, steady
-from tests.search.test_limited_waiting import barred_line
+from tests.search.test_restricted_waiting import barred_line
 from tests.search.test_tidal_states import GIVEN as TIDAL
 from thalweg.core.errors import InputError
 from thalweg.search import DepartureWindow, ShipOnNetwork, best_departure, earliest_arrival

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tests.search.small import NO_LIMITS, grid, limits, line, make_fields, make_network, make_table
-from tests.search.test_limited_waiting import barred_line
+from tests.search.test_restricted_waiting import barred_line
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.objective import FUEL_MASS, LegPrices
 from thalweg.kernels import codes

@@ -214,7 +214,7 @@ class ProfileSearch:
     def _search_with_restricted_waiting(
         self, depart: float, limit: float, latest: float
     ) -> NetworkPassage:
-        """Search where waiting is allowed at some nodes only (`thalweg.search.restricted_waiting`)."""
+        """Search with waiting at some nodes only (`thalweg.search.restricted_waiting`)."""
         prepared = self.prepared
         top = ROUNDING_FACTOR / self.slowness - prepared.top_current
         given = SearchProblem(prepared.network, prepared.sea, self.ship, top, prepared.top_current)
