@@ -218,7 +218,7 @@ def test_impossible_values_are_refused(wrong, word):
 
 def test_refining_needs_seeds_and_a_population():
     for run in (evolve, refine_front):
-        with pytest.raises(InputError, match="no track"):
+        with pytest.raises(InputError, match="no initial track"):
             run(jet.evaluator(), [])
         with pytest.raises(InputError, match="too small"):
             run(jet.evaluator(), [jet.straight(6)], size=2)

@@ -139,7 +139,7 @@ def test_areas_across_the_antimeridian():
         ([LOADING, box(4.0, 52.0, 5.0, 52.2, activity="unloading", name="beach")], "overlap"),
         ([LOADING, UNLOADING, box(6, 52, 7, 53)], "Area 3 has no activity"),
         ([LOADING, box(6, 52, 7, 53, activity="unlaoding")], "unloading"),
-        ([{"type": "Point", "coordinates": [1, 2]}], "no area"),
+        ([{"type": "Point", "coordinates": [1, 2]}], "not an area"),
     ],
 )
 def test_invalid_areas_are_refused(features, told):
