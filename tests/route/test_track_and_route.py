@@ -25,7 +25,7 @@ def test_track_is_checked_and_frozen():
     for bad, message in (
         (dict(lat=[0], lon=[0]), "1 waypoint"),
         (dict(lat=[0, 1], lon=[0]), "longitudes"),
-        (dict(lat=[0, np.nan], lon=[0, 1]), "not a number"),
+        (dict(lat=[0, np.nan], lon=[0, 1]), "not a pair of numbers"),
         (dict(lat=[0, 120], lon=[0, 30]), "swapped"),
         (dict(lat=[0, 1], lon=[0, 1], wait=[0, 5]), "wait"),
         (dict(lat=[0, 1], lon=[0, 1], wait=[-1, 0]), "wait"),
