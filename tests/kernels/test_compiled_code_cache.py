@@ -1,6 +1,7 @@
 """Compiled kernels have one writable folder for each version of their source."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -8,14 +9,49 @@ from pathlib import Path
 from thalweg.kernels.compilation import compiled_code_cache
 
 
-def test_the_stamp_follows_the_files(tmp_path, monkeypatch):
-    (tmp_path / "leg").mkdir()
-    (tmp_path / "leg" / "a.py").write_text("1")
-    monkeypatch.setattr(compiled_code_cache, "PACKAGE", tmp_path)
-    first = compiled_code_cache._source_hash()
+def _hash_of(monkeypatch, folder, text):
+    (folder / "leg").mkdir(parents=True, exist_ok=True)
+    (folder / "leg" / "a.py").write_text(text)
+    monkeypatch.setattr(compiled_code_cache, "PACKAGE", folder)
+    return compiled_code_cache._source_hash()
+
+
+def test_the_hash_follows_the_text_and_neither_place_nor_time(tmp_path, monkeypatch):
+    first = _hash_of(monkeypatch, tmp_path / "one", "1")
+    os.utime(tmp_path / "one" / "leg" / "a.py", (1, 1))
     assert compiled_code_cache._source_hash() == first
-    (tmp_path / "leg" / "a.py").write_text("12")
-    assert compiled_code_cache._source_hash() != first
+    assert _hash_of(monkeypatch, tmp_path / "two", "1") == first
+    assert _hash_of(monkeypatch, tmp_path / "two", "2") != first
+
+
+def test_two_checkouts_share_compiled_code(tmp_path):
+    code = (
+        "from thalweg.kernels.network.graph_building import find_point\n"
+        "import numpy as np\n"
+        "one = np.array([0, 1])\nassert find_point(0, 0, 0, one, one, 0) == 0\n"
+        "print(sum(find_point.stats.cache_hits.values()))"
+    )
+    source = Path(compiled_code_cache.PACKAGE).parents[1]
+    hits = []
+    for name in ("one", "two"):
+        shutil.copytree(source / "thalweg" / "kernels", tmp_path / name / "thalweg" / "kernels")
+        shutil.copytree(source / "thalweg" / "core", tmp_path / name / "thalweg" / "core")
+        (tmp_path / name / "thalweg" / "__init__.py").write_text("")
+        environment = {
+            **os.environ,
+            "THALWEG_CACHE": str(tmp_path / "cache"),
+            "PYTHONPATH": str(tmp_path / name),
+        }
+        environment.pop("NUMBA_CACHE_DIR", None)
+        done = subprocess.run(
+            [sys.executable, "-c", code],
+            env=environment,
+            check=True,
+            capture_output=True,
+            text=True,
+        )
+        hits.append(int(done.stdout))
+    assert hits == [0, 1]
 
 
 def test_old_folders_are_forgotten(tmp_path):

@@ -6,10 +6,13 @@ ends every later run. Here each file ends with a checksum of its content.
 
 import contextlib
 import hashlib
+import inspect
 import io
 from pathlib import Path
 
 from numba.core.caching import FunctionCache, IndexDataCacheFile
+
+from thalweg.kernels.compilation.compiled_code_cache import COMPILED_FOLDER, PACKAGE
 
 _CHECKSUM_BYTES = 16
 
@@ -52,11 +55,21 @@ class CheckedFunctionCache(FunctionCache):
 
     def __init__(self, function):
         super().__init__(function)
+        stamp = self._impl.locator.get_source_stamp()
+        source = Path(inspect.getfile(function)).resolve()
+        if source.is_relative_to(PACKAGE):
+            # the folder stands for the text of all kernels: neither place nor time of a file counts
+            place = COMPILED_FOLDER / source.relative_to(PACKAGE).with_suffix("")
+            self._cache_path, stamp = str(place), "text of the package"
         self._cache_file = CheckedCacheFile(
             cache_path=self._cache_path,
             filename_base=self._impl.filename_base,
-            source_stamp=self._impl.locator.get_source_stamp(),
+            source_stamp=stamp,
         )
+
+    def _save_overload(self, sig, data):
+        Path(self._cache_path).mkdir(parents=True, exist_ok=True)
+        super()._save_overload(sig, data)
 
     def save_overload(self, sig, data):
         """Keep compiled code if that is possible."""

@@ -17,20 +17,28 @@ _MAX_FOLDERS = 4  # largest number of folders of compiled code, the newest ones
 
 
 def _source_hash() -> str:
-    """Return a hash that changes with any file of the package, its sub-packages included."""
-    files = sorted(PACKAGE.rglob("*.py"))
-    facts = [(str(file), file.stat().st_size, file.stat().st_mtime_ns) for file in files]
-    return hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
+    """Return a hash that changes with the text of any file of the package and its sub-packages.
+
+    It depends neither on the place of the package nor on file times, so that all installations
+    and checkouts of one version share their compiled code.
+    """
+    total = hashlib.sha256()
+    for file in sorted(PACKAGE.rglob("*.py")):
+        text = file.read_bytes()
+        total.update(f"{file.relative_to(PACKAGE).as_posix()} {len(text)}\n".encode() + text)
+    return total.hexdigest()[:16]
 
 
 def _make_folder() -> Path:
     override = os.environ.get("NUMBA_CACHE_DIR")
-    places = [Path(override) / "kernels"] if override else []
-    for place in (*places, cache_folder("kernels"), private_temporary_folder() / "kernels"):
-        folder = place / _source_hash()
+    given = Path(override) / "kernels" if override else None
+    own = (cache_folder("kernels"), private_temporary_folder() / "kernels")
+    source_hash = _source_hash()
+    for place in (*([given] if given else []), *own):
+        folder = place / source_hash
         new = not folder.is_dir()
         if is_usable(folder):
-            if new:
+            if new and place != given:  # the user looks after a folder of his own
                 _remove_old_folders(place)
             return folder
     return folder  # nothing can be written: kernels are compiled in every process
