@@ -36,7 +36,10 @@ from thalweg.core.limits import Limits
 from thalweg.evolution import (
     EvaluationResolution,
     Evaluator,
+    EvolutionResult,
+    EvolutionSettings,
     Genome,
+    StoppingCriteria,
     TabulatedShip,
     evolve,
     make_evaluator,
@@ -138,7 +141,10 @@ def evaluations(run: int, route: Genome) -> str:
 def nsga2(run: int) -> str:
     """Run NSGA-II of that size."""
     front = evolve(
-        OCEAN, [crossing(40)], size=POPULATION, evaluations=EVALUATIONS, settled=None, seed=run
+        OCEAN,
+        [crossing(40)],
+        settings=EvolutionSettings(size=POPULATION, seed=run),
+        stopping=StoppingCriteria(evaluations=EVALUATIONS, settled=None),
     )
     points = np.mean([len(genome) for genome in front.genomes])
     return f"{front.evaluations} evaluations, {len(front)} on the front, {points:.0f} waypoints"
@@ -147,16 +153,15 @@ def nsga2(run: int) -> str:
 def fronts() -> None:
     """Print the refereed hypervolume of every method on the jet and eddies."""
     evaluator, seeds = jet.evaluator(), [jet.straight(s) for s in (0, 5, 6, 11)]
+
+    def evolved(method: str, size: int, evaluations: int) -> EvolutionResult:
+        stopping = StoppingCriteria(evaluations=evaluations, settled=None)
+        return evolve(evaluator, seeds, settings=EvolutionSettings(method, size), stopping=stopping)
+
     runs = {
-        "nsga2, 84,000 evaluations": lambda: evolve(
-            evaluator, seeds, size=336, evaluations=84_000, settled=None
-        ),
-        "spea2, 42,000": lambda: evolve(
-            evaluator, seeds, method="spea2", size=200, evaluations=42_000, settled=None
-        ),
-        "mpaes, 42,000": lambda: evolve(
-            evaluator, seeds, method="mpaes", size=200, evaluations=42_000, settled=None
-        ),
+        "nsga2, 84,000 evaluations": lambda: evolved("nsga2", 336, 84_000),
+        "spea2, 42,000": lambda: evolved("spea2", 200, 42_000),
+        "mpaes, 42,000": lambda: evolved("mpaes", 200, 42_000),
         "refined front": lambda: refine_front(evaluator, seeds),
     }
     for name, work in runs.items():

@@ -6,10 +6,10 @@
 
 Without ``--tolerance`` numbers must be the same to the byte. A tolerance is the largest difference
 of a quantity over its largest number in the plan; ``NAME=NUMBER`` is one for the quantities whose
-name ends so. What a file has and the code no longer tells is a difference, and so is another number
-of routes or waypoints; what the code tells besides is not. Texts that may be worded anew, versions,
-fingerprints and timings are not looked at. Of a brief file a tolerance looks at sums of waypoints.
-Numbers hold for one machine and one set of libraries.
+name ends so. A quantity that a file has and the code no longer gives is a difference, and so is
+another number of routes or waypoints; quantities that are new in the code are not. Texts, versions,
+fingerprints and timings are not compared. In a brief file a tolerance is for the sums of waypoints.
+Numbers are valid for one machine and one set of libraries. All cases state positions, not ports.
 """
 
 from __future__ import annotations
@@ -33,25 +33,10 @@ import numpy as np
 
 import thalweg
 from thalweg import Chart, Sea, Ship, Voyage, evaluate, plan
-
-
-def documented() -> Any:
-    """Return what is not in ``thalweg`` itself; all inner imports are here, as in docs/howto."""
-    from types import SimpleNamespace
-
-    from thalweg.operations.project_files import open_things  # dredging_project.md
-    from thalweg.operations.run_project import run_project  # dredging_project.md
-
-    from thalweg.operations.dredging import Project
-    from thalweg.route import evaluate_members  # ensembles.md
-
-    return SimpleNamespace(
-        Project=Project,
-        open_things=open_things,
-        run_project=run_project,
-        evaluate_members=evaluate_members,
-    )
-
+from thalweg.operations.dredging import Project
+from thalweg.operations.dredging.project_inputs import open_project_inputs
+from thalweg.operations.dredging.run_project import run_project
+from thalweg.route import evaluate_members
 
 EAST, NORTH = "eastward_sea_water_velocity", "northward_sea_water_velocity"
 KNOT = 1852.0 / 3600.0
@@ -67,7 +52,7 @@ FEW = (
     *("lat", "lon", "hours", "waiting_h", "ordered_speed_kn", "speed_through_water_kn"),
     *("speed_over_ground_kn", "fuel_t"),
 )
-ARRAYS = ("waypoints", "lower")  # told by hashes and sums in a brief file
+ARRAYS = ("waypoints", "lower")  # given as hashes and sums in a brief file
 
 
 # -- the six plans ---------------------------------------------------------------------------------
@@ -77,9 +62,9 @@ def demo() -> Any:
     """``thalweg demo``: Halifax to Bishop Rock in the storm, as a process of its own."""
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, "-m", "thalweg", "demo", "--json", "--out", folder]
-        told = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+        printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
         written = json.loads((Path(folder) / "plan.json").read_text(encoding="utf-8"))
-    data = json.loads(told)
+    data = json.loads(printed)
     assert data == written, "plan.json is not what --json prints"
     found = numbers_of(data)
     for route, rows in zip(found["routes"], data["routes"]):
@@ -88,7 +73,7 @@ def demo() -> Any:
 
 
 def tidal_bar() -> Any:
-    """The hopper dredger of docs/tutorials/tidal_bar.md: full she waits, light she does not."""
+    """The hopper dredger of docs/tutorials/tidal_bar.md: loaded she waits, light she does not."""
     period, low_water = 12.42 * 3600.0, 1767236400.0
 
     def depth(time_s, lat, lon):
@@ -113,7 +98,7 @@ def tidal_bar() -> Any:
         ("best departure", 1.0, {"depart_window": window}),
     ):
         ship = Ship.load("hopper-dredger").with_load_factor(load)
-        answer = plan(Voyage(**ends, **when), ship=ship, sea=sea, chart=chart)
+        answer = plan(Voyage(offing_nm=0.0, **ends, **when), ship=ship, sea=sea, chart=chart)
         found[name] = numbers_of_plan(answer)
         if name != "full":
             continue
@@ -126,11 +111,12 @@ def tidal_bar() -> Any:
 
 
 def floro_santander() -> Any:
-    """Florø to Santander round the control area (Seuren 2020), in at most 4.28 days."""
+    """Florø to Santander around the control area (Seuren 2020), in at most 4.28 days."""
     data = Ship.load("handysize-bulker").data
     models = {"calm_water": "table", "speed_loss": "none"}
     ship = Ship.from_dict({**data, "models": models, "limits": {}})
     voyage = Voyage(
+        offing_nm=0.0,
         start=(61.604, 5.03),
         goal=(43.47, -3.7645),
         depart="2026-01-01T00:00Z",
@@ -144,8 +130,8 @@ def floro_santander() -> Any:
 
 
 def jet_and_eddies() -> Any:
-    """A meandering jet, two eddies and a tide: 500 x 500 nm, shrunk 100 times, on the equator."""
-    nautical_mile, hour, departure = 18.52, 36.0, 1_767_225_600.0  # shrunk: metres and seconds
+    """A meandering jet, two eddies and a tide: 500 x 500 nm, scaled down by 100, on the equator."""
+    nautical_mile, hour, departure = 18.52, 36.0, 1_767_225_600.0  # scaled down: metres and seconds
     per_lon, per_lat = 111319.49079327358, 110574.27582159436  # metres per degree
 
     def position(x, y):
@@ -186,6 +172,7 @@ def jet_and_eddies() -> Any:
     )
     (south, west), (north, east) = position(0.0, 0.0), position(500.0, 500.0)
     voyage = Voyage(
+        offing_nm=0.0,
         start=position(100.0, 200.0),
         goal=position(400.0, 300.0),
         depart=departure,
@@ -199,8 +186,7 @@ def jet_and_eddies() -> Any:
 
 def project() -> Any:
     """The example of ``thalweg project``, shortened, with overflow while loading."""
-    api = documented()
-    asked = api.Project.from_dict(
+    project_file = Project.from_dict(
         {
             "name": "Nourishment behind the bank",
             "ship": {
@@ -245,8 +231,8 @@ def project() -> Any:
             },
         }
     )
-    ship, sea, chart = api.open_things(asked)
-    result = api.run_project(asked, ship=ship, sea=sea, chart=chart)
+    ship, sea, chart = open_project_inputs(project_file)
+    result = run_project(project_file, ship=ship, sea=sea, chart=chart)
     data = result.as_dict()
     network = {key: data["provenance"]["network"][key] for key in ("nodes", "edges")}
     found = {"runs": numbers_of(data["runs"]), "gains": data["gains"], "network": network}
@@ -273,18 +259,18 @@ def ensemble() -> Any:
         speed, track, strength = 0.25 + 0.06 * number, 43.4 + 0.5 * number, 1.25 - 0.1 * number
 
         def low(time_s, lat, lon):
-            """Return the distances east and north of the low [deg], and what is left of it."""
+            """Return the distances east and north of the low [deg], and its strength there."""
             x = lon + 24.0 - speed * (time_s - departure) / 3600.0
             y = lat - track
             return x, y, strength * np.exp(-((x / 5.0) ** 2 + (y / 3.0) ** 2) / 2.0)
 
         def east(time_s, lat, lon):
-            _, y, left = low(time_s, lat, lon)
-            return 5.0 - 7.0 * y * left
+            _, y, share = low(time_s, lat, lon)
+            return 5.0 - 7.0 * y * share
 
         def north(time_s, lat, lon):
-            x, _, left = low(time_s, lat, lon)
-            return 1.0 + 5.0 * x * left
+            x, _, share = low(time_s, lat, lon)
+            return 1.0 + 5.0 * x * share
 
         return Sea.from_functions(
             {
@@ -299,13 +285,13 @@ def ensemble() -> Any:
             time_step=3600.0,
         )
 
-    api = documented()
     sea = Sea.ensemble(*(forecast(number) for number in range(5)))
     data = Ship.load("handysize-bulker").data
     every_third = {name: values[1::3] for name, values in data["table"].items()}
     ship = Ship.from_dict({**data, "table": every_third})
     chart = Chart.open_water(40.0, 50.0, -28.0, -10.0)
     voyage = Voyage(
+        offing_nm=0.0,
         start=(45.0, -26.0),
         goal=(45.5, -13.0),
         depart=departure,
@@ -314,8 +300,8 @@ def ensemble() -> Any:
         ensemble="cvar",
     )
     answer = plan(voyage, ship=ship, sea=sea, chart=chart, resolution=30_000.0)
-    through = [voyage.start, (43.4, -20.0), voyage.goal]  # breaks a limit in some members
-    spread = api.evaluate_members(through, ship=ship, sea=sea, chart=chart, depart=departure)
+    through = [voyage.start, (43.4, -20.0), voyage.goal]  # exceeds a limit in some members
+    spread = evaluate_members(through, ship=ship, sea=sea, chart=chart, depart=departure)
     return {
         **numbers_of_plan(answer),
         "one route in all members": {
@@ -390,7 +376,7 @@ def known(value: Any) -> Any:
 
 
 def brief(data: Any) -> Any:
-    """Return plain data with every table of columns told by a hash and its sums."""
+    """Return plain data with every table of columns replaced by its hash and its sums."""
     if isinstance(data, list):
         return [brief(part) for part in data]
     if not isinstance(data, dict):
@@ -403,7 +389,11 @@ def summary(table: dict[str, list[Any]]) -> dict[str, Any]:
     return {
         "rows": max((len(column) for column in table.values()), default=0),
         "sha256": hashlib.sha256(text.encode()).hexdigest()[:16],
-        "sums": {name: math.fsum(v or 0.0 for v in column) for name, column in table.items()},
+        "sums": {
+            name: math.fsum(v or 0.0 for v in column)
+            for name, column in table.items()
+            if not any(isinstance(v, str) for v in column)
+        },
     }
 
 
@@ -413,7 +403,7 @@ def summary(table: dict[str, list[Any]]) -> dict[str, Any]:
 def leaves(data: Any, where: str = "", quantity: str = "") -> Iterator[tuple[str, str, Any]]:
     """Yield the place, the quantity (the place without numbers of rows) and the value of each.
 
-    The length of every list is a value, too: else what comes into an empty one went unseen.
+    The length of every list is a value, too: new entries of an empty list are differences.
     """
     if isinstance(data, dict):
         for key, part in data.items():
@@ -427,7 +417,7 @@ def leaves(data: Any, where: str = "", quantity: str = "") -> Iterator[tuple[str
 
 
 def difference(name: str, old: Any, new: Any) -> float:
-    """Return how far two values lie apart: inf where they are not both numbers."""
+    """Return the difference of two values: inf where they are not both numbers."""
     if old == new and type(old) is type(new):
         return 0.0
     both = (old, new)
@@ -439,7 +429,7 @@ def difference(name: str, old: Any, new: Any) -> float:
 
 
 def compare(before: Any, after: Any, tolerances: dict[str, float]) -> tuple[list[str], bool]:
-    """Return a line for each quantity that differs, after one for all, and whether all is well."""
+    """Return a line for all quantities and one for each that differs, and whether all agree."""
     old, values = defaultdict(dict), {}
     for where, quantity, value in leaves(before):
         old[quantity][where] = value
@@ -491,7 +481,7 @@ def parsed(texts: list[str]) -> dict[str, float]:
 
 
 def computed(name: str) -> Any:
-    """Compute a plan, and tell how long it took."""
+    """Compute a plan, and print how long it took."""
     import resource
 
     def spent() -> float:
@@ -506,7 +496,7 @@ def computed(name: str) -> Any:
 
 
 def made_with() -> dict[str, str]:
-    """Return what else the last digits depend on; told, not compared."""
+    """Return what else the last digits depend on; printed, not compared."""
     libraries = ("numpy", "scipy", "numba", "shapely", "pyproj")
     return {"python": platform.python_version(), "machine": platform.machine()} | {
         name: version(name) for name in libraries
@@ -557,7 +547,7 @@ def check(path: Path, names: list[str], tolerances: dict[str, float]) -> int:
         )
         print("\n".join(lines), flush=True)
         beyond += [] if well else [name]
-    print(f"beyond the tolerance: {', '.join(beyond)}" if beyond else "all is well")
+    print(f"beyond the tolerance: {', '.join(beyond)}" if beyond else "all values agree")
     return 1 if beyond else 0
 
 

@@ -140,8 +140,8 @@ def main() -> None:
     relaxed, sailed = [], []
     for run in range(options.runs):
         begin = time.process_time()
-        asked = ArrivalQuery(starts[run % 4], None, 60.0 * run)
-        result = solve_earliest_arrival(network, given, asked)
+        query = ArrivalQuery(starts[run % 4], None, 60.0 * run)
+        result = solve_earliest_arrival(network, given, query)
         taken = time.process_time() - begin
         relaxed.append(result.relaxed / taken / 1e6)
         sailed.append(result.work.sailed / taken / 1e6)

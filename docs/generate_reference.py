@@ -28,7 +28,12 @@ MORE_NAMES: dict[str, tuple[str, ...]] = {
         "periodic_repeat.repeat_in_time",
         "models.stratified_coast.stratified_coast_current",
     ),
-    "chart": ("zones.emission_control_areas.emission_control_areas",),
+    "chart": (
+        "zones.emission_control_areas.emission_control_areas",
+        "passages.Passage",
+        "passages.find_passages",
+        "offing.Offing",
+    ),
     "ship": (
         "model_protocol.AdjustableModel",
         "model_protocol.CrabAngleModel",
@@ -38,8 +43,11 @@ MORE_NAMES: dict[str, tuple[str, ...]] = {
         "model_protocol.JointPowerAndFuelModel",
         "model_protocol.PowerTableModel",
         "methods.shallow_water.squat.shallow_water_speed_limit",
+        "methods.engine.european_charges.EuropeanCharges",
     ),
     "planning": (
+        "sea_distance.SeaDistance",
+        "sea_distance.sea_distance",
         "plots.channel_closures.find_closures",
         "plots.space_time_diagram.draw_space_time_diagram",
     ),

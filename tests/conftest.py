@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from tests.compile_kernels import compile_once
+
 # A gate must not depend on luck: where CI is set, the examples are the same every time.
 settings.register_profile(
     "thalweg", deadline=None, print_blob=True, derandomize=bool(os.environ.get("CI"))
@@ -18,6 +20,23 @@ settings.load_profile("thalweg")
 # A shell that starts the tests in the background lets them ignore Ctrl-C; tests of it need it.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Compile the kernels before worker processes start, so that not each of them does."""
+    config = session.config
+    if not hasattr(config, "workerinput") and config.getoption("numprocesses", None):
+        terminal = config.get_terminal_writer()
+        compile_once(lambda text: terminal.write(f"{text}\n", flush=True))
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put modules with slow tests first: no worker is left with one at the end."""
+    slow = {item.path for item in items if item.get_closest_marker("slow")}
+    items.sort(key=lambda item: item.path not in slow)
+
 
 ROOT = Path(__file__).resolve().parent.parent
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from thalweg import deprecated_names
 
+__version__: str
+
 if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.core.errors import (
@@ -39,11 +41,15 @@ _PACKAGE_OF = {
     "ThalwegError": "core.errors",
     "Track": "route",
     "Voyage": "planning",
+    "distance": "planning.sea_distance",
     "evaluate": "route",
     "lattice": "network",
     "mesh": "network",
     "plan": "planning",
 }
+
+#: Names that differ in their package.
+_NAME_THERE = {"distance": "sea_distance"}
 
 __all__ = [
     "Chart",
@@ -60,6 +66,7 @@ __all__ = [
     "ThalwegError",
     "Track",
     "Voyage",
+    "distance",
     "evaluate",
     "lattice",
     "mesh",
@@ -70,9 +77,14 @@ deprecated_names.install()
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("thalweg")
     if name not in _PACKAGE_OF:
         raise AttributeError(f"module 'thalweg' has no attribute {name!r}")
-    value = getattr(import_module(f"thalweg.{_PACKAGE_OF[name]}"), name)
+    module = import_module(f"thalweg.{_PACKAGE_OF[name]}")
+    value = getattr(module, _NAME_THERE.get(name, name))
     globals()[name] = value
     return value
 

@@ -25,13 +25,9 @@ SHARED_FUNCTIONS = {
 MAX_ARGUMENTS = 8  # of a function outside the kernels, without self and cls
 #: Functions with more arguments, by module below thalweg, and why they keep them.
 MANY_ARGUMENTS = {
-    "evolution.evolve.evolve": "public entry point with keyword options",
-    "evolution.memetic.refine_front": "public entry point with keyword options",
-    "network.global_grid.globe_builder.globe": "public entry point with keyword options",
     "network.regional_lattice.lattice_builder.lattice": "public entry point with keyword options",
     "network.triangular_mesh.mesh_builder.mesh": "public entry point with keyword options",
     "route.referee.evaluation.evaluate": "public entry point with keyword options",
-    "sea.sea.Sea.freeze_grid": "bounds of an area and a period, each an argument of its own",
     "ship.methods.added_resistance.snnm.snnm": "parameters of a published formula",
     "ship.methods.added_resistance.stawave.stawave2": "parameters of a published formula",
     "ship.methods.added_resistance.stawave.stawave2_transfer": "parameters of a published formula",

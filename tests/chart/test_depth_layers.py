@@ -174,6 +174,23 @@ def test_missing_values_that_are_not_marked_are_not_deep_water():
         chart.depths.along(50.5, 2.2, 50.5, 3.0)
 
 
+@pytest.mark.parametrize("fill", [9999.0, 999.0, 9999.9])
+def test_common_fill_values_that_are_not_marked_are_refused(fill):
+    values = RAMP.copy()
+    values[5:8, 5:8] = fill
+    with pytest.raises(DatasetError, match="seems to stand for missing values"):
+        OPEN.with_depth(grid(values, LAT, LON, "depth")).depths.at(51.0, 3.0)
+    with pytest.raises(DatasetError, match="seems to stand for missing values"):
+        OPEN.with_depth(grid(-values, LAT, LON, "elevation")).depths.at(51.0, 3.0)
+
+
+def test_a_slope_through_999_metres_is_read():
+    slope = np.round(np.linspace(900.0, 1100.0, RAMP.size)).reshape(RAMP.shape)
+    assert float(
+        OPEN.with_depth(grid(slope, LAT, LON, "depth")).depths.at(51.0, 3.0)
+    ) == pytest.approx(1000.0)
+
+
 def test_the_embedded_depth_is_coarse_and_not_part_of_charts():
     assert 4000.0 < coarse_depth(40.0, -55.0) < 6000.0
     assert 15.0 < coarse_depth(55.0, 3.0) < 45.0  # the North Sea

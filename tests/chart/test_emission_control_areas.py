@@ -189,6 +189,7 @@ def test_a_leg_out_of_one_area_and_into_another(seas):
     assert 0.1 < whole < 0.5
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(st.floats(-70, 70), st.floats(-180, 180), st.floats(0, 6.28), st.floats(1e3, 8e5), st.data())
 def test_share_agrees_with_many_points(lat, lon, course, length, data):

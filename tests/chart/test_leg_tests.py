@@ -57,6 +57,7 @@ def test_agrees_with_shapely_on_every_random_leg(world, window, lengths):
     assert np.flatnonzero(ours != theirs).tolist() == []
 
 
+@pytest.mark.slow
 def test_positions_agree_with_shapely(world):
     rng = np.random.default_rng(5)
     lat, lon = np.degrees(np.arcsin(rng.uniform(-1, 1, 20000))), rng.uniform(-180, 180, 20000)
@@ -112,6 +113,7 @@ def test_zero_length_legs_are_points(world):
     assert world.leg_status(52.0, 5.5, 52.0, 5.5) == LAND
 
 
+@pytest.mark.slow
 def test_long_legs_follow_the_geodesic_not_a_rhumb_line(world):
     # the geodesic from Lisbon's roads to the Caribbean is open; Tokyo - Seattle passes Alaska clear
     assert not world.legs_blocked(38.4, -9.6, 18.5, -60.0)

@@ -70,7 +70,15 @@ def test_plan_prints_one_object_and_writes_files(capsys, tmp_path, ship, current
     assert {"solver_total", "rejections", "provenance"} <= found.keys()
     keys = {"lat", "lon", "time", "course_deg", "speed_through_water_kn", "speed_over_ground_kn"}
     assert keys <= route["waypoints"][0].keys()
-    names = {"plan.json", "route.geojson", "route.gpx", "route.csv", "map.png", "profile.png"}
+    names = {
+        "plan.json",
+        "route.geojson",
+        "route.gpx",
+        "route.rtz",
+        "route.csv",
+        "map.png",
+        "profile.png",
+    }
     assert {path.name for path in out.iterdir()} == names
     assert json.loads((out / "plan.json").read_text()) == found
 
@@ -79,7 +87,7 @@ def test_a_written_route_can_be_evaluated(capsys, tmp_path, ship, currents):
     world = ["--ship", ship, "--sea", currents, "--coast", "none"]
     when = ["--depart", "2026-01-01T00:00Z"]
     _, found = run_json(capsys, "plan", HERE, THERE, *world, *when, "--out", str(tmp_path / "out"))
-    for name in ("route.gpx", "route.csv", "route.geojson"):
+    for name in ("route.gpx", "route.rtz", "route.csv", "route.geojson"):
         code, scored = run_json(capsys, "evaluate", str(tmp_path / "out" / name), *world, *when)
         assert code == 0
         assert scored["time_h"] == pytest.approx(found["routes"][0]["time_h"], rel=1e-5)
@@ -110,7 +118,48 @@ def test_plan_for_a_person(capsys, ship):
     )  # fmt: skip
     text = capsys.readouterr().out
     assert code == 0
-    assert "7.6" in text and "nm" in text and "Lower bound" in text
+    assert len(text.splitlines()) <= 12
+    assert "at most" in text and "2026-01-01 00:00 UTC" in text
+    for jargon in ("network", "fingerprint", "kappa", "Lower bound", "settled"):
+        assert jargon not in text
+
+
+def test_details_of_a_plan_on_request(capsys, ship):
+    arguments = ["plan", HERE, THERE, "--ship", ship, "--calm", "--coast", "none", "--speed", "8"]
+    assert main([*arguments, "--depart", "2026-01-01T00:00Z", "--verbose"]) == 0
+    text = capsys.readouterr().out
+    for word in ("7.6", "waypoint", "Lower bound", "Network: kind", "Fingerprint of the sea"):
+        assert word in text
+
+
+def test_inspect_states_ranges_and_draws_one_picture_per_grid(capsys, tmp_path, currents):
+    other = str(tmp_path / "other.nc")
+    xr.open_dataset(currents).isel(lon=slice(None, -1)).to_netcdf(other)
+    out = tmp_path / "maps"
+    code, found = run_json(capsys, "inspect", currents, other, "--out", str(out))
+    assert code == 0
+    assert sorted(path.name for path in out.iterdir()) == ["sea_1.png", "sea_2.png"]
+    names = [name for name in found["ranges"] if "eastward_sea_water_velocity" in name]
+    assert len(names) == 2
+    for name in names:
+        low, high = found["ranges"][name]
+        assert low == pytest.approx(high) == pytest.approx(0.257, abs=1e-6)
+
+
+def test_thousands_of_islands_are_one_artist_and_specks_are_none():
+    from matplotlib.figure import Figure
+
+    from thalweg.core.bounding_box import BoundingBox
+    from thalweg.sea.sea_maps import _draw_coastline
+
+    islands = [
+        (np.array([50.0, 50.1, 50.1]) + k * 1e-3, np.array([1.0, 1.0, 1.1])) for k in range(500)
+    ]
+    specks = [(a * 0.0 + 50.0, b * 0.0 + 1.0) for a, b in islands]
+    axes = Figure().add_subplot()
+    _draw_coastline(axes, [*islands, *specks], BoundingBox(49.0, 52.0, 0.0, 3.0))
+    assert len(axes.lines) == 0 and len(axes.collections) == 1
+    assert len(axes.collections[0].get_segments()) == 500
 
 
 def test_inspect(capsys, currents):
@@ -224,7 +273,7 @@ def test_half_a_vector_is_no_sea(capsys, tmp_path, currents):
     half = tmp_path / "half.nc"
     xr.open_dataset(currents)[["uo"]].to_netcdf(half)
     assert main(["inspect", str(half)]) == 2
-    assert "partner is missing" in capsys.readouterr().err
+    assert "the other part of this vector" in capsys.readouterr().err
 
 
 def test_high_latitudes_give_a_warning(capsys, ship):

@@ -50,6 +50,7 @@ def world(tmp_path):
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_file_for_each_member_makes_an_ensemble(capsys, tmp_path, world):
     files = [member(tmp_path / f"{k}.nc", set_kn) for k, set_kn in enumerate((-1.0, 0.0, 1.0))]
     code = main([*world, "--sea", *files, "--ensemble", "mean", "--method", "exact"])

@@ -33,6 +33,7 @@ def _run(capsys, *words):
     parser = argparse.ArgumentParser()
     add_command(parser.add_subparsers())
     arguments = parser.parse_args(["ship", *map(str, words)])
+    arguments.progress = lambda text: None
     assert arguments.run(arguments) == 0
     return capsys.readouterr().out
 
@@ -337,8 +338,24 @@ def test_a_name_longer_than_files_may_have_is_refused(capsys):
 
 
 def test_a_reader_that_leaves_early_is_no_fault():
-    command = [sys.executable, "-m", "thalweg", "ship", "kvlcc2", "--json"]
+    command = [sys.executable, "-m", "thalweg", "ship", "kvlcc2", "--json", "--quiet"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         process.stdout.close()
         assert process.stderr.read() == b""
     assert process.returncode == 0
+
+
+def test_a_ship_that_reads_the_wind_alone_gets_the_wind_of_the_waves(capsys):
+    """Pierson and Moskowitz (1964): a fully developed sea of 3 m has 11.6 m/s of wind."""
+    sheet = json.loads(_run(capsys, "handysize-bulker", "--hs", "3", "--tp", "9", "--json"))
+    assert any("a wind of 11.6 m/s with the waves" in text for text in sheet["assumed"])
+    assert not any("leave its speed" in text for text in sheet["warnings"])
+    top = sheet["conditions"][-1]
+    assert 11.0 < top["speed_kn"] < 12.5  # of 15.2 kn
+
+
+def test_beyond_the_range_of_the_speed_loss_no_speed_is_given(capsys):
+    text = _run(capsys, "handysize-bulker", "--wind", "20", "--hs", "5", "--json")
+    top = json.loads(text)["conditions"][-1]
+    assert top["speed_kn"] is None and top["fuel_kg_per_nm"] is None
+    assert any("no speed is given" in text for text in top["warnings"])

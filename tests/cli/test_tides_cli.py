@@ -10,8 +10,8 @@ import pytest
 import xarray as xr
 
 from tests.conftest import data_file
-from thalweg.cli import tides_command
 from thalweg.cli.main import main
+from thalweg.cli.tides import tides_command
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.core.time import format_time, parse_time
 from thalweg.sea import standard_names as nm
@@ -30,6 +30,7 @@ def tide(*words):
     parser = argparse.ArgumentParser()
     tides_command.add_command(parser.add_subparsers(dest="command"))
     arguments = parser.parse_args(["tides", *map(str, words)])
+    arguments.progress = lambda stage: None
     return arguments.run(arguments)
 
 

@@ -23,6 +23,8 @@ def test_json_tells_savings_and_break_even_powers(capsys):
     by_rule = frame.groupby("rule").energy_kwh.min()
     assert by_rule["optimum"] <= by_rule.min()
     assert all(5.0 < kw < 200.0 for powers in found["break_even_kw"].values() for kw in powers)
+    (note,) = found["notes"]
+    assert note.startswith("back: Load factor 0 has no effect")
 
 
 def test_the_hotel_load_of_the_ship_ends_all_waiting(capsys):

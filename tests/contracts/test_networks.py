@@ -38,6 +38,7 @@ BUILDERS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BUILDERS)
 def test_builder_passes_the_check(name):
     network = BUILDERS[name]()

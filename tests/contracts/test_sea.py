@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.sea.small_datasets import T0, clock, mesh, regular
+from thalweg.core.bounding_box import BoundingBox
 from thalweg.kernels import codes
 from thalweg.sea import Sea
 from thalweg.sea import standard_names as nm
@@ -126,6 +127,12 @@ def test_frozen_fields_have_the_layout_of_kernels(sea) -> None:
     grid = sea.freeze_grid(10.0, 12.0, 20.0, 22.0, T0, T0 + 3600.0, [4, 0], spacing_deg=0.5)
     assert grid.values.shape[:3] == (grid.times.size, 5, 5)
     assert grid.values.flags.c_contiguous
+    box = BoundingBox(10.0, 12.0, 20.0, 22.0)
+    boxed = sea.freeze_grid(box, T0, T0 + 3600.0, [4, 0], spacing_deg=0.5)
+    sides = {"south": 10.0, "north": 12.0, "west": 20.0, "east": 22.0}
+    named = sea.freeze_grid(**sides, start=T0, end=T0 + 3600.0, channels=[4, 0], spacing_deg=0.5)
+    for other in (boxed, named):
+        assert np.array_equal(other.values, grid.values, equal_nan=True)
 
 
 def test_times_increase_and_reach_over_the_window(sea) -> None:

@@ -79,6 +79,8 @@ class PluginModel:
         )
 
     def fuel_rate(self, conditions, setting):
+        if self.fault == "setting":
+            return np.full(conditions.shape, 0.05)  # whatever the settings
         return self.power(conditions, setting) * 5e-8
 
     def top_speed(self, setting, load_factor):
@@ -114,6 +116,7 @@ def test_a_third_party_model_without_faults_passes():
         ("array", "a single condition gives"),
         ("negative", "negative or not finite"),
         ("shape", "has shape"),
+        ("setting", "the fuel rate has shape"),
         ("power", "power falls"),
         ("bound", "above its bound"),
         ("table", "the table differs"),

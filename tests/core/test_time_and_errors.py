@@ -74,11 +74,11 @@ def test_details_of_errors_are_standard_json(capsys):
 
 #: texts that no program reads but our own: hashed, or between two processes of ours
 _OWN_TEXTS = {
-    ("ship/ship.py", 1),
+    ("ship/ship_tabulation.py", 1),
     ("ship/tables/table_cache.py", 1),
     ("sea/ensemble_layer.py", 1),
 } | {
-    ("sea/sea.py", 1),
+    ("sea/value_sources.py", 1),
     ("sea/tides/model_run_analysis.py", 1),
     ("sea/files/grib_worker.py", 1),
 }
@@ -117,3 +117,13 @@ def test_a_cache_that_cannot_be_written_is_replaced_once(monkeypatch, tmp_path):
     monkeypatch.setenv("THALWEG_CACHE", str(tmp_path / "file"))
     assert cache_folder("tables").is_dir()
     assert cache_folder("tables") == cache_folder("tables") != cache_folder("coast")
+
+
+def test_times_beyond_the_nanoseconds_are_not_wrapped():
+    far = parse_time("2300-01-01T00:00Z")
+    assert str(to_datetime64(far)) == "2300-01-01T00:00:00.000000"
+    assert parse_time(to_datetime64(far)) == far
+    assert to_datetime64(0.5).dtype == np.dtype("datetime64[ns]")
+    assert np.isnat(to_datetime64(np.array([0.0, np.nan]))).tolist() == [False, True]
+    with pytest.raises(InputError, match="1 to 9999"):
+        to_datetime64(1e15)

@@ -1,6 +1,7 @@
 """The Python in README and docs runs, page by page, and every command and option is documented."""
 
 import re
+import shlex
 from pathlib import Path
 
 import pytest
@@ -38,7 +39,7 @@ def test_every_command_is_in_the_readme():
     text = (ROOT / "README.md").read_text()
     commands = next(a for a in build_parser()._actions if a.choices and "plan" in a.choices)
     for command in commands.choices:
-        assert f"thalweg {command}" in text or f"make {command}" in text
+        assert f"`thalweg {command}`" in text
 
 
 def test_every_public_name_has_a_docstring():
@@ -46,3 +47,37 @@ def test_every_public_name_has_a_docstring():
 
     for public in thalweg.__all__:
         assert (getattr(thalweg, public).__doc__ or "").strip(), public
+
+
+def test_the_commands_of_the_readme_run_as_they_stand(tmp_path, monkeypatch, capsys):
+    from thalweg.cli.main import main
+
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"^```bash\n(.*?)^```", (ROOT / "README.md").read_text(), re.M | re.S)
+    lines = [line for block in blocks for line in block.splitlines()]
+    assert lines[0].startswith("pip install .")
+    commands = [shlex.split(line, comments=True) for line in lines[1:]]
+    assert len(commands) == 2
+    for program, *words in commands:
+        assert program == "thalweg" and main(words) == 0
+    printed = capsys.readouterr().out
+    assert "No limit is violated." in printed and "nan" not in printed.split()
+    assert (tmp_path / "out" / "map.png").exists()
+
+
+def test_commands_in_pages_have_options_that_exist():
+    from thalweg.cli.main import build_parser
+    from thalweg.core.errors import InputError
+
+    bad = []
+    for page in TRIED:
+        for block in re.findall(r"^```bash\n(.*?)^```", page.read_text(), re.M | re.S):
+            for line in block.replace("\\\n", " ").splitlines():
+                words = shlex.split(line, comments=True)
+                if words[:1] != ["thalweg"]:
+                    continue
+                try:
+                    build_parser().parse_args(["OTHER" if w == "..." else w for w in words[1:]])
+                except InputError as error:
+                    bad.append(f"{name(page)}: {line}: {error.asked}")
+    assert not bad, "\n".join(bad)

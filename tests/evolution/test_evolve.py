@@ -11,7 +11,15 @@ from thalweg.chart import Chart
 from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.core.objective import LegPrices
 from thalweg.core.pareto_fronts import lower_hull
-from thalweg.evolution import Genome, VariationSettings, evolve, refine_front
+from thalweg.evolution import (
+    EvolutionSettings,
+    FrontRefinementSettings,
+    Genome,
+    StoppingCriteria,
+    VariationSettings,
+    evolve,
+    refine_front,
+)
 from thalweg.evolution.evolve import METHODS, ConvergenceTest
 from thalweg.evolution.indicators import c_metric, hypervolume, non_dominated
 from thalweg.evolution.initial_population import least_cost_setting
@@ -60,10 +68,15 @@ def same(a, b) -> bool:
 def test_fronts_are_repeatable_feasible_and_better_than_the_seeds(method):
     evaluator = jet.evaluator(chart=islands())
     seeds = [through(way, s) for way in (NORTH, SOUTH, BETWEEN) for s in (6, 11)]
-    given = {"method": method, "size": 40, "evaluations": 4000, "settled": None}
-    front = evolve(evaluator, seeds, seed=3, **given)
-    assert same(front, evolve(evaluator, seeds, seed=3, **given))
-    assert not same(front, evolve(evaluator, seeds, seed=4, **given))
+    stopping = StoppingCriteria(evaluations=4000, settled=None)
+
+    def run(seed):
+        settings = EvolutionSettings(method, 40, seed)
+        return evolve(evaluator, seeds, settings=settings, stopping=stopping)
+
+    front = run(3)
+    assert same(front, run(3))
+    assert not same(front, run(4))
     assert non_dominated(front.objectives).all()
     assert 4 <= len(front) <= 40
     assert front.stopped == "evaluations"
@@ -83,7 +96,8 @@ def test_fronts_are_repeatable_feasible_and_better_than_the_seeds(method):
 )
 def test_refined_front_of_the_jet_and_eddies(size, lines, least):
     seeds = [jet.straight(s) for s in (0, 5, 6, 11)]
-    front = refine_front(jet.evaluator(), seeds, size=size, lines=lines, seed=1)
+    settings = FrontRefinementSettings(size, lines, seed=1)
+    front = refine_front(jet.evaluator(), seeds, settings=settings)
     told = np.array([jet.refereed(genome) for genome in front.genomes])
     assert (told[:, 2] == 0).all()
     assert hypervolume(told[:, :2], jet.REFERENCE) > least  # 336,000 evaluations by NSGA-II: 163.02
@@ -94,13 +108,23 @@ def test_refined_front_of_the_jet_and_eddies(size, lines, least):
     assert {"polish"} <= set(front.origin) <= {"seed", "polish", "nsga2"}
 
 
+@pytest.mark.slow
 def test_refined_front_among_islands_is_feasible_repeatable_and_ahead_of_evolution():
     evaluator = jet.evaluator(chart=islands())
     seeds = [through(way, s) for way in (NORTH, SOUTH, BETWEEN) for s in (6, 11)]
-    given = {"size": 60, "lines": 16, "generations": 20}
-    front = refine_front(evaluator, seeds, seed=5, **given)
-    assert same(front, refine_front(evaluator, seeds, seed=5, **given))
-    assert volume(front) > volume(evolve(evaluator, seeds, size=60, evaluations=10_000, seed=5))
+    given = {
+        "settings": FrontRefinementSettings(60, 16, seed=5),
+        "stopping": StoppingCriteria(generations=20),
+    }
+    front = refine_front(evaluator, seeds, **given)
+    assert same(front, refine_front(evaluator, seeds, **given))
+    evolved = evolve(
+        evaluator,
+        seeds,
+        settings=EvolutionSettings(size=60, seed=5),
+        stopping=StoppingCriteria(evaluations=10_000),
+    )
+    assert volume(front) > volume(evolved)
     assert len(front) <= 60
     for genome in front.genomes[::6]:
         assert jet.refereed(genome, islands())[2] == 0
@@ -112,7 +136,7 @@ def test_cancelled_runs_keep_the_best_so_far_and_say_so():
     front = evolve(
         evaluator,
         [jet.straight(6)],
-        size=20,
+        settings=EvolutionSettings(size=20),
         cancel=lambda: next(calls),
         progress=told.append,
     )
@@ -126,13 +150,21 @@ def test_cancelled_runs_keep_the_best_so_far_and_say_so():
     assert volumes == sorted(volumes)
     for step in (0, 70):
         left = iter([False] * step + [True] * 1000)
-        front = refine_front(evaluator, [jet.straight(6)], size=20, cancel=lambda: next(left))  # noqa: B023
+        front = refine_front(
+            evaluator,
+            [jet.straight(6)],
+            settings=FrontRefinementSettings(20),
+            cancel=lambda: next(left),  # noqa: B023
+        )
         assert front.cancelled
         assert len(front)
 
 
-@pytest.mark.parametrize("search", [evolve, refine_front])
-def test_ctrl_c_keeps_the_best_so_far_and_a_second_one_interrupts(search):
+@pytest.mark.parametrize(
+    ("search", "settings"),
+    [(evolve, EvolutionSettings(size=20)), (refine_front, FrontRefinementSettings(20))],
+)
+def test_ctrl_c_keeps_the_best_so_far_and_a_second_one_interrupts(search, settings):
     def press(_):
         signal.raise_signal(signal.SIGINT)
 
@@ -141,25 +173,35 @@ def test_ctrl_c_keeps_the_best_so_far_and_a_second_one_interrupts(search):
         front = search(
             jet.evaluator(),
             seeds,
-            size=20,
+            settings=settings,
             progress=lambda told: press(told) if told.generation == 3 else None,
         )
     assert front.cancelled and len(front)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     with pytest.raises(KeyboardInterrupt):
-        search(jet.evaluator(), seeds, size=20, progress=lambda told: (press(told), press(told)))
+        search(
+            jet.evaluator(),
+            seeds,
+            settings=settings,
+            progress=lambda report: (press(report), press(report)),
+        )
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def test_runs_end_by_what_limits_them():
     evaluator, seeds = jet.evaluator(), [jet.straight(6)]
-    assert evolve(evaluator, seeds, size=10, generations=3).stopped == "generations"
-    assert evolve(evaluator, seeds, size=10, generations=0).generations == 0
-    assert evolve(evaluator, seeds, size=10, evaluations=50).evaluations == 55
-    quick = evolve(evaluator, seeds, size=10, seconds=0.0)
+
+    def run(**limits):
+        stopping = StoppingCriteria(**limits)
+        return evolve(evaluator, seeds, settings=EvolutionSettings(size=10), stopping=stopping)
+
+    assert run(generations=3).stopped == "generations"
+    assert run(generations=0).generations == 0
+    assert run(evaluations=50).evaluations == 55
+    quick = run(seconds=0.0)
     assert quick.stopped == "seconds"
     assert len(quick)
-    assert evolve(evaluator, seeds, size=10, settled=np.inf).stopped == "settled"
+    assert run(settled=np.inf).stopped == "settled"
 
 
 def test_a_front_has_settled_when_its_distances_vary_no_more():
@@ -198,27 +240,35 @@ def test_thriftiest_setting_and_prices_of_time():
 def test_waits_that_help_stay_and_others_go():
     base = jet.straight(6, 8)
     waiting = Genome(base.lat, base.lon, base.setting, [0, 0, 90.0, 0, 0, 0, 0, 0])
-    front = evolve(jet.evaluator(), [waiting], size=30, generations=40, seed=2)
+    front = evolve(
+        jet.evaluator(),
+        [waiting],
+        settings=EvolutionSettings(size=30, seed=2),
+        stopping=StoppingCriteria(generations=40),
+    )
     assert front.genomes[0].wait.max() < 20.0  # the fastest has no time to wait
 
 
 @pytest.mark.parametrize(
     ("wrong", "word"),
     [
-        ({"size": 3}, "too small"),
-        ({"method": "nsga"}, "nsga2"),
-        ({"generations": -1}, "zero or more"),
-        ({"seconds": float("nan")}, "zero or more"),
+        (lambda: EvolutionSettings(size=3), "too small"),
+        (lambda: EvolutionSettings(size="many"), "whole number"),
+        (lambda: EvolutionSettings(seed=-1), "whole number"),
+        (lambda: FrontRefinementSettings(time_prices=-1), "whole number"),
+        (lambda: StoppingCriteria(generations="3"), "zero or more"),
+        (lambda: EvolutionSettings("nsga"), "nsga2"),
+        (lambda: FrontRefinementSettings(2), "too small"),
+        (lambda: StoppingCriteria(generations=-1), "zero or more"),
+        (lambda: StoppingCriteria(seconds=float("nan")), "zero or more"),
     ],
 )
 def test_impossible_values_are_refused(wrong, word):
     with pytest.raises(InputError, match=word):
-        evolve(jet.evaluator(), [jet.straight(6)], **wrong)
+        wrong()
 
 
-def test_refining_needs_seeds_and_a_population():
-    for run in (evolve, refine_front):
-        with pytest.raises(InputError, match="no initial track"):
-            run(jet.evaluator(), [])
-        with pytest.raises(InputError, match="too small"):
-            run(jet.evaluator(), [jet.straight(6)], size=2)
+@pytest.mark.parametrize("search", [evolve, refine_front])
+def test_refining_needs_seeds(search):
+    with pytest.raises(InputError, match="no initial track"):
+        search(jet.evaluator(), [])

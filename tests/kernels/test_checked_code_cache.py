@@ -47,6 +47,7 @@ def _files(tmp_path, ending):
     return list((tmp_path / "cache").rglob(f"*double*.{ending}"))
 
 
+@pytest.mark.slow
 def test_files_cut_short_or_changed_are_compiled_again(run, tmp_path):
     assert run() == (42.0, 0)
     for ending in ("nbi", "nbc"):

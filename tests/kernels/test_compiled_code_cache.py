@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from thalweg.kernels.compilation import compiled_code_cache
 
 
@@ -24,6 +26,7 @@ def test_the_hash_follows_the_text_and_neither_place_nor_time(tmp_path, monkeypa
     assert _hash_of(monkeypatch, tmp_path / "two", "2") != first
 
 
+@pytest.mark.slow
 def test_two_checkouts_share_compiled_code(tmp_path):
     code = (
         "from thalweg.kernels.network.graph_building import find_point\n"

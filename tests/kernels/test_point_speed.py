@@ -94,6 +94,10 @@ def test_waves_without_height_need_no_direction_but_others_do():
     assert at(table, wave_height_channel=1.0, **unknown)[1] == codes.NO_DATA
 
 
+#: 5 m/s over the ground: the limit is for that, whatever the current
+_FIVE = {"wind_east": 3.0, "wind_north": 4.0, "current_north": 0.0}
+
+
 @pytest.mark.parametrize(
     ("options", "status"),
     [
@@ -115,6 +119,8 @@ def test_waves_without_height_need_no_direction_but_others_do():
         ({"bounds": limits(wind=5.0), "wind_east": 3.0, "wind_north": 4.0}, codes.OK),
         ({"bounds": limits(wind=4.9), "wind_east": 3.0, "wind_north": 4.0}, codes.WIND_SPEED),
         ({"bounds": limits(wind=4.9)}, codes.NO_DATA),
+        ({"bounds": limits(wind=4.9), **_FIVE, "current_east": 3.0}, codes.WIND_SPEED),
+        ({"bounds": limits(wind=5.0), **_FIVE, "current_east": -0.5}, codes.OK),
         ({"wave_height_channel": np.nan, "wind_east": np.nan, "wind_north": 1.0}, codes.OK),
         ({"speed_field": np.nan}, codes.NO_DATA),
     ],

@@ -14,7 +14,7 @@ from thalweg.core.errors import InputError, NoRouteError
 from thalweg.kernels.network.static_paths import meridian_crossings
 from thalweg.network import EdgeWeights, alternative_paths, globe, lattice, paths_without_canals
 from thalweg.network.alternatives.homotopy import obstacles
-from thalweg.network.alternatives.path_search import _best_of_each_class
+from thalweg.network.alternatives.path_search import _best_of_each_class, without_each_set_of_canals
 from thalweg.network.alternatives.path_shortening import pull_taut, total_cost
 
 WEST, EAST = (0.0, -1.0), (0.0, 1.0)
@@ -151,6 +151,7 @@ def test_canals_stay_in_shortened_paths_with_their_length():
     assert (chart.canal_of_legs(y[:-1], x[:-1], y[1:], x[1:]) == 0).sum() == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("start", "goal", "through"),
     [
@@ -222,7 +223,7 @@ def test_wrong_input_is_refused(world):
             alternative_paths(network, chart, **wrong)
     with pytest.raises(InputError, match="do not fit"):
         alternative_paths(network, chart, edge_weight_sets=[EdgeWeights(np.ones(3))])
-    with pytest.raises(InputError, match="cannot cost"):
+    with pytest.raises(InputError, match="factor of control areas"):
         EdgeWeights.priced(network, chart, 0.0)
     meta = dataclasses.replace(network.meta, start=-1)
     with pytest.raises(InputError, match="no start"):
@@ -232,3 +233,10 @@ def test_wrong_input_is_refused(world):
         alternative_paths(network, chart, edge_weight_sets=[EdgeWeights(shut)])
     with pytest.raises(NoRouteError, match="no path"):
         paths_without_canals(network, chart, edge_weights=EdgeWeights(shut))
+
+
+def test_every_set_of_canals_is_closed_once_the_smaller_ones_first():
+    closed = list(
+        without_each_set_of_canals("ab", lambda names: None if names == ("b",) else names)
+    )
+    assert closed == [("a",), ("a", "b")]

@@ -12,7 +12,7 @@ from thalweg.chart import Chart
 from thalweg.chart.canals import CANALS
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.network import check_network, globe, shortest_path
+from thalweg.network import GlobeOptions, check_network, globe, shortest_path
 from thalweg.network.distance_bounds import distance_bounds
 from thalweg.network.global_grid import grid
 
@@ -151,7 +151,7 @@ def test_no_route_without_canals_names_the_canals_needed(chart):
         ({"level": 8, "coast_levels": 7}, "7 coast levels"),
         ({"border_levels": 11}, "11 border levels"),
         ({"directions": 8}, "8 directions"),
-        ({"south": 10.0, "north": 5.0}, "latitudes"),
+        ({"south": 10.0, "north": 5.0}, "latitude limits"),
         ({"slack": -1.0}, "slack"),
         ({"sample_spacing": 10.0}, "too many"),
     ],
@@ -159,6 +159,17 @@ def test_no_route_without_canals_names_the_canals_needed(chart):
 def test_options_out_of_range_are_refused(wrong, said):
     with pytest.raises(InputError, match=said):
         globe(Chart.gshhg("c"), NEW_YORK, SAN_FRANCISCO, **wrong)
+
+
+def test_options_by_name_replace_those_of_an_object():
+    chart, goal = Chart.gshhg("c"), (45.0, -9.5)
+    options = GlobeOptions(coast_levels=1, slack=0.1)
+    sizes = [
+        globe(chart, NEW_YORK, goal, options).n_nodes,
+        globe(chart, NEW_YORK, goal, coast_levels=1, slack=0.1).n_nodes,
+        globe(chart, NEW_YORK, goal, options, slack=0.3).n_nodes,
+    ]
+    assert sizes[0] == sizes[1] < sizes[2]
 
 
 def test_ends_on_land_are_refused():
@@ -170,7 +181,8 @@ def test_the_grid_is_cached_and_a_damaged_file_is_replaced(tmp_path, monkeypatch
     monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
     chart = Chart.gshhg("c")
     made = grid.globe_grid(chart, SMALL)
-    (path,) = (tmp_path / "globe").glob("*.npz")
+    (path,) = (tmp_path / "globe").glob("grid-*.npz")
+    (part,) = (tmp_path / "globe").glob("part-*.npz")
     grid._load_or_make.cache_clear()
     monkeypatch.setattr(grid, "make_grid", lambda *_: pytest.fail("made again"))
     loaded = grid.globe_grid(chart.without_canals("all"), SMALL)
@@ -182,6 +194,7 @@ def test_the_grid_is_cached_and_a_damaged_file_is_replaced(tmp_path, monkeypatch
     monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
     grid._load_or_make.cache_clear()
     path.write_bytes(b"broken")
+    part.write_bytes(b"broken")
     assert np.array_equal(grid.globe_grid(chart, SMALL).lat, made.lat)
     assert path.stat().st_size > 1000
     grid._load_or_make.cache_clear()

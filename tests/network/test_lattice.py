@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from tests.network.worlds import geojson, land_chart
@@ -47,6 +47,7 @@ def test_gap_gives_the_published_direction_errors():
         assert 1.0 / math.cos(gap / 2.0) == pytest.approx(worst, abs=5e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("directions", [8, 16, 32, 96])
 def test_every_node_is_reached_within_the_direction_error(directions):
     network = lattice(OPEN, (40, -60), (48, -10), directions=directions, spacing=80e3)
@@ -187,6 +188,7 @@ def test_region_grows_until_a_long_detour_fits():
     assert corner < distance[network.meta.goal] < 1.03 * corner
 
 
+@pytest.mark.slow
 def test_half_the_globe_away_over_a_closed_globe():
     # a wall from pole to pole but for the far side: the only way runs round the globe
     chart = land_chart((-89, 89, -0.5, 0.5))
@@ -260,6 +262,7 @@ def test_ends_on_land_are_refused():
         lattice(chart, (1, 3), (1, 0))
 
 
+@pytest.mark.slow
 def test_enclosed_goal_states_the_reasons_and_the_nearest_position():
     chart = land_chart((-1, 3, -1, -0.9), (-1, 3, 2.9, 3), (-1, -0.9, -1, 3), (2.9, 3, -1, 3))
     with pytest.raises(NoRouteError) as refusal:
@@ -291,7 +294,9 @@ def test_depth_and_factors_are_on_the_edges():
     assert np.all(network.edges.depth[np.abs(lon) < 0.1] == 4.0)
 
 
+@pytest.mark.slow
 @settings(max_examples=15)
+@example(-58.0, 0.0, 3.0, 2_162_673.0, 32, "latlon")  # edges over 3 x 470 km of the equator
 @given(
     st.floats(-75, 75), st.floats(-180, 180), st.floats(0, 6.28), st.floats(5e3, 4e6),
     st.sampled_from([8, 16, 32]), st.sampled_from(["great_circle", "latlon"]),

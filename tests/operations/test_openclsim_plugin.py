@@ -91,6 +91,7 @@ def project(yard, cycles, amount):
     yard.env.run()
 
 
+@pytest.mark.slow
 def test_a_project_in_openclsim_sails_planned_legs(yard, leg_planner, estuary):
     project(yard, cycles=2, amount=2800.0)
     vessel = yard.vessel

@@ -158,6 +158,7 @@ def test_totals_add_up(result):
         assert totals["co2_kg_m3"] == pytest.approx(1000.0 * totals["co2_t"] / 14_000.0)
 
 
+@pytest.mark.slow
 def test_fuel_burnt_in_a_wait_is_counted_once():
     """Sailing by the referee; hotel load lying still, at work or waiting; pumps at the engine's."""
     route = example()["base_case"]["route"]
@@ -363,6 +364,7 @@ def test_too_few_days_are_reported_with_the_volume_moved():
     assert 8_000 <= caught.value.details["moved_m3"] <= 24_000
 
 
+@pytest.mark.slow
 def test_gaps_and_the_end_of_the_data_are_reported_when_a_project_stops(tmp_path):
     hours = np.array([0.0, 0.5, 1.0, 1.5, 10.0, 10.5, 11.0])
     axes, ones = ("time", "lat", "lon"), np.ones((7, 5, 5))
@@ -375,6 +377,7 @@ def test_gaps_and_the_end_of_the_data_are_reported_when_a_project_stops(tmp_path
          "lat": np.linspace(51.6, 52.0, 5), "lon": np.linspace(3.4, 3.8, 5)},
     ).to_netcdf(path)  # fmt: skip
     changes = {"sea": str(path), "coast": "none", "start": "2026-01-01", "days": 2}
+    changes["spacing_m"] = 3000.0
     project = Project.from_dict(
         example(base_case=None, load=[51.71, 3.45], unload=[51.77, 3.7], **changes)
     )
@@ -408,6 +411,7 @@ def test_a_hopper_larger_than_the_ship_is_refused():
     assert "holds 4000 m3" in caught.value.possible
 
 
+@pytest.mark.slow
 def test_a_base_case_outside_the_data_is_refused_with_the_position():
     north = [51.7449, 3.579], [51.72, 3.70], [51.72, 3.74], [51.6596, 3.6514]
     project = Project.from_dict(example(base_case={"route": [list(place) for place in north]}))
@@ -503,6 +507,7 @@ def test_no_sea_is_never_assumed():
         open_project_inputs(Project.from_dict(example(sea=None)))
 
 
+@pytest.mark.slow
 def test_command_line(tmp_path, capsys):
     path = tmp_path / "small.yaml"
     path.write_text(yaml.safe_dump(example(volume_m3=4000, days=2)))
@@ -560,6 +565,7 @@ def san_diego(**changes):
     )
 
 
+@pytest.mark.slow
 def test_a_project_on_the_mesh_of_a_real_model():
     """Routes along the rim of the mesh include the nodes that bound them."""
     project = san_diego()

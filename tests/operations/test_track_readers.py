@@ -186,6 +186,7 @@ def test_wrong_requests(tmp_path):
             CleaningRules(**rules)
 
 
+@pytest.mark.slow
 @given(
     bad=st.sets(st.integers(1, 58), max_size=8),
     order=st.randoms(use_true_random=False),

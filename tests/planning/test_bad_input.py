@@ -63,7 +63,7 @@ def test_start_on_land_names_the_nearest_water():
 def test_enclosed_goal_is_no_route():
     chart = Chart.from_geojson(land=ring(0.2, 0.1))
     with pytest.raises(NoRouteError) as caught:
-        ask(goal=(50.5, 2.0), chart=chart)
+        ask(goal=(50.5, 2.0), chart=chart, offing_nm=0.0)
     assert caught.value.reasons["land"] > 0
     assert caught.value.nearest is not None
 
@@ -85,6 +85,7 @@ def test_missing_variable_is_named():
         ask(ship=Ship.load("handysize-bulker"), sea=current(lambda t, lat, lon: 0.0 * lat))
 
 
+@pytest.mark.slow
 def test_a_data_gap_across_the_area_is_reported_as_no_route():
     sea = current(lambda t, lat, lon: np.where(np.abs(lon - 2.0) < 0.2, np.nan, 0.0))
     with pytest.raises(NoRouteError) as caught:
@@ -119,6 +120,7 @@ def test_clearance_without_any_depth():
         ask(min_ukc_m=1.0)
 
 
+@pytest.mark.slow
 def test_a_ship_that_feels_the_bottom_needs_a_bottom():
     ship = Ship.load("vox-olympia").with_limits(ShipLimits())
     with pytest.raises(MissingVariableError, match="depends on the water depth"):
@@ -149,6 +151,18 @@ def test_speeds_that_cannot_be(speed):
 def test_a_speed_the_ship_does_not_have():
     with pytest.raises(InputError, match=r"10\.0"):
         ask(speed_kn=14.0)
+
+
+def test_a_speed_between_the_settings_is_sailed_by_the_law_of_the_ship():
+    """Seuren's bulk carrier has no 12 kn: one engine ends at 10.8, two begin at 14.1 kn."""
+    ship = Ship.load("handysize-bulker")
+    water = Chart.open_water(54.0, 56.0, 3.0, 6.0)
+    voyage = Voyage(start=(55, 4), goal=(55, 5), depart=DEPART, speed_kn=12.0)
+    best = plan(voyage, ship=ship, sea=Sea.calm(), chart=water).best
+    assert best.time_h == pytest.approx(best.distance_nm / 12.0, rel=1e-6)
+    fuel = np.interp(12.0, [10.8, 14.1], [20.1, 28.9]) / 24.0  # t/h
+    assert best.fuel_t == pytest.approx(fuel * best.time_h, rel=1e-6)
+    assert best.engine_order == "constant power"
 
 
 def test_swapped_latitude_and_longitude():
@@ -218,6 +232,7 @@ def test_wind_speed_without_direction_suffices_for_ships_that_use_only_speed():
         ask(ship=angled, sea=sea)
 
 
+@pytest.mark.slow
 def test_the_clearance_of_the_voyage_overrides_that_of_the_ship_file():
     ship = Ship.load("hopper-dredger").with_load_factor(1.0)  # 6.5 m, and 1 m of clearance
     shallow = WATER.with_depth(lambda lat, lon: 7.0 + 0.0 * lat)

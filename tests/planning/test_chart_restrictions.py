@@ -27,6 +27,7 @@ def length(net):
     return shortest_path(net, net.meta.start, net.meta.goal)[0][net.meta.goal]
 
 
+@pytest.mark.slow
 def test_joined_networks_are_as_long_as_their_parts():
     parts = [network((0.0, 0.0), (1.0, 2.0)), network((1.0, 2.0), (0.0, 4.0))]
     whole = concatenate_networks(parts, [None])
@@ -35,6 +36,7 @@ def test_joined_networks_are_as_long_as_their_parts():
     assert length(whole) == pytest.approx(sum(length(part) for part in parts), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_canal_between_networks_takes_its_time_and_fee():
     parts = [network((0.0, 0.0), (0.0, 1.0)), network((0.0, 1.5), (0.0, 3.0))]
     link = CanalLink(80_000.0, 36_000.0, 5_000.0)
@@ -107,6 +109,7 @@ def test_ice_latitudes_are_excluded_unless_the_voyage_goes_there():
     assert ICE_LIMIT_NORTH < 72.0  # Bellot Strait, the route north of America
 
 
+@pytest.mark.slow
 def test_a_missing_route_without_canals_is_reported():
     chart = Chart.gshhg("c").within(25.0, 45.0, 10.0, 40.0)  # the Mediterranean and the Red Sea
     voyage = Voyage(

@@ -47,6 +47,7 @@ def test_a_port_moves_to_covered_water_with_a_note():
     assert found.provenance["to"] == "Rotterdam, NL"
 
 
+@pytest.mark.slow
 def test_a_port_moves_to_water_deep_enough():
     chart = WATER.with_depth(lambda lat, lon: np.where(lon > 4.1, 3.0, 20.0) + 0.0 * lat)
     found = ask((50.5, 1.5), "Rotterdam", Sea.calm(), chart)

@@ -100,6 +100,7 @@ def best_wait(always, sailing):
 # energy
 
 
+@pytest.mark.slow
 def test_least_energy_weighs_the_hotel_load_against_the_speed():
     # (P(v) + hotel) / v is least where 2 P = hotel: at 5.9 kn, of the speeds there are at 6 kn
     answer = planned("energy", powered(), method="default")
@@ -128,6 +129,7 @@ def test_a_deadline_mixes_two_speeds_at_least_energy():
     assert answer.best.energy_mwh >= wanted * (1.0 - 1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hotel_kw", [200.0, 2900.0])
 def test_waiting_consumes_the_hotel_load_and_saves_energy_only_if_it_is_small(hotel_kw):
     ship = powered(hotel_kw=hotel_kw, speeds=(8.0,))
@@ -292,5 +294,37 @@ def test_the_command_line_prints_the_cost_of_the_lambdas(capsys):
     assert main(["plan", *words]) == 0
     told = json.loads(capsys.readouterr().out)
     wanted = per_second(10.0) * hours(10.0) * HOUR
-    assert told["routes"][0]["cost_usd"] == pytest.approx(wanted, rel=1e-5)
-    assert told["objective_unit"] == "USD" and math.isfinite(told["lower_bound"])
+    assert told["routes"][0]["cost_eur"] == pytest.approx(wanted, rel=1e-5)
+    assert told["objective_unit"] == "EUR" and math.isfinite(told["lower_bound"])
+
+
+def test_the_library_dredger_emits_by_the_cubed_speed_as_in_its_study():
+    """van Halem (2019), eq. 3.5: W = t V^3 [g], by listing 5.2."""
+    answer = planned("co2", Ship.load("hopper-dredger"))
+    grams = hours(10.0) * HOUR * (10.0 * KNOT) ** 3
+    assert answer.best.co2_t == pytest.approx(grams / 1e6, rel=1e-6)
+    assert answer.objective_value == answer.best.co2_t and answer.unit == "t"
+    assert answer.best.fuel_t is None  # not known, and not needed
+
+
+def test_the_front_of_a_ship_with_prices_is_that_of_cost():
+    answer = planned("front", Ship.load("hopper-dredger"))
+    assert answer.front.criterion == "cost" and answer.front.unit == "EUR"
+
+
+def test_the_absolute_bound_knows_the_cheapest_price_zone():
+    """No edge lies in a band 200 m wide, but a route may: at half the price."""
+    ring = [[-1, 0.0501], [3, 0.0501], [3, 0.052], [-1, 0.052], [-1, 0.0501]]
+    zone = {
+        "type": "Feature",
+        "properties": {"kind": "price", "factor": 0.5},
+        "geometry": {"type": "Polygon", "coordinates": [ring]},
+    }
+    fuel = {"type": "hfo", "price_per_t": 500.0, "reference_t_per_day": 24.0}
+    ship = dredger(speeds=(10.0,), costs={}, fuel=fuel, models={"calm_water": "cubic"})
+    voyage = Voyage(start=START, goal=GOAL, depart=DEPART, objective="cost", method="exact")
+    water = CHART.with_zones(zone).without_eca()
+    answer = plan(voyage, ship=ship, sea=Sea.calm(), chart=water, resolution=6 * 1852.0)
+    full = 500.0 * 1.0 * hours(10.0)  # a tonne an hour
+    assert answer.best.cost == pytest.approx(full, rel=0.01)
+    assert answer.proof.certain <= 0.5 * full * (1.0 + 1e-9)

@@ -24,6 +24,7 @@ def planned(capsys, *words: str) -> dict:
     return json.loads(capsys.readouterr().out)
 
 
+@pytest.mark.slow
 def test_the_storm_mesh_of_herwart(capsys) -> None:
     """Off the Dutch coast on the mesh itself; level and current are those of the nearest face."""
     path = data_file(HERWART)

@@ -106,11 +106,11 @@ def test_the_chart_counts_as_well_as_the_sea() -> None:
 
 @pytest.fixture(scope="module")
 def waiting():
-    voyage = Voyage(
+    voyage = Voyage(offing_nm=0.0,
         start=(51.71, 3.45), goal=(51.77, 3.70), depart=LOW, min_ukc_m=1.0,
         arrive_by="2026-01-01T10:30Z",
     )  # fmt: skip
-    return plan(voyage, ship=SHIP, sea=bar(), chart=Chart.open_water(*AREA))
+    return plan(voyage, ship=SHIP, sea=bar(), chart=Chart.open_water(*AREA), resolution=1000.0)
 
 
 def test_the_route_avoids_closed_periods(waiting) -> None:
@@ -147,20 +147,22 @@ def test_it_is_written_only_where_the_tide_matters(waiting, tmp_path) -> None:
     deep = Sea.from_functions(
         {BED: lambda t, y, x: 30.0 + 0.0 * y, LEVEL: lambda t, y, x: tide(t) + 0.0 * y}
     )
-    voyage = Voyage(start=(51.71, 3.45), goal=(51.77, 3.70), depart=LOW, min_ukc_m=1.0)
+    voyage = Voyage(
+        offing_nm=0.0, start=(51.71, 3.45), goal=(51.77, 3.70), depart=LOW, min_ukc_m=1.0
+    )
     chart = Chart.open_water(*AREA)
     assert write_space_time_diagram(plan(voyage, ship=SHIP, sea=deep, chart=chart), tmp_path) == []
-    calm = Voyage(start=(51.71, 3.45), goal=(51.77, 3.70), depart=LOW)
+    calm = Voyage(offing_nm=0.0, start=(51.71, 3.45), goal=(51.77, 3.70), depart=LOW)
     assert (
         write_space_time_diagram(plan(calm, ship=SHIP, sea=Sea.calm(), chart=chart), tmp_path) == []
     )
 
 
 def test_a_window_of_departure_is_drawn() -> None:
-    voyage = Voyage(
+    voyage = Voyage(offing_nm=0.0,
         start=(51.71, 3.45), goal=(51.77, 3.70), min_ukc_m=1.0,
         depart_window=("2026-01-01T03:00Z", "2026-01-01T09:00Z"),
     )  # fmt: skip
-    found = plan(voyage, ship=SHIP, sea=bar(), chart=Chart.open_water(*AREA))
+    found = plan(voyage, ship=SHIP, sea=bar(), chart=Chart.open_water(*AREA), resolution=1000.0)
     figure = draw_space_time_diagram(found)
     assert "departure window" in [text.get_text() for text in figure.legends[0].get_texts()]

@@ -30,7 +30,7 @@ def test_a_bar_is_crossed_when_the_tide_of_that_day_allows(gauge):
     sea = Sea.from_tides(gauge, area=AREA) + Sea.from_functions({nm.BED_DEPTH: _bar})
     ship = Ship.load("hopper-dredger").with_load_factor(1.0)  # draught 6.5 m
     voyage = Voyage(start=(51.71, 3.45), goal=(51.77, 3.70), depart=float(low), min_ukc_m=1.0)
-    best = plan(voyage, ship=ship, sea=sea, chart=Chart.open_water(*AREA)).best
+    best = plan(voyage, ship=ship, sea=sea, chart=Chart.open_water(*AREA), resolution=1000.0).best
     assert best.waiting_h > 1.0
     assert best.min_ukc_m >= 1.0 - 1e-6
     # the bar opens when the level passes 0.5 m (6.5 + 1 - 7), about; the ship does not dawdle
@@ -49,7 +49,7 @@ def test_departing_with_the_flood_shortens_the_passage():
     found = {
         when: plan(
             Voyage(start=(51.6, 3.6), goal=(52.1, 3.6), depart=f"2031-07-05T{when}Z"),
-            ship=ship, sea=sea, chart=chart,
+            ship=ship, sea=sea, chart=chart, resolution=4000.0,
         ).best.time_h
         for when in ("04:15", "10:30")
     }  # fmt: skip
@@ -72,7 +72,8 @@ def test_a_data_gap_during_a_wait_is_reported(tmp_path):
         start=(51.71, 3.45), goal=(51.77, 3.70), depart="2026-01-01T00:30Z", min_ukc_m=1.0
     )
     chart = Chart.open_water(51.6, 52.0, 3.4, 3.8)
-    found = plan(voyage, ship=Ship.load("hopper-dredger"), sea=Sea.open(path), chart=chart)
+    ship = Ship.load("hopper-dredger")
+    found = plan(voyage, ship=ship, sea=Sea.open(path), chart=chart, resolution=1000.0)
     assert found.best.feasible and found.best.waiting_h > 4.0
     assert any(
         "a gap from 2026-01-01T01:00:00Z to 2026-01-01T05:00:00Z" in note for note in found.notes

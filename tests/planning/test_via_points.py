@@ -15,6 +15,7 @@ SEA = Sea.from_functions(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("objective", ["time", "distance"])
 def test_two_via_points(objective):
     # The second part departs at an arrival that is not a round number.
@@ -32,6 +33,7 @@ def test_two_via_points(objective):
     assert np.all(np.diff(best.samples["time"]) >= 0)
 
 
+@pytest.mark.slow
 def test_a_penalty_zone_is_avoided_when_that_costs_less():
     square = [[2.9, 51.4], [3.3, 51.4], [3.3, 52.4], [2.9, 52.4], [2.9, 51.4]]
     zone = {

@@ -5,8 +5,16 @@ import pytest
 
 from tests.conftest import data_file
 from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.core.time import parse_time
+from thalweg.planning.plots.map_extent import (
+    MapExtent,
+    degree_label,
+    inverse_mercator,
+    mercator,
+)
+from thalweg.planning.plots.map_labels import marked_times, time_label
 from thalweg.planning.plots.route_profile import draw_profile
-from thalweg.planning.plots.voyage_map import MapExtent, draw_map
+from thalweg.planning.plots.voyage_map import draw_map
 
 SHIP = Ship.simple(speed_kn=12.0, draught_m=5.0)
 
@@ -19,6 +27,7 @@ def test_a_line_longer_than_half_the_world_has_no_jump(turns):
     assert box.line(wrapped) == pytest.approx(lon)
 
 
+@pytest.mark.slow
 def test_maps_across_the_antimeridian(tmp_path):
     chart = Chart.open_water(-20.0, -10.0, 170.0, -170.0).with_depth(
         lambda lat, lon: 40.0 + 10.0 * np.sin(lat) + 0.0 * lon
@@ -50,6 +59,7 @@ def lines_in_a_map(figure, south, north, west, east):
     return int(((x > west) & (x < east) & (y > south) & (y < north)).sum())
 
 
+@pytest.mark.slow
 def test_isochrones_end_at_land_outside_a_mesh():
     """Coronado is a hole in the mesh of San Diego Bay, and there is no coastline."""
     path = data_file("tide/adh_sandiego_waterlevel_ugrid_30min.nc")
@@ -62,3 +72,78 @@ def test_isochrones_end_at_land_outside_a_mesh():
     figure = draw_map(found)
     assert lines_in_a_map(figure, 32.695, 32.705, -117.205, -117.190) == 0
     assert lines_in_a_map(figure, 32.640, 32.680, -117.235, -117.190) > 10
+
+
+def test_mercator_is_conformal_and_undone_by_its_inverse():
+    lat = np.linspace(-74.0, 74.0, 75)
+    np.testing.assert_allclose(inverse_mercator(mercator(lat)), lat, atol=1e-9)
+    step = (mercator(lat + 1e-4) - mercator(lat - 1e-4)) / 2e-4
+    np.testing.assert_allclose(step, 1.0 / np.cos(np.radians(lat)), rtol=1e-6)
+    box = MapExtent(40.0, 60.0, -10.0, 10.0)
+    assert box.is_mercator and not MapExtent(40.0, 80.0, 0.0, 1.0).is_mercator
+    ordinates = mercator(box.grid(3, 50)[0][:, 0])
+    np.testing.assert_allclose(np.diff(ordinates), np.diff(ordinates)[0])
+
+
+def test_degrees_and_minutes_on_the_axes():
+    assert degree_label(51.7, "NS") == "51°42'N" and degree_label(-4.05, "EW") == "4°03'W"
+    assert degree_label(181.0, "EW") == "179°W" and degree_label(0.0, "NS") == "0°"
+
+
+def test_times_are_round_hours_in_utc():
+    times, step = marked_times(parse_time("2026-01-01T05:10Z"), parse_time("2026-01-02T03:00Z"))
+    assert step == 3 * 3600.0
+    assert [time_label(t, step) for t in times[:2]] == ["1 Jan 06:00", "1 Jan 09:00"]
+    times, step = marked_times(0.0, 40 * 86400.0)
+    assert len(times) <= 9 and time_label(times[1], step) in ("5 Jan", "11 Jan")
+
+
+@pytest.fixture(scope="module")
+def lagoon():
+    """A plan beside an island with a lagoon, a closed area and the storm of the package."""
+    outer = [[2.3, 51.2], [2.7, 51.2], [2.7, 51.6], [2.3, 51.6], [2.3, 51.2]]
+    inner = [[2.4, 51.3], [2.4, 51.5], [2.6, 51.5], [2.6, 51.3], [2.4, 51.3]]
+    chart = Chart.from_geojson({"type": "Polygon", "coordinates": [outer, inner]})
+    area = [[2.0, 51.0], [2.1, 51.0], [2.1, 51.1], [2.0, 51.1], [2.0, 51.0]]
+    zone = {"type": "Feature", "properties": {"kind": "no-go"}}
+    chart = chart.with_zones(zone | {"geometry": {"type": "Polygon", "coordinates": [area]}})
+    voyage = Voyage(start=(51.4, 2.0), goal=(51.4, 3.0), depart="1998-08-30T05:10Z")
+    return plan(voyage, ship=SHIP, sea=Sea.storm(), chart=chart.within(50.5, 52.0, 1.0, 4.0))
+
+
+def test_labels_do_not_lie_on_each_other(lagoon):
+    figure = draw_map(lagoon)
+    axes = figure.axes[0]
+    boxes = [text.get_window_extent() for text in axes.texts if text.get_zorder() == 10]
+    assert len(boxes) >= 4
+    for number, box in enumerate(boxes):
+        assert not any(box.overlaps(other) for other in boxes[:number])
+    words = [text.get_text() for text in axes.texts]
+    assert "30 Aug 06:00" in words and any(word.endswith("nm") for word in words)
+    assert "depart 1998-08-30 05:10 UTC" in axes.get_title(loc="left")
+
+
+def test_enclosed_water_is_hatched_and_the_sea_is_not(lagoon):
+    from matplotlib.contour import ContourSet
+
+    axes = draw_map(lagoon).axes[0]
+    hatched = [
+        found
+        for found in axes.collections
+        if isinstance(found, ContourSet) and any(found.hatches or [])
+    ]
+    x, y = np.concatenate([p.vertices for found in hatched for p in found.get_paths()]).T
+    assert x.min() > 2.35 and x.max() < 2.65 and y.min() > 51.25 and y.max() < 51.55
+
+
+def test_a_route_beside_that_of_the_plan_is_drawn(lagoon):
+    axes = draw_map(lagoon, beside=lagoon.best).axes[0]
+    labels = [line.get_label() for line in axes.lines]
+    assert "route that ignores the weather" in labels and "route, times in UTC" in labels
+
+
+def test_profiles_have_times_in_utc_and_state_that_no_depth_is_known(lagoon):
+    profile = draw_profile(lagoon.best)
+    assert profile.axes[-1].get_xlabel() == "UTC, departure 1998-08-30 05:10"
+    assert "30 Aug 06:00" in [tick.get_text() for tick in profile.axes[-1].get_xticklabels()]
+    assert "not known" in profile.axes[-1].texts[0].get_text()

@@ -9,7 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from thalweg.ship.methods.added_resistance.snnm import SnnmHull, snnm
+from thalweg.ship.methods.added_resistance.snnm import (
+    snnm,
+)
+from thalweg.ship.methods.added_resistance.snnm_hull import (
+    SnnmHull,
+)
 from thalweg.ship.methods.added_resistance.stawave import stawave1, stawave2
 from thalweg.ship.methods.added_resistance.wind_resistance import (
     BLENDERMANN,
@@ -28,13 +33,17 @@ from thalweg.ship.methods.propulsion.b_series import (
     operating_point,
     solve_advance,
 )
-from thalweg.ship.methods.propulsion.propulsion_factors import propulsion
+from thalweg.ship.methods.propulsion.propulsion_factors import (
+    propulsion,
+)
 from thalweg.ship.methods.relative_angles import relative_wind
 from thalweg.ship.methods.resistance.friction_lines import Water
 from thalweg.ship.methods.resistance.hollenbach import (
-    HollenbachHull,
     hollenbach_1998,
     hollenbach_validity,
+)
+from thalweg.ship.methods.resistance.hollenbach_hull import (
+    HollenbachHull,
 )
 from thalweg.ship.methods.resistance.holtrop_form import hull_form
 from thalweg.ship.methods.resistance.holtrop_mennen import BulbTransomAppendages, holtrop

@@ -11,8 +11,6 @@ import pytest
 
 from thalweg.ship.methods.resistance.friction_lines import Water
 from thalweg.ship.methods.resistance.hollenbach import (
-    AppendageCounts,
-    HollenbachHull,
     correlation_allowance,
     critical_froude_number,
     froude_factor,
@@ -24,6 +22,10 @@ from thalweg.ship.methods.resistance.hollenbach import (
     maximum_factor,
     residuary_coefficient,
     standard_residuary,
+)
+from thalweg.ship.methods.resistance.hollenbach_hull import (
+    AppendageCounts,
+    HollenbachHull,
 )
 
 YU_KNOT = 0.5144

@@ -8,6 +8,7 @@ import pytest
 from thalweg.core.errors import InputError
 from thalweg.ship.hull import particulars_regressions as hydro
 from thalweg.ship.methods import displacement
+from thalweg.ship.methods import hull_coefficients as coefficients
 from thalweg.ship.methods import hull_regressions as reg
 
 
@@ -53,34 +54,34 @@ def test_denny_mumford_of_a_tanker_within_its_error():
 )
 def test_coefficients_of_kvlcc2_and_kcs(block, midship, waterplane):
     """Published forms: KVLCC2 C_B .8098, C_M .998; KCS C_B .651, C_M .985."""
-    assert reg.midship_from_block(block) == pytest.approx(midship, abs=0.012)
-    assert reg.midship_kerlen(block) == pytest.approx(midship, abs=0.012)
-    assert reg.waterplane_from_block(block) == pytest.approx(waterplane, abs=0.06)
+    assert coefficients.midship_from_block(block) == pytest.approx(midship, abs=0.012)
+    assert coefficients.midship_kerlen(block) == pytest.approx(midship, abs=0.012)
+    assert coefficients.waterplane_from_block(block) == pytest.approx(waterplane, abs=0.06)
 
 
 def test_lcb_of_kvlcc2_and_kcs():
     """KVLCC2 +3.48 %, KCS -1.48 % of L_PP (published)."""
-    assert reg.lcb_from_prismatic(0.8098 / 0.998) == pytest.approx(3.48, abs=1.5)
-    assert reg.lcb_from_prismatic(0.651 / 0.985) == pytest.approx(-1.48, abs=1.5)
+    assert coefficients.lcb_from_prismatic(0.8098 / 0.998) == pytest.approx(3.48, abs=1.5)
+    assert coefficients.lcb_from_prismatic(0.651 / 0.985) == pytest.approx(-1.48, abs=1.5)
 
 
 def test_regressions_written_out():
     """Values calculated by hand from the printed formulas."""
-    assert reg.block_from_froude(0.25) == pytest.approx(0.633125, abs=1e-9)
-    assert reg.midship_from_block(0.6) == pytest.approx(1.0 / (1.0 + 0.4**3.5))
-    assert reg.midship_kerlen(0.6) == pytest.approx(1.006 - 0.0056 / 0.6**3.56)
-    assert reg.waterplane_from_block(0.7) == pytest.approx(0.8)
-    assert reg.waterplane_kristensen(0.7) == pytest.approx(0.865)
-    assert reg.lcb_from_prismatic(0.7) == pytest.approx(0.08)
-    assert reg.lcb_from_froude(0.2) == pytest.approx(1.02)
+    assert coefficients.block_from_froude(0.25) == pytest.approx(0.633125, abs=1e-9)
+    assert coefficients.midship_from_block(0.6) == pytest.approx(1.0 / (1.0 + 0.4**3.5))
+    assert coefficients.midship_kerlen(0.6) == pytest.approx(1.006 - 0.0056 / 0.6**3.56)
+    assert coefficients.waterplane_from_block(0.7) == pytest.approx(0.8)
+    assert coefficients.waterplane_kristensen(0.7) == pytest.approx(0.865)
+    assert coefficients.lcb_from_prismatic(0.7) == pytest.approx(0.08)
+    assert coefficients.lcb_from_froude(0.2) == pytest.approx(1.02)
     block = displacement.block_at_draught(10.0, design_draught=8.0, design_block=0.7)
     assert block == pytest.approx(1.0 - 0.3 * 0.8 ** (1.0 / 3.0))
 
 
 def test_block_from_froude():
     """KCS at Fn .26 has .651; KVLCC2 at .142 is outside."""
-    assert reg.block_from_froude(0.26) == pytest.approx(0.651, abs=0.05)
-    assert np.isnan(reg.block_from_froude([0.142, 0.33])).all()
+    assert coefficients.block_from_froude(0.26) == pytest.approx(0.651, abs=0.05)
+    assert np.isnan(coefficients.block_from_froude([0.142, 0.33])).all()
 
 
 def test_block_grows_with_draught_and_meets_the_design():
@@ -121,9 +122,9 @@ def test_every_estimator_runs_on_a_ship_and_names_its_source(quantity):
 
 def test_arrays_equal_scalars():
     blocks = np.array([0.6, 0.7, np.nan, 0.85])
-    got = reg.midship_from_block(blocks)
+    got = coefficients.midship_from_block(blocks)
     assert np.isnan(got[2])
-    assert got[3] == reg.midship_from_block(0.85)
+    assert got[3] == coefficients.midship_from_block(0.85)
 
 
 def test_kristensen_by_kind_of_ship():
@@ -170,8 +171,8 @@ def test_kristensen_wetted_surface_falls_with_draught():
 
 def test_waterplane_of_kristensen_is_near_schneekluths():
     for block in (0.6, 0.7, 0.8):
-        assert reg.waterplane_kristensen(block) == pytest.approx(
-            reg.waterplane_from_block(block), abs=0.09
+        assert coefficients.waterplane_kristensen(block) == pytest.approx(
+            coefficients.waterplane_from_block(block), abs=0.09
         )
 
 

@@ -81,6 +81,7 @@ def test_no_stress_at_the_surface_and_friction_at_the_bed(column):
         assert abs(top_slope) < 1e-5 * abs(bed_slope)
 
 
+@pytest.mark.slow
 @given(COLUMNS, st.floats(0.01, 1.0))
 def test_mean_over_the_draught_is_the_integral(column, share):
     draught = share * column.depth

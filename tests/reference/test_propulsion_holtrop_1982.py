@@ -13,11 +13,8 @@ from thalweg.ship.methods.propulsion.b_series import (
     largest_advance,
     operating_point,
 )
-from thalweg.ship.methods.propulsion.propulsion_factors import (
-    Efficiencies,
-    constant_efficiency_power,
+from thalweg.ship.methods.propulsion.hull_propeller_interaction import (
     hull_efficiency,
-    propulsion,
     relative_rotative_single,
     relative_rotative_twin,
     thrust_deduction_single,
@@ -25,6 +22,11 @@ from thalweg.ship.methods.propulsion.propulsion_factors import (
     viscous_coefficient,
     wake_fraction_single,
     wake_fraction_twin,
+)
+from thalweg.ship.methods.propulsion.propulsion_factors import (
+    Efficiencies,
+    constant_efficiency_power,
+    propulsion,
 )
 from thalweg.ship.methods.resistance.holtrop_form import hull_form
 

@@ -17,7 +17,9 @@ import pytest
 from tests.reference.schless_2023 import COAST, GENERATOR, TIDE, dredger, offshore, waters
 from thalweg.operations.waiting import Departures, trip_table
 from thalweg.sea.models.stratified_coast import TIDAL_ELLIPSES
-from thalweg.ship.methods.propulsion.propulsion_factors import Efficiencies
+from thalweg.ship.methods.propulsion.propulsion_factors import (
+    Efficiencies,
+)
 from thalweg.ship.methods.resistance.holtrop_form import hull_form, wetted_surface
 from thalweg.ship.methods.resistance.holtrop_mennen import BulbTransomAppendages, holtrop
 from thalweg.ship.methods.shallow_water.shallow_water_resistance import (

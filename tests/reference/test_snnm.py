@@ -8,11 +8,13 @@ import pytest
 from thalweg.core.units import GRAVITY
 from thalweg.ship.methods.added_resistance.mean_wave_force import spectral_density
 from thalweg.ship.methods.added_resistance.snnm import (
-    SnnmHull,
-    entrance_length,
     snnm,
     snnm_transfer,
     snnm_validity,
+)
+from thalweg.ship.methods.added_resistance.snnm_hull import (
+    SnnmHull,
+    entrance_length,
 )
 
 KVLCC2 = SnnmHull(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thalweg.core.units import KNOT
-from thalweg.ship.methods.shallow_water import squat
+from thalweg.ship.methods.shallow_water import barrass_squat, squat
 
 HOPPER = {"draught": 6.5, "breadth": 20.0}
 BLOCK = 10_000e3 / 1025.0 / (80.0 * 20.0 * 6.5)  # 10 000 t, 80 x 20 x 6.5 m: 0.938
@@ -66,13 +66,13 @@ def test_deep_water_gives_the_deep_speed():
 def test_infinite_depth_is_deep_water():
     kwargs = {"block_coefficient": 0.8, **HOPPER}
     assert squat.shallow_water_speed_limit(5.0, np.inf, **kwargs) == pytest.approx(5.0, rel=1e-3)
-    assert squat.barrass_squat(5.0, np.inf, **kwargs) == 0.0
-    assert squat.barrass_2004_squat(5.0, np.inf, **kwargs) == 0.0
+    assert barrass_squat.barrass_squat(5.0, np.inf, **kwargs) == 0.0
+    assert barrass_squat.barrass_2004_squat(5.0, np.inf, **kwargs) == 0.0
 
 
 def test_zero_speed_stays_zero():
     assert squat.shallow_water_speed(0.0, 10.0, **HOPPER) == 0.0
-    assert squat.barrass_squat(0.0, 10.0, block_coefficient=0.8, **HOPPER) == 0.0
+    assert barrass_squat.barrass_squat(0.0, 10.0, block_coefficient=0.8, **HOPPER) == 0.0
 
 
 def test_speed_never_falls_with_depth():
@@ -83,21 +83,23 @@ def test_speed_never_falls_with_depth():
 def test_barrass_equals_a_hand_calculation():
     """B 20, T 6.5, h 10, width 180: S2 = 130/1670; C_B .8, 10 kn."""
     expected = 0.8 * (130.0 / 1670.0) ** (2.0 / 3.0) * 10.0**2.08 / 30.0
-    got = squat.barrass_squat(10.0 * KNOT, 10.0, block_coefficient=0.8, **HOPPER)
+    got = barrass_squat.barrass_squat(10.0 * KNOT, 10.0, block_coefficient=0.8, **HOPPER)
     assert got == pytest.approx(expected, rel=1e-12)
     assert got == pytest.approx(0.585, abs=5e-4)
 
 
 def test_inverse_of_barrass():
     speeds = np.array([1.0, 3.0, 5.0])
-    sunk = squat.barrass_squat(speeds, 9.0, block_coefficient=0.8, **HOPPER)
-    back = squat.barrass_speed(sunk, 9.0, block_coefficient=0.8, **HOPPER)
+    sunk = barrass_squat.barrass_squat(speeds, 9.0, block_coefficient=0.8, **HOPPER)
+    back = barrass_squat.barrass_speed(sunk, 9.0, block_coefficient=0.8, **HOPPER)
     assert back == pytest.approx(speeds, rel=1e-12)
 
 
 def test_a_channel_sinks_the_ship_deeper():
-    open_water = squat.barrass_squat(4.0, 10.0, block_coefficient=0.8, **HOPPER)
-    canal = squat.barrass_squat(4.0, 10.0, block_coefficient=0.8, channel_width=80.0, **HOPPER)
+    open_water = barrass_squat.barrass_squat(4.0, 10.0, block_coefficient=0.8, **HOPPER)
+    canal = barrass_squat.barrass_squat(
+        4.0, 10.0, block_coefficient=0.8, channel_width=80.0, **HOPPER
+    )
     assert canal / open_water == pytest.approx((1670.0 / 670.0) ** (2.0 / 3.0))
 
 
@@ -111,7 +113,7 @@ def test_a_narrower_channel_never_lets_the_ship_go_faster():
 
 
 def test_a_filled_channel_is_blocked():
-    assert squat.blockage_ratio(6.0, 6.5, breadth=20.0, channel_width=20.0) == np.inf
+    assert barrass_squat.blockage_ratio(6.0, 6.5, breadth=20.0, channel_width=20.0) == np.inf
     assert limit(6.4, channel_width=20.0) == 0.0
 
 
@@ -120,19 +122,19 @@ def test_later_barrass_form_equals_a_hand_calculation():
     at = {"draught": 10.0, "breadth": 30.0, "block_coefficient": 0.8}
     knots = 5.0 / KNOT
     open_water = 0.8 * (10.0 / (7.04 / 0.8**0.85 * 12.0)) ** 0.81 * knots**2.08 / 20.0
-    assert squat.barrass_2004_squat(5.0, 12.0, **at) == pytest.approx(open_water, rel=1e-12)
+    assert barrass_squat.barrass_2004_squat(5.0, 12.0, **at) == pytest.approx(open_water, rel=1e-12)
     canal = 0.8 * (300.0 / (150.0 * 12.0)) ** 0.81 * knots**2.08 / 20.0
-    got = squat.barrass_2004_squat(5.0, 12.0, channel_width=150.0, **at)
+    got = barrass_squat.barrass_2004_squat(5.0, 12.0, channel_width=150.0, **at)
     assert got == pytest.approx(canal, rel=1e-12)
-    speeds = squat.barrass_2004_speed(canal, 12.0, channel_width=150.0, **at)
+    speeds = barrass_squat.barrass_2004_speed(canal, 12.0, channel_width=150.0, **at)
     assert speeds == pytest.approx(5.0, rel=1e-12)
 
 
 def test_later_barrass_form_agrees_within_its_scatter():
     """The 1979 and 2004 forms describe the same thing: within a factor of 1.5 in open water."""
     kwargs = {"draught": 10.0, "breadth": 30.0, "block_coefficient": 0.8}
-    old = squat.barrass_squat(5.0, 12.0, **kwargs)
-    new = squat.barrass_2004_squat(5.0, 12.0, **kwargs)
+    old = barrass_squat.barrass_squat(5.0, 12.0, **kwargs)
+    new = barrass_squat.barrass_2004_squat(5.0, 12.0, **kwargs)
     assert 1.0 / 1.5 < new / old < 1.5
 
 
@@ -141,9 +143,11 @@ def test_clearance_under_way():
 
 
 def test_validity():
-    inside = squat.squat_validity([8.0, 100.0], draught=6.5, block_coefficient=0.8)
+    inside = barrass_squat.squat_validity([8.0, 100.0], draught=6.5, block_coefficient=0.8)
     assert inside == []
-    assert squat.squat_validity(1.101, draught=1.0, block_coefficient=[0.501, 0.899]) == []
-    assert len(squat.squat_validity(1.099, draught=1.0, block_coefficient=[0.499, 0.901])) == 3
-    notes = squat.squat_validity(6.6, draught=6.5, block_coefficient=0.95)
+    assert barrass_squat.squat_validity(1.101, draught=1.0, block_coefficient=[0.501, 0.899]) == []
+    assert (
+        len(barrass_squat.squat_validity(1.099, draught=1.0, block_coefficient=[0.499, 0.901])) == 3
+    )
+    notes = barrass_squat.squat_validity(6.6, draught=6.5, block_coefficient=0.95)
     assert [note.quantity for note in notes] == ["block coefficient", "depth over draught"]

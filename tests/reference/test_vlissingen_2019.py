@@ -84,6 +84,7 @@ def test_what_remains_is_mid_year_nodal_corrections_and_rounding(official, vliss
     assert 0.010 < _rmse(full - level) < 0.012
 
 
+@pytest.mark.slow
 def test_observed_levels_follow_the_tide(vlissingen):
     """Clock times of the constants are MET, those of the observations UTC."""
     lines = data_file("tide/rws_vlissingen_waterlevel_20180101_20180401.noos").read_text()

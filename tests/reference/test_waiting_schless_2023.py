@@ -46,6 +46,7 @@ def test_a_single_trip_at_neap_tide_saves_four_and_a_half_per_cent():
     assert saving[2, WAITS > 0.55 * TIDE].min() > 0.5
 
 
+@pytest.mark.slow
 def test_at_first_waiting_from_low_slack_costs_energy():
     """From 0.75 T "an increase of the energy", as the current along the coast grows too."""
     for name in ("neap-to-mean", "mean-to-spring", "spring"):
@@ -85,6 +86,7 @@ def test_savings_shrink_from_neap_to_spring_tide():
     assert (np.diff(best) < 0.0).all()
 
 
+@pytest.mark.slow
 def test_savings_with_the_currents_as_printed():
     """Table 4.9 as printed gives 5.4 %, not 3 %."""
     found = study(five_cycles(TIDAL_ELLIPSES["neap"]))
@@ -92,6 +94,7 @@ def test_savings_with_the_currents_as_printed():
     assert 100.0 * found.saving("optimum").max() == pytest.approx(5.6, abs=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scenarios", [HALVED, TIDAL_ELLIPSES], ids=["halved", "printed"])
 @pytest.mark.parametrize("name", TIDAL_ELLIPSES)
 def test_waiting_saves_no_energy_with_a_generator_of_327_kw(scenarios, name):

@@ -214,6 +214,7 @@ def test_the_cost_of_time_and_cubed_speed():
     assert route.cost == pytest.approx(wanted, rel=1e-4)
 
 
+@pytest.mark.slow
 @settings(max_examples=8, deadline=None)
 @given(st.floats(-2, 2), st.floats(-2, 2), st.floats(1.0, 1.5), st.integers(0, 11))
 def test_refinement_is_never_worse_for_any_sea_and_start(u, v, later, setting):

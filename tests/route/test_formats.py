@@ -35,12 +35,11 @@ def test_round_trip(tmp_path, suffix, positions):
     WRITERS[suffix](route_along(positions), path)
     track = read_track(path)
     expected = route_along(positions).track
-    np.testing.assert_allclose(track.lat, expected.lat, atol=1e-8)
-    turn = (track.lon - expected.lon + 180.0) % 360.0 - 180.0
-    np.testing.assert_allclose(turn, 0.0, atol=1e-8)
+    for lat, lon in expected.positions:  # kept among the points that break the great circles
+        assert np.hypot(track.lat - lat, (track.lon - lon + 180.0) % 360.0 - 180.0).min() < 1e-6
     assert track.depart == expected.depart
     again = evaluate(path, ship=ship(5.0), sea=Sea.calm())
-    assert again.time_h == pytest.approx(route_along(positions).time_h, rel=1e-9)
+    assert again.time_h == pytest.approx(route_along(positions).time_h, rel=1e-6)
 
 
 @pytest.mark.parametrize("suffix", WRITERS)
@@ -54,16 +53,16 @@ def test_waits_and_ordered_speeds_come_back(tmp_path, suffix):
     path = tmp_path / f"route.{suffix}"
     WRITERS[suffix](route, path)
     read = read_track(path)
-    np.testing.assert_allclose(read.wait, track.wait, rtol=1e-12)
-    np.testing.assert_allclose(read.speed, [7.5, 5.0, 7.5], rtol=1e-12)
+    np.testing.assert_allclose(read.wait, track.wait, atol=0.002)
+    np.testing.assert_allclose(read.speed, [7.5, 5.0, 7.5], rtol=1e-6)
     again = evaluate(path, ship=vessel, sea=Sea.calm())
     assert again.track.setting.tolist() == [1, 0, 1]
-    assert again.time_h == pytest.approx(route.time_h, rel=1e-9)
-    assert again.waiting_h == pytest.approx(1834.5 / 3600.0)
+    assert again.time_h == pytest.approx(route.time_h, rel=1e-6)
+    assert again.waiting_h == pytest.approx(1834.5 / 3600.0, rel=1e-5)
     other = evaluate(
         path, ship=ship(9.0).with_speeds([4.0, 9.0]), sea=Sea.calm()
     )  # has no 7.5 m/s by itself
-    assert other.time_h == pytest.approx(route.time_h, rel=1e-9)
+    assert other.time_h == pytest.approx(route.time_h, rel=1e-6)
     ordered = evaluate(path, ship=vessel, sea=Sea.calm(), speed_kn=7.5 / KNOT)
     assert ordered.time_h < route.time_h
     assert ordered.waiting_h == pytest.approx(again.waiting_h)

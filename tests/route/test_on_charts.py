@@ -52,6 +52,7 @@ def test_charted_depth_and_level_make_the_clearance():
     assert any("chart datum" in text for text in told.assumptions)
 
 
+@pytest.mark.slow
 def test_smoothing_keeps_charted_depth():
     # a shoal of a grid, 4 m deep, that the pulled line passes at its northern edge
     lat, lon = np.arange(-30, 31) / 50.0, np.arange(-10, 71) / 50.0
@@ -84,6 +85,7 @@ def test_smoothing_keeps_charted_depth():
     assert better.distance_nm / 60.1 > 2 * math.hypot(0.4, 0.08) + 0.2
 
 
+@pytest.mark.slow
 @settings(max_examples=20)
 @given(
     st.integers(0, 10_000),

@@ -76,6 +76,7 @@ def grib(tmp_path: Path, edition: int, mode: str) -> Path:
     return path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("edition", [1, 2])
 def test_wind_of_both_editions(tmp_path, edition) -> None:
     path = grib(tmp_path, edition, "wind")
@@ -118,6 +119,7 @@ def test_corrupt_inside_a_message_does_not_end_the_process(tmp_path) -> None:
         Sea.open(bad)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "order", ["import cfgrib, pyproj", "import pyproj, cfgrib", "import pyproj"]
 )
@@ -138,6 +140,7 @@ def test_every_import_order_beside_pyproj(tmp_path, order) -> None:
     assert done.stdout == "1.800 111319", done.stderr[-500:]
 
 
+@pytest.mark.slow
 def test_plain_use_exits_cleanly(tmp_path) -> None:
     path = grib(tmp_path, 1, "wind")
     code = f"from thalweg.sea import Sea\nSea.open({str(path)!r}).describe()\n"
@@ -145,6 +148,7 @@ def test_plain_use_exits_cleanly(tmp_path) -> None:
     assert done.returncode == 0, done.stderr[-500:]
 
 
+@pytest.mark.slow
 def test_temporary_arrays_are_removed_with_the_sea(tmp_path, monkeypatch) -> None:
     monkeypatch.setenv("TMPDIR", str(tmp_path / "scratch"))
     (tmp_path / "scratch").mkdir()

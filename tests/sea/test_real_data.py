@@ -175,6 +175,7 @@ def test_nemo_currents_at_centres() -> None:
     assert got[NORTH] == pytest.approx(u * np.sin(turn) + v * np.cos(turn), abs=1e-4)
 
 
+@pytest.mark.slow
 def test_met_norway_grib_has_height_and_a_direction_that_must_be_mapped() -> None:
     pytest.importorskip("cfgrib")
     path = data_file("metocean/metno_mywavewam_northsea_20191106_09_hourly.grb")

@@ -67,6 +67,7 @@ def example():
 GIVEN = {"setting": 0, "limits": limits(), "top_speed": 30.0}
 
 
+@pytest.mark.slow
 def test_the_fields_reproduce_the_example_without_waiting():
     network, fields = example()
     arrivals, _ = sampled_arrivals(

@@ -5,10 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from thalweg import Sea, evaluate
 from thalweg.core.errors import InputError
 from thalweg.core.objective import Objective
 from thalweg.ship import Ship
 from thalweg.ship.consumption import calm_water_consumption, consumption_table, leg_prices
+from thalweg.ship.performance_sheet import performance_sheet
+from thalweg.ship.ship_assumptions import stated_assumptions
 
 BULKER = Ship.load("handysize-bulker")
 
@@ -59,3 +62,20 @@ def test_cubed_speed_replaces_fuel_without_a_price():
 def test_other_sums_are_refused(objective):
     with pytest.raises(InputError, match="Speeds are chosen for one of"):
         leg_prices(objective, BULKER)
+
+
+def test_a_load_factor_without_effect_is_stated():
+    """Schless (2023) describes the full Vox Olympia only."""
+    half = Ship.load("vox-olympia").with_load_factor(0.5)
+    (text,) = stated_assumptions(half)
+    assert text.startswith("Load factor 0.5 has no effect")
+    assert stated_assumptions(Ship.load("vox-olympia")) == []
+    assert stated_assumptions(Ship.load("hopper-dredger").with_load_factor(0.0)) == []
+    simple = Ship.simple(8.0, 5.0).with_load_factor(0.0)
+    route = evaluate([(0, 0), (0, 0.1)], ship=simple, sea=Sea.calm(), depart=0)
+    assert any("no effect" in note for note in route.assumptions)
+
+
+def test_no_rating_is_shown_for_a_ship_of_unknown_deadweight():
+    sheet = performance_sheet(Ship.load("yu-single-screw-169m"))
+    assert all(row["cii"] is None for row in sheet["conditions"])

@@ -32,6 +32,7 @@ def test_the_stated_error_holds_at_other_conditions(name):
     assert np.quantile(error, 0.99) == pytest.approx(table.error.p99, rel=0.5)
 
 
+@pytest.mark.slow
 def test_a_table_beyond_the_tolerance_is_reported():
     table = Ship.load("s175").tabulate(tolerance=1e-6)
     assert 1e-6 < table.error.p99 < 0.002

@@ -10,12 +10,14 @@ from thalweg.core.units import KNOT
 from thalweg.route import evaluate
 from thalweg.sea import Sea
 from thalweg.ship import Conditions, Ship
-from thalweg.ship.methods.added_resistance.snnm import SnnmHull, snnm
-from thalweg.ship.methods.shallow_water.squat import (
-    barrass_2004_speed,
-    barrass_2004_squat,
-    shallow_water_speed,
+from thalweg.ship.methods.added_resistance.snnm import (
+    snnm,
 )
+from thalweg.ship.methods.added_resistance.snnm_hull import (
+    SnnmHull,
+)
+from thalweg.ship.methods.shallow_water.barrass_squat import barrass_2004_speed, barrass_2004_squat
+from thalweg.ship.methods.shallow_water.squat import shallow_water_speed
 from thalweg.ship.methods.speed_loss import kwon_speed_loss
 from thalweg.ship.model_check import check_ship_model
 from thalweg.ship.performance_sheet import performance_sheet

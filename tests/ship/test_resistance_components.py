@@ -6,7 +6,12 @@ import pytest
 from thalweg.core.units import KNOT
 from thalweg.ship import Conditions, Ship
 from thalweg.ship.hull.hull import complete_hull
-from thalweg.ship.methods.resistance.hollenbach import HollenbachHull, hollenbach_wetted_surface
+from thalweg.ship.methods.resistance.hollenbach import (
+    hollenbach_wetted_surface,
+)
+from thalweg.ship.methods.resistance.hollenbach_hull import (
+    HollenbachHull,
+)
 from thalweg.ship.methods.shallow_water.shallow_water_resistance import lackenby_1963_deep_speed
 from thalweg.ship.performance_sheet import performance_sheet
 

@@ -417,7 +417,7 @@ def test_powers_are_settings_of_a_table_and_of_the_cubic_law():
     ("more", "words"),
     [
         ({"powers_kw": [9000], "table": ROWS}, "The table runs from 1000 to 8000 kW"),
-        ({"powers_kw": [2000], "table": {"speed_kn": [8, 9]}}, "does not tie power to speed"),
+        ({"powers_kw": [2000], "table": {"speed_kn": [8, 9]}}, "does not relate power to speed"),
         ({"powers_kw": [2000], "speeds_kn": [9]}, "both powers_kw and speeds_kn"),
         ({"speeds_kn": [20], "table": ROWS, "models": {"calm_water": "table"}}, "ordered to 20 kn"),
         ({"powers_kw": [2000], "models": {"calm_water": "cubic"}}, "no reference speed"),

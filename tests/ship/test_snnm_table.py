@@ -6,7 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from thalweg.core.units import GRAVITY
-from thalweg.ship.methods.added_resistance.snnm import SnnmHull, snnm
+from thalweg.ship.methods.added_resistance.snnm import (
+    snnm,
+)
+from thalweg.ship.methods.added_resistance.snnm_hull import (
+    SnnmHull,
+)
 from thalweg.ship.methods.added_resistance.snnm_table import SnnmTable
 
 HULLS = {

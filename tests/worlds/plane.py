@@ -51,7 +51,11 @@ class Plane:
 
     def plan(self, start, goal, *, sea, ship, chart, spacing=None, **request) -> Plan:
         voyage = Voyage(
-            start=self.position(*start), goal=self.position(*goal), depart=T0, **request
+            offing_nm=0.0,
+            start=self.position(*start),
+            goal=self.position(*goal),
+            depart=T0,
+            **request,
         )
         resolution = None if spacing is None else spacing * self.unit
         return plan(voyage, ship=ship, sea=sea, chart=chart, resolution=resolution)

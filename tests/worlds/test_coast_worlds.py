@@ -11,7 +11,7 @@ DEPART = "2026-01-01T00:00Z"
 
 
 def shortest(start, goal, chart):
-    voyage = Voyage(start=start, goal=goal, depart=DEPART, objective="distance")
+    voyage = Voyage(offing_nm=0.0, start=start, goal=goal, depart=DEPART, objective="distance")
     return plan(voyage, ship=SHIP, sea=Sea.calm(), chart=chart)
 
 
@@ -20,6 +20,7 @@ def coast():
     return Chart.gshhg("i")
 
 
+@pytest.mark.slow
 def test_floro_to_santander(coast):
     """1234.5 nm through Dover on GSHHG i, by an exact visibility graph (ends snapped 0.3 nm)."""
     found = shortest((61.60, 5.03), (43.47, -3.77), coast)
@@ -52,6 +53,7 @@ def test_in_open_water_the_shortest_path_is_the_geodesic(start, goal):
     assert found.lower_bound <= geodesic * (1 + 1e-9)
 
 
+@pytest.mark.slow
 def test_the_same_world_shifted_in_longitude_gives_the_same_route():
     """Results are independent of the antimeridian."""
     lengths = []

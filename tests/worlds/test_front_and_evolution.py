@@ -10,7 +10,7 @@ from tests.evolution import jet
 from tests.search.small import NO_LIMITS
 from tests.worlds import jet_and_eddies as world
 from thalweg.core.objective import LegPrices
-from thalweg.evolution import Genome, VariationSettings, evolve
+from thalweg.evolution import EvolutionSettings, Genome, StoppingCriteria, VariationSettings, evolve
 from thalweg.evolution.evolve import METHODS
 from thalweg.evolution.variation import OperatorWeights
 from thalweg.search import NetworkFront, ShipOnNetwork, earliest_arrival, pareto_front
@@ -106,14 +106,19 @@ def sailed(genome: Genome) -> FrontPoint | None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", METHODS)
 def test_evolution_on_the_network_stays_above_front_and_lower_front(method):
     best = exact()
     assert np.all(best.gap >= 0.0) and np.median(best.gap) < 0.02
     found = evolve(
-        jet.evaluator(), seeds(), method=method, size=len(seeds()), evaluations=3000,
-        settled=None, seed=2, operators=VariationSettings(mix=SPEEDS_ONLY, crossover=0.3),
-    )  # fmt: skip
+        jet.evaluator(),
+        seeds(),
+        settings=EvolutionSettings(
+            method, len(seeds()), 2, VariationSettings(mix=SPEEDS_ONLY, crossover=0.3)
+        ),
+        stopping=StoppingCriteria(evaluations=3000, settled=None),
+    )
     points = [point for genome in found.genomes if (point := sailed(genome)) is not None]
     assert len(points) > 20  # most: crossover alone may leave the network
     start = [point for genome in seeds() if (point := sailed(genome)) is not None]

@@ -76,7 +76,9 @@ def on_pruned_mesh(run: Sea, largest: float, sizes: list[int]):
 
 
 def sailed(sea: Sea, build, start, goal, speed: float):
-    voyage = Voyage(start=HALEM.position(*start), goal=HALEM.position(*goal), depart=T0)
+    voyage = Voyage(
+        offing_nm=0.0, start=HALEM.position(*start), goal=HALEM.position(*goal), depart=T0
+    )
     return plan(voyage, ship=simple_ship(speed), sea=sea, chart=WATER, network=build)
 
 
@@ -137,10 +139,13 @@ def test_what_the_nodes_are_thinned_by():
 
 
 def on_mesh(run: Sea, **options):
-    voyage = Voyage(start=HALEM.position(-0.4, -0.4), goal=HALEM.position(0.4, 0.4), depart=T0)
+    voyage = Voyage(
+        offing_nm=0.0, start=HALEM.position(-0.4, -0.4), goal=HALEM.position(0.4, 0.4), depart=T0
+    )
     return plan(voyage, ship=simple_ship(4.0), sea=run, chart=WATER, network="mesh", **options)
 
 
+@pytest.mark.slow
 def test_a_requested_mesh_is_thinned_by_the_flow_to_the_resolution():
     """Case 1: 2 m/s and much curl leave more nodes than a weak even flow."""
     run = model(rotating(2.0, False), 0.025)
@@ -154,6 +159,7 @@ def test_a_requested_mesh_is_thinned_by_the_flow_to_the_resolution():
     assert thinned < 0.15 * whole
 
 
+@pytest.mark.slow
 def test_large_models_are_thinned_to_what_can_be_searched(monkeypatch):
     monkeypatch.setattr(model_mesh, "MAX_MESH_NODES", 400)
     found = on_mesh(model(rotating(2.0, False), 0.025))

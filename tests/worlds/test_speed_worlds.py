@@ -20,6 +20,7 @@ def speed_ship(law, top):
     return Ship.from_speed_function(speed, top_speed=5.0 * top)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("v0", "k", "start", "goal", "units"),
     [
@@ -60,6 +61,7 @@ def test_cycloid_formula_has_the_printed_values():
     assert cycloid_time(10.0, 2.0, 1e-9, (1.7, 1e-4, 4.4)) == pytest.approx(6.14655212, abs=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("x", "guess"), [(np.pi, (1.0, 0.5, 3.0)), (10.0, (1.7, 0.4, 4.4))])
 def test_cycloid(x, guess):
     """v = sqrt(2 g y), g = 1, from a little below the line where the ship cannot move at all."""

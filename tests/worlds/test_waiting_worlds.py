@@ -22,6 +22,7 @@ def bar_sea(plane, inside, opens, wet=20.0):
     return plane.sea(lambda t, x, y: (0 * x, 0 * x), sea_floor_depth_below_geoid=depth)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("opens_h", "seconds"), [(5.0, 30500.0), (1.0, 20000.0)])
 def test_tidal_bar(opens_h, seconds):
     """A bar 30 km along an 80 km gully: T = max(s1/V, To) + (L - s1)/V."""
@@ -51,6 +52,7 @@ def test_halem_waits_for_the_bank():
     assert_optimal(found, 31903.29, solver_within=0.03)
 
 
+@pytest.mark.slow
 def test_halem_detours_when_the_bank_opens_late():
     """The same with the opening at 30,000 s: the detour round the corners wins."""
     inside = lambda x, y: (np.abs(x) < 0.4) & (np.abs(y) < 0.1)  # noqa: E731
@@ -68,6 +70,7 @@ def test_halem_detours_when_the_bank_opens_late():
     assert found.best.waiting_h == 0.0
 
 
+@pytest.mark.slow
 def test_without_leave_to_wait_the_ship_goes_round():
     inside = lambda x, y: (np.abs(x) < 0.4) & (np.abs(y) < 0.1)  # noqa: E731
     request = {

@@ -2,34 +2,54 @@
 
 from __future__ import annotations
 
-import hashlib
+import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from thalweg.chart import canals as canal_data
-from thalweg.chart import geojson_polygons
+from thalweg.chart import chart_tests, geojson_polygons
+from thalweg.chart.approaches import PORT_APPROACHES, PortApproaches
 from thalweg.chart.canals import CANALS, Canal
 from thalweg.chart.coast.coast_index_builder import empty_index
 from thalweg.chart.coast.coastline import Coastline
-from thalweg.chart.coast.leg_tests import leg_status, point_status
-from thalweg.chart.coast.snapping import nearest_navigable
+from thalweg.chart.coast.leg_tests import leg_status
 from thalweg.chart.depth.depth_grids import make_depth_layer
 from thalweg.chart.depth.depth_layers import DepthLayers
+from thalweg.chart.offing import (
+    Offing,
+    chart_with_offing,
+    chart_without_passages,
+    offing_arrays,
+)
+from thalweg.chart.passages import PASSAGES, Passage
 from thalweg.chart.zones.emission_control_areas import EcaZone, select_emission_control_areas
 from thalweg.chart.zones.zone_set import Zones
 from thalweg.core.bounding_box import WORLD, BoundingBox
+from thalweg.core.delegation import delegated
+from thalweg.core.errors import ThalwegWarning
 from thalweg.core.time import TimeLike
 from thalweg.deprecated_names import renamed_attributes
-from thalweg.kernels.codes import LAND, OK
+from thalweg.kernels.codes import OK
 from thalweg.kernels.geometry.coast_index import CoastArrays
+from thalweg.kernels.geometry.offing_tests import OffingArrays
 
 NO_ZONES: Final = Zones()
 NO_DEPTHS: Final = DepthLayers()
+NO_OFFING: Final = Offing()
+OPEN_PASSAGES: Final = tuple(passage for passage in PASSAGES if passage.use != "never")
+
+
+@cache
+def control_areas_in_force() -> Zones:
+    """Return the emission control areas in force, those without published limits left out."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ThalwegWarning)
+        areas = select_emission_control_areas()
+    return Zones(eca=tuple(EcaZone(area.name, area.rings) for area in areas))
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +70,17 @@ class Chart:
         Charted depth.
     canals : tuple of Canal
         Ship canals that are open.
+    counts_eca : bool
+        Whether the emission control areas in force count where the chart has none of its own
+        (`control_areas`).
+    approaches : PortApproaches, optional
+        Lines from the berths of ports to open sea; charts of the world's coasts have them.
+    passages : tuple of Passage
+        Passages in which ships may come nearer to land than the offing.
+    closed_passages : tuple of Passage
+        Passages that no leg crosses.
+    offing : Offing
+        How far from land ships stay.
     """
 
     coastline: Coastline
@@ -57,6 +88,11 @@ class Chart:
     zones: Zones = NO_ZONES
     depths: DepthLayers = NO_DEPTHS
     canals: tuple[Canal, ...] = ()
+    counts_eca: bool = True
+    approaches: PortApproaches | None = None
+    passages: tuple[Passage, ...] = ()
+    closed_passages: tuple[Passage, ...] = ()
+    offing: Offing = NO_OFFING
 
     if not TYPE_CHECKING:
         __getattr__ = renamed_attributes(
@@ -82,7 +118,7 @@ class Chart:
             object.__setattr__(self, "canals", left)
 
     @classmethod
-    def gshhg(cls, resolution: str = "i") -> Chart:
+    def gshhg(cls, resolution: str = "i", *, narrows_closed: bool = True) -> Chart:
         """Return the chart of the world's coasts from GSHHG.
 
         Parameters
@@ -90,22 +126,51 @@ class Chart:
         resolution : str
             'c' (crude, 25 km), 'l' (5 km), 'i' (1 km), 'h' (0.2 km) or 'f' (full); h and f need
             ``pip install "thalweg[hires]"``. Lakes are land. Ship canals are closed to legs, but
-            can be passed from end to end (`canals`, `without_canals`).
+            can be passed from end to end (`canals`, `without_canals`), and the approaches of
+            ports from berth to open sea (`approaches`).
+        narrows_closed : bool
+            Whether dams and narrows that no ship should use (`thalweg.chart.coast.gshhg`), such as
+            the Menai Strait and Kyle Akin, are land.
+
+        Returns
+        -------
+        Chart
+            Of the whole world, with all ship canals.
 
         Raises
         ------
         InputError
             If the resolution is unknown or not installed.
         """
-        return cls(Coastline.gshhg(resolution), canals=CANALS)
+        return cls(
+            Coastline.gshhg(resolution, narrows_closed=narrows_closed),
+            canals=CANALS,
+            approaches=PORT_APPROACHES,
+            passages=OPEN_PASSAGES,
+        )
 
     @classmethod
     def open_water(
         cls, south: float = -90.0, north: float = 90.0, west: float = -180.0, east: float = 180.0
     ) -> Chart:
-        """Return a chart without land, of a box that no leg may leave [deg].
+        """Return a chart without land, of a box that no leg may leave.
 
-        West above east means a box across the antimeridian.
+        Parameters
+        ----------
+        south, north : float
+            Latitudes [deg], -90 to 90.
+        west, east : float
+            Longitudes [deg]; west above east means a box across the antimeridian.
+
+        Returns
+        -------
+        Chart
+            Without land, zones, depth and canals.
+
+        Raises
+        ------
+        InputError
+            If the four values are not a valid box.
         """
         return cls(Coastline.none(), BoundingBox.checked(south, north, west, east))
 
@@ -114,6 +179,16 @@ class Chart:
         """Return a chart whose land is the areas of a GeoJSON file or plain data.
 
         Holes in them are water. Edges are straight in longitude and latitude.
+
+        Parameters
+        ----------
+        land : path, dict or list
+            GeoJSON areas [deg]: a file, or its contents as plain data.
+
+        Returns
+        -------
+        Chart
+            Without zones, depth and canals.
 
         Raises
         ------
@@ -145,6 +220,11 @@ class Chart:
         spacing_deg : float, optional
             How densely a function must be sampled along legs (1/600 degree).
 
+        Returns
+        -------
+        Chart
+            Positions that an earlier layer covers keep its depth.
+
         Raises
         ------
         InputError, DatasetError
@@ -169,11 +249,16 @@ class Chart:
             "no-go" zone is closed. Rings may cross the antimeridian
             (`thalweg.chart.geojson_polygons`).
 
+        Returns
+        -------
+        Chart
+            With the zones it had and these.
+
         Raises
         ------
         InputError
             If it cannot be read, an outline crosses itself or is ambiguous at the
-            antimeridian, or a kind or factor makes no sense.
+            antimeridian, or a kind or factor is not possible.
         """
         return replace(self, zones=self.zones.joined(Zones.read(zones)))
 
@@ -191,6 +276,11 @@ class Chart:
         date : time, optional
             When; by default the day the package's dates were looked up (2026-11-21).
 
+        Returns
+        -------
+        Chart
+            With the areas it had and these.
+
         Raises
         ------
         InputError
@@ -205,13 +295,58 @@ class Chart:
         zones = tuple(EcaZone(area.name, area.rings) for area in areas)
         return replace(self, zones=self.zones.joined(Zones(eca=zones)))
 
+    def without_eca(self) -> Chart:
+        """Return this chart without emission control areas, neither its own nor those in force.
+
+        Returns
+        -------
+        Chart
+            All fuel is burnt outside emission control areas.
+        """
+        return replace(self, zones=replace(self.zones, eca=()), counts_eca=False)
+
+    @property
+    def control_areas(self) -> Zones | None:
+        """The emission control areas that count: its own, else those in force; or None."""
+        if self.zones.eca:
+            return self.zones
+        return control_areas_in_force() if self.counts_eca else None
+
     def within(self, south: float, north: float, west: float, east: float) -> Chart:
-        """Return this chart clipped to a box that no leg may leave [deg]."""
+        """Return this chart clipped to a box that no leg may leave.
+
+        Parameters
+        ----------
+        south, north : float
+            Latitudes [deg], -90 to 90.
+        west, east : float
+            Longitudes [deg]; west above east means a box across the antimeridian.
+
+        Returns
+        -------
+        Chart
+            With this box in place of its ``area``.
+
+        Raises
+        ------
+        InputError
+            If the four values are not a valid box.
+        """
         box = BoundingBox.checked(south, north, west, east)
         return replace(self, area=box)
 
     def without_canals(self, *names: str) -> Chart:
-        """Return this chart with canals closed, by name; "all" closes all of them.
+        """Return this chart with canals closed.
+
+        Parameters
+        ----------
+        *names : str
+            Names of canals, such as "suez"; "all" closes all of them.
+
+        Returns
+        -------
+        Chart
+            With the other canals.
 
         Raises
         ------
@@ -220,77 +355,35 @@ class Chart:
         """
         return replace(self, canals=canal_data.exclude_canals(self.canals, names))
 
-    def canal_of_legs(
-        self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
-    ) -> NDArray[np.int64]:
-        """Return the index in `canals` of legs [deg] from one end of a canal to the other, or -1.
-
-        The ends of the leg lie within 2 m of those of the canal, in either direction.
-        """
-        return canal_data.canal_index_of_legs(self.canals, lat1, lon1, lat2, lon2)
-
     @cached_property
     def arrays(self) -> CoastArrays:
-        """Land, closed zones and area as arrays, for `thalweg.kernels.geometry.coast_index`."""
-        return CoastArrays(self.coastline.index, self.zones.index, self.area.array())
+        """Land, zones, area and offing as arrays, for `thalweg.kernels.geometry.coast_index`."""
+        return CoastArrays(
+            self.coastline.index, self.zones.index, self.area.array(), self.offing_arrays
+        )
 
-    def is_navigable(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.bool_]:
-        """Return where positions [deg] are water inside the area and in no no-go zone."""
-        return np.asarray(point_status(self.arrays, lat, lon) == OK)
-
-    def leg_status(
-        self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
-    ) -> NDArray[np.int8]:
-        """Return the status code of each geodesic leg [deg] (see `thalweg.kernels.codes`).
-
-        OK, LAND, NO_GO (a no-go zone, or it leaves the chart's area) or NO_DATA (a position
-        that is not a number). A leg touching an outline is blocked, unless it runs from one end of
-        a canal to the other (`canal_of_legs`). Arguments broadcast.
-        """
-        status = leg_status(self.arrays, lat1, lon1, lat2, lon2)
-        if self.canals and (status == LAND).any():
-            status[(status == LAND) & (self.canal_of_legs(lat1, lon1, lat2, lon2) >= 0)] = OK
-        return status
-
-    def legs_blocked(
-        self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
-    ) -> NDArray[np.bool_]:
-        """Return which geodesic legs [deg] touch land or a no-go zone or leave the area."""
-        return np.asarray(self.leg_status(lat1, lon1, lat2, lon2) != OK)
+    @cached_property
+    def offing_arrays(self) -> OffingArrays:
+        """The offing as arrays."""
+        return offing_arrays(self.coastline, self.offing, self.passages, self.closed_passages)
 
     @property
     def has_depth(self) -> bool:
         """Whether the chart has any layer of depth."""
         return bool(self.depths.layers)
 
-    def may_wait(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.bool_]:
-        """Return at which positions [deg] a ship may wait (see `Zones.may_wait`)."""
-        return self.zones.may_wait(lat, lon)
-
-    def nearest_navigable(
-        self, lat: float, lon: float, *, largest: float = 50_000.0
-    ) -> tuple[float, float, float] | None:
-        """Return the nearest water joined to the open sea: lat, lon [deg], distance [m].
-
-        None when there is none within ``largest`` [m].
-        """
-        return nearest_navigable(
-            float(lat),
-            float(lon),
-            largest=float(largest),
-            is_navigable=self.is_navigable,
-            legs_blocked=self.legs_blocked,
-        )
-
-    def fingerprint(self) -> str:
-        """Return a short digest of everything on the chart."""
-        digest = hashlib.sha256(self.coastline.name.encode())
-        for array in (*self.coastline.index[1:], self.area.array()):
-            digest.update(np.ascontiguousarray(array).tobytes())
-        layers = (layer.fingerprint() for layer in self.depths.layers)
-        for text in (*self.zones.texts(), *layers, *map(repr, self.canals)):
-            digest.update(text.encode())
-        return digest.hexdigest()[:16]
+    canal_of_legs = delegated(chart_tests.chart_canal_of_legs)
+    crosses_no_go_zone = delegated(chart_tests.chart_crosses_no_go_zone)
+    is_joined_to_sea = delegated(chart_tests.chart_is_joined_to_sea)
+    is_navigable = delegated(chart_tests.chart_is_navigable)
+    leg_status = delegated(chart_tests.chart_leg_status)
+    legs_blocked = delegated(chart_tests.chart_legs_blocked)
+    with_offing = delegated(chart_with_offing)
+    without_passages = delegated(chart_without_passages)
+    may_wait = delegated(chart_tests.chart_may_wait)
+    sea_room = delegated(chart_tests.chart_sea_room)
+    nearest_navigable = delegated(chart_tests.chart_nearest_navigable)
+    fingerprint = delegated(chart_tests.chart_fingerprint)
 
 
 def _is_blocked(canal: Canal, coast: CoastArrays) -> bool:

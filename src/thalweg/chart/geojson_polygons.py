@@ -253,7 +253,7 @@ def _ambiguous_edge_error(ring: NDArray[np.float64], edge: int, what: str) -> In
         f"A ring of the {what} has an edge from longitude {ring[edge, 0]:g} to "
         f"{ring[edge + 1, 0]:g}: {wide:g} degrees as written, or {360.0 - wide:g} across "
         "the antimeridian.",
-        f"Across the antimeridian longitudes run on ({west + 360.0:g} for {west:g}), or the area "
+        f"Across the antimeridian longitudes continue ({west + 360.0:g} for {west:g}), or the area "
         "is split at 180, as RFC 7946 requires; for the long edge, add points in between.",
         "Write the ring in one of these forms.",
         value=[float(west), float(east)],

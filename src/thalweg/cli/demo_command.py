@@ -5,9 +5,11 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from thalweg.cli import option_values
+import numpy as np
+
+from thalweg.cli import options
 from thalweg.cli.first_run import announce_compilation
-from thalweg.cli.tables import print_plan, print_written
+from thalweg.cli.tables import print_plan
 from thalweg.kernels.compilation import warm_up
 
 if TYPE_CHECKING:
@@ -27,12 +29,13 @@ def add_command(commands: Any) -> None:
         "--out", default="demo", metavar="DIR", help="folder for files and plots (default: demo)"
     )
     parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
+    options.add_verbose_option(parser)
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Plan the example voyage, write its files, and compare it with the weather-blind route."""
-    announce_compilation(search=True)
+    announce_compilation(search=True, quiet=arguments.quiet)
     warm_up.start_compiling("thalweg.planning.compile_kernels")
     from thalweg.chart import Chart
     from thalweg.core.file_writing import make_folder
@@ -42,22 +45,25 @@ def run(arguments: argparse.Namespace) -> int:
     from thalweg.ship import Ship
 
     folder = make_folder(arguments.out)
+    arguments.progress("reading the ship, the storm and the coastline")
     ship, sea, chart = Ship.load("handysize-bulker"), Sea.storm(), Chart.gshhg("i")
-    progress = option_values.progress_callback(arguments)
-    found = make_plan(demo_voyage(), ship=ship, sea=sea, chart=chart, progress=progress)
-    files = found.write(folder)
+    found = make_plan(demo_voyage(), ship=ship, sea=sea, chart=chart, progress=arguments.progress)
+    arguments.progress("evaluating the route that ignores the weather")
+    blind = weather_blind(found, ship=ship, sea=sea, chart=chart)
+    arguments.progress("writing the files and drawing the plots")
+    files = found.write(folder, beside=blind)
     if arguments.json:
         print(found.to_json())
         return 0
-    print_plan(found)
-    _print_comparison(found, weather_blind(found, ship=ship, sea=sea, chart=chart))
-    print_written(files)
+    print_plan(found, files, verbose=arguments.verbose)
+    _print_comparison(found, blind)
     return 0
 
 
 def _print_comparison(found: Plan, blind: Route) -> None:
     waves = "sea_surface_wave_significant_height"
-    worst, worst_blind = (float(route.samples[waves].max()) for route in (found.best, blind))
+    # the approach from the berth has no waves
+    worst, worst_blind = (float(np.nanmax(route.samples[waves])) for route in (found.best, blind))
     print(
         f"The route that ignores the storm takes {blind.time_h:.1f} h in the same weather and "
         f"meets waves of {worst_blind:.1f} m; this one {found.best.time_h:.1f} h and {worst:.1f} m."

@@ -7,6 +7,7 @@ import json
 from typing import Any
 
 from thalweg.cli import option_values, options
+from thalweg.cli.exit_codes import NO_ROUTE, SUCCESS
 from thalweg.cli.first_run import announce_compilation
 from thalweg.cli.tables import print_route, print_written
 
@@ -20,7 +21,7 @@ def add_command(commands: Any) -> None:
         "time, fuel, under-keel clearance and violated limits.",
         epilog="Example: thalweg evaluate route.gpx --ship handysize-bulker --sea forecast.nc",
     )
-    parser.add_argument("route", metavar="ROUTE", help="route file: CSV, GeoJSON or GPX")
+    parser.add_argument("route", metavar="ROUTE", help="route file: RTZ, GPX, GeoJSON or CSV")
     options.add_ship_and_chart_options(parser, default_ukc="0")
     parser.add_argument(
         "--depart", metavar="TIME", help="departure (ISO 8601, UTC); default: that of the file"
@@ -31,31 +32,40 @@ def add_command(commands: Any) -> None:
         metavar="KN",
         help="ordered speed through calm water [kn]; default: those of the file, else of the ship",
     )
+    options.add_hold_option(parser)
+    options.add_price_options(parser.add_argument_group("fuel, cost"))
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate the route, print it and write its files."""
-    announce_compilation()
+    """Evaluate the route, print it and write its files; exit code 4 if it breaks a limit."""
+    announce_compilation(quiet=arguments.quiet)
     from thalweg.planning.plan_data import route_dict
     from thalweg.planning.report.output_files import write_route
     from thalweg.route import evaluate
 
     option_values.prepare_output_folder(arguments)
+    files_as = option_values.route_file_options(arguments)
+    ship = option_values.with_held_order(
+        option_values.with_given_prices(option_values.open_ship(arguments), arguments),
+        arguments,
+    )
+    sea, chart = option_values.open_sea(arguments), option_values.open_chart(arguments)
+    arguments.progress(f"sailing {arguments.route}")
     route = evaluate(
         arguments.route,
-        ship=option_values.open_ship(arguments),
-        sea=option_values.open_sea(arguments),
-        chart=option_values.open_chart(arguments),
+        ship=ship,
+        sea=sea,
+        chart=chart,
         depart=arguments.depart,
         speed_kn=arguments.speed,
         min_ukc=arguments.ukc or 0.0,
     )
-    files = write_route(route, arguments.out) if arguments.out else []
+    files = write_route(route, arguments.out, files_as) if arguments.out else []
     if arguments.json:
         found = {**route_dict(route, "given"), "notes": list(route.assumptions)}
         print(json.dumps(found, indent=2, allow_nan=False))
-        return 0
-    print_route(route)
-    print_written(files)
-    return 0
+    else:
+        print_route(route)
+        print_written(files)
+    return SUCCESS if route.feasible else NO_ROUTE

@@ -9,19 +9,21 @@ from thalweg.kernels.compilation.compiled_code_cache import COMPILED_FOLDER
 _SEARCH_COMPILED = "warm"  # marker of `thalweg.kernels.compilation.warm_up`
 
 
-def announce_compilation(*, search: bool = False) -> None:
+def announce_compilation(*, search: bool = False, quiet: bool = False) -> None:
     """Print one line on stderr if kernels will be compiled in this run.
 
     Parameters
     ----------
     search : bool
         Whether the command needs the search, the largest part of the kernels.
+    quiet : bool
+        Whether to print nothing.
     """
-    if (COMPILED_FOLDER / _SEARCH_COMPILED).exists():
+    if quiet or (COMPILED_FOLDER / _SEARCH_COMPILED).exists():
         return
     if search or not any(COMPILED_FOLDER.rglob("*.nbc")):
         print(
-            "First run: compiling the numerical kernels for this computer (1 to 3 minutes). "
+            "First run: compiling the numerical kernels for this computer, once (1 to 3 minutes). "
             f"They are stored in {COMPILED_FOLDER.parent}; later runs start at once.",
             file=sys.stderr,
             flush=True,

@@ -29,7 +29,7 @@ def add_command(commands: Any) -> None:
         metavar="TIME",
         help="time of the map (ISO 8601, UTC); default: the time with the highest values",
     )
-    options.add_output_options(parser, "the map (sea.png)")
+    options.add_output_options(parser, "the maps (sea.png, or sea_1.png and so on)")
     parser.set_defaults(run=run)
 
 
@@ -46,6 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
             "Add --out DIR, or omit --time.",
         )
     folder = make_folder(arguments.out) if arguments.out else None
+    arguments.progress(f"reading {', '.join(arguments.file)}")
     sea = Sea.open(*arguments.file, mapping=option_values.variable_mapping(arguments))
     found = sea.describe().as_dict()
     if arguments.json:
@@ -53,10 +54,11 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         _print_inspection(found)
     if folder:
+        arguments.progress("drawing the maps")
         shown = sea.member(0) if sea.members else sea
-        plot = draw_sea(shown, folder / "sea.png", time=arguments.time)
+        plots = draw_sea(shown, folder, time=arguments.time)
         if not arguments.json:
-            print_written([plot])
+            print_written(plots)
     return 0
 
 
@@ -69,13 +71,15 @@ def _print_inspection(found: dict[str, Any]) -> None:
         print(f"  {names} [{row['units']}]: {row['how']}")
         for variable in row["variables"]:
             print(f"    {variable}")
-    print("Coverage")
+    print("Coverage, and values in SI at up to 8 times")
     for row in _merged(found["coverage"], _EXTENT_KEYS):
-        print(f"  {_extent_text(row)}")
+        print(f"  {row['source']}: {_extent_text(row)}")
         for variable in row["variables"]:
             missing = found["missing_fraction"].get(f"{row['source']}: {variable}", 0.0)
             share = f", no value at {100 * missing:.1f} % of the positions" if missing else ""
-            print(f"    {variable}{share}")
+            pair = found["ranges"].get(f"{row['source']}: {variable}")
+            values = f" {pair[0]:.4g} to {pair[1]:.4g}" if pair else ""
+            print(f"    {variable}{values}{share}")
     for gap in found["gaps"]:
         print(f"Gap: no data from {gap['after']} to {gap['before']}")
     for row in found["ignored"]:

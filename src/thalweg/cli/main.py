@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import difflib
 import os
+import re
 import sys
 import warnings
 from collections.abc import Sequence
@@ -12,22 +14,25 @@ from typing import NoReturn
 
 from thalweg.cli import (
     demo_command,
+    distance_command,
     evaluate_command,
     inspect_command,
     plan_command,
     project_command,
     ship_command,
-    tides_command,
     tracks_command,
     waiting_command,
 )
 from thalweg.cli.exit_codes import INTERRUPTED, SUCCESS, exit_code, print_error
-from thalweg.cli.options import accept_negative_positions
+from thalweg.cli.options import accept_negative_positions, add_quiet_option
+from thalweg.cli.progress import ProgressMessages
+from thalweg.cli.tides import tides_command
 from thalweg.core.errors import InputError, ThalwegError, ThalwegWarning
 
 _COMMANDS = (
     plan_command.add_command,
     evaluate_command.add_command,
+    distance_command.add_command,
     inspect_command.add_command,
     ship_command.add_command,
     tides_command.add_command,
@@ -43,11 +48,36 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Raise `InputError` instead of ending the process."""
+        words = _suggestions(self, message)
         raise InputError(
             f"The command line is not understood: {message}.",
             " ".join(self.format_usage().split()),
-            f"See {self.prog} --help.",
+            (f"Did you mean {' or '.join(words)}? " if words else "") + f"See {self.prog} --help.",
         )
+
+
+def _suggestions(parser: argparse.ArgumentParser, message: str) -> list[str]:
+    """Return options and commands that are spelled like those that are not known."""
+    words = [word.partition("=")[0].strip("'\"") for word in message.split()]
+    known = _known_words(parser)
+    options = [word for word in words if word.startswith("--")]
+    match = re.search(r"invalid choice: '([^']*)'", message)
+    unknown = options if "unrecognized" in message else [match[1]] if match else []
+    found = [near for word in unknown for near in difflib.get_close_matches(word, known, n=2)]
+    return list(dict.fromkeys(found))
+
+
+def _known_words(parser: argparse.ArgumentParser) -> list[str]:
+    """Return the options of a parser and its commands, and its choices."""
+    known: list[str] = []
+    for action in parser._actions:
+        known += action.option_strings
+        if isinstance(action.choices, dict):
+            for name, sub in action.choices.items():
+                known += [name, *_known_words(sub)]
+        elif action.choices:
+            known += map(str, action.choices)
+    return list(dict.fromkeys(known))
 
 
 def build_parser() -> Parser:
@@ -65,6 +95,7 @@ def build_parser() -> Parser:
         add_command(commands)
     for sub in commands.choices.values():
         accept_negative_positions(sub)
+        add_quiet_option(sub)
     return parser
 
 
@@ -106,7 +137,9 @@ def _run_command(argv: Sequence[str] | None, as_json: bool) -> int:
         try:
             arguments = build_parser().parse_args(argv)
             as_json = as_json or getattr(arguments, "json", False)
-            return int(arguments.run(arguments))
+            with ProgressMessages(quiet=arguments.quiet) as arguments.progress:
+                arguments.progress("loading the libraries")
+                return int(arguments.run(arguments))
         except ThalwegError as error:
             try:
                 return print_error(error, as_json=as_json)
@@ -161,9 +194,9 @@ def _show_warning(message, category, filename, lineno, file=None, line=None):  #
 
 
 def _version() -> str:
-    from importlib.metadata import version
+    import thalweg
 
-    return version("thalweg")
+    return thalweg.__version__
 
 
 if __name__ == "__main__":

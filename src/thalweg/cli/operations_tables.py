@@ -30,7 +30,9 @@ def print_project(result: ProjectResult) -> None:
     print_notes(console, dict.fromkeys(notes + list(result.provenance["assumptions"])))
 
 
-def print_waiting_study(study: WaitingStudy, break_even: dict[str, list[float]]) -> None:
+def print_waiting_study(
+    study: WaitingStudy, break_even: dict[str, list[float]], notes: list[str]
+) -> None:
     """Print the savings of each departure rule.
 
     Parameters
@@ -38,6 +40,8 @@ def print_waiting_study(study: WaitingStudy, break_even: dict[str, list[float]])
     study : WaitingStudy
     break_even : dict of str to list of float
         Hotel power [W] for each rule and start, above which waiting saves nothing.
+    notes : list of str
+        Assumptions about the ships.
     """
     from rich.console import Console
 
@@ -65,6 +69,7 @@ def print_waiting_study(study: WaitingStudy, break_even: dict[str, list[float]])
         "total: from ready to the last arrival, with the longest wait. even: hotel power above "
         "which waiting saves nothing."
     )
+    print_notes(console, notes)
 
 
 def print_track_analysis(analysis: TrackAnalysis) -> None:

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from thalweg.cli.options import FILLABLE
 from thalweg.core.errors import InputError
-from thalweg.core.units import NAUTICAL_MILE
+from thalweg.core.units import DAY, HOUR, NAUTICAL_MILE
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.core.geodesy import Position
+    from thalweg.route import RouteFileOptions
     from thalweg.sea import Sea
     from thalweg.ship import Ship
+    from thalweg.ship.methods.engine.european_charges import EuropeanCharges
 
 
 def parse_pairs(option: str, texts: Sequence[str], form: str, example: str) -> dict[str, str]:
@@ -70,7 +71,7 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
     """
     from thalweg.sea import Sea
 
-    policies = dict(_parse_fill_policy(text) for text in arguments.fill)
+    policies = [_parse_fill_policy(text) for text in arguments.fill]
     _check_options(arguments)
     if not arguments.calm and not arguments.sea:
         raise InputError(
@@ -85,6 +86,8 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
         "mapping": variable_mapping(arguments),
         "draught_m": arguments.average_over,
     }
+    if files:
+        arguments.progress(f"reading {', '.join(files)}")
     layers = [Sea.open(*files, **options)] if files else []
     if len(files) > 1 and getattr(arguments, "ensemble", None) and not layers[0].members:
         layers = [Sea.ensemble(*files, **options)]
@@ -92,7 +95,20 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
         layers.append(Sea.storm())
     sea = layers[0] if len(layers) == 1 else Sea.layered(*layers)
     sea = _check_ensemble_choice(sea, arguments)
-    return sea.filled(**policies) if policies else sea
+    for one_of_each in _in_turns(policies):
+        sea = sea.filled(**one_of_each)
+    return sea
+
+
+def _in_turns(policies: list[tuple[str, float | str]]) -> list[dict[str, float | str]]:
+    """Return the policies in turns with one value of each quantity: the first is tried first."""
+    turns: list[dict[str, float | str]] = []
+    for name, value in policies:
+        turn = next((t for t in turns if name not in t), None)
+        if turn is None:
+            turns.append(turn := {})
+        turn[name] = value
+    return turns
 
 
 def _check_options(arguments: argparse.Namespace) -> None:
@@ -131,19 +147,36 @@ def _parse_fill_policy(text: str) -> tuple[str, float | str]:
     try:
         if name not in FILLABLE:
             raise ValueError
-        return name, value if (name, value) == ("waves", "wind") else float(value)
+        of_waves = name == "waves" and value in ("wind", "head_seas")
+        worded = of_waves or value.startswith("nearest:")
+        return name, value if worded else float(value)
     except ValueError:
         raise InputError(
             f"--fill {text} is not understood.",
-            f"It is one of {', '.join(f'{n}=0' for n in FILLABLE)}, waves=wind.",
+            f"It is one of {', '.join(f'{n}=0' for n in FILLABLE)}, waves=wind, waves=head_seas, "
+            "or NAME=nearest:NM.",
             "Give the value in this form.",
         ) from None
+
+
+def check_chart_files(arguments: argparse.Namespace) -> None:
+    """Raise `InputError` if a file of the chart does not exist, before anything is loaded."""
+    for option in ("depth", "zones"):
+        for name in getattr(arguments, option, ()):
+            if not Path(name).expanduser().exists():
+                raise InputError(
+                    f"There is no file {name}.",
+                    f"--{option} names a file.",
+                    "Check the path.",
+                    file=name,
+                )
 
 
 def open_chart(arguments: argparse.Namespace) -> Chart:
     """Return the chart that the options name."""
     from thalweg.chart import Chart
 
+    arguments.progress("reading the chart")
     if arguments.coast == "none":
         chart = Chart.open_water(-90.0, 90.0, -180.0, 180.0)
     else:
@@ -152,17 +185,77 @@ def open_chart(arguments: argparse.Namespace) -> Chart:
         chart = chart.with_depth(path)
     for path in arguments.zones:
         chart = chart.with_zones(path)
-    return chart
+    return chart.without_eca() if getattr(arguments, "no_eca", False) else chart
 
 
 def open_ship(arguments: argparse.Namespace) -> Ship:
     """Return the ship that the options name, at the load they state."""
     from thalweg.ship import Ship
 
+    arguments.progress(f"reading the ship {arguments.ship}")
     ship = Ship.load(arguments.ship)
     if arguments.load_factor is not None:
         ship = ship.with_load_factor(arguments.load_factor)
     return ship
+
+
+def with_given_prices(ship: Ship, arguments: argparse.Namespace) -> Ship:
+    """Return a ship with the prices that the options give.
+
+    Raises
+    ------
+    InputError
+        For prices that are not possible, or in two currencies.
+    """
+    hourly = arguments.time_price
+    priced = ship.with_prices(
+        arguments.fuel_price,
+        arguments.eca_price_factor,
+        time_usd_per_day=None if hourly is None else hourly * DAY / HOUR,
+    )
+    charges = _european_charges(arguments)
+    return priced if charges is None else priced.with_charges(charges)
+
+
+def with_held_order(ship: Ship, arguments: argparse.Namespace) -> Ship:
+    """Return a ship that holds the speed of ``--speed`` through water where ``--hold`` says so.
+
+    Raises
+    ------
+    InputError
+        If there is no speed to hold, or the ship cannot hold it.
+    """
+    from thalweg.ship.held_speed import with_held_power, with_held_speed
+
+    if arguments.hold is None:
+        return ship
+    if arguments.speed is None:
+        raise InputError(
+            f"--hold {arguments.hold} is given without a speed.",
+            "It says what the engine holds at --speed.",
+            "Add --speed, or leave out --hold.",
+            field="hold",
+        )
+    if arguments.hold == "speed":
+        return with_held_speed(ship, arguments.speed)
+    return with_held_power(ship, arguments.speed)
+
+
+def _european_charges(arguments: argparse.Namespace) -> EuropeanCharges | None:
+    """Return the charges of the European Union that the options give."""
+    from thalweg.ship.methods.engine.european_charges import EuropeanCharges
+
+    share, allowance, euro = arguments.eu_share, arguments.ets_price, arguments.eur_rate
+    if allowance is None and euro is None:
+        return None
+    if share is None:
+        raise InputError(
+            "--ets-price or --eur-rate is given without the share of the voyage.",
+            "It is 100 between two ports of the Union, 50 to or from one, else 0.",
+            "Add --eu-share.",
+            field="eu_share",
+        )
+    return EuropeanCharges(share / 100.0, allowance or 0.0, euro or 0.0, arguments.eu_year)
 
 
 def position_from_text(text: str) -> Position:
@@ -205,6 +298,33 @@ def resolution_m(value_nm: float | None) -> float | None:
     return value_nm * NAUTICAL_MILE
 
 
+def route_file_options(arguments: argparse.Namespace) -> RouteFileOptions:
+    """Return how route files are written.
+
+    Raises
+    ------
+    InputError
+        If a number is impossible, or an option is given without ``--out``.
+    """
+    from thalweg.route import RouteFileOptions
+
+    names = {
+        "xtd": "cross_track_nm",
+        "waypoint_spacing": "spacing_nm",
+        "max_waypoints": "max_waypoints",
+        "rtz": "rtz_version",
+    }
+    given = {name: getattr(arguments, option) for option, name in names.items()}
+    given = {name: value for name, value in given.items() if value is not None}
+    if given and not arguments.out:
+        raise InputError(
+            "Options of route files are given without --out.",
+            "The files are written into the folder of --out.",
+            "Add --out DIR.",
+        )
+    return RouteFileOptions(**given)
+
+
 def prepare_output_folder(arguments: argparse.Namespace) -> None:
     """Create the folder of ``--out``, before any work is done.
 
@@ -241,13 +361,3 @@ def prepare_output_file(path: str) -> Path:
 def rounded(value: float) -> float | None:
     """Return a number with six decimals for JSON; None where it is not finite."""
     return round(float(value), 6) if math.isfinite(value) else None
-
-
-def progress_callback(arguments: argparse.Namespace) -> Callable[[str], None] | None:
-    """Return a function that prints progress on stderr; None for JSON or without a terminal."""
-    if arguments.json or not sys.stderr.isatty():
-        return None
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    return lambda text: console.print(f"[dim]{text}[/dim]")

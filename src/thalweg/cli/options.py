@@ -52,6 +52,97 @@ def add_ship_and_chart_options(parser: argparse.ArgumentParser, *, default_ukc: 
     )
     add_load_factor_option(parser)
     add_output_options(parser, "files and plots")
+    _add_route_file_options(parser)
+
+
+def _add_route_file_options(parser: argparse.ArgumentParser) -> None:
+    files = parser.add_argument_group(
+        "route files", "Waypoints of route.rtz, .gpx, .geojson and .csv, joined by rhumb lines."
+    )
+    files.add_argument(
+        "--xtd",
+        type=float,
+        metavar="NM",
+        help="cross-track limit: the rhumb lines are closer to the route than this [nm]; default: "
+        "0.1",
+    )
+    files.add_argument(
+        "--waypoint-spacing", type=float, metavar="NM", help="longest leg [nm]; default: no limit"
+    )
+    files.add_argument(
+        "--max-waypoints",
+        type=int,
+        metavar="N",
+        help="greatest number of waypoints; the cross-track limit grows as far as this needs",
+    )
+    files.add_argument(
+        "--rtz", choices=("1.0", "1.1", "1.2"), metavar="VERSION",
+        help="version of RTZ: 1.0, 1.1 or 1.2 (default)",
+    )  # fmt: skip
+
+
+def add_hold_option(parser: argparse.ArgumentParser) -> None:
+    """Add ``--hold``: what the engine holds at the speed of ``--speed``."""
+    parser.add_argument(
+        "--hold",
+        choices=("power", "speed"),
+        help="what the engine holds at --speed: the power that makes this speed in calm water, or "
+        "the speed through water itself while the power allows; default: as the ship file orders",
+    )
+
+
+def add_price_options(group: Any) -> None:
+    """Add the options that replace the prices of the ship file, and ``--no-eca``."""
+    group.add_argument(
+        "--fuel-price",
+        type=float,
+        metavar="USD",
+        help="price of fuel [USD per tonne]; default: that of the ship file",
+    )
+    group.add_argument(
+        "--eca-price-factor",
+        type=float,
+        metavar="F",
+        help="price of fuel inside emission control areas divided by the price outside",
+    )
+    group.add_argument(
+        "--time-price",
+        type=float,
+        metavar="USD",
+        help="cost of time in addition to fuel [USD per hour]; default: the hire of the ship file",
+    )
+    group.add_argument(
+        "--eu-share",
+        type=int,
+        choices=(0, 50, 100),
+        metavar="0|50|100",
+        help="share of the voyage in scope of charges of the European Union [%%]: 100 between two "
+        "of its ports, 50 to or from one; needed with --ets-price and --eur-rate",
+    )
+    group.add_argument(
+        "--ets-price",
+        type=float,
+        metavar="P",
+        help="price of an emission allowance [currency of the prices per tonne of CO2]",
+    )
+    group.add_argument(
+        "--eur-rate",
+        type=float,
+        metavar="R",
+        help="price of a euro in the currency of the prices: counts the FuelEU penalty",
+    )
+    group.add_argument(
+        "--eu-year",
+        type=int,
+        default=2026,
+        metavar="YEAR",
+        help="year of the European Union's rules (default: 2026)",
+    )
+    group.add_argument(
+        "--no-eca",
+        action="store_true",
+        help="ignore emission control areas; default: those in force count in every cost",
+    )
 
 
 def add_load_factor_option(parser: argparse.ArgumentParser) -> None:
@@ -70,6 +161,27 @@ def add_output_options(parser: argparse.ArgumentParser, contents: str) -> None:
     parser.add_argument(
         "--out", metavar="DIR", help=f"folder for {contents}; created if it does not exist"
     )
+
+
+def add_verbose_option(parser: argparse.ArgumentParser) -> None:
+    """Add ``--verbose``."""
+    parser.add_argument(
+        "--verbose",
+        action="store_true",
+        help="print the waypoints, lower bounds, all notes, networks and fingerprints as well",
+    )
+
+
+def add_quiet_option(parser: argparse.ArgumentParser) -> None:
+    """Add ``--quiet`` to a command, or to its actions if it has some."""
+    actions = [a.choices for a in parser._actions if isinstance(a, argparse._SubParsersAction)]
+    for choices in actions:
+        for action in choices.values():
+            add_quiet_option(action)
+    if not actions:
+        parser.add_argument(
+            "--quiet", action="store_true", help="print no progress messages on stderr"
+        )
 
 
 def add_sea_options(parser: argparse.ArgumentParser) -> None:
@@ -99,7 +211,9 @@ def add_sea_options(parser: argparse.ArgumentParser) -> None:
         default=[],
         metavar="NAME=VALUE",
         help=f"value to use where {', '.join(FILLABLE[:-1])} or {FILLABLE[-1]} are missing [m/s, "
-        "m/s, m], for example --fill wind=0 waves=wind; the result records it",
+        "m/s, m], for example --fill wind=0 waves=wind; waves=head_seas: waves of known height "
+        "without direction come from ahead; NAME=nearest:NM: the nearest known value within so "
+        "many nm (cells without data next to land); the result records it",
     )
 
 

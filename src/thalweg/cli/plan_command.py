@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from thalweg.cli import option_values, options
 from thalweg.cli.exit_codes import INTERRUPTED, NO_ROUTE, SUCCESS
 from thalweg.cli.first_run import announce_compilation
-from thalweg.cli.tables import print_plan, print_written
+from thalweg.cli.tables import print_plan
 from thalweg.kernels.compilation import warm_up
 
 if TYPE_CHECKING:
     from thalweg.planning import Voyage
     from thalweg.sea import Sea
+    from thalweg.ship import Ship
 
 
 def add_command(commands: Any) -> None:
@@ -24,8 +24,8 @@ def add_command(commands: Any) -> None:
         "plan",
         help="plan a voyage",
         description="Plan a voyage between two places. A place is a position (52.0,4.1, or "
-        "'52.0N 4.1E' as one argument), a port name ('Rotterdam', 'Newcastle, AU', "
-        "'Tripoli, Libya') or a UN/LOCODE (NLRTM).",
+        "'52.0N 4.1E' or '51 57.3N 004 02.1E' as one argument), a port name ('Rotterdam', "
+        "'Newcastle, AU', 'Tripoli, Libya') or a UN/LOCODE (NLRTM).",
         epilog="Example: thalweg plan NLRTM GBSOU --ship handysize-bulker --sea forecast.nc "
         "--depart 2026-01-01T06:00Z --objective fuel --out results",
     )
@@ -39,10 +39,12 @@ def add_command(commands: Any) -> None:
         help="place to pass; repeat it for several, in their order",
     )
     options.add_ship_and_chart_options(parser, default_ukc="that of the ship file")
+    options.add_verbose_option(parser)
     _add_time_options(parser)
     _add_objective_options(parser)
     _add_network_options(parser)
-    _add_price_options(parser.add_argument_group("fuel, cost, canals"))
+    _add_cost_options(parser.add_argument_group("fuel, cost, canals"))
+    _add_passage_options(parser.add_argument_group("distance from land, passages"))
     parser.set_defaults(run=run)
 
 
@@ -51,8 +53,9 @@ def _add_time_options(parser: argparse.ArgumentParser) -> None:
     departure.add_argument(
         "--depart",
         metavar="TIME",
-        help="departure (ISO 8601, UTC), for example 2026-01-01T06:00Z; default: the first time "
-        "in the sea data, or now for a sea without times",
+        help="departure (ISO 8601, UTC), for example 2026-01-01T06:00Z; default: with the "
+        "storm of the package the time when the ship meets it, else the first time in the sea "
+        "data, or now for a sea without times",
     )
     departure.add_argument(
         "--depart-window",
@@ -65,7 +68,17 @@ def _add_time_options(parser: argparse.ArgumentParser) -> None:
         "--speed",
         type=float,
         metavar="KN",
-        help="ordered speed through calm water [kn]; default: the speeds of the ship file",
+        help="ordered speed through calm water [kn], also between the settings of the ship file; "
+        "default: its highest (for time and distance), or a choice leg by leg",
+    )
+    options.add_hold_option(parser)
+    parser.add_argument(
+        "--speed-block",
+        type=float,
+        default=6.0,
+        metavar="H",
+        help="least time that a speed is held where speeds are chosen leg by leg [h], or a quarter "
+        "of the passage where that is less; 0: none (default: 6)",
     )
     parser.add_argument(
         "--wait",
@@ -118,24 +131,17 @@ def _add_network_options(parser: argparse.ArgumentParser) -> None:
         metavar="NM",
         help="spacing of the network [nm], 0.001 to 300; default: from the length of the voyage",
     )
+    parser.add_argument(
+        "--proof",
+        type=float,
+        default=0.0,
+        metavar="SECONDS",
+        help="time for a proven lower bound of the time or distance, 0 to 3600 s; default: 0",
+    )
 
 
-def _add_price_options(group: Any) -> None:
-    group.add_argument(
-        "--fuel-price", type=float, metavar="USD", help="price of fuel [USD per tonne]"
-    )
-    group.add_argument(
-        "--eca-price-factor",
-        type=float,
-        metavar="F",
-        help="price of fuel inside emission control areas divided by the price outside",
-    )
-    group.add_argument(
-        "--time-price",
-        type=float,
-        metavar="USD",
-        help="cost of time in addition to fuel [USD per hour]",
-    )
+def _add_cost_options(group: Any) -> None:
+    options.add_price_options(group)
     group.add_argument(
         "--forbid",
         action="append",
@@ -145,50 +151,82 @@ def _add_price_options(group: Any) -> None:
     )
 
 
+def _add_passage_options(group: Any) -> None:
+    group.add_argument(
+        "--offing",
+        type=float,
+        metavar="NM",
+        help="least distance from land [nm] outside named passages and near the ends; 0: none; "
+        "default: by the size of the ship (0.5, 1 or 2)",
+    )
+    group.add_argument(
+        "--open",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="passage that the ship may use though it is closed to ships of her size; may be "
+        "repeated",
+    )
+    group.add_argument(
+        "--avoid",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="passage or canal that the ship may not use, for example 'Pentland Firth'; may be "
+        "repeated",
+    )
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Plan the voyage, print it and write its files."""
-    announce_compilation(search=True)
-    warm_up.start_compiling("thalweg.planning.compile_kernels")
     from thalweg.planning import plan
+    from thalweg.planning.request.early_checks import check_request
+    from thalweg.planning.request.ordered_speed import with_ordered_speed
+    from thalweg.route import with_wind_speed
 
     option_values.prepare_output_folder(arguments)
-    ship, sea = option_values.open_ship(arguments), option_values.open_sea(arguments)
+    files_as = option_values.route_file_options(arguments)
+    resolution = option_values.resolution_m(arguments.resolution)
+    option_values.check_chart_files(arguments)
+    ship = option_values.with_given_prices(option_values.open_ship(arguments), arguments)
+    ship = option_values.with_held_order(ship, arguments)
+    with_ordered_speed(ship, arguments.speed)  # refuses a speed before data are opened
+    sea = option_values.open_sea(arguments)
+    voyage = _voyage(arguments, sea, ship)
+    if not sea.members:
+        check_request(voyage, ship, with_wind_speed(ship, sea))
+    announce_compilation(search=True, quiet=arguments.quiet)
+    warm_up.start_compiling("thalweg.planning.compile_kernels")
     try:
         found = plan(
-            _voyage(arguments, sea),
+            voyage,
             ship=ship,
             sea=sea,
             chart=option_values.open_chart(arguments),
             network=arguments.network,
-            resolution=option_values.resolution_m(arguments.resolution),
-            progress=option_values.progress_callback(arguments),
+            resolution=resolution,
+            proof=arguments.proof,
+            progress=arguments.progress,
         )
     except KeyboardInterrupt:
         print("stopped before a plan was found: there is no result", file=sys.stderr)
         return INTERRUPTED
-    files = found.write(arguments.out) if arguments.out else []
+    if arguments.out:
+        arguments.progress("writing the files and drawing the plots")
+    files = found.write(arguments.out, files_as) if arguments.out else []
     if arguments.json:
         print(found.to_json())
     else:
-        print_plan(found)
-        _print_files(files)
+        print_plan(found, files, verbose=arguments.verbose)
     return SUCCESS if found.best.feasible else NO_ROUTE
 
 
-def _print_files(files: list[Path]) -> None:
-    """Print the files written; the folder alone for those of the single routes of a front."""
-    routes = [path for path in files if path.parent.name == "routes"]
-    print_written(path for path in files if path not in routes)
-    if routes:
-        print(f"wrote {routes[0].parent} ({len(routes)} files)")
-
-
-def _voyage(arguments: argparse.Namespace, sea: Sea) -> Voyage:
+def _voyage(arguments: argparse.Namespace, sea: Sea, ship: Ship) -> Voyage:
     from thalweg.planning import Voyage
 
     depart = arguments.depart
     if depart is None and arguments.depart_window is None:
-        depart = _first_time(sea)
+        depart = _default_departure(arguments, sea, ship)
     return Voyage(
         start=arguments.start,
         goal=arguments.goal,
@@ -199,20 +237,37 @@ def _voyage(arguments: argparse.Namespace, sea: Sea) -> Voyage:
         objective=arguments.objective,
         wait=arguments.wait,
         speed_kn=arguments.speed,
+        speed_block_h=arguments.speed_block,
         min_ukc_m=arguments.ukc,
         seed=arguments.seed,
         fuel_price_usd=arguments.fuel_price,
         eca_price_factor=arguments.eca_price_factor,
         time_price_usd_per_h=arguments.time_price,
         forbid=tuple(name for given in arguments.forbid for name in given.split(",") if name),
+        open=tuple(arguments.open),
+        avoid=tuple(arguments.avoid),
+        offing_nm=arguments.offing,
         method=arguments.method,
         ensemble=arguments.ensemble,
     )
 
 
-def _first_time(sea: Sea) -> float:
-    """Return the first time of the sea data, or now for a sea without times."""
-    import time
+def _default_departure(arguments: argparse.Namespace, sea: Sea, ship: Ship) -> float:
+    """Return the departure of a command that states none, and print why."""
+    from thalweg.chart.ports import PORTS
+    from thalweg.core.geodesy import parse_position
+    from thalweg.core.units import KNOT
+    from thalweg.planning.request.default_departure import default_departure
 
-    starts = [row.start for row in sea.coverage() if row.start is not None]
-    return max(starts) if starts else float(round(time.time()))
+    places = []
+    for text in (arguments.start, arguments.goal):
+        position = parse_position(text)
+        if position is None:
+            port = PORTS.lookup(text)
+            position = (port.lat, port.lon)
+        places.append(position)
+    speed = None if arguments.speed is None else arguments.speed * KNOT
+    departure, reason = default_departure(sea, places[0], places[1], ship, speed)
+    if not arguments.quiet:
+        print(f"note: {reason}", file=sys.stderr)
+    return departure

@@ -30,15 +30,15 @@ def add_command(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Simulate the project, print its table and write its files."""
-    announce_compilation()
+    announce_compilation(quiet=arguments.quiet)
     from thalweg.operations.dredging import open_project, open_project_inputs, run_project
     from thalweg.operations.result_files import write_project_files
 
     option_values.prepare_output_folder(arguments)
+    arguments.progress(f"reading the project {arguments.file}")
     project = open_project(arguments.file)
     ship, sea, chart = open_project_inputs(project)
-    progress = option_values.progress_callback(arguments)
-    result = run_project(project, ship=ship, sea=sea, chart=chart, progress=progress)
+    result = run_project(project, ship=ship, sea=sea, chart=chart, progress=arguments.progress)
     files = write_project_files(result, arguments.out) if arguments.out else []
     if arguments.json:
         print(result.to_json())

@@ -72,6 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
             f"Ships of the library: {', '.join(names)}.",
             "Give a name or a ship file.",
         )
+    arguments.progress(f"computing the performance of {arguments.ship}")
     ship = Ship.load(arguments.ship)
     if arguments.load_factor is not None:
         ship = ship.with_load_factor(arguments.load_factor)

@@ -11,7 +11,7 @@ import numpy as np
 from thalweg.core.file_writing import save_figure
 from thalweg.core.units import KNOT
 from thalweg.ship import Conditions, Ship
-from thalweg.ship.performance_sheet import assumed_peak_period
+from thalweg.ship.performance_sheet_weather import assumed_peak_period
 
 #: component: label and colour, from the hull outwards
 _RESISTANCE_COMPONENTS = {

@@ -24,7 +24,9 @@ def print_sheet(sheet: dict[str, Any]) -> None:
         table.add_column(head, justify="right", no_wrap=True)
     for row in sheet["conditions"]:
         forces = row["resistance_n"]
-        cells = [_text(row["speed_kn"], 2)]
+        ordered = row.get("ordered_speed_kn")
+        unknown = row["speed_kn"] is None and ordered is not None
+        cells = [f"ordered {ordered:.1f}: -" if unknown else _text(row["speed_kn"], 2)]
         if composed:
             cells += [_text(_in_thousands(forces[name]), 1) for name in ("total", "waves", "wind")]
         cii = row["cii"]
@@ -71,7 +73,7 @@ def merged_notes(rows: list[dict[str, Any]]) -> list[tuple[str, str]]:
             head, _, value = note.partition(" is ")
             value, _, bounds = value.partition(", ")
             found.setdefault(f"{head} is {{}}, {bounds}" if bounds else note, []).append(
-                (row["speed_kn"] or 0.0, value)
+                (row["speed_kn"] or row.get("ordered_speed_kn") or 0.0, value)
             )
     merged = []
     for note, where in found.items():

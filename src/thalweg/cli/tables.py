@@ -6,6 +6,8 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from thalweg.planning import Plan
     from thalweg.route import Route
 
@@ -50,40 +52,59 @@ def print_written(files: Iterable[Any]) -> None:
         print(f"wrote {path}")
 
 
-def print_plan(plan: Plan) -> None:
-    """Print the waypoints, totals, bounds and notes of a plan."""
+def print_plan(plan: Plan, files: Sequence[Path] = (), *, verbose: bool = False) -> None:
+    """Print a plan in at most twelve lines.
+
+    Parameters
+    ----------
+    plan : Plan
+    files : sequence of Path, optional
+        The files that were written.
+    verbose : bool, optional
+        Whether the waypoints, the bounds, the front and the provenance follow, with all notes.
+    """
+    from thalweg.planning.report.plan_summary import MAX_LINES, plan_summary, summary_with_notes
+
+    if verbose:
+        print("\n".join(plan_summary(plan)))
+        _print_details(plan)
+        print_written(files)
+        return
+    written = [_files_line(files)] if files else []
+    print("\n".join(summary_with_notes(plan, MAX_LINES - len(written)) + written))
+
+
+def _files_line(files: Sequence[Path]) -> str:
+    folder = files[0].parent
+    names = [path.name for path in files if path.parent == folder]
+    folders = sorted({f"{path.parent.name}/" for path in files if path.parent != folder})
+    return f"Files     {folder}: {', '.join([*names, *folders])}"
+
+
+def _print_details(plan: Plan) -> None:
+    """Print the waypoints, the bounds, the front, the notes and the provenance of a plan."""
     from rich.console import Console
+    from rich.markup import escape
 
     console = Console()
     title = f"{plan.provenance['from']} to {plan.provenance['to']}, least {plan.voyage.objective}"
     print_waypoints(console, plan.best.waypoints(), title)
-    console.print(f"[bold]{', '.join(_plan_totals(plan))}[/bold]")
     console.print(
         f"Lower bound {plan.lower_bound:.2f} {plan.unit}, gap {100 * plan.gap:.1f} % "
-        f"[dim]({plan.proof.kind})[/dim]; absolute lower bound "
-        f"{plan.proof.certain:.2f} {plan.unit}.",
+        f"({escape(plan.proof.kind)}); absolute lower bound {plan.proof.certain:.2f} {plan.unit}.",
         soft_wrap=True,
     )
     if plan.front is not None:
         print_front(console, plan)
     print_notes(console, plan.notes)
-
-
-def _plan_totals(plan: Plan) -> list[str]:
-    """Return time, distance, and what else is known of the best route, with units."""
-    best = plan.best
-    parts = [f"{best.time_h:.2f} h", f"{best.distance_nm:.1f} nm"]
-    if best.fuel_t is not None:
-        parts.append(f"{best.fuel_t:.1f} t fuel")
-    if best.cost is not None:
-        parts.append(f"{best.cost:,.0f} {best.currency}")
-    if best.energy_mwh is not None and plan.voyage.objective == "energy":
-        parts.append(f"{best.energy_mwh:.2f} MWh")
-    if best.co2_t is not None and plan.voyage.objective == "co2":
-        parts.append(f"{best.co2_t:.1f} t CO2")
-    if best.waiting_h > 0:
-        parts.append(f"{best.waiting_h:.2f} h waiting")
-    return parts
+    refused = ", ".join(f"{reason}: {count}" for reason, count in plan.rejections.items())
+    console.print(f"Legs rejected: {refused or 'none'}.", soft_wrap=True)
+    for network in plan.provenance["networks"]:
+        facts = ", ".join(f"{name} {value}" for name, value in network.items())
+        console.print(f"Network: {escape(facts)}.", soft_wrap=True)
+    for name in ("ship", "sea"):
+        digest = plan.provenance[name].get("fingerprint")
+        console.print(f"Fingerprint of the {name}: {digest}", soft_wrap=True)
 
 
 def print_front(console: Any, plan: Plan) -> None:
@@ -150,7 +171,11 @@ def print_route(route: Route) -> None:
     print_waypoints(console, route.waypoints(), "the route as given")
     waits = f" with {route.waiting_h:.2f} h waiting" if route.waiting_h > 0.0 else ""
     fuel = "" if route.fuel_t is None else f", {route.fuel_t:.1f} t fuel"
-    console.print(f"[bold]{route.time_h:.2f} h{waits}, {route.distance_nm:.1f} nm{fuel}[/bold]")
+    cost = "" if route.cost is None else f", {route.cost:,.0f} {route.currency}"
+    least = route.min_ukc_m
+    depth = "" if least is None else f", least under-keel clearance {least:.1f} m"
+    totals = f"{route.time_h:.2f} h{waits}, {route.distance_nm:.1f} nm{fuel}{cost}{depth}"
+    console.print(f"[bold]{totals}[/bold]", soft_wrap=True)
     for violation in route.violations:
         console.print(f"[red]violation:[/red] {escape(str(violation))}", soft_wrap=True)
     if route.feasible:

@@ -112,6 +112,7 @@ def run(arguments: argparse.Namespace) -> int:
             "The ship model needs the currents (and its weather) along the track.",
             "Add --sea FILE..., or --calm.",
         )
+    arguments.progress(f"analysing {arguments.file}")
     analysis = _analysis(arguments)
     files: list[str] = []
     if arguments.out:

@@ -104,7 +104,7 @@ def _add_study_options(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Compare the departure rules, print the savings and write the files."""
     _check(arguments)
-    announce_compilation()
+    announce_compilation(quiet=arguments.quiet)
     from thalweg.operations.waiting import break_even_power, waiting_study
     from thalweg.sea.models.stratified_coast import M2_PERIOD
 
@@ -113,7 +113,8 @@ def run(arguments: argparse.Namespace) -> int:
     count = arguments.starts or (4 if arguments.north_sea else 1)
     starts = (parse_time(arguments.depart) + np.arange(count) * M2_PERIOD / count).tolist()
     waits = np.linspace(0.0, arguments.most_wait * HOUR, _WAITS)
-    hotel = _hotel_power(arguments)
+    hotel, notes = _hotel_power(arguments), _ship_notes(arguments)
+    arguments.progress("simulating the departures")
     study = waiting_study(trips, starts=starts, max_waits=waits, hotel_power=hotel)
     break_even = {
         rule: [
@@ -130,10 +131,10 @@ def run(arguments: argparse.Namespace) -> int:
         files = [str(path) for path in write_waiting_files(study, arguments.out, title=title)]
     if arguments.json:
         kilowatts = {r: [_kilowatts(p) for p in powers] for r, powers in break_even.items()}
-        found = {**study.as_dict(), "break_even_kw": kilowatts, "files": files}
+        found = {**study.as_dict(), "break_even_kw": kilowatts, "notes": notes, "files": files}
         print(json.dumps(found, indent=2, allow_nan=False))
         return 0
-    print_waiting_study(study, break_even)
+    print_waiting_study(study, break_even, notes)
     print_written(files)
     return 0
 
@@ -180,6 +181,15 @@ def _ends(arguments: argparse.Namespace) -> tuple[Position, Position]:
     return option_values.position_from_text(arguments.start), option_values.position_from_text(
         arguments.goal
     )
+
+
+def _ship_notes(arguments: argparse.Namespace) -> list[str]:
+    """Return what results of the ships must state, such as a load factor without effect."""
+    from thalweg.ship.ship_assumptions import stated_assumptions
+
+    there, back = _ships(arguments)
+    ships = {"there": there} if arguments.cycles == 0 else {"there": there, "back": back}
+    return [f"{name}: {text}" for name, ship in ships.items() for text in stated_assumptions(ship)]
 
 
 def _ships(arguments: argparse.Namespace) -> tuple[Ship, Ship]:

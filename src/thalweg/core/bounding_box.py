@@ -35,6 +35,18 @@ class BoundingBox:
     def checked(cls, south: float, north: float, west: float, east: float) -> BoundingBox:
         """Return the box of four values that a user gave.
 
+        Parameters
+        ----------
+        south, north : float
+            Latitudes [deg], -90 to 90; numbers, or text that is a number.
+        west, east : float
+            Longitudes [deg]; an ``east`` below ``west`` spans the antimeridian.
+
+        Returns
+        -------
+        BoundingBox
+            The box.
+
         Raises
         ------
         InputError
@@ -65,7 +77,13 @@ class BoundingBox:
         return width % 360.0 if abs(width) < 360.0 else 360.0
 
     def array(self) -> FloatArray:
-        """Return south, north, west and width [deg] (4,), the form that kernels take."""
+        """Return the box in the form that kernels take.
+
+        Returns
+        -------
+        float64 array (4,)
+            South, north, west and width [deg].
+        """
         return np.array([self.south, self.north, self.west, self.width])
 
     def covers(

@@ -35,7 +35,13 @@ class ThalwegError(Exception):
         super().__init__(" ".join(part for part in (asked, possible, remedy) if part))
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the error as plain data for a JSON answer; NaN and infinity become None."""
+        """Return the error as plain data for a JSON answer; NaN and infinity become None.
+
+        Returns
+        -------
+        dict
+            ``error`` (the class), ``asked``, ``possible``, ``remedy`` and ``details``.
+        """
         return {
             "error": type(self).__name__,
             "asked": self.asked,
@@ -99,6 +105,10 @@ class NoRouteError(ThalwegError):
         self.reasons = dict(reasons or {})
         self.nearest = nearest
         super().__init__(asked, possible, remedy, reasons=self.reasons, nearest=nearest, **details)
+
+
+class NoPathError(NoRouteError):
+    """The water that a ship may use does not join two places, whatever the weather."""
 
 
 def close_matches(word: str, known: Iterable[str], count: int = 3) -> list[str]:

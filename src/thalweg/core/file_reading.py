@@ -57,5 +57,7 @@ def read_text_file(path: str | PathLike[str], kind: str, largest: int = 1_000_00
         return raw.decode("utf-8").replace("\r\n", "\n")
     except UnicodeDecodeError:
         raise InputError(
-            f"The {kind} file {name} is not text in UTF-8.", "", "Save it as UTF-8."
+            f"The {kind} file {name} is not text in UTF-8.",
+            "Only text in UTF-8 is read.",
+            "Save it as UTF-8.",
         ) from None

@@ -142,7 +142,7 @@ def save_figure(figure: Any, path: str | PathLike[str] | IO[bytes], **options: A
     known = figure.canvas.get_supported_filetypes()
     if options["format"] not in known:
         raise InputError(
-            f"A picture of the format {options['format']!r} was asked for.",
+            f"A picture of the format {options['format']!r} was requested.",
             f"Formats: {', '.join(sorted(known))}.",
             "Give the file one of these endings.",
             file=str(path),

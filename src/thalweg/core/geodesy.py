@@ -306,11 +306,15 @@ def check_position(lat: float, lon: float, what: str = "position") -> Position:
 _NUMBER = r"(\d+(?:\.\d+)?)"
 _DMS = rf"{_NUMBER}(?:[°\s:-]+{_NUMBER}['′]?)?(?:[\s:-]*{_NUMBER}[\"″]?)?\s*°?\s*"
 _HEMISPHERES = re.compile(rf"^\s*{_DMS}([NSns])[\s,]+{_DMS}([EWew])\s*$")
+_BEFORE = re.compile(rf"^\s*([NSns])\s*{_DMS}[\s,]*([EWew])\s*{_DMS}$")
 _PAIR = re.compile(r"^\s*([+-]?\d+(?:\.\d+)?)\s*[,;\s]\s*([+-]?\d+(?:\.\d+)?)\s*$")
 
 
 def parse_position(text: str) -> Position | None:
-    """Read ``52.0N 4.1E``, ``52 30 N 4 06 E`` or ``52.0,4.1`` (lat, lon); None if it is a name.
+    """Read a position (lat, lon) [deg]; None if the text is a name.
+
+    Such as ``52.0N 4.1E``, ``51 57.3N 004 02.1E``, ``51-57.3N 004-02.1E``, ``N51 57.3 E004 02.1``,
+    ``52 30 N 4 06 E`` or ``52.0,4.1``.
 
     Raises
     ------
@@ -320,10 +324,13 @@ def parse_position(text: str) -> Position | None:
     pair = _PAIR.match(text)
     if pair:
         return check_position(float(pair[1]), float(pair[2]))
-    match = _HEMISPHERES.match(text)
-    if not match:
+    match, before = _HEMISPHERES.match(text), _BEFORE.match(text)
+    if match:
+        d1, m1, s1, ns, d2, m2, s2, ew = match.groups()
+    elif before:
+        ns, d1, m1, s1, ew, d2, m2, s2 = before.groups()
+    else:
         return None
-    d1, m1, s1, ns, d2, m2, s2, ew = match.groups()
     if any(float(part or 0.0) >= 60.0 for part in (m1, s1, m2, s2)):
         raise InputError(
             f"The position {text!r} has 60 or more minutes or seconds.",
@@ -350,3 +357,23 @@ def format_position(lat: float, lon: float) -> str:
         Latitude and longitude to four decimals, with hemispheres.
     """
     return f"{abs(lat):.4f}{'N' if lat >= 0 else 'S'} {abs(lon):.4f}{'E' if lon >= 0 else 'W'}"
+
+
+def format_position_minutes(lat: float, lon: float) -> str:
+    """Return a position in degrees and decimal minutes, such as ``51 57.3N 004 02.1E``.
+
+    Parameters
+    ----------
+    lat, lon : float
+        Position [deg].
+
+    Returns
+    -------
+    str
+        Latitude and longitude to a tenth of a minute; `parse_position` reads it.
+    """
+    north, east = round(abs(lat) * 600.0), round(abs(lon) * 600.0)
+    return (
+        f"{north // 600:02d} {north % 600 / 10:04.1f}{'N' if lat >= 0 else 'S'} "
+        f"{east // 600:03d} {east % 600 / 10:04.1f}{'E' if lon >= 0 else 'W'}"
+    )

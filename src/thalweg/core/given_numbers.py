@@ -52,7 +52,7 @@ def float_array(values: ArrayLike, what: str) -> FloatArray:
         pass
     raise InputError(
         f"The {what} are {shortened_repr(values)}, which are not numbers.",
-        "An array or a list of numbers.",
+        "They are an array or a list of numbers.",
         "Correct them.",
         field=what,
     )

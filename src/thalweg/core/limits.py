@@ -1,4 +1,4 @@
-"""`Limits`: the least depth, greatest wave height and greatest wind speed of a ship."""
+"""`Limits`: the least depth, greatest waves and wind, and least distance from land of a ship."""
 
 from __future__ import annotations
 
@@ -54,8 +54,8 @@ SITE_LEG_TIGHTENING: Final = tuple(Tightening(depth=depth) for depth in (0.0, 0.
 class Limits:
     """Limits that hold at every point of a route.
 
-    Limits of motions are part of the ship's table; those of the chart (land, zones) are part of
-    the network.
+    Limits of motions are part of the ship's table; those of the chart (land, zones, offing) are
+    part of the network.
 
     Attributes
     ----------
@@ -64,7 +64,10 @@ class Limits:
     wave_height : float
         Greatest significant wave height [m]; inf if there is no limit.
     wind_speed : float
-        Greatest wind speed at 10 m, relative to the moving water [m/s]; inf if there is no limit.
+        Greatest wind speed at 10 m, over the ground [m/s]; inf if there is no limit.
+    offing : float
+        Least distance from charted land [m]; 0 if there is no limit. The chart holds it
+        (`thalweg.chart.Chart.with_offing`), and no step of a schedule changes it.
 
     Raises
     ------
@@ -75,15 +78,16 @@ class Limits:
     required_depth: float = -math.inf
     wave_height: float = math.inf
     wind_speed: float = math.inf
+    offing: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("required_depth", "wave_height", "wind_speed"):
+        for name in ("required_depth", "wave_height", "wind_speed", "offing"):
             value = float(getattr(self, name))
             object.__setattr__(self, name, value)
             if math.isnan(value):
                 raise InputError(
                     f"The limit {name} is not a number.",
-                    "The required depth is in m, the wave height in m, the wind speed in m/s.",
+                    "Depth, wave height and offing are in m, the wind speed in m/s.",
                     "Leave out what is not limited.",
                 )
 
@@ -101,21 +105,60 @@ class Limits:
         return math.isfinite(self.required_depth)
 
     def tightened(self, step: Tightening) -> Limits:
-        """Return limits that are stricter by one step of a schedule."""
+        """Return limits that are stricter by one step of a schedule.
+
+        Parameters
+        ----------
+        step : Tightening
+            How much stricter.
+
+        Returns
+        -------
+        Limits
+            With a larger required depth, and smaller limits of wave height and wind
+            speed.
+        """
         return Limits(
             self.required_depth * (1.0 + step.depth_share) + step.depth,
             self.wave_height * (1.0 - step.share),
             self.wind_speed * (1.0 - step.share),
+            self.offing,
         )
 
     def relaxed(self, share: float) -> Limits:
-        """Return limits that are looser by a share of themselves, for lower bounds."""
+        """Return limits that are looser by a share of themselves, for lower bounds.
+
+        Parameters
+        ----------
+        share : float
+            Share of each limit [-], 0 or more.
+
+        Returns
+        -------
+        Limits
+            With a smaller required depth, and larger limits of wave height and wind
+            speed.
+        """
         depth = self.required_depth
         factor = 1.0 + share
         return Limits(
-            depth - share * abs(depth), self.wave_height * factor, self.wind_speed * factor
+            depth - share * abs(depth),
+            self.wave_height * factor,
+            self.wind_speed * factor,
+            self.offing,
         )
 
     def with_required_depth(self, depth: float) -> Limits:
-        """Return the same limits with another required depth [m]."""
+        """Return the same limits with another required depth.
+
+        Parameters
+        ----------
+        depth : float
+            Least water depth [m]; -inf if depth is not checked.
+
+        Returns
+        -------
+        Limits
+            Otherwise unchanged.
+        """
         return replace(self, required_depth=depth)

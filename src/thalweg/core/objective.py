@@ -118,6 +118,11 @@ class Objective:
         currency : str, optional
             Unit of the cost.
 
+        Returns
+        -------
+        Objective
+            With a price of this key figure only.
+
         Raises
         ------
         InputError
@@ -144,7 +149,12 @@ class Objective:
         return KEY_FIGURES[self.name].unit or self.currency if self.name in KEY_FIGURES else ""
 
     def value(self, route: object) -> float:
-        """Return the value of a route, `thalweg.route.Route`, scored by the referee.
+        """Return the value of a route.
+
+        Parameters
+        ----------
+        route : Route
+            A route that the referee evaluated (`thalweg.route.Route`).
 
         Returns
         -------
@@ -223,11 +233,16 @@ class LegPrices:
             Fraction of each leg inside emission control areas, 0 to 1.
         zone_factor : array_like
             Factor of price zones on each leg; not used where ``dues`` is 0.
+
+        Returns
+        -------
+        float64 array
+            Price of one unit of ``consumption`` on each leg, in the broadcast shape.
         """
         inside = np.asarray(eca_fraction, float)
         price = np.asarray(self.outside + inside * (self.inside - self.outside))
         return np.asarray(price * np.asarray(zone_factor, float)) if self.dues > 0.0 else price
 
 
-#: The mass of fuel [kg], wherever it is burnt.
+#: The mass of fuel [kg], inside and outside emission control areas.
 FUEL_MASS: Final = LegPrices()

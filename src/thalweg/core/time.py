@@ -14,6 +14,7 @@ from thalweg.core.units import DAY
 
 TimeLike: TypeAlias = "str | float | int | date | np.datetime64"
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
+_NANOSECOND_YEARS: Final = 9.2e9  #: [s] from 1970 to the limits of nanoseconds, in 1678 and 2262
 _EARLIEST, _LATEST = -62_135_596_800.0, 253_402_300_799.0  # years 1 to 9999
 
 
@@ -59,7 +60,11 @@ def parse_time(value: TimeLike) -> float:
     else:
         seconds = to_number(value)
         if not math.isfinite(seconds) and isinstance(value, (float, np.floating)):
-            raise InputError(f"A time must be finite, not {value!r}.", "", "Give an ISO 8601 time.")
+            raise InputError(
+                f"The time is {value!r}.",
+                "A time is a finite number of seconds since 1970, or ISO 8601 text.",
+                "Give an ISO 8601 time.",
+            )
         return _calendar_time(seconds, value)
     if moment.tzinfo is None:
         moment = moment.replace(tzinfo=UTC)
@@ -83,7 +88,9 @@ def _from_datetime64(value: np.datetime64) -> float:
     unit, _ = np.datetime_data(value.dtype)
     if unit == "generic":
         raise InputError(
-            f"The time {value!r} has no unit.", "", "Give one such as 2026-01-01T00:00Z."
+            f"The time {value!r} has no unit.",
+            "A numpy time has a unit, such as seconds or days.",
+            "Give one such as 2026-01-01T00:00Z.",
         )
     # the day first: microseconds overflow for years far away
     _calendar_time(DAY * float(value.astype("datetime64[D]").astype(np.int64)), value)
@@ -114,6 +121,27 @@ def format_time(seconds: float) -> str:
 
 
 def to_datetime64(seconds: float | np.ndarray) -> np.ndarray:
-    """Return ``datetime64[ns]`` (UTC) for seconds since the epoch."""
-    nanoseconds = np.round(np.asarray(seconds, float) * 1e9)
-    return nanoseconds.astype(np.int64).astype("datetime64[ns]")
+    """Return ``datetime64[ns]`` (UTC) for seconds since the epoch; NaN becomes NaT.
+
+    Times outside the years 1678 to 2261, which nanoseconds do not reach, come as microseconds.
+
+    Raises
+    ------
+    InputError
+        If a time is outside the years 1 to 9999.
+    """
+    given = np.asarray(seconds, float)
+    known = given[~np.isnan(given)]
+    if known.size and not (known.min() >= _EARLIEST and known.max() <= _LATEST):
+        worst = known[np.argmax(np.abs(known))]
+        raise InputError(
+            f"{worst:g} s since 1970 is not a calendar time in UTC.",
+            "Times are in the years 1 to 9999.",
+            "Check the time and its unit.",
+        )
+    unit, scale = "ns", 1e9
+    if known.size and np.abs(known).max() > _NANOSECOND_YEARS:
+        unit, scale = "us", 1e6
+    ticks = np.round(np.where(np.isnan(given), 0.0, given) * scale).astype(np.int64)
+    stamps = ticks.astype(f"datetime64[{unit}]")
+    return np.where(np.isnan(given), np.array("NaT", stamps.dtype), stamps)[()]

@@ -6,6 +6,7 @@ from typing import Final
 
 KNOT: Final = 1852.0 / 3600.0  #: metres per second in a knot
 NAUTICAL_MILE: Final = 1852.0  #: metres
+MINUTE: Final = 60.0  #: seconds
 HOUR: Final = 3600.0  #: seconds
 DAY: Final = 86400.0  #: seconds
 TONNE: Final = 1000.0  #: kilograms

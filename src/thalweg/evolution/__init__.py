@@ -1,8 +1,14 @@
 """Multi-objective evolution of tracks: algorithms, variation operators and quality indicators."""
 
 from thalweg.deprecated_names import renamed
-from thalweg.evolution.evolve import EvolutionProgress, EvolutionResult, evolve
-from thalweg.evolution.memetic import refine_front
+from thalweg.evolution.evolve import (
+    EvolutionProgress,
+    EvolutionResult,
+    EvolutionSettings,
+    StoppingCriteria,
+    evolve,
+)
+from thalweg.evolution.memetic import FrontRefinementSettings, refine_front
 from thalweg.evolution.variation import OperatorWeights, VariationSettings
 from thalweg.route.evaluators.population import Genome, Population
 from thalweg.route.evaluators.population_evaluator import (
@@ -17,9 +23,12 @@ __all__ = [
     "Evaluator",
     "EvolutionProgress",
     "EvolutionResult",
+    "EvolutionSettings",
+    "FrontRefinementSettings",
     "Genome",
     "OperatorWeights",
     "Population",
+    "StoppingCriteria",
     "TabulatedShip",
     "VariationSettings",
     "evolve",

@@ -93,13 +93,25 @@ class EvolutionaryAlgorithm(ABC):
         return np.where(first <= second, drawn[:, 0], drawn[:, 1])
 
 
+def check_whole_number(name: str, value: object) -> None:
+    """Raise `InputError` if a setting of a run is not a whole number of zero or more."""
+    if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or value < 0:
+        raise InputError(
+            f"The {name} of an evolution cannot be {value!r}.",
+            "It is a whole number, zero or more.",
+            "Correct it or leave it out.",
+            field=name,
+        )
+
+
 def check_size(size: int) -> None:
     """Raise `InputError` if a population is too small."""
+    check_whole_number("size", size)
     if size < MIN_SIZE:
         raise InputError(
             f"A population of {size} is too small.",
             f"It has at least {MIN_SIZE} tracks; 100 or more make a good front.",
-            "Ask for a larger one.",
+            "Give a larger size.",
             field="size",
             value=size,
         )

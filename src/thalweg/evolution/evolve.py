@@ -13,7 +13,7 @@ import numpy as np
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.interrupt import cancel_on_interrupt
 from thalweg.core.types import FloatArray
-from thalweg.evolution.algorithm import EvolutionaryAlgorithm
+from thalweg.evolution.algorithm import EvolutionaryAlgorithm, check_size, check_whole_number
 from thalweg.evolution.indicators import generational_distance
 from thalweg.evolution.initial_population import initial_population
 from thalweg.evolution.mpaes import Mpaes
@@ -33,6 +33,7 @@ SETTLED_VARIANCE = (
     3e-4  #: its variance below which it has, in units of the front's mean spacing squared
 )
 MAX_GENERATIONS = 500  #: if nothing else limits a run
+DEFAULT_OPERATORS = VariationSettings()  #: variation operators unless others are given
 _VERIFICATION_REFINEMENT = 4.0  # the front is verified with pieces shorter by this factor
 
 Cancel: TypeAlias = Callable[[], bool]
@@ -65,8 +66,16 @@ class StoppingCriteria:
     ----------
     generations, evaluations : int or None
     seconds : float or None
+        A run that ends by seconds is not repeatable.
     settled : float or None
-        Variance of the last 33 generational distances, each times the number of points.
+        Variance of the last 33 generational distances (each new front to the one before,
+        objectives as shares of its range, times the number of points: in units of the mean spacing
+        of the front).
+
+    Raises
+    ------
+    InputError
+        If a limit is negative or NaN.
     """
 
     generations: int | None = None
@@ -77,7 +86,8 @@ class StoppingCriteria:
     def __post_init__(self) -> None:
         for name in ("generations", "evaluations", "seconds", "settled"):
             value = getattr(self, name)
-            if value is not None and not value >= 0:
+            number = isinstance(value, (int, float, np.number))
+            if value is not None and not (number and value >= 0):
                 raise InputError(
                     f"An evolution cannot end after {value!r} {name}.",
                     "Limits are zero or more.",
@@ -85,14 +95,78 @@ class StoppingCriteria:
                     field=name,
                 )
 
+    def with_generations(self, most: int) -> StoppingCriteria:
+        """Return these criteria, with a limit of generations if there is no other limit.
+
+        Parameters
+        ----------
+        most : int
+            Greatest number of generations, 0 or more.
+
+        Returns
+        -------
+        StoppingCriteria
+            Unchanged if there is a limit already.
+        """
+        limits = (self.generations, self.evaluations, self.seconds)
+        return self if any(x is not None for x in limits) else replace(self, generations=most)
+
     def reached(self, generation: int, evaluations: int, seconds: float) -> str:
-        """Return the name of the limit that is reached; empty if none is."""
+        """Return the name of the limit that is reached; empty if none is.
+
+        Parameters
+        ----------
+        generation, evaluations : int
+            Counts so far.
+        seconds : float
+            Time so far [s].
+
+        Returns
+        -------
+        str
+            ``generations``, ``evaluations``, ``seconds``, or empty.
+        """
         counted = {"generations": generation, "evaluations": evaluations, "seconds": seconds}
         for name, value in counted.items():
             most = getattr(self, name)
             if most is not None and value >= most:
                 return name
         return ""
+
+
+SETTLED_STOPPING = StoppingCriteria()  #: end when the front has settled
+
+
+@dataclass(frozen=True)
+class EvolutionSettings:
+    """Method and parameters of an evolution.
+
+    Attributes
+    ----------
+    method : {"nsga2", "spea2", "mpaes"}
+    size : int
+        Tracks in the population or archive, at least 4.
+    seed : int
+        Of the random numbers: equal seeds give equal runs, to the bit.
+    operators : VariationSettings
+        Variation operators and their probabilities.
+
+    Raises
+    ------
+    InputError
+        If the method is unknown, the population too small or the seed not a whole number.
+    """
+
+    method: str = "nsga2"
+    size: int = 100
+    seed: int = 0
+    operators: VariationSettings = DEFAULT_OPERATORS
+
+    def __post_init__(self) -> None:
+        if self.method not in METHODS:
+            raise unknown_name_error("evolutionary method", self.method, METHODS)
+        check_size(self.size)
+        check_whole_number("seed", self.seed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,16 +215,10 @@ def evolve(
     evaluator: Evaluator,
     seeds: Sequence[Genome | Track],
     *,
-    method: str = "nsga2",
-    size: int = 100,
-    generations: int | None = None,
-    evaluations: int | None = None,
-    seconds: float | None = None,
-    settled: float | None = SETTLED_VARIANCE,
-    seed: int = 0,
+    settings: EvolutionSettings = EvolutionSettings(),
+    stopping: StoppingCriteria = SETTLED_STOPPING,
     progress: Callable[[EvolutionProgress], None] | None = None,
     cancel: Cancel | None = None,
-    operators: VariationSettings | None = None,
 ) -> EvolutionResult:
     """Evolve tracks until the front settles or a limit is reached.
 
@@ -159,25 +227,14 @@ def evolve(
     evaluator : Evaluator
     seeds : sequence of Genome or Track
         First tracks, preferably one for each alternative route.
-    method : {"nsga2", "spea2", "mpaes"}
-    size : int
-        Tracks in the population or archive, at least 4.
-    generations, evaluations : int, optional
-    seconds : float, optional
-        Limits; 500 generations if none is given. A run that ends by seconds is not repeatable.
-    settled : float or None
-        The run ends when the variance of the last 33 generational distances (each new front to
-        the one before, objectives as shares of its range, times the number of points: in units
-        of the mean spacing of the front) is below this; None: never.
-    seed : int
-        Of the random numbers: equal seeds give equal runs, to the bit.
+    settings : EvolutionSettings, optional
+    stopping : StoppingCriteria, optional
+        500 generations at most if it has no limit of generations, evaluations or seconds.
     progress : callable, optional
         Called with an `EvolutionProgress` after every generation.
     cancel : callable, optional
         Called after every generation; true ends the run with the best front so far. Without it
         Ctrl-C does so, with a warning; pressed again it interrupts.
-    operators : VariationSettings, optional
-        Variation operators and their probabilities.
 
     Returns
     -------
@@ -187,28 +244,23 @@ def evolve(
     Raises
     ------
     InputError
-        For an unknown method, no seeds or a population that is too small.
+        If there are no seeds.
     """
-    if method not in METHODS:
-        raise unknown_name_error("evolutionary method", method, METHODS)
-    if generations is None and evaluations is None and seconds is None:
-        generations = MAX_GENERATIONS
-    limits = StoppingCriteria(generations, evaluations, seconds, settled)
-    rng = np.random.default_rng(seed)
-    variation_settings = operators or VariationSettings()
+    rng, size = np.random.default_rng(settings.seed), settings.size
     first = initial_population(
-        evaluator, seeds, size=size, variation_settings=variation_settings, rng=rng
+        evaluator, seeds, size=size, variation_settings=settings.operators, rng=rng
     )
-    strategy = METHODS[method](
+    strategy = METHODS[settings.method](
         evaluator,
         first,
         size=size,
-        variation_settings=with_wait_mutations(variation_settings, first),
+        variation_settings=with_wait_mutations(settings.operators, first),
         rng=rng,
     )
     begun = clock.perf_counter()
+    limits = stopping.with_generations(MAX_GENERATIONS)
     work = run_algorithm(strategy, evaluator, limits, progress=progress, cancel=cancel)
-    names = [method] * len(strategy.scores)
+    names = [settings.method] * len(strategy.scores)
     population, scores, origin = verified_at_finer_spacing(
         evaluator, strategy.population, strategy.scores, names
     )

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from thalweg.core.interrupt import cancel_on_interrupt
 from thalweg.core.types import FloatArray
-from thalweg.evolution.algorithm import check_size
+from thalweg.evolution.algorithm import check_size, check_whole_number
 from thalweg.evolution.evolve import (
-    SETTLED_VARIANCE,
+    DEFAULT_OPERATORS,
+    SETTLED_STOPPING,
     Cancel,
     EvolutionProgress,
     EvolutionResult,
@@ -45,20 +47,47 @@ EXPLORATION_GENERATIONS = 60  #: generations of the first evolution
 EXPLORATION_SEEDS = 24  #: tracks of its front that the local search refines
 
 
+@dataclass(frozen=True)
+class FrontRefinementSettings:
+    """Parameters of the refinement of a front.
+
+    Attributes
+    ----------
+    size : int
+        Tracks on the front, about; at least 4.
+    time_prices : int
+        Prices of time for which a track is refined, in addition to every seed at its own.
+    seed : int
+        Of the random numbers.
+    operators : VariationSettings
+        Variation operators and their probabilities.
+
+    Raises
+    ------
+    InputError
+        If the population is too small, or a number is not a whole one.
+    """
+
+    size: int = FRONT_SIZE
+    time_prices: int = TIME_PRICES
+    seed: int = 0
+    operators: VariationSettings = DEFAULT_OPERATORS
+
+    def __post_init__(self) -> None:
+        check_size(self.size)
+        check_whole_number("number of time prices", self.time_prices)
+        check_whole_number("seed", self.seed)
+
+
 @cancel_on_interrupt
 def refine_front(
     evaluator: Evaluator,
     seeds: Sequence[Genome | Track],
     *,
-    size: int = FRONT_SIZE,
-    lines: int = TIME_PRICES,
-    generations: int | None = None,
-    seconds: float | None = None,
-    settled: float | None = SETTLED_VARIANCE,
-    seed: int = 0,
+    settings: FrontRefinementSettings = FrontRefinementSettings(),
+    stopping: StoppingCriteria = SETTLED_STOPPING,
     progress: Callable[[EvolutionProgress], None] | None = None,
     cancel: Cancel | None = None,
-    operators: VariationSettings | None = None,
 ) -> EvolutionResult:
     """Refine a front from tracks on it, such as those of an exact search on a network.
 
@@ -67,25 +96,16 @@ def refine_front(
     evaluator : Evaluator
     seeds : sequence of Genome or Track
         With their settings; every relevant alternative route should be among them.
-    size : int
-        Tracks on the front, about.
-    lines : int
-        Prices of time for which a track is refined, in addition to every seed at its own.
-    generations : int, optional
-        Of NSGA-II after the local search; 50 by default if there is no limit of seconds. 0: none.
-    seconds : float, optional
-        Limit of the whole run; the local search takes at most three fifths of it. A run that ends
-        by this limit is not repeatable.
-    settled : float or None
-        As for `evolve`.
-    seed : int
-        Of the random numbers.
+    settings : FrontRefinementSettings, optional
+    stopping : StoppingCriteria, optional
+        Generations and evaluations are those of NSGA-II after the local search: 50 generations at
+        most if there is no limit, none with 0. Seconds are those of the whole run; the local search
+        takes at most three fifths of them.
     progress : callable, optional
         Called after every stage of the local search and every generation.
     cancel : callable, optional
         Called between steps; true ends the run with the best front so far. Without it Ctrl-C does
         so.
-    operators : VariationSettings, optional
 
     Returns
     -------
@@ -107,10 +127,10 @@ def refine_front(
 
     The result is the front of all tracks found, thinned where that loses the least area.
     """
-    check_size(size)
     begun = clock.perf_counter()
-    monitor = _LocalSearchMonitor(begun, seconds, cancel, progress)
-    variation_settings, rng = operators or VariationSettings(), np.random.default_rng(seed)
+    monitor = _LocalSearchMonitor(begun, stopping.seconds, cancel, progress)
+    size, variation_settings = settings.size, settings.operators
+    rng = np.random.default_rng(settings.seed)
     genomes = as_genomes(evaluator, seeds)
     pool = _CandidatePool(evaluator)
     pool.add("seed", evaluator.population(genomes, capacity=capacity_for(genomes)))
@@ -124,12 +144,12 @@ def refine_front(
     best = least_crowded_front(algorithm.scores, EXPLORATION_SEEDS)
     pool.add("nsga2", algorithm.population.take(best))
     if not monitor.stop():
-        priced = seeds_with_time_prices(evaluator, pool.population, count=lines)
+        priced = seeds_with_time_prices(evaluator, pool.population, count=settings.time_prices)
         refined = scalarised_local_search(priced, stop=monitor.stop)
         monitor.report(refined.scores)
         filled = fill_front(refined, size)
         pool.add("polish", concatenated_populations(refined.population, filled))
-    limits = _stopping_criteria(generations, seconds, settled, begun)
+    limits = _remaining(stopping, begun)
     work = RunSummary(0, work.evaluations, "cancelled" if monitor.cancelled else "generations")
     if not monitor.cancelled and limits.generations != 0:
         whole = pool.population
@@ -214,10 +234,9 @@ class _LocalSearchMonitor:
             self.progress(EvolutionProgress(0, len(scores), spent, front))
 
 
-def _stopping_criteria(
-    generations: int | None, seconds: float | None, settled: float | None, begun: float
-) -> StoppingCriteria:
-    left = None if seconds is None else max(0.0, seconds - (clock.perf_counter() - begun))
-    if generations is None and seconds is None:
-        generations = DEFAULT_GENERATIONS
-    return StoppingCriteria(generations, None, left, settled)
+def _remaining(stopping: StoppingCriteria, begun: float) -> StoppingCriteria:
+    """Return what is left of the limits after the local search, for the evolution."""
+    if stopping.seconds is None:
+        return stopping.with_generations(DEFAULT_GENERATIONS)
+    left = max(0.0, stopping.seconds - (clock.perf_counter() - begun))
+    return replace(stopping, seconds=left)

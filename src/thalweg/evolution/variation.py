@@ -105,7 +105,13 @@ class VariationSettings:
             )
 
     def array(self) -> FloatArray:
-        """Return the settings as the kernel takes them."""
+        """Return the settings as the kernel takes them.
+
+        Returns
+        -------
+        float64 array
+            In the order of the constants in `thalweg.kernels.evolution.mutation`.
+        """
         out = np.empty(mutation.VARIATION_SETTING_COUNT)
         weights = [getattr(self.mix, field.name) for field in fields(OperatorWeights)]
         out[: mutation.OPERATOR_COUNT] = weights

@@ -17,7 +17,8 @@ SHIP_RANGE: Final = 8
 NO_GO: Final = 9
 ARRIVE_BY: Final = 10
 SAFETY: Final = 11
-STATUS_COUNT: Final = 12
+OFFING: Final = 12
+STATUS_COUNT: Final = 13
 
 REASONS: Final[dict[int, str]] = {
     LAND: "land",
@@ -31,6 +32,7 @@ REASONS: Final[dict[int, str]] = {
     NO_GO: "no-go zone",
     ARRIVE_BY: "arrives too late",
     SAFETY: "safety or comfort limit of the ship",
+    OFFING: "nearer to land than the offing",
 }
 
 # Channels of frozen sea fields, in the order kernels know them.

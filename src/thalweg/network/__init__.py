@@ -10,6 +10,7 @@ from thalweg.network.alternatives.path_search import alternative_paths, paths_wi
 from thalweg.network.endpoints import with_endpoints
 from thalweg.network.fixed_route import fixed_route
 from thalweg.network.global_grid.globe_builder import globe
+from thalweg.network.global_grid.globe_options import GlobeOptions
 from thalweg.network.network import (
     Edges,
     Graph,
@@ -28,6 +29,7 @@ __all__ = [
     "AlternativePath",
     "EdgeWeights",
     "Edges",
+    "GlobeOptions",
     "Graph",
     "Network",
     "NetworkMeta",

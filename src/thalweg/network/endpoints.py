@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thalweg.core import geodesy
-from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.errors import InputError, NoPathError
 from thalweg.core.geodesy import MEAN_RADIUS, Position
 from thalweg.core.types import FloatArray, Int32Array
 from thalweg.kernels.network import graph_building
@@ -175,7 +175,7 @@ def with_endpoints(
     ------
     InputError
         If a position is not on navigable water, or start and goal are the same.
-    NoRouteError
+    NoPathError
         If a position cannot be linked to any node.
     """
     start, goal = check_endpoints(chart, start, goal)
@@ -207,7 +207,7 @@ def _link_all(
         add_counts(rejected, refused)
         if len(pairs.first) == 0:
             place = (float(stations.lat[point]), float(stations.lon[point]))
-            raise NoRouteError(
+            raise NoPathError(
                 f"{geodesy.format_position(*place)} cannot be linked to the network.",
                 f"Its nodes are about {spacing:.0f} m apart.",
                 "Give a finer network or another position.",

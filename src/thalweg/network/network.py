@@ -79,7 +79,13 @@ class Graph:
     target: Int32Array
 
     def tails(self) -> Int32Array:
-        """Return the node that every edge leaves (E,)."""
+        """Return the node that every edge leaves.
+
+        Returns
+        -------
+        int32 array (E,)
+            Nodes.
+        """
         nodes = np.arange(len(self.indptr) - 1, dtype=np.int32)
         return np.repeat(nodes, np.diff(self.indptr))
 
@@ -126,12 +132,34 @@ class Edges:
         return len(self.length)
 
     def take(self, edges: NDArray[Any]) -> Edges:
-        """Return the properties of some edges, given by index or by a mask (E,)."""
+        """Return the properties of some edges.
+
+        Parameters
+        ----------
+        edges : array
+            Indices of edges, or a mask (E,).
+
+        Returns
+        -------
+        Edges
+            In the order of the indices.
+        """
         return Edges(*(getattr(self, column.name)[edges] for column in fields(Edges)))
 
     @staticmethod
     def concatenate(parts: Sequence[Edges]) -> Edges:
-        """Return the edges of several parts as one."""
+        """Return the edges of several parts as one.
+
+        Parameters
+        ----------
+        parts : sequence of Edges
+            One or more.
+
+        Returns
+        -------
+        Edges
+            In the order of the parts.
+        """
         return Edges(
             *(np.concatenate([getattr(part, c.name) for part in parts]) for c in fields(Edges))
         )
@@ -165,18 +193,46 @@ class Samples:
         return len(self.station_a)
 
     def arrays(self) -> tuple[IntArray, Int32Array, Int32Array, Float32Array, Float32Array]:
-        """Return the arrays in the order in which kernels take them."""
+        """Return the arrays in the order in which kernels take them.
+
+        Returns
+        -------
+        ptr, station_a, station_b, weight, fraction : array
+            The attributes of these names.
+        """
         return self.ptr, self.station_a, self.station_b, self.weight, self.fraction
 
     @staticmethod
     def none(count: int) -> Samples:
-        """Return no samples, for a number of edges."""
+        """Return no samples.
+
+        Parameters
+        ----------
+        count : int
+            Number of edges.
+
+        Returns
+        -------
+        Samples
+            Of edges without samples between their nodes.
+        """
         empty_int, empty = np.empty(0, np.int32), np.empty(0, np.float32)
         return Samples(np.zeros(count + 1, np.int64), empty_int, empty_int, empty, empty)
 
     @staticmethod
     def concatenate(parts: Sequence[Samples]) -> Samples:
-        """Return the samples of consecutive lots of edges as one."""
+        """Return the samples of consecutive groups of edges as one.
+
+        Parameters
+        ----------
+        parts : sequence of Samples
+            One or more, in the order of the edges.
+
+        Returns
+        -------
+        Samples
+            Of all edges.
+        """
         shifts = np.cumsum([0] + [part.ptr[-1] for part in parts])
         ptr = np.concatenate([[0]] + [part.ptr[1:] + shift for part, shift in zip(parts, shifts)])
         columns = ("station_a", "station_b", "weight", "fraction")
@@ -261,14 +317,71 @@ class Network:
         return self.stations.lon[: self.n_nodes]
 
     def tails(self) -> Int32Array:
-        """Return the node that every edge leaves (E,)."""
+        """Return the node that every edge leaves.
+
+        Returns
+        -------
+        int32 array (E,)
+            Nodes.
+        """
         return self.graph.tails()
 
     def times(self, speed: float) -> FloatArray:
-        """Return the time of every edge [s] at a speed over ground [m/s]; canals have their own."""
+        """Return the time that every edge takes at one speed; canals have their own time.
+
+        Parameters
+        ----------
+        speed : float
+            Speed over ground [m/s], above 0.
+
+        Returns
+        -------
+        float64 array (E,)
+            Time [s].
+        """
         fixed = self.edges.fixed_time
         return np.where(np.isnan(fixed), self.edges.length / speed, fixed)
 
+    def with_some_edges(self, keep: NDArray[np.bool_]) -> Network:
+        """Return this network with some of its edges; nodes and stations are unchanged.
+
+        Parameters
+        ----------
+        keep : bool array (E,)
+            Which edges remain.
+
+        Returns
+        -------
+        Network
+            With their samples.
+        """
+        leaving = np.bincount(self.tails()[keep], minlength=self.n_nodes)
+        indptr = np.concatenate([[0], np.cumsum(leaving)]).astype(np.int64)
+        count = np.diff(self.samples.ptr)
+        inside = np.repeat(keep, count)
+        ptr = np.concatenate([[0], np.cumsum(count[keep])]).astype(np.int64)
+        old = self.samples
+        samples = Samples(
+            ptr,
+            old.station_a[inside],
+            old.station_b[inside],
+            old.weight[inside],
+            old.fraction[inside],
+        )
+        graph = Graph(indptr, self.graph.target[keep])
+        return replace(self, graph=graph, edges=self.edges.take(keep), samples=samples)
+
     def with_edges(self, **columns: NDArray[Any]) -> Network:
-        """Return this network with some columns of `Edges` replaced, such as ``fee=...``."""
+        """Return this network with some columns of `Edges` replaced.
+
+        Parameters
+        ----------
+        **columns : array (E,)
+            By the names of `Edges`, such as ``fee``.
+
+        Returns
+        -------
+        Network
+            Otherwise unchanged.
+        """
         return replace(self, edges=replace(self.edges, **columns))

@@ -19,6 +19,7 @@ from thalweg.core.pareto_fronts import (
 )
 from thalweg.planning.plan import Plan
 from thalweg.planning.plan_front import ParetoFront
+from thalweg.planning.report.provenance import finite_or_none
 from thalweg.planning.request.requirements import required_under_keel_clearance
 from thalweg.planning.request.voyage_objective import PricedObjective, priced_objective
 from thalweg.planning.voyage import Voyage
@@ -47,7 +48,10 @@ class EnsembleCandidate:
     distribution : EnsembleResult
         The route in all members.
     time, value : float
-        Risk of time [h] and of the objective over the members.
+        Time [h] and objective over the members in which the route can be sailed, by the measure of
+        the voyage; those of the plan if there is no such member.
+    time_risk, value_risk : float
+        The same over all members: inf if one of them is infeasible.
     """
 
     member: int
@@ -57,6 +61,8 @@ class EnsembleCandidate:
     distribution: EnsembleResult
     time: float
     value: float
+    time_risk: float
+    value_risk: float
 
 
 def plan_ensemble(
@@ -66,7 +72,8 @@ def plan_ensemble(
 
     The voyage is planned in a few members, evenly spaced by number. Every route found is evaluated
     in all members, and the route with the least mean (or mean of the worst tenth) is chosen. The
-    choice is the best of these routes, not of all possible routes.
+    choice is the best of these routes, not of all possible routes. If none of them can be sailed in
+    all members, those that can be in most of them are compared by these members.
 
     Parameters
     ----------
@@ -112,7 +119,8 @@ def plan_ensemble(
         for member, plan in plans.items()
         for item in _evaluate_in_all_members(voyage, member, plan, ship, sea, measure)
     ]
-    usable = [item for item in sailed if math.isfinite(item.value)] or sailed
+    fewest = min(len(item.distribution.infeasible) for item in sailed)
+    usable = [item for item in sailed if len(item.distribution.infeasible) == fewest]
     objective = priced_objective(voyage, ship) if voyage.chooses_speeds else None
     chosen = _select_plan(voyage, objective, usable, tried, measure)
     stopped = any(plan.cancelled for plan in plans.values())
@@ -135,7 +143,7 @@ def _evaluate_in_all_members(
             chart=None if plan.plot_context is None else plan.plot_context.chart,
             min_ukc=required_under_keel_clearance(voyage, ship),
         )
-        time = distribution.risk("time_h", measure)
+        figure = _chosen_figure(plan)
         found.append(
             EnsembleCandidate(
                 member,
@@ -143,8 +151,10 @@ def _evaluate_in_all_members(
                 index,
                 route,
                 distribution,
-                time,
-                _risk_value(plan, distribution, measure),
+                _over_feasible_members(route, distribution, "time_h", measure),
+                _over_feasible_members(route, distribution, figure, measure),
+                _over_all_members(distribution, "time_h", measure),
+                _over_all_members(distribution, figure, measure),
             )
         )
     return found
@@ -162,14 +172,32 @@ def _routes_to_evaluate(plan: Plan) -> list[int]:
     return [int(i) for i in evenly_spaced_subset(time, plan.front.values, MAX_EVALUATED_ROUTES)]
 
 
-def _risk_value(plan: Plan, distribution: EnsembleResult, measure: str) -> float:
-    """Return the risk by which a route is chosen, or its length."""
-    if plan.voyage.objective == "distance":
+def _chosen_figure(plan: Plan) -> str:
+    """Return the attribute of a route by which routes are chosen."""
+    name: str = plan.voyage.objective
+    if name == "front":
+        name = "time" if plan.front is None else plan.front.criterion
+    return KEY_FIGURES[name].attribute
+
+
+def _over_all_members(distribution: EnsembleResult, figure: str, measure: str) -> float:
+    """Return the risk of a key figure; a length is the same in all members."""
+    if figure == "distance_nm":
         return distribution.routes[0].distance_nm
-    name: str = "time" if plan.voyage.objective == "front" else plan.voyage.objective
-    if plan.voyage.objective == "front" and plan.front is not None:
-        name = plan.front.criterion
-    return distribution.risk(KEY_FIGURES[name].attribute, measure)
+    return distribution.risk(figure, measure)
+
+
+def _over_feasible_members(
+    route: Route, distribution: EnsembleResult, figure: str, measure: str
+) -> float:
+    """Return a key figure over the members in which a route can be sailed."""
+    if figure == "distance_nm":
+        return distribution.routes[0].distance_nm
+    statistics = distribution.spread(figure)
+    if statistics is None:
+        value = getattr(route, figure)
+        return math.nan if value is None else float(value)
+    return float(getattr(statistics, measure))
 
 
 def _select_plan(
@@ -182,15 +210,7 @@ def _select_plan(
     Its routes are those evaluated in that one member, for comparison; ``ensemble`` has their
     distributions over the members.
     """
-    time = np.array([item.time for item in sailed])
-    value = np.array([item.value for item in sailed])
-    if voyage.objective == "front":
-        order = [
-            sailed[index]
-            for index in non_dominated_indices(time, value, tolerance=ROUNDING_TOLERANCE)
-        ]
-    else:
-        order = [sailed[int(np.argmin(value))]]
+    order = _best_candidates(voyage, sailed)
     first, shown = order[0].plan, order[0].member
     routes = tuple(item.distribution.routes[shown] for item in order)
     members = len(order[0].distribution.routes)
@@ -199,6 +219,11 @@ def _select_plan(
         f"Planned in members {', '.join(map(str, planned))} of {members} and evaluated in all; "
         f"chosen by the {risk} over the members. The routes are shown as in member {shown}."
     )
+    if order[0].distribution.infeasible:
+        note += (
+            " No route of these plans can be sailed within the limits in all members: those that "
+            "can be in most members are compared by these members."
+        )
     notes = [note, *first.notes, *(n for item in order for n in item.distribution.notes)]
     return dataclasses.replace(
         first,
@@ -208,6 +233,34 @@ def _select_plan(
         notes=tuple(dict.fromkeys(notes)),
         ensemble=tuple(_distribution_row(item) for item in order),
     )
+
+
+def _best_candidates(voyage: Voyage, sailed: list[EnsembleCandidate]) -> list[EnsembleCandidate]:
+    """Return the front of the candidates by ascending time, or the best one.
+
+    Those that never arrive in the member in which the routes are shown are left out.
+
+    Raises
+    ------
+    NoRouteError
+        If no candidate has a time and a value.
+    """
+    time = np.array([item.time for item in sailed])
+    value = np.array([item.value for item in sailed])
+    if voyage.objective == "front":
+        chosen = non_dominated_indices(time, value, tolerance=ROUNDING_TOLERANCE).tolist()
+    else:
+        chosen = [int(np.nanargmin(value))] if np.isfinite(value).any() else []
+    if not chosen:
+        raise NoRouteError(
+            "No planned route can be sailed to its end in any member of the ensemble.",
+            f"{len(sailed)} routes were evaluated in {len(sailed[0].distribution.routes)} members.",
+            "Relax the limits, depart at another time, or plan with one member.",
+        )
+    order = [sailed[index] for index in chosen]
+    shown = order[0].member
+    arrives = [math.isfinite(item.distribution.routes[shown].time_h) for item in order]
+    return [item for item, ok in zip(order, arrives) if ok or item is order[0]]
 
 
 def _front(
@@ -227,4 +280,9 @@ def _front(
 
 
 def _distribution_row(item: EnsembleCandidate) -> dict[str, Any]:
-    return {"time_risk_h": item.time, "value_risk": item.value, **item.distribution.as_dict()}
+    """Return the distribution of a route as plain data; a risk is None if it is not finite."""
+    return {
+        "time_risk_h": finite_or_none(item.time_risk),
+        "value_risk": finite_or_none(item.value_risk),
+        **item.distribution.as_dict(),
+    }

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from thalweg.core.errors import InputError
+from thalweg.core.memory import machine_memory
 from thalweg.kernels import codes
 from thalweg.network import Network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.sea import StationFields
 
 #: Greatest size of frozen fields [bytes].
-MEMORY_LIMIT = 4_000_000_000
+MEMORY_LIMIT = min(4_000_000_000, machine_memory() // 2)
 
 
 @dataclass(frozen=True)

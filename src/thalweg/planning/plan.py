@@ -9,6 +9,8 @@ from typing import Any
 from thalweg.planning.plan_data import PlanData
 from thalweg.planning.plots.voyage_map import draw_map
 from thalweg.planning.report.output_files import write_plan
+from thalweg.planning.report.plan_summary import one_line, summary_html, summary_with_notes
+from thalweg.route import Route, RouteFileOptions
 
 
 @dataclass(frozen=True)
@@ -19,22 +21,40 @@ class Plan(PlanData):
     ``notes``, ``provenance``, ``front``, ``ensemble`` and ``cancelled``.
     """
 
-    def plot(self, path: str | Path | None = None) -> Any:
+    def __repr__(self) -> str:
+        return one_line(self)
+
+    def __str__(self) -> str:
+        return "\n".join(summary_with_notes(self))
+
+    def _repr_html_(self) -> str:
+        """Return the summary as a table for notebooks."""
+        return summary_html(self)
+
+    def plot(self, path: str | Path | None = None, *, beside: Route | None = None) -> Any:
         """Draw the map of the plan.
 
         Parameters
         ----------
         path : path, optional
             Where to save it (PNG).
+        beside : Route, optional
+            A route to draw beside that of the plan, such as one that ignores the weather.
 
         Returns
         -------
         matplotlib.figure.Figure
         """
-        return draw_map(self, path)
+        return draw_map(self, path, beside=beside)
 
-    def write(self, folder: str | Path) -> list[Path]:
-        """Write plan.json, route.geojson, route.gpx, route.csv, map.png and profile.png.
+    def write(
+        self,
+        folder: str | Path,
+        options: RouteFileOptions | None = None,
+        *,
+        beside: Route | None = None,
+    ) -> list[Path]:
+        """Write plan.json, route.rtz, .gpx, .geojson and .csv, map.png and profile.png.
 
         Where the tide matters st.png as well. A plan with a front also writes front.csv, front.png,
         comparison.csv and, in ``routes``, each route.
@@ -43,6 +63,10 @@ class Plan(PlanData):
         ----------
         folder : path
             Made where it does not exist.
+        options : RouteFileOptions, optional
+            Cross-track limit, number of waypoints and RTZ version of the route files.
+        beside : Route, optional
+            A route to draw on the map beside that of the plan.
 
         Returns
         -------
@@ -54,4 +78,4 @@ class Plan(PlanData):
         InputError
             If the folder cannot be written.
         """
-        return write_plan(self, folder)
+        return write_plan(self, folder, options, beside=beside)

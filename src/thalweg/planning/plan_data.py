@@ -197,6 +197,8 @@ def route_dict(route: Route, objective: str) -> dict[str, Any]:
         "energy_mwh": _finite_or_none(route.energy_mwh),
         "co2_t": _finite_or_none(route.co2_t),
         route.cost_name: _finite_or_none(route.cost),
+        **route.pricing_dict(),
+        "engine_order": route.engine_order,
         "fuel_eca_t": _finite_or_none(route.fuel_eca_t),
         "waiting_h": _finite_or_none(route.waiting_h),
         "min_ukc_m": _finite_or_none(route.min_ukc_m),

@@ -28,7 +28,9 @@ class BaselineComparison:
         Their values, in the unit of the front.
     rows : tuple of dict
         Savings of the front over each: ``saved_h`` at the same value, ``saved`` (and
-        ``saved_percent``) at the same time; None outside the range of the front.
+        ``saved_percent``) at the same time, which is ``saved_by_route`` (knowing the weather, at a
+        constant speed) plus ``saved_by_speed`` (varying the speed); None outside the range of the
+        front, and for a route that breaks a limit (``feasible``).
     """
 
     routes: tuple[Route, ...]
@@ -49,9 +51,10 @@ class ParetoFront:
     values : ndarray (n,)
         Of the routes of the plan, in their order.
     stages : tuple of str (n,)
-        Source of each route: ``"fastest"`` (refined for time), ``"exact"``, ``"way round"`` (a
-        fixed route with its best speeds), ``"polish"``, the evolutionary method, or ``"constant
-        speed"`` (of the weather-blind route).
+        Source of each route: ``"fastest"`` (refined for time), ``"exact"``,
+        ``"alternative path"`` (a fixed route past other land or through other canals, with its
+        best speeds), ``"polish"``, the evolutionary method, or ``"constant speed"`` (of the
+        weather-blind route).
     ways : tuple of str (n,)
         Label of each route: its canals, or ``"open sea"``, and the sides of land where these
         differ (`thalweg.planning.pareto.route_names.route_labels`).

@@ -13,6 +13,12 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
+from thalweg.planning.approach_sailing import (
+    ApproachSailing,
+    plan_along_approaches,
+    shared_line,
+)
+from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import PlotContext, Proof, in_objective_unit
 from thalweg.planning.planning_context import PlanningContext, ShipTables, performance_table_of
@@ -28,15 +34,26 @@ from thalweg.planning.request.chart_restrictions import (
     exclude_ice_latitudes,
 )
 from thalweg.planning.request.coverage_check import check_argument_types, endpoints_within_coverage
+from thalweg.planning.request.early_checks import check_request
 from thalweg.planning.request.network_choice import NetworkBuilder, NetworkChoice
+from thalweg.planning.request.offing_choice import chosen_offing, restrict_passages
+from thalweg.planning.request.ordered_speed import ordered_setting, with_ordered_speed
 from thalweg.planning.request.requirements import derive_requirements
-from thalweg.planning.request.voyage_endpoints import Endpoint, check_distinct, resolve_endpoint
+from thalweg.planning.request.voyage_endpoints import (
+    Endpoint,
+    check_distinct,
+    resolve_endpoint,
+    without_approach,
+)
+from thalweg.planning.request.voyage_objective import with_voyage_prices
 from thalweg.planning.single.passage import PassageResult, plan_passage
 from thalweg.planning.voyage import Voyage
 from thalweg.route import join as join_routes
 from thalweg.route import with_wind_speed
 from thalweg.sea import Sea
 from thalweg.ship import Ship
+
+_LONGEST_PROOF = 3600.0  # [s]
 
 
 def plan(
@@ -47,6 +64,7 @@ def plan(
     chart: Chart | None = None,
     network: str | NetworkBuilder = "auto",
     resolution: float | None = None,
+    proof: float = 0.0,
     progress: Callable[[str], None] | None = None,
 ) -> Plan:
     """Plan a voyage: exact search on a network, refinement in open water, check by the referee.
@@ -66,6 +84,9 @@ def plan(
         `thalweg.planning.NetworkChoice`.
     resolution : float, optional
         Spacing of the network [m]; by default it depends on the distance.
+    proof : float
+        Time for the certificate of a lower bound [s], for passages at one speed that depart at a
+        given time; without it ``lower_bound_certain`` is that of the geodesic.
     progress : callable, optional
         Called with a short text at each stage.
 
@@ -87,6 +108,7 @@ def plan(
     """
     chart = Chart.gshhg("i") if chart is None else chart
     check_argument_types(voyage, ship, sea, chart)
+    ship = with_ordered_speed(with_voyage_prices(ship, voyage), voyage.speed_kn)
     if sea.members:
         from thalweg.planning.ensemble_plan import plan_ensemble
 
@@ -98,6 +120,7 @@ def plan(
                 chart=chart,
                 network=network,
                 resolution=resolution,
+                proof=proof,
                 progress=progress,
             )
 
@@ -109,10 +132,35 @@ def plan(
             "Open files with an ensemble dimension, or leave out the risk measure.",
             field="ensemble",
         )
+    if not 0.0 <= proof <= _LONGEST_PROOF:
+        raise InputError(
+            f"The time for the proof is {proof:g} s.",
+            f"It is between 0 and {_LONGEST_PROOF:g} s.",
+            "Correct it, or leave it out.",
+            field="proof",
+        )
     choice = NetworkChoice(network, resolution)
     context, ends = _context(voyage, ship, with_wind_speed(ship, sea), chart, choice)
-    context = replace(context, report_progress=progress or context.report_progress)
-    if voyage.chooses_speeds:
+    context = replace(
+        context, report_progress=progress or context.report_progress, proof_seconds=proof
+    )
+    line = shared_line(context, ends)
+    if line is not None:
+        return plan_along_approaches(context, ends, line)
+    sailing = ApproachSailing.of_voyage(context, ends)
+    at_sea = replace(
+        context,
+        voyage=sailing.voyage_at_sea(voyage),
+        chart=replace(context.chart, approaches=None),
+    )
+    offing = chosen_offing(voyage, context.ship)
+    found = plan_off_land(at_sea, ends, offing, lambda c: _plan_at_sea(c, ends))
+    return sailing.with_approaches(found, voyage, context)
+
+
+def _plan_at_sea(context: PlanningContext, ends: list[Endpoint]) -> Plan:
+    """Return the plan between end points at sea, with one offing."""
+    if context.voyage.chooses_speeds:
         from thalweg.planning.pareto.trade_off_planner import plan_trade_off
 
         return plan_trade_off(context, ends)
@@ -123,8 +171,11 @@ def _context(
     voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, choice: NetworkChoice
 ) -> tuple[PlanningContext, list[Endpoint]]:
     """Return the context of a voyage and its end points, after all checks of the request."""
+    check_request(voyage, ship, sea)
     ends = _endpoints(voyage, chart)
     chart, notes = exclude_closed_canals(chart, voyage, ship, ends)
+    chart, closed = restrict_passages(chart, voyage, ship, ends, chosen_offing(voyage, ship))
+    notes += closed
     chart, more = add_emission_control_areas(exclude_ice_latitudes(chart, ends), voyage, ship)
     needs = derive_requirements(voyage, ship=ship, sea=sea, chart=chart)
     ends = endpoints_within_coverage(
@@ -136,7 +187,7 @@ def _context(
         sea=sea,
         chart=chart,
         needs=replace(needs, notes=(*notes, *more, *needs.notes)),
-        tables=ShipTables(performance_table_of(ship), _setting(voyage, ship)),
+        tables=ShipTables(performance_table_of(ship), ordered_setting(ship, voyage.speed_kn)),
         choice=choice,
     )
     return context, ends
@@ -147,26 +198,10 @@ def _endpoints(voyage: Voyage, chart: Chart) -> list[Endpoint]:
     places += [(f"via point {i + 1}", place) for i, place in enumerate(voyage.via)]
     places.append(("goal", voyage.goal))
     ends = [resolve_endpoint(place, chart, what) for what, place in places]
+    ends = [ends[0], *map(without_approach, ends[1:-1]), ends[-1]]
     for first, second in itertools.pairwise(ends):
         check_distinct(first, second)
     return ends
-
-
-def _setting(voyage: Voyage, ship: Ship) -> int:
-    speeds = np.asarray(ship.speeds)
-    if voyage.speed_kn is None:
-        return len(speeds) - 1
-    misses = np.abs(speeds / KNOT - voyage.speed_kn)
-    best = int(np.argmin(misses))
-    if misses[best] > 0.05:
-        listed = ", ".join(f"{speed / KNOT:.1f}" for speed in speeds)
-        raise InputError(
-            f"The ship {ship.name!r} has no setting for {voyage.speed_kn:g} kn.",
-            f"Its speeds are {listed} kn.",
-            "Choose one of them.",
-            field="speed_kn",
-        )
-    return best
 
 
 def _plan_passages(context: PlanningContext, ends: list[Endpoint]) -> list[PassageResult]:

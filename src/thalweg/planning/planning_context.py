@@ -50,6 +50,8 @@ class PlanningContext:
     choice : NetworkChoice
     report_progress : callable
         Called with a short text at each stage.
+    proof_seconds : float
+        Time for the certificate of a lower bound [s]; 0 for none.
     """
 
     voyage: Voyage
@@ -60,6 +62,7 @@ class PlanningContext:
     tables: ShipTables
     choice: NetworkChoice
     report_progress: Callable[[str], None] = field(default=lambda text: None)
+    proof_seconds: float = 0.0
 
     @property
     def table(self) -> PerformanceTable:

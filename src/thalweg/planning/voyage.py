@@ -18,7 +18,7 @@ from thalweg.planning.voyage_parts import Itinerary, Schedule, SearchRequest, Vo
 _ENTRIES: Final = (
     "start", "goal", "depart", "depart_window", "objective", "via", "arrive_by", "wait",
     "speed_kn", "min_ukc_m", "seed", "fuel_price_usd", "eca_price_factor", "time_price_usd_per_h",
-    "forbid", "method", "ensemble",
+    "forbid", "open", "avoid", "offing_nm", "method", "ensemble", "speed_block_h",
 )  # fmt: skip
 
 
@@ -65,12 +65,24 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
     forbid : sequence of str
         Canals that may not be used (``"suez"``, ``"panama"``, ``"kiel"``, ``"corinth"``, or
         ``"all"``).
+    open : sequence of str
+        Named passages (`thalweg.chart.passages`) that the ship may use though they are closed to
+        ships of her size.
+    avoid : sequence of str
+        Named passages and canals that may not be used.
+    offing_nm : float, optional
+        Least distance from charted land [nm], outside named passages and harbour approaches; by
+        default by the size of the ship (0.5, 1 or 2), and 0 for none.
     method : {"default", "exact", "nsga2", "spea2", "mpaes"}
         How a trade-off is searched: the exact front of a network, refined by evolution (default);
         the exact front alone; or an evolutionary method from a few routes, for comparison.
     ensemble : {"mean", "cvar"}, optional
         With a forecast of several members: choose the route with the least mean, or the least mean
         of the worst tenth (conditional value at risk).
+    speed_block_h : float
+        Where speeds are chosen leg by leg: least time that a speed is held [h], or a quarter of the
+        passage where that is less; 0 lets the speed change at will. Not with the method
+        ``"exact"``.
 
     Raises
     ------
@@ -103,9 +115,9 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
         data: dict[str, Any] = {}
         for name in _ENTRIES:
             value = getattr(self, name)
-            if value is None or (name in ("via", "forbid") and not value):
+            if value is None or (name in ("via", "forbid", "open", "avoid") and not value):
                 continue
-            if name == "method" and value == "default":
+            if (name, value) in (("method", "default"), ("speed_block_h", 6.0)):
                 continue
             data[name] = _plain_value(name, value)
         return data
@@ -118,6 +130,11 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
         ----------
         data : mapping
             As `to_dict` returns it.
+
+        Returns
+        -------
+        Voyage
+            The voyage.
 
         Raises
         ------
@@ -140,6 +157,16 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
     def load(cls, path: str | Path) -> Voyage:
         """Read a voyage from a YAML or JSON file.
 
+        Parameters
+        ----------
+        path : path-like
+            The file.
+
+        Returns
+        -------
+        Voyage
+            The voyage.
+
         Raises
         ------
         InputError
@@ -151,7 +178,7 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
         if not isinstance(data, dict):
             raise InputError(
                 f"{path} does not hold a voyage.",
-                "A mapping with start and goal.",
+                "A voyage file is a mapping with start and goal.",
                 "Correct the file.",
             )
         return cls.from_dict(data)

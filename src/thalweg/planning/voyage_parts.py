@@ -36,12 +36,16 @@ class Itinerary:
     via : sequence of places
     forbid : sequence of str
         Canals that may not be used.
+    open, avoid : sequence of str
+        Passages that are opened, and passages and canals that may not be used.
     """
 
     start: Place
     goal: Place
     via: Sequence[Place] = ()
     forbid: Sequence[str] = ()
+    open: Sequence[str] = ()
+    avoid: Sequence[str] = ()
 
     def _check_itinerary(self) -> None:
         """Check places and canals, and bring them to one form."""
@@ -58,6 +62,10 @@ class Itinerary:
         object.__setattr__(self, "goal", _place(self.goal, "goal"))
         object.__setattr__(self, "via", tuple(places))
         object.__setattr__(self, "forbid", tuple(str(name).casefold() for name in forbidden))
+        for entry in ("open", "avoid"):
+            given = getattr(self, entry)
+            names = (given,) if isinstance(given, str) else _as_list(given)
+            object.__setattr__(self, entry, tuple(str(name) for name in names))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,6 +168,10 @@ class SearchRequest:
         [kn].
     min_ukc_m : float, optional
         [m].
+    speed_block_h : float
+        [h].
+    offing_nm : float, optional
+        [nm].
     """
 
     objective: VoyageObjective = "time"
@@ -168,6 +180,8 @@ class SearchRequest:
     seed: int = 0
     speed_kn: float | None = None
     min_ukc_m: float | None = None
+    speed_block_h: float = 6.0
+    offing_nm: float | None = None
 
     @property
     def chooses_speeds(self) -> bool:
@@ -178,7 +192,9 @@ class SearchRequest:
         if self.objective not in OBJECTIVES:
             raise unknown_name_error("objective", str(self.objective), OBJECTIVES)
         _check_number("speed_kn", self.speed_kn, above=0.0, below=100.0, unit="kn")
+        _check_number("speed_block_h", self.speed_block_h, above=-1e-9, below=1000.0, unit="h")
         _check_number("min_ukc_m", self.min_ukc_m, above=-1e-9, below=100.0, unit="m")
+        _check_number("offing_nm", self.offing_nm, above=-1e-9, below=50.0, unit="nm")
         if not isinstance(self.seed, Integral) or self.seed < 0:
             raise InputError(
                 f"The seed is {self.seed!r}.",

@@ -7,7 +7,14 @@ from thalweg.route.ensemble_evaluation import (
     cvar,
     evaluate_members,
 )
-from thalweg.route.formats import read_track, write_csv, write_geojson, write_gpx
+from thalweg.route.formats import (
+    RouteFileOptions,
+    read_track,
+    write_csv,
+    write_geojson,
+    write_gpx,
+    write_rtz,
+)
 from thalweg.route.referee.evaluation import evaluate
 from thalweg.route.referee.wind_speed_only import with_wind_speed
 from thalweg.route.refinement.better_route import (
@@ -26,6 +33,7 @@ __all__ = [
     "MemberStatistics",
     "RefinementConditions",
     "Route",
+    "RouteFileOptions",
     "Track",
     "Violation",
     "better_route",
@@ -41,6 +49,7 @@ __all__ = [
     "write_csv",
     "write_geojson",
     "write_gpx",
+    "write_rtz",
 ]
 
 __getattr__ = renamed("thalweg.route")

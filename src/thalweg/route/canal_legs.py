@@ -1,7 +1,8 @@
-"""Legs of a track that run through ship canals: their lines, times, dues and fuel."""
+"""Legs of a track through ship canals and port approaches: lines, times, dues and fuel."""
 
 from __future__ import annotations
 
+import contextlib
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -9,14 +10,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import direct, inverse
+from thalweg.chart.approaches import MAX_APPROACH_SPEED
+from thalweg.chart.canals import Canal
+from thalweg.core.errors import ThalwegError
+from thalweg.core.geodesy import Position, direct, inverse
 from thalweg.core.types import FloatArray
 from thalweg.ship.condition_variables import WAVE_NORTH, WAVE_PERIOD
 from thalweg.ship.conditions import Conditions
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
-    from thalweg.chart.canals import Canal
     from thalweg.route.track import Track
     from thalweg.ship import Ship
 
@@ -25,15 +28,20 @@ _WAVE_PERIOD = 9.0  # of no waves [s]
 
 
 @dataclass(frozen=True)
+class ApproachLeg(Canal):
+    """A leg along the approach of a port: sailed like a canal, without dues and limits."""
+
+
+@dataclass(frozen=True)
 class CanalLegs:
-    """Which legs of a track run through canals.
+    """Which legs of a track run through canals or along port approaches.
 
     Attributes
     ----------
     number : int64 array (legs,)
         Index into ``canals``; -1 for legs at sea.
     canals : tuple of Canal
-        Those of the chart.
+        Those of the chart, then the legs along approaches.
     backward : bool array (legs,)
         Whether the canal is passed from its last position to its first.
     """
@@ -48,8 +56,14 @@ class CanalLegs:
         return bool((self.number >= 0).any())
 
     @property
+    def approach(self) -> NDArray[np.bool_]:
+        """Which legs run along approaches."""
+        kinds = [isinstance(canal, ApproachLeg) for canal in self.canals] + [False]
+        return np.asarray(kinds)[self.number]
+
+    @property
     def legs(self) -> list[int]:
-        """The legs through canals, ascending."""
+        """The legs through canals and approaches, ascending."""
         return [int(leg) for leg in np.flatnonzero(self.number >= 0)]
 
     def of(self, leg: int) -> Canal:
@@ -74,8 +88,18 @@ class CanalLegs:
 
     def rates(self, ship: Ship) -> tuple[FloatArray, FloatArray]:
         """Brake power [W] and fuel rate [kg/s] of each leg, as `canal_rates`; NaN at sea."""
-        rates = {k: canal_rates(ship, self.canals[k]) for k in set(self.number.tolist()) - {-1}}
-        rows = [rates.get(k, (math.nan, math.nan)) for k in self.number.tolist()]
+        known: dict[float, tuple[float, float]] = {}
+        rows = []
+        for k in self.number.tolist():
+            if k < 0:
+                rows.append((math.nan, math.nan))
+            elif isinstance(canal := self.canals[k], ApproachLeg):
+                speed = round(canal.length / canal.transit_time, 6)
+                if speed not in known:  # most legs of an approach have one speed
+                    known[speed] = canal_rates(ship, canal)
+                rows.append(known[speed])
+            else:
+                rows.append(canal_rates(ship, canal))
         power, fuel = np.array(rows, float).T
         return power, fuel
 
@@ -100,21 +124,72 @@ class CanalLegs:
         return np.asarray(values[self.number])
 
 
-def canal_legs(track: Track, chart: Chart | None) -> CanalLegs:
+def canal_legs(track: Track, chart: Chart | None, ship: Ship | None = None) -> CanalLegs:
     """Return which legs of a track run from one end of a canal of the chart to the other.
 
     Parameters
     ----------
     track : Track
     chart : Chart or None
+    ship : Ship, optional
+        With a ship, legs along approaches of the chart are included: they are sailed at
+        `thalweg.chart.approaches.MAX_APPROACH_SPEED`, or the ordered speed if that is lower.
 
     Returns
     -------
     CanalLegs
     """
     none = np.full(len(track) - 1, -1, np.int64)
-    if chart is None or not chart.canals:
-        return CanalLegs(none, (), none < -1)
+    legs = CanalLegs(none, (), none < -1)
+    if chart is not None and chart.canals:
+        legs = _through_canals(track, chart)
+    if ship is not None and getattr(chart, "approaches", None) is not None:
+        legs = _with_approach_legs(legs, track, chart, ship)  # type: ignore[arg-type]
+    return legs
+
+
+def _with_approach_legs(legs: CanalLegs, track: Track, chart: Chart, ship: Ship) -> CanalLegs:
+    """Return the legs with those along approaches added."""
+    assert chart.approaches is not None  # by the caller
+    found = np.flatnonzero(chart.approaches.legs(track.lat, track.lon) & (legs.number < 0))
+    if not len(found):
+        return legs
+    more = [
+        approach_leg(
+            (track.lat[k], track.lon[k]),
+            (track.lat[k + 1], track.lon[k + 1]),
+            approach_speed(ship, int(track.setting[k])),
+        )
+        for k in found
+    ]
+    number = legs.number.copy()
+    number[found] = len(legs.canals) + np.arange(len(found))
+    return CanalLegs(number, (*legs.canals, *more), legs.backward)
+
+
+def approach_speed(ship: Ship, setting: int) -> float:
+    """Return the speed over ground in approaches [m/s] at a speed setting.
+
+    Parameters
+    ----------
+    ship : Ship
+    setting : int
+
+    Returns
+    -------
+    float
+        `MAX_APPROACH_SPEED`, or the calm-water speed of the setting if that is lower.
+    """
+    return float(np.fmin(MAX_APPROACH_SPEED, np.asarray(ship.speeds, float)[setting]))
+
+
+def approach_leg(start: Position, goal: Position, speed: float) -> ApproachLeg:
+    """Return the leg of an approach between two positions [deg] at a speed [m/s]."""
+    length = float(inverse(*start, *goal)[0])
+    return ApproachLeg("approach", "approach", (start, goal), max(length / speed, 1e-3), 0.0)
+
+
+def _through_canals(track: Track, chart: Chart) -> CanalLegs:
     a, b, c, d = track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:]
     number = np.asarray(chart.canal_of_legs(a, b, c, d))
     backward = np.zeros(len(number), np.bool_)
@@ -176,7 +251,7 @@ def canal_setting(ship: Ship, canal: Canal) -> int:
         From 0.
     """
     speeds = np.asarray(ship.speeds, float)
-    fast = np.flatnonzero(speeds >= canal.length / canal.transit_time)
+    fast = np.flatnonzero(speeds >= canal.length / canal.transit_time * (1.0 - 1e-9))
     return int(fast[0]) if len(fast) else len(speeds) - 1
 
 
@@ -184,7 +259,7 @@ def canal_rates(ship: Ship, canal: Canal) -> tuple[float, float]:
     """Return (brake power [W], fuel rate [kg/s]) of a ship in a canal; NaN where not known.
 
     Those of calm, deep water at the canal's setting. Ships whose speed is a field take their only
-    one.
+    one. In approaches they are those at the very speed, if the ship can be ordered to sail it.
 
     Parameters
     ----------
@@ -195,6 +270,11 @@ def canal_rates(ship: Ship, canal: Canal) -> tuple[float, float]:
     -------
     power, fuel_rate : float
     """
+    setting = canal_setting(ship, canal)
+    if isinstance(canal, ApproachLeg) and ship.speed_field is None:
+        # the setting is used for a ship with one speed, or below its range
+        with contextlib.suppress(ThalwegError):
+            ship, setting = ship.with_speeds(canal.length / canal.transit_time), 0
     calm = {name: np.zeros(1) for name in ship.needs}
     calm |= {
         n: np.full(1, v) for n, v in ((WAVE_NORTH, 1.0), (WAVE_PERIOD, _WAVE_PERIOD)) if n in calm
@@ -203,5 +283,5 @@ def canal_rates(ship: Ship, canal: Canal) -> tuple[float, float]:
     conditions = Conditions.from_sea(
         calm, heading=np.zeros(1), time=np.zeros(1), lat=lat, lon=lon, depth=_DEEP_WATER
     )
-    power, fuel = ship.power_and_fuel(conditions, canal_setting(ship, canal))
+    power, fuel = ship.power_and_fuel(conditions, setting)
     return float(np.asarray(power).reshape(-1)[0]), float(np.asarray(fuel).reshape(-1)[0])

@@ -96,14 +96,33 @@ class MemberStatistics:
 
     @classmethod
     def of(cls, values: FloatArray, alpha: float) -> MemberStatistics:
-        """Return the statistics of one value or more."""
+        """Return the statistics of values.
+
+        Parameters
+        ----------
+        values : float64 array (n,)
+            One value or more, all finite.
+        alpha : float
+            Share of the members outside the worst tail, from 0 to less than 1.
+
+        Returns
+        -------
+        MemberStatistics
+            In the unit of the values.
+        """
         low, high = np.percentile(values, [10.0, 90.0])
         return cls(
             float(np.mean(values)), float(low), float(high), cvar(values, alpha), int(values.size)
         )
 
     def as_dict(self) -> dict[str, float | int]:
-        """Return plain data, ready for JSON."""
+        """Return plain data, ready for JSON.
+
+        Returns
+        -------
+        dict
+            ``mean``, ``p10``, ``p90``, ``cvar`` and ``members``.
+        """
         return {**{name: getattr(self, name) for name in MEASURES}, "members": self.count}
 
 
@@ -148,16 +167,47 @@ class EnsembleResult:
         return self.spread("co2_t")
 
     def spread(self, quantity: str) -> MemberStatistics | None:
-        """Return the statistics of one of `QUANTITIES` over the feasible members.
+        """Return the statistics of a quantity over the feasible members.
 
         Infeasible members have no value; `infeasible` and `notes` list them and `risk` counts them.
+
+        Parameters
+        ----------
+        quantity : {"time_h", "fuel_t", "cost", "co2_t", "energy_mwh"}
+            Attribute of `Route`.
+
+        Returns
+        -------
+        MemberStatistics or None
+            None if no feasible member has a value.
+
+        Raises
+        ------
+        InputError
+            If there is no such quantity.
         """
         values = self.values(quantity)
         values = values[np.isfinite(values)]
         return MemberStatistics.of(values, self.alpha) if values.size else None
 
     def values(self, quantity: str) -> FloatArray:
-        """Return a quantity in every member; inf where infeasible, NaN where unknown."""
+        """Return a quantity in every member.
+
+        Parameters
+        ----------
+        quantity : {"time_h", "fuel_t", "cost", "co2_t", "energy_mwh"}
+            Attribute of `Route`.
+
+        Returns
+        -------
+        float64 array (members,)
+            inf where the route is infeasible, NaN where the quantity is unknown.
+
+        Raises
+        ------
+        InputError
+            If there is no such quantity.
+        """
         if quantity not in QUANTITIES:
             raise unknown_name_error("quantity of a distribution", quantity, QUANTITIES)
         found = [
@@ -206,7 +256,14 @@ class EnsembleResult:
         return str(broken[0]) if broken else "it never arrives"
 
     def as_dict(self) -> dict[str, Any]:
-        """Return plain data, ready for JSON."""
+        """Return plain data, ready for JSON.
+
+        Returns
+        -------
+        dict
+            Number of members, infeasible ones, statistics of each quantity (None if
+            unknown) and notes.
+        """
         spreads = {name: self.spread(name) for name in QUANTITIES}
         return {
             "members": len(self.routes),
@@ -268,7 +325,9 @@ def evaluate_members(
     count = _checked_member_count(sea, alpha)
     if "strict" in options:
         raise InputError(
-            "strict is given.", "Members whose data end too early are reported.", "Leave it out."
+            "The argument strict is given.",
+            "Members whose data end too early are always reported.",
+            "Leave it out.",
         )
     asked: Mapping[str, Any] = options if terms is None else {**options, "terms": terms}
     routes: list[Route] = []

@@ -13,6 +13,7 @@ from thalweg.core.geodesy import format_position
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
+from thalweg.route.cost_parts import COST_PARTS
 from thalweg.route.route_tables import none_if_nan, waypoint_frame, waypoint_rows
 from thalweg.route.track import Track
 
@@ -50,7 +51,14 @@ class Violation:
         return text
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the violation as plain data for JSON."""
+        """Return the violation as plain data for JSON.
+
+        Returns
+        -------
+        dict
+            ``reason``, ``time`` (ISO 8601), ``lat``, ``lon``, ``value`` and ``limit``
+            [SI]; None where unknown.
+        """
         return {
             "reason": self.reason,
             "time": format_time(self.time) if np.isfinite(self.time) else None,
@@ -75,7 +83,8 @@ class Route:
         calm water, through it) [m/s]; NaN if unknown: ``fuel`` of sailing it and ``waiting_fuel``
         of waiting before it [kg], likewise ``energy`` and ``waiting_energy`` of brake and hotel
         load [J], and of both ``fuel_in_eca`` [kg], ``co2`` [kg] and ``cost`` [``currency``] (with
-        canal dues and the price of time).
+        canal dues and the price of time); ``leg_kind``, an index into
+        `thalweg.route.route_tables.LEG_KINDS`.
     samples : mapping of str to ndarray
         The fine samples along the route, in order: ``time, leg, lat, lon, distance, course,
         heading, speed_through_water, speed_over_ground, depth, under_keel_clearance, power,
@@ -88,9 +97,12 @@ class Route:
     assumptions : tuple of str
         Assumptions made where data are missing.
     fuel_zones : mapping of str to float
-        Fuel [kg] by emission control area, and ``outside`` them.
-    currency : str
-        Of the cost.
+        Fuel [kg] by emission control area, and ``outside`` them; empty where no areas count.
+    prices : mapping
+        Currency of the cost, and the prices with their sources
+        (`thalweg.ship.fuel_prices.FuelTerms.prices`).
+    engine_order : str
+        What the engine holds on every leg (`thalweg.ship.consumption.engine_order`).
     """
 
     track: Track
@@ -100,7 +112,8 @@ class Route:
     tolerance_s: float = float("nan")
     assumptions: tuple[str, ...] = field(default=())
     fuel_zones: Mapping[str, float] = field(default_factory=dict)
-    currency: str = "USD"
+    prices: Mapping[str, Any] = field(default_factory=dict)
+    engine_order: str = ""
 
     def __post_init__(self) -> None:
         for name in ("legs", "samples"):
@@ -108,7 +121,13 @@ class Route:
             for values in columns.values():
                 values.setflags(write=False)
             object.__setattr__(self, name, MappingProxyType(columns))
-        object.__setattr__(self, "fuel_zones", MappingProxyType(dict(self.fuel_zones)))
+        for name in ("fuel_zones", "prices"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
+
+    @property
+    def currency(self) -> str:
+        """Currency of the cost; USD where the prices name none."""
+        return str(self.prices.get("currency", "USD"))
 
     @property
     def depart(self) -> float:
@@ -145,7 +164,7 @@ class Route:
     @property
     def fuel_by_zone_t(self) -> dict[str, float] | None:
         """Fuel [t] by emission control area, and ``outside`` them; None where fuel is unknown."""
-        if self.fuel_t is None:
+        if self.fuel_t is None or not self.fuel_zones:
             return None
         return {name: value / TONNE for name, value in self.fuel_zones.items()}
 
@@ -165,6 +184,11 @@ class Route:
     def cost(self) -> float | None:
         """Fuel, canal dues and time [``currency``]; None where fuel or a price is unknown."""
         return self._sum("cost")
+
+    @property
+    def cost_parts(self) -> dict[str, float | None]:
+        """The parts of the cost [``currency``], by name; None where unknown."""
+        return {name: self._sum(column) for name, column in COST_PARTS.items()}
 
     def _sum(self, name: str) -> float | None:
         return none_if_nan(float(self.legs[name].sum())) if name in self.legs else None
@@ -187,15 +211,34 @@ class Route:
         return not self.violations and bool(np.isfinite(self.arrive))
 
     def waypoints(self) -> list[dict[str, Any]]:
-        """Return one plain dictionary per waypoint, ready for JSON (None where unknown)."""
+        """Return one plain dictionary per waypoint, ready for JSON (None where unknown).
+
+        Returns
+        -------
+        list of dict
+            In order; positions in degrees, times as ISO 8601, other keys end with their
+            unit.
+        """
         return waypoint_rows(self)
 
     def to_frame(self) -> pd.DataFrame:
-        """Return a pandas table with one row per waypoint; ``time`` is datetime64 (UTC)."""
+        """Return a pandas table with one row per waypoint; ``time`` is datetime64 (UTC).
+
+        Returns
+        -------
+        DataFrame
+            The columns of `waypoints`.
+        """
         return waypoint_frame(self)
 
     def sample_frame(self) -> pd.DataFrame:
-        """Return a pandas table of the fine samples, in SI."""
+        """Return a pandas table of the fine samples, in SI.
+
+        Returns
+        -------
+        DataFrame
+            One row for each sample, with the columns of ``samples``.
+        """
         import pandas as pd
 
         return pd.DataFrame(dict(self.samples))
@@ -205,8 +248,25 @@ class Route:
         """Name of the cost in tables and JSON, such as ``cost_usd``."""
         return f"cost_{self.currency.casefold()}"
 
+    def pricing_dict(self) -> dict[str, Any]:
+        """Return the currency, the parts of the cost, and the prices with sources, for JSON.
+
+        Returns
+        -------
+        dict
+            ``currency``, ``cost_parts`` and ``prices``.
+        """
+        parts = self.cost_parts
+        return {"currency": self.currency, "cost_parts": parts, "prices": dict(self.prices)}
+
     def as_dict(self) -> dict[str, Any]:
-        """Return totals, waypoints and violations as plain data for JSON."""
+        """Return totals, waypoints and violations as plain data for JSON.
+
+        Returns
+        -------
+        dict
+            Keys end with their unit; None where a value is unknown.
+        """
         return {
             "depart": format_time(self.depart),
             "arrive": format_time(self.arrive) if np.isfinite(self.arrive) else None,
@@ -218,6 +278,8 @@ class Route:
             "co2_t": self.co2_t,
             "energy_mwh": self.energy_mwh,
             self.cost_name: self.cost,
+            **self.pricing_dict(),
+            "engine_order": self.engine_order,
             "waiting_h": self.waiting_h,
             "min_ukc_m": self.min_ukc_m,
             "feasible": self.feasible,

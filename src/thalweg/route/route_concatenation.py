@@ -26,6 +26,11 @@ def join(routes: Sequence[Route]) -> Route:
         a wait. Fuel, energy, CO2 and cost of such a wait are unknown: evaluate the joined track
         with the referee to get them.
 
+    Returns
+    -------
+    Route
+        With the legs, samples and violations of all.
+
     Raises
     ------
     InputError
@@ -65,7 +70,8 @@ def join(routes: Sequence[Route]) -> Route:
         sum(route.tolerance_s for route in routes),
         tuple(dict.fromkeys(text for route in routes for text in route.assumptions)),
         _summed_by_name([route.fuel_zones for route in routes]),
-        routes[0].currency,
+        routes[0].prices,
+        routes[0].engine_order,
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
 
@@ -15,6 +15,10 @@ from thalweg.route.track import Track
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+#: Kinds of legs; ``legs["leg_kind"]`` of a route is an index into these names.
+LEG_KINDS: Final = ("sea", "canal", "approach")
 
 
 class SailedRoute(Protocol):
@@ -49,15 +53,18 @@ def waypoint_rows(route: SailedRoute) -> list[dict[str, Any]]:
     and conditions are those on leaving (at the last waypoint: on arriving); speeds are means over
     the time of the leg that begins there, ``ukc_m`` the least clearance on it. Distance, fuel,
     energy, CO2 and cost are sums up to the waypoint; those of each leg are in ``route.legs``.
+    ``leg_kind`` is the kind of the leg that begins there: sea, canal or approach (of a port).
     """
     columns = waypoint_columns(route)
     times = columns.pop("time")
+    kinds = _leg_kind_names(route)
     return [
         {
             "lat": float(columns["lat"][i]),
             "lon": float(columns["lon"][i]),
             "time": format_time(times[i]) if math.isfinite(times[i]) else None,
             **{k: none_if_nan(v[i]) for k, v in columns.items() if k not in ("lat", "lon")},
+            "leg_kind": kinds[i],
         }
         for i in range(len(times))
     ]
@@ -71,7 +78,15 @@ def waypoint_frame(route: SailedRoute) -> pd.DataFrame:
     time = columns.pop("time")
     known = np.isfinite(time)
     stamps = np.where(known, to_datetime64(np.where(known, time, 0.0)), np.datetime64("NaT", "ns"))
-    return pd.DataFrame({"lat": columns["lat"], "lon": columns["lon"], "time": stamps} | columns)
+    first = {"lat": columns["lat"], "lon": columns["lon"], "time": stamps}
+    return pd.DataFrame(first | columns | {"leg_kind": _leg_kind_names(route)})
+
+
+def _leg_kind_names(route: SailedRoute) -> list[str | None]:
+    """Return the kind of the leg that begins at each waypoint; None at the last one."""
+    count = len(route.legs["length"])
+    kinds = route.legs.get("leg_kind", np.zeros(count))
+    return [*(LEG_KINDS[int(kind)] for kind in kinds), None]
 
 
 def waypoint_columns(route: SailedRoute) -> dict[str, FloatArray]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.types import FloatArray
 
 if TYPE_CHECKING:
@@ -76,6 +77,5 @@ def freeze_raster(
     native = [row.spacing_deg for row in sea.coverage() if row.spacing_deg]
     spacing = max(min([extent / _USUAL_CELLS, *native]), least, extent / size.max_cells)
     spacing = min(spacing, extent / size.min_cells)
-    return sea.freeze_grid(
-        south, north, west, west + width, *period, channels, spacing_deg=spacing, extra=extra
-    )
+    area = BoundingBox(south, north, west, west + width)
+    return sea.freeze_grid(area, *period, channels, spacing_deg=spacing, extra=extra)

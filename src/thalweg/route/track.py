@@ -84,7 +84,27 @@ class Track:
         depart: TimeLike,
         setting: int = TOP_SETTING,
     ) -> Track:
-        """Build a track without waits from (lat, lon) pairs; repeated positions are merged."""
+        """Return a track without waits through positions; repeated positions are merged.
+
+        Parameters
+        ----------
+        positions : iterable of (lat, lon)
+            Waypoints [deg], two or more that differ.
+        depart : time
+            Departure.
+        setting : int, optional
+            Index into the ship's speeds on all legs; by default the highest.
+
+        Returns
+        -------
+        Track
+            The track.
+
+        Raises
+        ------
+        InputError
+            If positions or the departure cannot be read.
+        """
         pairs = _pairs(positions)
         keep = [pairs[0], *(b for a, b in itertools.pairwise(pairs) if a != b)] if pairs else []
         lat, lon = np.array(keep, dtype=float).reshape(-1, 2).T
@@ -114,7 +134,19 @@ class Track:
         return list(zip(self.lat.tolist(), self.lon.tolist()))
 
     def replaced(self, **changes: Any) -> Track:
-        """Return a copy with some fields changed (``lat, lon, depart, wait, setting, speed``)."""
+        """Return a copy with some fields changed.
+
+        Parameters
+        ----------
+        **changes
+            By the names ``lat``, ``lon``, ``depart``, ``wait``, ``setting`` and
+            ``speed``.
+
+        Returns
+        -------
+        Track
+            The changed track.
+        """
         fields = {name: getattr(self, name) for name in _FIELDS}
         return Track(**{**fields, **changes})
 
@@ -126,6 +158,11 @@ class Track:
         keep : array_like of int
             Ascending indices of the waypoints to keep, first and last included. A joined leg has
             the setting (and speed) of its first part; waits at removed waypoints are removed.
+
+        Returns
+        -------
+        Track
+            With the waypoints kept.
         """
         index = np.asarray(keep, dtype=np.int64)
         return Track(
@@ -138,16 +175,39 @@ class Track:
         )
 
     def part(self, first: int, last: int, depart: float) -> Track:
-        """Return the track between two of its waypoints, departing [s] from the first of them.
+        """Return the track between two of its waypoints.
 
-        The wait at the first waypoint remains, that at the last does not.
+        Parameters
+        ----------
+        first, last : int
+            Indices of its first and last waypoint.
+        depart : float
+            Departure from the first of them [s since 1970-01-01T00:00Z].
+
+        Returns
+        -------
+        Track
+            With the wait at its first waypoint, without that at its last.
         """
         wait = np.append(self.wait[first:last], 0.0)
         lat, lon = self.lat[first : last + 1], self.lon[first : last + 1]
         return Track(lat, lon, depart, wait, self.setting[first:last], self.speed[first:last])
 
     def with_part(self, first: int, last: int, part: Track) -> Track:
-        """Return the track with another one between two of its waypoints."""
+        """Return the track with another one between two of its waypoints.
+
+        Parameters
+        ----------
+        first, last : int
+            Indices of the waypoints between which the track is replaced.
+        part : Track
+            What takes its place; its departure has no effect.
+
+        Returns
+        -------
+        Track
+            With the departure of this track.
+        """
         return Track(
             np.concatenate([self.lat[:first], part.lat, self.lat[last + 1 :]]),
             np.concatenate([self.lon[:first], part.lon, self.lon[last + 1 :]]),

@@ -12,12 +12,12 @@ from thalweg.core.given_numbers import is_number, shortened_repr, to_number
 from thalweg.core.time import TimeLike, parse_time
 
 
-def parse_area(area: tuple[float, float, float, float] | None) -> BoundingBox:
+def parse_area(area: tuple[float, float, float, float] | BoundingBox | None) -> BoundingBox:
     """Return the box for (south, north, west, east) [deg]; the world for None.
 
     Parameters
     ----------
-    area : tuple of float or None
+    area : tuple of float, BoundingBox or None
         (south, north, west, east) [deg].
 
     Returns
@@ -32,6 +32,8 @@ def parse_area(area: tuple[float, float, float, float] | None) -> BoundingBox:
     """
     if area is None:
         return WORLD
+    if isinstance(area, BoundingBox):
+        area = (area.south, area.north, area.west, area.east)
     try:
         south, north, west, east = (to_number(x) for x in area)
     except (TypeError, ValueError):

@@ -109,7 +109,18 @@ def member_count(layers: Sequence[Layer]) -> int:
 
 
 def check_not_ensemble(layers: Sequence[Layer]) -> None:
-    """Raise `InputError` if the layers hold an ensemble where a single sea is needed."""
+    """Do nothing for a single sea; raise `InputError` for an ensemble.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers in order of priority.
+
+    Raises
+    ------
+    InputError
+        If a layer holds an ensemble.
+    """
     count = member_count(layers)
     if count:
         raise ensemble_not_allowed_error(count)

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Final
 
 import numpy as np
 
 from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.units import NAUTICAL_MILE
 from thalweg.sea import standard_names as nm
 from thalweg.sea.layer import Layer
 from thalweg.sea.layer_stack import stack_variables
+from thalweg.sea.models.coast_fills import head_seas_layer, nearest_layer
 from thalweg.sea.models.function_layer import constant_layer
 from thalweg.sea.models.wind_sea import wind_sea_layer
 from thalweg.sea.plausible_values import PLAUSIBLE_RANGES
 
+NEAREST: Final = "nearest"  #: begins the policy of the nearest known position
+MAX_NEAREST: Final = 100.0  #: [nm] greatest distance of that policy
 CALM_PERIOD = 8.0  #: [s] placeholder peak period of waves of height zero
 CALM_VALUES = {
     nm.EASTWARD_WIND: 0.0,
@@ -26,6 +32,7 @@ CALM_VALUES = {
     nm.WAVE_PERIOD: CALM_PERIOD,
 }
 FILL_LIMITS = {"waves": PLAUSIBLE_RANGES[nm.WAVE_HEIGHT], "ice": (0.0, 1.0)}
+_SPEEDS = {"wind": nm.WIND.speed, "currents": nm.CURRENT.speed}
 FILLABLE_VARIABLES: dict[str, tuple[str, ...]] = {
     "currents": nm.CURRENT.pair,
     "wind": nm.WIND.pair,
@@ -54,25 +61,75 @@ def layers_filled(
     """
     values: dict[str, float] = {}
     assumptions: list[str] = []
-    waves_from_wind = policies.get("waves") == "wind"
-    for policy, value in policies.items():
-        if not (waves_from_wind and policy == "waves"):
-            values.update(fill_values(policy, value))
-            assumptions.append(f"where unknown, {policy.replace('_', ' ')} = {value}")
     known = stack_variables(layers)
+    models: list[tuple[str, Any]] = []
+    for policy, value in policies.items():
+        if isinstance(value, str) and (policy == "waves" or value.startswith(NEAREST)):
+            _check_name(policy)
+            models.append((policy, value.strip()))
+            continue
+        values.update(fill_values(policy, value))
+        assumptions.append(f"where unknown, {policy.replace('_', ' ')} = {value}")
     for vector in (nm.WIND, nm.CURRENT):
         if vector.east in values and vector.speed in known and vector.east not in known:
             assumptions.append(f"the data's {vector.speed}, without direction, is not used")
     filled = [*layers]
+    for policy, value in models:
+        if value.startswith(NEAREST):
+            layer, text = _nearest(filled, policy, value)
+            filled.append(layer)
+            assumptions.append(text)
     if values:
         filled.append(constant_layer(values, "filled"))
-    if waves_from_wind:
-        filled.append(wind_sea_layer(filled))
-        assumptions.append(
-            "where unknown, waves are those that the wind raises (Carter 1982, 500 km of "
-            "fetch, 24 h)"
-        )
+    for _, value in models:
+        if value.startswith(NEAREST):
+            continue
+        make, text = _wave_model(value)
+        filled.append(make(filled))
+        assumptions.append(text)
     return tuple(filled), tuple(assumptions)
+
+
+def _nearest(layers: Sequence[Layer], policy: str, value: str) -> tuple[Layer, str]:
+    """Return the layer of the nearest known values, and the sentence that states it."""
+    _, _, distance = value.partition(":")
+    try:
+        miles = float(distance)
+    except ValueError:
+        miles = math.nan
+    if not 0.0 < miles <= MAX_NEAREST:
+        raise InputError(
+            f"{policy} cannot be filled with {value!r}.",
+            f"It is {NEAREST}:NM, the greatest distance to a known position, up to "
+            f"{MAX_NEAREST:g} nm.",
+            f"For example {policy}={NEAREST}:25.",
+        )
+    layer = nearest_layer(layers, FILLABLE_VARIABLES[policy], miles * NAUTICAL_MILE)
+    text = f"those of the nearest known position within {miles:g} nm"
+    return layer, f"where unknown next to land, {policy.replace('_', ' ')} = {text}"
+
+
+def _wave_model(value: str) -> tuple[Callable[[Sequence[Layer]], Layer], str]:
+    if value == "wind":
+        return wind_sea_layer, (
+            "where unknown, waves are those that the wind raises (Carter 1982, 500 km of fetch, "
+            "24 h)"
+        )
+    if value == "head_seas":
+        return head_seas_layer, (
+            "where their direction or period is unknown, waves come from ahead on every course, "
+            "with the peak period of a fully developed sea of their height"
+        )
+    raise InputError(
+        f"waves cannot be filled with {value!r}.",
+        f"Give a height [m], 'wind', 'head_seas' or '{NEAREST}:NM'.",
+        "For example waves=head_seas.",
+    )
+
+
+def _check_name(policy: str) -> None:
+    if policy not in FILLABLE_VARIABLES:
+        raise unknown_name_error("filling policy", policy, FILLABLE_VARIABLES)
 
 
 def fill_values(policy: str, value: float | tuple[float, float] | str) -> dict[str, float]:
@@ -90,8 +147,7 @@ def fill_values(policy: str, value: float | tuple[float, float] | str) -> dict[s
     InputError
         If the policy is unknown, or the value is impossible or has no direction.
     """
-    if policy not in FILLABLE_VARIABLES:
-        raise unknown_name_error("filling policy", policy, FILLABLE_VARIABLES)
+    _check_name(policy)
     names = FILLABLE_VARIABLES[policy]
     try:
         numbers = np.atleast_1d(np.asarray(value, float))
@@ -101,7 +157,8 @@ def fill_values(policy: str, value: float | tuple[float, float] | str) -> dict[s
     if not np.isfinite(numbers).all() or not (is_pair or numbers.size == 1):
         raise InputError(
             f"{policy} cannot be filled with {value!r}.",
-            "Give one finite number, (east, north) for currents and wind, or 'wind' for waves.",
+            "Give one finite number, (east, north) for currents and wind, 'wind' or 'head_seas' "
+            f"for waves, or '{NEAREST}:NM'.",
             f"For example filled({policy}=0.0).",
         )
     if is_pair:
@@ -122,3 +179,28 @@ def fill_values(policy: str, value: float | tuple[float, float] | str) -> dict[s
     if policy == "waves":
         return {**{n: CALM_VALUES[n] for n in names}, nm.WAVE_HEIGHT: number}
     return dict.fromkeys(names, number)
+
+
+def fill_hint(missing: Sequence[str], known: frozenset[str]) -> str:
+    """Return how to fill missing variables on the command line, one value for each quantity.
+
+    Parameters
+    ----------
+    missing : sequence of str
+        Canonical names that a sea lacks.
+    known : frozenset of str
+        Canonical names that it holds.
+    """
+    lacking = set(missing)
+    hints = []
+    for policy, names in FILLABLE_VARIABLES.items():
+        if not lacking & {*names, _SPEEDS.get(policy, "")}:
+            continue
+        if policy == "waves" and nm.WAVE_HEIGHT in known:
+            hints.append("waves=head_seas (the known heights, from ahead on every course)")
+        else:
+            hints.append(f"{policy}=0")
+    others = lacking - {n for names in FILLABLE_VARIABLES.values() for n in names}
+    others -= set(_SPEEDS.values())
+    text = f"--fill {' '.join(hints)}" if hints else "no value can be filled"
+    return f"{text} ({', '.join(sorted(others))} cannot be filled)" if others and hints else text

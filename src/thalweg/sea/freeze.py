@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError, OutsidePeriodError
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray, IntArray
@@ -56,77 +58,114 @@ class SampledSea(Mapping[str, FloatArray]):
 
 def freeze_station_fields(
     layers: Sequence[Layer],
-    lat: FloatArray,
-    lon: FloatArray,
-    *,
-    window: tuple[float, float],
+    lat: ArrayLike,
+    lon: ArrayLike,
+    start: float,
+    end: float,
     channels: Sequence[int],
-    extra: Mapping[int, DerivedChannel],
+    *,
+    extra: Mapping[int, DerivedChannel] | None = None,
 ) -> StationFields:
-    """Sample layers at stations for all native times of a window (see `Sea.freeze_stations`).
+    """Return the sea at stations for kernels, at all native times of a window.
 
     Parameters
     ----------
     layers : sequence of Layer
         Layers in order of priority.
-    lat, lon : float64 array (S,)
+    lat, lon : array_like (S,)
         Stations [deg].
-    window : tuple of float
-        Start and end [s since epoch].
+    start, end : float
+        Window [s since epoch]; frozen times reach one native step beyond it.
     channels : sequence of int
-        Channels of `thalweg.kernels.codes`.
-    extra : mapping of int to callable
-        Functions of derived channels.
+        Channels of `thalweg.kernels.codes`; those the sea lacks get index -1.
+    extra : mapping of int to callable, optional
+        Channels computed as ``f(sampled, time, lat, lon) -> array``, where ``sampled`` maps any
+        variable of the sea to its values and all arrays are (stations, times).
 
     Returns
     -------
     StationFields
+        Values (S, T, K) of the K channels present.
+
+    Raises
+    ------
+    InputError
+        If the window ends before it starts, a channel does not exist, or the sea is an ensemble.
+    OutsidePeriodError
+        If the data have no time in the window.
     """
+    derived = extra or {}
     lat, lon = np.ascontiguousarray(lat, np.float64), np.ascontiguousarray(lon, np.float64)
-    index, present = locate_channels(layers, channels, extra)
-    times = times_to_freeze(
-        layers, window, [n for c in present if (n := _variable(c, extra))], extra
-    )
+    index, present = locate_channels(layers, channels, derived)
+    variables = [name for c in present if (name := _variable(c, derived))]
+    times = times_to_freeze(layers, (float(start), float(end)), variables, derived)
     values = np.empty((lat.size, times.size, len(present)), np.float32)
     rows = max(1, POINTS_PER_CHUNK // times.size)
     for first in range(0, lat.size, rows):
         part = slice(first, first + rows)
-        _sample_stations(values[part], layers, (times, lat[part], lon[part]), present, extra)
+        _sample_stations(values[part], layers, (times, lat[part], lon[part]), present, derived)
     return StationFields(times, values, index)
 
 
+def _box_as_four_numbers(function: Callable[..., GridFields]) -> Callable[..., GridFields]:
+    """Let a function take ``area`` as south, north, west and east [deg] too."""
+
+    @functools.wraps(function)
+    def accept(layers: Sequence[Layer], *args: Any, **kwargs: Any) -> GridFields:
+        if not isinstance(args[0] if args else kwargs.get("area"), BoundingBox):
+            by_position = args[:4]
+            names = ("south", "north", "west", "east")[len(by_position) :]
+            by_name = [kwargs.pop(name) for name in names if name in kwargs]
+            sides = [float(side) for side in (*by_position, *by_name)]
+            args = (BoundingBox(*sides), *args[4:])
+        return function(layers, *args, **kwargs)
+
+    return accept
+
+
+@_box_as_four_numbers
 def freeze_grid_fields(
     layers: Sequence[Layer],
-    box: tuple[float, float, float, float],
-    *,
-    window: tuple[float, float],
+    area: BoundingBox,
+    start: float,
+    end: float,
     channels: Sequence[int],
+    *,
     spacing_deg: float,
-    extra: Mapping[int, DerivedChannel],
+    extra: Mapping[int, DerivedChannel] | None = None,
 ) -> GridFields:
-    """Sample layers on a regular grid for all native times (see `Sea.freeze_grid`).
+    """Return the sea on a regular grid for kernels, at all native times of a window.
 
     Parameters
     ----------
     layers : sequence of Layer
         Layers in order of priority.
-    box : tuple of float
-        South, north, west and east [deg].
-    window, channels, extra
-        As `freeze_station_fields`.
+    area : BoundingBox
+        Box of the grid; ``east < west`` spans the antimeridian. Four numbers, south, north, west
+        and east [deg], are accepted in its place.
+    start, end : float
+        Window [s since epoch]; frozen times reach one native step beyond it.
+    channels : sequence of int
+        Channels of `thalweg.kernels.codes`; those the sea lacks get index -1.
     spacing_deg : float
-        Largest spacing [deg].
+        Largest spacing [deg]; it is reduced so that the grid ends on the box.
+    extra : mapping of int to callable, optional
+        Derived channels, as in `freeze_stations`.
 
     Returns
     -------
     GridFields
+        Values (T, rows, columns, K) of the K channels present.
 
     Raises
     ------
     InputError
-        If the spacing is not positive or the box is empty.
+        If the spacing is not positive, the box is empty, the window ends before it starts, a
+        channel does not exist, or the sea is an ensemble.
+    OutsidePeriodError
+        If the data have no time in the window.
     """
-    south, north, west, east = box
+    south, north, west, east = area.south, area.north, area.west, area.east
     if not (spacing_deg > 0.0 and north > south):
         raise InputError(
             f"A grid with spacing {spacing_deg:g} deg from {south:g} to {north:g} N is empty.",
@@ -141,7 +180,7 @@ def freeze_grid_fields(
         south + dlat * np.arange(ny), west + dlon * np.arange(nx), indexing="ij"
     )
     stations = freeze_station_fields(
-        layers, rows.ravel(), columns.ravel(), window=window, channels=channels, extra=extra
+        layers, rows.ravel(), columns.ravel(), start, end, channels, extra=extra
     )
     shape = (ny, nx, stations.times.size, stations.values.shape[2])
     values = np.ascontiguousarray(stations.values.reshape(shape).transpose(2, 0, 1, 3))

@@ -51,6 +51,8 @@ class Inspection:
     missing : mapping of str to float
         Fraction of grid points without a value (land, ice, gaps), 0 to 1, by source and variable,
         measured at up to 8 times spread over the period.
+    ranges : mapping of str to (float, float)
+        Least and greatest value [SI] at these times, by source and variable.
     gaps : tuple of DataGap
         Gaps in time axes; values are not interpolated across them.
     members : int
@@ -61,6 +63,7 @@ class Inspection:
     ignored: tuple[tuple[str, str, str], ...]
     coverage: tuple[Coverage, ...]
     missing: dict[str, float]
+    ranges: dict[str, tuple[float, float]]
     gaps: tuple[DataGap, ...]
     members: int = 0
 
@@ -71,6 +74,7 @@ class Inspection:
             "ignored": [{"source": s, "variable": v, "reason": r} for s, v, r in self.ignored],
             "coverage": [asdict(c) for c in self.coverage],
             "missing_fraction": dict(self.missing),
+            "ranges": {name: list(pair) for name, pair in self.ranges.items()},
             "gaps": [asdict(g) for g in self.gaps],
             "members": self.members,
         }
@@ -86,23 +90,37 @@ def _time_text(time: float | None) -> str | None:
 
 
 def inspect_layers(layers: Sequence[Layer]) -> Inspection:
-    """Return the report on the layers of a sea; reads a few times of every file.
+    """Return the variables recognised and ignored in the files, coverage, missing data and gaps.
 
-    Of an ensemble, the first member is reported.
+    A few times of every file are read. Of an ensemble, the first member is reported.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers in order of priority.
+
+    Returns
+    -------
+    Inspection
+        The report.
     """
     members = member_count(layers)
     single = select_member(layers, 0) if members else tuple(layers)
     gridded = [layer for layer in single if isinstance(layer, GridLayer)]
     missing: dict[str, float] = {}
+    ranges: dict[str, tuple[float, float]] = {}
     for layer in gridded:
-        for name, share in _missing_fractions(layer).items():
+        for name, (share, low, high) in _value_ranges(layer).items():
             missing[f"{layer.source}: {name}"] = share
+            if low <= high:
+                ranges[f"{layer.source}: {name}"] = (low, high)
     ignored = dict.fromkeys(row for layer in gridded for row in layer.record.ignored)
     return Inspection(
         tuple(r for layer in gridded for r in layer.record.recognised),
         tuple(ignored),
         tuple(row for layer in single for row in layer.coverage()),
         missing,
+        ranges,
         data_gaps(single),
         members,
     )
@@ -124,15 +142,21 @@ def data_gaps(layers: Sequence[Layer]) -> tuple[DataGap, ...]:
     )
 
 
-def _missing_fractions(layer: GridLayer) -> dict[str, float]:
-    """Return the fraction of grid points without a value, by variable."""
+def _value_ranges(layer: GridLayer) -> dict[str, tuple[float, float, float]]:
+    """Return the fraction of grid points without a value, and the range, by variable."""
     rows, columns = layer.grid.shape
     count = max(1, layer.axis.times.size)
     levels = np.unique(np.linspace(0, count - 1, SAMPLED_TIMES).round().astype(int))
-    shares: dict[str, list[float]] = {}
+    found: dict[str, list[tuple[float, float, float]]] = {}
     for level in levels:
         window = GridWindow(int(level), int(level) + 1, 0, rows, 0, columns)
         for quantity in layer.quantities:
             for name, values in quantity.read(window, columns).items():
-                shares.setdefault(name, []).append(float(np.isnan(values).mean()))
-    return {name: float(np.mean(share)) for name, share in shares.items()}
+                low, high = np.nanmin(values, initial=np.inf), np.nanmax(values, initial=-np.inf)
+                share = float(np.isnan(values).mean())
+                found.setdefault(name, []).append((share, float(low), float(high)))
+    return {
+        name: (float(np.mean(shares)), min(lows), max(highs))
+        for name, values in found.items()
+        for shares, lows, highs in [tuple(zip(*values))]
+    }

@@ -14,8 +14,10 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
+from thalweg.sea.coverage import Coverage
 from thalweg.sea.ensemble_layer import check_not_ensemble
 from thalweg.sea.layer import Layer, Samples
+from thalweg.sea.triangle_mesh import Mesh
 
 LayerReader: TypeAlias = Callable[[Layer, Sequence[str], Any], Samples]
 
@@ -23,19 +25,30 @@ _DUPLICATE_TOLERANCE = 1e-3  #: [s] two layers' times closer than this are the s
 
 
 def stack_variables(layers: Sequence[Layer]) -> frozenset[str]:
-    """Return the canonical names of all variables that at least one layer holds."""
-    return frozenset().union(*(layer.variables for layer in layers))
-
-
-def stack_provides(layers: Sequence[Layer], name: str) -> bool:
-    """Return whether the layers hold a variable, or the variables it is derived from.
+    """Return the canonical names of all variables that at least one layer holds.
 
     Parameters
     ----------
     layers : sequence of Layer
-        Layers by priority.
+        Layers in order of priority.
+
+    Returns
+    -------
+    frozenset of str
+        CF standard names; vectors as components.
+    """
+    return frozenset().union(*(layer.variables for layer in layers))
+
+
+def stack_provides(layers: Sequence[Layer], name: str) -> bool:
+    """Return whether a layer holds a variable, or the variables it is derived from.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers in order of priority.
     name : str
-        Canonical variable name.
+        Canonical name, or the CF name of a vector's speed or direction.
 
     Returns
     -------
@@ -49,14 +62,14 @@ def stack_provides(layers: Sequence[Layer], name: str) -> bool:
 def sample_stack(
     layers: Sequence[Layer], names: Sequence[str], time: ArrayLike, lat: ArrayLike, lon: ArrayLike
 ) -> Samples:
-    """Return values at points (see `thalweg.sea.Sea.sample`).
+    """Return values at points, linear in time and space.
 
     Parameters
     ----------
     layers : sequence of Layer
         Layers in order of priority.
     names : sequence of str
-        Canonical names, or CF names of a vector's speed and direction.
+        Canonical names, or CF names of a vector's speed and direction [deg].
     time : array_like
         Seconds since 1970-01-01T00:00Z.
     lat, lon : array_like
@@ -65,7 +78,13 @@ def sample_stack(
     Returns
     -------
     dict of str to float64 array
-        Values [SI] of the broadcast shape; NaN where unknown.
+        One array of the broadcast shape per name, in SI units; NaN where unknown (see
+        `why_missing`).
+
+    Raises
+    ------
+    InputError
+        If the sea is an ensemble (see `member`).
     """
     check_not_ensemble(layers)
     names = [names] if isinstance(names, str) else names
@@ -88,7 +107,7 @@ def series_of_stack(
     lat: FloatArray,
     lon: FloatArray,
 ) -> Samples:
-    """Return values (S, T) at stations (S,) for every time (T,) (see `thalweg.sea.Sea.series`).
+    """Return values at stations for every time; faster than `sample`.
 
     Parameters
     ----------
@@ -104,7 +123,12 @@ def series_of_stack(
     Returns
     -------
     dict of str to float64 array (S, T)
-        Values [SI]; NaN where unknown.
+        One array per name, in SI units; NaN where unknown.
+
+    Raises
+    ------
+    InputError
+        If the sea is an ensemble (see `member`).
     """
     check_not_ensemble(layers)
 
@@ -119,12 +143,12 @@ def series_of_stack(
 def stack_times(
     layers: Sequence[Layer], start: float, end: float, *, names: Sequence[str] | None = None
 ) -> FloatArray:
-    """Return the native times of the layers over a window (see `thalweg.sea.Sea.times`).
+    """Return the native times of the data over a window.
 
     Parameters
     ----------
     layers : sequence of Layer
-        Layers of a sea.
+        Layers in order of priority.
     start, end : float
         Window [s since epoch].
     names : sequence of str, optional
@@ -133,7 +157,9 @@ def stack_times(
     Returns
     -------
     float64 array (T,)
-        Strictly increasing [s since epoch]; empty if no layer covers the window.
+        Strictly increasing [s since epoch]: the union over layers, with one native step beyond
+        each side of the window; formulas add their own uniform steps. Empty if no layer covers the
+        window.
     """
     if names is not None:
         layers = _holders(layers, names)
@@ -147,21 +173,20 @@ def stack_times(
 
 
 def stack_period(layers: Sequence[Layer], names: Sequence[str]) -> tuple[float, float]:
-    """Return the first and last time [s since epoch] at which a layer knows any of the names.
-
-    A layer that holds always makes them infinite; without a layer that holds a name both are NaN.
+    """Return the first and last time at which a layer knows any of the names.
 
     Parameters
     ----------
     layers : sequence of Layer
-        Layers by priority.
+        Layers in order of priority.
     names : sequence of str
-        Canonical variable names.
+        Canonical names.
 
     Returns
     -------
     first, last : float
-        Times [s since 1970-01-01T00:00Z].
+        Times [s since 1970-01-01T00:00Z]: infinite if a layer holds at all times, NaN if no layer
+        holds a name.
     """
     spans = [layer.period or (-np.inf, np.inf) for layer in _holders(layers, names)]
     if not spans:
@@ -169,15 +194,47 @@ def stack_period(layers: Sequence[Layer], names: Sequence[str]) -> tuple[float, 
     return min(s[0] for s in spans), max(s[1] for s in spans)
 
 
-def missing_reason(layers: Sequence[Layer], name: str, time: float, lat: float, lon: float) -> str:
-    """Return why a value is NaN (see `thalweg.sea.Sea.why_missing`).
+def first_mesh(layers: Sequence[Layer]) -> Mesh | None:
+    """Return nodes and triangles of the first layer that has a mesh.
 
     Parameters
     ----------
     layers : sequence of Layer
-        Layers of a sea.
+        Layers in order of priority.
+
+    Returns
+    -------
+    Mesh or None
+        None if no layer has one.
+    """
+    return next((mesh for layer in layers if (mesh := layer.mesh()) is not None), None)
+
+
+def coverage_of_layers(layers: Sequence[Layer]) -> list[Coverage]:
+    """Return where and when each variable of each layer is known.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers in order of priority.
+
+    Returns
+    -------
+    list of Coverage
+        One for each variable of each layer, in order of priority.
+    """
+    return [row for layer in layers for row in layer.coverage()]
+
+
+def missing_reason(layers: Sequence[Layer], name: str, time: float, lat: float, lon: float) -> str:
+    """Return why a value is NaN.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers in order of priority.
     name : str
-        Name of the variable.
+        Canonical name.
     time : float
         Time [s since epoch].
     lat, lon : float
@@ -185,8 +242,9 @@ def missing_reason(layers: Sequence[Layer], name: str, time: float, lat: float, 
 
     Returns
     -------
-    str
-        "variable", "area", "period" or "gap".
+    {"variable", "area", "period", "gap"}
+        No layer holds the variable, covers the position or covers the time; or data are missing
+        there (land, ice, a gap between two times).
     """
     holders = _holders(layers, [name])
     if not holders or not stack_provides(layers, name):

@@ -156,6 +156,11 @@ def repeat_in_time(sea: Sea, start: TimeLike, *, period_h: float = MONTH_H) -> S
     period_h : float
         360 h or 707.974 h; any other after which M2 and S2 are both within 10 degrees.
 
+    Returns
+    -------
+    Sea
+        Fields without a time are kept as they are.
+
     Raises
     ------
     InputError

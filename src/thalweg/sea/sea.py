@@ -2,42 +2,32 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import ArrayLike
-
-from thalweg.core.errors import InputError
-from thalweg.core.given_numbers import shortened_repr
-from thalweg.core.time import TimeLike, parse_time
-from thalweg.core.types import FloatArray
+from thalweg.core.delegation import delegated
+from thalweg.core.time import TimeLike
 from thalweg.deprecated_names import renamed_attributes
-from thalweg.sea import layer_stack, sea_maps
-from thalweg.sea.argument_checks import parse_area, parse_period, parse_time_step
-from thalweg.sea.coverage import Coverage
+from thalweg.sea import freeze, layer_stack, sea_maps
+from thalweg.sea.argument_checks import parse_area
 from thalweg.sea.ensemble_layer import (
     check_not_ensemble,
     ensemble_layers,
     member_count,
     select_member,
 )
-from thalweg.sea.files.file_opener import open_layers
 from thalweg.sea.fill_policies import CALM_VALUES, layers_filled
-from thalweg.sea.freeze import DerivedChannel, freeze_grid_fields, freeze_station_fields
-from thalweg.sea.frozen_fields import GridFields, StationFields
-from thalweg.sea.inspection import Inspection, inspect_layers
+from thalweg.sea.inspection import inspect_layers
 from thalweg.sea.layer import Layer
 from thalweg.sea.models import cyclone_layer
 from thalweg.sea.models.function_layer import FieldFunction, constant_layer, layer_of_functions
+from thalweg.sea.opening import layers_of_sources
 from thalweg.sea.tides.constituents import Constituents
 from thalweg.sea.tides.harmonic_analysis import TideAnalysis
 from thalweg.sea.tides.tidal_layer import tidal_layers
-from thalweg.sea.triangle_mesh import Mesh
+from thalweg.sea.value_sources import sea_fingerprint, sea_provenance
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,9 +51,7 @@ class Sea:
     assumptions: tuple[str, ...] = ()
 
     if not TYPE_CHECKING:
-        __getattr__ = renamed_attributes(
-            knows="provides",
-        )
+        __getattr__ = renamed_attributes(knows="provides")
 
     def __post_init__(self) -> None:
         member_count(self.layers)
@@ -82,14 +70,14 @@ class Sea:
         with the same layout that follow each other in time become one layer; otherwise the first
         file has priority over the second. Of vertical levels the one nearest to the surface is
         used, of wind the one at 10 m. A dimension of members (number, realization, ...) makes an
-        ensemble.
+        ensemble. A file of tidal constituents at three nodes or more, such as ``thalweg tides
+        analyse`` writes for a model run, gives the tide at any date.
 
         Variables are recognised by CF standard name, otherwise by the names that ECMWF, GFS, CMEMS,
-        MET Norway, DHI, 52North, NEMO, COADS and Delft3D-FM use. Units are converted to SI. Speed
-        and direction are converted to components before interpolation. Components along a grid are
-        rotated to true east and north. NEMO's velocities on cell sides are averaged to the cell
-        centres where the file has the positions of both; otherwise they apply at the positions
-        given.
+        MET Norway, DHI, 52North, NEMO, COADS, Delft3D-FM, SCHISM, FVCOM and ROMS use. Units are
+        converted to SI. Speed and direction are converted to components before interpolation.
+        Components along a grid are rotated to true east and north. Velocities of NEMO and ROMS on
+        cell sides are averaged to the cell centres where the file has the positions of both.
 
         Values are linear in time, but a step more than 2.5 times as long as both its neighbours
         is a gap and stays unknown. A single time is valid at that instant only. Fields without a
@@ -120,7 +108,7 @@ class Sea:
             If a file is damaged, truncated, not data, ambiguous, in impossible units, or has a
             layout that cannot be used (points, lines, climatologies); the message gives the reason.
         """
-        return cls(tuple(open_layers(paths, mapping, draught_m)))
+        return cls(layers_of_sources(paths, mapping, draught_m))
 
     @classmethod
     def ensemble(
@@ -158,8 +146,7 @@ class Sea:
             return cls.open(*several, mapping=mapping, draught_m=draught_m)
 
         seas = [one if isinstance(one, Sea) else opened(one) for one in members]
-        assumptions = tuple(dict.fromkeys(text for sea in seas for text in sea.assumptions))
-        return cls(ensemble_layers([sea.layers for sea in seas]), assumptions)
+        return cls(ensemble_layers([sea.layers for sea in seas]), _assumptions_of(seas))
 
     @classmethod
     def from_functions(
@@ -203,18 +190,7 @@ class Sea:
             If one half of a vector is missing, a variable is given twice, or (when sampled) a
             function returns an array of another shape.
         """
-        if not isinstance(functions, Mapping):
-            raise InputError(
-                f"The functions are {shortened_repr(functions)}, which is not a mapping.",
-                "A mapping gives a function f(time_s, lat, lon) for each standard name.",
-                "Write it as {'wind_speed': f, 'wind_from_direction': g}.",
-            )
-        layer = layer_of_functions(
-            dict(functions),
-            area=parse_area(area),
-            period=parse_period(period),
-            time_step=parse_time_step(time_step),
-        )
+        layer = layer_of_functions(functions, area=area, period=period, time_step=time_step)
         return cls((layer,))
 
     @classmethod
@@ -223,6 +199,11 @@ class Sea:
 
         Waves of height zero travel north with a placeholder peak period of 8 s, so that models
         that use direction and period can be evaluated. Water level and depth are unknown.
+
+        Returns
+        -------
+        Sea
+            Its ``assumptions`` state that it is calm.
         """
         layer = constant_layer(CALM_VALUES, "calm")
         return cls((layer,), ("no wind, waves and currents anywhere",))
@@ -238,14 +219,11 @@ class Sea:
     ) -> Sea:
         """Return wind and waves of a real cyclone, **modelled** from its best track.
 
-        The track (6-hourly positions, winds and pressures of Hurricane Danielle, 24 August to
-        8 September 1998, which followed the route between New York and the English Channel) is
-        observed; the fields are not: Holland (1980) gradient wind with radius of maximum wind by
-        Willoughby et al. (2006), reduced to a 10-min mean at 10 m, rotated by Bretschneider's
-        inflow angle, asymmetric by Lin and Chavas (2012); waves by the equivalent fetch of Young
-        and Vinoth (2013), scaled with the local wind and travelling with it. Beyond 1200 km the
-        ambient sea is uniform. There are no currents and no land: for demonstrations and tests,
-        not for navigation.
+        The track of Hurricane Danielle (24 August to 8 September 1998, along the route between New
+        York and the English Channel) is observed. The fields are not: the wind follows Holland
+        (1980), the waves Young and Vinoth (2013), with the formulas of
+        `thalweg.sea.models.cyclone_formulas`. Beyond 1200 km the ambient sea is uniform. There are
+        no currents and no land: for demonstrations and tests, not for navigation.
 
         Parameters
         ----------
@@ -319,9 +297,25 @@ class Sea:
 
     @classmethod
     def layered(cls, *seas: Sea) -> Sea:
-        """Return one sea from several, in order of priority."""
+        """Return one sea from several, in order of priority.
+
+        Parameters
+        ----------
+        *seas : Sea
+            The first one that knows a value gives it.
+
+        Returns
+        -------
+        Sea
+            With the layers and the assumptions of all.
+
+        Raises
+        ------
+        InputError
+            If several are ensembles of different sizes.
+        """
         layers = tuple(layer for sea in seas for layer in sea.layers)
-        return cls(layers, tuple(dict.fromkeys(a for sea in seas for a in sea.assumptions)))
+        return cls(layers, _assumptions_of(seas))
 
     def __add__(self, other: Sea) -> Sea:
         return Sea.layered(self, other) if isinstance(other, Sea) else NotImplemented
@@ -334,8 +328,11 @@ class Sea:
         **policies
             ``currents`` and ``wind``: 0.0 or (east, north) [m/s]; ``waves``: significant height
             [m] (0.0, or a height with direction north and period 8 s), or ``"wind"`` for the waves
-            that the known wind raises (`thalweg.sea.models.wind_sea.carter_1982`); ``water_level``
-            [m]; ``ice`` [fraction]. The value holds wherever and whenever no layer knows one.
+            that the known wind raises (`thalweg.sea.models.wind_sea.carter_1982`), or
+            ``"head_seas"`` for waves of known height without direction or period
+            (`thalweg.sea.models.coast_fills.HeadSeasLayer`); ``water_level`` [m]; ``ice`` [-].
+            The value holds where no layer knows one. For any of them ``"nearest:25"``
+            takes the nearest known value within 25 nm, for cells without data next to land.
 
         Returns
         -------
@@ -363,6 +360,11 @@ class Sea:
         index : int
             From 0 to ``members - 1``.
 
+        Returns
+        -------
+        Sea
+            The layers that all members share, and those of this member.
+
         Raises
         ------
         InputError
@@ -370,192 +372,29 @@ class Sea:
         """
         return replace(self, layers=select_member(self.layers, index))
 
-    def check_single(self) -> None:
-        """Raise `InputError` if the sea is an ensemble, where a single sea is needed."""
-        check_not_ensemble(self.layers)
+    check_single = delegated(check_not_ensemble, "layers")
 
     @property
     def variables(self) -> frozenset[str]:
         """Canonical names of all variables of the layers (vectors as components)."""
         return layer_stack.stack_variables(self.layers)
 
-    def provides(self, name: str) -> bool:
-        """Return whether a layer holds the variable, or the variables it is derived from."""
-        return layer_stack.stack_provides(self.layers, name)
+    provides = delegated(layer_stack.stack_provides, "layers")
+    sample = delegated(layer_stack.sample_stack, "layers")
+    series = delegated(layer_stack.series_of_stack, "layers")
+    why_missing = delegated(layer_stack.missing_reason, "layers")
+    period_of = delegated(layer_stack.stack_period, "layers")
+    times = delegated(layer_stack.stack_times, "layers")
+    mesh = delegated(layer_stack.first_mesh, "layers")
+    coverage = delegated(layer_stack.coverage_of_layers, "layers")
+    freeze_stations = delegated(freeze.freeze_station_fields, "layers")
+    freeze_grid = delegated(freeze.freeze_grid_fields, "layers")
+    describe = delegated(inspect_layers, "layers")
+    draw = delegated(sea_maps.draw_maps, "layers")
+    provenance = delegated(sea_provenance)
+    fingerprint = delegated(sea_fingerprint)
 
-    def coverage(self) -> list[Coverage]:
-        """Return where and when each variable of each layer is known."""
-        return [row for layer in self.layers for row in layer.coverage()]
 
-    def sample(
-        self, names: Sequence[str], time: ArrayLike, lat: ArrayLike, lon: ArrayLike
-    ) -> dict[str, FloatArray]:
-        """Return values at points, linear in time and space.
-
-        Parameters
-        ----------
-        names : sequence of str
-            Canonical names, or CF names of a vector's speed and direction [deg].
-        time : array_like
-            Seconds since 1970-01-01T00:00Z.
-        lat, lon : array_like
-            Positions [deg]; all three are broadcast together.
-
-        Returns
-        -------
-        dict of str to float64 array
-            One array of the broadcast shape per name, in SI units; NaN where unknown (see
-            `why_missing`).
-
-        Raises
-        ------
-        InputError
-            If the sea is an ensemble (see `member`).
-        """
-        return layer_stack.sample_stack(self.layers, names, time, lat, lon)
-
-    def series(
-        self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
-    ) -> dict[str, FloatArray]:
-        """Return values (S, T) at stations (S,) for every time (T,); faster than `sample`."""
-        return layer_stack.series_of_stack(self.layers, names, times, lat, lon)
-
-    def why_missing(self, name: str, time: float, lat: float, lon: float) -> str:
-        """Return why a value is NaN: "variable", "area", "period" or "gap" (missing data)."""
-        return layer_stack.missing_reason(self.layers, name, time, lat, lon)
-
-    def period_of(self, names: Sequence[str]) -> tuple[float, float]:
-        """Return first and last time [s] at which a layer knows any name; infinite if always."""
-        return layer_stack.stack_period(self.layers, names)
-
-    def times(self, start: float, end: float, *, names: Sequence[str] | None = None) -> FloatArray:
-        """Return the native times of the data over a window.
-
-        Parameters
-        ----------
-        start, end : float
-            Window [s since epoch].
-        names : sequence of str, optional
-            Only layers that hold these; all by default.
-
-        Returns
-        -------
-        float64 array (T,)
-            Strictly increasing: the union over layers, with one native step beyond each side of
-            the window; formulas add their own uniform steps. Empty if no layer covers the window.
-        """
-        return layer_stack.stack_times(self.layers, start, end, names=names)
-
-    def mesh(self) -> Mesh | None:
-        """Return nodes and triangles of the first layer that has a mesh, if any."""
-        return next((m for layer in self.layers if (m := layer.mesh()) is not None), None)
-
-    def provenance(self) -> dict[str, Any]:
-        """Return plain facts about every layer and assumption, for JSON."""
-        return {
-            "layers": [dict(layer.provenance()) for layer in self.layers],
-            "assumptions": list(self.assumptions),
-            "fingerprint": self.fingerprint(),
-        }
-
-    def fingerprint(self) -> str:
-        """Return a hash that changes when a file, its variables or an assumption changes."""
-        facts = [dict(layer.provenance()) for layer in self.layers]
-        text = json.dumps([facts, self.assumptions], sort_keys=True, default=str)
-        return hashlib.sha256(text.encode()).hexdigest()[:32]
-
-    def freeze_stations(
-        self,
-        lat: ArrayLike,
-        lon: ArrayLike,
-        start: float,
-        end: float,
-        channels: Sequence[int],
-        *,
-        extra: Mapping[int, DerivedChannel] | None = None,
-    ) -> StationFields:
-        """Return the sea at stations for kernels.
-
-        Parameters
-        ----------
-        lat, lon : array_like (S,)
-            Stations [deg].
-        start, end : float
-            Window [s since epoch]; frozen times reach one native step beyond it.
-        channels : sequence of int
-            Channels of `thalweg.kernels.codes`; those the sea lacks get index -1.
-        extra : mapping of int to callable, optional
-            Channels computed as ``f(sampled, time, lat, lon) -> array``, where ``sampled`` maps
-            any variable of the sea to its values and all arrays are (stations, times).
-
-        Raises
-        ------
-        OutsidePeriodError
-            If the data have no time in the window.
-        """
-        stations = np.asarray(lat, np.float64), np.asarray(lon, np.float64)
-        window = (float(start), float(end))
-        return freeze_station_fields(
-            self.layers, *stations, window=window, channels=channels, extra=extra or {}
-        )
-
-    def freeze_grid(
-        self,
-        south: float,
-        north: float,
-        west: float,
-        east: float,
-        start: float,
-        end: float,
-        channels: Sequence[int],
-        *,
-        spacing_deg: float,
-        extra: Mapping[int, DerivedChannel] | None = None,
-    ) -> GridFields:
-        """Return the sea on a regular grid for kernels; other arguments as in `freeze_stations`.
-
-        Parameters
-        ----------
-        south, north, west, east : float
-            Box [deg]; ``east < west`` spans the antimeridian.
-        spacing_deg : float
-            Largest spacing [deg]; it is reduced so that the grid ends on the box.
-        """
-        return freeze_grid_fields(
-            self.layers,
-            (float(south), float(north), float(west), float(east)),
-            window=(float(start), float(end)),
-            channels=channels,
-            spacing_deg=float(spacing_deg),
-            extra=extra or {},
-        )
-
-    def describe(self) -> Inspection:
-        """Return the variables recognised and ignored in the files, coverage and gaps."""
-        return inspect_layers(self.layers)
-
-    def draw(
-        self,
-        path: str | os.PathLike[str],
-        *,
-        time: TimeLike | None = None,
-        area: tuple[float, float, float, float] | None = None,
-        coastline: Sequence[tuple[ArrayLike, ArrayLike]] = (),
-    ) -> None:
-        """Draw a map of each main quantity to one PNG file.
-
-        Parameters
-        ----------
-        path : path-like
-            File to write.
-        time : time, optional
-            By default the time when the waves (otherwise the wind, the current) are largest.
-        area : tuple of float, optional
-            (south, north, west, east) [deg]; by default that of the smallest layer of files.
-        coastline : sequence of (lat, lon), optional
-            Lines [deg] drawn on top.
-        """
-        when = None if time is None else parse_time(time)
-        box = None if area is None else parse_area(area)
-        lines = [(np.asarray(a, np.float64), np.asarray(o, np.float64)) for a, o in coastline]
-        sea_maps.draw_maps(self.layers, path, time=when, area=box, coastline=lines)
+def _assumptions_of(seas: Sequence[Sea]) -> tuple[str, ...]:
+    """Return the assumptions of all seas, each once."""
+    return tuple(dict.fromkeys(text for sea in seas for text in sea.assumptions))

@@ -9,13 +9,15 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import save_figure
-from thalweg.core.time import format_time
+from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
+from thalweg.sea.argument_checks import parse_area
 from thalweg.sea.ensemble_layer import check_not_ensemble
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.layer import Layer
@@ -31,6 +33,7 @@ from thalweg.sea.layer_stack import (
 RASTER_POINTS: Final = 320  #: raster points along the longer side of a panel
 ARROWS_ALONG_SIDE: Final = 20  #: arrows along the longer side
 TRIAL_TIMES: Final = 25  #: times compared to find the largest values
+SMALLEST_LINE: Final = 500  #: lines smaller than this part of the longer side are not drawn
 TEXT_COLOUR, BACKGROUND_COLOUR, UNKNOWN_COLOUR = "#1f2a37", "#ffffff", "#e3e6ea"
 
 CoastlinePart = tuple[FloatArray, FloatArray]
@@ -78,23 +81,23 @@ def draw_maps(
     layers: Sequence[Layer],
     path: str | os.PathLike[str],
     *,
-    time: float | None = None,
-    area: BoundingBox | None = None,
-    coastline: Sequence[CoastlinePart] = (),
+    time: TimeLike | None = None,
+    area: tuple[float, float, float, float] | BoundingBox | None = None,
+    coastline: Sequence[tuple[ArrayLike, ArrayLike]] = (),
 ) -> None:
-    """Draw a map of each main quantity of a sea at one time to a PNG file (see `Sea.draw`).
+    """Draw a map of each main quantity to one PNG file.
 
     Parameters
     ----------
     layers : sequence of Layer
         Layers in order of priority.
     path : path-like
-        PNG file to write.
-    time : float, optional
-        Time [s since epoch]; by default that of the largest values.
-    area : BoundingBox, optional
-        By default the box of the smallest layer of files.
-    coastline : sequence of (lat, lon)
+        File to write.
+    time : time, optional
+        By default the time when the waves (otherwise the wind, the current) are largest.
+    area : tuple of float or BoundingBox, optional
+        (south, north, west, east) [deg]; by default that of the smallest layer of files.
+    coastline : sequence of (lat, lon), optional
         Lines [deg] drawn on top.
 
     Raises
@@ -113,12 +116,13 @@ def draw_maps(
             f"It holds {', '.join(sorted(stack_variables(layers))) or 'nothing'}.",
             "Open a file with wind, waves, currents, level or depth.",
         )
-    area = area or _map_area(layers)
-    lat, lon = _raster_axes(area, RASTER_POINTS)
-    time = _time_of_largest_values(layers, panels, lat, lon) if time is None else time
+    box = map_area(layers) if area is None else parse_area(area)
+    lat, lon = _raster_axes(box, RASTER_POINTS)
+    when = _time_of_largest_values(layers, panels, lat, lon) if time is None else parse_time(time)
+    lines = [(np.asarray(a, np.float64), np.asarray(o, np.float64)) for a, o in coastline]
     columns = min(len(panels), 3 if len(panels) > 4 else 2)
     rows = math.ceil(len(panels) / columns)
-    shape = _aspect_ratio(area)
+    shape = _aspect_ratio(box)
     width = 5.2 * columns
     height = (4.2 * shape + 0.75) * rows + 0.45
     figure = Figure(
@@ -127,14 +131,13 @@ def draw_maps(
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns, squeeze=False).ravel()
     for axis, panel in zip(axes, panels):
-        _draw_panel(figure, axis, layers, panel, (time, lat, lon), area)
-        for line in coastline:
-            _draw_coastline(axis, line, area)
+        _draw_panel(figure, axis, layers, panel, (when, lat, lon), box)
+        _draw_coastline(axis, lines, box)
     for axis in axes[len(panels) :]:
         axis.set_axis_off()
     sources = ", ".join(dict.fromkeys(row.source for layer in layers for row in layer.coverage()))
     title = (
-        f"{format_time(time).replace('T', '  ').replace(':00Z', ' UTC')}     {_shortened(sources)}"
+        f"{format_time(when).replace('T', '  ').replace(':00Z', ' UTC')}     {_shortened(sources)}"
     )
     figure.suptitle(title, x=0.012, ha="left", fontsize=10, color=TEXT_COLOUR)
     save_figure(figure, path, format="png")
@@ -144,7 +147,7 @@ def _shortened(text: str) -> str:
     return text if len(text) <= 90 else text[:87] + "..."
 
 
-def _map_area(layers: Sequence[Layer]) -> BoundingBox:
+def map_area(layers: Sequence[Layer]) -> BoundingBox:
     """Return the box of the smallest layer of files; of all layers if there are only formulas."""
     boxes = [layer.area for layer in layers if isinstance(layer, GridLayer)]
     boxes = boxes or [layer.area for layer in layers]
@@ -282,12 +285,19 @@ def _draw_arrows(
     )  # fmt: skip
 
 
-def _draw_coastline(axis: Any, line: CoastlinePart, area: BoundingBox) -> None:
-    lat, lon = line
-    middle = 0.5 * (area.west + area.east)
-    lon = (np.asarray(lon) - middle + 180.0) % 360.0 - 180.0 + middle
-    broken = np.where(np.abs(np.diff(lon, prepend=lon[:1])) > 180.0, np.nan, lon)
-    axis.plot(broken, lat, color="#6b7280", linewidth=0.6)
+def _draw_coastline(axis: Any, lines: Sequence[CoastlinePart], area: BoundingBox) -> None:
+    """Draw lines as one artist; those too small to be seen are left out."""
+    from matplotlib.collections import LineCollection
+
+    smallest = max(area.north - area.south, area.east - area.west) / SMALLEST_LINE
+    middle, parts = 0.5 * (area.west + area.east), []
+    for lat, lon in lines:
+        if lat.size < 2 or (np.ptp(lat) < smallest and np.ptp(lon) < smallest):
+            continue
+        lon = (lon - middle + 180.0) % 360.0 - 180.0 + middle
+        cuts = np.flatnonzero(np.abs(np.diff(lon)) > 180.0) + 1
+        parts += np.split(np.column_stack([lon, lat]), cuts)
+    axis.add_collection(LineCollection(parts, colors="#6b7280", linewidths=0.6), autolim=False)
 
 
 def _degree_label(value: float, letters: str) -> str:

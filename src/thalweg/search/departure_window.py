@@ -107,8 +107,8 @@ def best_departure(
                 network, given, start=start, goal=goal, depart=depart,
                 arrive_by=arrive_by,
             )  # fmt: skip
-        asked = ArrivalQuery(start, goal, depart, objective, wait, arrive_by, method)
-        return solve_earliest_arrival(network, given, asked)
+        query = ArrivalQuery(start, goal, depart, objective, wait, arrive_by, method)
+        return solve_earliest_arrival(network, given, query)
 
     most = _MAX_DEPARTURES_RESTRICTED_WAITING if restricted else _MAX_DEPARTURES
     departures = _departures(given, first, last, window.step, most)

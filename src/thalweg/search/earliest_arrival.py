@@ -131,9 +131,9 @@ def earliest_arrival(
     sea is.
     """
     network = ship_on_network.network
-    asked = ArrivalQuery(start, goal, depart, objective, wait, arrive_by, method)
-    check_query(network.n_nodes, asked)
-    node = asked.goal_node
+    arrival_query = ArrivalQuery(start, goal, depart, objective, wait, arrive_by, method)
+    check_query(network.n_nodes, arrival_query)
+    node = arrival_query.goal_node
     restricted = wait and node >= 0 and objective == "time" and waiting_is_restricted(network)
     ends = (start, node) if wait and not restricted else None
     given = make_search_problem(ship_on_network, ends=ends)
@@ -142,11 +142,11 @@ def earliest_arrival(
             network, given, start=int(start), goal=node, depart=float(depart),
             arrive_by=arrive_by,
         )  # fmt: skip
-    return solve_earliest_arrival(network, given, asked)
+    return solve_earliest_arrival(network, given, arrival_query)
 
 
 def solve_earliest_arrival(
-    network: Network, given: SearchProblem, asked: ArrivalQuery, *, shortened: float = 1.0
+    network: Network, given: SearchProblem, arrival_query: ArrivalQuery, *, shortened: float = 1.0
 ) -> SearchResult:
     """Find the earliest arrival for a prepared problem; see `earliest_arrival`.
 
@@ -154,53 +154,53 @@ def solve_earliest_arrival(
     ----------
     network : Network
     given : SearchProblem
-    asked : ArrivalQuery
+    arrival_query : ArrivalQuery
     shortened : float
         Least ratio of an edge length to the geodesic between its nodes.
     """
-    check_query(network.n_nodes, asked)
-    goal, by_distance = asked.goal_node, asked.objective == "distance"
+    check_query(network.n_nodes, arrival_query)
+    goal, by_distance = arrival_query.goal_node, arrival_query.objective == "distance"
     station = given.network.station
     slowness = ROUNDING_FACTOR / given.fastest
-    soonest = ROUNDING_FACTOR / max(given.fastest, canal_speed(network))
+    least_time_per_metre = ROUNDING_FACTOR / max(given.fastest, canal_speed(network))
     away = np.zeros(len(station))
     lat, lon = network.stations.lat, network.stations.lon
-    if goal >= 0 and asked.method == "astar":
+    if goal >= 0 and arrival_query.method == "astar":
         to = float(lat[goal]), float(lon[goal])
         away = shortened * distance_bounds(network.lat, network.lon, *to)[station]
     query = SearchQuery(
-        start=int(asked.start),
+        start=int(arrival_query.start),
         goal=goal,
-        depart=float(asked.depart),
-        horizon=math.inf if asked.arrive_by is None else float(asked.arrive_by),
+        depart=float(arrival_query.depart),
+        horizon=math.inf if arrival_query.arrive_by is None else float(arrival_query.arrive_by),
         by_distance=by_distance,
-        wait=bool(asked.wait),
+        wait=bool(arrival_query.wait),
         slowness=slowness,
-        per_metre=ROUNDING_FACTOR if by_distance else soonest,
+        per_metre=ROUNDING_FACTOR if by_distance else least_time_per_metre,
     )
     labels, memory = new_labels(len(station)), new_search_workspace(len(station))
     label_setting(given.network, given.sea, given.ship, query, away, labels, memory)
     return _result(network, station, query, labels, memory)
 
 
-def check_query(n_nodes: int, asked: ArrivalQuery) -> None:
+def check_query(n_nodes: int, arrival_query: ArrivalQuery) -> None:
     """Raise `InputError` unless the nodes, departure, objective and method of a query exist."""
-    start, goal = asked.start, asked.goal_node
+    start, goal = arrival_query.start, arrival_query.goal_node
     if not (0 <= start < n_nodes and -1 <= goal < n_nodes):
         raise InputError(
             f"A search from node {start} to node {goal} is not possible.",
             f"The network has nodes 0 to {n_nodes - 1}.",
             "Give nodes of this network.",
         )
-    if not math.isfinite(asked.depart):
+    if not math.isfinite(arrival_query.depart):
         raise InputError(
-            f"The departure {asked.depart} is not a time.",
+            f"The departure {arrival_query.depart} is not a time.",
             "Departures are finite numbers of seconds since 1970-01-01T00:00Z.",
             "Give a departure.",
         )
     for kind, word, known in (
-        ("objective", asked.objective, ("time", "distance")),
-        ("method", asked.method, ("astar", "dijkstra")),
+        ("objective", arrival_query.objective, ("time", "distance")),
+        ("method", arrival_query.method, ("astar", "dijkstra")),
     ):
         if word not in known:
             raise InputError(

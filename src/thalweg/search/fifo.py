@@ -107,6 +107,11 @@ def fifo_report(
     ----------
     ship_on_network, departures, edges
         As in `sampled_arrivals`.
+
+    Returns
+    -------
+    FifoReport
+        Largest gain by waiting [s], its edge, and shares of edges and departures.
     """
     arrivals, _ = sampled_arrivals(ship_on_network, departures=departures, edges=edges)
     waited = earliest_arrivals_with_waiting(arrivals)

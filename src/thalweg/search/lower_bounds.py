@@ -218,6 +218,6 @@ def network_bound(
     )
     ship = given.ship._replace(limits=Limits(*given.ship.limits).relaxed(_LIMIT_RELAXATION).array)
     relaxed = given._replace(network=shorter, ship=ship)
-    asked = ArrivalQuery(start, goal, depart, objective)
-    result = solve_earliest_arrival(network, relaxed, asked, shortened=kappa)
+    query = ArrivalQuery(start, goal, depart, objective)
+    result = solve_earliest_arrival(network, relaxed, query, shortened=kappa)
     return LowerBound(result.cost if result.found else 0.0, kind, kappa, result.path)

@@ -53,7 +53,19 @@ class PreparedNetwork:
 
     @classmethod
     def prepare(cls, network: Network, fields: StationFields) -> PreparedNetwork:
-        """Gather what searches read.
+        """Gather the arrays that searches read.
+
+        Parameters
+        ----------
+        network : Network
+            The network.
+        fields : StationFields
+            The sea frozen at its stations.
+
+        Returns
+        -------
+        PreparedNetwork
+            For any ship and departure in the period of the fields.
 
         Raises
         ------
@@ -112,7 +124,22 @@ class PreparedNetwork:
     def tidal_states(
         self, ship: ShipArrays, ends: tuple[int, int], wait: bool
     ) -> tidal_intervals.TidalStates:
-        """Return the times afloat of every node; start and goal stay single."""
+        """Return the periods in which a ship may wait at every node; start and goal have one each.
+
+        Parameters
+        ----------
+        ship : ShipArrays
+            With the required depth.
+        ends : tuple of int
+            Start and goal node.
+        wait : bool
+            Whether the ship may wait; otherwise every node has one state.
+
+        Returns
+        -------
+        TidalStates
+            For each node one or more periods [s].
+        """
         count = len(self.network.can_wait)
         required = float(ship.limits[LIMIT_REQUIRED_DEPTH])
         index = self.sea.channel_index
@@ -136,7 +163,24 @@ class PreparedNetwork:
     def time_bounds(
         self, ship: ShipArrays, goal: int, fastest: float, field: bool
     ) -> kernel.TravelTimeBounds:
-        """Return lower bounds of the time to the goal and of every edge [s]."""
+        """Return lower bounds of the time to the goal and of every edge.
+
+        Parameters
+        ----------
+        ship : ShipArrays
+            Table and limits.
+        goal : int
+            Goal node.
+        fastest : float
+            Greatest speed through water [m/s].
+        field : bool
+            Whether the speed is a field of place and time.
+
+        Returns
+        -------
+        TravelTimeBounds
+            Times [s] by node and by edge.
+        """
         caps = np.full(1, fastest) if field else _speed_caps(ship, fastest)
         times = np.empty(len(self.tails))
         required = float(ship.limits[LIMIT_REQUIRED_DEPTH])

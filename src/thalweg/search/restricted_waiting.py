@@ -126,10 +126,10 @@ class WaitingSearch:
             lat, lon = self.network.lat, self.network.lon
             bounds = distance_bounds(lat, lon, float(lat[goal]), float(lon[goal]))
             away[: self.network.n_nodes] = bounds
-        soonest = ROUNDING_FACTOR / max(self.given.fastest, canal_speed(self.network))
+        least_time_per_metre = ROUNDING_FACTOR / max(self.given.fastest, canal_speed(self.network))
         query = SearchQuery(
             start=start, goal=goal, depart=time, horizon=horizon, by_distance=False, wait=wait,
-            slowness=ROUNDING_FACTOR / self.given.fastest, per_metre=soonest,
+            slowness=ROUNDING_FACTOR / self.given.fastest, per_metre=least_time_per_metre,
         )  # fmt: skip
         labels, memory = new_labels(count), new_search_workspace(count)
         label_setting(arrays, self.given.sea, self.given.ship, query, away, labels, memory)

@@ -107,15 +107,50 @@ class Conditions(Mapping[str, FloatArray]):
         return f"Conditions({', '.join(self._values)}; shape {self._shape})"
 
     def get(self, name: str, default: Any = None) -> Any:
-        """Return a condition, or the default when it is not there."""
+        """Return a condition, or a default if it is not there.
+
+        Parameters
+        ----------
+        name : str
+            Name of the condition.
+        default : optional
+            What is returned in its place.
+
+        Returns
+        -------
+        float64 array
+            In SI units, or the default.
+        """
         return self._values.get(name, default)
 
     def with_values(self, **more: ArrayLike) -> Conditions:
-        """Return new conditions with some values added or replaced."""
+        """Return conditions with some values added or replaced.
+
+        Parameters
+        ----------
+        **more : array_like
+            Values by name, in SI units.
+
+        Returns
+        -------
+        Conditions
+            Otherwise unchanged.
+        """
         return Conditions({**self._values, **more})
 
     def with_default(self, **defaults: ArrayLike) -> Conditions:
-        """Return conditions with values added for names that are not there yet."""
+        """Return conditions with values added for names that are not there yet.
+
+        Parameters
+        ----------
+        **defaults : array_like
+            Values by name, in SI units.
+
+        Returns
+        -------
+        Conditions
+            Values that were there are kept.
+        """
         new = {name: value for name, value in defaults.items() if name not in self}
         return self.with_values(**new) if new else self
 

@@ -12,6 +12,7 @@ from thalweg.core.objective import Consumption, LegPrices, Objective
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, MEGAWATT_HOUR, TONNE
 from thalweg.ship.conditions import Conditions
+from thalweg.ship.models.held_speed_model import HeldSpeedModel
 from thalweg.ship.tables.tabulate import tabulate_cubed_speed
 
 if TYPE_CHECKING:
@@ -77,6 +78,9 @@ def leg_prices(objective: Objective, ship: Ship, terms: FuelTerms | None = None)
         cubed = price * terms.cubed_speed_price
         second = price * terms.time_price + hourly
         return LegPrices(cubed, cubed, second, 0.0, price, "cubed_speed")
+    if name == "co2" and terms.emits_by_speed:
+        cubed = price * terms.cubed_speed_co2 / TONNE
+        return LegPrices(cubed, cubed, hourly, consumption="cubed_speed")
     inside, outside = (price * terms.per_kg(name, inside=within) for within in (True, False))
     if not (math.isfinite(inside) and math.isfinite(outside)):
         raise _unknown_price_error(name, ship)
@@ -85,6 +89,23 @@ def leg_prices(objective: Objective, ship: Ship, terms: FuelTerms | None = None)
         return LegPrices(inside, outside, second, ship.waiting_fuel_rate * outside, price)
     inside, outside = inside / TONNE, outside / TONNE
     return LegPrices(inside, outside, hourly, ship.waiting_fuel_rate * outside)
+
+
+def engine_order(ship: Ship) -> str:
+    """Return what the engine of a ship holds on a leg, for results.
+
+    Returns
+    -------
+    str
+        ``"constant power"`` (weather changes the speed), ``"constant speed"`` (through water, up to
+        the largest power of the engines), or ``"speed of the model"`` for ships without settings.
+    """
+    if ship.speed_field is not None:
+        return "speed of the model"
+    if isinstance(ship.model, HeldSpeedModel):
+        return "constant speed"
+    orders = getattr(getattr(ship.model, "base", ship.model), "orders", None)
+    return "constant speed" if orders is not None and orders.kind == "speed" else "constant power"
 
 
 def consumption_table(ship: Ship, consumption: Consumption) -> PerformanceTable:
@@ -126,10 +147,29 @@ def calm_water_consumption(ship: Ship, consumption: Consumption) -> FloatArray:
     if consumption == "cubed_speed":
         return np.asarray(ship.speeds, float) ** 3
     conditions = Conditions({name: v for name, v in _CALM_CONDITIONS.items() if name in ship.reads})
-    power, fuel = ship.power_and_fuel(conditions, np.arange(len(ship.speeds)))
-    if consumption == "energy":
-        return np.asarray(power, float) + ship.hotel_power
-    return np.asarray(fuel, float)
+    settings = np.arange(len(ship.speeds))
+    found = ship.power_and_fuel(conditions, settings)
+    power, fuel = (_of_settings(ship, values, settings.shape) for values in found)
+    return power + ship.hotel_power if consumption == "energy" else fuel
+
+
+def _of_settings(ship: Ship, values: object, shape: tuple[int, ...]) -> FloatArray:
+    """Return values of a model by setting; a single one holds for all settings.
+
+    Raises
+    ------
+    InputError
+        If a model of a plug-in returns another shape.
+    """
+    array = np.asarray(values, float)
+    if array.shape not in ((), shape):
+        raise InputError(
+            f"The model of {ship.name!r} returns power or fuel of shape {array.shape} for "
+            f"{shape[0]} settings.",
+            "It returns one value per setting and condition.",
+            "Correct the model; thalweg.ship.check_ship_model finds such faults.",
+        )
+    return np.array(np.broadcast_to(array, shape))
 
 
 def _unknown_price_error(name: str, ship: Ship) -> InputError:
@@ -145,7 +185,8 @@ def _unknown_price_error(name: str, ship: Ship) -> InputError:
     return InputError(
         f"The objective is the CO2 of {ship.name!r}, but the carbon factor of its fuel is not "
         "known.",
-        "The carbon factor comes from fuel.type or fuel.carbon_factor in the ship file.",
+        "It comes from fuel.type, fuel.carbon_factor or "
+        "costs.co2_g_per_second_per_cubed_speed in the ship file.",
         "Name the fuel there, or choose the objective 'fuel'.",
         field="objective",
     )

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
 from numbers import Real
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +14,7 @@ from numpy.typing import ArrayLike
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
 from thalweg.core.units import DAY, TONNE
+from thalweg.ship.methods.engine.european_charges import EuropeanCharges
 from thalweg.ship.methods.engine.fuel_properties import (
     Fuel,
     co2_mass,
@@ -21,7 +23,8 @@ from thalweg.ship.methods.engine.fuel_properties import (
 )
 from thalweg.ship.schema.ship_schema import CostsSection, ShipFile
 
-FUEL_QUANTITIES: Final = ("fuel", "cost", "co2")
+FUEL_QUANTITIES: Final = ("fuel", "cost", "co2", "charges")
+_GRAMS: Final = 1000.0  #: in a kilogram
 _SHARE_NOISE: Final = 1e-9  #: of shares that are quotients of lengths
 
 
@@ -48,6 +51,13 @@ class FuelTerms:
     cubed_speed_price : float
         Price of a second of sailing per cubed ordered speed [currency/s per (m/s)^3], lambda_f of
         van Halem (2019); NaN when unknown. It is used where fuel has no price.
+    cubed_speed_co2 : float
+        CO2 of a second of sailing per cubed ordered speed [kg/s per (m/s)^3], van Halem (2019),
+        eq. 3.5; NaN when unknown. It is used where the CO2 of the fuel is unknown.
+    sources : mapping of str to str
+        Where the prices of ``fuel`` and ``time`` come from: "ship file" or "request".
+    charges : EuropeanCharges, optional
+        Emission allowances and FuelEU penalty, which add to the cost of fuel.
     """
 
     outside: Fuel | None
@@ -59,11 +69,49 @@ class FuelTerms:
     currency: str = ""
     time_price: float = 0.0
     cubed_speed_price: float = math.nan
+    cubed_speed_co2: float = math.nan
+    sources: Mapping[str, str] = field(default_factory=dict)
+    charges: EuropeanCharges | None = None
 
     @property
     def by_speed(self) -> bool:
         """Whether the cost of sailing follows the cubed speed, since fuel has no price."""
         return math.isnan(self.price_outside) and not math.isnan(self.cubed_speed_price)
+
+    @property
+    def emits_by_speed(self) -> bool:
+        """Whether CO2 follows the cubed speed, since the carbon factor of the fuel is unknown."""
+        return math.isnan(self.carbon_outside) and not math.isnan(self.cubed_speed_co2)
+
+    @property
+    def any_price(self) -> bool:
+        """Whether fuel, time or cubed speed has a price."""
+        return not math.isnan(self.price_outside) or self.by_speed or self.time_price > 0.0
+
+    def prices(self) -> dict[str, Any]:
+        """Return the prices with their sources as plain data; None where unknown.
+
+        Returns
+        -------
+        dict
+            ``currency``, and ``{"value", "source"}`` of ``fuel_per_t``, ``fuel_in_eca_per_t``,
+            ``time_per_day`` and, where it counts, ``per_second_per_cubed_speed``.
+        """
+        values = {
+            "fuel_per_t": (self.price_outside * TONNE, "fuel"),
+            "fuel_in_eca_per_t": (self.price_inside * TONNE, "fuel"),
+            "time_per_day": (self.time_price * DAY, "time"),
+        }
+        if self.by_speed:
+            values["per_second_per_cubed_speed"] = (self.cubed_speed_price, "time")
+        found: dict[str, Any] = {"currency": self.currency or "USD"}
+        if self.charges is not None:
+            found["european_charges"] = {**asdict(self.charges), "source": "request"}
+        for name, (value, kind) in values.items():
+            known = math.isfinite(value)
+            source = self.sources.get(kind, "ship file") if known else None
+            found[name] = {"value": round(value, 9) if known else None, "source": source}
+        return found
 
     @property
     def carbon_outside(self) -> float:
@@ -89,8 +137,9 @@ class FuelTerms:
 
         Parameters
         ----------
-        what : {"fuel", "cost", "co2"}
-            Mass burnt [kg], money [``currency``] or CO2 [kg].
+        what : {"fuel", "cost", "co2", "charges"}
+            Mass burnt [kg], money [``currency``], CO2 [kg], or the part of the money that is
+            charges of the European Union.
         inside : bool
             Inside an emission control area or outside.
 
@@ -108,12 +157,40 @@ class FuelTerms:
         if what not in FUEL_QUANTITIES:
             raise unknown_name_error("sum of fuel", str(what), FUEL_QUANTITIES)
         mass = self.relative_mass_inside if inside else 1.0
+        if what == "charges":
+            return mass * self._charge_per_kg(inside)
         if what == "cost":
-            return mass * (self.price_inside if inside else self.price_outside)
+            price = self.price_inside if inside else self.price_outside
+            return mass * (price + self._charge_per_kg(inside))
         if what == "co2":
             factor = self.carbon_inside if inside else self.carbon_outside
             return float(co2_mass(mass, carbon_factor=factor))
         return mass
+
+    def _charge_per_kg(self, inside: bool) -> float:
+        """Return the charges of the European Union on a kilogram of fuel; NaN when unknown."""
+        if self.charges is None:
+            return 0.0
+        fuel = self.inside if inside else self.outside
+        carbon = self.carbon_inside if inside else self.carbon_outside
+        return self.charges.per_kg("" if fuel is None else fuel.name, carbon)
+
+    def with_charges(self, charges: EuropeanCharges | None) -> FuelTerms:
+        """Return the terms with charges of the European Union on fuel.
+
+        Raises
+        ------
+        InputError
+            If fuel has no price, to which they could be added.
+        """
+        if charges is not None and math.isnan(self.price_outside):
+            raise InputError(
+                "Charges of the European Union were given, but fuel has no price.",
+                "They add to the cost of fuel.",
+                "Give the price of fuel, too.",
+                field="fuel_price_usd",
+            )
+        return replace(self, charges=charges)
 
     def of_fuel(
         self, what: str, fuel_mass: ArrayLike, share_inside: ArrayLike
@@ -124,7 +201,7 @@ class FuelTerms:
 
         Parameters
         ----------
-        what : {"fuel", "cost", "co2"}
+        what : {"fuel", "cost", "co2", "charges"}
         fuel_mass : array_like
             Fuel m of the ship's model [kg], as if the fuel outside were burnt everywhere.
         share_inside : array_like
@@ -205,6 +282,11 @@ class FuelTerms:
             eca_price_factor=self.eca_price_factor if keeps else factor,
             currency="USD" if dollars else self.currency,
             time_price=self.time_price if time_usd_per_day is None else time_usd_per_day / DAY,
+            sources={
+                **self.sources,
+                **({} if keeps else {"fuel": "request"}),
+                **({} if time_usd_per_day is None else {"time": "request"}),
+            },
         )
 
     def _ratio(self) -> float:
@@ -257,6 +339,7 @@ def fuel_terms(file: ShipFile) -> FuelTerms:
     own = given.eca_price_per_t
     factor = given.eca_price_factor if own is None else math.nan
     cubed = costs.per_second_per_cubed_speed
+    emitted = costs.co2_g_per_second_per_cubed_speed
     return FuelTerms(
         outside=outside,
         inside=outside if inside == outside else inside,
@@ -267,6 +350,7 @@ def fuel_terms(file: ShipFile) -> FuelTerms:
         currency=_currency(file),
         time_price=_time_price(costs),
         cubed_speed_price=math.nan if cubed is None else cubed,
+        cubed_speed_co2=math.nan if emitted is None else emitted / _GRAMS,
     )
 
 

@@ -62,6 +62,13 @@ class Loading:
             )
 
     @property
+    def same_full_and_empty(self) -> bool:
+        """Whether draught and displacement do not depend on the load factor."""
+        volumes = self.displacement_full, self.displacement_empty
+        same = math.isnan(self.displacement_empty) or volumes[0] == volumes[1]
+        return same and self.draught_full == self.draught_empty
+
+    @property
     def draught(self) -> float:
         """Draught at the load factor [m]."""
         return float(self.draught_at(self.load_factor))
@@ -72,11 +79,33 @@ class Loading:
         return float(self.displacement_at(self.load_factor))
 
     def draught_at(self, load_factor: ArrayLike) -> FloatArray:
-        """Draught [m] at load factors."""
+        """Return the draught at load factors.
+
+        Parameters
+        ----------
+        load_factor : array_like
+            0 empty to 1 full.
+
+        Returns
+        -------
+        float64 array
+            Draught [m].
+        """
         return interpolate_loading(load_factor, empty=self.draught_empty, full=self.draught_full)
 
     def displacement_at(self, load_factor: ArrayLike) -> FloatArray:
-        """Displaced volume [m3] at load factors."""
+        """Return the displaced volume at load factors.
+
+        Parameters
+        ----------
+        load_factor : array_like
+            0 empty to 1 full.
+
+        Returns
+        -------
+        float64 array
+            Volume [m3]; NaN where unknown.
+        """
         return interpolate_loading(
             load_factor, empty=self.displacement_empty, full=self.displacement_full
         )
@@ -84,10 +113,20 @@ class Loading:
     def at(self, load_factor: float) -> Loading:
         """Return the same ship at another load factor.
 
+        Parameters
+        ----------
+        load_factor : float
+            0 empty to 1 full.
+
+        Returns
+        -------
+        Loading
+            Otherwise unchanged.
+
         Raises
         ------
         InputError
-            If it is not a number.
+            If it is not a number from 0 to 1.
         """
         if not is_number(load_factor):
             raise InputError(

@@ -55,6 +55,7 @@ def check_ship_model(
     faults: list[str] = []
     checks: tuple[Callable[[ShipModel, Conditions, float], list[str]], ...] = (
         _settings_ascend,
+        _settings_keep_their_shape,
         _values_are_valid,
         _scalars_equal_arrays,
         _nan_stays_nan,
@@ -63,7 +64,7 @@ def check_ship_model(
     )
     for check in checks:
         faults += check(ship_model, conditions, load_factor)
-        if faults and check is _values_are_valid:
+        if faults and check in (_settings_keep_their_shape, _values_are_valid):
             break  # what follows needs speeds of the right shape
     else:
         faults += _table_error_holds(ship_model, load_factor, tolerance)
@@ -94,6 +95,33 @@ def _settings_ascend(model: ShipModel, conditions: Conditions, load_factor: floa
         return ["speeds is not a list of at least one setting"]
     sound = np.isfinite(speeds).all() and (speeds > 0).all() and (np.diff(speeds) > 0).all()
     return [] if sound else ["speeds are not positive and ascending"]
+
+
+def _settings_keep_their_shape(
+    model: ShipModel, conditions: Conditions, load_factor: float
+) -> list[str]:
+    """Check one condition at several settings, and several conditions at a setting each."""
+    count = len(model.speeds(load_factor))
+    one = Conditions(
+        {name: np.broadcast_to(v, conditions.shape)[0] for name, v in conditions.items()}
+    )
+    cases = ((one, np.arange(count)), (conditions, np.zeros(conditions.shape, int)))
+    faults = []
+    for what, rate in (
+        ("speed", model.speed_through_water),
+        ("power", model.power),
+        ("fuel rate", model.fuel_rate),
+    ):
+        for where, settings in cases:
+            wanted = np.broadcast_shapes(where.shape, settings.shape)
+            found = np.shape(rate(where, settings))
+            if found != wanted:
+                faults.append(
+                    f"the {what} has shape {found} for conditions of shape {where.shape} and "
+                    f"settings of shape {settings.shape}"
+                )
+                break
+    return faults
 
 
 def _values_are_valid(model: ShipModel, conditions: Conditions, load_factor: float) -> list[str]:

@@ -63,23 +63,86 @@ class ShipModel(Protocol):
         ...
 
     def speeds(self, load_factor: float) -> FloatArray:
-        """Calm-water speed of every setting [m/s], ascending."""
+        """Return the calm-water speed of every setting.
+
+        Parameters
+        ----------
+        load_factor : float
+            0 empty to 1 full.
+
+        Returns
+        -------
+        float64 array (settings,)
+            Speeds [m/s], ascending.
+        """
         ...
 
     def speed_through_water(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
-        """Speed through water [m/s], at least 0."""
+        """Return the speed through water.
+
+        Parameters
+        ----------
+        conditions : Conditions
+            Conditions that broadcast together.
+        setting : array_like of int
+            Index into `speeds`.
+
+        Returns
+        -------
+        float64 array
+            Speed [m/s], at least 0; NaN where a condition is NaN or out of range.
+        """
         ...
 
     def power(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
-        """Brake power [W]; NaN when the model does not know."""
+        """Return the brake power, without the hotel load.
+
+        Parameters
+        ----------
+        conditions : Conditions
+            Conditions that broadcast together.
+        setting : array_like of int
+            Index into `speeds`.
+
+        Returns
+        -------
+        float64 array
+            Power [W]; NaN where the model does not know it.
+        """
         ...
 
     def fuel_rate(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
-        """Fuel rate [kg/s]; NaN when the model does not know."""
+        """Return the fuel rate, the hotel load included.
+
+        Parameters
+        ----------
+        conditions : Conditions
+            Conditions that broadcast together.
+        setting : array_like of int
+            Index into `speeds`.
+
+        Returns
+        -------
+        float64 array
+            Fuel rate [kg/s]; NaN where the model does not know it.
+        """
         ...
 
     def top_speed(self, setting: int, load_factor: float) -> float | None:
-        """Upper bound of the speed through water [m/s]; None when unknown."""
+        """Return an upper bound of the speed through water in any conditions.
+
+        Parameters
+        ----------
+        setting : int
+            Index into `speeds`.
+        load_factor : float
+            0 empty to 1 full.
+
+        Returns
+        -------
+        float or None
+            Speed [m/s]; None when unknown.
+        """
         ...
 
     def tabulate(self, load_factor: float, tolerance: float) -> ModelTables:
@@ -101,7 +164,20 @@ class ShipModel(Protocol):
         ...
 
     def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:
-        """Return where a method is used outside its range."""
+        """Return where a method is used outside its range.
+
+        Parameters
+        ----------
+        conditions : Conditions
+            Conditions that broadcast together.
+        setting : array_like of int
+            Index into `speeds`.
+
+        Returns
+        -------
+        list of RangeNote
+            Empty if all methods are within their range.
+        """
         ...
 
 
@@ -130,7 +206,20 @@ class AdjustableModel(Protocol):
     """Capability: a model whose settings can be replaced."""
 
     def with_speeds(self, speeds: FloatArray, load_factor: float) -> ShipModel:
-        """Return the model with other settings, by their calm-water speeds [m/s]."""
+        """Return the model with other settings.
+
+        Parameters
+        ----------
+        speeds : float64 array
+            Calm-water speeds [m/s], ascending.
+        load_factor : float
+            0 empty to 1 full.
+
+        Returns
+        -------
+        ShipModel
+            With these settings.
+        """
         ...
 
 
@@ -151,7 +240,20 @@ class JointPowerAndFuelModel(Protocol):
     def power_and_fuel(
         self, conditions: Conditions, setting: ArrayLike
     ) -> tuple[FloatArray, FloatArray]:
-        """Return brake power [W] and fuel rate [kg/s]; NaN where unknown."""
+        """Return the brake power and the fuel rate.
+
+        Parameters
+        ----------
+        conditions : Conditions
+            Conditions that broadcast together.
+        setting : array_like of int
+            Index into `speeds`.
+
+        Returns
+        -------
+        power, fuel : float64 array
+            Power [W] and fuel rate [kg/s]; NaN where unknown.
+        """
         ...
 
 
@@ -160,7 +262,20 @@ class FuelTableModel(Protocol):
     """Capability: a model that tabulates its fuel rate itself."""
 
     def tabulate_fuel(self, load_factor: float, tolerance: float) -> ModelTables:
-        """Tabulate the fuel rate [kg/s]; parameters as in `ShipModel.tabulate`."""
+        """Tabulate the fuel rate [kg/s], the hotel load included.
+
+        Parameters
+        ----------
+        load_factor : float
+            0 empty to 1 full.
+        tolerance : float
+            Relative error that 99 % of random conditions should meet.
+
+        Returns
+        -------
+        tuple
+            As `ShipModel.tabulate` returns it.
+        """
         ...
 
 
@@ -169,7 +284,20 @@ class PowerTableModel(Protocol):
     """Capability: a model that tabulates its brake power itself."""
 
     def tabulate_power(self, load_factor: float, tolerance: float) -> ModelTables:
-        """Tabulate the brake power [W]; parameters as in `ShipModel.tabulate`."""
+        """Tabulate the brake power [W], without the hotel load.
+
+        Parameters
+        ----------
+        load_factor : float
+            0 empty to 1 full.
+        tolerance : float
+            Relative error that 99 % of random conditions should meet.
+
+        Returns
+        -------
+        tuple
+            As `ShipModel.tabulate` returns it.
+        """
         ...
 
 

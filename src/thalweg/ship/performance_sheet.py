@@ -18,18 +18,22 @@ from thalweg.ship.methods.carbon_intensity import (
     rating_boundaries,
     required_cii,
 )
-from thalweg.ship.methods.seakeeping.wave_spectra import pierson_moskowitz_period
 from thalweg.ship.models.kwon_resistance_model import KwonResistanceModel
 from thalweg.ship.models.propulsion_model import unused_efficiencies
 from thalweg.ship.models.resistance_protocol import ResistanceBased
+from thalweg.ship.models.speed_power_laws import speed_power_law_name
 from thalweg.ship.performance_sheet_seaway import ShipInSeaway
-from thalweg.ship.ship import Ship
-
-_CALM_PERIOD = 10.0  #: [s]; nothing depends on it
-_DIRECTIONAL_WEATHER = (
-    ("wave_height", "wave_angle", "waves"),
-    ("wind_speed", "wind_angle", "wind"),
+from thalweg.ship.performance_sheet_weather import (
+    sheet_conditions,
+    weather_assumptions,
+    weather_beyond_limits,
+    weather_without_model,
 )
+from thalweg.ship.ship import Ship
+from thalweg.ship.ship_assumptions import load_factor_without_effect
+
+#: Share of the ordered speed below which a speed loss beyond its range gives no speed.
+_LEAST_SPEED_SHARE = 0.5
 SHEET_COMPONENTS = (
     *("total", "friction", "form_factor", "appendage", "wave_making", "bulb", "transom"),
     *("correlation", "waves", "wind", "shallow", "rudder"),
@@ -75,7 +79,7 @@ def performance_sheet(
             "Give a ship with settings, or evaluate a route with this one.",
             ship=ship.name,
         )
-    conditions = _conditions(ship, weather or {})
+    conditions = sheet_conditions(ship, weather or {})
     model = ship.model
     speeds = np.array(speeds_kn, float) * KNOT if len(speeds_kn) else _default_speeds(ship)
     if speeds.size == 0 or not (np.isfinite(speeds) & (speeds > 0)).all():
@@ -99,15 +103,15 @@ def performance_sheet(
         "load_factor": ship.loading.load_factor,
         "weather": {name: _number(value) for name, value in (weather or {}).items()},
         "assumed": [
-            *_weather_assumptions(weather or {}),
+            *weather_assumptions(ship, weather or {}),
             *_unused_entries(ship),
-            *_load_factor_without_effect(ship),
+            *load_factor_without_effect(ship),
         ],
         "conditions": rows,
         "warnings": [
             *left_out,
-            *_weather_without_model(ship, weather or {}),
-            *_weather_beyond_limits(ship, weather or {}),
+            *weather_without_model(ship, weather or {}),
+            *weather_beyond_limits(ship, weather or {}),
         ],
         "missing": _missing_results(ship, rows),
         "settings": _settings(ship, conditions),
@@ -116,33 +120,6 @@ def performance_sheet(
         "description": ship.file.description,
         "fingerprint": ship.fingerprint(),
     }
-
-
-def _conditions(ship: Ship, weather: Mapping[str, float]) -> Conditions:
-    calm = {name: 0.0 for name in ("wind_speed", "wind_angle", "wave_height", "wave_angle")}
-    period = assumed_peak_period(weather.get("wave_height", 0.0))
-    return Conditions({**calm, "wave_period": period, "depth": np.inf, **weather})
-
-
-def assumed_peak_period(height: float) -> float:
-    """Peak period [s] of waves without a given period: that of a fully developed sea."""
-    return float(pierson_moskowitz_period(height)) if height > 0.0 else _CALM_PERIOD
-
-
-def _weather_assumptions(weather: Mapping[str, float]) -> list[str]:
-    """Return what was assumed for weather that was given in part."""
-    height, found = weather.get("wave_height", 0.0), []
-    if height > 0.0 and "wave_period" not in weather:
-        period = assumed_peak_period(height)
-        found.append(f"a peak period of {period:.3g} s, of a fully developed sea")
-    for size, angle, words in _DIRECTIONAL_WEATHER:
-        if weather.get(size, 0.0) > 0.0 and angle not in weather:
-            found.append(f"{words} from ahead")
-        if size not in weather and angle in weather:
-            found.append(f"no {words}, since only a direction is given")
-    if "wave_height" not in weather and "wave_period" in weather:
-        found.append("no waves, since only a period is given")
-    return found
 
 
 def _admissible_speeds(ship: Ship, speeds: FloatArray) -> tuple[FloatArray, list[str]]:
@@ -169,40 +146,6 @@ def _admissible_speeds(ship: Ship, speeds: FloatArray) -> tuple[FloatArray, list
     listed = ", ".join(f"{speed / KNOT:.4g}" for speed in bad)
     why = "" if reason is None else f" {reason.possible}"
     return np.array(good), [f"{listed} kn left out.{why}"] if bad else []
-
-
-#: names of weather, and the conditions of a ship model that depend on it
-_WEATHER_EFFECTS = {
-    "wave_height": ("waves are", {"wave_height"}),
-    "wind_speed": ("the wind is", {"wind_speed"}),
-    "depth": ("the depth of the water is", {"depth"}),
-}
-
-
-def _weather_without_model(ship: Ship, weather: Mapping[str, float]) -> list[str]:
-    """Warn of given weather for which the ship has no model."""
-    return [
-        f"{word} given, but this ship's models leave its speed and power as they are"
-        for name, (word, read) in _WEATHER_EFFECTS.items()
-        if weather.get(name, 0.0) > 0.0 and np.isfinite(weather[name]) and not ship.reads & read
-    ]
-
-
-def _weather_beyond_limits(ship: Ship, weather: Mapping[str, float]) -> list[str]:
-    """Warn of weather beyond the limits of the ship, and of water that is too shallow."""
-    limits = {
-        "wave_height": ("waves of", "m", ship.limits.wave_height),
-        "wind_speed": ("wind of", "m/s", ship.limits.wind_speed),
-    }
-    found = []
-    if weather.get("depth", np.inf) <= ship.draught:
-        depth = weather["depth"]
-        found.append(f"the water is {depth:g} m deep, the draught {ship.draught:g} m: aground")
-    return found + [
-        f"{word} {weather[name]:g} {unit} are beyond the ship's limit of {limit:.4g} {unit}"
-        for name, (word, unit, limit) in limits.items()
-        if weather.get(name, 0.0) > limit
-    ]
 
 
 def _add_seaway(row: dict[str, Any], seaway: ShipInSeaway) -> None:
@@ -265,6 +208,13 @@ def _known_speed_rows(
     rows = []
     for k, speed in enumerate(np.unique(speeds)):
         attained = float(ordered.speed_through_water(conditions, k))
+        notes = [str(n) for n in ordered.notes(conditions, k)]
+        if notes and attained < _LEAST_SPEED_SHARE * speed:
+            notes.append(
+                f"the method leaves {attained / speed:.0%} of the speed there, which is no "
+                "prediction: no speed is given"
+            )
+            attained = np.nan
         fuel = float(ordered.fuel_rate(conditions, k))
         power = float(ordered.power(conditions, k))
         rows.append(
@@ -274,7 +224,7 @@ def _known_speed_rows(
                 "resistance_n": dict.fromkeys(SHEET_COMPONENTS),
                 "effective_power_kw": None,
                 "brake_power_kw": _number(power / 1e3),
-                "warnings": [str(n) for n in ordered.notes(conditions, k)],
+                "warnings": notes,
             }
         )
     return rows
@@ -321,31 +271,19 @@ def _cii(ship: Ship, speed: float, co2: float) -> dict[str, Any] | None:
 def _unused_entries(ship: Ship) -> list[str]:
     """Return the entries of a ship file that its calm-water method does not use."""
     file = ship.file
-    method = file.models.calm_water or "none"
+    method = file.models.calm_water or speed_power_law_name(file)
     if not ship.is_resistance_based:
         table = method in ("none", "cubic") and {"table", "speeds_kn"} <= file.model_fields_set
         return [f"calm_water: {method} does not use the table"] if table else []
     given = {
         "table": file.table is not None,
         "speeds under loading": file.loading.speeds_full_kn is not None,
-        "reference point": file.engine.reference_power_kw is not None
-        or file.fuel.reference_t_per_day is not None,
+        "reference point": method != "cubic"
+        and (file.engine.reference_power_kw, file.fuel.reference_t_per_day) != (None, None),
     }
     found = [f"calm_water: {method} does not use the {w}" for w, there in given.items() if there]
     idle = unused_efficiencies(file.propulsion, file.models.propulsion)
     return [*found, *(f"propulsion.{key} is not used" for key in idle)]
-
-
-def _load_factor_without_effect(ship: Ship) -> list[str]:
-    """Report a load factor that has no effect, since the ship file gives one draught."""
-    own, given = ship.loading, ship.file.loading
-    differs = ("draught_empty_m", "speeds_empty_kn", "displacement_empty_m3", "weight_empty_t")
-    if ship.file.is_empty or own.load_factor == 1.0 or given.gives(*differs):
-        return []
-    return [
-        f"load factor {own.load_factor:g} has no effect: "
-        "the ship file does not describe the empty ship"
-    ]
 
 
 def _missing_results(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]:

@@ -17,7 +17,8 @@ from thalweg.ship.methods.seakeeping.motion_sickness import (
 )
 from thalweg.ship.methods.seakeeping.ship_motions import MotionHull, motions_validity, ship_response
 from thalweg.ship.methods.seakeeping.stability_msc1_circ1228 import dangerous_situations
-from thalweg.ship.methods.shallow_water.squat import dynamic_under_keel_clearance, squat_validity
+from thalweg.ship.methods.shallow_water.barrass_squat import squat_validity
+from thalweg.ship.methods.shallow_water.squat import dynamic_under_keel_clearance
 from thalweg.ship.models.resistance_protocol import ResistanceBased
 from thalweg.ship.models.squat_model import SquatModel, squat_model_of
 from thalweg.ship.seaway_limits import (

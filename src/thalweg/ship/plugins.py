@@ -12,7 +12,13 @@ ENTRY_POINT_GROUP: Final = "thalweg.ships"
 
 
 def plugin_names() -> list[str]:
-    """Return the names of the ships that other packages offer."""
+    """Return the names of the ships that other packages offer.
+
+    Returns
+    -------
+    list of str
+        In alphabetical order.
+    """
     from importlib.metadata import entry_points
 
     return sorted({entry.name for entry in entry_points(group=ENTRY_POINT_GROUP)})
@@ -40,7 +46,7 @@ def load_plugin(name: str) -> Any:
         except (ImportError, AttributeError) as problem:
             raise InputError(
                 f"The plug-in ship {name!r} cannot be loaded: {problem}.",
-                f"It is to be found at {entry.value}.",
+                f"Its package states that it is at {entry.value}.",
                 "Repair or remove the package that offers it.",
                 name=name,
             ) from None

@@ -2,206 +2,334 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from dataclasses import replace
+from typing import Final, Protocol
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError, ModelRangeError
+from thalweg.core.given_numbers import float_array
 from thalweg.core.types import FloatArray
+from thalweg.ship.condition_variables import needed_variables
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.validity import RangeNote
-from thalweg.ship.model_protocol import JointPowerAndFuelModel, ShipModel, Tabulation
+from thalweg.ship.model_protocol import (
+    AdjustableModel,
+    JointPowerAndFuelModel,
+    ShipModel,
+)
+from thalweg.ship.models.function_model import FunctionModel
 from thalweg.ship.models.resistance_protocol import ResistanceBased
 from thalweg.ship.ship_limits import ShipLimits
-from thalweg.ship.tables.performance_table import PerformanceTable
+
+_SINGLE_PRECISION: Final = 2.0**-23  #: relative rounding of the values of a table
 
 
-class ShipQueries:
-    """The part of `thalweg.ship.Ship` that evaluates conditions and makes tables."""
-
-    name: str
-    model: ShipModel
-    loading: Loading
-    limits: ShipLimits
-
-    @abstractmethod
-    def fingerprint(self) -> str:
-        """Return a text that is equal for two ships only if they have the same performance."""
+class ModelledShip(Protocol):
+    """What the queries need of a ship."""
 
     @property
-    @abstractmethod
+    def name(self) -> str:
+        """Name, for messages."""
+        ...
+
+    @property
+    def model(self) -> ShipModel:
+        """Speed, power and fuel."""
+        ...
+
+    @property
+    def loading(self) -> Loading:
+        """Draught and load factor."""
+        ...
+
+    @property
+    def limits(self) -> ShipLimits:
+        """Greatest waves and wind."""
+        ...
+
+    @property
     def hotel_power(self) -> float:
         """Hotel load [W]."""
+        ...
 
-    def speed_through_water(self, conditions: Conditions, setting: ArrayLike = 0) -> FloatArray:
-        """Speed through water [m/s].
 
-        Parameters
-        ----------
-        conditions : Conditions
-            Conditions at the ship, arrays that broadcast; see `reads`.
-        setting : array_like of int
-            Index into `speeds`.
+def ship_speed_through_water(
+    ship: ModelledShip, conditions: Conditions, setting: ArrayLike = 0
+) -> FloatArray:
+    """Return the speed through water [m/s].
 
-        Returns
-        -------
-        ndarray
-            At least 0; NaN where a condition is unknown or out of the model's range.
+    Parameters
+    ----------
+    ship : ModelledShip
+        The ship.
+    conditions : Conditions
+        Conditions at the ship, arrays that broadcast; see `reads`.
+    setting : array_like of int
+        Index into `speeds`.
 
-        Raises
-        ------
-        InputError
-            If a condition is missing or there is no such setting.
-        """
-        return self.model.speed_through_water(self._loaded(conditions), setting)
+    Returns
+    -------
+    float64 array
+        At least 0; NaN where a condition is unknown or out of the model's range.
 
-    def power(self, conditions: Conditions, setting: ArrayLike = 0) -> FloatArray:
-        """Brake power [W]; NaN where unknown. Parameters as in `speed_through_water`."""
-        return self.model.power(self._loaded(conditions), setting)
+    Raises
+    ------
+    InputError
+        If a condition is missing or there is no such setting.
+    """
+    return ship.model.speed_through_water(_at_loading(ship, conditions), setting)
 
-    def fuel_rate(self, conditions: Conditions, setting: ArrayLike = 0) -> FloatArray:
-        """Fuel rate [kg/s]; NaN where unknown. Parameters as in `speed_through_water`."""
-        return self.model.fuel_rate(self._loaded(conditions), setting)
 
-    def power_and_fuel(
-        self, conditions: Conditions, setting: ArrayLike = 0
-    ) -> tuple[FloatArray, FloatArray]:
-        """Brake power [W] and fuel rate [kg/s] at once, in one computation where the model can."""
-        if isinstance(self.model, JointPowerAndFuelModel):
-            return self.model.power_and_fuel(self._loaded(conditions), setting)
-        return self.power(conditions, setting), self.fuel_rate(conditions, setting)
+def ship_power(ship: ModelledShip, conditions: Conditions, setting: ArrayLike = 0) -> FloatArray:
+    """Return the brake power [W], without the hotel load.
 
-    def power_at_speed(self, conditions: Conditions, speed: ArrayLike) -> FloatArray:
-        """Brake power [W] that holds speeds through water [m/s], also above that of the engines.
+    Parameters
+    ----------
+    ship : ModelledShip
+        The ship.
+    conditions : Conditions
+        Conditions at the ship, arrays that broadcast; see `reads`.
+    setting : array_like of int
+        Index into `speeds`.
 
-        Raises
-        ------
-        InputError
-            If the ship is not made from its resistance.
-        """
-        return self._resistance_model("power").power_at_speed(self._loaded(conditions), speed)
+    Returns
+    -------
+    float64 array
+        NaN where a condition is unknown, or the model knows no power.
 
-    def resistance(self, conditions: Conditions, speed: ArrayLike) -> dict[str, FloatArray]:
-        """Resistance by component [N] at speeds through water [m/s].
+    Raises
+    ------
+    InputError
+        If a condition is missing or there is no such setting.
+    """
+    return ship.model.power(_at_loading(ship, conditions), setting)
 
-        Parameters
-        ----------
-        conditions : Conditions
-        speed : array_like
 
-        Returns
-        -------
-        dict
-            ``total`` and its terms: ``friction, form_factor, appendage, wave_making, bulb, transom,
-            correlation, residuary`` in deep water, ``shallow`` (what the depth adds), ``waves``,
-            ``wind``, ``rudder``; zero where a method has no such term.
+def ship_fuel_rate(
+    ship: ModelledShip, conditions: Conditions, setting: ArrayLike = 0
+) -> FloatArray:
+    """Return the fuel rate [kg/s], the hotel load included.
 
-        Raises
-        ------
-        InputError
-            If the ship is not made from its resistance.
-        """
-        return self._resistance_model("resistance").resistance(self._loaded(conditions), speed)
+    Parameters
+    ----------
+    ship : ModelledShip
+        The ship.
+    conditions : Conditions
+        Conditions at the ship, arrays that broadcast; see `reads`.
+    setting : array_like of int
+        Index into `speeds`.
 
-    @property
-    def is_resistance_based(self) -> bool:
-        """Whether the model knows the resistance, so that `power_at_speed` is available."""
-        return isinstance(self.model, ResistanceBased)
+    Returns
+    -------
+    float64 array
+        NaN where a condition is unknown, or the model knows no fuel rate.
 
-    def _resistance_model(self, what: str) -> ResistanceBased:
-        if not isinstance(self.model, ResistanceBased):
-            raise InputError(
-                f"The {what} of {self.name!r} at a speed is not known.",
-                "Ships with models.calm_water such as holtrop_1984 know it.",
-                "Choose such a ship or model.",
-            )
-        return self.model
+    Raises
+    ------
+    InputError
+        If a condition is missing or there is no such setting.
+    """
+    return ship.model.fuel_rate(_at_loading(ship, conditions), setting)
 
-    def notes(
-        self, conditions: Conditions, setting: ArrayLike = 0, *, strict: bool = False
-    ) -> list[RangeNote]:
-        """Return which methods are used outside their range in these conditions.
 
-        Raises
-        ------
-        ModelRangeError
-            If ``strict`` and there is any.
-        """
-        found = self.model.notes(self._loaded(conditions), setting)
-        if strict and found:
-            raise ModelRangeError(
-                "; ".join(str(note) for note in found) + ".",
-                "Each method holds in the range it was fitted for.",
-                "Choose other methods, or do without strictness.",
-                notes=[str(note) for note in found],
-            )
-        return found
+def ship_power_and_fuel(
+    ship: ModelledShip, conditions: Conditions, setting: ArrayLike = 0
+) -> tuple[FloatArray, FloatArray]:
+    """Return the brake power and the fuel rate, in one computation where the model can.
 
-    def tabulate(self, *, tolerance: float = 0.01) -> PerformanceTable:
-        """Tabulate the speed through water at the ship's load factor.
+    Parameters
+    ----------
+    ship : ModelledShip
+        The ship.
+    conditions : Conditions
+        Conditions at the ship, arrays that broadcast; see `reads`.
+    setting : array_like of int
+        Index into `speeds`.
 
-        Parameters
-        ----------
-        tolerance : float
-            Relative error that 99 % of random conditions shall meet; the table says what it met.
+    Returns
+    -------
+    power, fuel : float64 array
+        As `power` [W] and `fuel_rate` [kg/s] give them.
 
-        Returns
-        -------
-        PerformanceTable
-        """
-        found = Tabulation(*self.model.tabulate(self.loading.load_factor, tolerance))
-        return PerformanceTable(
-            found.parts,
-            self.model.speeds(self.loading.load_factor),
-            self.fingerprint(),
-            found.error,
-            found.curve,
-            self.limits.safety,
+    Raises
+    ------
+    InputError
+        If a condition is missing or there is no such setting.
+    """
+    if isinstance(ship.model, JointPowerAndFuelModel):
+        return ship.model.power_and_fuel(_at_loading(ship, conditions), setting)
+    return ship_power(ship, conditions, setting), ship_fuel_rate(ship, conditions, setting)
+
+
+def ship_power_at_speed(ship: ModelledShip, conditions: Conditions, speed: ArrayLike) -> FloatArray:
+    """Return the brake power [W] that holds a speed, also above the power of the engines.
+
+    Parameters
+    ----------
+    ship : ModelledShip
+        The ship.
+    conditions : Conditions
+        Conditions at the ship, arrays that broadcast; see `reads`.
+    speed : array_like
+        Speed through water [m/s]; broadcast with the conditions.
+
+    Returns
+    -------
+    float64 array
+        NaN where a condition is unknown or out of range.
+
+    Raises
+    ------
+    InputError
+        If the ship is not made from its resistance.
+    """
+    return _resistance_model(ship, "power").power_at_speed(_at_loading(ship, conditions), speed)
+
+
+def ship_resistance(
+    ship: ModelledShip, conditions: Conditions, speed: ArrayLike
+) -> dict[str, FloatArray]:
+    """Return the resistance by component [N] at speeds through water.
+
+    Parameters
+    ----------
+    ship : ModelledShip
+        The ship.
+    conditions : Conditions
+        Conditions at the ship, arrays that broadcast; see `reads`.
+    speed : array_like
+        Speed through water [m/s]; broadcast with the conditions.
+
+    Returns
+    -------
+    dict of str to float64 array
+        ``total`` and its terms: ``friction, form_factor, appendage, wave_making, bulb, transom,
+        correlation, residuary`` in deep water, ``shallow`` (what the depth adds), ``waves``,
+        ``wind``, ``rudder``; zero where a method has no such term.
+
+    Raises
+    ------
+    InputError
+        If the ship is not made from its resistance.
+    """
+    return _resistance_model(ship, "resistance").resistance(_at_loading(ship, conditions), speed)
+
+
+def ship_range_notes(
+    ship: ModelledShip, conditions: Conditions, setting: ArrayLike = 0, *, strict: bool = False
+) -> list[RangeNote]:
+    """Return which methods are used outside their range in these conditions.
+
+    Parameters
+    ----------
+    ship : ModelledShip
+        The ship.
+    conditions : Conditions
+        Conditions at the ship, arrays that broadcast; see `reads`.
+    setting : array_like of int
+        Index into `speeds`.
+    strict : bool
+        Whether to raise an error if there is any.
+
+    Returns
+    -------
+    list of RangeNote
+        Empty if all methods are within their range.
+
+    Raises
+    ------
+    ModelRangeError
+        If ``strict`` and there is any.
+    """
+    found = ship.model.notes(_at_loading(ship, conditions), setting)
+    if strict and found:
+        raise ModelRangeError(
+            "; ".join(str(note) for note in found) + ".",
+            "Each method holds in the range it was fitted for.",
+            "Choose other methods, or call without strict=True.",
+            notes=[str(note) for note in found],
         )
+    return found
 
-    def tabulate_fuel(self, *, tolerance: float = 0.01) -> PerformanceTable:
-        """Tabulate the fuel rate [kg/s] at the ship's load factor, hotel load included.
 
-        Parameters
-        ----------
-        tolerance : float
-            Relative error that 99 % of random conditions shall meet; the table says what it met.
+def ship_top_speed(ship: ModelledShip, setting: int = 0) -> float | None:
+    """Return an upper bound of the speed through water in any conditions.
 
-        Returns
-        -------
-        PerformanceTable
-            A constant per setting where a setting burns the same in all weather.
+    It holds for the model and for its table, which is rounded to single precision.
 
-        Raises
-        ------
-        InputError
-            If the ship's fuel is unknown, or its speed is a field, which has no settings.
-        """
-        from thalweg.ship.models.tabulate_fuel import fuel_table
+    Parameters
+    ----------
+    ship : ModelledShip
+        The ship.
+    setting : int
+        Index into `speeds`.
 
-        found = fuel_table(self.model, self.loading.load_factor, tolerance, ship=self.name)
-        return replace(found, fingerprint=self.fingerprint())
+    Returns
+    -------
+    float or None
+        [m/s]; None for a field without a known bound.
+    """
+    top = ship.model.top_speed(setting, ship.loading.load_factor)
+    return None if top is None else top * (1.0 + _SINGLE_PRECISION)
 
-    def tabulate_power(self, *, tolerance: float = 0.01) -> PerformanceTable:
-        """Tabulate the brake power with the hotel load [W]; parameters as in `tabulate_fuel`.
 
-        Raises
-        ------
-        InputError
-            If the ship's brake power is unknown, or its speed is a field.
-        """
-        from thalweg.ship.models.tabulate_fuel import power_table
+def model_needs(model: ShipModel) -> frozenset[str]:
+    """Return the sea variables that a model needs.
 
-        found = power_table(
-            self.model,
-            self.loading.load_factor,
-            tolerance,
-            hotel_power=self.hotel_power,
-            ship=self.name,
+    Parameters
+    ----------
+    model : ShipModel
+        Speed, power and fuel.
+
+    Returns
+    -------
+    frozenset of str
+        CF standard names.
+    """
+    return model.needs if isinstance(model, FunctionModel) else needed_variables(model.reads)
+
+
+def model_with_speeds(ship: ModelledShip, speeds: ArrayLike) -> ShipModel:
+    """Return the model of a ship with other settings.
+
+    Parameters
+    ----------
+    ship : ModelledShip
+        The ship.
+    speeds : array_like
+        Calm-water speeds [m/s] at the load factor, above 0; sorted, each once.
+
+    Returns
+    -------
+    ShipModel
+        With these settings.
+
+    Raises
+    ------
+    InputError
+        If a speed is not positive, is outside the ship's range, or the model has one speed.
+    """
+    wanted = np.unique(np.atleast_1d(float_array(speeds, "speeds")))
+    if not isinstance(ship.model, AdjustableModel):
+        raise InputError(
+            f"The speed of {ship.name!r} follows from its model; no speed can be ordered.",
+            "Only ships with an adjustable speed accept an ordered speed.",
+            "Leave the ordered speed out.",
         )
-        return replace(found, fingerprint=self.fingerprint())
+    return ship.model.with_speeds(wanted, ship.loading.load_factor)
 
-    def _loaded(self, conditions: Conditions) -> Conditions:
-        return conditions.with_default(load_factor=self.loading.load_factor)
+
+def _at_loading(ship: ModelledShip, conditions: Conditions) -> Conditions:
+    return conditions.with_default(load_factor=ship.loading.load_factor)
+
+
+def _resistance_model(ship: ModelledShip, what: str) -> ResistanceBased:
+    if not isinstance(ship.model, ResistanceBased):
+        raise InputError(
+            f"The {what} of {ship.name!r} at a speed is not known.",
+            "Ships with models.calm_water such as holtrop_1984 know it.",
+            "Choose such a ship or model.",
+        )
+    return ship.model

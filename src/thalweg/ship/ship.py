@@ -2,51 +2,35 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.core.errors import InputError
-from thalweg.core.given_numbers import float_array
+from thalweg.core.delegation import delegated
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
-from thalweg.ship.condition_variables import HEADING_DEPENDENT, needed_variables
-from thalweg.ship.file.known_speed_ship_builder import estimates_of_known_speeds
-from thalweg.ship.file.part_builders import build_limits, build_loading, with_safety_limits
-from thalweg.ship.file.ship_builder import build_model, simple_data
+from thalweg.ship import queries, ship_tabulation
+from thalweg.ship.condition_variables import HEADING_DEPENDENT
+from thalweg.ship.file import ship_builder
 from thalweg.ship.file.ship_file import library_names, read_ship
 from thalweg.ship.fuel_prices import FuelTerms, fuel_terms
 from thalweg.ship.hull.estimate import Estimate
-from thalweg.ship.hull.hull import complete_hull
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.methods.engine.specific_consumption import GRAM_PER_KILOWATT_HOUR
-from thalweg.ship.model_protocol import (
-    AdjustableModel,
-    CrabAngleModel,
-    DraughtModel,
-    EstimatingModel,
-    ShipModel,
-)
+from thalweg.ship.methods.engine.european_charges import EuropeanCharges
+from thalweg.ship.model_protocol import CrabAngleModel, ShipModel
+from thalweg.ship.models import known_speed_fuel
 from thalweg.ship.models.function_model import FunctionModel, SpeedFunction, model_of_function
-from thalweg.ship.models.known_speed_fuel import hotel_load_fuel_rate, hotel_power
+from thalweg.ship.models.resistance_protocol import ResistanceBased
 from thalweg.ship.plugins import load_plugin
-from thalweg.ship.queries import ShipQueries
 from thalweg.ship.schema.ship_schema import ShipFile, empty_ship_file
 from thalweg.ship.ship_limits import ShipLimits
 
-_SINGLE_PRECISION = 2.0**-23
-
 
 @dataclass(frozen=True, eq=False)
-class Ship(ShipQueries):
+class Ship:
     """A ship: its speed, power and fuel in given conditions, and its limits of weather.
 
     Made by `Ship.load`, `Ship.from_dict`, `Ship.simple` or `Ship.from_speed_function`.
@@ -64,6 +48,8 @@ class Ship(ShipQueries):
         The contents of its ship file; empty for a ship without one.
     estimated : tuple of Estimate
         Estimated particulars.
+    terms : FuelTerms, optional
+        Fuels and prices that replace those of the ship file (`with_prices`).
 
     Examples
     --------
@@ -78,10 +64,21 @@ class Ship(ShipQueries):
     limits: ShipLimits = field(default_factory=ShipLimits)
     file: ShipFile = field(default_factory=empty_ship_file)
     estimated: tuple[Estimate, ...] = ()
+    terms: FuelTerms | None = None
 
     @classmethod
     def load(cls, name_or_path: str | Path) -> Ship:
         """Read a ship of the library or of a plug-in by name, or a ship file (YAML) by path.
+
+        Parameters
+        ----------
+        name_or_path : str or path-like
+            A name of `library_names` or `plugin_names`, or the path of a ship file.
+
+        Returns
+        -------
+        Ship
+            At the load factor of its file.
 
         Raises
         ------
@@ -90,53 +87,35 @@ class Ship(ShipQueries):
         """
         known = not isinstance(name_or_path, str) or name_or_path in library_names()
         offered = None if known else load_plugin(str(name_or_path))
-        if offered is None:
-            data, source = read_ship(name_or_path)
-            return cls.from_dict(data, source=source)
-        return cls._of_plugin(str(name_or_path), offered)
-
-    @classmethod
-    def _of_plugin(cls, name: str, offered: Any) -> Ship:
-        """Make a ship of what a plug-in offers."""
         if isinstance(offered, Ship):
             return offered
-        if isinstance(offered, Mapping):
-            return cls.from_dict(offered, source=f"plug-in ship {name!r}")
-        if isinstance(offered, ShipModel):
-            draught = float(offered.draught) if isinstance(offered, DraughtModel) else 0.0
-            return cls(name, offered, Loading(draught, draught))
-        if callable(offered):
-            return cls.from_speed_function(offered, name=name)
-        raise InputError(
-            f"The plug-in ship {name!r} is {type(offered).__name__}.",
-            "A plug-in offers a Ship, a mapping like a ship file, a ship model, or a function of "
-            "conditions that returns speeds.",
-            "Report this to the author of the plug-in.",
-        )
+        if offered is not None:
+            return cls(*ship_builder.plugin_parts(str(name_or_path), offered))
+        data, source = read_ship(name_or_path)
+        return cls.from_dict(data, source=source)
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], *, source: str = "ship") -> Ship:
         """Make a ship from the plain data of a ship file.
+
+        Parameters
+        ----------
+        data : mapping
+            Keys of a ship file, with the units in their names.
+        source : str
+            What messages call the data.
+
+        Returns
+        -------
+        Ship
+            At the load factor of the data.
 
         Raises
         ------
         InputError
             For unknown or missing keys, numbers out of range and impossible hulls.
         """
-        file = ShipFile.of(data, source)
-        hull = complete_hull(file.hull.plain())
-        loading = build_loading(file, hull)
-        model = build_model(file, hull, loading)
-        return cls(
-            name=file.name,
-            model=model,
-            loading=loading,
-            limits=with_safety_limits(build_limits(file), file, hull, loading),
-            file=file,
-            estimated=model.estimated
-            if isinstance(model, EstimatingModel)
-            else estimates_of_known_speeds(file, hull, loading),
-        )
+        return cls(*ship_builder.ship_parts(data, source))
 
     @classmethod
     def simple(
@@ -179,7 +158,7 @@ class Ship(ShipQueries):
         Ship
             Without fuel data its fuel is unknown (NaN), never zero.
         """
-        data = simple_data(
+        data = ship_builder.simple_data(
             name=name,
             speeds_kn=[speed_kn] if speeds_kn is None else list(speeds_kn),
             hull={
@@ -220,22 +199,26 @@ class Ship(ShipQueries):
             and waves relative to the bow, depth), or only what does not depend on the heading
             (place, time, currents, plain sea variables by name).
         draught_m : float
-            [m].
+            Draught [m].
         top_speed, top_speed_kn : float, optional
             Greatest speed it ever gives, [m/s] or [kn]; measured when not given, if possible.
         name : str
         limits : ShipLimits, optional
+            By default none.
+
+        Returns
+        -------
+        Ship
+            With the function as its model; its power and fuel are unknown (NaN).
 
         Raises
         ------
         InputError
             If the function fails, mixes both kinds, or gives other than one speed per condition.
         """
-        if top_speed_kn is not None:
-            top_speed = top_speed_kn * KNOT
-        model = model_of_function(function, top_speed=top_speed)
-        loading = Loading(float(draught_m), float(draught_m))
-        return cls(name, model, loading, limits or ShipLimits())
+        top = top_speed if top_speed_kn is None else top_speed_kn * KNOT
+        model = model_of_function(function, top_speed=top)
+        return cls(*ship_builder.bare_ship_parts(name, model, float(draught_m), limits))
 
     @property
     def speeds(self) -> FloatArray:
@@ -263,6 +246,15 @@ class Ship(ShipQueries):
         return self.file.hull.breadth_m
 
     @property
+    def length(self) -> float | None:
+        """Length overall, or between perpendiculars or at the waterline [m]; None if unknown."""
+        hull = self.file.hull
+        lengths = (
+            hull.length_overall_m, hull.length_between_perpendiculars_m, hull.length_waterline_m,
+        )  # fmt: skip
+        return next((length for length in lengths if length is not None), None)
+
+    @property
     def min_under_keel_clearance(self) -> float:
         """Least under-keel clearance of the ship file [m]; 0 if it gives none."""
         return self.file.limits.min_under_keel_clearance_m
@@ -270,8 +262,7 @@ class Ship(ShipQueries):
     @property
     def specific_fuel_consumption(self) -> float:
         """Specific fuel consumption of the ship file [kg/J]; NaN if it gives none."""
-        given = self.file.engine.sfoc_g_per_kwh
-        return math.nan if given is None else given * GRAM_PER_KILOWATT_HOUR
+        return known_speed_fuel.given_specific_consumption(self.file.engine)
 
     @property
     def depends_on_crab_angle(self) -> bool:
@@ -284,11 +275,14 @@ class Ship(ShipQueries):
         return self.depends_on_crab_angle or bool(self.model.reads & HEADING_DEPENDENT)
 
     @property
+    def is_resistance_based(self) -> bool:
+        """Whether the model knows the resistance, so that `power_at_speed` is available."""
+        return isinstance(self.model, ResistanceBased)
+
+    @property
     def needs(self) -> frozenset[str]:
         """Sea variables (CF standard names) that the model and the limits need."""
-        if isinstance(self.model, FunctionModel):
-            return self.model.needs | self.limits.needs
-        return needed_variables(self.model.reads) | self.limits.needs
+        return queries.model_needs(self.model) | self.limits.needs
 
     @property
     def speed_field(self) -> Callable[..., FloatArray] | None:
@@ -297,68 +291,140 @@ class Ship(ShipQueries):
         ``sampled`` maps the variables of `needs` to arrays (m, s, m/s); time in seconds since
         1970-01-01T00:00Z, positions in degrees.
         """
-        if isinstance(self.model, FunctionModel):
-            return self.model.field(self.loading.load_factor)
-        return None
+        model = self.model
+        return model.field(self.loading.load_factor) if isinstance(model, FunctionModel) else None
 
     @property
     def fuel_terms(self) -> FuelTerms:
         """Fuels inside and outside emission control areas, their carbon and prices."""
-        return fuel_terms(self.file)
+        return fuel_terms(self.file) if self.terms is None else self.terms
+
+    def with_prices(
+        self,
+        usd_per_t: float | None = None,
+        eca_price_factor: float | None = None,
+        *,
+        time_usd_per_day: float | None = None,
+    ) -> Ship:
+        """Return the ship with other prices of fuel and time.
+
+        Parameters
+        ----------
+        usd_per_t : float, optional
+            Price of fuel outside emission control areas [USD/t], 0 or more.
+        eca_price_factor : float, optional
+            Price of fuel inside them over the price outside [-], above 0.
+        time_usd_per_day : float, optional
+            Price of time [USD/day], 0 or more.
+
+        Returns
+        -------
+        Ship
+            Prices that are not given stay as they are.
+
+        Raises
+        ------
+        InputError
+            For prices that are not possible, or in two currencies.
+        """
+        given = {"usd_per_t": usd_per_t, "eca_price_factor": eca_price_factor}
+        terms = self.fuel_terms.with_prices(**given, time_usd_per_day=time_usd_per_day)
+        return replace(self, terms=terms)
+
+    def with_charges(self, charges: EuropeanCharges | None) -> Ship:
+        """Return the ship with charges of the European Union on its fuel, or without.
+
+        Parameters
+        ----------
+        charges : EuropeanCharges or None
+            Charges by mass of CO2 and greenhouse gases; None removes them.
+
+        Returns
+        -------
+        Ship
+            Its ``fuel_terms`` hold the charges.
+
+        Raises
+        ------
+        InputError
+            If its fuel has no price.
+        """
+        return replace(self, terms=self.fuel_terms.with_charges(charges))
 
     def with_load_factor(self, load_factor: float) -> Ship:
-        """Return the ship at another load factor, 0 empty to 1 full."""
+        """Return the ship at another load factor.
+
+        Parameters
+        ----------
+        load_factor : float
+            0 empty to 1 full.
+
+        Returns
+        -------
+        Ship
+            With the draught and displacement of that load.
+
+        Raises
+        ------
+        InputError
+            If the load factor is not a number from 0 to 1.
+        """
         return replace(self, loading=self.loading.at(load_factor))
 
     def with_limits(self, limits: ShipLimits) -> Ship:
-        """Return the ship with other limits."""
+        """Return the ship with other limits of weather.
+
+        Parameters
+        ----------
+        limits : ShipLimits
+            These replace all limits that the ship has.
+
+        Returns
+        -------
+        Ship
+            Otherwise unchanged.
+        """
         return replace(self, limits=limits)
 
     def with_speeds(self, speeds: ArrayLike) -> Ship:
-        """Return the ship with other settings, given by their calm-water speeds [m/s].
+        """Return the ship with other settings, given by their calm-water speeds.
+
+        Parameters
+        ----------
+        speeds : array_like
+            Calm-water speeds [m/s] at the load factor, above 0; sorted, each once.
+
+        Returns
+        -------
+        Ship
+            With these `speeds`.
 
         Raises
         ------
         InputError
             If a speed is not positive, is outside the ship's range, or the model has one speed.
         """
-        wanted = np.unique(np.atleast_1d(float_array(speeds, "speeds")))
-        if not isinstance(self.model, AdjustableModel):
-            raise InputError(
-                f"The speed of {self.name!r} follows from its model; no speed can be ordered.",
-                "Only ships with an adjustable speed accept an ordered speed.",
-                "Leave the ordered speed out.",
-            )
-        return replace(self, model=self.model.with_speeds(wanted, self.loading.load_factor))
-
-    def top_speed(self, setting: int = 0) -> float | None:
-        """Upper bound of the speed through water [m/s]; None for an unbounded field.
-
-        It holds for the model and for its table, which is rounded to single precision.
-        """
-        top = self.model.top_speed(setting, self.loading.load_factor)
-        return None if top is None else top * (1.0 + _SINGLE_PRECISION)
+        return replace(self, model=queries.model_with_speeds(self, speeds))
 
     @property
     def hotel_power(self) -> float:
         """Hotel load, under way and at anchor [W]; 0 if the ship file gives none."""
-        return hotel_power(self.file.engine)
+        return known_speed_fuel.hotel_power(self.file.engine)
 
     @property
     def waiting_fuel_rate(self) -> float:
         """Fuel rate at anchor [kg/s]: that of the hotel load; 0 if the ship file gives none."""
-        return hotel_load_fuel_rate(self.file.engine)
+        return known_speed_fuel.hotel_load_fuel_rate(self.file.engine)
 
-    def fingerprint(self) -> str:
-        """Return a text that is equal for two ships only if they have the same performance."""
-        return self._fingerprint
-
-    @cached_property
-    def _fingerprint(self) -> str:
-        facts = {
-            "model": self.model.identity,
-            "loading": repr(self.loading),
-            "limits": repr(self.limits),
-        }
-        text = json.dumps(facts, sort_keys=True, default=str)
-        return hashlib.sha256(text.encode()).hexdigest()[:16]
+    speed_through_water = delegated(queries.ship_speed_through_water)
+    power = delegated(queries.ship_power)
+    fuel_rate = delegated(queries.ship_fuel_rate)
+    power_and_fuel = delegated(queries.ship_power_and_fuel)
+    power_at_speed = delegated(queries.ship_power_at_speed)
+    resistance = delegated(queries.ship_resistance)
+    notes = delegated(queries.ship_range_notes)
+    tabulate = delegated(ship_tabulation.ship_speed_table)
+    tabulate_fuel = delegated(ship_tabulation.ship_fuel_table)
+    tabulate_power = delegated(ship_tabulation.ship_power_table)
+    top_speed = delegated(queries.ship_top_speed)
+    fingerprint = delegated(ship_tabulation.ship_fingerprint)

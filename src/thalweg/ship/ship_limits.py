@@ -29,7 +29,7 @@ class ShipLimits:
     wave_height : float
         Greatest significant wave height [m].
     wind_speed : float
-        Greatest wind speed at 10 m, relative to the moving water [m/s].
+        Greatest wind speed at 10 m, over the ground [m/s].
     safety : SafetyLimits, optional
         Limits of safety and comfort in waves.
     """

@@ -6,13 +6,14 @@ import contextlib
 import hashlib
 import zipfile
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from thalweg.chart.coast.coast_index_builder import build_index
-from thalweg.chart.coast.gshhg import CLOSED_CANALS, data_files, read_land_rings
+from thalweg.chart.coast.gshhg import CLOSED_CANALS, CLOSED_NARROWS, data_files, read_land_rings
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.file_writing import replacing_file
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
@@ -21,13 +22,15 @@ CACHE_FORMAT: Final = 2  # increase when the arrays or their construction change
 CELLS_BY_RESOLUTION: Final = {"c": 256, "l": 512, "i": 512, "h": 1024, "f": 1024}
 
 
-def gshhg_index(resolution: str) -> IndexArrays:
+def gshhg_index(resolution: str, *, narrows_closed: bool = True) -> IndexArrays:
     """Return the index of a GSHHG resolution, from disk if it was made before."""
     size = data_files(resolution)[1].stat().st_size
-    canals = hashlib.sha256(repr(CLOSED_CANALS).encode()).hexdigest()[:8]
+    strips = (CLOSED_CANALS, CLOSED_NARROWS if narrows_closed else {})
+    closed = hashlib.sha256(repr(strips).encode()).hexdigest()[:8]
     side = CELLS_BY_RESOLUTION[resolution]
-    path = cache_folder("coast") / f"gshhg-{resolution}-{size}-{side}-{canals}-v{CACHE_FORMAT}.npz"
-    return load_or_build(path, lambda: build_index(read_land_rings(resolution), side))
+    rings = partial(read_land_rings, resolution, narrows_closed=narrows_closed)
+    path = cache_folder("coast") / f"gshhg-{resolution}-{size}-{side}-{closed}-v{CACHE_FORMAT}.npz"
+    return load_or_build(path, lambda: build_index(rings(), side))
 
 
 def load_or_build(path: Path, make: Callable[[], IndexArrays]) -> IndexArrays:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Final
 
 import numpy as np
@@ -43,10 +43,24 @@ class Coastline:
     read: Callable[[], Rings]
 
     @classmethod
-    def gshhg(cls, resolution: str) -> Coastline:
-        """Return the land of the world from GSHHG (see `thalweg.chart.Chart.gshhg`)."""
-        index = gshhg_index(resolution)
-        return cls(f"GSHHG {resolution}", index, lambda: read_land_rings(resolution))
+    def gshhg(cls, resolution: str, *, narrows_closed: bool = True) -> Coastline:
+        """Return the land of the world from GSHHG (see `thalweg.chart.Chart.gshhg`).
+
+        Parameters
+        ----------
+        resolution : str
+            'c', 'l', 'i', 'h' or 'f'.
+        narrows_closed : bool
+            Whether narrows that no ship should use, and dams, are land.
+
+        Returns
+        -------
+        Coastline
+        """
+        index = gshhg_index(resolution, narrows_closed=narrows_closed)
+        name = f"GSHHG {resolution}" + ("" if narrows_closed else ", narrows open")
+        read = partial(read_land_rings, resolution, narrows_closed=narrows_closed)
+        return cls(name, index, read)
 
     @classmethod
     def none(cls) -> Coastline:

@@ -10,6 +10,8 @@ the Caspian and the Great Lakes are closed.
 from __future__ import annotations
 
 import importlib.util
+import itertools
+import math
 from pathlib import Path
 from typing import Final
 
@@ -27,6 +29,26 @@ CLOSED_CANALS: Final[dict[str, tuple[tuple[float, float], ...]]] = {
     "Suez": ((31.20, 32.25), (31.20, 32.40), (29.99, 32.62), (29.99, 32.52)),
     "Panama": ((9.29, -79.95), (9.29, -79.88), (8.99, -79.54), (8.99, -79.62)),
 }
+
+# Dams, and narrows that no ship passes: each line (lat, lon) runs from land to land.
+CLOSED_NARROWS: Final[dict[str, tuple[tuple[float, float], ...]]] = {
+    "Menai Suspension Bridge": ((53.2235, -4.1840), (53.2198, -4.1545)),
+    "Britannia Bridge": ((53.2215, -4.1900), (53.2120, -4.1822)),
+    "Skye Bridge": ((57.2914, -5.7235), (57.2690, -5.7460)),
+    "Kyle Rhea": ((57.2300, -5.6690), (57.2300, -5.6400)),
+    "Naruto": ((34.2380, 134.6150), (34.2443, 134.7010)),
+    "Pamban": ((9.310, 79.040), (9.290, 79.150), (9.265, 79.270)),
+    "Adam's Bridge": ((9.25, 79.30), (9.17, 79.43), (9.07, 79.72), (9.03, 79.83)),
+    "Mannar": ((9.00, 79.88), (8.95, 79.99)),
+    "Haringvliet dam": ((51.8111, 4.0604), (51.8500, 4.0450), (51.9000, 4.0900)),
+    "Brouwersdam": ((51.7993, 3.8586), (51.7342, 3.8195)),
+    "Oosterschelde barrier": ((51.6809, 3.7204), (51.5841, 3.6796)),
+    "Volkerak dam": ((51.7381, 4.3639), (51.6742, 4.4207)),
+    "Afsluitdijk": ((52.9244, 5.0188), (53.0906, 5.3712)),
+    "King Fahd Causeway": ((26.2102, 50.1790), (26.1398, 50.4710)),
+    "Johor Causeway": ((1.4656, 103.7674), (1.4391, 103.7722)),
+}
+_DAM_HALF_WIDTH: Final = 0.0005  # [deg]
 
 
 def data_files(resolution: str) -> tuple[Path, Path]:
@@ -69,8 +91,19 @@ def _folders() -> list[Path]:
     return folders
 
 
-def read_land_rings(resolution: str) -> Rings:
-    """Return the land rings of a resolution, with the strips that close Suez and Panama.
+def read_land_rings(resolution: str, *, narrows_closed: bool = True) -> Rings:
+    """Return the land rings of a resolution, with the strips that close canals and narrows.
+
+    Parameters
+    ----------
+    resolution : str
+        'c', 'l', 'i', 'h' or 'f'.
+    narrows_closed : bool
+        Whether narrows that no ship should use, and dams, are closed as well as canals.
+
+    Returns
+    -------
+    Rings
 
     Raises
     ------
@@ -96,5 +129,20 @@ def read_land_rings(resolution: str) -> Rings:
     start = np.concatenate([[0], np.cumsum(counts)])
     take = np.arange(start[-1]) + np.repeat(firsts - start[:-1], counts)
     land = Rings(lat=raw[take, 1], lon=raw[take, 0], start=start)
-    canals = Rings.from_lists([(corners, False) for corners in CLOSED_CANALS.values()])
-    return land.oriented().joined(canals)
+    strips = [*CLOSED_CANALS.values(), *(_narrow_strips() if narrows_closed else ())]
+    return land.oriented().joined(Rings.from_lists([(corners, False) for corners in strips]))
+
+
+def _narrow_strips() -> list[tuple[tuple[float, float], ...]]:
+    """Return the corners of the strips that close narrows and dams."""
+    strips: list[tuple[tuple[float, float], ...]] = []
+    for line in CLOSED_NARROWS.values():
+        for (lat1, lon1), (lat2, lon2) in itertools.pairwise(line):
+            length = math.hypot(lat2 - lat1, lon2 - lon1)
+            y = _DAM_HALF_WIDTH * (lon2 - lon1) / length
+            x = -_DAM_HALF_WIDTH * (lat2 - lat1) / length
+            strips.append(
+                ((lat1 + y, lon1 + x), (lat2 + y, lon2 + x),
+                 (lat2 - y, lon2 - x), (lat1 - y, lon1 - x))
+            )  # fmt: skip
+    return strips

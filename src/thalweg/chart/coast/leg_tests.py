@@ -14,6 +14,9 @@ from thalweg.kernels.geometry.coast_index import CoastArrays, leg_codes, point_c
 
 EXACT_LEG_LENGTH: Final = 100_000.0  # legs this short are exact to 3 mm in the kernel [m]
 
+_NOTHING: Final = np.int8(127)  # above every status code
+_LEGS_AT_ONCE: Final = 20_000
+
 
 def leg_status(
     coast: CoastArrays, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
@@ -38,21 +41,31 @@ def leg_status(
     code = np.empty(len(a), np.int8)
     unsure = np.empty(len(a), np.bool_)
     leg_codes(coast, a, b, c, d, code, unsure)
-    for k in np.flatnonzero(unsure):
-        code[k] = _status_in_parts(coast, a[k], b[k], c[k], d[k])
+    k = np.flatnonzero(unsure)
+    for part in np.array_split(k, len(k) // _LEGS_AT_ONCE + 1) if len(k) else ():
+        code[part] = _status_in_parts(coast, a[part], b[part], c[part], d[part])
     return code.reshape(ends[0].shape)
 
 
-def _status_in_parts(coast: CoastArrays, lat1: float, lon1: float, lat2: float, lon2: float) -> int:
-    """Return the status of a leg split at points of the exact geodesic."""
+def _status_in_parts(
+    coast: CoastArrays, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
+) -> NDArray[np.int8]:
+    """Return the status of legs split at points of the exact geodesics."""
     length, course, _ = inverse(lat1, lon1, lat2, lon2)
-    count = int(np.ceil(length / EXACT_LEG_LENGTH)) + 1
-    lat, lon = direct(lat1, lon1, course, np.linspace(0.0, float(length), count + 1))
-    lat[0], lon[0], lat[-1], lon[-1] = lat1, lon1, lat2, lon2
-    code, unsure = np.empty(count, np.int8), np.empty(count, np.bool_)
-    leg_codes(coast, lat[:-1], lon[:-1], lat[1:], lon[1:], code, unsure)
-    blocked = code[code != OK]
-    return int(blocked.min()) if len(blocked) else OK
+    count = np.ceil(length / EXACT_LEG_LENGTH).astype(np.int64) + 1
+    points = count + 1
+    first = np.cumsum(points) - points
+    leg = np.repeat(np.arange(len(count)), points)
+    share = (np.arange(len(leg)) - first[leg]) / count[leg]
+    lat, lon = direct(lat1[leg], lon1[leg], course[leg], share * length[leg])
+    last = first + count
+    lat[first], lon[first], lat[last], lon[last] = lat1, lon1, lat2, lon2
+    begin = np.delete(np.arange(len(leg)), last)
+    code, unsure = np.empty(len(begin), np.int8), np.empty(len(begin), np.bool_)
+    leg_codes(coast, lat[begin], lon[begin], lat[begin + 1], lon[begin + 1], code, unsure)
+    code[code == OK] = _NOTHING
+    least = np.minimum.reduceat(code, np.cumsum(count) - count)
+    return np.where(least == _NOTHING, OK, least).astype(np.int8)
 
 
 def point_status(coast: CoastArrays, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.int8]:

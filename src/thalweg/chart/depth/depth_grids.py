@@ -14,6 +14,12 @@ from thalweg.core.errors import DatasetError, InputError
 from thalweg.core.geodesy import wrap_longitude
 from thalweg.core.types import Float32Array, FloatArray
 from thalweg.sea.files.file_opener import open_file
+from thalweg.sea.plausible_values import (
+    DEPTH_FILLS,
+    holds_any,
+    unmarked_fill,
+    unmarked_fill_error,
+)
 
 DepthFunction = Callable[[FloatArray, FloatArray], Any]
 
@@ -36,6 +42,7 @@ DEPTH_NAMES: Final = frozenset(
         "model_sea_floor_depth_below_geoid",
     )
 )
+_AROUND: Final = 50  # rows and columns around a sounding that are read to judge it
 MAX_HEIGHT, MAX_DEPTH = 9_500.0, 12_000.0  # [m] largest plausible height and depth
 UNIT_FACTORS: Final = {
     "m": 1.0,
@@ -196,11 +203,27 @@ def make_depth_layer(
 
     def read(rows: slice, columns: slice) -> Float32Array:
         part = array.isel({lat_name: rows, lon_name: columns}).values
+        if holds_any(part, DEPTH_FILLS):
+            around = {lat_name: _widened(rows, len(lat)), lon_name: _widened(columns, len(lon))}
+            _check_fills(array.isel(around).values, name)
         depth = np.asarray(part, np.float32) * np.float32(scale)
         _check_plausible(depth, name)
         return depth
 
     return DepthGrid(name, lat, lon, read)
+
+
+def _widened(part: slice, size: int) -> slice:
+    """Return a range of rows or columns with `_AROUND` more on either side."""
+    first, last, step = part.indices(size)
+    return slice(max(first - _AROUND, 0), min(last + _AROUND, size), step)
+
+
+def _check_fills(part: Any, name: str) -> None:
+    """Raise for numbers that stand for missing values, in the unit and sign of the file."""
+    fill = unmarked_fill(np.asarray(part), DEPTH_FILLS)
+    if fill is not None:
+        raise unmarked_fill_error(name, "the depth", "depth", fill)
 
 
 def _check_plausible(depth: Float32Array, name: str) -> None:

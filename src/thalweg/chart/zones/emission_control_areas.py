@@ -133,7 +133,13 @@ def _features() -> dict[str, dict[str, Any]]:
 
 @cache
 def emission_control_areas() -> tuple[EmissionControlArea, ...]:
-    """Return all emission control areas, those still to come and those without limits included."""
+    """Return all emission control areas, those still to come and those without limits included.
+
+    Returns
+    -------
+    tuple of EmissionControlArea
+        With names, dates and outlines.
+    """
     fields = EmissionControlArea.__dataclass_fields__
     return tuple(
         EmissionControlArea(**{name: f["properties"][name] for name in fields})

@@ -133,7 +133,7 @@ class Zones:
         ------
         InputError
             If it is not GeoJSON of areas, an outline crosses itself, or a kind or factor is
-            missing or makes no sense.
+            missing or not possible.
         """
         found: dict[str, list[tuple[Any, float]]] = {
             kind: [] for kind in (*KINDS_WITHOUT_FACTOR, "penalty", "price")

@@ -19,12 +19,12 @@ Coast edges are straight in longitude and latitude, split so that the arc betwee
 at most `BULGE` from them; where that matters an edge is split further.
 """
 
-from math import asin, atan, atan2, ceil, cos, hypot, sin, sqrt, tan
+from math import asin, atan, atan2, ceil, hypot, sqrt
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from thalweg.kernels.codes import LAND, NO_DATA, NO_GO, OK
+from thalweg.kernels.codes import LAND, NO_DATA, NO_GO, OFFING, OK
 from thalweg.kernels.compilation.decorators import allocation_free
 from thalweg.kernels.geometry.cube_sphere import (
     AXIS_RATIO_SQUARED,
@@ -40,6 +40,16 @@ from thalweg.kernels.geometry.cube_sphere import (
     latitude_longitude,
     unit_vector,
 )
+from thalweg.kernels.geometry.geodesic_arc import geodesic_point, plane_offset
+from thalweg.kernels.geometry.offing_tests import (
+    KEPT,
+    NO_OFFING,
+    TOO_NEAR,
+    OffingArrays,
+    gate_crossed,
+    offing_along,
+    offing_kept_at,
+)
 
 REACH: Final = 3.0e-5  # a cell answers for points this far outside it, on the face
 LONGEST_ARC: Final = 0.125  # longer legs are split into such arcs [rad]
@@ -49,7 +59,7 @@ LONGEST_CHORD: Final = 1.2  # legs above 8,200 km always are
 
 
 class CoastArrays(NamedTuple):
-    """What a leg must not touch: land, no-go zones, and the world outside an area.
+    """What a leg must not touch: land, no-go zones, the world outside an area, water near land.
 
     ``area`` is float64[4]: south, north, west [deg] and width [deg]; width 360 and latitudes
     +-90 mean the whole world.
@@ -58,13 +68,7 @@ class CoastArrays(NamedTuple):
     land: IndexArrays
     zones: IndexArrays
     area: np.ndarray
-
-
-@allocation_free
-def _offset(k, mz, ez, half, tan_half, t):
-    """Return the offset of the geodesic from the plane at the angle t from its middle."""
-    s, c = sin(t), cos(t)
-    return k * (mz * (t * s - half * tan_half * c) + ez * (half * s / tan_half - t * c))
+    offing: OffingArrays = NO_OFFING
 
 
 @allocation_free
@@ -83,7 +87,7 @@ def _edge_cut(p, q, m, e, n, k, half, tan_half, unsure):
         elif piece > 0:
             x, y, z = unit_vector(plat + share * (qlat - plat), plon + share * east)
         t1 = atan2(x * e[0] + y * e[1] + z * e[2], x * m[0] + y * m[1] + z * m[2])
-        s1 = x * n[0] + y * n[1] + z * n[2] - _offset(k, m[2], e[2], half, tan_half, t1)
+        s1 = x * n[0] + y * n[1] + z * n[2] - plane_offset(k, m[2], e[2], half, tan_half, t1)
         if abs(t1) <= half and abs(s1) < unsure:
             answer = 2
         if piece > 0 and s0 * s1 <= 0.0:
@@ -104,8 +108,8 @@ def _edge_touched(p, q, m, e, n, k, tan_half, unsure):
     t1 = atan2(q[0] * e[0] + q[1] * e[1] + q[2] * e[2], q[0] * m[0] + q[1] * m[1] + q[2] * m[2])
     if min(t0, t1) > half + BULGE or max(t0, t1) < -half - BULGE:
         return 0
-    s0 = p[0] * n[0] + p[1] * n[1] + p[2] * n[2] - _offset(k, m[2], e[2], half, tan_half, t0)
-    s1 = q[0] * n[0] + q[1] * n[1] + q[2] * n[2] - _offset(k, m[2], e[2], half, tan_half, t1)
+    s0 = p[0] * n[0] + p[1] * n[1] + p[2] * n[2] - plane_offset(k, m[2], e[2], half, tan_half, t0)
+    s1 = q[0] * n[0] + q[1] * n[1] + q[2] * n[2] - plane_offset(k, m[2], e[2], half, tan_half, t1)
     near = BULGE + unsure
     if (s0 > near and s1 > near) or (s0 < -near and s1 < -near):
         return 0
@@ -247,29 +251,21 @@ def _vector_code(coast, lat, lon, x, y, z):
 
 
 @allocation_free
-def point_code(coast, lat, lon):
-    """Return OK, LAND or NO_GO (a no-go zone or outside the area) for a position [deg]."""
-    if not (abs(lat) <= 90.0 and abs(lon) < 1e6):
-        return NO_DATA
-    x, y, z = unit_vector(lat, lon)
-    return _vector_code(coast, lat, lon, x, y, z)
+def _offing_code(coast, x, y, z):
+    """Return OFFING for a direction in water nearer to land than is required, else OK."""
+    if coast.offing.distance > 0.0 and not offing_kept_at(coast.land, coast.offing, x, y, z):
+        return OFFING
+    return OK
 
 
 @allocation_free
-def geodesic_point(a, b, share):
-    """Return the unit vector at a share of the leg's angle, on the geodesic to first order."""
-    mx, my, mz = a[0] + b[0], a[1] + b[1], a[2] + b[2]
-    ex, ey, ez = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-    lm, le = sqrt(mx * mx + my * my + mz * mz), sqrt(ex * ex + ey * ey + ez * ez)
-    mx, my, mz, ex, ey, ez = mx / lm, my / lm, mz / lm, ex / le, ey / le, ez / le
-    half = atan2(le, lm)
-    t = half * (2.0 * share - 1.0)
-    nx, ny, nz = my * ez - mz * ey, mz * ex - mx * ez, mx * ey - my * ex
-    d = _offset(-FLATTENING * nz, mz, ez, half, tan(half), t)
-    s, c = sin(t), cos(t)
-    x, y, z = c * mx + s * ex + d * nx, c * my + s * ey + d * ny, c * mz + s * ez + d * nz
-    length = sqrt(x * x + y * y + z * z)
-    return x / length, y / length, z / length
+def point_code(coast, lat, lon):
+    """Return OK, LAND, NO_GO (a no-go zone or outside the area) or OFFING for a position [deg]."""
+    if not (abs(lat) <= 90.0 and abs(lon) < 1e6):
+        return NO_DATA
+    x, y, z = unit_vector(lat, lon)
+    code = _vector_code(coast, lat, lon, x, y, z)
+    return code if code != OK else _offing_code(coast, x, y, z)
 
 
 @allocation_free
@@ -314,7 +310,8 @@ def leg_code(coast, lat1, lon1, lat2, lon2):
     Returns
     -------
     code : int
-        OK, LAND, NO_GO (a zone, or outside the area) or NO_DATA (a position that is none).
+        OK, LAND, NO_GO (a zone, or outside the area), OFFING (nearer to land than the offing, or
+        on it) or NO_DATA (a position that is none).
     unsure : bool
         The leg passes so near that the first-order geodesic cannot decide; ``code`` is then the
         blocked one.
@@ -328,12 +325,18 @@ def leg_code(coast, lat1, lon1, lat2, lon2):
     x, y, z = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     chord = sqrt(x * x + y * y + z * z)
     if chord < SHORTEST_ARC:
-        return _vector_code(coast, lat2, lon2, b[0], b[1], b[2]), False
+        code = _vector_code(coast, lat2, lon2, b[0], b[1], b[2])
+        return (code if code != OK else _offing_code(coast, b[0], b[1], b[2])), False
     far = chord > LONGEST_CHORD
     unsure = 0.0
     if chord > SURE_CHORD:
         unsure = 0.3 * (FLATTENING * chord) ** 2
-    land = _touched(coast.land, a, b, chord, unsure)
+    off_land = TOO_NEAR
+    if coast.offing.distance > 0.0:
+        off_land = offing_along(coast.land, coast.offing, a, b, chord)
+        if off_land == TOO_NEAR:
+            return OFFING, far
+    land = 0 if off_land == KEPT else _touched(coast.land, a, b, chord, unsure)
     if land > 0:
         return LAND, far or land == 2
     if not _is_whole_globe(coast.area) and not leg_in_area(coast.area, lat1, lon1, lat2, lon2):
@@ -342,6 +345,8 @@ def leg_code(coast, lat1, lon1, lat2, lon2):
         zone = _touched(coast.zones, a, b, chord, unsure)
         if zone > 0:
             return NO_GO, far or zone == 2
+    if len(coast.offing.gate) > 0 and gate_crossed(coast.offing, a, b):
+        return NO_GO, False
     return OK, far
 
 

@@ -4,8 +4,9 @@ from math import atan2, cos, sin, sqrt
 from typing import Final
 
 from thalweg.kernels.compilation.decorators import allocation_free
-from thalweg.kernels.geometry.coast_index import SHORTEST_ARC, geodesic_point, outline_touched
+from thalweg.kernels.geometry.coast_index import SHORTEST_ARC, outline_touched
 from thalweg.kernels.geometry.cube_sphere import FLATTENING, inside, unit_vector
+from thalweg.kernels.geometry.geodesic_arc import geodesic_point
 
 MAX_TESTS: Final = 2048  # of one leg, before crossings are found less finely
 _ECCENTRICITY_SQUARED: Final = FLATTENING * (2.0 - FLATTENING)  # eccentricity squared

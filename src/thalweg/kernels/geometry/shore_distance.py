@@ -58,23 +58,36 @@ def _nearest_within(index, x, y, z, radius):
 
 
 @allocation_free
+def cell_clearance(index, x, y, z):
+    """Return a lower bound [m] of the distance to the edges from the cell of a direction alone."""
+    side = index.side
+    face = face_of(x, y, z)
+    u, v, w = face_components(x, y, z, face)
+    value = index.cell[(face * side + column_of(v / w, side)) * side + column_of(u / w, side)]
+    # 0.9943: the least length of a radian of geocentric direction, over the mean radius
+    return value * RADIUS * 0.9943
+
+
+@allocation_free
+def nearest_edge(index, x, y, z, radius):
+    """Return the distance [m] to the nearest edge within a radius [m], else the radius."""
+    square = _nearest_within(index, x, y, z, radius / RADIUS * 1.006)
+    return min(radius, 2.0 * asin(min(sqrt(square) / 2.0, 1.0)) * RADIUS * 0.9943)
+
+
+@allocation_free
 def shore_distances(index, lat, lon, cap, distance):
     """Fill ``distance`` [m] with a lower bound of the distance to the nearest edge of an index.
 
     Inside the polygons it is 0; within ``cap`` [m] (at most 250 km) of an edge it is the true
     distance to a part in 1000; elsewhere it is at least ``cap``.
     """
-    side = index.side
     for k in range(len(distance)):
         x, y, z = unit_vector(lat[k], lon[k])
         if not abs(lat[k]) <= 90.0 or inside(index, x, y, z):
             distance[k] = 0.0
             continue
-        face = face_of(x, y, z)
-        u, v, w = face_components(x, y, z, face)
-        value = index.cell[(face * side + column_of(v / w, side)) * side + column_of(u / w, side)]
-        # 0.9943: the least length of a radian of geocentric direction, over the mean radius
-        clear = value * RADIUS * 0.9943
+        clear = cell_clearance(index, x, y, z)
         radius = 4000.0
         found = cap
         while clear < cap:

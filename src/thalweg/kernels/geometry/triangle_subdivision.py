@@ -11,7 +11,6 @@ from thalweg.kernels.geometry.coast_index import (
     arc_frame,
     cell_exit,
     edges_of_cell_touched,
-    geodesic_point,
 )
 from thalweg.kernels.geometry.cube_sphere import (
     FIRST_ROW,
@@ -20,6 +19,7 @@ from thalweg.kernels.geometry.cube_sphere import (
     face_of,
     unit_vector,
 )
+from thalweg.kernels.geometry.geodesic_arc import geodesic_point
 
 _MAX_HALVINGS = 64  # more halvings of an edge than any grid has
 

@@ -224,7 +224,8 @@ def march_edge(network, sea, ship, fuel, edge, k, t, cutoff, work):
         Interval of the times that holds the departure.
     t : float
         Departure [s].
-    cutoff : MarchCutoff
+    cutoff : MarchCutoff or None
+        None if every arrival is useful.
     work : tuple of three float64[CHANNELS]
         The sea at the tail of the edge at the departure, and two arrays of work space.
 
@@ -257,10 +258,11 @@ def march_edge(network, sea, ship, fuel, edge, k, t, cutoff, work):
             to = float(network.via_s[p]) if p < last else 1.0
             piece = network.length[edge] * (to - at)
             at = to
-            rest = network.length[edge] * (1.0 - to) * cutoff.least
-            soonest = 0.5 * piece * (slowness + cutoff.least) + rest
-            if t + soonest >= cutoff.latest:
-                return math.inf, 0.0, OK
+            if cutoff is not None:
+                remaining = network.length[edge] * (1.0 - to) * cutoff.least
+                least = 0.5 * piece * (slowness + cutoff.least) + remaining
+                if t + least >= cutoff.latest:
+                    return math.inf, 0.0, OK
             then = t + piece * slowness
             k = interval_near(sea.times, k, then)
             if k < 0:

@@ -142,7 +142,8 @@ def _speed_through_water(needs, table, setting, course, across, wind, waves, dep
 def _conditions(sample, channel_index, current, needs, static_depth, limits):
     """Return (depth, waves, wind, status): what is needed of the sea, and whether limits allow it.
 
-    Waves are (height, east, north, period), wind is (east, north) relative to the moving water.
+    Waves are (height, east, north, period), wind is (east, north) relative to the moving water;
+    the limit is for the wind over the ground.
     """
     depth, waves, wind = 0.0, (0.0, 0.0, 0.0, 0.0), (0.0, 0.0)
     required = limits[LIMIT_REQUIRED_DEPTH]
@@ -161,9 +162,9 @@ def _conditions(sample, channel_index, current, needs, static_depth, limits):
             return depth, waves, wind, WAVE_HEIGHT
     if needs & _WIND_AXES or limits[LIMIT_WIND_SPEED] < math.inf:
         wind = _wind_over_water(sample, channel_index, current[0], current[1])
-        squared = wind[0] * wind[0] + wind[1] * wind[1]
-        if squared != squared:
+        if not (wind[0] == wind[0] and wind[1] == wind[1]):
             return depth, waves, wind, NO_DATA
+        squared = sample[WIND_EAST] * sample[WIND_EAST] + sample[WIND_NORTH] * sample[WIND_NORTH]
         if squared > limits[LIMIT_WIND_SPEED] * limits[LIMIT_WIND_SPEED]:
             return depth, waves, wind, WIND_SPEED
     return depth, waves, wind, OK
@@ -282,8 +283,8 @@ def point_speed(sample, channel_index, east, north, table, setting, static_depth
     static_depth : float
         Charted depth [m below datum]; +inf is not checked, NaN unknown.
     limits : float64[LIMITS]
-        Required depth [m], largest wave height [m], largest wind speed [m/s, relative to the
-        moving water].
+        Required depth [m], largest wave height [m], largest wind speed [m/s, over the
+        ground, as forecasts give it].
 
     Returns
     -------

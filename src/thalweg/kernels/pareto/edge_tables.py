@@ -18,7 +18,6 @@ from thalweg.kernels.codes import (
 from thalweg.kernels.compilation.decorators import allocation_free, inlined, kernel_only
 from thalweg.kernels.leg.edge_sailing import (
     FuelTable,
-    MarchCutoff,
     NetworkArrays,
     SeaArrays,
     ShipArrays,
@@ -152,7 +151,7 @@ def _sail_sea_edge(world, edge, choice, k, t, work):
         edge,
         k,
         t,
-        MarchCutoff(math.inf, 0.0),
+        None,
         (work[1], work[2], work[3]),
     )
 
@@ -194,13 +193,13 @@ def _may_open(status):
 
 
 @kernel_only
-def fill_edge_table(world, blocks, node, i, work):
+def fill_edge_table(world, tables, node, i, work):
     """Sail every edge that leaves a node at its i-th slice, at all settings."""
     network, sea, ship = world.network, world.sea, world.ship
     count = ship.settings.shape[0]
     e0, e1 = network.indptr[node], network.indptr[node + 1]
-    at = blocks.offset[node] + i * (e1 - e0) * 2 * count
-    t = world.depart + blocks.times[blocks.first[node] + i]
+    at = tables.offset[node] + i * (e1 - e0) * 2 * count
+    t = world.depart + tables.times[tables.first[node] + i]
     k = interval_of(sea.times, t)
     found = 1
     if k >= 0:
@@ -211,23 +210,23 @@ def fill_edge_table(world, blocks, node, i, work):
         fixed = world.prices.fixed_time[edge]
         if never == OK and required > -math.inf and fixed != fixed:
             never = never_deep_enough(network, sea, edge, required)
-        shut = 0
+        closed = 0
         for s in range(count):
             duration, cost, status = math.inf, math.inf, never
             if status == OK:
                 then, price, status = sail_edge_priced(world, edge, s, k, t, work)
-                blocks.sailed[0] += 1
+                tables.sailed[0] += 1
                 if status == OK:
                     duration, cost = then - t, price
                 elif _may_open(status):
-                    duration, shut = math.nan, shut + 1
+                    duration, closed = math.nan, closed + 1
             if status != OK:
-                blocks.refused[status] += 1
-            blocks.values[at + s] = duration
-            blocks.values[at + count + s] = cost
-        found = max(found, 3 if shut == count else 2 if shut > 0 else 1)
+                tables.refused[status] += 1
+            tables.values[at + s] = duration
+            tables.values[at + count + s] = cost
+        found = max(found, 3 if closed == count else 2 if closed > 0 else 1)
         at += 2 * count
-    blocks.state[blocks.place[node] + i] = found
+    tables.state[tables.place[node] + i] = found
 
 
 @allocation_free

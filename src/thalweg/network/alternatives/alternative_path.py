@@ -58,6 +58,11 @@ class EdgeWeights:
         factor : float, optional
             Cost of a mile inside an emission control area over that of a mile outside [-].
 
+        Returns
+        -------
+        EdgeWeights
+            Of the edges of the network [m times a factor], and the same for any legs.
+
         Raises
         ------
         InputError
@@ -65,9 +70,9 @@ class EdgeWeights:
         """
         if not 0.0 < factor < np.inf:
             raise InputError(
-                f"A mile cannot cost {factor!r} times another.",
-                "A factor above 0.",
-                "Give 1.5, say.",
+                f"The factor of control areas is {factor!r}.",
+                "It is above 0: cost of a mile inside over that of a mile outside.",
+                "Give 1.5, for example.",
             )
 
         def leg_cost(*ends: FloatArray) -> FloatArray:
@@ -151,7 +156,7 @@ def checked_edge_weights(network: Network, edge_weights: EdgeWeights) -> FloatAr
     if weight.shape != (network.n_edges,) or not np.all(weight >= 0.0):
         raise InputError(
             f"Weights of shape {weight.shape} do not fit {network.n_edges} edges or are negative.",
-            "One number of 0 or more for each edge.",
+            "Each edge has one weight of 0 or more.",
             "Build them from network.edges.length.",
         )
     return weight

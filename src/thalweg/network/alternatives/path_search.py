@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypeVar
 
 import numpy as np
 
@@ -29,6 +29,9 @@ from thalweg.network.shortest_paths import shortest_path_tree
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+
+_Canal = TypeVar("_Canal")
+_Found = TypeVar("_Found")
 
 _SMALLEST_ISLAND: Final = 0.02  # islands narrower than this share of the distance do not count
 _CANDIDATES_PER_PATH: Final = 3  # homotopy classes considered for each requested path
@@ -104,6 +107,30 @@ def alternative_paths(
     return _taut_paths(network, chart, seen, found, edge_weight_sets, most)
 
 
+def without_each_set_of_canals(
+    canals: Sequence[_Canal], find: Callable[[tuple[_Canal, ...]], _Found | None]
+) -> Iterator[_Found]:
+    """Yield what is found with every set of some canals closed, the smaller sets first.
+
+    Parameters
+    ----------
+    canals : sequence
+        Canals that the best alternative uses.
+    find : callable
+        Called with the closed canals; returns an alternative, or None if there is none.
+
+    Yields
+    ------
+    object
+        As returned by ``find``; up to ``2**n - 1`` for n canals.
+    """
+    for count in range(1, len(canals) + 1):
+        for closed in combinations(canals, count):
+            other = find(closed)
+            if other is not None:
+                yield other
+
+
 @renamed_arguments(weighing="edge_weights")
 def paths_without_canals(
     network: Network,
@@ -146,13 +173,14 @@ def paths_without_canals(
     if first is None:
         raise _no_path(network)
     passed = sorted({int(canal[e]) for e in path_edges(network, first[1]) if canal[e] >= 0})
+    others = without_each_set_of_canals(
+        passed,
+        lambda closed: _cheapest_path(network, np.where(np.isin(canal, closed), np.inf, weight)),
+    )
     found = {tuple(first[1]): first}
-    for count in range(1, len(passed) + 1):
-        for closed in combinations(passed, count):
-            shut = np.where(np.isin(canal, closed), np.inf, weight)
-            other = _cheapest_path(network, shut)
-            if other is not None and other[0] <= (1.0 + threshold) * first[0]:
-                found.setdefault(tuple(other[1]), other)
+    for other in others:
+        if other[0] <= (1.0 + threshold) * first[0]:
+            found.setdefault(tuple(other[1]), other)
     ways = sorted(found.values(), key=lambda pair: pair[0])
     return tuple(
         taut_path(network, chart, np.array(path), cost / first[0], edge_weights)
@@ -180,8 +208,8 @@ def _check(network: Network, most: int, stretch: float) -> None:
     if not (most >= 1 and stretch >= 0.0):
         raise InputError(
             f"A search for {most!r} paths, at most {stretch!r} costlier, is not possible.",
-            "One path or more, and a fraction of 0 or more.",
-            "Give 4 paths and 0.3, say.",
+            "The number of paths is 1 or more, the fraction 0 or more.",
+            "Give 4 paths and 0.3, for example.",
         )
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from thalweg.core.errors import NoRouteError
+from thalweg.core.errors import NoPathError, NoRouteError
 from thalweg.core.geodesy import MEAN_RADIUS, Position, distance, format_position, wrap_longitude
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -146,7 +146,7 @@ def attach(
         return _direct_attachment(
             place, _nearest_by_sector(waters, place, seen[waters.water[seen] == best])
         )
-    raise NoRouteError(
+    raise NoPathError(
         f"The {what} {format_position(*place)} cannot be joined to the network.",
         f"No node of it can be reached within {_FARTHEST_APPROACH / NAUTICAL_MILE:.0f} nm.",
         "Give another position or more coast levels.",

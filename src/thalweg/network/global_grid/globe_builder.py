@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from thalweg.chart.canals import CANALS, Canal
 from thalweg.chart.coast.coastline import Coastline
 from thalweg.core import geodesy
-from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.errors import NoPathError, NoRouteError
 from thalweg.core.geodesy import Position
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -25,26 +25,16 @@ from thalweg.network.assembly import (
 )
 from thalweg.network.endpoints import check_endpoints, concatenate_pairs, direct_pairs
 from thalweg.network.global_grid.endpoint_attachment import Attachment, ConnectedWaters, attach
-from thalweg.network.global_grid.grid import GlobeGrid, GridResolution, globe_grid
+from thalweg.network.global_grid.globe_options import GlobeOptions
+from thalweg.network.global_grid.grid import GlobeGrid, globe_grid
 from thalweg.network.network import Network, NetworkMeta, Stations
 from thalweg.network.shortest_paths import shortest_path_tree
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
-NORTH_LIMIT: Final = 72.0
-SOUTH_LIMIT: Final = -70.0
 _LIMIT_MARGIN: Final = 1.0  # limits are moved this far beyond start and goal [deg]
 _LINK_REACH: Final = 2.2  # positions are joined to nodes within this many legs of the uniform grid
-_LARGEST_LEVEL: Final = 8
-_FINEST_LEVEL: Final = 14
-
-
-@dataclass(frozen=True)
-class _Options:
-    fineness: GridResolution
-    south: float
-    north: float
 
 
 @dataclass(frozen=True)
@@ -69,15 +59,8 @@ def globe(
     chart: Chart,
     start: Position,
     goal: Position,
-    *,
-    level: int = 4,
-    coast_levels: int = 6,
-    border_levels: int = 4,
-    directions: int = 12,
-    north: float = NORTH_LIMIT,
-    south: float = SOUTH_LIMIT,
-    slack: float | None = None,
-    sample_spacing: float = 60.0 * NAUTICAL_MILE,
+    options: GlobeOptions | None = None,
+    **changes: Any,
 ) -> Network:
     """Build a geodesic grid with two positions as nodes, and the chart's canals as edges.
 
@@ -87,29 +70,10 @@ def globe(
         Land, zones, depth and canals.
     start, goal : (lat, lon)
         Exact positions [deg] on navigable water.
-    level : int, optional
-        How often the icosahedron is halved everywhere, 0 to 8: legs are at most 285 nautical miles
-        long at level 4, half that for every further level.
-    coast_levels : int, optional
-        How often faces along coasts are halved beyond that. Narrow straits with traffic
-        (`thalweg.network.global_grid.straits`) are halved further still, unless this is 0.
-    border_levels : int, optional
-        How often faces along the borders of zones with prices (emission control, penalty and price
-        zones) are halved: a route along a border is found only if there are nodes near it.
-    directions : {12, 6}, optional
-        Legs along the edges of faces (6), or across them as well: paths in open water are then at
-        most 5 % longer than the shortest, not 24 %.
-    north, south : float, optional
-        Nodes beyond these latitudes [deg] are left out: charts contain no ice, and without a limit
-        paths lead through the Arctic. The default of 72 N closes the Northwest and Northeast
-        Passages and leaves the North Cape open. If start or goal is beyond a limit, the limit is
-        moved to 1 degree past it.
-    slack : float, optional
-        Nodes are used if the shortest path start-node-goal is at most ``1 + slack`` times the
-        shortest path from start to goal; by default 1 under 100 nautical miles falling to 0.35 over
-        1,000 and 0.15 over 5,000. ``math.inf`` uses the whole sea.
-    sample_spacing : float, optional
-        Fields are sampled along edges at least this often [m].
+    options : GlobeOptions, optional
+        Fineness and extent; by default those for ocean passages.
+    **changes
+        Options by name, such as ``coast_levels=3``: they replace those of ``options``.
 
     Returns
     -------
@@ -131,19 +95,18 @@ def globe(
     disk (`thalweg.network.global_grid.grid`).
     """
     start, goal = check_endpoints(chart, start, goal)
-    fineness = GridResolution(level, coast_levels, border_levels, directions)
-    options = _checked(fineness, south, north, slack, sample_spacing)
+    options = replace(options or GlobeOptions(), **changes)
     options = _limits_including_ends(options, start, goal)
     sheet = _draw_and_attach(chart, options, start, goal)
     to_start = sheet.distances(sheet.start)
     length = float(to_start[sheet.start + 1])
     if not math.isfinite(length):
         raise _no_route(chart, options, (start, goal), sheet, to_start)
-    slack = _default_slack(length) if slack is None else slack
+    slack = _default_slack(length) if options.slack is None else options.slack
     if math.isfinite(slack):
         total = to_start + sheet.distances(sheet.start + 1)
         sheet = _sheet_subset(sheet, total <= (1.0 + slack) * length + sheet.grid.spacing)
-    return _network(chart, sheet, options, sample_spacing)
+    return _network(chart, sheet, options)
 
 
 def _default_slack(distance: float) -> float:
@@ -152,40 +115,7 @@ def _default_slack(distance: float) -> float:
     return float(np.interp(math.log(miles), sizes, slacks))
 
 
-def _checked(
-    fineness: GridResolution, south: float, north: float, slack: float | None, spacing: float
-) -> _Options:
-    level, coast, border = fineness.level, fineness.coast_levels, fineness.border_levels
-    directions = fineness.directions
-    fine = 0 <= level <= _LARGEST_LEVEL and coast >= 0 and border >= 0
-    if not (fine and level + max(coast, border) <= _FINEST_LEVEL):
-        raise InputError(
-            f"A globe network cannot have level {level!r} with {coast!r} coast levels and "
-            f"{border!r} border levels.",
-            f"The level is 0 to {_LARGEST_LEVEL}, both together at most {_FINEST_LEVEL}.",
-            "Level 4 with 6 coast levels suits ocean passages.",
-        )
-    if directions not in (6, 12):
-        raise InputError(
-            f"A globe network cannot have {directions!r} directions.", "Possible: 6, 12.",
-            "Choose one of these.",
-        )  # fmt: skip
-    if not -90.0 <= south < north <= 90.0:
-        raise InputError(
-            f"The latitude limits {south!r} and {north!r} are not valid.",
-            "The southern limit is below the northern one, both within 90 degrees.",
-            "Give degrees north, southern latitudes negative.",
-        )
-    if slack is not None and not slack >= 0.0:
-        raise InputError(f"A slack of {slack!r} makes no sense.", "0 or more.", "Give 0.35, say.")
-    if not spacing >= 1000.0:
-        raise InputError(
-            f"Samples {spacing!r} m apart are too many.", "At least 1000 m.", "Give metres."
-        )
-    return _Options(fineness, float(south), float(north))
-
-
-def _limits_including_ends(options: _Options, start: Position, goal: Position) -> _Options:
+def _limits_including_ends(options: GlobeOptions, start: Position, goal: Position) -> GlobeOptions:
     """Return options whose limits lie beyond start and goal."""
     lowest, highest = min(start[0], goal[0]), max(start[0], goal[0])
     return replace(
@@ -200,7 +130,7 @@ def _limits_including_ends(options: _Options, start: Position, goal: Position) -
 
 
 def _draw_and_attach(
-    chart: Chart, options: _Options, start: Position, goal: Position
+    chart: Chart, options: GlobeOptions, start: Position, goal: Position
 ) -> _UnassembledGlobe:
     """Draw the grid's open sea, and join start, goal and the ends of the canals to it."""
     grid = globe_grid(chart, options.fineness)
@@ -232,11 +162,11 @@ def _draw_and_attach(
     )
 
 
-def _open_sea(chart: Chart, grid: GlobeGrid, options: _Options) -> tuple[Pairs, BoolArray]:
-    """Return the grid's legs within limits, area and zones, and which nodes are usable."""
+def _open_sea(chart: Chart, grid: GlobeGrid, options: GlobeOptions) -> tuple[Pairs, BoolArray]:
+    """Return the grid's legs within limits and area, and which nodes are usable."""
     usable = (grid.lat >= options.south) & (grid.lat <= options.north)
-    no_land = replace(chart, coastline=Coastline.none())
-    bounded = chart.zones.no_go or chart.area.array().tolist() != [-90.0, 90.0, -180.0, 360.0]
+    no_land = type(chart)(Coastline.none(), chart.area)
+    bounded = chart.area.array().tolist() != [-90.0, 90.0, -180.0, 360.0]
     if bounded:
         usable &= no_land.is_navigable(grid.lat, grid.lon)
     pairs = grid.pairs.where(usable[grid.pairs.first] & usable[grid.pairs.second])
@@ -246,7 +176,7 @@ def _open_sea(chart: Chart, grid: GlobeGrid, options: _Options) -> tuple[Pairs, 
 
 
 def _attach_canal(
-    chart: Chart, waters: ConnectedWaters, canal: Canal, options: _Options
+    chart: Chart, waters: ConnectedWaters, canal: Canal, options: GlobeOptions
 ) -> list[Attachment] | None:
     """Return both ends of a canal joined to the grid; None where the grid is too coarse for it."""
     lat, lon = np.array(canal.ends).T
@@ -304,10 +234,10 @@ def _renumbered(pairs: Pairs, keep: BoolArray, new: np.ndarray) -> Pairs:
     return replace(selected, first=new[selected.first], second=new[selected.second])
 
 
-def _network(chart: Chart, sheet: _UnassembledGlobe, options: _Options, spacing: float) -> Network:
+def _network(chart: Chart, sheet: _UnassembledGlobe, options: GlobeOptions) -> Network:
     """Sample the legs along their length and assemble the network; canals are not sampled."""
     pairs = concatenate_pairs([sheet.pairs, sheet.through])
-    apart = np.full(len(pairs.first), spacing)
+    apart = np.full(len(pairs.first), options.sample_spacing)
     apart[len(sheet.pairs.first) :] = np.inf  # canals need no weather
     stations, samples = evenly_spaced_samples(sheet.stations, pairs, apart)
     meta = NetworkMeta(
@@ -324,7 +254,7 @@ def _network(chart: Chart, sheet: _UnassembledGlobe, options: _Options, spacing:
 
 
 def _no_route(
-    chart: Chart, options: _Options, ends: tuple[Position, Position], sheet: _UnassembledGlobe,
+    chart: Chart, options: GlobeOptions, ends: tuple[Position, Position], sheet: _UnassembledGlobe,
     to_start: FloatArray,
 ) -> NoRouteError:  # fmt: skip
     reached = np.flatnonzero(np.isfinite(to_start))
@@ -338,7 +268,7 @@ def _no_route(
     if missing and math.isfinite(_shortest_length(replace(chart, canals=CANALS), options, ends)):
         titles = " and the ".join(canal.title for canal in missing)
         remedy = f"Allow the {titles}: with all canals a route exists."
-    return NoRouteError(
+    return NoPathError(
         f"There is no path by water from {names[0]} to {names[1]} on this chart.",
         f"The network reaches {names[2]}, {separation[best] / NAUTICAL_MILE:.1f} nm from the goal.",
         remedy,
@@ -347,7 +277,7 @@ def _no_route(
     )
 
 
-def _shortest_length(chart: Chart, options: _Options, ends: tuple[Position, Position]) -> float:
+def _shortest_length(chart: Chart, options: GlobeOptions, ends: tuple[Position, Position]) -> float:
     """Return the length of the shortest path between two ends [m]; inf where none exists."""
     sheet = _draw_and_attach(chart, options, *ends)
     return float(sheet.distances(sheet.start)[sheet.start + 1])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import zipfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -21,6 +21,7 @@ from thalweg.kernels.geometry.cube_sphere import IndexArrays
 from thalweg.kernels.geometry.triangle_subdivision import outlines_crossed
 from thalweg.kernels.network.graph_building import directed_edges_of_pairs
 from thalweg.network.assembly import Pairs, allowed_legs, measured_pairs
+from thalweg.network.endpoints import concatenate_pairs
 from thalweg.network.global_grid.icosphere import (
     CrossingTest,
     Icosphere,
@@ -30,14 +31,16 @@ from thalweg.network.global_grid.icosphere import (
     icosphere,
     sorted_unique,
 )
-from thalweg.network.global_grid.straits import FINEST_STRAIT_LEVEL, narrow_straits, strait_levels
+from thalweg.network.network import Stations
+from thalweg.network.passage_nodes import pairs_without, passage_nodes, passage_pairs
+from thalweg.network.regional_lattice.narrow_channels import channel_pairs
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
-FORMAT: Final = 2  # increase when the arrays or their construction change
+FORMAT: Final = 3  # increase when the arrays or their construction change
 _BORDER_INDEX_SIDE: Final = 128
-_MAX_FILES: Final = 8  # grids cached on disk, the newest ones
+_MAX_FILES: Final = 12  # grids cached on disk, the newest ones
 
 
 @dataclass(frozen=True)
@@ -99,20 +102,37 @@ def globe_grid(chart: Chart, fineness: GridResolution) -> GlobeGrid:
         penalty=chart.zones.penalty, price=chart.zones.price, eca=chart.zones.eca
     )
     bare = type(chart)(chart.coastline, zones=zones)
-    straits = {name: tuple(strait) for name, strait in narrow_straits().items()}
-    facts = (FORMAT, bare.fingerprint(), fineness, FINEST_STRAIT_LEVEL, straits)
+    name = hashlib.sha256(repr((FORMAT, bare.fingerprint(), fineness)).encode()).hexdigest()[:16]
+    folder = cache_folder("globe")
+    whole = _GridRequest(
+        bare, fineness, folder / f"grid-{fineness.level}-{fineness.coast_levels}-{name}.npz"
+    )
+    off_land = type(chart)(
+        chart.coastline,
+        zones=type(chart.zones)(no_go=chart.zones.no_go),
+        passages=chart.passages,
+        closed_passages=chart.closed_passages,
+        offing=replace(chart.offing, discs=()),
+    )
+    lines = [(passage.name, passage.line) for passage in chart.passages]
+    facts = (name, off_land.fingerprint(), repr(off_land.offing), lines)
     name = hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
-    path = cache_folder("globe") / f"grid-{fineness.level}-{fineness.coast_levels}-{name}.npz"
-    return _load_or_make(_GridRequest(bare, fineness, path))
+    part = replace(whole, path=folder / f"part-{fineness.level}-{fineness.coast_levels}-{name}.npz")
+    return _load_or_make(replace(part, within=off_land, whole=whole))
 
 
 @dataclass(frozen=True)
 class _GridRequest:
-    """A grid to build, and its file in the cache; two requests for one file are equal."""
+    """A grid to build, and its file in the cache; two requests for one file are equal.
+
+    With ``within`` the grid is the part of ``whole`` that this chart allows, with its passages.
+    """
 
     chart: Chart
     fineness: GridResolution
     path: Path
+    within: Chart | None = None
+    whole: _GridRequest | None = None
 
     def __hash__(self) -> int:
         return hash(self.path)
@@ -121,12 +141,15 @@ class _GridRequest:
         return isinstance(other, _GridRequest) and other.path == self.path
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=3)
 def _load_or_make(order: _GridRequest) -> GlobeGrid:
     try:
         return _load(order.path)
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        grid = make_grid(order.chart, order.fineness)
+        if order.whole is None or order.within is None:
+            grid = make_grid(order.chart, order.fineness)
+        else:
+            grid = _allowed_part(_load_or_make(order.whole), order.within)
     with contextlib.suppress(OSError):
         _save(order.path, grid)
         _remove_old_files(order.path.parent)
@@ -151,6 +174,33 @@ def make_grid(chart: Chart, fineness: GridResolution) -> GlobeGrid:
     return GlobeGrid(lat[used], lon[used], pairs, int((~free).sum()), spacing, gap)
 
 
+def _allowed_part(whole: GlobeGrid, chart: Chart) -> GlobeGrid:
+    """Return the part of a grid that a chart allows, joined to nodes along its passages."""
+    lat, lon, pairs = whole.lat, whole.lon, whole.pairs
+    refused = 0
+    if chart.offing.distance > 0.0 or chart.zones.no_go or chart.closed_passages:
+        usable = chart.is_navigable(lat, lon)
+        pairs = pairs.where(usable[pairs.first] & usable[pairs.second])
+        free, _ = allowed_legs(chart, lat, lon, pairs.first, pairs.second)
+        pairs = pairs.where(free)
+        refused = len(whole.pairs.first) - len(pairs.first)
+    named = passage_nodes(chart)
+    count = len(lat)
+    lat, lon = np.append(lat, named.lat), np.append(lon, named.lon)
+    stations = Stations(lat, lon, len(lat))
+    near = float(np.median(pairs.length)) if len(pairs.first) else whole.spacing
+    along = passage_pairs(chart, stations, count, named.joined)
+    around = channel_pairs(chart, stations, count, len(lat), near)
+    pairs = concatenate_pairs([pairs, along, pairs_without(around, along)])
+    used = np.zeros(len(lat), bool)
+    used[pairs.first] = used[pairs.second] = True
+    number = (np.cumsum(used) - 1).astype(np.int32)
+    pairs = replace(pairs, first=number[pairs.first], second=number[pairs.second])
+    return replace(
+        whole, lat=lat[used], lon=lon[used], pairs=pairs, rejected=whole.rejected + refused
+    )
+
+
 def _longest_leg(level: int) -> float:
     """Return the longest leg [m] of the uniform grid; every halving of a level halves it nearly."""
     known = min(level, 5)
@@ -163,12 +213,7 @@ def _longest_leg(level: int) -> float:
 def _geodesic_grid(chart: Chart, fineness: GridResolution) -> Icosphere:
     """Return the geodesic grid of a coastline, land and all."""
     level, coast = fineness.level, fineness.coast_levels
-    narrow = max(FINEST_STRAIT_LEVEL - level - coast, 0) if coast else 0
-    rules = [
-        RefinementRule(
-            _crossing_test(chart.coastline.index), coast, lambda m: strait_levels(m, narrow)
-        )
-    ]
+    rules = [RefinementRule(_crossing_test(chart.coastline.index), coast)]
     rules += [
         RefinementRule(_crossing_test(outlines), fineness.border_levels)
         for outlines in _borders(chart)
@@ -267,6 +312,6 @@ def _save(path: Path, grid: GlobeGrid) -> None:
 
 
 def _remove_old_files(folder: Path) -> None:
-    grids = sorted(folder.glob("grid-*.npz"), key=lambda p: p.stat().st_mtime, reverse=True)
+    grids = sorted(folder.glob("*-*.npz"), key=lambda p: p.stat().st_mtime, reverse=True)
     for path in grids[_MAX_FILES:]:
         path.unlink(missing_ok=True)

@@ -45,21 +45,10 @@ class RefinementRule:
         Returns which edges (unit vectors of their ends) are crossed.
     levels : int
         Number of extra levels of such faces.
-    deeper : callable, optional
-        Number of further levels, by the unit vectors (F, 3) of the middles of faces.
     """
 
     crossed: CrossingTest
     levels: int
-    deeper: Callable[[FloatArray], IntArray] | None = None
-
-    def reaches(self, middles: FloatArray, beyond: int) -> BoolArray:
-        """Return which faces may be halved so many levels beyond the grid's."""
-        if beyond < self.levels:
-            return np.ones(len(middles), bool)
-        if self.deeper is None:
-            return np.zeros(len(middles), bool)
-        return np.asarray(self.deeper(middles) > beyond - self.levels)
 
 
 @dataclass(frozen=True)
@@ -127,10 +116,9 @@ def icosphere(level: int, *rules: RefinementRule) -> Icosphere:
     depth = level
     while len(faces):
         split = np.zeros(len(faces), bool)
-        middles = grid.vertices[faces].mean(axis=1)
         for rule in rules:
-            candidates = np.flatnonzero(~split & rule.reaches(middles, depth - level))
-            if len(candidates):
+            candidates = np.flatnonzero(~split)
+            if depth - level < rule.levels and len(candidates):
                 split[candidates] = grid.crossed_faces(faces[candidates], rule.crossed)
         leaves.append(faces[~split])
         faces = grid.halved(faces[split])

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from thalweg.core import geodesy
-from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.errors import InputError, NoPathError, NoRouteError
 from thalweg.core.geodesy import Position
+from thalweg.core.memory import machine_memory
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.conformal_projection import (
@@ -36,10 +37,13 @@ if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 _FINEST_COAST_SPACING = 1.5 * NAUTICAL_MILE
+_OFFING_SPACING = 1.5  # in offings: least default spacing at coasts
 _NODE_BUDGET = 60_000  # default limit of nodes at sea, and the same of nodes at coasts
-_MAX_NODE_BUDGET = 6_000_000
+_BYTES_PER_NODE = 4_400  # measured while building, 32 directions
+_MAX_NODE_BUDGET = min(6_000_000, int(0.5 * machine_memory() / _BYTES_PER_NODE))
 _SLACK_GROWTH = 1.8
 _MAX_EXTRA_LEVELS = 2
+_NEAREST_NODE = 2.0  # spacings within which start and goal are joined to a node
 _GLOBAL_SPACING = 80.0 * NAUTICAL_MILE
 
 _Offsets: TypeAlias = tuple[IntArray, IntArray]
@@ -104,7 +108,8 @@ def lattice(
         ``"great_circle"``: rows along the great circle from start to goal. ``"latlon"``: rows and
         columns along parallels and meridians.
     coast_levels : int, optional
-        How often the spacing is halved towards coasts; by default until 1.5 nautical miles.
+        How often the spacing is halved towards coasts; by default until 1.5 nautical miles, or
+        1.5 times the offing of the chart.
     area : (south, north, west, east), optional
         Box [deg] to stay in.
     slack : float, optional
@@ -164,7 +169,18 @@ def lattice(
 
 
 def default_spacing(distance: float) -> float:
-    """Return the spacing [m] used for a distance [m] by default."""
+    """Return the spacing that a lattice has by default: a hundredth of the distance.
+
+    Parameters
+    ----------
+    distance : float
+        From start to goal [m].
+
+    Returns
+    -------
+    float
+        Spacing [m], 100 m to 30 nautical miles.
+    """
     return min(max(distance / 100.0, 100.0), 30.0 * NAUTICAL_MILE)
 
 
@@ -191,7 +207,9 @@ def _check(
             "Choose one of these.",
         )
     if slack is not None and not slack >= 0.0:
-        raise InputError(f"A slack of {slack!r} makes no sense.", "0 or more.", "Give 0.35, say.")
+        raise InputError(
+            f"A slack of {slack!r} is not possible.", "It is 0 or more.", "Give 0.35, for example."
+        )
 
 
 def _make_request(
@@ -203,6 +221,7 @@ def _make_request(
     own = default_spacing(distance) if spacing is None else min(spacing, distance)
     if coast_levels is None:
         finest = min(max(own / 8.0, 250.0), _FINEST_COAST_SPACING)
+        finest = max(finest, _OFFING_SPACING * chart.offing.distance)  # no narrow water is left
         coast_levels = min(max(round(math.log2(own / finest)), 0), 6)
     return _LatticeRequest(
         chart, start, goal, own, coast_levels, orientation, area, budget, coast_budget
@@ -220,6 +239,10 @@ def _grow_until_connected(
         to_start = draft.distances(draft.start)
         length = to_start[draft.goal]
         whole = ground.region.covers_globe
+        near = whole or extra >= _MAX_EXTRA_LEVELS or _ends_are_near(attempt)
+        if math.isfinite(length) and not near:
+            extra += 1  # paths would pass an end that only distant nodes are joined to
+            continue
         if float(length) > detour * distance and (
             math.isfinite(length) or factor > detour * (1.0 + slack)
         ):
@@ -240,6 +263,21 @@ def _grow_until_connected(
             extra += 1
         else:
             raise _no_route(request, draft, to_start)
+
+
+def _ends_are_near(attempt: _LatticeAttempt) -> bool:
+    """Return whether start and goal are joined to nodes as near as the lattice has them."""
+    ground, draft = attempt.ground, attempt.draft
+    coarse, fine = (ground.frame.largest_unit * ground.step(k) for k in (0, ground.coast_levels))
+    pairs = draft.ends
+    for node in (draft.start, draft.goal):
+        own = (pairs.first == node) | (pairs.second == node)
+        place = float(draft.stations.lat[node]), float(draft.stations.lon[node])
+        shore = float(ground.chart.coastline.shore_distance(*place))
+        usual = min(_NEAREST_NODE * coarse, _NEAREST_NODE * fine + 2.0 * shore)
+        if float(pairs.length[own].min(initial=math.inf)) > usual + 1.0:
+            return False
+    return True
 
 
 def _densified(path: Sequence[Position]) -> tuple[FloatArray, FloatArray, float]:
@@ -357,8 +395,10 @@ def _coarser(
     if request.coast_budget < _MAX_NODE_BUDGET and level > 0:
         return spacing, level - 1, ends
     raise InputError(
-        f"A lattice {request.spacing:.0f} m apart would have over {refusal.count} nodes.",
-        f"At most {_MAX_NODE_BUDGET} nodes are built.",
+        f"A lattice {request.spacing:.0f} m apart would have over {refusal.count:,} nodes and take "
+        f"{refusal.count * _BYTES_PER_NODE / 1e9:.1f} GB.",
+        f"At most {_MAX_NODE_BUDGET:,} nodes are built, in half of the memory of this machine "
+        f"({machine_memory() / 1e9:.1f} GB).",
         "Give a larger spacing, fewer coast levels or a smaller area.",
     )
 
@@ -400,7 +440,7 @@ def _no_route(
     nearest = nearest_reached(draft, to_start)
     separation = float(geodesy.distance(*nearest, *request.goal)) / NAUTICAL_MILE
     names = [geodesy.format_position(*place) for place in (request.start, request.goal, nearest)]
-    return NoRouteError(
+    return NoPathError(
         f"There is no path by water from {names[0]} to {names[1]} on this chart.",
         f"The network reaches {names[2]}, {separation:.1f} nm from the goal.",
         "Choose another start or goal, a finer chart, or a finer spacing.",

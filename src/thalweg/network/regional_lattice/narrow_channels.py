@@ -51,6 +51,8 @@ def channel_nodes(ground: LatticeSpecification) -> tuple[FloatArray, FloatArray]
     """
     widest = _MAX_WIDTH * ground.frame.largest_unit * ground.step(ground.coast_levels)
     island = _MIN_LAND_SIZE * ground.frame.largest_unit * ground.step(0)
+    if 2.0 * ground.chart.offing.distance > widest:  # channels so narrow are named passages
+        return np.empty(0), np.empty(0)
     while True:
         middles = _channel_midpoints(*_shores(ground, island, _SHORE_SPACING * widest), widest)
         lat, lon = conformal_positions(middles)

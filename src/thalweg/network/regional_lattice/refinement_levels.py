@@ -184,7 +184,7 @@ def _at_sea(
     if ground.coast_levels + ground.end_levels == 0:
         return ok, np.full(int(ok.sum()), np.inf)
     cap = min(COAST_WIDTH * step * float(ground.frame.largest_unit), _MAX_SHORE_DISTANCE)
-    shore = np.asarray(ground.chart.coastline.shore_distance(lat[free], lon[free], cap=cap), float)
+    shore = ground.chart.sea_room(lat[free], lon[free], cap=cap)
     return ok, np.where(shore < 0.999 * cap, shore, np.inf)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thalweg.core.geodesy import MEAN_RADIUS, Position
+from thalweg.core.geodesy import MEAN_RADIUS, Position, direct, inverse
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.network import graph_building
 from thalweg.network.assembly import (
@@ -35,6 +35,12 @@ from thalweg.network.endpoints import (
     links_to_nodes,
 )
 from thalweg.network.network import Network, NetworkMeta, Samples, Stations
+from thalweg.network.passage_nodes import (
+    PassageNodes,
+    pairs_without,
+    passage_nodes,
+    passage_pairs,
+)
 from thalweg.network.regional_lattice.narrow_channels import channel_nodes, channel_pairs
 from thalweg.network.regional_lattice.refinement_levels import (
     LatticeSpecification,
@@ -46,6 +52,11 @@ from thalweg.network.shortest_paths import shortest_path_tree
 if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.chart.canals import Canal
+
+
+#: Samples farther than this from their place on the geodesic get a station of their own
+#: [fraction of the length of the pair].
+_MAX_SAMPLE_OFFSET = 0.02
 
 
 @dataclass(frozen=True)
@@ -142,6 +153,8 @@ def grow_lattice(
         _join_level_points(ground.chart, level, lat, lon, di, dj, rejected) for level in levels
     ]
     canals = canals_in(ground)
+    named = _passages_in(ground)
+    lat, lon = np.append(lat, named.lat), np.append(lon, named.lon)
     middles = channel_nodes(ground) if ground.region.bounded else np.empty((2, 0))
     places = [*(end for canal in canals for end in canal.ends), start, goal]
     lat, lon = np.append(lat, middles[0]), np.append(lon, middles[1])
@@ -159,8 +172,17 @@ def grow_lattice(
     ends.append(direct_pairs(ground.chart, stations, n, reach=reach * spacing))
     ends.append(canal_pairs(canals, n))
     near = ground.frame.largest_unit * ground.step(ground.coast_levels)
-    ends.append(channel_pairs(ground.chart, stations, grid, n, near))
+    along = passage_pairs(ground.chart, stations, grid, named.joined)
+    around = channel_pairs(ground.chart, stations, grid, n, near)
+    ends += [along, pairs_without(around, along)]
     return UnassembledLattice(stations, parts, concatenate_pairs(ends), rejected, refused)
+
+
+def _passages_in(ground: LatticeSpecification) -> PassageNodes:
+    """Return the nodes along passages in the region of a lattice."""
+    found = passage_nodes(ground.chart)
+    inside = ground.region.contains(conformal_unit_vectors(found.lat, found.lon))
+    return found.where(inside & ground.region.in_box(found.lat, found.lon))
 
 
 def canals_in(ground: LatticeSpecification) -> list[Canal]:
@@ -230,14 +252,44 @@ def _level_samples(
     graph_building.lattice_samples(
         first, row_ptr, col, wrap, level.node, di, dj, level.i, point, offset, ptr, a, b, w, s
     )
+    bent = _is_bent(frame, part, di, dj)
+    a[np.repeat(bent, between[offset])] = -1
     missing = np.flatnonzero(a < 0)
     of = np.searchsorted(ptr, missing, side="right") - 1
     x = (level.i[point[of]] + s[missing].astype(float) * di[offset[of]]) * level.step
     y = (level.j[point[of]] + s[missing].astype(float) * dj[offset[of]]) * level.step
     lat, lon = frame.to_positions(x, y)
+    on_geodesic = np.flatnonzero(bent[of])
+    lat[on_geodesic], lon[on_geodesic] = _geodesic_positions(
+        stations, part.pairs, of[on_geodesic], s[missing[on_geodesic]].astype(float)
+    )
     a[missing] = b[missing] = len(stations.lat) + np.arange(len(missing))
+    w[missing] = 0.0
     grown = replace(stations, lat=np.append(stations.lat, lat), lon=np.append(stations.lon, lon))
     return grown, Samples(ptr, a, b, w, s)
+
+
+def _is_bent(frame: ConformalProjection, part: LevelPairs, di: IntArray, dj: IntArray) -> BoolArray:
+    """Return which pairs of a level are too long to be sampled along lines of the projection.
+
+    At the latitude phi of a Mercator projection the middle of the straight line between two places
+    is about ``L^2 tan(phi) / 8`` from the middle of the geodesic of length L.
+    """
+    level, offset = part.level, part.offset
+    length = np.hypot(di, dj)[offset] * level.step * frame.unit
+    ends = level.j[part.point] + np.stack([np.zeros_like(dj[offset]), dj[offset]])
+    ordinate = np.abs(ends * level.step * frame.unit + frame.y0).max(axis=0)
+    return np.asarray(length * np.tanh(ordinate) / 8.0 > _MAX_SAMPLE_OFFSET)
+
+
+def _geodesic_positions(
+    stations: Stations, pairs: Pairs, chosen: IntArray, fraction: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return positions [deg] at fractions of the geodesics of chosen pairs."""
+    first, second = pairs.first[chosen], pairs.second[chosen]
+    lat, lon = stations.lat, stations.lon
+    length, course, _ = inverse(lat[first], lon[first], lat[second], lon[second])
+    return direct(lat[first], lon[first], course, fraction * length)
 
 
 def _end_link_spacing(draft: UnassembledLattice, spacing: float) -> FloatArray:

@@ -126,7 +126,11 @@ def _checked(
     if rings not in _DIRECTIONS:
         raise InputError(f"A mesh cannot have {rings!r} rings.", "1, 2 or 3.", "Choose one.")
     if not 0.0 < sampling <= 2.0:
-        raise InputError(f"A sampling of {sampling!r} makes no sense.", "0 to 2.", "Give 0.5.")
+        raise InputError(
+            f"A sampling of {sampling!r} is not possible.",
+            "It is 0 to 2.",
+            "Give 0.5, for example.",
+        )
     if lat.ndim != 1 or lat.shape != lon.shape or not np.all(np.isfinite(lat) & np.isfinite(lon)):
         raise InputError(
             "The nodes of the mesh are not two equal lists of finite positions.",

@@ -38,6 +38,11 @@ def spacing_fraction(
         Weight of the curl, 0 to 1.
     curl_power, speed_power : float, optional
         Powers, not negative.
+
+    Returns
+    -------
+    float64 array
+        Fraction [-] in the broadcast shape, in (0, 1].
     """
     turning = (1.0 + np.abs(np.asarray(curl, float))) ** -curl_power
     running = (1.0 + np.abs(np.asarray(speed, float))) ** -speed_power

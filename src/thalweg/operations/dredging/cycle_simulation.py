@@ -72,7 +72,7 @@ class Simulator:
     ways : SiteNetwork
     factors : sequence of float, optional
         Loads to choose from; default: those of the project.
-    tell : callable, optional
+    report : callable, optional
         Called with a short text every ten cycles.
     name : str, optional
         Name of the run, for errors.
@@ -85,10 +85,10 @@ class Simulator:
         ways: SiteNetwork,
         *,
         factors: Sequence[float] | None = None,
-        tell: MessageCallback = lambda text: None,
+        report: MessageCallback = lambda text: None,
         name: str = "",
     ) -> None:
-        self.project, self.tell, self.name = project, tell, name
+        self.project, self.report, self.name = project, report, name
         self.sailor = SiteLegPlanner(world, ways)
         back = self.sailor.passages(0.0, outward=False)
         chosen = project.work.load_factors if factors is None else factors
@@ -126,7 +126,7 @@ class Simulator:
                 cycles.append(cycle)
                 time, left = cycle.end, left - cycle.volume
                 if len(cycles) % 10 == 0:
-                    self.tell(f"{len(cycles)} cycles, {work.volume - left:,.0f} m3 moved")
+                    self.report(f"{len(cycles)} cycles, {work.volume - left:,.0f} m3 moved")
         return cycles
 
     def _options(self, left: float) -> list[LoadOption]:

@@ -45,7 +45,23 @@ class LoadingCurve:
     def constant(
         cls, rate: float, hopper: float, *, power: float = 0.0, fixed: float = 0.0
     ) -> LoadingCurve:
-        """Return the curve of a constant rate [m3/s] for a hopper [m3].
+        """Return the curve of a constant rate.
+
+        Parameters
+        ----------
+        rate : float
+            Rate [m3/s], above 0.
+        hopper : float
+            Volume of the hopper [m3].
+        power : float, optional
+            Power of the equipment meanwhile [W].
+        fixed : float, optional
+            Time that each load takes in addition [s].
+
+        Returns
+        -------
+        LoadingCurve
+            From 0 to the full hopper in ``hopper / rate`` seconds.
 
         Raises
         ------
@@ -67,6 +83,11 @@ class LoadingCurve:
             [m3].
         what : str
             "loading" or "unloading", for errors.
+
+        Returns
+        -------
+        LoadingCurve
+            In seconds and shares of the hopper.
 
         Raises
         ------
@@ -91,13 +112,31 @@ class LoadingCurve:
         return cls(seconds, tuple(float(s) for s in share), **more)  # type: ignore[union-attr]
 
     def time(self, share: float) -> float:
-        """Return the time for a share of the hopper [s]; 0 for an empty hopper."""
+        """Return the time for a share of the hopper.
+
+        Parameters
+        ----------
+        share : float
+            0 (empty) to 1 (full).
+
+        Returns
+        -------
+        float
+            Time [s] with the fixed part; 0 for an empty hopper.
+        """
         if share <= 0.0:
             return 0.0
         return self.fixed + float(np.interp(share, self.share, self.seconds))
 
     def to_data(self) -> dict[str, Any]:
-        """Return plain data, as `from_data` reads it."""
+        """Return plain data, as `from_data` reads it.
+
+        Returns
+        -------
+        dict
+            ``minutes`` and ``share``; ``power_kw`` and ``fixed_minutes`` where they are
+            not zero.
+        """
         data: dict[str, Any] = {
             "minutes": [s / 60.0 for s in self.seconds],
             "share": list(self.share),

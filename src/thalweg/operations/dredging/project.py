@@ -174,6 +174,16 @@ class Project:
     def from_dict(cls, data: Mapping[str, Any]) -> Project:
         """Return a project from plain data, as a project file holds it.
 
+        Parameters
+        ----------
+        data : mapping
+            Entries of a project file, with units in their names.
+
+        Returns
+        -------
+        Project
+            The project.
+
         Raises
         ------
         InputError
@@ -202,7 +212,13 @@ class Project:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the project as plain data that `from_dict` reads."""
+        """Return the project as plain data that `from_dict` reads.
+
+        Returns
+        -------
+        dict
+            Entries of a project file.
+        """
         sites, work = self.sites, self.work
         data: dict[str, Any] = {
             "name": self.name,
@@ -233,6 +249,16 @@ class Project:
     def load(cls, path: str | Path) -> Project:
         """Read a project from a YAML or JSON file; paths in it may be relative to its folder.
 
+        Parameters
+        ----------
+        path : path-like
+            The file.
+
+        Returns
+        -------
+        Project
+            With the paths in it relative to the working directory.
+
         Raises
         ------
         InputError
@@ -252,7 +278,13 @@ class Project:
         return cls.from_dict(_with_files_beside(data, path.parent))
 
     def save(self, path: str | Path) -> None:
-        """Write the project as YAML."""
+        """Write the project to a YAML file.
+
+        Parameters
+        ----------
+        path : path-like
+            File to write; a file of that name is replaced.
+        """
         from thalweg.core.strict_yaml import dump_yaml
 
         text = dump_yaml(self.to_dict(), sort_keys=False)

@@ -76,6 +76,24 @@ class ProjectEnvironment:
     ) -> ProjectEnvironment:
         """Return the environment, with the requirements of the ship on the sea.
 
+        Parameters
+        ----------
+        sites : Sites
+            Where the ship loads and unloads.
+        period : tuple of float
+            Start and end [s since 1970-01-01T00:00Z].
+        ship : Ship
+            The ship.
+        sea : Sea
+            Currents, water level and depth over the period.
+        chart : Chart
+            Land, zones and depth.
+
+        Returns
+        -------
+        ProjectEnvironment
+            For ships at any load.
+
         Raises
         ------
         CoverageError
@@ -97,7 +115,18 @@ class ProjectEnvironment:
         return bool(rows) and all(row.start is None for row in rows)
 
     def loaded(self, load_factor: float) -> LoadedShip:
-        """Return the ship at a load, with its table and limits."""
+        """Return the ship at a load, with its table and limits.
+
+        Parameters
+        ----------
+        load_factor : float
+            0 empty to 1 full.
+
+        Returns
+        -------
+        LoadedShip
+            The required depth is its draught, the under-keel clearance and the margin.
+        """
         ship = self.ship.with_load_factor(load_factor)
         limits = self.needs.limits
         if limits.depth_checked:
@@ -171,9 +200,23 @@ class SiteNetwork:
 
 
 def freeze_site_network(
-    world: ProjectEnvironment, network: Network, tell: MessageCallback
+    world: ProjectEnvironment, network: Network, report: MessageCallback
 ) -> SiteNetwork:
     """Freeze the sea at a network for the whole period.
+
+    Parameters
+    ----------
+    world : ProjectEnvironment
+        Ship, sea, chart and period.
+    network : Network
+        Network between the sites.
+    report : callable
+        Called with a text that states the size.
+
+    Returns
+    -------
+    SiteNetwork
+        The network, prepared for searches at any time of the period.
 
     Raises
     ------
@@ -195,13 +238,24 @@ def freeze_site_network(
             f"The limit is {MEMORY_LIMIT / 1e9:.0f} GB.",
             "Give fewer days, a coarser spacing_m or a smaller detour.",
         )
-    tell(f"freezing the sea at {len(lat):,} places and {steps:,} times")
+    report(f"freezing the sea at {len(lat):,} places and {steps:,} times")
     fields = world.sea.freeze_stations(lat, lon, *world.period, channels, extra=extra)
     return SiteNetwork(network, PreparedNetwork.prepare(network, fields))
 
 
 def project_network(world: ProjectEnvironment) -> Network:
-    """Return the network between the sites: the mesh of the sea if it has one, else a lattice."""
+    """Return the network between the sites: the mesh of the sea if it has one, else a lattice.
+
+    Parameters
+    ----------
+    world : ProjectEnvironment
+        Sites, sea and chart.
+
+    Returns
+    -------
+    Network
+        ``meta.start`` and ``meta.goal`` are the nodes at the sites.
+    """
     sites, chart = world.sites, world.chart
     model = world.sea.mesh()
     if model is None:

@@ -22,17 +22,53 @@ COASTLINE_RESOLUTIONS = ("c", "l", "i", "h", "f", "none")
 
 
 def example_file() -> Path:
-    """Return the example project file of the package: a nourishment behind a drying bank."""
+    """Return the example project file of the package: a nourishment behind a drying bank.
+
+    Returns
+    -------
+    Path
+        A YAML file, read-only.
+    """
     return Path(str(resources.files("thalweg.operations").joinpath("estuary_project.yaml")))
 
 
 def open_project(path: str | Path) -> Project:
-    """Return the project of a file; ``example`` is the project of the package."""
+    """Return the project of a file.
+
+    Parameters
+    ----------
+    path : path-like
+        The file; ``example`` is the project of the package.
+
+    Returns
+    -------
+    Project
+        The project.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or has invalid entries.
+    """
     return Project.load(example_file() if str(path) == EXAMPLE else path)
 
 
 def open_project_inputs(project: Project) -> tuple[Ship, Sea, Chart]:
     """Return the ship, sea and chart that a project file names.
+
+    Parameters
+    ----------
+    project : Project
+        Its ``ship`` and ``data_sources`` name them.
+
+    Returns
+    -------
+    ship : Ship
+        The ship.
+    sea : Sea
+        Currents, water level and depth.
+    chart : Chart
+        Land, zones and depth.
 
     Raises
     ------

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thalweg.chart.chart import control_areas_in_force
 from thalweg.core.file_writing import write_text
 from thalweg.core.units import DAY, TONNE
 from thalweg.operations.dredging.cycle_records import DredgingCycle, cycle_record
 from thalweg.operations.dredging.project import Project
 from thalweg.planning.report.provenance import finite_or_none
 from thalweg.ship import Ship
-from thalweg.ship.methods.engine.fuel_properties import halem_cost
 
 if TYPE_CHECKING:
     from thalweg.operations.dredging.project_environment import ProjectEnvironment
@@ -45,6 +45,7 @@ TABLE_ROWS = (
     ("co2_t", "CO2 [t]", lambda v: f"{v:,.1f}"),
     ("co2_kg_m3", "CO2 per volume [kg/m3]", lambda v: f"{v:.2f}"),
     ("cost", "cost of time and propulsion", lambda v: f"{v:,.0f}"),
+    ("currency", "currency of the cost", str),
     ("production_gain", "gain in production", lambda v: f"{100 * v:+.0f} %"),
     ("time_saved", "time saved", lambda v: f"{100 * v:+.0f} %"),
     ("distance_saved", "distance saved", lambda v: f"{100 * v:+.0f} %"),
@@ -102,7 +103,14 @@ class ProjectResult:
         return (self.optimised,) if self.base is None else (self.base, self.optimised)
 
     def gains(self) -> dict[str, float]:
-        """Return the gains over the base case, as shares; empty without one."""
+        """Return the gains over the base case.
+
+        Returns
+        -------
+        dict of str to float
+            ``production_gain``, ``time_saved`` and ``distance_saved``, as shares of the
+            base case; empty without one.
+        """
         if self.base is None:
             return {}
         old, new = self.base.totals, self.optimised.totals
@@ -117,7 +125,13 @@ class ProjectResult:
         }
 
     def table(self) -> list[list[str]]:
-        """Return the table of van Halem (2019), Table 5.1, as text: a header and rows."""
+        """Return the table of van Halem (2019), Table 5.1, as text.
+
+        Returns
+        -------
+        list of list of str
+            A header, then a row for each quantity that is known.
+        """
         columns = [dict(run.totals) for run in self.runs]
         columns[-1].update(self.gains())
         rows = [["", *(run.name for run in self.runs)]]
@@ -128,7 +142,13 @@ class ProjectResult:
         return rows
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the result as plain data for JSON."""
+        """Return the result as plain data for JSON.
+
+        Returns
+        -------
+        dict
+            ``project``, ``runs`` by name, ``gains`` and ``provenance``.
+        """
         return {
             "project": self.project.to_dict(),
             "runs": {run.name: _run_data(run) for run in self.runs},
@@ -137,7 +157,18 @@ class ProjectResult:
         }
 
     def to_json(self, path: str | Path | None = None) -> str:
-        """Return the result as JSON text, and write it if a path is given."""
+        """Return the result as JSON, and write it if a path is given.
+
+        Parameters
+        ----------
+        path : path-like, optional
+            File to write; a file of that name is replaced.
+
+        Returns
+        -------
+        str
+            JSON text of `as_dict`.
+        """
         text = json.dumps(self.as_dict(), indent=2, allow_nan=False)
         if path is not None:
             write_text(path, text + "\n")
@@ -163,7 +194,7 @@ def summarise_run(
         "sailing_empty_share": sum(c.back.duration for c in cycles),
         "waiting_share": sum(leg.waiting for leg in legs),
     }
-    totals: dict[str, float | int | None] = {
+    totals: dict[str, Any] = {
         "production_m3_week": volume / duration * WEEK,
         "volume_m3": volume,
         "duration_days": duration / DAY,
@@ -180,9 +211,7 @@ def summarise_run(
     return ProjectRun(name, tuple(cycles), MappingProxyType(totals), notes)
 
 
-def _energy_and_fuel(
-    cycles: list[DredgingCycle], project: Project, ship: Ship
-) -> dict[str, float | None]:
+def _energy_and_fuel(cycles: list[DredgingCycle], project: Project, ship: Ship) -> dict[str, Any]:
     """Return energy, fuel, CO2 and cost; None where the ship file lacks data."""
     work, own = project.work, ship.specific_fuel_consumption
     hotel = ship.hotel_power * (cycles[-1].end - cycles[0].start)
@@ -199,23 +228,29 @@ def _energy_and_fuel(
         "fuel_t": finite_or_none(fuel / TONNE),
         "co2_t": finite_or_none(co2 / TONNE),
         "co2_kg_m3": finite_or_none(co2 / volume),
-        "cost": finite_or_none(_cost(cycles, ship)),
+        "cost": finite_or_none(_cost(cycles, project, ship, at_work)),
+        "currency": ship.fuel_terms.currency or "USD",
     }
 
 
-def _cost(cycles: list[DredgingCycle], ship: Ship) -> float:
-    """Return van Halem's cost, lambda_t t + lambda_f t V^3 while sailing; NaN if not given."""
+def _cost(cycles: list[DredgingCycle], project: Project, ship: Ship, at_work: float) -> float:
+    """Return the cost of time and of fuel, sailing and at work; NaN if a price is not known.
+
+    Where fuel has no price but speed has, sailing counts lambda_f t V^3 (van Halem 2019), and work
+    at a site counts by its time alone. ``at_work`` is the fuel burnt at the sites [kg]; half of it
+    is taken as burnt at each.
+    """
     terms = ship.fuel_terms
-    unpriced = math.isnan(terms.cubed_speed_price)
-    if unpriced and terms.time_price == 0.0:
+    if not terms.any_price:
         return math.nan
     total = terms.time_price * (cycles[-1].end - cycles[0].start)
-    per_cube = 0.0 if unpriced else terms.cubed_speed_price
-    for cycle in cycles:
-        for load_factor, leg in ((cycle.load_factor, cycle.out), (0.0, cycle.back)):
-            speed = float(ship.with_load_factor(load_factor).speeds[-1])
-            sailing = leg.duration - leg.waiting
-            total += float(halem_cost(sailing, speed, per_second=0.0, per_cube=per_cube))
+    if terms.by_speed or not math.isnan(terms.price_outside):
+        legs = [leg for cycle in cycles for leg in cycle.legs]
+        total += sum(float(leg.route.legs["cost_of_fuel"].sum()) for leg in legs)
+    if not terms.by_speed and at_work > 0.0 and not math.isnan(terms.price_outside):
+        areas = control_areas_in_force()
+        inside = areas.in_eca(*np.transpose([project.sites.load, project.sites.unload]))
+        total += float(terms.of_fuel("cost", at_work, float(inside.mean()))[0])
     return float(total)
 
 

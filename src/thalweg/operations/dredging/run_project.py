@@ -84,23 +84,23 @@ def run_project(
     later cycles is ignored. The referee then evaluates every leg in small steps; its times are
     those of the project.
     """
-    tell: MessageCallback = progress or (lambda text: None)
+    report: MessageCallback = progress or (lambda text: None)
     voyage = Voyage(start=project.sites.load, goal=project.sites.unload, depart=project.start)
     check_argument_types(voyage, ship, sea, chart)
     _check_hopper(project.work.hopper, ship)
     period = (project.start, project.end)
     world = ProjectEnvironment.open(project.sites, period, ship=ship, sea=sea, chart=chart)
     check_sites(world)
-    tell("building the network")
-    ways = freeze_site_network(world, project_network(world), tell)
+    report("building the network")
+    ways = freeze_site_network(world, project_network(world), report)
     factors = project.work.load_factors
-    optimised = _simulate_run(project, world, ways, factors, name=OPTIMISED, tell=tell)
+    optimised = _simulate_run(project, world, ways, factors, name=OPTIMISED, report=report)
     base = None
     if project.base is not None:
         given = project.base.load_factor
-        line = freeze_site_network(world, fixed_route_network(chart, project.base.route), tell)
+        line = freeze_site_network(world, fixed_route_network(chart, project.base.route), report)
         chosen = factors if given == BEST_LOAD_FACTOR else (float(given),)
-        base = _simulate_run(project, world, line, chosen, name=BASE_CASE, tell=tell)
+        base = _simulate_run(project, world, line, chosen, name=BASE_CASE, report=report)
     return ProjectResult(project, world, optimised, base, _provenance(world, ways))
 
 
@@ -111,10 +111,10 @@ def _simulate_run(
     factors: tuple[float, ...],
     *,
     name: str,
-    tell: MessageCallback,
+    report: MessageCallback,
 ) -> ProjectRun:
-    tell(f"{name}: preparing {len(factors)} loads")
-    simulator = Simulator(project, world, ways, factors=factors, tell=tell, name=name)
+    report(f"{name}: preparing {len(factors)} loads")
+    simulator = Simulator(project, world, ways, factors=factors, report=report, name=name)
     possible = simulator.possible
     if not possible:
         raise no_passage_error(world, ways, min(x for x in factors if x > 0.0), name)

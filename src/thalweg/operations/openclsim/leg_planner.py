@@ -112,6 +112,11 @@ class LegPlanner:
         load_steps : int
             Steps of the load factor, 1 to 100.
 
+        Returns
+        -------
+        LegPlanner
+            Networks are built at the first leg between two places.
+
         Raises
         ------
         InputError

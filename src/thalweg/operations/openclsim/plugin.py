@@ -88,6 +88,16 @@ class PlannedRouteMovable(Movable):
         ----------
         destination, origin : geometry or object with one
             Points (lon, lat); default of the origin: the position of the vessel.
+
+        Returns
+        -------
+        SailedLeg
+            Route, waits, departure and arrival at the present load factor.
+
+        Raises
+        ------
+        NoRouteError, CoverageError
+            If there is no route, or the data do not cover it.
         """
         here = _position(self.geometry if origin is None else origin)
         there = _position(destination)
@@ -96,13 +106,42 @@ class PlannedRouteMovable(Movable):
         )
 
     def compute_distance(self, origin: Any, destination: Any) -> float:
-        """Return the length of the route for a departure at the present time [m]."""
+        """Return the length of the route for a departure at the present time.
+
+        Parameters
+        ----------
+        origin, destination : geometry or object with one
+            Points (lon, lat) [deg].
+
+        Returns
+        -------
+        float
+            Length [m]; 0 if both are the same position.
+        """
         if _same_position(origin, destination):
             return 0.0
         return self.plan_leg(destination, origin).distance
 
     def compute_duration(self, origin: Any, destination: Any, engine_order: float = 1.0) -> float:
-        """Return the duration for a departure at the present time, waits included [s]."""
+        """Return the duration for a departure at the present time, waits included.
+
+        Parameters
+        ----------
+        origin, destination : geometry or object with one
+            Points (lon, lat) [deg].
+        engine_order : float
+            1; no other order is possible.
+
+        Returns
+        -------
+        float
+            Duration [s]; 0 if both are the same position.
+
+        Raises
+        ------
+        InputError
+            For an engine order other than 1.
+        """
         _check_order(engine_order)
         return (
             0.0
@@ -115,7 +154,19 @@ class PlannedRouteMovable(Movable):
     ) -> Generator[Any, Any, None]:
         """Sail to a destination along a route planned for the present time, as a SimPy process.
 
-        If a duration is given, the move takes that time, as in OpenCLSim.
+        Parameters
+        ----------
+        destination : object with a geometry, optional
+            A point (lon, lat) [deg].
+        duration : float, optional
+            Time that the move takes [s]; no route is planned then, as in OpenCLSim.
+        engine_order : float, optional
+            1; no other order is possible.
+
+        Returns
+        -------
+        generator
+            A SimPy process; it appends the leg to ``legs``.
 
         Raises
         ------

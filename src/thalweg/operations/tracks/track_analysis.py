@@ -84,7 +84,13 @@ class TrackAnalysis:
     notes: tuple[str, ...]
 
     def spreads(self) -> dict[str, AgreementStatistics]:
-        """Return the agreement of modelled with measured mean speeds of the legs, by model."""
+        """Return the agreement of modelled with measured mean speeds of the legs, by model.
+
+        Returns
+        -------
+        dict of str to AgreementStatistics
+            By the name of the model.
+        """
         measured = leg_speeds(self.segments, self.segments.speed)
         return {
             name: agreement_statistics(measured, leg_speeds(self.segments, model))
@@ -92,7 +98,14 @@ class TrackAnalysis:
         }
 
     def activity_frame(self) -> pd.DataFrame:
-        """Return one row for each activity: times, hours, trip, and whether it is complete."""
+        """Return one row for each activity: times, hours, trip, and whether it is complete.
+
+        Returns
+        -------
+        DataFrame
+            Columns ``activity``, ``start``, ``end`` (datetime64, UTC), ``hours``,
+            ``trip`` and ``whole``.
+        """
         import pandas as pd
 
         rows = [
@@ -112,6 +125,12 @@ class TrackAnalysis:
         """Return one row for each sailed leg: measured and modelled speeds, distance, errors.
 
         ``rmse_rel`` of each model is taken over the segments of the leg (Schless 2023, Table 4.8).
+
+        Returns
+        -------
+        DataFrame
+            Columns ``trip``, ``activity``, ``start``, ``hours``, ``distance_nm``,
+            ``speed_kn``, and two for each model.
         """
         import pandas as pd
 
@@ -134,7 +153,14 @@ class TrackAnalysis:
         return pd.DataFrame(rows)
 
     def cycle_frame(self) -> pd.DataFrame:
-        """Return one row for each complete cycle, loading to loading: hours of each activity."""
+        """Return one row for each complete cycle, loading to loading: hours of each activity.
+
+        Returns
+        -------
+        DataFrame
+            Columns ``start`` (datetime64, UTC), the hours of each activity, and ``cycle
+            [h]``.
+        """
         import pandas as pd
 
         rows = []
@@ -151,6 +177,12 @@ class TrackAnalysis:
         """Return for each activity: count, hours (mean, median, deviation, sum), share of time.
 
         Mean, median and deviation are of complete activities only; sum and share of all.
+
+        Returns
+        -------
+        DataFrame
+            Columns ``activity``, ``count``, ``mean_h``, ``median_h``, ``std_h``,
+            ``sum_h`` and ``share``.
         """
         import pandas as pd
 
@@ -175,7 +207,14 @@ class TrackAnalysis:
         return pd.DataFrame(rows)
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the analysis as plain data for JSON."""
+        """Return the analysis as plain data for JSON.
+
+        Returns
+        -------
+        dict
+            Vessel, period, statistics of activities, cycles and speeds, calibration,
+            and agreement of the models; None where unknown.
+        """
         cycles, legs = self.cycle_frame(), self.leg_frame()
         span = self.log.time[-1] - self.log.time[0]
         speeds = {

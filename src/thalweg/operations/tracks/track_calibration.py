@@ -112,6 +112,11 @@ def calibrate(segments: MeasuredSegments) -> Calibration | None:
     Minimises the sum over segments, weighted with their time, of
     ``(|over ground - factor * current| - speed of the activity) ** 2`` (Gauss-Newton).
 
+    Parameters
+    ----------
+    segments : MeasuredSegments
+        Velocity over ground and current [m/s] of the sailed segments.
+
     Returns
     -------
     Calibration or None

@@ -100,6 +100,11 @@ class TrackLog:
         """Return the speed over ground at every position [m/s].
 
         As measured; where unknown, from the position before to the position after.
+
+        Returns
+        -------
+        float64 array (N,)
+            Speed over ground [m/s].
         """
         before = np.maximum(np.arange(len(self)) - 1, 0)
         after = np.minimum(np.arange(len(self)) + 1, len(self) - 1)

@@ -55,6 +55,11 @@ class WorkAreas:
             Polygons with a property ``activity`` (or ``kind``, ``type``, ``name``) that holds a
             word such as loading, dredging, unloading, pumping, waiting or anchorage.
 
+        Returns
+        -------
+        WorkAreas
+            The areas of each activity, united.
+
         Raises
         ------
         InputError
@@ -82,7 +87,18 @@ class WorkAreas:
         return cls({kind: shapely.union_all(parts) for kind, parts in shapes.items()})
 
     def at(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.int8]:
-        """Return the area of each position [deg]: index into ``AREA_KINDS``, -1 outside."""
+        """Return the area in which each position lies.
+
+        Parameters
+        ----------
+        lat, lon : array_like (N,)
+            Positions [deg].
+
+        Returns
+        -------
+        int8 array (N,)
+            Index into ``AREA_KINDS``, -1 outside all areas.
+        """
         import shapely
 
         y, x = np.asarray(lat, dtype=np.float64), wrap_longitude(lon)

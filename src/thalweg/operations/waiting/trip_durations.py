@@ -30,7 +30,12 @@ from thalweg.route.referee.sailing_physics import (
     solve_sailing_state,
 )
 from thalweg.route.referee.wind_speed_only import with_wind_speed
-from thalweg.ship.condition_variables import EASTWARD_CURRENT, NORTHWARD_CURRENT
+from thalweg.ship.condition_variables import (
+    EASTWARD_CURRENT,
+    EASTWARD_WIND,
+    NORTHWARD_CURRENT,
+    NORTHWARD_WIND,
+)
 from thalweg.ship.conditions import Conditions
 
 if TYPE_CHECKING:
@@ -268,8 +273,9 @@ class _TrackSimulation:
         for name in ("wave_height", "wind_speed"):
             largest = getattr(self.environment.ship.limits, name)
             if math.isfinite(largest):
-                unknown |= np.isnan(conditions[name])
-                passes &= conditions[name] <= largest
+                met = _limited_quantity(name, conditions, motion)
+                unknown |= np.isnan(met)
+                passes &= met <= largest
         safety = self.environment.ship.limits.safety
         if safety is not None:
             passes &= ~safety.forbids(
@@ -343,3 +349,10 @@ def _first_current(
     )
     east, north = sampled[EASTWARD_CURRENT], sampled[NORTHWARD_CURRENT]
     return np.asarray(east * np.sin(there.course[0]) + north * np.cos(there.course[0]))
+
+
+def _limited_quantity(name: str, conditions: Conditions, motion: SailingState) -> FloatArray:
+    """Return the wave height [m], or the wind over the ground [m/s], that a limit is for."""
+    if name == "wind_speed":
+        return np.hypot(motion.sampled[EASTWARD_WIND], motion.sampled[NORTHWARD_WIND])
+    return np.asarray(conditions[name], float)

@@ -60,6 +60,16 @@ class TripTable:
         Values between departures are interpolated with a cubic spline; linearly if the table has
         impossible departures. Between a possible and an impossible departure none is possible.
 
+        Parameters
+        ----------
+        factor : int
+            1 or more.
+
+        Returns
+        -------
+        TripTable
+            With a ``step`` shorter by the factor.
+
         Raises
         ------
         InputError

@@ -116,9 +116,22 @@ def plan_waiting(
 def optimum_energy(
     trips: Sequence[TripTable], *, max_wait: float, hotel_power: float = 0.0
 ) -> FloatArray:
-    """Return the least energy [J] of a sequence of trips, for every start in the tables.
+    """Return the least energy of a sequence of trips, for every start in the tables.
 
-    Arguments as in `plan_waiting`; +inf for starts from which the tables end too early.
+    Parameters
+    ----------
+    trips : sequence of TripTable
+        In the order in which they are sailed; tables with one step.
+    max_wait : float
+        Longest wait before each trip [s], 0 or more.
+    hotel_power : float, optional
+        Power while waiting [W].
+
+    Returns
+    -------
+    float64 array (starts,)
+        Energy [J], that of waiting included; +inf for starts from which the tables end too
+        early.
     """
     grid = _DepartureGrid.of(trips, max_wait, hotel_power)
     return grid.best_from(grid.values()[0], trips[0])[: len(trips[0])]

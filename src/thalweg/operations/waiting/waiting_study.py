@@ -55,15 +55,43 @@ class WaitingStudy:
     plans: dict[str, tuple[tuple[WaitingPlan, ...], ...]]
 
     def energy(self, rule: str) -> FloatArray:
-        """Return the energy [J], shape (starts, allowed waits)."""
+        """Return the energy of all starts and allowed waits under one rule.
+
+        Parameters
+        ----------
+        rule : str
+            A key of ``plans``.
+
+        Returns
+        -------
+        float64 array (starts, allowed waits)
+            Energy [J].
+        """
         return np.array([[plan.energy for plan in row] for row in self.plans[rule]])
 
     def saving(self, rule: str) -> FloatArray:
-        """Return the saving as a share of the energy without waiting; negative for a loss."""
+        """Return the saving under one rule, compared with no waiting.
+
+        Parameters
+        ----------
+        rule : str
+            A key of ``plans``.
+
+        Returns
+        -------
+        float64 array (starts, allowed waits)
+            Share of the energy without waiting [-]; negative for a loss.
+        """
         return np.asarray(1.0 - self.energy(rule) / self.energy("none"))
 
     def to_frame(self) -> pd.DataFrame:
-        """Return one row for each rule, start and allowed wait, in hours, kWh and per cent."""
+        """Return one row for each rule, start and allowed wait, in hours, kWh and per cent.
+
+        Returns
+        -------
+        DataFrame
+            One row for each combination.
+        """
         import pandas as pd
 
         return pd.DataFrame(self._rows())
@@ -88,7 +116,13 @@ class WaitingStudy:
         return rows
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the study as plain data for JSON."""
+        """Return the study as plain data for JSON.
+
+        Returns
+        -------
+        dict
+            ``trips``, ``hotel_power_kw`` and ``rows``; times as ISO 8601.
+        """
         return {
             "trips": [trip.name for trip in self.trips],
             "hotel_power_kw": self.hotel_power / 1000.0,

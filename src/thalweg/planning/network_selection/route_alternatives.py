@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from thalweg.chart import Chart
 from thalweg.core.errors import NoRouteError
 from thalweg.network import Network, lattice, shortest_path
+from thalweg.network.alternatives.path_search import without_each_set_of_canals
 from thalweg.network.network_concatenation import concatenate_networks
 from thalweg.planning.network_selection.network_builder import build_network, lattice_between
 from thalweg.planning.planning_context import PlanningContext
@@ -52,15 +53,17 @@ def find_route_alternatives(
     first = _route_alternative(context, ends, context.chart)
     found, used = {first.name: first}, canals_used(first.network, context.chart)
     longest = MAX_LENGTH_RATIO * _shortest_length(first.network)
-    for count in range(1, len(used) + 1):
-        for closed in itertools.combinations(used, count):
-            context.report_progress(f"building the network without {' and '.join(closed)}")
-            try:
-                other = _route_alternative(context, ends, context.chart.without_canals(*closed))
-            except NoRouteError:
-                continue
-            if _shortest_length(other.network) <= longest:
-                found.setdefault(other.name, other)
+
+    def find(closed: tuple[str, ...]) -> RouteAlternative | None:
+        context.report_progress(f"building the network without {' and '.join(closed)}")
+        try:
+            return _route_alternative(context, ends, context.chart.without_canals(*closed))
+        except NoRouteError:
+            return None
+
+    for other in without_each_set_of_canals(used, find):
+        if _shortest_length(other.network) <= longest:
+            found.setdefault(other.name, other)
     return list(found.values())
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.pareto_fronts import non_dominated_indices
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.planning.plan_front import BaselineComparison
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
 
 
 _MAX_SPEEDS = 6
+_MAX_WAYS = 5  #: routes of a front that are sailed at constant speeds
 
 
 def weather_blind_tracks(
@@ -61,17 +64,63 @@ def evaluate_weather_blind(
     return sorted(known, key=lambda route: route.time_h)
 
 
+def constant_speed_tracks(
+    tracks: Sequence[Track], settings: NDArray[np.int64]
+) -> list[tuple[int, Track]]:
+    """Return tracks chosen with the weather, each at up to six constant settings without waits.
+
+    Parameters
+    ----------
+    tracks : sequence of Track
+        In order of time; up to five of them are taken, the first and the last included.
+    settings : int64 array
+        Speed settings to choose from, ascending.
+
+    Returns
+    -------
+    list of (int, Track)
+        With the number of the track given.
+    """
+    ways = np.unique(np.linspace(0, len(tracks) - 1, min(_MAX_WAYS, len(tracks))).round())
+    chosen = settings[np.unique(np.linspace(0, len(settings) - 1, _MAX_SPEEDS).round().astype(int))]
+    return [
+        (way, tracks[way].replaced(wait=None, setting=np.full(len(tracks[way]) - 1, s), speed=None))
+        for way in ways.astype(int).tolist()
+        for s in chosen
+    ]
+
+
+def no_reference_note(blind: Sequence[Route]) -> str | None:
+    """Return a note where every weather-blind route breaks a limit, otherwise None."""
+    if not blind or any(route.feasible for route in blind):
+        return None
+    reasons = Counter(route.violations[0].reason for route in blind if route.violations)
+    reason = reasons.most_common(1)[0][0] if reasons else "a limit"
+    return f"No weather-blind route is feasible: {reason}. Savings over it are not stated."
+
+
 def compare_with_baseline(
     context: PlanningContext,
     objective: PricedObjective,
     front: Sequence[Route],
     values: FloatArray,
     blind: Sequence[Route],
+    constant: Sequence[Route] = (),
 ) -> BaselineComparison | None:
-    """Return the savings of a front over weather-blind routes.
+    """Return the savings of a front over the weather-blind routes that keep every limit.
 
     Between two points of the front it is interpolated linearly: sailing part of the voyage as one
     route and the rest as the other comes close to that.
+
+    Parameters
+    ----------
+    context : PlanningContext
+    objective : PricedObjective
+    front : sequence of Route
+    values : ndarray
+        Of the front [unit of the objective].
+    blind, constant : sequence of Route
+        The shortest route, and routes chosen with the weather, each at constant settings.
     """
     if not blind:
         return None
@@ -80,26 +129,57 @@ def compare_with_baseline(
     value = np.minimum.accumulate(np.asarray(values)[order])
     counts = np.array([objective.value(route) for route in blind])
     speeds = np.asarray(context.ship.speeds) / KNOT
+    at_constant = _front_of(objective, [r for r in (*constant, *blind) if r.feasible])
     rows = tuple(
         {"speed_kn": float(speeds[int(route.track.setting[0])])}
-        | _savings_row(route, count, time, value)
+        | _savings_row(route, float(count), (time, value), at_constant)
         for route, count in zip(blind, counts)
     )
     return BaselineComparison(tuple(blind), counts, rows)
 
 
-def _savings_row(blind: Route, count: float, time: FloatArray, value: FloatArray) -> dict[str, Any]:
-    """Return the savings of a front over one route; None outside the range of the front."""
-    no_earlier = blind.time_h >= time[0] * (1.0 - 1e-6)
-    no_cheaper = count >= value[-1] * (1.0 - 1e-6)
-    saved = float(count - np.interp(blind.time_h, time, value)) if no_earlier else None
+def _front_of(objective: PricedObjective, routes: list[Route]) -> tuple[FloatArray, FloatArray]:
+    """Return times [h] and values of the routes that are not dominated, by ascending time."""
+    time = np.array([route.time_h for route in routes])
+    value = np.array([objective.value(route) for route in routes])
+    order = non_dominated_indices(time, value)
+    return time[order], value[order]
+
+
+def _savings_row(
+    blind: Route,
+    count: float,
+    front: tuple[FloatArray, FloatArray],
+    constant: tuple[FloatArray, FloatArray],
+) -> dict[str, Any]:
+    """Return the savings of a front over one route; None outside the range of the front.
+
+    ``saved`` is ``saved_by_route``, what routes at constant speeds save that know the weather
+    (interpolated between speeds as the front is), and ``saved_by_speed``, what the front saves
+    beyond that.
+    """
+    time, value = front
+    no_earlier = blind.feasible and blind.time_h >= time[0] * (1.0 - 1e-6)
+    no_cheaper = blind.feasible and count >= value[-1] * (1.0 - 1e-6)
     saved_h = float(blind.time_h - np.interp(-count, -value, time)) if no_cheaper else None
+    parts: dict[str, float | None] = {
+        name: None for name in ("saved", "saved_percent", "saved_by_route", "saved_by_speed")
+    }
+    if no_earlier:
+        least = min(count, float(np.interp(blind.time_h, time, value)))
+        best = min(max(least, float(np.interp(blind.time_h, *constant))), count)
+        saved = count - least
+        parts = {
+            "saved": saved,
+            "saved_percent": 100.0 * saved / count if count > 0 else None,
+            "saved_by_route": count - best,
+            "saved_by_speed": best - least,
+        }
     return {
         "time_h": blind.time_h,
         "value": float(count),
         "distance_nm": blind.distance_nm,
         "feasible": blind.feasible,
         "saved_h": saved_h,
-        "saved": saved,
-        "saved_percent": None if saved is None or count <= 0 else 100.0 * saved / float(count),
+        **parts,
     }

@@ -96,8 +96,8 @@ def absolute_lower_bound(
     geodesic = float(distance(start.lat, start.lon, goal.lat, goal.lon))
     current = max(strongest_current(one.frozen.stations) for one in explored)
     least = min(prices.inside, prices.outside)
-    if prices.dues > 0.0:
-        least *= min(float(one.alternative.network.edges.price_factor.min()) for one in explored)
+    if prices.dues > 0.0:  # a route off the network may sail in the cheapest zone throughout
+        least *= min([1.0, *(float(factor) for _, factor in context.chart.zones.price)])
     rates = np.maximum(table_bounds(trade_off.consumption.kernel_arrays(), np.fmin), 0.0)
     fastest, value = 0.0, math.inf
     for setting in trade_off.settings:

@@ -20,12 +20,15 @@ from thalweg.evolution import (
     EvaluationResolution,
     Evaluator,
     EvolutionResult,
+    EvolutionSettings,
+    FrontRefinementSettings,
     Genome,
+    StoppingCriteria,
     TabulatedShip,
     evolve,
     make_evaluator,
+    refine_front,
 )
-from thalweg.evolution.memetic import refine_front
 from thalweg.planning.pareto.trade_off_context import (
     ExploredAlternative,
     TrackCandidate,
@@ -58,9 +61,8 @@ def evolutionary_candidates(
         result = refine_front(
             evaluator,
             genomes,
-            size=_REFINEMENT_POPULATION,
-            generations=_REFINEMENT_GENERATIONS,
-            seed=seed,
+            settings=FrontRefinementSettings(_REFINEMENT_POPULATION, seed=seed),
+            stopping=StoppingCriteria(_REFINEMENT_GENERATIONS),
             cancel=trade_off.interrupt_guard.stopped,
         )
     else:
@@ -68,10 +70,8 @@ def evolutionary_candidates(
         result = evolve(
             evaluator,
             ends,
-            method=method,
-            size=_EVOLUTION_POPULATION,
-            generations=_EVOLUTION_GENERATIONS,
-            seed=seed,
+            settings=EvolutionSettings(method, _EVOLUTION_POPULATION, seed),
+            stopping=StoppingCriteria(_EVOLUTION_GENERATIONS),
             cancel=trade_off.interrupt_guard.stopped,
         )
     return _candidates(result, explored, context.voyage.earliest_departure)

@@ -83,7 +83,7 @@ def _speed_optimised(trade_off: TradeOffContext, path: AlternativePath) -> list[
     name = " and ".join(path.canals) or "open sea"
     return [
         TrackCandidate(
-            track_from_front_point(network, point), "way round", name, point.time, point.cost
+            track_from_front_point(network, point), "alternative path", name, point.time, point.cost
         )
         for point in found.spread(_POINTS_PER_FRONT)
     ]

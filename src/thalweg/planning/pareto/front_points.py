@@ -36,7 +36,7 @@ def track_from_front_point(network: Network, point: Any) -> Track:
     wait = np.where(wait < 1.0, 0.0, wait)
     setting = np.asarray(point.setting)
     lat, lon = network.stations.lat[path], network.stations.lon[path]
-    essential = np.flatnonzero(_essential_nodes(lat, lon, setting, wait))
+    essential = np.flatnonzero(essential_nodes(lat, lon, setting, wait))
     return Track(
         lat[essential],
         lon[essential],
@@ -46,8 +46,23 @@ def track_from_front_point(network: Network, point: Any) -> Track:
     )
 
 
-def _essential_nodes(lat: FloatArray, lon: FloatArray, setting: Any, wait: FloatArray) -> Any:
-    """Return at which points of a path the ship turns, waits or changes its speed."""
+def essential_nodes(lat: FloatArray, lon: FloatArray, setting: Any, wait: FloatArray) -> Any:
+    """Return at which points of a path the ship turns, waits or changes its speed.
+
+    Parameters
+    ----------
+    lat, lon : float64 array (points,)
+        [deg].
+    setting : int64 array (points - 1,)
+        Of the legs.
+    wait : float64 array (points,)
+        [s].
+
+    Returns
+    -------
+    bool array (points,)
+        The ends included.
+    """
     keep = np.ones(len(lat), bool)
     _, course, back = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
     turn = np.angle(np.exp(1j * (course[1:] - back[:-1])))

@@ -15,7 +15,9 @@ from thalweg.core.units import HOUR, KNOT
 from thalweg.network import shortest_path
 from thalweg.planning.pareto.baseline import (
     compare_with_baseline,
+    constant_speed_tracks,
     evaluate_weather_blind,
+    no_reference_note,
     weather_blind_tracks,
 )
 from thalweg.planning.pareto.bounds import (
@@ -65,10 +67,12 @@ def assemble_trade_off_plan(
     """
     context = trade_off.context
     blind = _weather_blind_routes(trade_off, explored)
-    ordered = _in_order(trade_off, _including_constant_speeds(trade_off, scored, blind))
+    constant = _constant_speed_candidates(trade_off, scored, blind)
+    ordered = _in_order(trade_off, _including_constant_speeds(scored, constant))
     if not ordered:
         raise _no_feasible_route_error(trade_off, explored)
-    front, corrections = _pareto_front(trade_off, explored, ordered, blind)
+    sailed = [item.route for item in constant if item.route not in blind]
+    front, corrections = _pareto_front(trade_off, explored, ordered, (blind, sailed))
     stopped = trade_off.interrupt_guard.stopped()
     notes = [
         *(_interruption_notes(explored, front) if stopped else ()),
@@ -104,7 +108,7 @@ def _pareto_front(
     trade_off: TradeOffContext,
     explored: list[ExploredAlternative],
     ordered: list[RefereedCandidate],
-    blind: list[Route],
+    references: tuple[list[Route], list[Route]],
 ) -> tuple[ParetoFront, list[str]]:
     """Return the front, and notes about the correction of its lower front."""
     context, objective = trade_off.context, trade_off.objective
@@ -126,7 +130,7 @@ def _pareto_front(
             context.chart,
         ),
         lower=lower * factors[:, None],
-        comparison=compare_with_baseline(context, objective, routes, values, blind),
+        comparison=compare_with_baseline(context, objective, routes, values, *references),
     )
     return front, correction_notes(factors)
 
@@ -159,21 +163,38 @@ def _weather_blind_routes(
         trade_off.notes.append(
             "The weather-blind route cannot be sailed to its end in these data: it is not compared."
         )
+    trade_off.notes.extend(filter(None, [no_reference_note(sailed)]))
     return sailed
 
 
-def _including_constant_speeds(
+def _constant_speed_candidates(
     trade_off: TradeOffContext, scored: list[RefereedCandidate], blind: list[Route]
 ) -> list[RefereedCandidate]:
-    """Return the non-dominated routes, with constant speeds on the shortest route included."""
-    latest = trade_off.context.latest_arrival
-    constant = [
+    """Return the shortest route, and routes of the front, at constant speeds within the limits."""
+    context, objective = trade_off.context, trade_off.objective
+    ways = [item for item in scored if item.route.feasible]
+    ways.sort(key=lambda item: item.route.time_h)
+    found = [(route, "") for route in blind]
+    if ways and len(trade_off.settings) > 1 and not trade_off.interrupt_guard.stopped():
+        context.report_progress("evaluating constant speeds")
+        tracks = constant_speed_tracks([item.route.track for item in ways], trade_off.settings)
+        found += [
+            (context.evaluate(track), ways[way].candidate.alternative) for way, track in tracks
+        ]
+    priced = [(route, name, objective.value(route)) for route, name in found]
+    return [
         RefereedCandidate(
-            TrackCandidate(r.track, "constant speed", "", r.time_h * HOUR, value), r, value
+            TrackCandidate(r.track, "constant speed", name, r.time_h * HOUR, value), r, value
         )
-        for r, value in ((route, trade_off.objective.value(route)) for route in blind)
-        if r.feasible and r.arrive <= latest + 1.0
+        for r, name, value in priced
+        if r.feasible and math.isfinite(value) and r.arrive <= context.latest_arrival + 1.0
     ]
+
+
+def _including_constant_speeds(
+    scored: list[RefereedCandidate], constant: list[RefereedCandidate]
+) -> list[RefereedCandidate]:
+    """Return the non-dominated routes, with those at constant speeds included."""
     if not any(item.route.feasible for item in scored):
         return constant or scored
     pool = [*scored, *constant]

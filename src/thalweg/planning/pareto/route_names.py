@@ -144,12 +144,14 @@ def land_name(lat: FloatArray, lon: FloatArray) -> str:
         0.5 * (float(lat.min()) + float(lat.max())),
         0.5 * (float(lon.min()) + float(lon.max())),
     )
-    for name, (y, x) in landmasses().items():
-        east = middle[1] + float(wrap_longitude(x - middle[1]))
-        if not (lat.min() <= y <= lat.max() and lon.min() <= east <= lon.max()):
-            continue
+    names, (north, meridian) = list(landmasses()), np.array(list(landmasses().values())).T
+    easts = middle[1] + wrap_longitude(meridian - middle[1])
+    inside_box = (lat.min() <= north) & (north <= lat.max())
+    inside_box &= (lon.min() <= easts) & (easts <= lon.max())
+    for k in np.flatnonzero(inside_box):
         rise = np.where(np.diff(lat) == 0.0, np.inf, np.diff(lat))
-        crossing = lon[:-1] + (y - lat[:-1]) / rise * np.diff(lon)
-        if ((lat[:-1] <= y) != (lat[1:] <= y))[crossing > east].sum() % 2 == 1:
-            return name
+        crossing = lon[:-1] + (north[k] - lat[:-1]) / rise * np.diff(lon)
+        sides = (lat[:-1] <= north[k]) != (lat[1:] <= north[k])
+        if sides[crossing > easts[k]].sum() % 2 == 1:
+            return names[k]
     return f"the land at {format_position(middle[0], float(wrap_longitude(middle[1])))}"

@@ -23,6 +23,7 @@ from thalweg.planning.network_selection.route_alternatives import (
 from thalweg.planning.pareto.exploration import explore_alternative
 from thalweg.planning.pareto.front_points import track_from_front_point
 from thalweg.planning.pareto.plan_assembly import assemble_trade_off_plan
+from thalweg.planning.pareto.speed_blocks import in_speed_blocks
 from thalweg.planning.pareto.trade_off_context import (
     ExploredAlternative,
     RefereedCandidate,
@@ -71,6 +72,8 @@ def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
             scored = _refereed(trade_off, _candidates(replace(trade_off, limits=limits), explored))
             if interrupt_guard.stopped() or any(item.route.feasible for item in scored):
                 break
+        if not interrupt_guard.stopped() and any(item.route.feasible for item in scored):
+            scored = _not_dominated(in_speed_blocks(trade_off, scored))
         return assemble_trade_off_plan(trade_off, ends, explored, scored)
 
 
@@ -175,8 +178,13 @@ def _refereed(
     ]
     if not usable:
         return [item for item in scored if math.isfinite(item.route.arrive)]
-    time = np.array([item.route.time_h for item in usable])
-    value = np.array([item.value for item in usable])
+    return _not_dominated(usable)
+
+
+def _not_dominated(scored: list[RefereedCandidate]) -> list[RefereedCandidate]:
+    """Return the routes that no other one beats in time and value."""
+    time = np.array([item.route.time_h for item in scored])
+    value = np.array([item.value for item in scored])
     return [
-        usable[index] for index in non_dominated_indices(time, value, tolerance=ROUNDING_TOLERANCE)
+        scored[index] for index in non_dominated_indices(time, value, tolerance=ROUNDING_TOLERANCE)
     ]

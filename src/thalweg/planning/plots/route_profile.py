@@ -1,4 +1,4 @@
-"""Profile plot of a route: speeds, weather and under-keel clearance against time."""
+"""Profile plot of a route: speeds, weather and under-keel clearance against the time in UTC."""
 
 from __future__ import annotations
 
@@ -8,14 +8,16 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.file_writing import save_figure
+from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT
+from thalweg.planning.plots.map_labels import marked_times, time_label
 from thalweg.route import Route
 
 _INK = "#22303c"
 
 
 def draw_profile(route: Route, path: str | Path | None = None) -> Any:
-    """Draw speeds, weather and clearance along a route against the hours since departure.
+    """Draw speeds, weather and clearance along a route against the time in UTC.
 
     Parameters
     ----------
@@ -27,45 +29,73 @@ def draw_profile(route: Route, path: str | Path | None = None) -> Any:
     Returns
     -------
     matplotlib.figure.Figure
-        One panel each for speeds, weather and depth, as far as they are known.
+        One panel each for speeds, weather and depth, as far as they are known; the clearance
+        panel states if no depth is known.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     panels = [panel for panel in (_speeds, _weather, _waves, _depths) if panel(route, None)]
-    figure = Figure(figsize=(10, 1.2 + 1.9 * len(panels)), dpi=130)
+    known = bool(np.isfinite(route.samples["under_keel_clearance"]).any())
+    heights = [0.25 if panel is _depths and not known else 1.0 for panel in panels]
+    figure = Figure(figsize=(10, 1.2 + 1.9 * sum(heights)), dpi=130)
     FigureCanvasAgg(figure)
-    rows = np.atleast_1d(figure.subplots(len(panels), 1, sharex=True))
+    ratios = {"height_ratios": heights}
+    rows = np.atleast_1d(figure.subplots(len(panels), 1, sharex=True, gridspec_kw=ratios))
     for axes, panel in zip(rows, panels):
         panel(route, axes)
         axes.grid(alpha=0.3, lw=0.4)
-        axes.legend(
-            fontsize=7, loc="lower right", bbox_to_anchor=(1.0, 0.99), ncols=3, frameon=False
-        )
+        if axes.get_legend_handles_labels()[0]:
+            axes.legend(
+                fontsize=7, loc="lower right", bbox_to_anchor=(1.0, 0.99), ncols=3, frameon=False
+            )
         axes.tick_params(labelsize=7)
         axes.yaxis.label.set_size(8)
-    rows[-1].set_xlabel("hours since departure", fontsize=8)
+    _draw_time_axis(rows[-1], route)
     figure.tight_layout()
     if path is not None:
         save_figure(figure, path)
     return figure
 
 
+def _draw_time_axis(axes: Any, route: Route) -> None:
+    """Label the axis of hours with times in UTC."""
+    hours = _hours(route)
+    last = float(np.nanmax(hours, initial=0.0))
+    times, step = marked_times(route.depart, route.depart + last * HOUR, 10)
+    axes.set_xlim(0.0, max(last, 1e-6))
+    axes.set_xticks((times - route.depart) / HOUR)
+    axes.set_xticklabels([time_label(float(time), step) for time in times])
+    departs = format_time(route.depart)[:16].replace("T", " ")
+    axes.set_xlabel(f"UTC, departure {departs}", fontsize=8)
+
+
 def _hours(route: Route) -> np.ndarray:
     return (route.samples["time"] - route.depart) / HOUR
 
 
-def _plot(axes: Any, route: Route, values: np.ndarray, label: str, colour: str) -> None:
-    axes.plot(_hours(route), values, label=label, color=colour, lw=1.4)
+def _plot(
+    axes: Any, route: Route, values: np.ndarray, label: str, colour: str, line: str = "-"
+) -> None:
+    axes.plot(_hours(route), values, label=label, color=colour, lw=1.4, ls=line)
 
 
 def _speeds(route: Route, axes: Any | None) -> bool:
     if axes is None:
         return True
     _plot(axes, route, route.samples["speed_through_water"] / KNOT, "through water", "#1565c0")
-    _plot(axes, route, route.samples["speed_over_ground"] / KNOT, "over ground", "#c2185b")
+    _plot(axes, route, route.samples["speed_over_ground"] / KNOT, "over ground", "#c2185b", "--")
     axes.set_ylabel("speed [kn]")
+    low, high = axes.get_ylim()
+    if high - low < 1.0:  # differences of hundredths of a knot are not drawn as jumps
+        axes.set_ylim(0.5 * (low + high) - 0.5, 0.5 * (low + high) + 0.5)
     return True
+
+
+def _set_headroom(axes: Any) -> None:
+    """Let the axis begin at zero and end above the highest value."""
+    top = max((float(np.nanmax(line.get_ydata(), initial=0.0)) for line in axes.lines), default=1.0)
+    axes.set_ylim(0.0, 1.1 * top)
 
 
 def _magnitude(route: Route, east: str, north: str) -> np.ndarray | None:
@@ -85,7 +115,7 @@ def _weather(route: Route, axes: Any | None) -> bool:
             _plot(axes, route, current, "current", "#00838f")
         known = ((wind, "wind"), (current, "current"))
         axes.set_ylabel(" and ".join(word for value, word in known if value is not None) + " [kn]")
-        axes.set_ylim(bottom=0.0)
+        _set_headroom(axes)
     return wind is not None or current is not None
 
 
@@ -96,16 +126,21 @@ def _waves(route: Route, axes: Any | None) -> bool:
     if axes is not None:
         _plot(axes, route, height, "significant wave height", "#2e7d32")
         axes.set_ylabel("waves [m]")
-        axes.set_ylim(bottom=0.0)
+        _set_headroom(axes)
     return True
 
 
 def _depths(route: Route, axes: Any | None) -> bool:
     clearance = route.samples["under_keel_clearance"]
     known = clearance[np.isfinite(clearance)]
-    if not known.size:
-        return False
-    if axes is not None:
+    if axes is not None and not known.size:
+        axes.text(
+            0.5, 0.5, "under-keel clearance not known: no depth in the data", ha="center",
+            va="center", transform=axes.transAxes, fontsize=8, color="#b71c1c",
+        )  # fmt: skip
+        axes.set_yticks([])
+        axes.set_ylabel("clearance")
+    elif axes is not None:
         _plot(axes, route, clearance, "under-keel clearance", _INK)
         axes.axhline(0.0, color="#b71c1c", lw=0.8)
         if known.max() > 60:

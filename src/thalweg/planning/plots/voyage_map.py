@@ -1,18 +1,27 @@
-"""The map of a plan: coast, sea state at the moment of passage, isochrones and routes."""
+"""The map of a plan: coast, sea state at the moment of passage, isochrones, routes and times."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from thalweg.core.file_writing import save_figure
-from thalweg.core.geodesy import positions_along, wrap_longitude
+from thalweg.core.geodesy import unwrap_longitude, wrap_longitude
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT
+from thalweg.planning.plots.map_extent import MapExtent
+from thalweg.planning.plots.map_labels import LabelPlacer, marked_times, time_label
+from thalweg.planning.plots.map_overlays import (
+    draw_enclosed_water,
+    draw_land,
+    draw_storm,
+    draw_zones,
+    place_labels,
+    storm_track,
+)
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData, PlotContext
@@ -24,37 +33,14 @@ _CURRENT = ("eastward_sea_water_velocity", "northward_sea_water_velocity")
 _DEPTH = "sea_floor_depth_below_geoid"
 _LEVEL = "sea_surface_height_above_geopotential_datum"
 
-_LAND, _SHORE, _ROUTE, _INK = "#e9e3d5", "#8f8672", "#c2185b", "#22303c"
+_SEA, _ROUTE, _INK = "#eaf3fa", "#c2185b", "#22303c"
+_WAVE_COLOURS = (_SEA, "#b9d8ec", "#6aaed6", "#2c74b3", "#3b2f8f", "#7a1f7a")
 
 
-@dataclass(frozen=True)
-class MapExtent:
-    """The area of a map [deg]; longitudes continue beyond 180 where needed."""
+def draw_map(plan: PlanData, path: str | Path | None = None, *, beside: Route | None = None) -> Any:
+    """Draw the map of a plan: the route with its times in UTC, land, weather and areas.
 
-    south: float
-    north: float
-    west: float
-    east: float
-
-    @property
-    def aspect(self) -> float:
-        """Length of a degree of latitude over that of a degree of longitude."""
-        return 1.0 / max(0.05, math.cos(math.radians(0.5 * (self.south + self.north))))
-
-    def unwrapped(self, lon: np.ndarray) -> np.ndarray:
-        """Return longitudes shifted by multiples of 360 degrees into the area."""
-        middle = 0.5 * (self.west + self.east)
-        return middle + wrap_longitude(np.asarray(lon) - middle)
-
-    def line(self, lon: np.ndarray) -> np.ndarray:
-        """Return the longitudes of a line without jumps, shifted by 360 degrees into the area."""
-        lon = _unwrapped(lon)
-        away = 0.5 * (self.west + self.east) - 0.5 * (float(lon.min()) + float(lon.max()))
-        return np.asarray(lon + 360.0 * round(away / 360.0))
-
-
-def draw_map(plan: PlanData, path: str | Path | None = None) -> Any:
-    """Draw the map of a plan.
+    Up to 75 degrees of latitude in Mercator's projection.
 
     Parameters
     ----------
@@ -62,6 +48,9 @@ def draw_map(plan: PlanData, path: str | Path | None = None) -> Any:
         A plan with its plot context (as `thalweg.plan` returns it).
     path : path, optional
         Where to save it (PNG).
+    beside : Route, optional
+        A route to draw beside that of the plan, such as one that ignores the weather; by default
+        that of the comparison of a front.
 
     Returns
     -------
@@ -71,31 +60,42 @@ def draw_map(plan: PlanData, path: str | Path | None = None) -> Any:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    box = _map_extent(plan)
-    shape = (box.north - box.south) * box.aspect / (box.east - box.west)
+    beside = beside or _weather_blind(plan)
+    box = _map_extent(plan, beside)
+    shape = box.height / (box.east - box.west)
     width = min(10.0, 9.0 / shape + 1.6)
-    height = max(3.6, (width - 1.6) * shape + 0.8)
+    height = max(3.6, (width - 1.6) * shape + 0.9)
     figure = Figure(figsize=(width, height), dpi=130, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
-    axes.set_facecolor("#f4f8fb")
+    axes.set_facecolor(_SEA)
+    box.set_up(axes)
+    labels: list[tuple[str, float, float]] = []
     if plan.plot_context is not None:
         _draw_sea(figure, axes, plan, plan.plot_context, box)
-        _draw_land(axes, plan.plot_context.chart, box)
-    _draw_routes(figure, axes, plan, box)
+        draw_land(axes, plan.plot_context.chart, box)
+        labels = draw_zones(axes, plan.plot_context.chart, box)
+        track = storm_track(plan.plot_context)
+        if track is not None and math.isfinite(plan.best.arrive):
+            labels = [*draw_storm(axes, track, box, plan.best.depart, plan.best.arrive), *labels]
+    _draw_routes(figure, axes, plan, box, beside)
     _decorate_axes(axes, plan, box)
+    _label(figure, axes, plan, box, labels)
     if path is not None:
         save_figure(figure, path)
     return figure
 
 
-def _unwrapped(lon: np.ndarray) -> np.ndarray:
-    return np.degrees(np.unwrap(np.radians(np.asarray(lon, float))))
+def _weather_blind(plan: PlanData) -> Route | None:
+    """Return the fastest route that ignores the weather, of the comparison of a front."""
+    comparison = plan.front.comparison if plan.front is not None else None
+    return comparison.routes[0] if comparison is not None and comparison.routes else None
 
 
-def _map_extent(plan: PlanData) -> MapExtent:
-    lat = np.concatenate([route.samples["lat"] for route in plan.routes])
-    lon = np.concatenate([_unwrapped(route.samples["lon"]) for route in plan.routes])
+def _map_extent(plan: PlanData, beside: Route | None) -> MapExtent:
+    routes = [*plan.routes, *([] if beside is None else [beside])]
+    lat = np.concatenate([route.samples["lat"] for route in routes])
+    lon = np.concatenate([unwrap_longitude(route.samples["lon"]) for route in routes])
     high, wide = np.ptp(lat), np.ptp(lon) * math.cos(math.radians(float(np.mean(lat))))
     margin = 0.12 * max(high, wide, 1e-3)
     stretch = math.cos(math.radians(min(80.0, float(np.max(np.abs(lat))))))
@@ -111,19 +111,19 @@ def _map_extent(plan: PlanData) -> MapExtent:
 
 
 def _draw_sea(figure: Any, axes: Any, plan: PlanData, world: PlotContext, box: MapExtent) -> None:
-    lon, lat = np.meshgrid(
-        np.linspace(box.west, box.east, 240), np.linspace(box.south, box.north, 180)
-    )
+    lat, lon = box.grid(240, 180)
     reached = _passage_times(plan, world, box, lat, lon)
     moment = np.where(np.isfinite(reached), reached, plan.best.depart)
     on_water = _water_mask(world, moment, lat, wrap_longitude(lon))
     shown = _shading_field(world, moment, lat, lon)
     if shown is not None:
         values, label, colours = shown
-        filled = axes.contourf(lon, lat, values, levels=14, cmap=colours, alpha=0.85)
+        filled = axes.contourf(lon, lat, values, levels=14, cmap=_colours(colours), zorder=1)
         bar = figure.colorbar(filled, ax=axes, shrink=0.9, pad=0.01, aspect=30)
         bar.set_label(label, fontsize=8)
         bar.ax.tick_params(labelsize=7)
+    enclosed = draw_enclosed_water(axes, world, box, on_water, (lat, lon))
+    on_water &= ~enclosed
     _draw_arrows(axes, world, moment, lat, lon)
     _draw_isochrones(axes, plan, reached, (lat, lon), on_water)
 
@@ -167,7 +167,7 @@ def _shading_field(
     if _WAVES in names:
         waves = world.sea.sample([_WAVES], *at)[_WAVES]
         if _varies(waves):
-            return waves, "significant wave height at passage [m]", "YlGnBu"
+            return waves, "significant wave height at passage [m]", "waves"
     for pair, word, colours in ((_CURRENT, "current", "PuBu"), (_WIND, "wind", "BuPu")):
         if all(name in names for name in pair):
             samples = world.sea.sample(list(pair), *at)
@@ -226,7 +226,7 @@ def _draw_isochrones(
 ) -> None:
     lat, lon = grid
     hours = np.where(_dilated(on_water), (reached - plan.best.depart) / HOUR, np.nan)
-    if np.count_nonzero(np.isfinite(hours)) < 10:
+    if np.count_nonzero(np.isfinite(hours)) < 10 or not np.isfinite(plan.best.time_h):
         return
     steps = np.array([0.05, 0.1, 0.25, 0.5, 1, 2, 3, 6, 12, 24, 48, 96])
     step = float(steps[np.argmin(np.abs(steps - plan.best.time_h / 9))])
@@ -245,16 +245,6 @@ def _dilated(mask: np.ndarray) -> np.ndarray:
     return np.asarray(binary_dilation(mask, np.ones((3, 3), bool)))
 
 
-def _draw_land(axes: Any, chart: Any, box: MapExtent) -> None:
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path as Outline
-
-    for polygon in chart.coastline.polygons(box.south, box.north, box.west, box.east):
-        rings = [np.asarray(ring.coords) for ring in (polygon.exterior, *polygon.interiors)]
-        outline = Outline.make_compound_path(*(Outline(ring, closed=True) for ring in rings))
-        axes.add_patch(PathPatch(outline, fc=_LAND, ec=_SHORE, lw=0.4, zorder=3))
-
-
 def _draw_speed(figure: Any, axes: Any, route: Route, box: MapExtent) -> None:
     """Draw a route coloured by its speed over ground."""
     from matplotlib.collections import LineCollection
@@ -271,17 +261,15 @@ def _draw_speed(figure: Any, axes: Any, route: Route, box: MapExtent) -> None:
     bar.ax.tick_params(labelsize=7)
 
 
-def _draw_routes(figure: Any, axes: Any, plan: PlanData, box: MapExtent) -> None:
-    from matplotlib.patheffects import withStroke
-
+def _draw_routes(
+    figure: Any, axes: Any, plan: PlanData, box: MapExtent, beside: Route | None
+) -> None:
     best = plan.best
-    fractions = np.linspace(0, 1, 101)
-    direct_lat, direct_lon = positions_along(
-        best.track.lat[0], best.track.lon[0], best.track.lat[-1], best.track.lon[-1], fractions
-    )
-    axes.plot(
-        box.line(direct_lon), direct_lat, "--", color=_INK, lw=0.9, zorder=4, label="geodesic"
-    )
+    if beside is not None:
+        axes.plot(
+            box.line(beside.samples["lon"]), beside.samples["lat"], "--", color=_INK, lw=1.3,
+            zorder=4.5, label="route that ignores the weather",
+        )  # fmt: skip
     for route in plan.routes[1:]:
         axes.plot(
             box.line(route.samples["lon"]), route.samples["lat"], color=_ROUTE, lw=0.8, alpha=0.5,
@@ -290,38 +278,52 @@ def _draw_routes(figure: Any, axes: Any, plan: PlanData, box: MapExtent) -> None
     if plan.front is None:
         axes.plot(
             box.line(best.samples["lon"]), best.samples["lat"], color=_ROUTE, lw=2.2, zorder=5,
-            label="route",
+            label="route, times in UTC",
         )  # fmt: skip
     else:
         _draw_speed(figure, axes, best, box)
     track, track_lon = best.track, _longitudes_on_line(best, box)
-    axes.plot(track_lon, track.lat, ".", color=_ROUTE, ms=4, zorder=6)
     waits = track.wait > 0
     if waits.any():
         axes.plot(
-            track_lon[waits],
-            track.lat[waits],
-            "s",
-            color="#ff8f00",
-            ms=6,
+            track_lon[waits], track.lat[waits], "s", color="#ff8f00", ms=6, zorder=7, label="waits"
+        )
+    for index in (0, -1):
+        axes.plot(
+            track_lon[index], track.lat[index], "o", mfc="white", mec=_ROUTE, mew=1.6, ms=7,
             zorder=7,
-            label="waits",
-        )
-    for index, name in ((0, plan.provenance.get("from")), (-1, plan.provenance.get("to"))):
-        x, y = track_lon[index], track.lat[index]
-        axes.plot(x, y, "o", mfc="white", mec=_ROUTE, mew=1.6, ms=7, zorder=7)
-        axes.annotate(
-            str(name or ""),
-            (x, y),
-            xytext=(0, 9),
-            textcoords="offset points",
-            fontsize=8,
-            ha="center",
-            zorder=8,
-            color=_INK,
-            fontweight="bold",
-            path_effects=[withStroke(linewidth=2.5, foreground="white")],
-        )
+        )  # fmt: skip
+
+
+def _label(
+    figure: Any,
+    axes: Any,
+    plan: PlanData,
+    box: MapExtent,
+    labels: list[tuple[str, float, float]],
+) -> None:
+    """Label the ends, the times along the route, and what else there is room for."""
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    best, samples = plan.best, plan.best.samples
+    x = box.line(samples["lon"])
+    placer = LabelPlacer(axes, axes.transData.transform(np.column_stack([x, samples["lat"]])))
+    legend = axes.get_legend()
+    if legend is not None:
+        placer.taken.append(legend.get_window_extent())
+    track_lon = _longitudes_on_line(best, box)
+    for index, key in ((0, "from"), (-1, "to")):
+        name = str(plan.provenance.get(key) or "")
+        here = float(track_lon[index]), float(best.track.lat[index])
+        if name:
+            placer.place(name, *here, needed=True, fontsize=8, fontweight="bold")
+    if math.isfinite(best.arrive):
+        times, step = marked_times(best.depart, best.arrive)
+        lon, lat = (np.interp(times, samples["time"], line) for line in (x, samples["lat"]))
+        axes.plot(lon, lat, "o", mfc="white", mec=_ROUTE, mew=1.0, ms=3.5, zorder=6)
+        for time, *place in zip(times, lon, lat):
+            placer.place(time_label(float(time), step), *map(float, place), fontsize=7)
+    place_labels(placer, labels)
 
 
 def _longitudes_on_line(route: Route, box: MapExtent) -> np.ndarray:
@@ -334,26 +336,24 @@ def _longitudes_on_line(route: Route, box: MapExtent) -> np.ndarray:
 
 def _decorate_axes(axes: Any, plan: PlanData, box: MapExtent) -> None:
     best = plan.best
-    fuel = "" if best.fuel_t is None else f", {best.fuel_t:.1f} t fuel"
-    certain = 100 * (1 - plan.proof.certain / plan.objective_value) if plan.objective_value else 0.0
+    fuel = "" if best.fuel_t is None else f", {best.fuel_t:,.1f} t fuel"
+    departs, arrives = (
+        format_time(time)[:16].replace("T", " ") for time in (best.depart, best.arrive)
+    )
     axes.set_title(
-        f"{best.time_h:.1f} h, {best.distance_nm:.0f} nm{fuel}; depart "
-        f"{format_time(best.depart)}; gap to the bound {100 * plan.gap:.1f} % (certain: "
-        f"{certain:.1f} %)",
+        f"{plan.provenance.get('from')} to {plan.provenance.get('to')}: {best.time_h:.1f} h, "
+        f"{best.distance_nm:,.0f} nm{fuel}\ndepart {departs} UTC, arrive {arrives} UTC",
         fontsize=9,
         loc="left",
     )
-    axes.set_xlim(box.west, box.east)
-    axes.set_ylim(box.south, box.north)
-    axes.set_aspect(box.aspect)
-    axes.xaxis.set_major_formatter(lambda x, _: _degree_label(float(wrap_longitude(x)), "EW"))
-    axes.yaxis.set_major_formatter(lambda y, _: _degree_label(y, "NS"))
-    axes.tick_params(labelsize=7)
-    axes.grid(alpha=0.25, lw=0.4)
-    axes.legend(loc="lower right", fontsize=7, framealpha=0.9)
+    box.draw_scale(axes)
+    if axes.get_legend_handles_labels()[0]:
+        legend = axes.legend(loc="best", fontsize=7, framealpha=0.9)
+        legend.set_zorder(11)
 
 
-def _degree_label(value: float, letters: str) -> str:
-    if not 1e-9 < abs(value) < 180.0 - 1e-9:
-        return f"{abs(round(value)):d}°"
-    return f"{abs(value):g}°{letters[0] if value >= 0 else letters[1]}"
+def _colours(name: str) -> Any:
+    """Return a colour map, that of waves from the pale blue of a calm sea to violet."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    return LinearSegmentedColormap.from_list(name, _WAVE_COLOURS) if name == "waves" else name

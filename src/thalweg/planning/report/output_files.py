@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,21 +15,40 @@ from thalweg.core.time import TimeLike
 from thalweg.planning.plots.route_profile import draw_profile
 from thalweg.planning.plots.space_time_diagram import write_space_time_diagram
 from thalweg.planning.plots.voyage_map import draw_map
-from thalweg.route import Route, write_csv, write_geojson, write_gpx
+from thalweg.route import (
+    Route,
+    RouteFileOptions,
+    write_csv,
+    write_geojson,
+    write_gpx,
+    write_rtz,
+)
+from thalweg.sea.grids.gridded_layer import GridLayer
+from thalweg.sea.sea_maps import draw_maps, map_area
 
 if TYPE_CHECKING:
-    from thalweg.chart import Chart
     from thalweg.planning.plan_data import PlanData
     from thalweg.sea import Sea
+    from thalweg.sea.layer import Layer
 
 
-def write_plan(plan: PlanData, folder: str | Path) -> list[Path]:
-    """Write plan.json, the best route in three formats, the plots, and the files of a front.
+def write_plan(
+    plan: PlanData,
+    folder: str | Path,
+    options: RouteFileOptions | None = None,
+    *,
+    beside: Route | None = None,
+) -> list[Path]:
+    """Write plan.json, the best route in all formats, the plots, and the files of a front.
 
     Parameters
     ----------
     plan : PlanData
     folder : path
+    options : RouteFileOptions, optional
+        How the route files are written; places and chart are those of the plan.
+    beside : Route, optional
+        A route to draw on the map beside that of the plan.
 
     Returns
     -------
@@ -36,15 +56,23 @@ def write_plan(plan: PlanData, folder: str | Path) -> list[Path]:
         The files written.
     """
     folder = make_folder(folder)
+    options = _of_plan(plan, options or RouteFileOptions())
     plan.to_json(folder / "plan.json")
-    files = [folder / "plan.json", *_write_formats(plan.best, folder)]
-    draw_map(plan, folder / "map.png")
+    files = [folder / "plan.json", *_write_formats(plan.best, folder, options)]
+    draw_map(plan, folder / "map.png", beside=beside)
     draw_profile(plan.best, folder / "profile.png")
     files += [folder / "map.png", folder / "profile.png", *write_space_time_diagram(plan, folder)]
-    return files if plan.front is None else files + _write_front(plan, folder)
+    return files if plan.front is None else files + _write_front(plan, folder, options)
 
 
-def _write_front(plan: PlanData, folder: Path) -> list[Path]:
+def _of_plan(plan: PlanData, options: RouteFileOptions) -> RouteFileOptions:
+    """Return the options with the places and the chart of a plan."""
+    start, goal = (str(plan.provenance.get(key) or "") for key in ("from", "to"))
+    chart = plan.plot_context.chart if plan.plot_context is not None else None
+    return replace(options, chart=chart, start=start, goal=goal)
+
+
+def _write_front(plan: PlanData, folder: Path, options: RouteFileOptions) -> list[Path]:
     """Write front.csv, front.png, comparison.csv and, in ``routes``, each route."""
     from thalweg.planning.plots.pareto_front_plot import draw_pareto_front
 
@@ -57,7 +85,7 @@ def _write_front(plan: PlanData, folder: Path) -> list[Path]:
         files.append(_write_table(front.comparison.rows, folder / "comparison.csv"))
     each = make_folder(folder / "routes")
     for number, route in enumerate(plan.routes, start=1):
-        files += _write_formats(route, each, f"route_{number:02d}")
+        files += _write_formats(route, each, options, f"route_{number:02d}")
     return files
 
 
@@ -68,39 +96,62 @@ def _write_table(rows: Sequence[Mapping[str, Any]], path: Path) -> Path:
     return path
 
 
-def write_route(route: Route, folder: str | Path) -> list[Path]:
-    """Write a route as route.json, in three formats, and its profile; return the files."""
+def write_route(
+    route: Route, folder: str | Path, options: RouteFileOptions | None = None
+) -> list[Path]:
+    """Write a route as route.json, in all formats, and its profile; return the files."""
     folder = make_folder(folder)
     text = json.dumps(route.as_dict(), indent=2, allow_nan=False)
     write_text(folder / "route.json", text + "\n")
-    files = [folder / "route.json", *_write_formats(route, folder)]
+    files = [folder / "route.json", *_write_formats(route, folder, options)]
     draw_profile(route, folder / "profile.png")
     return [*files, folder / "profile.png"]
 
 
-def draw_sea(sea: Sea, path: str | Path, *, time: TimeLike | None = None) -> Path:
-    """Draw a map of each main quantity of a sea over the coastline; return its path."""
+def draw_sea(sea: Sea, folder: str | Path, *, time: TimeLike | None = None) -> list[Path]:
+    """Draw maps of the main quantities of a sea over the coastline; return their paths.
+
+    Parameters
+    ----------
+    sea : Sea
+    folder : path
+    time : time, optional
+        By default the time when the waves (otherwise the wind, the current) are largest.
+
+    Returns
+    -------
+    list of Path
+        ``sea.png``, or ``sea_1.png`` and so on if the sea has several files with another grid.
+    """
+    layers = [layer for layer in sea.layers if isinstance(layer, GridLayer)]
+    if len(layers) < 2:
+        path = Path(folder) / "sea.png"
+        draw_maps(sea.layers, path, time=time, coastline=_coastlines(sea.layers))
+        return [path]
+    paths = [Path(folder) / f"sea_{number}.png" for number in range(1, len(layers) + 1)]
+    for layer, path in zip(layers, paths):
+        draw_maps([layer], path, time=time, coastline=_coastlines([layer]))
+    return paths
+
+
+def _coastlines(layers: Sequence[Layer]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return the outlines (lat, lon) of the land on a map of layers, as fine as it shows."""
     from thalweg.chart import Chart
 
-    path = Path(path)
-    sea.draw(path, time=time, coastline=_coastlines(sea, Chart.gshhg("i")))
-    return path
-
-
-def _coastlines(sea: Sea, chart: Chart) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return the outlines (lat, lon) of the land inside the coverage of a sea."""
-    rows = sea.coverage()
-    south, north = min(row.south for row in rows), max(row.north for row in rows)
-    west, east = min(row.west for row in rows), max(row.east for row in rows)
+    box = map_area(layers)
+    size = max(box.north - box.south, box.east - box.west)
+    chart = Chart.gshhg("i" if size < 25.0 else "l" if size < 90.0 else "c")
     outlines = []
-    for polygon in chart.coastline.polygons(south, north, west, east):
+    for polygon in chart.coastline.polygons(box.south, box.north, box.west, box.east):
         lon, lat = np.asarray(polygon.exterior.coords).T
         outlines.append((lat, lon))
     return outlines
 
 
-def _write_formats(route: Route, folder: Path, name: str = "route") -> list[Path]:
-    writers = {"geojson": write_geojson, "gpx": write_gpx, "csv": write_csv}
+def _write_formats(
+    route: Route, folder: Path, options: RouteFileOptions | None, name: str = "route"
+) -> list[Path]:
+    writers = {"rtz": write_rtz, "gpx": write_gpx, "geojson": write_geojson, "csv": write_csv}
     for suffix, write in writers.items():
-        write(route, folder / f"{name}.{suffix}")
+        write(route, folder / f"{name}.{suffix}", options)
     return [folder / f"{name}.{suffix}" for suffix in writers]

@@ -13,8 +13,10 @@ from thalweg.core.geodesy import format_position
 from thalweg.core.time import format_time
 from thalweg.network import Network
 from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.land_report import land_notes
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
+from thalweg.route.referee.route_assembly import OUT_OF_RANGE
 from thalweg.sea.inspection import data_gaps
 
 #: The coarse global depth is checked only at this distance off the coast [m] ...
@@ -40,7 +42,8 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     list of str
         One sentence for each warning.
     """
-    notes = ice_warnings(route) + data_gap_warnings(context, route)
+    notes = land_notes(context, route) + ice_warnings(route) + data_gap_warnings(context, route)
+    notes += [text for text in route.assumptions if text.startswith(OUT_OF_RANGE)]
     if not context.needs.limits.depth_checked:
         notes += shallow_water_warnings(context, route)
     return notes

@@ -83,12 +83,13 @@ def add_emission_control_areas(chart: Chart, voyage: Voyage, ship: Ship) -> tupl
     """Return the chart with emission control areas where these affect the objective.
 
     They are the areas in force when the data of the package were compiled, for any departure, as
-    past weather often represents future weather. A chart with its own areas keeps them.
+    past weather often represents future weather. Where a chart has areas of its own, those count
+    instead.
     """
     if not voyage.chooses_speeds:
         return chart, []
     prices = priced_objective(voyage, ship).prices
-    if not prices.differs_in_control_areas or chart.zones.eca:
+    if not prices.differs_in_control_areas or chart.zones.eca or not chart.counts_eca:
         return chart, []
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ThalwegWarning)

@@ -169,7 +169,10 @@ def _moved_into_coverage(end: Endpoint, coverage_probe: _CoverageProbe, chart: C
         near = _nearest_suitable_water(end, coverage_probe, chart, harbour=True)
         if near is not None:
             why = "in water that is too shallow or outside the data"
-            return replace(end, lat=near[0], lon=near[1], moved_distance_m=near[2], why=why)
+            return replace(
+                end, lat=near[0], lon=near[1], moved_distance_m=near[2], why=why, approach=None,
+                asked=end.origin,
+            )  # fmt: skip
     lacking = coverage_probe.missing(*here)
     if not lacking:
         coverage_probe.check_deep_enough(end)

@@ -13,7 +13,9 @@ from thalweg.core.time import format_time
 from thalweg.kernels import codes
 from thalweg.planning.voyage import Voyage
 from thalweg.sea import Sea, standard_names
+from thalweg.sea.fill_policies import fill_hint
 from thalweg.ship import Ship
+from thalweg.ship.ship_assumptions import stated_assumptions
 
 _CHANNEL_OF = {name: channel for channel, name in standard_names.CHANNEL_VARIABLES.items()}
 
@@ -67,8 +69,8 @@ def derive_requirements(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -
     OutsidePeriodError
         If the departure is outside the period of the data.
     """
-    _check_variables(ship, sea)
-    notes = list(sea.assumptions)
+    check_variables(ship, sea)
+    notes = [*sea.assumptions, *stated_assumptions(ship)]
     channels = {_CHANNEL_OF[name] for name in ship.needs if name in _CHANNEL_OF}
     if all(name in sea.variables for name in standard_names.CURRENT.pair):
         channels |= {codes.CURRENT_EAST, codes.CURRENT_NORTH}
@@ -83,17 +85,19 @@ def derive_requirements(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -
         if standard_names.BED_DEPTH in sea.variables:
             channels.add(codes.BED_DEPTH)
     limits = Limits(required, ship.limits.wave_height, ship.limits.wind_speed)
-    data_end = _checked_data_end(voyage, sea, channels)
+    data_end = check_departure_in_data(voyage, sea, channels)
     return Requirements(tuple(sorted(channels)), limits, tuple(notes), data_end)
 
 
-def _check_variables(ship: Ship, sea: Sea) -> None:
+def check_variables(ship: Ship, sea: Sea) -> None:
+    """Raise `MissingVariableError` if a ship needs variables that a sea does not have."""
     missing = sorted(name for name in ship.needs if name not in sea.variables)
     if missing:
         raise MissingVariableError(
             f"The ship {ship.name!r} needs {', '.join(missing)}, which the sea does not provide.",
             f"The sea provides: {', '.join(sorted(sea.variables)) or 'nothing'}.",
-            "Add a file with it, or give a fill value by name (for example --fill waves=0).",
+            f"Add a file with {'it' if len(missing) == 1 else 'them'}, or fill by name: "
+            f"{fill_hint(missing, sea.variables)}.",
             missing=missing,
         )
 
@@ -140,7 +144,7 @@ def required_under_keel_clearance(voyage: Voyage, ship: Ship) -> float:
     return ship.min_under_keel_clearance
 
 
-def _checked_data_end(voyage: Voyage, sea: Sea, channels: Iterable[int]) -> float:
+def check_departure_in_data(voyage: Voyage, sea: Sea, channels: Iterable[int]) -> float:
     """Return the last time at which all channels are covered; check that the ship departs in it."""
     needed = {standard_names.CHANNEL_VARIABLES[channel] for channel in channels}
     periods: dict[str, list[tuple[float, float]]] = {}
@@ -160,6 +164,6 @@ def _checked_data_end(voyage: Voyage, sea: Sea, channels: Iterable[int]) -> floa
         raise OutsidePeriodError(
             f"Departure {format_time(asked)} is outside the data.",
             f"The data run from {format_time(first)} to {format_time(last)}.",
-            "Choose a departure inside, or add a dataset.",
+            "Choose a departure in that period, or add data.",
         )
     return last

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Final
 
 from thalweg.chart import Chart
-from thalweg.chart.ports import PORTS
+from thalweg.chart.approaches import PortApproach
+from thalweg.chart.ports import PORTS, Port
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import distance, format_position, parse_position
 from thalweg.core.units import NAUTICAL_MILE
@@ -13,8 +15,10 @@ from thalweg.planning.voyage_parts import Place
 
 #: Greatest distance that a position is moved [m]; coastlines are generalised.
 MAX_SNAP_POSITION = 2_000.0
-#: The same for ports [m]; harbours are on land at every resolution of the coastline.
+#: The same for ports without an approach [m]; harbours are on land at every resolution.
 MAX_SNAP_PORT = 60_000.0
+#: A position on land within this distance of a port is taken as that port [m].
+NEAR_PORT: Final = 10.0 * NAUTICAL_MILE
 
 
 @dataclass(frozen=True)
@@ -26,15 +30,19 @@ class Endpoint:
     name : str
         Name and country of the port ("Sydney, AU"), or the position as text.
     lat, lon : float
-        Position used [deg].
+        Position used [deg]; of a port with an approach its sea end.
     moved_distance_m : float
         Distance moved to navigable water [m].
     asked : (lat, lon), optional
         Requested position [deg], where it was moved.
     is_port : bool
-        Whether the request was the name of a port.
+        Whether the end point is a port.
     why : str
         Reason for moving it.
+    approach : PortApproach, optional
+        The approach from the berth to this position.
+    notice : str
+        A further note for the user, or empty.
     """
 
     name: str
@@ -44,6 +52,8 @@ class Endpoint:
     asked: tuple[float, float] | None = None
     is_port: bool = False
     why: str = "on charted land"
+    approach: PortApproach | None = None
+    notice: str = ""
 
     @property
     def origin(self) -> tuple[float, float]:
@@ -53,37 +63,89 @@ class Endpoint:
     @property
     def note(self) -> str:
         """A note for the user where the position was moved, else empty."""
-        if self.moved_distance_m < 1.0:
-            return ""
-        return (
-            f"{self.name} is {self.why}: moved {self.moved_distance_m / NAUTICAL_MILE:.1f} nm to "
-            f"open water at {format_position(self.lat, self.lon)}."
-        )
+        moved = ""
+        if self.moved_distance_m >= 1.0:
+            moved = (
+                f"{self.name} is {self.why}: moved {self.moved_distance_m / NAUTICAL_MILE:.1f} nm "
+                f"to open water at {format_position(self.lat, self.lon)}; the totals begin and end "
+                "there."
+            )
+        return " ".join(text for text in (self.notice, moved) if text)
 
 
 def resolve_endpoint(place: Place, chart: Chart, what: str) -> Endpoint:
     """Resolve a place to navigable water of a chart.
 
+    A port is moved to the sea end of its approach, where the chart has approaches. A position on
+    land or in enclosed water is moved to water joined to the sea within `MAX_SNAP_POSITION`, or
+    taken as the nearest port within `NEAR_PORT`.
+
     Raises
     ------
     InputError
-        If the port is unknown (with near matches), or the place is on land and too far from water.
+        If the port is unknown (with near matches) or cannot be reached, or the place is on land or
+        in enclosed water and too far from the sea.
     """
     if isinstance(place, str):
         position = parse_position(place)
         if position is None:
-            port = PORTS.lookup(place)
-            found = _snap_to_water(port.label, port.lat, port.lon, chart, what, MAX_SNAP_PORT)
-            return replace(found, is_port=True)
+            return _resolve_port(PORTS.lookup(place), chart, what)
     else:
         position = place
-    return _snap_to_water(format_position(*position), *position, chart, what, MAX_SNAP_POSITION)
+    return _resolve_position(*position, chart, what)
+
+
+def _resolve_port(port: Port, chart: Chart, what: str) -> Endpoint:
+    """Return the sea end of a port, or the nearest water on a chart without its approach."""
+    approach = _usable_approach(port, chart)
+    if approach is not None:
+        return Endpoint(port.label, *approach.sea_end, 0.0, is_port=True, approach=approach)
+    reason = "" if chart.approaches is None else chart.approaches.reason(port)
+    if reason:
+        raise InputError(
+            f"The {what} {port.label} cannot be reached from the sea on this chart.",
+            f"Reason: {reason}.",
+            "Choose another port, or a position at sea.",
+            field=what,
+        )
+    found = _snap_to_water(port.label, port.lat, port.lon, chart, what, MAX_SNAP_PORT)
+    return replace(found, is_port=True)
+
+
+def _usable_approach(port: Port, chart: Chart) -> PortApproach | None:
+    """Return the approach of a port if its sea end is water of the chart and no zone closes it."""
+    approach = None if chart.approaches is None else chart.approaches.of(port)
+    if approach is None or not bool(chart.is_navigable(*approach.sea_end)):
+        return None
+    (lat, lon) = zip(*approach.line)
+    closed = chart.crosses_no_go_zone(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    return None if closed.any() else approach
+
+
+def _resolve_position(lat: float, lon: float, chart: Chart, what: str) -> Endpoint:
+    """Return a position on water as it is; one on land or in enclosed water is moved."""
+    name = format_position(lat, lon)
+    on_water = bool(chart.is_navigable(lat, lon))
+    if on_water and chart.is_joined_to_sea(lat, lon):
+        return Endpoint(name, lat, lon, 0.0)
+    near = (
+        None if chart.approaches is None else chart.approaches.nearest(lat, lon, within=NEAR_PORT)
+    )
+    water = chart.nearest_navigable(lat, lon, largest=MAX_SNAP_POSITION)
+    if near is not None and (water is None or near[1] <= water[2]):
+        port = _resolve_port(near[0], chart, what)
+        kind = "in enclosed water" if on_water else "on charted land"
+        miles = near[1] / NAUTICAL_MILE
+        return replace(
+            port, notice=f"{name} is {kind}, {miles:.1f} nm from {port.name}: that port is used."
+        )
+    return _snap_to_water(name, lat, lon, chart, what, MAX_SNAP_POSITION)
 
 
 def _snap_to_water(
     name: str, lat: float, lon: float, chart: Chart, what: str, limit: float
 ) -> Endpoint:
-    if bool(chart.is_navigable(lat, lon)):
+    if bool(chart.is_navigable(lat, lon)) and chart.is_joined_to_sea(lat, lon):
         return Endpoint(name, lat, lon, 0.0)
     found = chart.nearest_navigable(lat, lon, largest=MAX_SNAP_PORT)
     if found is None:
@@ -113,9 +175,22 @@ def _swap_hint(lat: float, lon: float, chart: Chart) -> str:
     return ""
 
 
+def without_approach(end: Endpoint) -> Endpoint:
+    """Return a via point: a port that is passed off its sea end, not entered."""
+    if end.approach is None:
+        return end
+    notice = (
+        f"The ship passes {end.name} at {format_position(end.lat, end.lon)} and does not enter it: "
+        "give each leg of a voyage with calls as a voyage of its own."
+    )
+    return replace(end, approach=None, notice=" ".join(t for t in (end.notice, notice) if t))
+
+
 def check_distinct(start: Endpoint, goal: Endpoint) -> None:
     """Raise `InputError` if two end points are the same place."""
-    if float(distance(start.lat, start.lon, goal.lat, goal.lon)) < 1.0:
+    same_port = start.approach is not None and start.approach == goal.approach
+    apart = float(distance(start.lat, start.lon, goal.lat, goal.lon))
+    if same_port or (apart < 1.0 and not (start.approach and goal.approach)):
         raise InputError(
             f"{start.name} and {goal.name} are the same place.",
             "Two places in succession are at least 1 m apart.",

@@ -45,10 +45,29 @@ class PricedObjective:
         return self.objective.value(route)
 
 
+def with_voyage_prices(ship: Ship, voyage: Voyage) -> Ship:
+    """Return a ship with the prices that a voyage gives.
+
+    Raises
+    ------
+    InputError
+        For prices in two currencies, or a factor without a price.
+    """
+    if not voyage.any_price:
+        return ship
+    hourly = voyage.time_price_usd_per_h
+    return ship.with_prices(
+        voyage.fuel_price_usd,
+        voyage.eca_price_factor,
+        time_usd_per_day=None if hourly is None else hourly * DAY / HOUR,
+    )
+
+
 def priced_objective(voyage: Voyage, ship: Ship) -> PricedObjective:
     """Return what a voyage trades against time, with prices where they are needed.
 
-    The objective ``"front"`` is that of fuel, or of cost where the voyage gives a price.
+    The objective ``"front"`` is that of cost where the voyage or the ship file gives a price, else
+    that of fuel.
 
     Parameters
     ----------
@@ -61,14 +80,9 @@ def priced_objective(voyage: Voyage, ship: Ship) -> PricedObjective:
     InputError
         If a price or a carbon factor is needed and not known.
     """
-    hourly = voyage.time_price_usd_per_h
-    terms = ship.fuel_terms.with_prices(
-        usd_per_t=voyage.fuel_price_usd,
-        eca_price_factor=voyage.eca_price_factor,
-        time_usd_per_day=None if hourly is None else hourly * DAY / HOUR,
-    )
+    terms = with_voyage_prices(ship, voyage).fuel_terms
     name: str = voyage.objective
     if name == "front":
-        name = "cost" if voyage.any_price else "fuel"
+        name = "cost" if terms.any_price else "fuel"
     objective = Objective.of(name, currency=terms.currency or "USD")
     return PricedObjective(objective, terms, leg_prices(objective, ship, terms))

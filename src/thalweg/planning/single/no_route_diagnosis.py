@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import distance, format_position
 from thalweg.core.time import format_time
@@ -13,7 +15,7 @@ from thalweg.kernels import codes
 from thalweg.network import Network
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.single.controlling_depth import find_controlling_depth
-from thalweg.sea import StationFields
+from thalweg.sea import StationFields, standard_names
 from thalweg.search import SearchResult
 
 
@@ -67,6 +69,8 @@ def no_route_error(
             nearest=nearest,
             missing_m=deficit.missing,
         )
+    if reasons.get(codes.REASONS[codes.NO_DATA]) and fields is not None:
+        reached += _unknown_beyond(network, result.nearest_node, fields)
     return NoRouteError(
         f"No route from {ends[0].name} to {ends[1].name} within the limits, departing "
         f"{format_time(depart)}.",
@@ -75,6 +79,32 @@ def no_route_error(
         reasons=reasons,
         nearest=nearest,
     )
+
+
+def _unknown_beyond(network: Network, node: int, fields: StationFields) -> str:
+    """Return what is unknown in the water next to a node and where, as a sentence; else empty."""
+    if node < 0:
+        return ""
+    first, last = network.graph.indptr[node : node + 2]
+    ways = range(int(first), int(last))
+    samples = [network.samples.station_b[network.samples.ptr[e] : network.samples.ptr[e + 1]]
+               for e in ways]  # fmt: skip
+    beyond = np.unique(np.concatenate([network.graph.target[first:last], *samples, [node]]))
+    unknown = np.isnan(fields.values[beyond]).any(axis=1)
+    names = [
+        standard_names.CHANNEL_VARIABLES[channel]
+        for channel, column in enumerate(fields.channel_index)
+        if column >= 0 and channel in standard_names.CHANNEL_VARIABLES and unknown[:, column].any()
+    ]
+    if not names:
+        return ""
+    at = int(beyond[int(np.argmax(unknown.any(axis=1)))])
+    place = format_position(float(network.stations.lat[at]), float(network.stations.lon[at]))
+    return f" Next to it, at {place}, {', '.join(names)} {_be(names)} unknown."
+
+
+def _be(names: list[str]) -> str:
+    return "is" if len(names) == 1 else "are"
 
 
 def late_arrival_error(arrive_by: float, earliest: float, *, window: bool = False) -> NoRouteError:
@@ -163,7 +193,8 @@ _ADVICE = {
     codes.DEPTH: "Load less, require less clearance, or allow waiting for the tide.",
     codes.WAVE_HEIGHT: "Depart later, or raise the limit of the ship.",
     codes.WIND_SPEED: "Depart later, or raise the limit of the ship.",
-    codes.NO_DATA: "The data have gaps: add a layer that covers them, or give a fill value.",
+    codes.NO_DATA: "The data have gaps: add a layer that covers them, or fill them by name, for "
+    "example --fill currents=nearest:25 or currents=0.",
     codes.CURRENT: "The current is faster than the ship: depart at another time.",
     codes.ARRIVE_BY: "Allow a later arrival.",
     codes.SAFETY: "Depart later, order another speed, or relax the limits of the ship file.",

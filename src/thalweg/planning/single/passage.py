@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thalweg.core.errors import NoRouteError
+from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import distance, positions_along
 from thalweg.core.limits import NETWORK_TIGHTENING, Limits
 from thalweg.core.time import format_time
@@ -19,9 +20,17 @@ from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
 from thalweg.planning.network_selection.network_builder import build_network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.single.certified_bound import certified_bound
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
+from thalweg.planning.single.weather_gaps import (
+    MAX_GAPS,
+    check_times_known,
+    data_gaps_on_route,
+    without_unknown_edges,
+)
 from thalweg.route import RefinementConditions, Route, Track, better_route
 from thalweg.route.refinement.better_route import comparison_key
+from thalweg.route.route import Violation
 from thalweg.search import (
     DepartureWindow,
     LowerBound,
@@ -57,7 +66,7 @@ class PassageResult:
     bound : LowerBound
         Lower bound from the network, in SI.
     floor : LowerBound
-        Lower bound for any departure, in SI.
+        Lower bound that holds for every route: a certificate, or that of the geodesic; in SI.
     network : Network
         The network searched.
     isochrones : ndarray
@@ -88,9 +97,18 @@ def plan_passage(
     networks: dict[int, Network] = {}
     passage: PassageResult | None = None
     refusal: NoRouteError | None = None
-    for finer, step in _ATTEMPTS:
+    gaps: tuple[Violation, ...] = ()
+    attempts = deque(_ATTEMPTS)
+    while attempts:
+        finer, step = attempts.popleft()
         if finer not in networks:
-            networks[finer] = _network(context, (start, goal), finer, networks)
+            try:
+                network = _network(context, (start, goal), finer, networks)
+            except InputError:  # a finer network than asked for does not fit in memory
+                if finer == 1:
+                    raise
+                continue
+            networks[finer] = without_unknown_edges(context, network, gaps)
         limits = context.needs.limits.tightened(NETWORK_TIGHTENING[step])
         try:
             tried = _search_and_refine(context, networks[finer], (start, goal), window, limits)
@@ -101,12 +119,21 @@ def plan_passage(
             )
             if passage is None and not denser:
                 raise refusal from None
+            if gaps:  # no way through known water: one finer network may find one
+                attempts = deque([(2, 0)] if finer == 1 else [])
             continue
         if passage is None or tried.route.feasible:
             passage = tried
         if passage.route.feasible:
             break
+        seen, gaps = gaps, (*gaps, *data_gaps_on_route(tried.route))
+        if len(seen) < len(gaps) <= MAX_GAPS:
+            context.report_progress("planning round water without data")
+            networks[finer] = without_unknown_edges(context, networks[finer], gaps[len(seen) :])
+            attempts.appendleft((finer, step))
     assert passage is not None  # raised above otherwise
+    if not passage.route.feasible:
+        check_times_known(passage.route, start, goal)
     arrive, latest = passage.route.arrive, context.latest_arrival
     if latest + 1.0 < arrive < math.inf:
         raise late_arrival_error(latest, arrive, window=window[1] > window[0])
@@ -163,6 +190,10 @@ def _search_and_refine(
         other = _refined_bound_path(context, network, bound, route, limits)
         if other is not route:
             route, bound = other, _bound(context, network, frozen, result, other)
+        proof = certified_bound(context, route, seconds=context.proof_seconds)
+        if proof is not None and proof.value > floor.value:
+            floor = proof
+            bound = proof if proof.value > bound.value else bound
     notes = tuple(f"The referee finds a limit exceeded: {v}." for v in route.violations[:5])
     until = route.depart + _ISOCHRONE_TIME_RATIO * route.time_h * HOUR if route.feasible else None
     arrival = isochrones(context, network, frozen, route.depart, until)

@@ -72,6 +72,16 @@ class Genome:
             Number of settings of the ship, for settings counted from the end.
         via : sequence of (lat, lon), optional
             Waypoints of the track [deg] that must stay (within 1e-9 degrees).
+
+        Returns
+        -------
+        Genome
+            With settings counted from 0, and waits.
+
+        Raises
+        ------
+        InputError
+            If a via point is not a waypoint of the track.
         """
         setting = np.where(track.setting < 0, track.setting + settings, track.setting)
         held = np.zeros(len(track), dtype=bool)
@@ -89,7 +99,19 @@ class Genome:
         return cls(track.lat, track.lon, setting, track.wait, held)
 
     def to_track(self, depart: float) -> Track:
-        """Return the track that leaves at a time [s since 1970-01-01T00:00Z]."""
+        """Return the track of the genome.
+
+        Parameters
+        ----------
+        depart : float
+            Departure [s since 1970-01-01T00:00Z].
+
+        Returns
+        -------
+        Track
+            With the positions, settings and waits of the genome; without a wait at the
+            last waypoint.
+        """
         wait = np.array(self.wait)
         wait[-1] = 0.0
         return Track(self.lat, self.lon, depart, wait, self.setting)
@@ -112,7 +134,25 @@ class Population:
 
     @classmethod
     def of(cls, genomes: Sequence[Genome], *, capacity: int = 0) -> Population:
-        """Put genomes into arrays with space for at least ``capacity`` points each."""
+        """Return genomes as arrays.
+
+        Parameters
+        ----------
+        genomes : sequence of Genome
+            One or more.
+        capacity : int, optional
+            Least number of points for which each track has space.
+
+        Returns
+        -------
+        Population
+            In the order of the genomes.
+
+        Raises
+        ------
+        InputError
+            If no genome is given.
+        """
         if not len(genomes):
             raise InputError(
                 "No genome is given.", "A population has at least one.", "Give at least one track."
@@ -136,7 +176,18 @@ class Population:
         return int(self.genes.shape[1])
 
     def genome(self, index: int) -> Genome:
-        """Return one track."""
+        """Return one track.
+
+        Parameters
+        ----------
+        index : int
+            Row of the track.
+
+        Returns
+        -------
+        Genome
+            Its positions, settings and waits.
+        """
         n = int(self.count[index])
         row = self.genes[index, :n]
         return Genome(
@@ -148,16 +199,44 @@ class Population:
         )
 
     def genomes(self) -> list[Genome]:
-        """Return every track."""
+        """Return every track.
+
+        Returns
+        -------
+        list of Genome
+            In the order of the rows.
+        """
         return [self.genome(i) for i in range(len(self))]
 
     def take(self, index: ArrayLike) -> Population:
-        """Return some of the tracks, copied."""
+        """Return a copy of some of the tracks.
+
+        Parameters
+        ----------
+        index : array_like
+            Rows, as indices or as a mask (N,).
+
+        Returns
+        -------
+        Population
+            In the order of the indices.
+        """
         chosen = np.asarray(index)
         return Population(self.count[chosen], self.genes[chosen])
 
     def with_capacity(self, capacity: int) -> Population:
-        """Return the population with space for ``capacity`` points, or as many as it has."""
+        """Return the population with another space for points.
+
+        Parameters
+        ----------
+        capacity : int
+            Points; not fewer than the longest track has.
+
+        Returns
+        -------
+        Population
+            The same tracks.
+        """
         capacity = max(capacity, int(self.count.max(initial=0)))
         genes = np.zeros((len(self), capacity, columns.GENE_COLUMNS))
         genes[:, :, columns.FIXED_TIME] = np.nan

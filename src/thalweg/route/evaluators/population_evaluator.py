@@ -101,7 +101,26 @@ class Evaluator:
         return score[:, 0].copy(), score[:, 1].copy(), score[:, 2].copy()
 
     def population(self, genomes: Sequence[Genome], *, capacity: int = 0) -> Population:
-        """Return genomes as a population, checked against the ship's settings."""
+        """Return genomes as a population, checked against the ship's settings.
+
+        Parameters
+        ----------
+        genomes : sequence of Genome
+            One or more tracks.
+        capacity : int, optional
+            Least number of points for which each track has space.
+
+        Returns
+        -------
+        Population
+            Its legs are not looked up on the chart yet.
+
+        Raises
+        ------
+        InputError
+            If a track has a speed setting that the ship does not have, or no track is
+            given.
+        """
         population = Population.of(genomes, capacity=capacity)
         for number, genome in enumerate(genomes, start=1):
             if genome.setting.min() < 0 or genome.setting.max() >= self.settings:
@@ -113,15 +132,39 @@ class Evaluator:
         return population
 
     def score(self, population: Population) -> FloatArray:
-        """Return time, cost and violation (N, 3); new legs are looked up on the chart first."""
+        """Return the scores of tracks; legs that are new are looked up on the chart first.
+
+        Parameters
+        ----------
+        population : Population
+            N tracks; results of the look-up are stored in it.
+
+        Returns
+        -------
+        float64 array (N, 3)
+            Passage time [s], cost in the unit of ``prices``, and violation (0 for a
+            feasible track).
+        """
         return self.sail(population)[0]
 
     def sail(
         self, population: Population, *, depart: FloatArray | None = None
     ) -> tuple[FloatArray, FloatArray]:
-        """Return (scores (N, 3), arrival at every point (N, M) [s after ``self.depart``]).
+        """Return the scores of tracks and the arrival at every point.
 
-        ``depart`` [s after ``self.depart``] may differ from track to track; by default 0.
+        Parameters
+        ----------
+        population : Population
+            N tracks with space for M points.
+        depart : float64 array (N,), optional
+            Departure of each track [s after ``self.depart``]; by default 0.
+
+        Returns
+        -------
+        score : float64 array (N, 3)
+            As `score` returns it.
+        arrive : float64 array (N, M)
+            Arrival at every point [s after ``self.depart``]; NaN beyond the last point.
         """
         self.look_up_legs(population)
         n, capacity = len(population), population.capacity
@@ -147,7 +190,12 @@ class Evaluator:
     def look_up_legs(self, population: Population, *, obstacles: bool = True) -> None:
         """Look up land, depth, zones and canals of the legs that are not known yet, in place.
 
-        Without ``obstacles`` land, no-go zones and charted depth are left out.
+        Parameters
+        ----------
+        population : Population
+            Tracks; the properties of their legs are written into ``genes``.
+        obstacles : bool
+            Whether land, no-go zones and charted depth count.
         """
         legs = np.arange(population.capacity) < (population.count - 1)[:, None]
         row, place = np.nonzero(legs & (population.genes[:, :, columns.IS_LOOKED_UP] == 0.0))
@@ -227,7 +275,18 @@ class Evaluator:
         genes[*legs, columns.FIXED_COST] = burnt * price + dues * self.prices.dues
 
     def finer(self, times: float) -> Evaluator:
-        """Return an evaluator with pieces shorter by a factor ``times``."""
+        """Return an evaluator that divides legs more finely.
+
+        Parameters
+        ----------
+        times : float
+            Factor by which pieces are shorter, above 0.
+
+        Returns
+        -------
+        Evaluator
+            Otherwise unchanged.
+        """
         terms = self.world.terms.copy()
         terms[columns.PIECE_SPACING] /= times
         return replace(self, world=self.world._replace(terms=terms))
@@ -306,6 +365,11 @@ def make_evaluator(
         tracks pass no canal.
     resolution : EvaluationResolution
         How finely tracks are divided.
+
+    Returns
+    -------
+    Evaluator
+        Of the ship in this sea, for tracks that depart at ``depart`` or later.
 
     Raises
     ------

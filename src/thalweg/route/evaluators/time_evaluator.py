@@ -262,7 +262,7 @@ def make_time_evaluator(
         Rough length of the track [m]. Pieces are half a cell of the raster, at least a 400th of
         this and at most 100 km.
     wait : bool
-        Whether the ship may wait wherever a leg is closed for some time.
+        Whether the ship may wait where a leg is closed for some time.
     """
     raster = raster_arrays(fields, origin)
     arrays = table if isinstance(table, TableArrays) else table.kernel_arrays()

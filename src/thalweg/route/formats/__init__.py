@@ -1,4 +1,8 @@
-"""Route files: reading and writing CSV, GeoJSON (RFC 7946) and GPX 1.1."""
+"""Route files: reading and writing RTZ, GPX 1.1, GeoJSON (RFC 7946) and CSV.
+
+Files hold few waypoints, joined by rhumb lines within a cross-track limit of the route
+(`RouteFileOptions`).
+"""
 
 from __future__ import annotations
 
@@ -11,9 +15,20 @@ from thalweg.route.formats.csv_format import parse_csv, write_csv
 from thalweg.route.formats.geojson_format import parse_geojson, write_geojson
 from thalweg.route.formats.gpx_format import parse_gpx, write_gpx
 from thalweg.route.formats.parsed_track import ParsedTrack, track_of
+from thalweg.route.formats.route_file_options import RouteFileOptions
+from thalweg.route.formats.rtz_reader import parse_rtz, parse_rtzp
+from thalweg.route.formats.rtz_writer import write_rtz
 from thalweg.route.track import Track
 
-__all__ = ["LARGEST_FILE", "read_track", "write_csv", "write_geojson", "write_gpx"]
+__all__ = [
+    "LARGEST_FILE",
+    "RouteFileOptions",
+    "read_track",
+    "write_csv",
+    "write_geojson",
+    "write_gpx",
+    "write_rtz",
+]
 
 LARGEST_FILE = 50_000_000  #: bytes; larger files are refused
 
@@ -23,6 +38,10 @@ _PARSERS: dict[str, Callable[[str], ParsedTrack]] = {
     ".geojson": parse_geojson,
     ".json": parse_geojson,
     ".gpx": parse_gpx,
+}
+_BYTE_PARSERS: dict[str, Callable[[bytes], ParsedTrack]] = {
+    ".rtz": parse_rtz,
+    ".rtzp": parse_rtzp,
 }
 
 
@@ -34,7 +53,8 @@ def read_track(path: str | Path, *, depart: TimeLike | None = None) -> Track:
     path : str or Path
         ``.csv`` or ``.txt`` (columns lat and lon, perhaps time, waiting_h, ordered_speed_kn),
         ``.geojson`` or ``.json`` (LineString, MultiLineString or Points), ``.gpx`` (one route or
-        track).
+        track), ``.rtz`` and ``.rtzp`` (RTZ 1.0 to 1.2). Legs of RTZ are rhumb lines unless marked
+        ``Orthodrome``; those of the other formats are geodesics.
     depart : time, optional
         Departure; by default the first time in the file.
 
@@ -51,18 +71,21 @@ def read_track(path: str | Path, *, depart: TimeLike | None = None) -> Track:
         waypoints or impossible positions, or if there is no departure.
     """
     path = Path(path)
-    parser = _PARSERS.get(path.suffix.lower())
-    if parser is None:
+    ending = path.suffix.lower()
+    if ending not in (*_PARSERS, *_BYTE_PARSERS):
         raise InputError(
             f"Routes are not read from files like {path.name!r}.",
-            f"Known endings: {', '.join(_PARSERS)}.",
+            f"Known endings: {', '.join((*_PARSERS, *_BYTE_PARSERS))}.",
             "Convert the file, or give it the right ending.",
             file=str(path),
         )
-    return track_of(parser(_text_of(path)), depart, path.name)
+    data = _bytes_of(path)
+    if ending in _BYTE_PARSERS:
+        return track_of(_BYTE_PARSERS[ending](data), depart, path.name)
+    return track_of(_PARSERS[ending](_text_of(data, path)), depart, path.name)
 
 
-def _text_of(path: Path) -> str:
+def _bytes_of(path: Path) -> bytes:
     try:
         size = path.stat().st_size
         if size > LARGEST_FILE:
@@ -72,19 +95,24 @@ def _text_of(path: Path) -> str:
                 "Reduce it to the route.",
                 file=str(path),
             )
-        return path.read_text(encoding="utf-8-sig")
+        return path.read_bytes()
+    except (OSError, ValueError) as error:  # ValueError: a null character in the path
+        raise InputError(
+            f"The route file {str(path)!r} cannot be read: "
+            f"{getattr(error, 'strerror', None) or error}.",
+            "A route file is RTZ, GPX, GeoJSON or CSV.",
+            "Check the path.",
+            file=str(path),
+        ) from None
+
+
+def _text_of(data: bytes, path: Path) -> str:
+    try:
+        return data.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise InputError(
             f"The route file {path.name!r} is not text (UTF-8).",
             "Route files are text in UTF-8.",
             "Save it as UTF-8 text.",
-            file=str(path),
-        ) from None
-    except (OSError, ValueError) as error:  # ValueError: a null character in the path
-        raise InputError(
-            f"The route file {str(path)!r} cannot be read: "
-            f"{getattr(error, 'strerror', None) or error}.",
-            "A route file is CSV, GeoJSON or GPX.",
-            "Check the path.",
             file=str(path),
         ) from None

@@ -11,6 +11,7 @@ from pathlib import Path
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import write_csv_rows
 from thalweg.core.time import parse_time
+from thalweg.route.formats.file_route import file_route
 from thalweg.route.formats.parsed_track import (
     SPEEDS,
     WAITS,
@@ -18,6 +19,7 @@ from thalweg.route.formats.parsed_track import (
     position_of,
     waypoint_order,
 )
+from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.route import Route
 
 _NAMES = {
@@ -71,15 +73,17 @@ def parse_csv(text: str) -> ParsedTrack:
     return ParsedTrack(positions, parse_time(first) if first else None, orders)
 
 
-def write_csv(route: Route, path: str | Path) -> None:
+def write_csv(route: Route, path: str | Path, options: RouteFileOptions | None = None) -> None:
     """Write the table of waypoints of a route; unknown values are left empty.
 
     Parameters
     ----------
     route : Route
     path : str or Path
+    options : RouteFileOptions, optional
+        Names and waypoints.
     """
-    rows = route.waypoints()
+    rows = file_route(route, options).rows
     cells = [[_cell(value) for value in row.values()] for row in rows]
     write_csv_rows(path, [list(rows[0]), *cells])
 

@@ -13,7 +13,10 @@ from thalweg.core.file_writing import write_text
 from thalweg.core.geodesy import Position, densify, positions_along
 from thalweg.core.time import parse_time
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.route.formats.file_route import file_route
+from thalweg.route.formats.file_waypoints import DECIMALS
 from thalweg.route.formats.parsed_track import ParsedTrack, position_of, waypoint_order
+from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.route import Route
 
 _LINE_SPACING = 20.0 * NAUTICAL_MILE  # legs are geodesics, GeoJSON lines are not: use short pieces
@@ -83,15 +86,19 @@ def _continues(end: Position, start: Position) -> bool:
     return end[0] == start[0] and (end[1] - start[1]) % 360.0 == 0.0
 
 
-def write_geojson(route: Route, path: str | Path) -> None:
+def write_geojson(route: Route, path: str | Path, options: RouteFileOptions | None = None) -> None:
     """Write a route: one (Multi)LineString with the totals, one Point per waypoint.
 
     Parameters
     ----------
     route : Route
     path : str or Path
+    options : RouteFileOptions, optional
+        Names and waypoints.
     """
+    written = file_route(route, options)
     totals = {k: v for k, v in route.as_dict().items() if k not in ("waypoints", "violations")}
+    totals["cross_track_error_m"] = round(written.cross_track_m, 1)
     parts = _line_parts(route)
     line = (
         {"type": "LineString", "coordinates": parts[0]}
@@ -99,7 +106,7 @@ def write_geojson(route: Route, path: str | Path) -> None:
         else {"type": "MultiLineString", "coordinates": parts}
     )
     features = [{"type": "Feature", "geometry": line, "properties": totals}]
-    for row in route.waypoints():
+    for row in written.rows:
         place = {"type": "Point", "coordinates": [row["lon"], row["lat"]]}
         properties = {key: value for key, value in row.items() if key not in ("lat", "lon")}
         features.append({"type": "Feature", "geometry": place, "properties": properties})
@@ -174,7 +181,7 @@ def _line_parts(route: Route) -> list[list[list[float]]]:
             parts[-1].append([side, crossing])
             parts.append([[-side, crossing]])
         parts[-1].append([float(there[1]), float(there[0])])
-    return parts
+    return [[[round(x, DECIMALS), round(y, DECIMALS)] for x, y in part] for part in parts]
 
 
 def _crossing_latitude(here: tuple[float, float], there: tuple[float, float]) -> float:

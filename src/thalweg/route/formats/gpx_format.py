@@ -13,6 +13,7 @@ import numpy as np
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import write_bytes
 from thalweg.core.time import parse_time
+from thalweg.route.formats.file_route import file_route
 from thalweg.route.formats.parsed_track import (
     SPEEDS,
     WAITS,
@@ -20,6 +21,7 @@ from thalweg.route.formats.parsed_track import (
     position_of,
     waypoint_order,
 )
+from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.route import Route
 
 _NAMESPACE = "http://www.topografix.com/GPX/1/1"
@@ -58,23 +60,27 @@ def parse_gpx(text: str) -> ParsedTrack:
     return ParsedTrack(positions, parse_time(time) if time else None, orders)
 
 
-def write_gpx(route: Route, path: str | Path) -> None:
+def write_gpx(route: Route, path: str | Path, options: RouteFileOptions | None = None) -> None:
     """Write a route as a GPX 1.1 route with the time of arrival at every waypoint.
 
     Parameters
     ----------
     route : Route
     path : str or Path
+    options : RouteFileOptions, optional
+        Names and waypoints.
     """
+    options = options or RouteFileOptions()
     root = ElementTree.Element("gpx", {"version": "1.1", "creator": "Thalweg", "xmlns": _NAMESPACE})
     line = ElementTree.SubElement(root, "rte")
-    ElementTree.SubElement(line, "name").text = "Thalweg route"
-    for number, row in enumerate(route.waypoints(), start=1):
+    ends = f"{options.start} to {options.goal}" if options.start and options.goal else ""
+    ElementTree.SubElement(line, "name").text = ends or "Thalweg route"
+    for row in file_route(route, options).rows:
         place = {name: np.format_float_positional(row[name], trim="-") for name in ("lat", "lon")}
         point = ElementTree.SubElement(line, "rtept", place)
         if row["time"] is not None:
             ElementTree.SubElement(point, "time").text = row["time"]
-        ElementTree.SubElement(point, "name").text = f"WP{number:03d}"
+        ElementTree.SubElement(point, "name").text = row["name"]
         _extend(point, row)
     tree = ElementTree.ElementTree(root)
     ElementTree.register_namespace("thalweg", _OWN_NAMESPACE)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 
-from thalweg.core.errors import InputError
+from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.core.geodesy import Position, check_position
 from thalweg.core.given_numbers import shortened_repr, to_number
+from thalweg.core.rhumb_lines import rhumb_pieces
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.units import DAY, HOUR, KNOT
 from thalweg.route.track import Track
@@ -29,11 +31,17 @@ class ParsedTrack:
         [s since 1970-01-01T00:00Z]; None: not given.
     orders : list of WaypointOrder
         By position; empty where the file has none.
+    rhumb : list of bool
+        By leg, whether it is a rhumb line; empty: all legs are geodesics.
+    notes : list of str
+        What the file has otherwise than its format, and how it was read.
     """
 
     positions: list[Position]
     first_time: float | None = None
     orders: list[WaypointOrder] = field(default_factory=list)
+    rhumb: list[bool] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
 
 
 class WaypointOrder(NamedTuple):
@@ -46,6 +54,7 @@ class WaypointOrder(NamedTuple):
 #: What files call the wait at a waypoint and the speed ordered from there on, with units in SI.
 WAITS = {"waiting_h": HOUR, "wait_h": HOUR, "waiting_s": 1.0, "wait_s": 1.0}
 SPEEDS = {"ordered_speed_kn": KNOT}
+RHUMB_DEVIATION = 20.0  #: rhumb lines are sailed as geodesics this close to them [m]
 LONGEST_WAIT = 366.0 * DAY  #: [s]
 
 
@@ -98,7 +107,7 @@ def number_of(text: object, what: str, remedy: str = "Give degrees, such as 52.5
     if not math.isfinite(value):
         raise InputError(
             f"The {what} is {shortened_repr(text)}, not a number.",
-            "Decimal numbers are possible.",
+            "It is a decimal number.",
             remedy,
             value=text,
         )
@@ -163,7 +172,26 @@ def track_of(parsed: ParsedTrack, depart: TimeLike | None, name: str) -> Track:
             field="depart",
         )
     start = parsed.first_time if depart is None else parse_time(depart)
-    return _track(parsed, start)  # type: ignore[arg-type]
+    for note in parsed.notes:
+        warnings.warn(ThalwegWarning(f"{name}: {note}."), stacklevel=3)
+    return _track(_with_geodesics(parsed), start)  # type: ignore[arg-type]
+
+
+def _with_geodesics(parsed: ParsedTrack) -> ParsedTrack:
+    """Return the contents with rhumb lines broken into geodesics that keep close to them."""
+    if not any(parsed.rhumb):
+        return parsed
+    orders = parsed.orders or [WaypointOrder()] * len(parsed.positions)
+    places, given = [parsed.positions[0]], [orders[0]]
+    legs = zip(parsed.rhumb, parsed.positions[:-1], parsed.positions[1:], orders[:-1], orders[1:])
+    for rhumb, start, end, order, last in legs:
+        if rhumb and start != end:
+            lat, lon, _ = rhumb_pieces([start[0], end[0]], [start[1], end[1]], RHUMB_DEVIATION)
+            places += [(float(y), float(x)) for y, x in zip(lat[1:-1], lon[1:-1])]
+            given += [WaypointOrder(0.0, order.speed)] * (len(lat) - 2)
+        places.append(end)
+        given.append(last)
+    return replace(parsed, positions=places, orders=given, rhumb=[])
 
 
 def _track(parsed: ParsedTrack, depart: float) -> Track:

@@ -69,7 +69,7 @@ def evaluate(
     depart : time, optional
         Departure; required unless the track or the file gives it.
     min_ukc : float or None
-        Least under-keel clearance [m], checked wherever the chart or the sea gives a depth;
+        Least under-keel clearance [m], checked where the chart or the sea gives a depth;
         None: not checked.
     step : float, optional
         Length of a piece [m]. By default the least of an eighth of the leg, half a nautical mile
@@ -118,7 +118,9 @@ def evaluate(
     terms inside, the rest at those outside, times the factor of price zones. A leg from one end of
     a canal of the chart to the other takes the length, time and dues of the canal, at the fuel rate
     in calm water of the slowest setting that reaches its mean speed. Sea, land and depth are not
-    checked there; the limits of draught and beam of the canal are.
+    checked there; the limits of draught and beam of the canal are. A leg along the approach of a
+    port (`thalweg.chart.approaches`) is sailed at 10 kn over ground, or the ordered speed if that
+    is lower, at the fuel rate of that speed in calm water; sea, land and depth are not checked.
     """
     _check_given(ship, sea, chart)
     _check_clearance(min_ukc)

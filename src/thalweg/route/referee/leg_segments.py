@@ -16,6 +16,7 @@ from thalweg.route.track import Track
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.ship import Ship
 
 
 #: Gauss-Legendre nodes of two points on [0, 1] (Hairer, Norsett & Wanner 1993, table II.7.3)
@@ -138,7 +139,7 @@ class TrackPieces:
 
 
 def cut_into_pieces(
-    track: Track, step: float, least: int, chart: Chart | None = None
+    track: Track, step: float, least: int, chart: Chart | None = None, ship: Ship | None = None
 ) -> TrackPieces:
     """Split every leg into equal pieces.
 
@@ -151,8 +152,10 @@ def cut_into_pieces(
         Least number of pieces of a leg.
     chart : Chart, optional
         Whose canals legs may run through.
+    ship : Ship, optional
+        With a ship, legs may also run along the port approaches of the chart.
     """
-    canals = canal_legs(track, chart)
+    canals = canal_legs(track, chart, ship)
     length, course, _ = inverse(track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:])
     length = np.where(canals.number >= 0, canals.length, length)
     count = np.maximum(least, np.ceil(length / step - 1e-9)).astype(np.int64)

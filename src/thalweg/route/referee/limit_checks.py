@@ -9,20 +9,20 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.chart import Chart
 from thalweg.core.errors import CoverageError, OutsideAreaError, OutsidePeriodError
 from thalweg.core.geodesy import format_position, positions_along
 from thalweg.core.time import format_time
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.kernels import codes
 from thalweg.kernels.codes import REASONS
+from thalweg.route.referee.land_clearance import offing_breaches
 from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints
 from thalweg.route.referee.sailing_physics import SailingEnvironment, SailingState
 from thalweg.route.route import Violation
 from thalweg.route.track import Track
 from thalweg.ship.condition_variables import (
-    EASTWARD_CURRENT,
     EASTWARD_WIND,
-    NORTHWARD_CURRENT,
     NORTHWARD_WIND,
     WAVE_HEIGHT,
 )
@@ -65,19 +65,54 @@ def limit_violations(
     return found + _data_gap_violations(world, points, time, sampled)
 
 
-def land_violations(world: SailingEnvironment, track: Track, times: FloatArray) -> list[Violation]:
-    """Return the legs that touch land or a no-go zone or leave the chart, each at its middle."""
+def land_violations(
+    world: SailingEnvironment, pieces: TrackPieces, times: FloatArray
+) -> list[Violation]:
+    """Return the legs that touch land or a no-go zone or leave the chart, each at its middle.
+
+    Legs along port approaches may touch land. Legs nearer to land than the offing are found apart
+    from the test of legs, at their worst place.
+    """
     if world.chart is None:
         return []
-    status = world.chart.leg_status(track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:])
+    chart, track = world.chart, pieces.track
+    ends = np.stack([track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:]])
+    keeps_off = isinstance(chart, Chart) and chart.offing.distance > 0.0
+    status = np.array((chart.with_offing(0.0) if keeps_off else chart).leg_status(*ends))
+    approach = np.flatnonzero(pieces.canals.approach)
     found = []
-    for leg in np.flatnonzero(np.asarray(status) != codes.OK):
-        ends = (track.lat[leg], track.lon[leg], track.lat[leg + 1], track.lon[leg + 1])
-        lat, lon = positions_along(*ends, 0.5)
+    if keeps_off:
+        checked = status == codes.OK
+        checked[approach] = False
+        found = _offing_violations(chart, track, times, checked)
+    if len(approach):
+        closed = chart.crosses_no_go_zone(*ends[:, approach])
+        status[approach] = np.where(closed, codes.NO_GO, codes.OK)
+    for leg in np.flatnonzero(status != codes.OK):
+        first_lat, first_lon, last_lat, last_lon = ends[:, leg]
+        lat, lon = positions_along(first_lat, first_lon, last_lat, last_lon, 0.5)
         reason = REASONS.get(int(status[leg]), REASONS[codes.LAND])
         where = f"{reason}: leg {leg + 1}"
         found.append(Violation(where, float(times[leg]), float(lat), float(lon)))
     return found
+
+
+def _offing_violations(
+    chart: Chart, track: Track, times: FloatArray, checked: BoolArray
+) -> list[Violation]:
+    """Return the legs nearer to land than the offing, of those that are checked."""
+    return [
+        Violation(
+            f"{REASONS[codes.OFFING]}: leg {place.leg + 1}",
+            float(times[place.leg]),
+            place.lat,
+            place.lon,
+            place.distance,
+            limit,
+        )
+        for place, limit in offing_breaches(chart, track)
+        if checked[place.leg]
+    ]
 
 
 def canal_violations(
@@ -106,7 +141,7 @@ def coverage_error(violation: Violation) -> CoverageError:
     return kind(
         f"The route runs to {place}, where {what} is missing in the data.",
         "Up to there it can be evaluated.",
-        "Add data that cover it, change the route, or ask for a partial result (strict=False).",
+        "Add data that cover it, change the route, or choose a partial result (strict=False).",
         lat=violation.lat,
         lon=violation.lon,
         time=violation.time,
@@ -173,18 +208,9 @@ def _limit_checks(
             bad = height > limits.wave_height + _LIMIT_TOLERANCE
             yield REASONS[codes.WAVE_HEIGHT], bad, height, limits.wave_height
         if math.isfinite(limits.wind_speed):
-            wind = _relative_wind(sampled)
+            wind = np.hypot(sampled[EASTWARD_WIND], sampled[NORTHWARD_WIND])
             bad = wind > limits.wind_speed + _LIMIT_TOLERANCE
             yield REASONS[codes.WIND_SPEED], bad, wind, limits.wind_speed
-
-
-def _relative_wind(sampled: Mapping[str, FloatArray]) -> FloatArray:
-    """Return the speed of the wind relative to the moving water [m/s]."""
-    east, north = sampled[EASTWARD_WIND], sampled[NORTHWARD_WIND]
-    still = np.zeros_like(east)
-    east = east - sampled.get(EASTWARD_CURRENT, still)
-    north = north - sampled.get(NORTHWARD_CURRENT, still)
-    return np.hypot(east, north)
 
 
 def _data_gap_violations(

@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.types import FloatArray
+from thalweg.route.cost_parts import COST_PARTS
 from thalweg.route.referee.leg_segments import TrackPoints
 from thalweg.route.referee.sailing import SailedTrack
 from thalweg.ship.methods.engine.fuel_properties import halem_cost
 
 if TYPE_CHECKING:
-    from thalweg.chart import Chart
+    from thalweg.chart.zones.zone_set import Zones
+    from thalweg.route.referee.sailing_physics import SailingEnvironment
     from thalweg.ship.fuel_prices import FuelTerms
 
 OUTSIDE_ZONES = "outside"  #: outside all emission control areas, among the zones of `CostBreakdown`
@@ -29,10 +31,10 @@ class CostBreakdown:
     ----------
     legs : dict of str to float64 array (legs,)
         ``fuel`` (of sailing) and ``waiting_fuel`` (of waiting before it) [kg], ``fuel_in_eca``
-        (of both) [kg], ``co2`` [kg], ``cost`` [currency], ``energy`` (of sailing) and
-        ``waiting_energy`` [J]; NaN where unknown.
+        (of both) [kg], ``co2`` [kg], ``cost`` [currency] with its parts (`COST_PARTS`),
+        ``energy`` (of sailing) and ``waiting_energy`` [J]; NaN where unknown.
     zones : dict of str to float
-        Fuel [kg] by emission control area, and ``outside`` them.
+        Fuel [kg] by emission control area, and ``outside`` them; empty where no areas count.
     notes : tuple of str
         Assumptions where data are missing.
     """
@@ -100,21 +102,44 @@ def cost_breakdown(sailed: SailedTrack, rates: ConsumptionRates, terms: FuelTerm
     legs = {
         "fuel": total(np.where(sailing, mass, 0.0)),
         "waiting_fuel": total(np.where(sailing, 0.0, mass)),
-        "fuel_in_eca": total(kept),
-        "co2": total(_weighted_fuel(parts, terms, "co2")[0]),
+        "fuel_in_eca": total(kept) if sailed.world.control_areas else np.full(count, math.nan),
+        "co2": total(_emitted_co2(sailed, parts, terms, time)),
         "energy": total(np.where(sailing, energy, 0.0)),
         "waiting_energy": total(np.where(sailing, 0.0, energy)),
     }
     if terms.by_speed:
-        speed = _ordered_speeds(sailed)[parts.leg]
-        spent = halem_cost(time, speed, per_second=0.0, per_cube=terms.cubed_speed_price)
-        spent = np.where(sailing, spent, 0.0)
+        spent = terms.cubed_speed_price * _cubed_speed_time(sailed, parts, time)
     else:
         spent = _weighted_fuel(parts, terms, "cost")[0]
-    cost = total(parts.price * spent)
+    charges = np.zeros(len(parts.leg))
+    if terms.charges is not None:
+        charges = parts.price * _weighted_fuel(parts, terms, "charges")[0]
+    cost = total(parts.price * spent - charges)
     fee, notes = _canal_dues(sailed, terms, cost)
-    legs["cost"] = cost + terms.time_price * total(time) + fee
+    of_parts = {"fuel": cost, "EU charges": total(charges)}
+    of_parts |= {"time": terms.time_price * total(time), "canal dues": fee}
+    legs |= {COST_PARTS[name]: values for name, values in of_parts.items()}
+    legs["cost"] = sum(of_parts.values(), np.zeros(count))
     return CostBreakdown(legs, _fuel_by_zone(sailed, parts, mass, kept), notes)
+
+
+def _emitted_co2(
+    sailed: SailedTrack, parts: _FuelByPart, terms: FuelTerms, time: FloatArray
+) -> FloatArray:
+    """Return the CO2 of every part [kg]: of its fuel, else by the cubed speed where that is given.
+
+    The second is eq. 3.5 of van Halem (2019).
+    """
+    if terms.emits_by_speed:
+        return terms.cubed_speed_co2 * _cubed_speed_time(sailed, parts, time)
+    return _weighted_fuel(parts, terms, "co2")[0]
+
+
+def _cubed_speed_time(sailed: SailedTrack, parts: _FuelByPart, time: FloatArray) -> FloatArray:
+    """Return time times cubed ordered speed of every part [m3/s2]; 0 for waits."""
+    sailing = np.arange(len(parts.leg)) < len(sailed.pieces)
+    cubed = halem_cost(time, _ordered_speeds(sailed)[parts.leg], per_second=0.0, per_cube=1.0)
+    return np.where(sailing, cubed, 0.0)
 
 
 def _integral_over_time(sailed: SailedTrack, rate: FloatArray | float) -> FloatArray:
@@ -145,8 +170,8 @@ def _fuel_by_part(sailed: SailedTrack, rate: FloatArray) -> _FuelByPart:
     high = pieces.points(pieces.leg, pieces.start + pieces.step)
     track = pieces.track
     still = (track.lat[:-1], track.lon[:-1])
-    inside, price, zone = _zones_of_pieces(world.chart, low, high)
-    there = _zones_of_positions(world.chart, *still)
+    inside, price, zone = _zones_of_pieces(world, low, high)
+    there = _zones_of_positions(world, *still)
     return _FuelByPart(
         np.concatenate([burnt, lying]),
         np.concatenate([pieces.leg, legs]),
@@ -169,23 +194,22 @@ def _weighted_fuel(
 
 
 def _zones_of_pieces(
-    chart: Chart | None, low: TrackPoints, high: TrackPoints
+    world: SailingEnvironment, low: TrackPoints, high: TrackPoints
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
     """Return (share in control areas, price factor, number of the area or -1) of pieces."""
     count = len(low)
     share, price, zone = np.zeros(count), np.ones(count), np.full(count, -1)
-    if chart is None:
-        return share, price, zone
+    chart, areas = world.chart, world.control_areas
     ends = (low.lat, low.lon, high.lat, high.lon)
-    if chart.zones.price:
+    if chart is not None and chart.zones.price:
         price = chart.zones.factors(*ends)[1]
-    if chart.zones.eca:
-        share = chart.zones.eca_fraction(*ends)
+    if areas is not None:
+        share = areas.eca_fraction(*ends)
         some = np.flatnonzero(share > 0.0)
         for place in (low, high):
             zone[some] = np.where(
                 zone[some] < 0,
-                _control_area_of(chart, place.lat[some], place.lon[some]),
+                _control_area_of(areas, place.lat[some], place.lon[some]),
                 zone[some],
             )
         zone[some] = np.where(zone[some] < 0, 0, zone[some])
@@ -193,22 +217,23 @@ def _zones_of_pieces(
 
 
 def _zones_of_positions(
-    chart: Chart | None, lat: FloatArray, lon: FloatArray
+    world: SailingEnvironment, lat: FloatArray, lon: FloatArray
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
     """Return (share, price factor, number of the area or -1) of positions."""
     share, price, zone = np.zeros(len(lat)), np.ones(len(lat)), np.full(len(lat), -1)
+    chart, areas = world.chart, world.control_areas
     if chart is not None and chart.zones.price:
         price = chart.zones.factors(lat, lon, lat, lon)[1]
-    if chart is not None and chart.zones.eca:
-        share = chart.zones.in_eca(lat, lon).astype(np.float64)
-        zone = np.where(share > 0.0, np.maximum(_control_area_of(chart, lat, lon), 0), -1)
+    if areas is not None:
+        share = areas.in_eca(lat, lon).astype(np.float64)
+        zone = np.where(share > 0.0, np.maximum(_control_area_of(areas, lat, lon), 0), -1)
     return share, price, zone
 
 
-def _control_area_of(chart: Chart, lat: FloatArray, lon: FloatArray) -> NDArray[np.int64]:
+def _control_area_of(areas: Zones, lat: FloatArray, lon: FloatArray) -> NDArray[np.int64]:
     """Return the first control area that contains each position; -1 for none."""
     zone = np.full(len(lat), -1)
-    for number, area in enumerate(chart.zones.eca):
+    for number, area in enumerate(areas.eca):
         remaining = np.flatnonzero(zone < 0)
         if not len(remaining):
             break
@@ -220,9 +245,11 @@ def _fuel_by_zone(
     sailed: SailedTrack, parts: _FuelByPart, mass: FloatArray, kept: FloatArray
 ) -> dict[str, float]:
     """Return the fuel [kg] by control area and outside."""
-    chart = sailed.world.chart
+    areas = sailed.world.control_areas
+    if areas is None:
+        return {}
     found: dict[str, float] = {}
-    for number, area in enumerate(() if chart is None else chart.zones.eca):
+    for number, area in enumerate(areas.eca):
         here = parts.zone == number
         if here.any():
             found[area.name] = found.get(area.name, 0.0) + float(kept[here].sum())

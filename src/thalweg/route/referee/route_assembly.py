@@ -27,8 +27,11 @@ from thalweg.route.referee.sailing_physics import (
 from thalweg.route.referee.waiting_limits import waiting_violations
 from thalweg.route.route import Route, Violation
 from thalweg.route.track import Track
+from thalweg.ship.consumption import engine_order
 from thalweg.ship.fuel_prices import FuelTerms
+from thalweg.ship.models.known_speed_model import speed_loss_notes
 
+OUT_OF_RANGE = "The speed loss is used outside its range"  #: start of a note of a route
 MAX_CHECK_POINTS = 10_000  #: further points at which limits are checked (fewer on coarse data)
 CHECK_POINTS_PER_CELL = 8  #: of gridded data
 _MAX_CHECK_INTERVAL = 300.0  # longest time between two checks of the depth while waiting [s]
@@ -67,12 +70,13 @@ def assemble_route(
         "arrive": arrives,
         "under_keel_clearance": least,
         "ordered_speed": np.asarray(world.ship.speeds, float)[pieces.track.setting],
+        "leg_kind": _leg_kinds(pieces),
     }
     spent = cost_breakdown(sailed, ConsumptionRates(rate[order], power[order]), terms)
     if np.any(pieces.track.wait) and world.has_depth:
         tolerance += float(np.max(np.diff(moments), initial=0.0, where=np.diff(near.leg) == 0))
     samples = _samples(sailed, points, time, motion=motion, rates=(power, rate))
-    assumptions = (*world.assumptions, *spent.notes)
+    assumptions = (*world.assumptions, *spent.notes, *_range_notes(world, points, time, motion))
     return Route(
         pieces.track,
         {**legs, **spent.legs},
@@ -81,8 +85,15 @@ def assemble_route(
         tolerance,
         assumptions,
         spent.zones,
-        terms.currency or "USD",
+        terms.prices(),
+        engine_order(world.ship),
     )
+
+
+def _leg_kinds(pieces: TrackPieces) -> FloatArray:
+    """Return the kind of every leg, as an index into `thalweg.route.route_tables.LEG_KINDS`."""
+    in_canal = (pieces.canals.number >= 0).astype(float)
+    return np.where(pieces.canals.approach, 2.0, in_canal)
 
 
 def _check_limits(
@@ -98,7 +109,7 @@ def _check_limits(
     found += _wait_depth_violations(track, waits, min_ukc)
     found += waiting_violations(world.chart, track, sailed.leg_times()[1])
     found += canal_violations(world, sailed.pieces, sailed.leg_times()[0])
-    found += land_violations(world, track, sailed.leg_times()[0])
+    found += land_violations(world, sailed.pieces, sailed.leg_times()[0])
     clearance = _finite(depth - world.ship.draught)
     least = _least_by_leg(near.leg, clearance, moments, len(track) - 1)
     for index, _, lying in waits:  # a wait belongs to the leg after it
@@ -184,6 +195,27 @@ def _rates(
         for rate, there in zip((power, fuel), in_canals):
             rate[fixed] = there[points.leg[fixed]]
     return power, fuel
+
+
+def _range_notes(
+    world: SailingEnvironment, points: TrackPoints, time: FloatArray, motion: SailingState
+) -> list[str]:
+    """Return where the speed loss of the ship is used outside its range, in sentences."""
+    known = np.isfinite(time)
+    if not known.any() or "wind_speed" not in world.ship.reads:
+        return []
+    sampled = {name: values[known] for name, values in motion.sampled.items()}
+    here = conditions_at(
+        world,
+        points.part(known),
+        time[known],
+        sampled=sampled,
+        depth=motion.depth[known],
+        heading=motion.heading[known],
+    )
+    loaded = here.with_default(load_factor=world.ship.loading.load_factor)
+    notes = speed_loss_notes(world.ship.model, loaded)
+    return [f"{OUT_OF_RANGE}: {note}; speeds there are not predictions." for note in notes]
 
 
 def _least_by_leg(leg: IntArray, values: FloatArray, time: FloatArray, count: int) -> FloatArray:

@@ -83,7 +83,7 @@ def sail_track(
     -------
     SailedTrack
     """
-    pieces = cut_into_pieces(track, step, least, world.chart)
+    pieces = cut_into_pieces(track, step, least, world.chart, world.ship)
     charted = _least_charted_depths(world, pieces)
     gauss = replace(pieces.gauss_points(), charted=np.repeat(charted, 2))
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thalweg.chart.chart import control_areas_in_force
 from thalweg.core.errors import MissingVariableError
 from thalweg.core.types import FloatArray
 from thalweg.route.referee.leg_segments import TrackPoints
@@ -22,9 +23,11 @@ from thalweg.ship.condition_variables import (
 )
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.current_triangle import current_triangle
+from thalweg.ship.ship_assumptions import stated_assumptions
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.chart.zones.zone_set import Zones
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 
@@ -59,6 +62,13 @@ class SailingEnvironment:
     def has_current(self) -> bool:
         """Whether the sea has currents."""
         return EASTWARD_CURRENT in self.names
+
+    @property
+    def control_areas(self) -> Zones | None:
+        """Emission control areas that count; None if they are switched off."""
+        if self.chart is None:
+            return control_areas_in_force()
+        return getattr(self.chart, "control_areas", None)  # a chart of the user's own has none
 
     @property
     def charted(self) -> bool:
@@ -122,7 +132,7 @@ def make_sailing_environment(ship: Ship, sea: Sea, chart: Chart | None) -> Saili
             missing=missing,
         )
     names = set(ship.needs)
-    assumptions = list(getattr(sea, "assumptions", ()))
+    assumptions = [*getattr(sea, "assumptions", ()), *stated_assumptions(ship)]
     if all(name in sea.variables for name in CURRENTS):
         names |= set(CURRENTS)
     else:

@@ -25,6 +25,11 @@ def with_wind_speed(ship: Ship, sea: Sea) -> Sea:
     sea : Sea
         If it has ``wind_speed`` without a direction, and the ship needs wind but no angle of it,
         the wind blows from the west at that speed; otherwise it is returned unchanged.
+
+    Returns
+    -------
+    Sea
+        Its ``assumptions`` state the direction where it was assumed.
     """
     wind = {EASTWARD_WIND, NORTHWARD_WIND}
     needed = bool(wind & set(ship.needs)) and "wind_angle" not in ship.reads

@@ -40,7 +40,7 @@ def compass_search(
     rounds: int = 30,
     smallest: float = 1.0,
 ) -> Polyline:
-    """Return a line with waypoints moved wherever that lowers the cost.
+    """Return a line with waypoints moved where that lowers the cost.
 
     Parameters
     ----------

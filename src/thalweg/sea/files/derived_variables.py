@@ -10,6 +10,7 @@ import numpy as np
 from thalweg.core.types import FloatArray
 from thalweg.sea.files.grid_detection import GridPlacement
 from thalweg.sea.grids.source_variables import GridWindow
+from thalweg.sea.plausible_values import check_direction
 
 Combine = Callable[[Sequence[FloatArray]], Sequence[FloatArray]]
 
@@ -53,6 +54,26 @@ def direction_to_unit_vector(sign: float) -> Combine:
         return [sign * np.sin(angle), sign * np.cos(angle)]
 
     return combine
+
+
+def with_checked_direction(combine: Combine, index: int, variable: str, source: str) -> Combine:
+    """Return a function that checks the directions [deg] among the arrays, then combines them.
+
+    Parameters
+    ----------
+    combine : callable
+        Makes the variables from the arrays.
+    index : int
+        Number of the array that holds directions.
+    variable, source : str
+        Names of the variable and of the file, for messages.
+    """
+
+    def checked(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
+        check_direction(arrays[index], variable, source)
+        return combine(arrays)
+
+    return checked
 
 
 def make_conversion(combine: Combine, place: GridPlacement, rotate: bool) -> Any:

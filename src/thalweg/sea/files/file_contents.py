@@ -10,7 +10,13 @@ import numpy as np
 from thalweg.core.errors import DatasetError
 from thalweg.sea import standard_names as nm
 from thalweg.sea.files import coordinates as co
-from thalweg.sea.files import draught_averaging, time_coordinates, ugrid, vertical_levels
+from thalweg.sea.files import (
+    draught_averaging,
+    time_coordinates,
+    ugrid,
+    unit_conversion,
+    vertical_levels,
+)
 from thalweg.sea.files import variable_aliases as sp
 from thalweg.sea.files.grid_detection import (
     NEMO_U_COORDINATES,
@@ -121,6 +127,7 @@ def _placed_variable(
     clock = time_coordinates.time_coordinate(dataset, array)
     if clock is None:
         _refuse_undated(dataset, array, source)
+    array, roms_shift = _at_roms_centres(dataset, array, chosen.role)
     place = placement_cache.places.get(chosen.variable)
     if place is None:
         place = grid_placement(dataset, array, mapping, source, placement_cache.meshes or [])
@@ -140,14 +147,15 @@ def _placed_variable(
     times = NO_TIMES if clock is None else time_coordinates.read_times(clock, source)
     if clock is not None and not has_time and clock.dims[0] != "one_time":
         times = NO_TIMES
-    piece = VariableInFile(array, max(1, times.size), has_time, chosen.factor)
+    valid = unit_conversion.valid_limits(array)
+    piece = VariableInFile(array, max(1, times.size), has_time, chosen.factor, valid)
     variable = SourceVariable(
         chosen.variable,
         (piece,),
         times.size > 0,
         place.mesh is not None,
         source,
-        _stagger(dataset, place, chosen.role),
+        roms_shift or _stagger(dataset, place, chosen.role),
     )
     rotated = int(array.attrs.get("GRIB_uvRelativeToGrid", 0)) == 1
     return PlacedVariable(chosen, variable, place, times, rotated, layers)
@@ -159,6 +167,25 @@ def _stagger(dataset: Any, place: GridPlacement, role: str) -> tuple[int, int]:
     if not (has_sides and place.dims and "glamt" in place.key):
         return 0, 0
     return {sp.X_CURRENT: (0, 1), sp.Y_CURRENT: (1, 0)}.get(role, (0, 0))
+
+
+def _at_roms_centres(dataset: Any, array: Any, role: str) -> tuple[Any, tuple[int, int] | None]:
+    """Return a velocity of ROMS on the dimensions of the cell centres, and its offset.
+
+    ROMS and CROCO give u on the inner east sides of cells and v on the inner north sides: one
+    column or row less than there are centres. Other variables come back unchanged, with None.
+    """
+    if role not in (sp.X_CURRENT, sp.Y_CURRENT) or "lat_rho" not in dataset.variables:
+        return array, None
+    rows, columns = map(str, dataset["lat_rho"].dims) if dataset["lat_rho"].ndim == 2 else ("", "")
+    sides = {d for d in map(str, array.dims) if d.startswith(("eta", "xi"))} - {rows, columns}
+    if not (rows and columns and sides):
+        return array, None
+    names = {d: rows if d.startswith("eta") else columns for d in sides}
+    centred = array.reset_coords(drop=True).drop_vars(sides, errors="ignore").rename(names)
+    short = tuple(dataset.sizes[d] - centred.sizes.get(d, 0) for d in (rows, columns))
+    expected = (0, 1) if role == sp.X_CURRENT else (1, 0)
+    return (centred, expected) if short == expected else (array, None)
 
 
 def _refuse_undated(dataset: Any, array: Any, source: str) -> None:

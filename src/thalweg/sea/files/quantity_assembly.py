@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from thalweg.core.errors import DatasetError
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
 from thalweg.sea.files import derived_variables, draught_averaging
@@ -60,10 +61,39 @@ class QuantityAssembler:
             self._polar(vector, vector.towards)
         alone = (*vector.pair, *along_grid, vector.origin, vector.towards)
         made = any(set(vector.pair) <= set(q.names) for d in self.candidates for q in d.quantities)
+        if not made:
+            self._refuse_half(vector, (*vector.pair, *along_grid))
         for role in alone if not made else (*alone, vector.speed):
             if role in self.remaining:
                 reason = "other variables make this vector" if made else "its partner is missing"
                 self._leave(role, f"{reason} ({role})")
+
+    def _refuse_half(self, vector: nm.VectorNames, components: Sequence[str]) -> None:
+        """Raise `DatasetError` for one component without the other: a ship would meet none."""
+        parts = list(components)
+        if vector is nm.CURRENT:
+            parts += [vector.speed, vector.origin, vector.towards]
+        found = {
+            role: self.remaining[role].chosen.variable for role in parts if role in self.remaining
+        }
+        if not found:
+            return
+        names = " and ".join(repr(name) for name in found.values())
+        if len(found) == 1:
+            fault = "the other part of this vector is not in the file"
+            remedy = "Add it to the file (cdo merge, or xarray.merge), or remove this part"
+        else:
+            fault = "they do not make a vector on one grid and one time axis"
+            remedy = "Interpolate them to the same positions (for example to the centres of cells)"
+        raise DatasetError(
+            f"{self.file.source}: {names} ({', '.join(found)}): {fault}.",
+            "A vector is read from both components, or from speed and direction, at the same "
+            "positions and times (of ROMS and NEMO on the sides of cells, with the positions of "
+            "the centres).",
+            f"{remedy}; variables with other names are named with a mapping (--map NAME=VARIABLE).",
+            file=self.file.source,
+            variables=list(found.values()),
+        )
 
     def _both_present(self, roles: Sequence[str]) -> bool:
         """Return whether both roles are present, on one grid and one time axis."""
@@ -101,7 +131,10 @@ class QuantityAssembler:
             return [level], lambda arrays: arrays[2]
         if total is not None:
             return [total], lambda arrays: arrays[2]
-        sign = 1.0 if bed is not None else -1.0 if _is_positive_up(height) else 1.0
+        if bed is not None:
+            sign = -1.0 if _states_upwards(bed) else 1.0
+        else:
+            sign = -1.0 if _is_positive_up(height) else 1.0
         bed = bed or height
         if bed is None:
             raise draught_averaging.missing_depth_error(
@@ -123,7 +156,13 @@ class QuantityAssembler:
         sign = -1.0 if direction == vector.origin else 1.0
         word = "from" if direction == vector.origin else "to"
         how = f"{pair[0].chosen.how}; speed and direction {word} to components"
-        self._add(vector.pair, pair, derived_variables.polar_to_components(sign), how)
+        combine = derived_variables.with_checked_direction(
+            derived_variables.polar_to_components(sign),
+            1,
+            pair[1].chosen.variable,
+            self.file.source,
+        )
+        self._add(vector.pair, pair, combine, how)
 
     def _waves(self) -> None:
         for role, sign in ((nm.WAVES.origin, -1.0), (nm.WAVES.towards, 1.0)):
@@ -135,7 +174,13 @@ class QuantityAssembler:
             one = self.remaining.pop(role)
             word = "from" if sign < 0 else "to"
             how = f"{one.chosen.how}; direction {word} to unit vector towards"
-            self._add(nm.WAVES.pair, [one], derived_variables.direction_to_unit_vector(sign), how)
+            combine = derived_variables.with_checked_direction(
+                derived_variables.direction_to_unit_vector(sign),
+                0,
+                one.chosen.variable,
+                self.file.source,
+            )
+            self._add(nm.WAVES.pair, [one], combine, how)
 
     def _bed_and_level(self) -> None:
         """Make bed depth and water level from depth, bed level and total depth, as present."""
@@ -166,6 +211,8 @@ class QuantityAssembler:
     def _bed(self) -> tuple[PlacedVariable | None, float]:
         """Make the bed depth from a depth or a bed level; return that variable and its sign."""
         bed, sign = self.remaining.pop(nm.BED_DEPTH, None), 1.0
+        if bed is not None and _states_upwards(bed):
+            sign = -1.0
         if bed is None and sp.BED_LEVEL in self.remaining:
             bed = self.remaining.pop(sp.BED_LEVEL)
             sign = -1.0 if _is_positive_up(bed) else 1.0
@@ -219,6 +266,11 @@ def _is_positive_up(height: PlacedVariable | None) -> bool:
         return True
     positive = height.variable.pieces[0].array.attrs.get("positive", "up")
     return str(positive).lower() != "down"
+
+
+def _states_upwards(depth: PlacedVariable) -> bool:
+    """Return whether a depth states that it is positive upwards."""
+    return str(depth.variable.pieces[0].array.attrs.get("positive", "")).lower() == "up"
 
 
 def _sign_note(sign: float) -> str:

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+import re
+import warnings
+from typing import Any, Final
 
 import numpy as np
 
 from thalweg.core.errors import DatasetError
 from thalweg.core.types import FloatArray
+
+_REAL_CALENDARS: Final = ("standard", "gregorian", "proleptic_gregorian")
+_ZONE_PATTERN: Final = re.compile(r"([A-Za-z]+(?:/[A-Za-z_]+)?)\W*$")  #: letters at the end
 
 
 def is_time(array: Any) -> bool:
@@ -43,18 +48,21 @@ def read_times(array: Any, source: str) -> FloatArray:
 
     name = str(array.name)
     if array.dtype.kind != "M":
+        _check_zone(str(array.attrs.get("units", "")), source, name)
         bare = xr.Dataset({name: ((name,), np.asarray(array.values), dict(array.attrs))})
         try:
-            array = xr.decode_cf(bare, decode_times=True)[name]
+            with warnings.catch_warnings():
+                warnings.filterwarnings("ignore", "Unable to decode time axis")
+                array = _with_far_years(xr.decode_cf(bare, decode_times=True)[name])
         except (ValueError, OverflowError, TypeError) as error:
             raise _time_fault(source, name, f"cannot be decoded ({error})") from error
     if array.dtype.kind != "M":
         calendar = array.attrs.get("calendar", array.encoding.get("calendar", "unknown"))
         raise _time_fault(source, name, f"uses the calendar {calendar!r}, which has no real dates")
-    stamps = np.asarray(array.values).astype("datetime64[ns]")
+    stamps = np.asarray(array.values).astype("datetime64[us]")  # nanoseconds end in 2262
     if np.isnat(stamps).any():
         raise _time_fault(source, name, "has missing values")
-    times: FloatArray = np.round(stamps.astype(np.int64) / 1e9, 3).astype(np.float64)
+    times: FloatArray = np.round(stamps.astype(np.int64) / 1e6, 3).astype(np.float64)
     step = np.diff(times)
     if (step <= 0.0).any():
         where = int(np.flatnonzero(step <= 0.0)[0])
@@ -63,6 +71,25 @@ def read_times(array: Any, source: str) -> FloatArray:
             source, name, f"does not increase: step {where} ({stamps[where]}) {fault}"
         )
     return times
+
+
+def _with_far_years(array: Any) -> Any:
+    """Return decoded times; those that xarray gives as objects, after 2262, as microseconds."""
+    calendar = array.encoding.get("calendar", "standard")
+    if array.dtype.kind == "M" or calendar not in _REAL_CALENDARS:
+        return array
+    stamps = [np.datetime64(moment.isoformat(), "us") for moment in array.values]
+    return array.copy(data=np.array(stamps, "datetime64[us]"))
+
+
+def _check_zone(units: str, source: str, name: str) -> None:
+    """Raise `DatasetError` for a named time zone other than UTC, which would be ignored."""
+    _, _, reference = units.partition(" since ")
+    zone = _ZONE_PATTERN.search(reference.strip())
+    if zone and zone[1].upper() not in ("Z", "UTC", "GMT", "UT", "T"):
+        raise _time_fault(
+            source, name, f"has the units {units!r}: the time zone {zone[1]!r} is not converted"
+        )
 
 
 def _time_fault(source: str, name: str, fault: str) -> DatasetError:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from typing import Final
+from typing import Any, Final
+
+import numpy as np
 
 from thalweg.core.units import KNOT
 
@@ -85,6 +87,44 @@ def si_factor(text: str, dimension: str) -> float | None:
     if dimension == "direction":
         text = _TRUE_NORTH_SUFFIX.sub("", text.strip().lower())
     return table.get(normalised_unit(text))
+
+
+def valid_limits(array: Any) -> tuple[float, float] | None:
+    """Return the least and greatest valid value that a variable states, in its unpacked unit.
+
+    ``valid_range``, ``valid_min`` and ``valid_max`` of packed variables are packed values where
+    they have the packed type (CF conventions, section 2.5.1).
+
+    Parameters
+    ----------
+    array : xarray.DataArray
+        A variable, decoded.
+
+    Returns
+    -------
+    (float, float) or None
+        Infinite where one side is not limited; None without limits, or where they contradict each
+        other.
+    """
+    attributes = array.attrs
+    both = attributes.get("valid_range", (None, None))
+    sides = [attributes.get("valid_min", None), attributes.get("valid_max", None)]
+    limits = [-np.inf, np.inf]
+    for k, given in enumerate(s if s is not None else r for s, r in zip(sides, both)):
+        number = np.asarray(given) if given is not None else None
+        if number is None or number.size != 1 or number.dtype.kind not in "fiu":
+            continue
+        value = float(number.ravel()[0])
+        packed = array.encoding.get("dtype")
+        if packed is not None and np.dtype(packed).kind in "iu" and number.dtype.kind in "iu":
+            value *= float(np.asarray(array.encoding.get("scale_factor", 1.0)).ravel()[0])
+            value += float(np.asarray(array.encoding.get("add_offset", 0.0)).ravel()[0])
+        limits[k] = value
+    low, high = limits
+    if not low < high or (np.isinf(low) and np.isinf(high)):
+        return None
+    slack = 1e-6 * max(abs(v) for v in (low, high) if np.isfinite(v))
+    return low - slack, high + slack
 
 
 def is_unspecified(text: str) -> bool:

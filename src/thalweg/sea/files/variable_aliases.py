@@ -30,6 +30,8 @@ STANDARD_NAMES: Final[dict[str, str]] = {
     "significant_height_of_wind_and_swell_waves": nm.WAVE_HEIGHT,
     "sea_surface_wave_period_at_variance_spectral_density_maximum": nm.WAVE_PERIOD,
     "sea_surface_wave_peak_period": nm.WAVE_PERIOD,
+    "sea_water_x_velocity_at_u_location": X_CURRENT,
+    "sea_water_y_velocity_at_v_location": Y_CURRENT,
     "altitude": BED_LEVEL,
     "height": BED_LEVEL,
     "surface_altitude": BED_LEVEL,
@@ -94,6 +96,16 @@ ALIASES: Final[dict[str, dict[str, str]]] = {
         "mesh2d_flowelem_bl": BED_LEVEL, "mesh2d_face_z": BED_LEVEL,
     },
     "ADCIRC": {"u-vel": nm.EASTWARD_CURRENT, "v-vel": nm.NORTHWARD_CURRENT},
+    "SCHISM": {
+        "depthaveragevelx": X_CURRENT, "depthaveragevely": Y_CURRENT, "windspeedx": X_WIND,
+        "windspeedy": Y_WIND, "sigwaveheight": nm.WAVE_HEIGHT, "peakperiod": nm.WAVE_PERIOD,
+        "elev": nm.WATER_LEVEL, "depth": nm.BED_DEPTH,
+    },
+    "FVCOM and ROMS": {
+        "ua": X_CURRENT, "va": Y_CURRENT, "ubar": X_CURRENT, "vbar": Y_CURRENT, "h": nm.BED_DEPTH,
+        "uwind_speed": X_WIND, "vwind_speed": Y_WIND, "uwind": X_WIND, "vwind": Y_WIND,
+        "hwave": nm.WAVE_HEIGHT,
+    },
     "Matroos": {
         "velu": nm.EASTWARD_CURRENT, "velv": nm.NORTHWARD_CURRENT, "sep": nm.WATER_LEVEL,
     },
@@ -111,14 +123,34 @@ SECOND_CHOICE_NAMES: Final[dict[str, str]] = {
 
 #: names that several quantities have: ignored if their units do not fit the role
 AMBIGUOUS_ALIASES: Final = frozenset(
-    {"z", "band1", "topo", "elevation", "ff", "dd", "hs", "tp", "ci", "zeta"}
+    {
+        *("z", "band1", "topo", "elevation", "ff", "dd", "hs", "tp", "ci", "zeta", "depth", "h"),
+        *("ua", "va", "elev"),
+    }
 )
 
 #: names of a depth that, if it varies in time, is the depth of the water and not of the bed
 TIME_VARYING_DEPTHS: Final = frozenset({"depth", "water_depth", "waterdepth", "h_water"})
 
+#: names of a bed in one file and of another quantity in the next: no bed if they vary in time
+STATIC_BEDS: Final = frozenset({"z", "band1", "topo", "h"})
+
+#: roles by long name, for variables whose names other quantities have too
+LONG_NAMES: Final[dict[str, str]] = {
+    "u-momentum component": X_CURRENT,
+    "v-momentum component": Y_CURRENT,
+    "eastward water velocity": nm.EASTWARD_CURRENT,
+    "northward water velocity": nm.NORTHWARD_CURRENT,
+}
+LONG_NAME_SOURCE: Final = "FVCOM and ROMS"
+
 #: reason why a known variable is not used
 UNUSED_VARIABLES: Final[dict[str, str]] = {
+    **dict.fromkeys(
+        ("dwave", "meanwavedirection", "dominantdirection"),
+        "it is a wave direction of ROMS or SCHISM, but from or to is not stated; if you know it, "
+        "map it: mapping={'sea_surface_wave_from_direction': 'its name'}",
+    ),
     "p107": "MET Norway's local parameter 107 is a wave direction, but from or to is not "
     "stated; if you know it, map it: mapping={'sea_surface_wave_from_direction': 'p107'}",
 }

@@ -10,12 +10,24 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from thalweg.core.errors import DatasetError, InputError, close_matches
 from thalweg.sea import standard_names as nm
 from thalweg.sea.files import unit_conversion, variable_aliases
 from thalweg.sea.files.time_coordinates import time_coordinate
 from thalweg.sea.files.vertical_levels import wind_height_fault
 
+_ORIGIN_TEXT = re.compile(
+    r"\b(coming|comes?|blow(s|ing)|arriv(es?|ing)|propagat(es?|ing)|travel(s|l?ing)) from\b"
+    r"|\bfrom which\b|\bdirections? from\b|\bfrom[- _]direction|\(from\)|meteorological convention"
+)
+_TOWARDS_TEXT = re.compile(
+    r"\b(going|goes|mov(es?|ing)|blow(s|ing)|flow(s|ing)|head(s|ing)|propagat(es?|ing|ion)"
+    r"|travel(s|l?ing)) to(wards?)?\b|\bto(wards?)? which\b|\bdirections? to(wards?)?\b"
+    r"|\bto[- _]direction|\(to(wards?)?\)|oceanographic convention"
+)
+_SAMPLES = 100_000  #: values that are read to distinguish radians from degrees
 _BRACKETED_UNIT = re.compile(r"\[([^\[\]]+)\]\s*$")
 
 
@@ -127,6 +139,8 @@ def recognise_variables(
     }
     for role, several in candidates.items():
         best = _best_candidate(several, role, dataset, source)
+        if best.how.startswith("standard_name"):
+            _check_direction_text(role, dataset[best.variable], source)
         taken = _assign_with_unit(dataset, role, best.variable, best.how, source)
         if isinstance(taken, AssignedVariable):
             chosen[role] = taken
@@ -190,16 +204,65 @@ def _role_candidate(dataset: Any, name: str) -> tuple[str, RoleCandidate] | Igno
             ("", 0) if not spelled or spelled[0] != role[0] else (spelled[2], spelled[1])
         )
         return role[0], RoleCandidate(name, role[1], origin, place, f"standard_name {standard}")
-    if (
-        spelled is None
-        and name.lower() in variable_aliases.TIME_VARYING_DEPTHS
-        and _varies_in_time(dataset, array)
-    ):
-        how = f"spelled {name}, and varies in time: depth below the moving surface"
-        return nm.TOTAL_DEPTH, RoleCandidate(name, 2, "", 0, how)
+    named_long = variable_aliases.LONG_NAMES.get(str(array.attrs.get("long_name", "")).lower())
+    if spelled is None and named_long:
+        origin = variable_aliases.LONG_NAME_SOURCE
+        return named_long, RoleCandidate(name, 2, origin, -1, "recognised by its long_name")
+    moving = _moving_quantity(dataset, array, name)
+    if moving is not None:
+        return moving
     if spelled is None:
         return IgnoredVariable(name, "no standard_name, and its name is not known")
-    return spelled[0], RoleCandidate(name, 2, spelled[2], spelled[1], f"spelled as by {spelled[2]}")
+    named, how = _role_by_direction_text(spelled[0], array), f"spelled as by {spelled[2]}"
+    if named != spelled[0]:
+        how += f"; direction as its long_name states: {_long_name(array)!r}"
+    return named, RoleCandidate(name, 2, spelled[2], spelled[1], how)
+
+
+def _role_by_direction_text(role: str, array: Any) -> str:
+    """Return the role of a direction: from or towards, as its long name states, else as given."""
+    vector = next((v for v in nm.VECTORS if role and role in (v.origin, v.towards)), None)
+    if vector is None:
+        return role
+    text = " ".join(str(array.attrs.get(k, "")) for k in ("long_name", "description", "comment"))
+    comes, goes = _ORIGIN_TEXT.search(text.lower()), _TOWARDS_TEXT.search(text.lower())
+    if bool(comes) == bool(goes):
+        return role
+    return vector.origin if comes else vector.towards
+
+
+def _check_direction_text(role: str, array: Any, source: str) -> None:
+    """Raise `DatasetError` if a standard name and a long name contradict each other."""
+    if _role_by_direction_text(role, array) == role:
+        return
+    raise DatasetError(
+        f"{source}: {array.name!r} has the standard_name {array.attrs.get('standard_name')!r}, but "
+        f"its long_name is {_long_name(array)!r}.",
+        "One states the direction from which, the other the direction towards which.",
+        "Correct the file, or state it: mapping={'..._from_direction' or '..._to_direction': "
+        f"{str(array.name)!r}}}.",
+        variable=str(array.name),
+        file=source,
+    )
+
+
+def _moving_quantity(
+    dataset: Any, array: Any, name: str
+) -> tuple[str, RoleCandidate] | IgnoredVariable | None:
+    """Return what a name of a bed or depth means if it varies in time; None if it does not."""
+    lower = name.lower()
+    clock = time_coordinate(dataset, array)
+    if lower == "elevation" and clock is not None and clock.dims[0] in array.dims:
+        how = f"spelled {name}, and has times: level of the surface"
+        return nm.WATER_LEVEL, RoleCandidate(name, 2, "", 0, how)
+    if not _varies_in_time(dataset, array):
+        return None
+    if lower in variable_aliases.TIME_VARYING_DEPTHS:
+        how = f"spelled {name}, and varies in time: depth below the moving surface"
+        return nm.TOTAL_DEPTH, RoleCandidate(name, 2, "", 0, how)
+    if lower in variable_aliases.STATIC_BEDS:
+        return IgnoredVariable(name, "it varies in time: not the bed, and its name is ambiguous")
+    return None
 
 
 def _varies_in_time(dataset: Any, array: Any) -> bool:
@@ -246,6 +309,8 @@ def _assign_with_unit(
         bracketed = _BRACKETED_UNIT.search(str(attributes.get("long_name", "")))
         unit = bracketed[1] if bracketed else ""
     dimension = variable_aliases.ROLE_DIMENSIONS.get(role)
+    if dimension == "direction" and unit_conversion.is_unspecified(unit):
+        _check_degrees(dataset[name], source)
     if (
         dimension is None
         or not unit
@@ -265,3 +330,20 @@ def _assign_with_unit(
         units=unit,
         file=source,
     )
+
+
+def _check_degrees(array: Any, source: str) -> None:
+    """Raise `DatasetError` if a direction without a unit could be in degrees or in radians."""
+    stride = {d: max(1, n // 50) for d, n in array.sizes.items()} if array.size > _SAMPLES else {}
+    part = array.isel({d: slice(None, None, step) for d, step in stride.items()})
+    values = np.abs(np.asarray(part.values, float))
+    largest = float(np.fmax.reduce(values, axis=None, initial=0.0))
+    if 0.0 < largest <= 2.0 * np.pi + 0.01:
+        raise DatasetError(
+            f"{source}: the direction {str(array.name)!r} has no units, and its values are between "
+            f"0 and {largest:g}.",
+            "They could be radians or degrees.",
+            "Add the attribute units to the file: 'degree' or 'radian'.",
+            variable=str(array.name),
+            file=source,
+        )

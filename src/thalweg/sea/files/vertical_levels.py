@@ -179,6 +179,13 @@ def sigma_sign_and_offset(coordinate: Any, values: FloatArray) -> tuple[float, f
 def surface_index(coordinate: Any) -> int:
     """Return the index of the level nearest to the surface."""
     values = np.asarray(coordinate.values, float)
+    if values.ndim == 2:  # FVCOM: layers by node, named as their dimension
+        along = (
+            list(coordinate.dims).index(coordinate.name)
+            if coordinate.name in coordinate.dims
+            else 0
+        )
+        values = np.nanmean(values, axis=1 - along)
     if is_sigma(coordinate):
         sign, offset = sigma_sign_and_offset(coordinate, values)
         return int(np.argmin(sign * values + offset))

@@ -63,12 +63,15 @@ class VariableInFile:
         Whether time is its first dimension; else its values belong to one time, or to all.
     factor : float
         Conversion of its values to SI; files of one layer may differ in units.
+    valid : (float, float) or None
+        Least and greatest valid value in the file's unit; others are missing.
     """
 
     array: Any
     levels: int
     has_time: bool
     factor: float = 1.0
+    valid: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,6 +142,9 @@ class SourceVariable:
     ) -> RawArray:
         """Read rows and columns in SI, in two parts where the window wraps around the grid."""
         values = self._stored(piece.array[levels], window, columns)
+        if piece.valid is not None:
+            low, high = piece.valid
+            values = np.where((values >= low) & (values <= high), values, np.nan)
         return values if piece.factor == 1.0 else np.asarray(values, np.float64) * piece.factor
 
     def _stored(self, array: Any, window: GridWindow, columns: int) -> RawArray:
@@ -149,7 +155,15 @@ class SourceVariable:
         parts = [rows[..., window.x0 : min(x1, columns)].values]
         if x1 > columns:
             parts.append(rows[..., : x1 - columns].values)
-        return np.asarray(parts[0] if len(parts) == 1 else np.concatenate(parts, axis=-1))
+        values = np.asarray(parts[0] if len(parts) == 1 else np.concatenate(parts, axis=-1))
+        if not any(self.shift):
+            return values
+        missing = (window.y1 - window.y0 - values.shape[-2], window.width - values.shape[-1])
+        if missing == (0, 0):
+            return values
+        # ROMS has one row or column less on the sides of cells than at their centres
+        wide = [(0, 0)] * (values.ndim - 2) + [(0, n) for n in missing]
+        return np.pad(np.asarray(values, np.float64), wide, constant_values=np.nan)
 
     def _averaged_to_centres(self, window: GridWindow, columns: int) -> RawArray:
         """Average a staggered variable with its value one row or column before; NaN without one."""
@@ -214,6 +228,7 @@ class Quantity:
             plausible_values.check_plausible(
                 name, value, [v.name for v in self.variables], self.source
             )
+            value = plausible_values.without_packing_error(name, value)
             made[name] = np.ascontiguousarray(value.reshape(value.shape[0], -1), kind)
         return made
 

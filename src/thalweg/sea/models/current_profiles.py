@@ -137,7 +137,9 @@ def tidal_profile(height: ArrayLike, column: WaterColumn) -> tuple[ComplexArray,
 
 
 def tidal_mean(draught: float, column: WaterColumn) -> tuple[complex, complex]:
-    """Return the mean of `tidal_profile` from the surface down to a draught, in closed form.
+    r"""Return the mean of `tidal_profile` from the surface down to a draught, in closed form.
+
+    .. math:: \frac{1}{d} \int_{D-d}^{D} \frac{R_\pm(z)}{\langle R_\pm \rangle} dz
 
     Parameters
     ----------
@@ -150,6 +152,11 @@ def tidal_mean(draught: float, column: WaterColumn) -> tuple[complex, complex]:
     -------
     plus, minus : complex
         Means relative to the depth means.
+
+    References
+    ----------
+    D. Prandle, "The vertical structure of tidal currents", Geophysical and Astrophysical Fluid
+    Dynamics 22 (1982) 29-49; Schless (2023), eqs. 3.75 and 3.76.
     """
     d = float(_checked_height(draught, column.depth))
     if d == 0.0:
@@ -276,7 +283,9 @@ def _heaps_terms(
 
 
 def density_mean(draught: float, column: WaterColumn, **density: float) -> tuple[float, float]:
-    """Return the mean of `density_profile` from the surface down to a draught.
+    r"""Return the mean of `density_profile` from the surface down to a draught.
+
+    .. math:: \frac{1}{d} \int_0^d (u, v)(Z) \, dZ
 
     Gauss-Legendre quadrature with 48 points, exact to rounding for the smooth profile.
 
@@ -293,6 +302,10 @@ def density_mean(draught: float, column: WaterColumn, **density: float) -> tuple
     -------
     u, v : float
         Towards the coast and along it [m/s].
+
+    References
+    ----------
+    Schless (2023), eqs. 3.75 and 3.76, of the profile of Heaps (1972).
     """
     height = column.depth + density.get("rise", 0.2)
     d = float(_checked_height(draught, column.depth))

@@ -151,7 +151,11 @@ def radius_of_maximum_wind_willoughby2006(
 
 
 def inflow_angle(radius: ArrayLike, radius_of_maximum: ArrayLike) -> FloatArray:
-    """Return the angle by which the surface wind turns towards the centre.
+    r"""Return the angle by which the surface wind turns towards the centre.
+
+    .. math::
+        \theta = 10^\circ (1 + r/R_m)\ (r \le R_m), \quad 20^\circ + 25^\circ (r/R_m - 1)\
+            (r \le 1.2 R_m), \quad 25^\circ
 
     10 deg at the centre, rising linearly to 20 deg at the radius of maximum wind Rm and to 25 deg
     at 1.2 Rm; 25 deg beyond (Bretschneider, 1972, as used in [1]_).
@@ -181,7 +185,9 @@ def inflow_angle(radius: ArrayLike, radius_of_maximum: ArrayLike) -> FloatArray:
 def translation_wind(
     east: ArrayLike, north: ArrayLike, lat_deg: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the surface wind that the motion of a vortex adds at its radius of maximum wind.
+    r"""Return the surface wind that the motion of a vortex adds at its radius of maximum wind.
+
+    .. math:: \mathbf{w} = 0.55\, \mathbf{R}(\pm 20^\circ)\, \mathbf{v}_{forward}
 
     0.55 times the forward velocity, rotated by 20 deg, to the left in the northern and to the
     right in the southern hemisphere [1]_.

@@ -45,14 +45,15 @@ class VortexState(NamedTuple):
 
 
 def vortex_state(track: BestTrack, time: FloatArray) -> VortexState:
-    """Return the parameters of the vortex at times.
+    r"""Return the parameters of the vortex at times.
+
+    .. math:: V_m^2 + |f| R_m V_m = \frac{B \Delta p}{\rho e}
 
     Extratropical storms have a low central pressure and moderate wind: Holland's B would fall
     below its range. They are wide, so the radius of maximum wind is increased until gradient
     balance holds between the track's pressure and wind at B = 1, up to 150 km. The wind of the
     track has priority over its pressure: the pressure deficit of the profile is the one that gives
-    this wind at this radius. Gradient balance (Holland 1980, eq. 4 at r = Rm):
-    ``Vm^2 + f Rm Vm = B dp / (rho e)``.
+    this wind at this radius. Gradient balance (Holland 1980, eq. 4 at r = Rm).
 
     Parameters
     ----------
@@ -65,6 +66,11 @@ def vortex_state(track: BestTrack, time: FloatArray) -> VortexState:
     -------
     VortexState
         Arrays (N,).
+
+    References
+    ----------
+    G. J. Holland, Monthly Weather Review 108 (1980) 1212-1218, eq. 4 at the radius of maximum
+    wind.
     """
     lat, lon = track.position(time)
     wind = np.interp(time, track.time, track.wind)
@@ -89,7 +95,11 @@ def vortex_state(track: BestTrack, time: FloatArray) -> VortexState:
 def vortex_wind(
     radius: FloatArray, inward: tuple[FloatArray, FloatArray], state: VortexState
 ) -> tuple[tuple[FloatArray, FloatArray], FloatArray]:
-    """Return the contribution of the storm to the wind at 10 m.
+    r"""Return the contribution of the storm to the wind at 10 m.
+
+    .. math::
+        \mathbf{w} = s V_g(r)\, \mathbf{e}_{spiral} + \frac{V_g(r)}{V_m}
+            \mathbf{w}_{translation}
 
     Parameters
     ----------
@@ -106,6 +116,11 @@ def vortex_wind(
         (east, north) towards [m/s].
     share : float64 array
         Local over maximum symmetric wind, 0 to 1; where it is 1 there is no ambient wind.
+
+    References
+    ----------
+    The formulas of `thalweg.sea.models.cyclone_formulas`; s is the reduction from gradient wind
+    to 10 m.
     """
     gradient = formulas.holland_gradient_wind(
         radius,

@@ -11,8 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import shortened_repr
+from thalweg.core.time import TimeLike
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
+from thalweg.sea.argument_checks import parse_area, parse_period, parse_time_step
 from thalweg.sea.coverage import Coverage
 from thalweg.sea.layer import Samples, nan_pairs
 from thalweg.sea.triangle_mesh import Mesh
@@ -174,8 +177,8 @@ def constant_layer(values: Mapping[str, float], label: str) -> FormulaLayer:
 def layer_of_functions(
     functions: Mapping[str, FieldFunction],
     *,
-    area: BoundingBox = WORLD,
-    period: tuple[float, float] | None = None,
+    area: tuple[float, float, float, float] | None = None,
+    period: tuple[TimeLike, TimeLike] | None = None,
     time_step: float | None = None,
 ) -> FormulaLayer:
     """Return a layer of functions, with speeds and directions converted to components.
@@ -184,18 +187,31 @@ def layer_of_functions(
     ----------
     functions : mapping of str to callable
         As for `thalweg.sea.Sea.from_functions`.
-    area : BoundingBox
-        Values are unknown outside.
-    period : tuple of float, optional
-        First and last time [s since epoch].
+    area : tuple of float, optional
+        (south, north, west, east) [deg]; values are unknown outside.
+    period : tuple of time, optional
+        (start, end); values are unknown outside.
     time_step : float, optional
         Step [s] of frozen times.
+
+    Returns
+    -------
+    FormulaLayer
+        The layer.
 
     Raises
     ------
     InputError
-        If one half of a vector is missing, or a variable is given twice.
+        If the functions are no mapping, one half of a vector is missing, or a variable is given
+        twice; or the area, period or time step is not valid.
     """
+    if not isinstance(functions, Mapping):
+        raise InputError(
+            f"The functions are {shortened_repr(functions)}, which is not a mapping.",
+            "A mapping gives a function f(time_s, lat, lon) for each standard name.",
+            "Write it as {'wind_speed': f, 'wind_from_direction': g}.",
+        )
+    box, span, step = parse_area(area), parse_period(period), parse_time_step(time_step)
     makers = _variable_functions(functions)
 
     def evaluate(
@@ -207,7 +223,7 @@ def layer_of_functions(
                 done.update(makers[name](time, lat, lon))
         return {name: done[name] for name in names}
 
-    return FormulaLayer(frozenset(makers), evaluate, "formula", area, period, time_step)
+    return FormulaLayer(frozenset(makers), evaluate, "formula", box, span, step)
 
 
 VariableFunction: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], Samples]

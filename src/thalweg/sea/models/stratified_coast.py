@@ -142,7 +142,9 @@ def stratified_coast_current(
 def ellipse_phasors(
     scenario: str | TidalEllipse, column: WaterColumn, draught: float = 0.0
 ) -> tuple[complex, complex]:
-    """Return the anticlockwise and clockwise phasors of the tide, averaged over a draught.
+    r"""Return the anticlockwise and clockwise phasors of the tide, averaged over a draught.
+
+    .. math:: W_\pm = i (M \pm m) / 2
 
     The depth-mean phasors W are those for which the profiles give the scenario's ellipse at the
     surface: with the x axis onshore and y along the coast, ``i (M + m) / 2`` and ``i (M - m) / 2``
@@ -161,6 +163,10 @@ def ellipse_phasors(
     -------
     plus, minus : complex
         Phasors [m/s].
+
+    References
+    ----------
+    Prandle (1982), as in `thalweg.sea.models.current_profiles`.
     """
     ellipse = _tidal_ellipse(scenario)
     long, short = ellipse.alongshore, -ellipse.cross_shore

@@ -60,7 +60,16 @@ def mean_longitudes(times: FloatArray) -> FloatArray:
 
 
 def argument_rates() -> FloatArray:
-    """Return the rates (6,) of the arguments of `mean_longitudes` [cycles per hour], in 2000."""
+    r"""Return the rates (6,) of the arguments of `mean_longitudes` [cycles per hour], in 2000.
+
+    .. math::
+        24 \dot{\theta} = c_1 + 2 \cdot 10^{-4} c_2 (d / 10^4) + 3 \cdot 10^{-4} c_3 (d /
+            10^4)^2
+
+    References
+    ----------
+    As in `mean_longitudes`.
+    """
     day = (946684800.0 - EPOCH) / DAY
     c = _LONGITUDE_POLYNOMIALS
     daily = c[:, 1] + 2e-4 * c[:, 2] * day / 1e4 + 3e-4 * c[:, 3] * (day / 1e4) ** 2

@@ -14,6 +14,7 @@ import json
 import math
 import re
 import warnings
+import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
@@ -44,6 +45,11 @@ def read_constituents(path: str | Path, *, station: str | None = None) -> Consti
     station : str, optional
         Id or name of a station, for files with several.
 
+    Returns
+    -------
+    Constituents
+        Of one station, or of all nodes of a file of Thalweg.
+
     Raises
     ------
     DatasetError
@@ -62,6 +68,23 @@ def read_constituents(path: str | Path, *, station: str | None = None) -> Consti
     if isinstance(data, list):
         return select_station(data, station, source)
     return _check_station(from_dict(data, source), station, source)
+
+
+def is_constituent_file(path: str | Path) -> bool:
+    """Return whether a file of text begins as one of the formats of this module.
+
+    Parameters
+    ----------
+    path : path
+        A file; may be gzipped.
+    """
+    try:
+        head = _read_text(Path(path)).lstrip()
+    except DatasetError:
+        return False
+    if head.startswith("{"):
+        return FILE_FORMAT.rpartition("-")[0] in head[:400]
+    return head.startswith("[") or re.search(r"^COMP\s+\d", head, re.M) is not None
 
 
 def _check_station(constants: Constituents, station: str | None, source: str) -> Constituents:
@@ -312,7 +335,7 @@ def _read_text(path: Path) -> str:
         raw = path.read_bytes()
         raw = gzip.decompress(raw) if raw[:2] == b"\x1f\x8b" else raw
         return raw.decode("utf-8", errors="replace")
-    except (OSError, EOFError) as error:
+    except (OSError, EOFError, zlib.error) as error:
         raise DatasetError(
             f"{path} cannot be read ({error}).",
             "A file of tidal constituents is needed.",

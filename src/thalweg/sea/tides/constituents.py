@@ -102,6 +102,11 @@ class Constituents:
         convention, facts
             As the attributes.
 
+        Returns
+        -------
+        Constituents
+            With one variable at one node.
+
         Raises
         ------
         InputError
@@ -137,7 +142,13 @@ class Constituents:
         return float(known.mean()) if known.size else 45.0
 
     def frequencies(self) -> FloatArray:
-        """Return the frequencies (C,) [cycles per hour]."""
+        """Return the frequencies of the constituents.
+
+        Returns
+        -------
+        float64 array (C,)
+            Cycles per hour.
+        """
         return np.array([self._frequency(n) for n in self.names])
 
     def _frequency(self, name: str) -> float:
@@ -145,7 +156,18 @@ class Constituents:
         return module.frequency(name)
 
     def coefficients(self, variable: str) -> ComplexArray:
-        """Return ``A exp(-i g)`` (C, N) of a variable."""
+        """Return the complex amplitudes ``A exp(-i g)`` of a variable.
+
+        Parameters
+        ----------
+        variable : str
+            Canonical name, one of `variables`.
+
+        Returns
+        -------
+        complex128 array (C, N)
+            In the unit of the variable.
+        """
         phase = np.radians(self.phase[variable])
         return np.asarray(self.amplitude[variable] * np.exp(-1j * phase))
 
@@ -196,7 +218,23 @@ class Constituents:
         return result
 
     def picked(self, only: Sequence[str]) -> Constituents:
-        """Return the constants of the constituents named."""
+        """Return the constants of some of the constituents.
+
+        Parameters
+        ----------
+        only : sequence of str
+            Names of constituents.
+
+        Returns
+        -------
+        Constituents
+            In the order of the names.
+
+        Raises
+        ------
+        InputError
+            If a constituent is not there (with near matches).
+        """
         missing = [n for n in only if n not in self.names]
         if missing:
             raise unknown_name_error("constituent here", missing[0], self.names)
@@ -206,7 +244,21 @@ class Constituents:
         return replace(self, names=tuple(only), amplitude=amplitude, phase=phase)
 
     def table(self, variable: str, node: int = 0) -> list[dict[str, float | str]]:
-        """Return name, period [h], amplitude and phase [deg] at a node, largest first."""
+        """Return the constants of a variable at one node, largest amplitude first.
+
+        Parameters
+        ----------
+        variable : str
+            Canonical name, one of `variables`.
+        node : int, optional
+            Index of the node.
+
+        Returns
+        -------
+        list of dict
+            ``name``, ``period_h``, ``amplitude`` (in the unit of the variable) and
+            ``phase_deg``.
+        """
         size, phase = self.amplitude[variable][:, node], self.phase[variable][:, node]
         rows: list[dict[str, float | str]] = [
             {

@@ -234,6 +234,11 @@ def equilibrium_arguments(names: tuple[str, ...], times: FloatArray) -> FloatArr
     -------
     float64 array (T, C)
         V [cycles], 0 to 1.
+
+    References
+    ----------
+    P. Schureman, "Manual of harmonic analysis and prediction of tides", Coast and Geodetic
+    Survey Special Publication 98 (1958), Table 2.
     """
     matrix = np.array([constituent_definition(n).argument for n in names]).reshape(-1, 7)
     return (mean_longitudes(times).T @ matrix[:, :6].T + matrix[:, 6]) % 1.0
@@ -262,6 +267,10 @@ def nodal_corrections(
     -------
     complex128 array (T, C)
         f exp(i u).
+
+    References
+    ----------
+    P. Schureman (1958), eqs. 73 to 79, 144, 191 to 197, 207 to 215, 227 and 235.
     """
     family = _nodal_families(times)
     one = np.ones(times.size, np.complex128)

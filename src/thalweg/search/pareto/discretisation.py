@@ -12,19 +12,15 @@ from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import STATUS_COUNT
 from thalweg.kernels.pareto.edge_tables import EdgeTables, sail_departures
-from thalweg.kernels.pareto.time_expanded_labels import COUNTER_COUNT as AGENDA_COUNTS
-from thalweg.kernels.pareto.time_expanded_labels import (
+from thalweg.kernels.pareto.label_arrays import COUNTER_COUNT as AGENDA_COUNTS
+from thalweg.kernels.pareto.label_arrays import (
     ActiveNodes,
     BinLabels,
     LabelTarget,
     TimeBins,
 )
-from thalweg.search.pareto.front_problem import (
-    BoundsToGoal,
-    FrontProblem,
-    FrontRequest,
-    new_edge_workspace,
-)
+from thalweg.search.pareto.front_problem import FrontProblem, FrontRequest, new_edge_workspace
+from thalweg.search.pareto.goal_bounds import BoundsToGoal
 
 #: What the tables of edges may be off from the legs, as a share of their duration or cost.
 TABLE_TOLERANCE = 1e-3
@@ -157,9 +153,9 @@ def _clock(request: FrontRequest, width: float) -> TimeBins:
     )
 
 
-def _windows(clock: TimeBins, bounds: BoundsToGoal, soonest: FloatArray) -> BinWindows:
+def _windows(clock: TimeBins, bounds: BoundsToGoal, earliest: FloatArray) -> BinWindows:
     """Return the bins of each state; the tables may be early by a little."""
-    early = np.maximum(0.995 * soonest - 0.5 * clock.width, 0.0)
+    early = np.maximum(0.995 * earliest - 0.5 * clock.width, 0.0)
     late = clock.latest - bounds.time
     known = np.isfinite(early) & np.isfinite(late) & (late >= early)
     first = np.where(known, np.where(known, early, 0.0) // clock.width, 1).astype(np.int32)

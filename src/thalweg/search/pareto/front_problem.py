@@ -1,11 +1,10 @@
-"""The problem of a front: network, sea, a ship with settings, prices, and bounds."""
+"""The problem of a front: network, sea, a ship with settings, and prices."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -19,18 +18,14 @@ from thalweg.kernels.codes import (
     AXIS_COUNT,
     AXIS_DEPTH,
     CHANNEL_COUNT,
-    CURRENT_EAST,
-    CURRENT_NORTH,
     SPEED_FIELD,
 )
 from thalweg.kernels.leg.edge_sailing import ShipArrays
 from thalweg.kernels.leg.table_lookup import TableArrays, axes_needed, table_value
-from thalweg.kernels.network.graph_building import static_dijkstra
 from thalweg.kernels.pareto.edge_tables import (
     EdgePrices,
     FrontArrays,
     MultiSettingShip,
-    largest_edge_currents,
 )
 from thalweg.kernels.search.label_setting import (
     SearchQuery,
@@ -53,9 +48,6 @@ if TYPE_CHECKING:
     from thalweg.network.network import Network
     from thalweg.sea.frozen_fields import StationFields
     from thalweg.ship.tables.performance_table import PerformanceTable
-
-
-_MAX_TIME_PRICES = 10
 
 
 @dataclass(frozen=True, eq=False)
@@ -252,137 +244,6 @@ def still_water_values(table: TableArrays, ship: MultiSettingShip) -> FloatArray
     at = tuple(float(x) for x in where)
     found = [table_value(table, at, int(setting)) for setting in ship.settings]
     return np.array([value if ok else math.nan for value, ok in found])
-
-
-class BoundsToGoal(NamedTuple):
-    """Lower bounds of time and cost from a state to the goal.
-
-    Attributes
-    ----------
-    time : float64[N]
-        [s].
-    rates : float64[R]
-        Prices of a second, 0 first.
-    floor : float64[N, R]
-        Least cost plus price times time.
-    to_goal : ToGoal
-        For other prices.
-    """
-
-    time: FloatArray
-    rates: FloatArray
-    floor: FloatArray
-    to_goal: BackwardSearch
-
-
-class BackwardSearch:
-    """Edges in the most favourable currents and weather, walked backwards from the goal.
-
-    Each edge is taken at the largest current along it in the fields, at the greatest speed and the
-    least fuel rate of each setting in any weather.
-
-    Attributes
-    ----------
-    along : float64[E]
-        Largest current along every edge in the fields [m/s].
-    """
-
-    def __init__(self, front_problem: FrontProblem, goal: int) -> None:
-        net, self._got, self._goal = front_problem.world.network, front_problem, goal
-        self.along = np.zeros(len(net.target))
-        if min(front_problem.world.sea.channel_index[[CURRENT_EAST, CURRENT_NORTH]]) >= 0:
-            largest_edge_currents(net, front_problem.world.sea, self.along)
-        over_ground = front_problem.fastest[:, None] + self.along[None, :]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            pace = np.where(over_ground > 0.0, net.length / over_ground, math.inf)
-        pace[~(front_problem.fastest > 0.0)] = math.inf
-        self._quickest = pace  # (S, E) [s]
-        self._order = np.argsort(net.target, kind="stable")
-        nodes = np.arange(len(net.station) + 1)
-        self._indptr = np.searchsorted(net.target[self._order], nodes).astype(np.int64)
-        self._target = front_problem.tails[self._order].astype(np.int32)
-
-    def time(self) -> FloatArray:
-        """Return the least time to the goal [s]."""
-        fixed = self._got.world.prices.fixed_time
-        return (
-            self._least(np.where(np.isnan(fixed), self._quickest.min(axis=0), fixed))
-            * ROUNDING_FACTOR
-        )
-
-    def floor(self, rate: float) -> FloatArray:
-        """Return the least cost plus price of time to the goal."""
-        return self._least(self._costs(rate)) * (1.0 - 1e-6)
-
-    def way(self, start: int, rate: float) -> IntArray:
-        """Return the states of the path of least cost plus priced time; empty if there is none."""
-        parent = np.empty(len(self._indptr) - 1, np.int64)
-        distance = self._least(self._costs(rate), parent)
-        if not math.isfinite(distance[start]):
-            return np.empty(0, np.int64)
-        states = [start]
-        while states[-1] != self._goal:
-            states.append(int(parent[states[-1]]))
-        return np.array(states, np.int64)
-
-    def _costs(self, rate: float) -> FloatArray:
-        """Return the least cost plus price of time of every edge."""
-        prices = self._got.world.prices
-        second = prices.time_price + rate
-        least = np.full(len(prices.fee), math.inf)
-        for quickest, fuel in zip(self._quickest, self._got.thriftiest):
-            if math.isfinite(fuel):
-                np.fmin(least, quickest * (fuel * prices.weight + second), out=least)
-        still = prices.fixed_fuel * prices.weight + prices.fixed_time * second
-        least = np.where(np.isnan(prices.fixed_time), least, still)
-        return least + prices.fee
-
-    def _least(self, weights: FloatArray, parent: IntArray | None = None) -> FloatArray:
-        """Return the least sums of weights to the goal; ``parent`` is filled with what follows."""
-        count = len(self._indptr) - 1
-        distance = np.empty(count)
-        parent = np.empty(count, np.int64) if parent is None else parent
-        given = np.ascontiguousarray(weights[self._order])
-        static_dijkstra(self._indptr, self._target, given, self._goal, -1, distance, parent)
-        return distance
-
-
-def bounds_to_goal(front_problem: FrontProblem, goal: int) -> BoundsToGoal:
-    """Bound time and cost from every state to the goal."""
-    to_goal = BackwardSearch(front_problem, goal)
-    weight = front_problem.world.prices.weight
-    rates = _time_prices(front_problem, float(np.median(weight)) if len(weight) else 1.0)
-    floor = np.stack([to_goal.floor(rate) for rate in rates], axis=1)
-    return BoundsToGoal(to_goal.time(), rates, floor, to_goal)
-
-
-def _time_prices(front_problem: FrontProblem, weight: float) -> FloatArray:
-    """Return prices of time at which the thriftiest setting in still water changes, and 0."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        pace = 1.0 / front_problem.fastest
-        spent = front_problem.thriftiest * pace * weight
-    known = np.isfinite(pace) & np.isfinite(spent)
-    hull: list[tuple[float, float]] = []
-    for point in sorted(zip(pace[known].tolist(), spent[known].tolist())):
-        if hull and point[1] >= hull[-1][1]:
-            continue
-        while len(hull) > 1 and _on_or_above_line(hull[-2], hull[-1], point):
-            hull.pop()
-        hull.append(point)
-    price = front_problem.world.prices.time_price
-    slopes = [(a[1] - b[1]) / (b[0] - a[0]) - price for a, b in pairwise(hull)]
-    slopes = sorted(slope for slope in slopes if slope > 0.0)
-    if len(slopes) > _MAX_TIME_PRICES:
-        picked = np.unique(np.linspace(0, len(slopes) - 1, _MAX_TIME_PRICES).round().astype(int))
-        slopes = [slopes[i] for i in picked]
-    return np.array([0.0, *slopes])
-
-
-def _on_or_above_line(
-    a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]
-) -> bool:
-    """Return whether b is on or above the line from a to c."""
-    return (b[1] - a[1]) * (c[0] - a[0]) >= (c[1] - a[1]) * (b[0] - a[0])
 
 
 class EarliestArrivals(NamedTuple):

@@ -130,7 +130,18 @@ class NetworkFront:
         return self.points[-1]
 
     def lower_at(self, time: float) -> float:
-        """Return what no path that takes at most a time [s] can cost less than; NaN if unknown."""
+        """Return a lower bound of the cost of all paths that take at most a time.
+
+        Parameters
+        ----------
+        time : float
+            Passage time [s].
+
+        Returns
+        -------
+        float
+            Cost, in the unit of the front; NaN if unknown.
+        """
         n = int(np.searchsorted(self.lower_time, time, side="right"))
         return float(self.lower_cost[n - 1]) if n else float("nan")
 
@@ -146,7 +157,13 @@ class NetworkFront:
         return np.where(np.isnan(below), np.nan, np.maximum(share, 0.0))
 
     def knee(self) -> FrontPoint:
-        """Return the point that is farthest below the line between the ends of the front."""
+        """Return the point that is farthest below the line between the ends of the front.
+
+        Returns
+        -------
+        FrontPoint
+            The first point if the front has no extent in time or cost.
+        """
         time, cost = self.time, self.cost
         spans = np.ptp(time), np.ptp(cost)
         if min(spans) <= 0.0:
@@ -155,7 +172,18 @@ class NetworkFront:
         return self.points[int(np.argmin(below))]
 
     def spread(self, count: int) -> tuple[FrontPoint, ...]:
-        """Return at most ``count`` points, the ends among them, evenly along the front."""
+        """Return points that are evenly spaced along the front, the ends among them.
+
+        Parameters
+        ----------
+        count : int
+            Greatest number of points; below 2 all are returned.
+
+        Returns
+        -------
+        tuple of FrontPoint
+            By rising time.
+        """
         if count < 2:
             return self.points
         return tuple(self.points[i] for i in evenly_spaced_subset(self.time, self.cost, count))
@@ -169,6 +197,11 @@ def cheapest(front: NetworkFront, arrive_by: float | None = None) -> FrontPoint:
     front : Front
     arrive_by : float, optional
         Latest arrival [s since epoch]; without it the cheap end of the front.
+
+    Returns
+    -------
+    FrontPoint
+        The point.
 
     Raises
     ------
@@ -184,7 +217,7 @@ def cheapest(front: NetworkFront, arrive_by: float | None = None) -> FrontPoint:
             f"No path arrives by {arrive_by:.0f} s.",
             f"The earliest arrival is {earliest:.0f} s, "
             f"{(earliest - arrive_by) / 3600.0:.2f} h later.",
-            "Ask for a later arrival or depart earlier.",
+            "Allow a later arrival, or depart earlier.",
             earliest=earliest,
         )
     return in_time[-1]

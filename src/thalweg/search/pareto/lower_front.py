@@ -11,26 +11,23 @@ import numpy as np
 from thalweg.core.pareto_fronts import lower_hull
 from thalweg.core.types import FloatArray
 from thalweg.kernels.pareto.edge_tables import EdgeTables
-from thalweg.kernels.pareto.lower_labels import (
+from thalweg.kernels.pareto.label_arrays import PRUNED, RELAXED, VISITED
+from thalweg.kernels.pareto.lower_labels import process_bins_lower, process_bins_scalarised
+from thalweg.kernels.pareto.slice_interpolation import (
     InterpolationBounds,
     LowerLabels,
-    process_bins_lower,
+    LowerSearch,
+    ScalarisedLabelTarget,
 )
-from thalweg.kernels.pareto.lower_scalarised import ScalarisedLabelTarget, process_bins_scalarised
-from thalweg.kernels.pareto.time_expanded_labels import PRUNED, RELAXED, VISITED
 from thalweg.search.pareto.discretisation import (
     PROGRESS_CHUNKS,
     Discretisation,
     new_agenda,
     new_target,
 )
-from thalweg.search.pareto.front_problem import (
-    BoundsToGoal,
-    FrontProblem,
-    FrontRequest,
-    new_edge_workspace,
-)
+from thalweg.search.pareto.front_problem import FrontProblem, FrontRequest, new_edge_workspace
 from thalweg.search.pareto.front_result import FrontPoint
+from thalweg.search.pareto.goal_bounds import BoundsToGoal
 from thalweg.search.pareto.seed_paths import tighten_target
 
 _ROUNDING_MARGIN = 1.0 - 2e-6  # for sums in single precision
@@ -115,12 +112,13 @@ def _lower_by_bins(
         tighten_target(target, clock, point)
     labels = _new_labels(plan)
     labels.cost[labels.place[request.start]] = 0.0
-    agenda, work = new_agenda(plan.windows), new_edge_workspace()
+    agenda = new_agenda(plan.windows)
+    search = LowerSearch(
+        front_problem.world, labels, target, clock, blocks, slack, agenda, new_edge_workspace()
+    )
     edges = np.unique(np.linspace(0, clock.count, PROGRESS_CHUNKS + 1).astype(int))
     for a, b in pairwise(edges.tolist()):
-        process_bins_lower(
-            front_problem.world, labels, target, clock, blocks, slack, agenda, a, b, work
-        )
+        process_bins_lower(search, a, b)
         report(b / clock.count)
     first, last = int(labels.first[request.goal]), int(labels.last[request.goal])
     begin = int(labels.place[request.goal])
@@ -160,14 +158,16 @@ def _lower_by_time_prices(
         target = ScalarisedLabelTarget(request.goal, rate, known, bounds.time, floor)
         agenda = new_agenda(plan.windows)
         process_bins_scalarised(
-            front_problem.world,
-            labels,
-            target,
-            plan.clock,
-            blocks,
-            slack,
-            agenda,
-            new_edge_workspace(),
+            LowerSearch(
+                front_problem.world,
+                labels,
+                target,
+                plan.clock,
+                blocks,
+                slack,
+                agenda,
+                new_edge_workspace(),
+            )
         )
         begin = int(labels.place[request.goal])
         bins = int(labels.last[request.goal]) - int(labels.first[request.goal]) + 1

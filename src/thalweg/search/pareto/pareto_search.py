@@ -14,13 +14,8 @@ from thalweg.core.errors import InputError, NoRouteError
 from thalweg.kernels.codes import REASONS
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.pareto.edge_tables import EdgeTables
-from thalweg.kernels.pareto.time_expanded_labels import (
-    PRUNED,
-    RELAXED,
-    VISITED,
-    WAITED,
-    process_bins,
-)
+from thalweg.kernels.pareto.label_arrays import PRUNED, RELAXED, VISITED, WAITED, LabelSearch
+from thalweg.kernels.pareto.time_expanded_labels import process_bins
 from thalweg.search.pareto.discretisation import (
     PROGRESS_CHUNKS,
     Discretisation,
@@ -31,18 +26,17 @@ from thalweg.search.pareto.discretisation import (
     new_target,
 )
 from thalweg.search.pareto.front_problem import (
-    BoundsToGoal,
     FrontProblem,
     FrontQuery,
     FrontRequest,
     MultiSettingShipOnNetwork,
-    bounds_to_goal,
     earliest_arrivals,
     make_front_problem,
     new_edge_workspace,
     ship_at_setting,
 )
 from thalweg.search.pareto.front_result import FrontPoint, FrontWork, NetworkFront
+from thalweg.search.pareto.goal_bounds import BoundsToGoal, bounds_to_goal
 from thalweg.search.pareto.lower_front import LowerFront, lower_front
 from thalweg.search.pareto.seed_paths import (
     PlannedPath,
@@ -150,10 +144,10 @@ def pareto_front(
     _check_bin_width(bin_s)
     front_problem = make_front_problem(ship_on_network, request)
     bounds = bounds_to_goal(front_problem, request.goal)
-    soonest = earliest_arrivals(front_problem, request, everywhere=True)
+    earliest = earliest_arrivals(front_problem, request, everywhere=True)
     first = _find_seed_paths(network, front_problem, request, bounds)
     plan = choose_discretisation(
-        front_problem, request, bounds, soonest.time, bin_s=bin_s, memory_limit=memory_limit
+        front_problem, request, bounds, earliest.time, bin_s=bin_s, memory_limit=memory_limit
     )
     return _search(front_problem, request, bounds, plan, first, lower=lower, progress=progress)
 
@@ -221,13 +215,20 @@ def _set_labels(
         tighten_target(target, plan.clock, point)
     begin = int(labels.place[request.start])
     labels.cost[begin], labels.when[begin], labels.source[begin] = 0.0, (0.0, np.nan), -1
-    agenda, work = new_agenda(plan.windows), new_edge_workspace()
-    spare = np.empty(2 * len(request.settings), np.float32)
+    agenda = new_agenda(plan.windows)
+    search = LabelSearch(
+        front_problem.world,
+        labels,
+        target,
+        plan.clock,
+        blocks,
+        agenda,
+        new_edge_workspace(),
+        np.empty(2 * len(request.settings), np.float32),
+    )
     edges = np.unique(np.linspace(0, plan.clock.count, PROGRESS_CHUNKS + 1).astype(int))
     for a, b in pairwise(edges.tolist()):
-        process_bins(
-            front_problem.world, labels, target, plan.clock, blocks, agenda, a, b, work, spare
-        )
+        process_bins(search, a, b)
         report(b / plan.clock.count, 0)
     found, dropped = paths_of_goal_labels(front_problem, request, labels)
     return found, dropped, agenda.counts
@@ -248,10 +249,10 @@ def _find_seed_paths(
     What is forbidden in waves may be allowed at a lower setting: then the search decides.
     """
     table, arrive, fastest = front_problem.world.ship.table, math.inf, None
-    heeds = len(table.safety) > 0 or len(table.motions) > 0
+    has_wave_limits = len(table.safety) > 0 or len(table.motions) > 0
     for choice in range(len(request.settings))[::-1]:
         arrive, fastest = _fastest_path(network, front_problem, request, choice)
-        if fastest is not None or not heeds:
+        if fastest is not None or not has_wave_limits:
             break
     refusal: InputError | NoRouteError | None = None
     if fastest is None:
@@ -261,10 +262,10 @@ def _find_seed_paths(
             f"No path arrives by {request.latest:.0f} s.",
             f"The earliest arrival is {arrive:.0f} s, {(arrive - request.latest) / 3600:.2f} h "
             "later.",
-            "Ask for a later arrival, depart earlier or allow a higher setting.",
+            "Allow a later arrival, depart earlier, or allow a higher setting.",
             earliest=arrive,
         )
-    if refusal is not None and not heeds:
+    if refusal is not None and not has_wave_limits:
         raise refusal
     return _SeedPaths(
         [] if fastest is None else seed_paths(front_problem, request, fastest, bounds), refusal

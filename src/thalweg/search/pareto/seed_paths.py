@@ -12,20 +12,16 @@ from thalweg.core.pareto_fronts import non_dominated_indices
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import OK
 from thalweg.kernels.pareto.edge_tables import sail_path
-from thalweg.kernels.pareto.time_expanded_labels import (
-    BinLabels,
-    LabelTarget,
-    TimeBins,
-    trace_labels,
-)
+from thalweg.kernels.pareto.label_arrays import BinLabels, LabelTarget, TimeBins
+from thalweg.kernels.pareto.time_expanded_labels import trace_labels
 from thalweg.search.pareto.front_problem import (
-    BoundsToGoal,
     EarliestArrivals,
     FrontProblem,
     FrontRequest,
     new_edge_workspace,
 )
 from thalweg.search.pareto.front_result import FrontPoint
+from thalweg.search.pareto.goal_bounds import BoundsToGoal
 from thalweg.search.search_result import SearchResult
 
 _SETTING_SWITCHES = 24  # places at most where a seed changes from one setting to the next

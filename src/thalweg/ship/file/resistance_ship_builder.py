@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.units import GRAVITY, KNOT
+from thalweg.ship.file.cubic_law_ship_builder import cubic_law_plant, cubic_law_resistance
 from thalweg.ship.file.part_builders import (
     build_limits,
     build_speed_loss,
@@ -28,6 +29,7 @@ from thalweg.ship.models.known_speed_model import KwonSpeedLoss
 from thalweg.ship.models.kwon_resistance_model import KwonResistanceModel
 from thalweg.ship.models.propulsion_model import build_propulsion
 from thalweg.ship.models.resistance_model import ResistanceModel
+from thalweg.ship.models.speed_power_laws import speed_power_law_name
 from thalweg.ship.models.squat_model import build_squat_model
 from thalweg.ship.schema.ship_schema import ModelsSection, ShipFile
 
@@ -51,8 +53,8 @@ def build_resistance_model(
     InputError
         For unknown methods (with near matches), methods that do not go together, and missing data.
     """
-    calm = file.models.calm_water or "none"
-    if calm in CALM_WATER_METHODS:
+    calm = file.models.calm_water or speed_power_law_name(file)
+    if calm == "cubic" or calm in CALM_WATER_METHODS:
         return _assemble_resistance_model(file, hull, loading)
     if calm not in ("none", "cubic", "table"):
         raise unknown_name_error(
@@ -62,7 +64,8 @@ def build_resistance_model(
     raise InputError(
         f"The ship file chooses {', '.join(f'models.{name}' for name in idle)}, but has no "
         "resistance they could act on.",
-        f"They go with models.calm_water among {', '.join(CALM_WATER_METHODS)}.",
+        f"They go with models.calm_water among {', '.join(CALM_WATER_METHODS)}; waves and wind "
+        "also with cubic.",
         "Choose one of those, or speed_loss: kwon_2008 for a ship with known speeds.",
         key=f"models.{idle[0]}",
     )
@@ -78,7 +81,7 @@ def _assemble_resistance_model(
     _check_draught(loading)
     full = _full_hull(hull, loading)
     balance_at = _force_balance_by_loading(file, full, loading)
-    plant = build_engine_plant(file)
+    plant = cubic_law_plant(file) if _is_cubic(file) else build_engine_plant(file)
     orders, guessed = _build_engine_orders(file, balance_at(1.0), plant)
     light = hull_at_load_factor(full, loading, 0.0).number("displacement_m3")
     guessed = (*guessed, *lightship_estimate(file.loading, light or np.nan))
@@ -223,8 +226,13 @@ def _with_loading_displacement(hull: Hull, loading: Loading) -> Hull:
     return estimate_particulars(Hull(values, hull.estimated), ("block_coefficient",))
 
 
+def _is_cubic(file: ShipFile) -> bool:
+    """Return whether the calm-water power is by the cubic law."""
+    return (file.models.calm_water or speed_power_law_name(file)) == "cubic"
+
+
 def _build_force_balance(file: ShipFile, hull: Hull) -> ForceBalance:
-    calm = build_calm_water(file, hull)
+    calm = cubic_law_resistance(hull, file) if _is_cubic(file) else build_calm_water(file, hull)
     rudder = file.models.rudder
     if rudder != "none":
         required_particulars(hull, ("rudder_area_m2",), rudder, instead="rudder: none")
@@ -245,8 +253,8 @@ def _build_engine_orders(
     if powers is not None and speeds is not None:
         raise InputError(
             "The ship file gives both powers_kw and speeds_kn.",
-            "A ship keeps either a power or a speed.",
-            "Keep one of them.",
+            "Orders are either powers or speeds.",
+            "Leave one of them out.",
             key="powers_kw",
         )
     if powers is not None:

@@ -14,7 +14,13 @@ _SUFFIXES = (".yaml", ".yml")
 
 
 def library_names() -> list[str]:
-    """Return the names of the ships in the library."""
+    """Return the names of the ships in the library.
+
+    Returns
+    -------
+    list of str
+        In alphabetical order.
+    """
     folder = resources.files("thalweg.ship").joinpath("library")
     return sorted(
         f.name.removesuffix(".yaml") for f in folder.iterdir() if f.name.endswith(".yaml")

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Final
+
+#: Key of the estimate that states how a resistance in calm water was assumed.
+CALM_WATER_ASSUMPTION: Final = "calm-water resistance"
 
 
 @dataclass(frozen=True)
@@ -22,3 +27,8 @@ class Estimate:
     key: str
     value: float | str
     method: str
+
+
+def method_assumptions(estimated: Iterable[Estimate]) -> list[str]:
+    """Return the assumptions of a ship's methods that every result must state, in sentences."""
+    return [one.method for one in estimated if one.key == CALM_WATER_ASSUMPTION]

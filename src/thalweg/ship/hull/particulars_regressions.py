@@ -10,19 +10,21 @@ from typing import Final
 from thalweg.core.types import FloatArray
 from thalweg.ship.methods.array_conversion import as_float_array
 from thalweg.ship.methods.displacement import block_coefficient_of, displacement_volume
-from thalweg.ship.methods.hull_regressions import (
+from thalweg.ship.methods.hull_coefficients import (
     block_from_froude,
-    bulb_area_rakke,
-    bulb_height_rakke,
     lcb_from_froude,
     lcb_from_prismatic,
-    length_over_surface_no_bulb,
     midship_from_block,
+    waterplane_from_block,
+)
+from thalweg.ship.methods.hull_regressions import (
+    bulb_area_rakke,
+    bulb_height_rakke,
+    length_over_surface_no_bulb,
     perpendiculars_from_waterline,
     propeller_diameter_from_draught,
     transom_area_rakke,
     waterline_from_perpendiculars,
-    waterplane_from_block,
     wetted_surface_denny_mumford,
 )
 

@@ -189,7 +189,11 @@ def _carbon_intensity(co2: ArrayLike, work: FloatArray) -> FloatArray:
 
 
 def attained_cii(co2: ArrayLike, *, capacity: ArrayLike, distance_nm: ArrayLike) -> FloatArray:
-    """Return the attained annual CII: CO2 over capacity times distance.
+    r"""Return the attained annual CII: CO2 over capacity times distance.
+
+    .. math::
+        CII = \frac{10^3\, m_{CO_2}}{capacity \cdot D}, \quad m_{CO_2}\ \text{in kg},\ D\
+            \text{in nm}
 
     Parameters
     ----------
@@ -213,7 +217,9 @@ def attained_cii(co2: ArrayLike, *, capacity: ArrayLike, distance_nm: ArrayLike)
 
 
 def eeoi(co2: ArrayLike, *, cargo_t: ArrayLike, distance_nm: ArrayLike) -> FloatArray:
-    """Return the operational indicator: sum of CO2 over sum of cargo times distance.
+    r"""Return the operational indicator: sum of CO2 over sum of cargo times distance.
+
+    .. math:: EEOI = \frac{10^3 \sum m_{CO_2}}{\sum m_{cargo} D}
 
     Parameters
     ----------
@@ -295,14 +301,16 @@ def reduction_factor(year: int) -> float:
         raise InputError(
             f"There is no CII reduction factor for {year}.",
             f"Factors are adopted for {min(REDUCTION_PERCENT)} to {max(REDUCTION_PERCENT)}.",
-            "Ask for a year in that range.",
+            "Give a year in that range.",
             year=year,
         )
     return REDUCTION_PERCENT[year]
 
 
 def required_cii(ship_type: str, *, capacity: ArrayLike, year: int) -> FloatArray:
-    """Return the required annual CII: (1 - Z/100) times the reference line.
+    r"""Return the required annual CII: (1 - Z/100) times the reference line.
+
+    .. math:: CII_{req} = (1 - Z / 100)\, a\, capacity^{-c}
 
     Parameters
     ----------
@@ -326,7 +334,9 @@ def required_cii(ship_type: str, *, capacity: ArrayLike, year: int) -> FloatArra
 
 
 def rating_boundaries(ship_type: str, *, capacity: ArrayLike, year: int) -> FloatArray:
-    """Return the four boundaries between ratings A, B, C, D and E.
+    r"""Return the four boundaries between ratings A, B, C, D and E.
+
+    .. math:: CII_k = \exp(d_k)\, CII_{req}, \quad k = 1, \ldots, 4
 
     Parameters
     ----------

@@ -110,7 +110,9 @@ def speed_over_ground(speed: ArrayLike, along: ArrayLike, across: ArrayLike) -> 
 def current_triangle(
     speed: ArrayLike, course: ArrayLike, *, current_east: ArrayLike, current_north: ArrayLike
 ) -> CurrentTriangle:
-    """Return speed over ground, heading and crab angle on a course through a current.
+    r"""Return speed over ground, heading and crab angle on a course through a current.
+
+    .. math:: V_G = c + \sqrt{V^2 - s^2}, \quad \text{crab angle} = -\sin^{-1}(s / V)
 
     With the current along the course c and across it to starboard s, and the speed through
     water V: speed over ground = c + sqrt(V^2 - s^2), crab angle = -asin(s / V).
@@ -135,6 +137,11 @@ def current_triangle(
     course to the ship's speed before taking the angle, and swaps the components along and across
     in eqs. 3.61, 3.62, 3.67 and 3.68; this changes his energies by -0.26 to +0.26 %.
     van Halem (2019), eq. 2.4, prints tanh for atan2.
+
+    References
+    ----------
+    van Halem (2019), eq. 2.4, and Schless (2023), eqs. 3.46 and 3.57 to 3.64, corrected (see
+    the notes).
     """
     along, across = current_along_and_across(current_east, current_north, course)
     ground = speed_over_ground(speed, along, across)
@@ -151,7 +158,9 @@ def current_triangle(
 def distance_through_water(
     distance: ArrayLike, *, speed: ArrayLike, speed_over_ground: ArrayLike
 ) -> FloatArray:
-    """Return the distance made through the water: V d / (speed over ground) [m].
+    """Return the distance made through the water.
+
+    .. math:: d_w = V d / V_G
 
     Parameters
     ----------
@@ -169,6 +178,10 @@ def distance_through_water(
     -----
     Schless (2023), eqs. 3.56, 3.60 and 3.64, divides by the cosine of the drift angle as well,
     which counts the current twice.
+
+    References
+    ----------
+    Schless (2023), eqs. 3.56, 3.60 and 3.64, corrected (see the notes).
     """
     return as_float_array(speed) * as_float_array(distance) / as_float_array(speed_over_ground)
 

@@ -1,11 +1,10 @@
-"""Published regressions that estimate particulars of a hull from others."""
+"""Published regressions that estimate lengths and areas of a hull from others."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Final, TypeVar
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import unknown_name_error
@@ -22,132 +21,6 @@ def _value_for_ship_type(kind: str, table: Mapping[str, _T]) -> _T:
     if kind not in table:
         raise unknown_name_error("kind of ship", kind, table)
     return table[kind]
-
-
-def block_from_froude(froude: ArrayLike) -> FloatArray:
-    """Return a usual block coefficient at a design Froude number.
-
-    C_B = -4.22 + 27.8 sqrt(Fn) - 39.1 Fn + 46.6 Fn^3, for 0.15 < Fn < 0.32.
-
-    Parameters
-    ----------
-    froude : array_like
-        V / sqrt(g L) at design speed [-].
-
-    Returns
-    -------
-    ndarray
-        Block coefficient [-], NaN outside the range.
-
-    References
-    ----------
-    H. Schneekluth, V. Bertram, "Ship design for efficiency and economy", 2nd ed. (1998),
-    section 1.5 (after Jensen).
-    """
-    fn = as_float_array(froude)
-    fn = np.where((fn >= 0.15) & (fn <= 0.32), fn, np.nan)
-    return -4.22 + 27.8 * np.sqrt(fn) - 39.1 * fn + 46.6 * fn**3
-
-
-def midship_from_block(block_coefficient: ArrayLike) -> FloatArray:
-    """Return a usual midship section coefficient: 1 / (1 + (1 - C_B)^3.5).
-
-    Parameters
-    ----------
-    block_coefficient : array_like
-        Block coefficient [-].
-
-    Returns
-    -------
-    ndarray
-        Midship section coefficient [-].
-
-    References
-    ----------
-    Schneekluth and Bertram (1998), section 1.6 (after Jensen, HSVA).
-    """
-    return 1.0 / (1.0 + (1.0 - as_float_array(block_coefficient)) ** 3.5)
-
-
-def midship_kerlen(block_coefficient: ArrayLike) -> FloatArray:
-    """Return a usual midship section coefficient: 1.006 - 0.0056 C_B^-3.56.
-
-    Parameters
-    ----------
-    block_coefficient : array_like
-        Block coefficient [-].
-
-    Returns
-    -------
-    ndarray
-        Midship section coefficient [-].
-
-    References
-    ----------
-    Kerlen (1970) as given by Schneekluth and Bertram (1998), section 1.6.
-    """
-    return 1.006 - 0.0056 * as_float_array(block_coefficient) ** -3.56
-
-
-def waterplane_from_block(block_coefficient: ArrayLike) -> FloatArray:
-    """Return a usual waterplane coefficient of average sections: (1 + 2 C_B) / 3.
-
-    Parameters
-    ----------
-    block_coefficient : array_like
-        Block coefficient [-].
-
-    Returns
-    -------
-    ndarray
-        Waterplane coefficient [-].
-
-    References
-    ----------
-    Schneekluth and Bertram (1998), section 1.6.
-    """
-    return (1.0 + 2.0 * as_float_array(block_coefficient)) / 3.0
-
-
-def lcb_from_prismatic(prismatic_coefficient: ArrayLike) -> FloatArray:
-    """Return a usual centre of buoyancy, percent of length forward of midship: 19.4 C_P - 13.5.
-
-    Parameters
-    ----------
-    prismatic_coefficient : array_like
-        C_P = C_B / C_M [-], about 0.55 to 0.85.
-
-    Returns
-    -------
-    ndarray
-        Longitudinal centre of buoyancy [% of length, + forward].
-
-    References
-    ----------
-    Schneekluth and Bertram (1998), section 1.5, from memory. It has two such lines, this one and
-    `lcb_from_froude`; which of them was drawn for tankers and bulkers is not certain.
-    """
-    return 19.4 * as_float_array(prismatic_coefficient) - 13.5
-
-
-def lcb_from_froude(froude: ArrayLike) -> FloatArray:
-    """Return a usual centre of buoyancy, percent of length forward of midship: 8.80 - 38.9 Fn.
-
-    Parameters
-    ----------
-    froude : array_like
-        Froude number at design speed [-], about 0.10 to 0.25.
-
-    Returns
-    -------
-    ndarray
-        Longitudinal centre of buoyancy [% of length, + forward].
-
-    References
-    ----------
-    Schneekluth and Bertram (1998), section 1.5, from memory; see `lcb_from_prismatic`.
-    """
-    return 8.80 - 38.9 * as_float_array(froude)
 
 
 def wetted_surface_denny_mumford(
@@ -316,26 +189,6 @@ def wetted_surface_kristensen(
     return surface - rate * (full - as_float_array(draught)) * (size + as_float_array(breadth))
 
 
-def waterplane_kristensen(block_coefficient: ArrayLike) -> FloatArray:
-    """Return a usual waterplane coefficient: 0.55 + 0.45 C_B.
-
-    Parameters
-    ----------
-    block_coefficient : array_like
-        Block coefficient on the waterline length [-].
-
-    Returns
-    -------
-    ndarray
-        Waterplane coefficient [-].
-
-    References
-    ----------
-    Kristensen and Lützen (2012).
-    """
-    return 0.55 + 0.45 * as_float_array(block_coefficient)
-
-
 def bulb_area_rakke(
     midship_coefficient: ArrayLike, *, breadth: ArrayLike, draught: ArrayLike
 ) -> FloatArray:
@@ -357,12 +210,7 @@ def bulb_area_rakke(
     ----------
     S. G. Rakke, "Ship emissions calculation from AIS", NTNU (2016).
     """
-    return (
-        0.08
-        * as_float_array(midship_coefficient)
-        * as_float_array(breadth)
-        * as_float_array(draught)
-    )
+    return 0.08 * _midship_section(midship_coefficient, breadth, draught)
 
 
 def bulb_height_rakke(draught: ArrayLike) -> FloatArray:
@@ -406,9 +254,11 @@ def transom_area_rakke(
     ----------
     Rakke (2016).
     """
-    return (
-        0.051
-        * as_float_array(midship_coefficient)
-        * as_float_array(breadth)
-        * as_float_array(draught)
-    )
+    return 0.051 * _midship_section(midship_coefficient, breadth, draught)
+
+
+def _midship_section(
+    midship_coefficient: ArrayLike, breadth: ArrayLike, draught: ArrayLike
+) -> FloatArray:
+    """Return the area of the midship section C_M B T [m2]."""
+    return as_float_array(midship_coefficient) * as_float_array(breadth) * as_float_array(draught)

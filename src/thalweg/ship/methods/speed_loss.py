@@ -61,7 +61,9 @@ _DISPUTED_ROWS: Final = (4, 5)  # rows whose last sign is in doubt
 
 
 def beaufort_number(wind_speed: ArrayLike, *, classes: bool = False) -> FloatArray:
-    """Beaufort number of a wind at 10 m [m/s].
+    r"""Beaufort number of a wind at 10 m [m/s].
+
+    .. math:: B = (v / 0.836)^{2/3}, \quad v\ \text{in m/s}
 
     Parameters
     ----------
@@ -75,6 +77,10 @@ def beaufort_number(wind_speed: ArrayLike, *, classes: bool = False) -> FloatArr
     -------
     ndarray
         0 to 12; NaN for NaN.
+
+    References
+    ----------
+    World Meteorological Organization, v = 0.836 B^1.5.
     """
     wind = np.asarray(wind_speed, float)
     if classes:
@@ -140,7 +146,9 @@ def kwon_form_coefficient(
     loading: LoadingCondition = "loaded",
     ship_type: ShipType = "other",
 ) -> FloatArray:
-    """C_form of table B.3: c B + B^6.5 / (d V^(2/3)) [per cent].
+    r"""C_form of table B.3: c B + B^6.5 / (d V^(2/3)) [per cent].
+
+    .. math:: C_{form} = c B + \frac{B^{6.5}}{d \nabla^{2/3}}
 
     Parameters
     ----------
@@ -157,6 +165,11 @@ def kwon_form_coefficient(
     Returns
     -------
     ndarray
+
+    References
+    ----------
+    Y.J. Kwon, "Speed loss due to added resistance in wind and waves", The Naval Architect
+    (2008), as printed by Seuren (2020), Table B.3.
     """
     slope = _choose({"loaded": 0.5, "normal": 0.5, "ballast": 0.7}, loading)
     divisor = _choose({"other": 2.7, "container": 22.0}, ship_type)
@@ -180,7 +193,9 @@ def kwon_speed_loss(
     classes: bool = False,
     hold: bool = True,
 ) -> FloatArray:
-    """Share of the calm-water speed that wind and waves take, at constant power.
+    r"""Share of the calm-water speed that wind and waves take, at constant power.
+
+    .. math:: \frac{\Delta V}{V} = \frac{C_\beta C_U C_{form}}{100}
 
     Parameters
     ----------
@@ -205,6 +220,11 @@ def kwon_speed_loss(
     -------
     ndarray
         0 to 0.99 (the cap holds in each sector, before the angles between are filled); NaN for NaN.
+
+    References
+    ----------
+    Y.J. Kwon, "Speed loss due to added resistance in wind and waves", The Naval Architect
+    (2008), as printed by Seuren (2020), Tables B.1 to B.3.
     """
     number = beaufort_number(wind_speed, classes=classes)
     volume = np.asarray(displacement_volume, float)

@@ -14,7 +14,12 @@ from thalweg.core.types import FloatArray
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.hull.hull_estimates import estimate_or_raise
-from thalweg.ship.methods.added_resistance.snnm import SnnmHull, snnm_validity
+from thalweg.ship.methods.added_resistance.snnm import (
+    snnm_validity,
+)
+from thalweg.ship.methods.added_resistance.snnm_hull import (
+    SnnmHull,
+)
 from thalweg.ship.methods.added_resistance.snnm_table import SnnmTable
 from thalweg.ship.methods.added_resistance.stawave import (
     head_sector_validity,

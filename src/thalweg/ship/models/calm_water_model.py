@@ -21,11 +21,13 @@ from thalweg.ship.methods.resistance.friction_lines import (
     reynolds_number,
 )
 from thalweg.ship.methods.resistance.hollenbach import (
-    AppendageCounts,
-    HollenbachHull,
     hollenbach_1998,
     hollenbach_validity,
     hollenbach_wetted_surface,
+)
+from thalweg.ship.methods.resistance.hollenbach_hull import (
+    AppendageCounts,
+    HollenbachHull,
 )
 from thalweg.ship.methods.resistance.holtrop_form import (
     HullForm,

@@ -243,7 +243,8 @@ def model_of_function(function: SpeedFunction, *, top_speed: float | None = None
             f"It may read either only conditions of a table ({', '.join(AXIS_OF_CONDITION)}), "
             "or only what "
             "does not depend on the heading (place, time, currents, plain sea variables).",
-            "Split the world: put place and time into the sea, headings into the ship.",
+            "Put what depends on place and time into the sea, and what depends on the heading into "
+            "the ship.",
             reads=sorted(reads),
         )
     return FunctionModel(function, read_all, top_speed, None)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 
 from thalweg.core.types import FloatArray
 from thalweg.ship.hull.estimate import Estimate
+from thalweg.ship.methods.engine.specific_consumption import GRAM_PER_KILOWATT_HOUR
 from thalweg.ship.schema.ship_schema import EngineSection, ShipFile
 
 
@@ -19,6 +21,12 @@ def hotel_power(engine: EngineSection) -> float:
 def hotel_load_fuel_rate(engine: EngineSection) -> float:
     """Return the fuel rate of the hotel load [kg/s]; 0 when the ship file gives none."""
     return hotel_power(engine) * engine.hotel_sfoc_g_per_kwh / 3.6e9
+
+
+def given_specific_consumption(engine: EngineSection) -> float:
+    """Return the specific fuel consumption [kg/J]; NaN when the ship file gives none."""
+    given = engine.sfoc_g_per_kwh
+    return math.nan if given is None else given * GRAM_PER_KILOWATT_HOUR
 
 
 def fuel_rate_of_power(file: ShipFile) -> Callable[[FloatArray], FloatArray] | None:

@@ -70,6 +70,24 @@ class KwonSpeedLoss:
         )
 
 
+def speed_loss_notes(model: object, conditions: Conditions) -> list[RangeNote]:
+    """Return where the speed loss of a ship model is used outside its range.
+
+    Parameters
+    ----------
+    model : ShipModel
+    conditions : Conditions
+        At the ship, with its load factor.
+
+    Returns
+    -------
+    list of RangeNote
+        Empty for models without a speed loss.
+    """
+    loss = getattr(model, "loss", None)
+    return loss.notes(conditions) if isinstance(loss, KwonSpeedLoss) else []
+
+
 @dataclass(frozen=True, eq=False)
 class SpeedPowerLaw:
     """How power and fuel follow the speed.
@@ -180,12 +198,7 @@ class KnownSpeedModel:
             conditions = Conditions(columns, load_factor=load_factor)
             return self.speed_through_water(conditions, np.arange(count))
 
-        axes: list[AxisRange] = []
-        if self.loss is not None:
-            size = 257 if self.squat is None else 65
-            axes += [replace(DEFAULT_AXES["wind_speed"], size=size), wind_angle_axis(self.loss)]
-        if self.squat is not None:
-            axes.append(_depth_axis(self.squat, load_factor, 1025 if self.loss is None else 257))
+        axes = known_speed_axes(self, load_factor)
         part, error = tabulate_dense(speeds, axes, tolerance=tolerance)
         return (part,), error
 
@@ -311,6 +324,17 @@ def check_table_rises(speeds: FloatArray, columns: Mapping[str, Any]) -> None:
             )
 
 
+def known_speed_axes(model: KnownSpeedModel, load_factor: float) -> list[AxisRange]:
+    """Return the axes of the tables of a ship with known speeds: wind speed and angle, depth."""
+    axes: list[AxisRange] = []
+    if model.loss is not None:
+        size = 257 if model.squat is None else 65
+        axes += [replace(DEFAULT_AXES["wind_speed"], size=size), wind_angle_axis(model.loss)]
+    if model.squat is not None:
+        axes.append(_depth_axis(model.squat, load_factor, 1025 if model.loss is None else 257))
+    return axes
+
+
 def wind_angle_axis(loss: KwonSpeedLoss) -> AxisRange:
     """Wind angle in steps of 15 degrees, on which the continuous loss is exact."""
     return AxisRange(codes.AXIS_WIND_ANGLE, 0.0, np.pi, 13, fixed=not loss.classes)
@@ -334,6 +358,6 @@ def _speed_out_of_range_error(speeds: FloatArray, low: float, high: float) -> In
     return InputError(
         f"The ship cannot be ordered to {listed} kn.",
         f"Its calm-water speeds run from {low / knot:g} to {upper} kn.",
-        "Order a speed inside.",
+        "Give speeds in that range.",
         value=listed,
     )

@@ -18,7 +18,7 @@ from thalweg.ship.models.engine_plant import EnginePlant
 from thalweg.ship.models.force_balance import ForceBalance
 from thalweg.ship.models.known_speed_model import KwonSpeedLoss, wind_angle_axis
 from thalweg.ship.models.resistance_model import ResistanceModel, TabulatedModel
-from thalweg.ship.models.tabulate_resistance import condition_axes
+from thalweg.ship.models.resistance_terms import condition_axes
 from thalweg.ship.tables.table_parts import TableError, TablePart
 from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, tabulate_dense
 

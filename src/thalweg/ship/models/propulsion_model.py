@@ -15,10 +15,7 @@ from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull
 from thalweg.ship.hull.hull_estimates import estimate_or_raise
 from thalweg.ship.methods.propulsion.b_series import Propeller, b_series_validity
-from thalweg.ship.methods.propulsion.propulsion_factors import (
-    Efficiencies,
-    constant_efficiency_power,
-    propulsion,
+from thalweg.ship.methods.propulsion.hull_propeller_interaction import (
     relative_rotative_single,
     relative_rotative_twin,
     thrust_deduction_single,
@@ -26,6 +23,11 @@ from thalweg.ship.methods.propulsion.propulsion_factors import (
     viscous_coefficient,
     wake_fraction_single,
     wake_fraction_twin,
+)
+from thalweg.ship.methods.propulsion.propulsion_factors import (
+    Efficiencies,
+    constant_efficiency_power,
+    propulsion,
 )
 from thalweg.ship.methods.resistance.friction_lines import ittc_1957, reynolds_number
 from thalweg.ship.methods.resistance.holtrop_form import HullForm, form_factor_1984

@@ -99,7 +99,7 @@ def _without_law(file: ShipFile, speeds: FloatArray) -> tuple[FloatArray, FloatA
 
 def _from_cubic_law(file: ShipFile, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Fuel rates [kg/s] and powers [W] through the reference point."""
-    speed_kn, power_kw, fuel_t_per_day = _reference_point(file)
+    speed_kn, power_kw, fuel_t_per_day = reference_point(file)
     reference = (speeds.max() / KNOT if speed_kn is None else speed_kn) * KNOT
     if power_kw is None and fuel_t_per_day is None:
         raise InputError(
@@ -117,7 +117,7 @@ def _from_cubic_law(file: ShipFile, speeds: FloatArray) -> tuple[FloatArray, Flo
     )
 
 
-class _ReferencePoint(NamedTuple):
+class ReferencePoint(NamedTuple):
     """The point through which the cubic law goes; None for what the file does not give."""
 
     speed_kn: float | None
@@ -125,17 +125,17 @@ class _ReferencePoint(NamedTuple):
     fuel_t_per_day: float | None
 
 
-def _reference_point(file: ShipFile) -> _ReferencePoint:
-    """The reference point of the sections engine and fuel, or else the table's last row."""
+def reference_point(file: ShipFile) -> ReferencePoint:
+    """Return the reference point of the sections engine and fuel, or else the table's last row."""
     engine, table = file.engine, file.table
     if _has_reference(file) or table is None or table.speed_kn is None:
-        return _ReferencePoint(
+        return ReferencePoint(
             engine.reference_speed_kn, engine.reference_power_kw, file.fuel.reference_t_per_day
         )
     check_table(table)
     last = int(np.argmax(table.speed_kn))
     power, fuel = table.power_kw, table.fuel_t_per_day
-    return _ReferencePoint(
+    return ReferencePoint(
         table.speed_kn[last],
         None if power is None else power[last],
         None if fuel is None else fuel[last],
@@ -149,7 +149,7 @@ def _reference_speed(file: ShipFile) -> float:
     ------
     InputError
     """
-    speed = _reference_point(file).speed_kn
+    speed = reference_point(file).speed_kn
     if speed is None:
         raise InputError(
             "The cubic law has no reference speed.",
@@ -189,15 +189,15 @@ def with_settings(model: KnownSpeedModel, file: ShipFile) -> KnownSpeedModel:
     if speeds is not None:
         raise InputError(
             "The ship file gives both powers_kw and speeds_kn.",
-            "A ship keeps either a power or a speed.",
-            "Keep one of them.",
+            "Orders are either powers or speeds.",
+            "Leave one of them out.",
             key="powers_kw",
         )
     watts = np.unique(powers) * 1000.0
     known = np.isfinite(model.powers).all() and (np.diff(model.powers) > 0.0).all()
     if model.law.name == "none" or not known:
         raise InputError(
-            "powers_kw is given, but the ship file does not tie power to speed.",
+            "powers_kw is given, but the ship file does not relate power to speed.",
             "A table with rising power_kw does, the cubic law with engine.reference_power_kw, or "
             "a calm_water method with a hull.",
             "Give speeds_kn, or one of those.",
@@ -210,7 +210,7 @@ def with_settings(model: KnownSpeedModel, file: ShipFile) -> KnownSpeedModel:
         raise InputError(
             f"powers_kw requests {watts[0] / 1e3:g} to {watts[-1] / 1e3:g} kW.",
             f"The table runs from {model.powers[0] / 1e3:g} to {model.powers[-1] / 1e3:g} kW.",
-            "Ask for powers inside.",
+            "Give powers in that range.",
             key="powers_kw",
         )
     return model.with_speeds(np.interp(watts, model.powers, model.speeds_full), 1.0)

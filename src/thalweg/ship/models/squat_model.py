@@ -13,10 +13,12 @@ from thalweg.core.errors import unknown_name_error
 from thalweg.core.types import FloatArray
 from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.methods.shallow_water.squat import (
+from thalweg.ship.methods.shallow_water.barrass_squat import (
     barrass_2004_speed,
     barrass_2004_squat,
     barrass_squat,
+)
+from thalweg.ship.methods.shallow_water.squat import (
     shallow_water_speed,
     shallow_water_speed_limit,
 )
@@ -54,7 +56,7 @@ class SquatModel:
         return float(self._block(self.loading.load_factor))
 
     def sinkage(self, speed: ArrayLike, depth: ArrayLike, load_factor: ArrayLike) -> FloatArray:
-        """Largest squat [m] at speeds through water [m/s]; see `methods.squat`."""
+        """Largest squat [m] at speeds through water [m/s]."""
         formula = barrass_2004_squat if self.method == "barrass_2004" else barrass_squat
         return formula(speed, depth, **self._sizes(load_factor))
 

@@ -14,18 +14,26 @@ from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.ship.condition_variables import AXIS_OF_CONDITION
 from thalweg.ship.conditions import Conditions
-from thalweg.ship.model_protocol import FuelTableModel, PowerTableModel, ShipModel, Tabulation
+from thalweg.ship.model_protocol import (
+    FuelTableModel,
+    ModelTables,
+    PowerTableModel,
+    ShipModel,
+    Tabulation,
+)
 from thalweg.ship.models.force_balance import ForceBalance
 from thalweg.ship.models.function_model import FunctionModel
 from thalweg.ship.models.resistance_protocol import TabulatedResistance
+from thalweg.ship.models.resistance_terms import (
+    conditions_per_setting,
+    random_term_conditions,
+    resistance_terms,
+)
 from thalweg.ship.models.tabulate_resistance import (
     ERROR_SAMPLES,
     calm_resistance,
-    conditions_per_setting,
-    random_term_conditions,
     refined_table,
     resistance_at_power,
-    resistance_terms,
 )
 from thalweg.ship.tables.output_curve import OutputCurve
 from thalweg.ship.tables.performance_table import PerformanceTable
@@ -34,7 +42,6 @@ from thalweg.ship.tables.table_parts import TableError, TablePart
 from thalweg.ship.tables.tabulate import DEFAULT_AXES, constant_part, table_error, tabulate_dense
 
 _CURVE_POINTS: Final = 1025  #: of the curves of fuel and power
-_SPEED_FIELD: Final = "its speed is a field of place and time"
 RateOfPower = Callable[[FloatArray], FloatArray]
 RateFunction = Callable[[Conditions, NDArray[np.intp]], FloatArray]
 
@@ -64,16 +71,11 @@ def fuel_table(
     InputError
         If the fuel is unknown, or the speed is a field.
     """
-    if isinstance(model, FuelTableModel):
-        found = Tabulation(*model.tabulate_fuel(load_factor, tolerance))
-    elif _is_speed_field(model):
-        raise _unknown_fuel_error(ship, _SPEED_FIELD)
-    else:
-        found = tabulate_rate(model, model.fuel_rate, load_factor, tolerance)
-    table = _table_of(found, model.speeds(load_factor))
-    if not _is_known(table):
-        raise _unknown_fuel_error(ship, "its fuel rate is unknown")
-    return table
+    own = model.tabulate_fuel if isinstance(model, FuelTableModel) else None
+    found = _table_of_rate(model, (load_factor, tolerance), own, model.fuel_rate)
+    if isinstance(found, str):
+        raise _unknown_fuel_error(ship, found.format("fuel rate"))
+    return found
 
 
 def power_table(
@@ -93,15 +95,10 @@ def power_table(
     InputError
         If the power is unknown, or the speed is a field.
     """
-    if isinstance(model, PowerTableModel):
-        found = Tabulation(*model.tabulate_power(load_factor, tolerance))
-    elif _is_speed_field(model):
-        raise _unknown_power_error(ship, _SPEED_FIELD)
-    else:
-        found = tabulate_rate(model, model.power, load_factor, tolerance)
-    table = _table_of(found, model.speeds(load_factor))
-    if not _is_known(table):
-        raise _unknown_power_error(ship, "its brake power is unknown")
+    own = model.tabulate_power if isinstance(model, PowerTableModel) else None
+    table = _table_of_rate(model, (load_factor, tolerance), own, model.power)
+    if isinstance(table, str):
+        raise _unknown_power_error(ship, table.format("brake power"))
     if table.finish is not None:
         points = table.finish.points + hotel_power
         return replace(table, finish=replace(table.finish, points=points))
@@ -109,16 +106,27 @@ def power_table(
     return replace(table, parts=(*table.parts, hotel))
 
 
-def _is_speed_field(model: ShipModel) -> bool:
-    return isinstance(model, FunctionModel) and model.is_speed_field
+def _table_of_rate(
+    model: ShipModel,
+    accuracy: tuple[float, float],
+    own: Callable[[float, float], ModelTables] | None,
+    rate: RateFunction,
+) -> PerformanceTable | str:
+    """Return the table of a rate at a load factor and tolerance, or why there is none.
 
-
-def _table_of(found: Tabulation, speeds: FloatArray) -> PerformanceTable:
-    return PerformanceTable(found.parts, speeds, "", found.error, found.curve)
-
-
-def _is_known(table: PerformanceTable) -> bool:
-    return all(math.isfinite(table.largest(k)) for k in range(table.settings.size))
+    The model makes it by its own method, where it has one.
+    """
+    load_factor, tolerance = accuracy
+    if own is not None:
+        found = Tabulation(*own(load_factor, tolerance))
+    elif isinstance(model, FunctionModel) and model.is_speed_field:
+        return "its speed is a field of place and time"
+    else:
+        found = tabulate_rate(model, rate, load_factor, tolerance)
+    speeds = model.speeds(load_factor)
+    table = PerformanceTable(found.parts, speeds, "", found.error, found.curve)
+    known = all(math.isfinite(table.largest(k)) for k in range(speeds.size))
+    return table if known else "its {} is unknown"
 
 
 def _unknown_fuel_error(ship: str, why: str) -> InputError:
@@ -126,7 +134,7 @@ def _unknown_fuel_error(ship: str, why: str) -> InputError:
         f"The fuel of {ship!r} cannot be tabulated: {why}.",
         "A fuel model is a table with fuel_t_per_day, fuel.reference_t_per_day, or a resistance "
         "with engine.type, engine.sfoc_g_per_kwh or a curve of it.",
-        "Add one to the ship file, or ask for the least time.",
+        "Add one to the ship file, or choose the objective 'time'.",
         ship=ship,
     )
 
@@ -136,7 +144,7 @@ def _unknown_power_error(ship: str, why: str) -> InputError:
         f"The power of {ship!r} cannot be tabulated: {why}.",
         "Power comes from a resistance (models.calm_water such as holtrop_1984), a table with "
         "power_kw, or the cubic law with engine.reference_power_kw.",
-        "Add one to the ship file, or ask for the least fuel or time.",
+        "Add one to the ship file, or choose the objective 'fuel' or 'time'.",
         ship=ship,
     )
 

@@ -206,6 +206,7 @@ class CostsSection(Section):
     hire_per_day: TimePrice | None = None
     per_week: TimePrice | None = None
     per_second_per_cubed_speed: Annotated[Number, Field(ge=0.0, le=1e6)] | None = None
+    co2_g_per_second_per_cubed_speed: Annotated[Number, Field(ge=0.0, le=1e6)] | None = None
     currency: Text | None = None
 
 

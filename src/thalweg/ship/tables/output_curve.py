@@ -34,10 +34,10 @@ class OutputCurve:
 
     ``curve``: the value is a curve of the sum, one for each setting, such as fuel over resistance.
 
-    ``crossing``: the parts have a column for each of several speeds, and their sum is what weather
-    and depth ask for at that speed; the curve is what a setting has to spare at those speeds. The
-    ship goes as fast as that suffices. No table of weather and waves together is needed, since what
-    they ask for at one speed adds up.
+    ``crossing``: the parts have a column for each of several speeds, and their sum is the
+    resistance [N] that weather and depth add at that speed; the curve is the resistance reserve of
+    a setting at those speeds. The value is the highest speed at which the reserve suffices. No
+    table of wind and waves together is needed, since their resistances at one speed add up.
 
     Attributes
     ----------

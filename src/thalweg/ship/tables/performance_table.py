@@ -90,6 +90,11 @@ class PerformanceTable:
             Conditions by name (`Conditions` will do), SI.
         setting : array_like of int
             Index of the setting.
+
+        Returns
+        -------
+        float64 array
+            In the unit of the table (m/s, kg/s or W).
         """
         if self.finish is None:
             return reduce(np.add, (part.lookup(where, setting) for part in self.parts))
@@ -97,7 +102,18 @@ class PerformanceTable:
         return self.finish.value(total, np.asarray(setting).astype(np.intp))
 
     def largest(self, setting: int) -> float:
-        """Return an upper bound of the table's value at a setting, in its unit."""
+        """Return an upper bound of the table's value at a setting.
+
+        Parameters
+        ----------
+        setting : int
+            Index of the setting.
+
+        Returns
+        -------
+        float
+            In the unit of the table.
+        """
         if self.finish is not None and self.finish.falls:
             low = reduce(np.add, (part.least() for part in self.parts))
             return float(self.finish.value(low, np.asarray(setting)))
@@ -107,7 +123,18 @@ class PerformanceTable:
         return float(high[setting])
 
     def at_setting(self, setting: int) -> PerformanceTable:
-        """Return the table of one setting, which is smaller and quicker to look up."""
+        """Return the table of one setting, which is smaller and quicker to look up.
+
+        Parameters
+        ----------
+        setting : int
+            Index of the setting.
+
+        Returns
+        -------
+        PerformanceTable
+            With one setting, of index 0.
+        """
         chosen = slice(setting, setting + 1)
         finish = None if self.finish is None else self.finish.at(chosen)
         parts = self.parts
@@ -116,7 +143,13 @@ class PerformanceTable:
         return replace(self, parts=parts, settings=self.settings[chosen], finish=finish)
 
     def kernel_arrays(self) -> TableArrays:
-        """Return the arrays that kernels look up (see `thalweg.kernels.leg.table_lookup`)."""
+        """Return the arrays that kernels look up (see `thalweg.kernels.leg.table_lookup`).
+
+        Returns
+        -------
+        TableArrays
+            All parts one after the other.
+        """
         count = len(self.parts)
         axes = np.full((count, AXIS_COUNT), -1, np.int64)
         start, inverse = np.zeros((count, AXIS_COUNT)), np.zeros((count, AXIS_COUNT))

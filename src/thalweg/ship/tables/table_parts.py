@@ -87,7 +87,20 @@ class TablePart:
                 raise invalid_part_error(f"has an uneven grid for {CONDITION_OF_AXIS[axis]}")
 
     def lookup(self, where: Mapping[str, ArrayLike], setting: ArrayLike = 0) -> FloatArray:
-        """Return the multilinear look-up; NaN outside an axis, except for larger depths."""
+        """Return the multilinear look-up of one setting in each condition.
+
+        Parameters
+        ----------
+        where : mapping of str to array_like
+            Conditions by name (`Conditions` will do), in SI units.
+        setting : array_like of int
+            Index of the setting.
+
+        Returns
+        -------
+        float64 array
+            In the unit of the table; NaN outside an axis, except for larger depths.
+        """
         chosen = np.asarray(setting).astype(np.intp)
         total: FloatArray = np.zeros(())
         for weight, index in self._corners(where):
@@ -96,7 +109,18 @@ class TablePart:
         return self._factor(where) * total
 
     def lookup_all(self, where: Mapping[str, ArrayLike]) -> FloatArray:
-        """Return the look-up of every setting, in a last axis."""
+        """Return the multilinear look-up of every setting.
+
+        Parameters
+        ----------
+        where : mapping of str to array_like
+            Conditions by name (`Conditions` will do), in SI units.
+
+        Returns
+        -------
+        float64 array (..., settings)
+            In the unit of the table; NaN outside an axis, except for larger depths.
+        """
         total: FloatArray = np.zeros(())
         for weight, index in self._corners(where):
             value = self.values[(*index,)] if index else self.values
@@ -105,7 +129,13 @@ class TablePart:
         return np.asarray(self._factor(where))[..., None] * total
 
     def least(self) -> FloatArray:
-        """Return the least value of every setting, anywhere."""
+        """Return the least value of every setting, anywhere.
+
+        Returns
+        -------
+        float64 array (settings,)
+            In the unit of the table.
+        """
         flat = self.values.reshape(-1, self.values.shape[-1])
         low = np.fmin.reduce(flat, axis=0).astype(float)
         if math.isnan(self.squared_height_limit):
@@ -113,7 +143,13 @@ class TablePart:
         return np.minimum(low * self.squared_height_limit**2, 0.0)
 
     def greatest(self) -> FloatArray:
-        """Return the greatest value of every setting, anywhere."""
+        """Return the greatest value of every setting, anywhere.
+
+        Returns
+        -------
+        float64 array (settings,)
+            In the unit of the table.
+        """
         return -replace(self, values=-self.values).least()
 
     def _factor(self, where: Mapping[str, ArrayLike]) -> FloatArray | float:

@@ -26,9 +26,15 @@ _MEAN_TO_PEAK: Final = (0.8 * 691.0) ** 0.25 / (2.0 * np.pi)
 
 
 def peak_period(mean_period: ArrayLike) -> FloatArray:
-    """Peak period T_p [s] of an ITTC two-parameter spectrum from its mean period T_1 [s].
+    r"""Peak period T_p [s] of an ITTC two-parameter spectrum from its mean period T_1 [s].
+
+    .. math:: T_p = 2 \pi\, T_1 / (0.8 \cdot 691)^{1/4} = 1.296\, T_1
 
     Its form is E = A w^-5 exp(-B w^-4), B = 691 / T_1^4, so that T_p = 1.296 T_1 (ITTC 1978).
+
+    References
+    ----------
+    ITTC (1978), two-parameter spectrum.
     """
     return np.asarray(np.asarray(mean_period, dtype=float) / _MEAN_TO_PEAK)
 
@@ -41,7 +47,13 @@ def spectral_density(
     spectrum: Spectrum = "bretschneider",
     gamma: float = 3.3,
 ) -> FloatArray:
-    """Wave spectrum E(w) [m2 s].
+    r"""Wave spectrum E(w) [m2 s].
+
+    .. math::
+        E(\omega) = \frac{5}{16} H_s^2 \frac{q}{\omega} e^{-1.25 q} \, [(1 - 0.287
+            \ln\gamma) \gamma^r], \quad q = (\omega_p / \omega)^4, \\
+        r = \exp\left(-\frac{(\omega - \omega_p)^2}{2 \sigma^2 \omega_p^2}\right), \quad
+            \sigma = 0.07\ (\omega \le \omega_p),\ 0.09\ (\omega > \omega_p)
 
     Parameters
     ----------
@@ -60,6 +72,10 @@ def spectral_density(
     -------
     ndarray
         E with integral Hs^2 / 16.
+
+    References
+    ----------
+    DNV-RP-C205; the factor in brackets belongs to JONSWAP only.
     """
     omega = np.asarray(frequency, dtype=float)
     peak = 2.0 * np.pi / np.asarray(wave_period, dtype=float)
@@ -68,7 +84,11 @@ def spectral_density(
 
 
 def spectral_shape(ratio: FloatArray, *, spectrum: Spectrum, gamma: float) -> FloatArray:
-    """Return E w / Hs^2 as a function of w / w_p.
+    r"""Return E w / Hs^2 as a function of w / w_p.
+
+    .. math::
+        \frac{E \omega}{H_s^2} = \frac{5}{16} q e^{-1.25 q} \, [(1 - 0.287 \ln\gamma)
+            \gamma^r]
 
     Parameters
     ----------
@@ -83,6 +103,10 @@ def spectral_shape(ratio: FloatArray, *, spectrum: Spectrum, gamma: float) -> Fl
     -------
     ndarray
         E w / Hs^2 [-].
+
+    References
+    ----------
+    See `spectral_density`.
     """
     inverse = 1.0 / (ratio * ratio)
     q = inverse * inverse

@@ -17,7 +17,6 @@ Angles are zero for waves from ahead and pi for waves from astern, as in the pro
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, Final
 
@@ -34,6 +33,7 @@ from thalweg.ship.methods.added_resistance.mean_wave_force import (
     log_spaced_nodes,
     spectral_shape,
 )
+from thalweg.ship.methods.added_resistance.snnm_hull import SnnmHull
 from thalweg.ship.methods.resistance.friction_lines import froude_number, ship_speed
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
@@ -42,70 +42,26 @@ LONGEST_REFLECTED_WAVE: Final = (
 )
 
 
-@dataclass(frozen=True)
-class SnnmHull:
-    """Particulars of a hull in waves; scalars, or arrays that broadcast with the conditions.
-
-    Attributes
-    ----------
-    length, breadth : array_like
-        L_PP and B [m].
-    draught_fore, draught_aft : array_like
-        [m]; the deeper one is T_max.
-    block_coefficient : array_like
-        C_B.
-    pitch_gyration : array_like
-        k_yy as a part of L_PP.
-    entrance_length, run_length : array_like
-        L_E and L_R, on the waterline from the ends to 0.99 B [m].
-    """
-
-    length: ArrayLike
-    breadth: ArrayLike
-    draught_fore: ArrayLike
-    draught_aft: ArrayLike
-    block_coefficient: ArrayLike
-    entrance_length: ArrayLike
-    run_length: ArrayLike
-    pitch_gyration: ArrayLike = 0.25
-
-    def arrays(self) -> tuple[FloatArray, ...]:
-        """Return length, breadth, deepest draught, trim, C_B, k_yy and the angles E1 and E2."""
-        length, breadth = np.asarray(self.length, dtype=float), np.asarray(self.breadth)
-        fore, aft = np.asarray(self.draught_fore), np.asarray(self.draught_aft)
-        half = 0.495 * breadth
-        return (
-            *(length, breadth, np.maximum(fore, aft), np.arctan(np.abs(aft - fore) / length)),
-            *(np.asarray(self.block_coefficient), np.asarray(self.pitch_gyration)),
-            *(np.arctan(half / np.asarray(end)) for end in (self.entrance_length, self.run_length)),
-        )
-
-
-def entrance_length(breadth: ArrayLike, *, entrance_angle_deg: ArrayLike) -> FloatArray:
-    """L_E from the half angle of entrance [deg], as E1 = atan(0.495 B / L_E) is that angle [m].
-
-    Parameters
-    ----------
-    breadth : array_like
-        Breadth B [m].
-    entrance_angle_deg : array_like
-        Half angle of entrance [deg].
-
-    Returns
-    -------
-    ndarray
-        Length of entrance L_E [m].
-    """
-    return np.asarray(0.495 * np.asarray(breadth) / np.tan(np.radians(entrance_angle_deg)))
-
-
 def frequency_scale(
     angle: FloatArray,
     froude: FloatArray,
     hull: tuple[FloatArray, ...],
     gravity: float,
 ) -> FloatArray:
-    """Dimensionless frequency for w = 1 rad/s."""
+    r"""Dimensionless frequency for w = 1 rad/s.
+
+    .. math::
+        \bar{\omega} / \omega = 2.142 \sqrt[3]{k_{yy}} \sqrt{\frac{L}{2 \pi g}}
+            \left(\frac{C_B}{0.65}\right)^{0.17} \left[1 - \frac{0.111}{C_B}
+            \left(\ln\frac{B}{T} - \ln 2.75\right)\right] \\
+        \left[(1.157 Fr - 1.377 Fr^2) |\cos\alpha| + 0.618 \frac{13 + \cos
+            2\alpha}{14}\right]
+
+    References
+    ----------
+    S. Liu and A. Papanikolaou, Ocean Engineering 206 (2020) 107357, as adopted by ITTC
+    Recommended Procedure 7.5-04-01-01.1 (2021); unverified: see the text of this module.
+    """
     length, breadth, draught, _, block, gyration, _, _ = hull
     heading = (1.157 * froude - 1.377 * froude**2) * np.abs(np.cos(angle))
     heading = heading + 0.618 * (13.0 + np.cos(2.0 * angle)) / 14.0
@@ -116,7 +72,19 @@ def frequency_scale(
 
 
 def motion_shape(frequency: FloatArray, hull: tuple[FloatArray, ...]) -> FloatArray:
-    """w^b1 exp{b1/d1 (1 - w^d1)}; NaN for a trim at which d1 changes its sign."""
+    r"""w^b1 exp{b1/d1 (1 - w^d1)}; NaN for a trim at which d1 changes its sign.
+
+    .. math::
+        \bar{\omega}^{b_1} \exp\left[\frac{b_1}{d_1} (1 - \bar{\omega}^{d_1})\right], \quad
+            b_1 = 11\ (\bar{\omega} < 1),\ -8.5, \\
+        d_1 = 566 (L C_B / B)^{-2.66}\ (\bar{\omega} < 1),\ -566 (L / B)^{-2.66} (4 - 125
+            \tan^{-1}(|T_A - T_F| / L))
+
+    References
+    ----------
+    S. Liu and A. Papanikolaou, Ocean Engineering 206 (2020) 107357, as adopted by ITTC
+    Recommended Procedure 7.5-04-01-01.1 (2021); unverified: see the text of this module.
+    """
     length, breadth, _, trim, block, _, _, _ = hull
     steep = 4.0 - 125.0 * trim
     steep = np.where(steep > 0.0, steep, np.nan)
@@ -138,7 +106,17 @@ def speed_factor(froude: FloatArray) -> FloatArray:
 def ahead_factors(
     angle: FloatArray, froude: FloatArray, hull: tuple[FloatArray, ...]
 ) -> tuple[FloatArray, FloatArray]:
-    """a1 and a2 for waves from ahead to abeam."""
+    r"""a1 and a2 for waves from ahead to abeam.
+
+    .. math::
+        a_1 = \left(\frac{0.87}{C_B}\right)^{(1 + Fr) \cos\alpha} \frac{1 + 2 \cos\alpha}{3
+            \ln(B/T)}, \quad a_2 = 0.0072 + 0.1676 Fr\ (Fr < 0.12),\ Fr^{1.5} e^{-3.5 Fr}
+
+    References
+    ----------
+    S. Liu and A. Papanikolaou, Ocean Engineering 206 (2020) 107357, as adopted by ITTC
+    Recommended Procedure 7.5-04-01-01.1 (2021); unverified: see the text of this module.
+    """
     _, breadth, draught, _, block, _, _, _ = hull
     ahead = np.maximum(np.cos(angle), 0.0)
     first = (0.87 / block) ** ((1.0 + froude) * ahead) * (1.0 + 2.0 * ahead) / 3.0
@@ -188,7 +166,20 @@ def reflection_terms(
     hull: tuple[FloatArray, ...],
     gravity: float,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Constant and linear (in w) terms of the bow, the same of the stern, and T* of the stern."""
+    r"""Constant and linear (in w) terms of the bow, the same of the stern, and T* of the stern.
+
+    .. math::
+        R_{AWR} \propto \left(\frac{0.87}{C_B}\right)^{(1 + 4 \sqrt{Fr}) f(\alpha)}
+            \left[\sin^2(E \pm \alpha) + \frac{2 \omega V}{g} (\cos\alpha - \cos E \cos(E
+            \pm \alpha))\right] \\
+        T^* = T_{max} \frac{4 + \sqrt{|\cos\alpha|}}{5}\ (C_B \le 0.75),\ T_{max} \frac{2 +
+            \sqrt{|\cos\alpha|}}{3}
+
+    References
+    ----------
+    S. Liu and A. Papanikolaou, Ocean Engineering 206 (2020) 107357, as adopted by ITTC
+    Recommended Procedure 7.5-04-01-01.1 (2021); unverified: see the text of this module.
+    """
     draught, block, bow, stern = hull[2], hull[4], hull[6], hull[7]
     ahead, aside = np.cos(angle), np.sin(angle)
 
@@ -230,7 +221,16 @@ def snnm_transfer(
     density: float = SEA_WATER_DENSITY,
     gravity: float = GRAVITY,
 ) -> tuple[FloatArray, FloatArray]:
-    """Added resistance in regular waves for an amplitude of one metre.
+    r"""Added resistance in regular waves for an amplitude of one metre.
+
+    .. math::
+        R_{AWM} / \zeta_A^2 = 3859.2\, \rho g \frac{B^2}{L} C_B^{1.34} k_{yy}^2 (1 + 28.7
+            \tau) a_1 a_2\, \bar{\omega}^{b_1} e^{\frac{b_1}{d_1} (1 - \bar{\omega}^{d_1})}
+            \\
+        R_{AWR} / \zeta_A^2 = \frac{2.25}{4} \rho g B \sum_{bow} (1 - e^{-2 k' T}) r_{bow} -
+            \frac{2.25}{4} \rho g B \sum_{stern} (1 - e^{-2 k' T^*}) r_{stern} \\
+        k' = \omega^2 / g - 2 \pi / (2.5 L)\ (\ge 0), \quad \tau = \tan^{-1}(|T_A - T_F| /
+            L)
 
     Parameters
     ----------
@@ -250,6 +250,11 @@ def snnm_transfer(
     motion, reflection : ndarray
         R_AWM and R_AWR over the square of the amplitude [N/m2]. Both can be negative in waves
         from astern. The reflection at the bow jumps at the angle E1, as published.
+
+    References
+    ----------
+    S. Liu and A. Papanikolaou, Ocean Engineering 206 (2020) 107357, as adopted by ITTC
+    Recommended Procedure 7.5-04-01-01.1 (2021); unverified: see the text of this module.
     """
     particulars = hull.arrays()
     length, breadth, draught, trim, block, gyration = particulars[:6]
@@ -314,7 +319,11 @@ def snnm(
     density: float = SEA_WATER_DENSITY,
     gravity: float = GRAVITY,
 ) -> FloatArray:
-    """Mean added resistance in a long-crested sea from any direction.
+    r"""Mean added resistance in a long-crested sea from any direction.
+
+    .. math::
+        R_{AW} = 2 \int_0^\infty \frac{R_{AWM}(\omega) + R_{AWR}(\omega)}{\zeta_A^2}
+            E(\omega) \, d\omega
 
     Parameters
     ----------
@@ -336,6 +345,11 @@ def snnm(
     ndarray
         [N]; may be negative for following waves; zero where the wave height is zero, NaN where
         something is unknown.
+
+    References
+    ----------
+    S. Liu and A. Papanikolaou, Ocean Engineering 206 (2020) 107357, as adopted by ITTC
+    Recommended Procedure 7.5-04-01-01.1 (2021); unverified: see the text of this module.
     """
     particulars = hull.arrays()
     velocity, angle = ship_speed(speed), fold_angle(wave_angle)

@@ -26,13 +26,15 @@ from thalweg.ship.methods.added_resistance.mean_wave_force import (
 )
 from thalweg.ship.methods.added_resistance.snnm import (
     LONGEST_REFLECTED_WAVE,
-    SnnmHull,
     ahead_factors,
     fold_angle,
     frequency_scale,
     motion_shape,
     reflection_terms,
     speed_factor,
+)
+from thalweg.ship.methods.added_resistance.snnm_hull import (
+    SnnmHull,
 )
 from thalweg.ship.methods.resistance.friction_lines import froude_number, ship_speed
 

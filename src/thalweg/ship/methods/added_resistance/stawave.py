@@ -74,7 +74,9 @@ def stawave1(
     density: float = SEA_WATER_DENSITY,
     gravity: float = GRAVITY,
 ) -> FloatArray:
-    """STAwave-1: R = 1/16 rho g Hs^2 B sqrt(B / L_BWL), reflection only.
+    r"""STAwave-1.
+
+    .. math:: R_{AWL} = \frac{1}{16} \rho g H_s^2 B \sqrt{B / L_{BWL}}
 
     Parameters
     ----------
@@ -97,6 +99,10 @@ def stawave1(
     Notes
     -----
     Meant for small motions: Hs <= 2.25 sqrt(L_PP / 100) (unverified: quoted from memory).
+
+    References
+    ----------
+    ITTC Recommended Procedure 7.5-04-01-01.2 (2014); ISO 15016:2015, Annex D.
     """
     height = np.asarray(wave_height, dtype=float)
     wide = np.asarray(breadth, dtype=float)
@@ -153,7 +159,17 @@ def stawave2_transfer(
     density: float = SEA_WATER_DENSITY,
     gravity: float = GRAVITY,
 ) -> tuple[FloatArray, FloatArray]:
-    """STAwave-2 in regular head waves, for an amplitude of one metre.
+    r"""STAwave-2 in regular head waves, for an amplitude of one metre.
+
+    .. math::
+        R_{AWML} / \zeta_A^2 = 4 \rho g \frac{B^2}{L_{PP}} 60.3\, C_B^{1.34} Fr^{1.5}
+            e^{-3.5 Fr}\, \bar{\omega}^{b_1} e^{\frac{b_1}{d_1} (1 - \bar{\omega}^{d_1})} \\
+        \bar{\omega} = \omega \sqrt{L_{PP} / g}\, \sqrt[3]{k_{yy}}\, Fr^{0.143} / 1.17,
+            \quad b_1 = 11\ (\bar{\omega} < 1),\ -8.5, \quad d_1 = 14\ (\bar{\omega} < 1),\
+            -566 (L_{PP} / B)^{-2.66} \\
+        R_{AWRL} / \zeta_A^2 = \frac{1}{2} \rho g B \frac{\pi^2 I_1^2(1.5 k T)}{\pi^2
+            I_1^2(1.5 k T) + K_1^2(1.5 k T)} \left[0.692 \left(\frac{V}{\sqrt{T
+            g}}\right)^{0.769} + 1.81 C_B^{6.95}\right]
 
     Parameters
     ----------
@@ -176,6 +192,10 @@ def stawave2_transfer(
     -------
     motion, reflection : ndarray
         R_AWML and R_AWRL divided by the square of the amplitude [N/m2].
+
+    References
+    ----------
+    ITTC Recommended Procedure 7.5-04-01-01.2 (2014); ISO 15016:2015, Annex D.
     """
     omega = np.asarray(frequency, dtype=float)
     velocity = ship_speed(speed)
@@ -237,7 +257,11 @@ def stawave2(
     density: float = SEA_WATER_DENSITY,
     gravity: float = GRAVITY,
 ) -> FloatArray:
-    """STAwave-2: mean added resistance in a long-crested head sea.
+    r"""STAwave-2: mean added resistance in a long-crested head sea.
+
+    .. math::
+        R_{AW} = 2 \int_0^\infty \frac{R_{AWML}(\omega) + R_{AWRL}(\omega)}{\zeta_A^2}
+            E(\omega) \, d\omega
 
     Parameters
     ----------
@@ -270,6 +294,10 @@ def stawave2(
     slenderness and spectrum (relative error about 1e-4). Two errors of public programs are
     avoided: the speed in the reflection term is in m/s, and the dimensionless frequency has
     Fr^-0.143, not Fr.
+
+    References
+    ----------
+    ITTC Recommended Procedure 7.5-04-01-01.2 (2014); ISO 15016:2015, Annex D.
     """
     length = float(length_between_perpendiculars)
     velocity = ship_speed(speed)

@@ -25,6 +25,8 @@ def wind_at_height(
 ) -> FloatArray:
     """True wind at another height by the 1/7 power law (ISO 15016:2015).
 
+    .. math:: V(z) = V(z_0) (z / z_0)^{1/7}
+
     Parameters
     ----------
     wind_speed : array_like
@@ -38,6 +40,10 @@ def wind_at_height(
     -------
     ndarray
         [m/s].
+
+    References
+    ----------
+    ISO 15016:2015, Annex C; ITTC 7.5-04-01-01.1.
     """
     ratio = np.asarray(height, dtype=float) / reference_height
     return np.asarray(np.asarray(wind_speed, dtype=float) * ratio ** (1.0 / 7.0))
@@ -52,7 +58,11 @@ def wind_resistance(
     calm_air_coefficient: ArrayLike | None = None,
     ship_speed: ArrayLike = 0.0,
 ) -> FloatArray:
-    """Wind resistance 0.5 rho A_XV V_WR^2 C_AA, negative where the wind pushes.
+    r"""Wind resistance, negative where the wind pushes.
+
+    .. math::
+        R_{AA} = \frac{1}{2} \rho_A A_{XV} \left[V_{WR}^2 C_{AA}(\psi) - V_G^2
+            C_{AA}(0)\right]
 
     Parameters
     ----------
@@ -74,6 +84,11 @@ def wind_resistance(
     -------
     ndarray
         [N].
+
+    References
+    ----------
+    ISO 15016:2015, Annex C; ITTC 7.5-04-01-01.1. The second term counts only where
+    ``calm_air_coefficient`` is given.
     """
     pressure = 0.5 * density * np.asarray(frontal_area, dtype=float)
     force = pressure * np.asarray(relative_speed, dtype=float) ** 2 * np.asarray(coefficient)
@@ -129,7 +144,21 @@ def _fujiwara(angle: FloatArray, parts: tuple[float, float, float]) -> FloatArra
 
 
 def fujiwara_2006(wind_angle: ArrayLike, ship: FujiwaraShip) -> FloatArray:
-    """C_AA of Fujiwara, Ueno and Ikeda (2005, 2006), as in ITTC 7.5-04-01-01.1 and ISO 15016.
+    r"""C_AA of Fujiwara, Ueno and Ikeda (2005, 2006), as in ITTC 7.5-04-01-01.1 and ISO 15016.
+
+    .. math::
+        C_{AA} = C_{LF} \cos\psi + C_{XLI} \left(\sin\psi - \frac{1}{2} \sin\psi
+            \cos^2\psi\right) \sin\psi \cos\psi + C_{ALF} \sin\psi \cos^3\psi \\
+        \psi < 90^\circ: C_{LF} = 0.922 - 0.507 \frac{A_{YV}}{L_{OA} B} - 1.162
+            \frac{C_{MC}}{L_{OA}}, \quad C_{XLI} = -0.458 - 3.245 \frac{A_{YV}}{L_{OA}
+            h_{BR}} + 2.313 \frac{A_{XV}}{B h_{BR}}, \\
+        C_{ALF} = 0.585 + 0.906 \frac{A_{OD}}{A_{YV}} - 3.239 \frac{B}{L_{OA}} \\
+        \psi > 90^\circ: C_{LF} = -0.018 + 5.091 \frac{B}{L_{OA}} - 10.367
+            \frac{h_C}{L_{OA}} + 3.011 \frac{A_{OD}}{L_{OA}^2} + 0.341 \frac{A_{XV}}{B^2},
+            \\
+        C_{XLI} = 1.901 - 12.727 \frac{A_{YV}}{L_{OA} h_{BR}} - 24.407 \frac{A_{XV}}{A_{YV}}
+            + 40.310 \frac{B}{L_{OA}} + 5.481 \frac{A_{XV}}{B h_{BR}}, \quad C_{ALF} = 0.314
+            + 1.117 \frac{A_{OD}}{A_{YV}}
 
     Parameters
     ----------
@@ -143,6 +172,10 @@ def fujiwara_2006(wind_angle: ArrayLike, ship: FujiwaraShip) -> FloatArray:
     ndarray
         The head branch up to 80 degrees, the stern branch from 100 degrees, and a straight line
         between: at 90 degrees the mean of both, as in the procedure.
+
+    References
+    ----------
+    T. Fujiwara, M. Ueno, Y. Ikeda (2005, 2006); ITTC 7.5-04-01-01.1; ISO 15016:2015, Annex C.
     """
     length, breadth = ship.length_overall, ship.breadth
     lateral, frontal, deck = ship.lateral_area, ship.frontal_area, ship.deck_area
@@ -213,7 +246,12 @@ def blendermann_1994(
     lateral_area: ArrayLike,
     ship_type: BlendermannType,
 ) -> FloatArray:
-    """C_AA of W. Blendermann, "Parameter identification of wind loads on ships" (1994).
+    r"""C_AA of W. Blendermann, "Parameter identification of wind loads on ships" (1994).
+
+    .. math::
+        C_{AA} = \frac{C_{Dl,AF} \cos\epsilon}{1 - \frac{\delta}{2} \left(1 -
+            \frac{C_{Dl}}{C_{Dt}}\right) \sin^2 2\epsilon}, \quad C_{Dl} = C_{Dl,AF} A_F /
+            A_L
 
     C_AA = CD_l,AF cos e / [1 - delta/2 (1 - CD_l / CD_t) sin^2 2e], CD_l = CD_l,AF A_F / A_L.
 
@@ -229,6 +267,11 @@ def blendermann_1994(
     Returns
     -------
     ndarray
+
+    References
+    ----------
+    W. Blendermann, "Parameter identification of wind loads on ships", J. Wind Engineering and
+    Industrial Aerodynamics 51 (1994) 339-351.
     """
     angle = fold_angle_off_bow(wind_angle)
     drag = np.where(angle <= 0.5 * np.pi, ship_type.bow, ship_type.stern)

@@ -125,6 +125,8 @@ def fuel_named(name: str) -> Fuel:
 def co2_mass(fuel_mass: ArrayLike, *, carbon_factor: ArrayLike) -> FloatArray:
     """Return the CO2 of a fuel mass: mass times carbon factor, in the unit of the mass.
 
+    .. math:: m_{CO_2} = C_F m_{fuel}
+
     Parameters
     ----------
     fuel_mass : array_like
@@ -199,7 +201,9 @@ def halem_cost(
 def halem_cheapest_speed(
     *, per_second: float = 700_000.0 / 604_800.0, per_cube: float = 0.008
 ) -> float:
-    """Return the cheapest speed per distance in still water for `halem_cost` [m/s].
+    r"""Return the cheapest speed per distance in still water for `halem_cost` [m/s].
+
+    .. math:: V^* = \left(\frac{\lambda_t}{2 \lambda_f}\right)^{1/3}
 
     Parameters
     ----------
@@ -210,5 +214,9 @@ def halem_cheapest_speed(
     -------
     float
         (per_second / (2 per_cube))^(1/3), where d/dV of cost per distance is zero.
+
+    References
+    ----------
+    From van Halem (2019), eq. 3.4: the minimum of the cost per distance.
     """
     return float((per_second / (2.0 * per_cube)) ** (1.0 / 3.0))

@@ -159,7 +159,11 @@ def fuel_rate(
     pilot_g_kwh: ArrayLike = 0.0,
     varies_with_load: bool = True,
 ) -> FloatArray:
-    """Return the fuel one engine burns.
+    r"""Return the fuel one engine burns.
+
+    .. math::
+        \dot{m} = P \left[SFOC \cdot (0.455 x^2 - 0.710 x + 1.280) + SFOC_{pilot}\right],
+            \quad x = P / MCR
 
     Parameters
     ----------
@@ -264,7 +268,9 @@ def plant_fuel_rate(
 
 
 def hotel_fuel_rate(power: ArrayLike, *, sfoc_g_kwh: ArrayLike) -> FloatArray:
-    """Return the fuel of auxiliary engines at constant specific consumption.
+    r"""Return the fuel of auxiliary engines at constant specific consumption.
+
+    .. math:: \dot{m} = P \cdot SFOC
 
     Parameters
     ----------

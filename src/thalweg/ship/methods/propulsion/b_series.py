@@ -196,7 +196,9 @@ def solve_advance(
     diameter: float,
     density: float = SEA_WATER_DENSITY,
 ) -> FloatArray:
-    """Advance coefficient at which a propeller gives a thrust at a speed of advance.
+    r"""Advance coefficient at which a propeller gives a thrust at a speed of advance.
+
+    .. math:: K_T(J)\, \rho V_A^2 D^2 = T J^2
 
     The root of K_T(J) rho V_A^2 D^2 = T J^2 is unique between J = 0 (at the bollard) and the J of
     no thrust. Newton's method finds it from a near point; where it does not converge, its steps are
@@ -219,6 +221,10 @@ def solve_advance(
     -------
     ndarray
         J; NaN for a negative thrust or speed.
+
+    References
+    ----------
+    M.W.C. Oosterveld, P. van Oossanen, International Shipbuilding Progress 22 (1975) 251-262.
     """
     force, flow = np.broadcast_arrays(
         np.asarray(thrust, dtype=float), np.asarray(advance_speed, dtype=float)
@@ -291,7 +297,11 @@ def operating_point(
     density: float = SEA_WATER_DENSITY,
     reynolds: float | None = None,
 ) -> PropellerOperatingPoint:
-    """State of a propeller that gives a thrust at a speed of advance.
+    r"""State of a propeller that gives a thrust at a speed of advance.
+
+    .. math::
+        J = \frac{V_A}{n D}, \quad T = K_T \rho n^2 D^4, \quad Q = K_Q \rho n^2 D^5, \quad P
+            = 2 \pi n Q, \quad \eta_0 = \frac{J K_T}{2 \pi K_Q}
 
     Parameters
     ----------
@@ -310,6 +320,10 @@ def operating_point(
     -------
     OperatingPoint
         NaN for a negative thrust or speed.
+
+    References
+    ----------
+    M.W.C. Oosterveld, P. van Oossanen, International Shipbuilding Progress 22 (1975) 251-262.
     """
     polynomials = b_series_polynomials(propeller, reynolds=reynolds)
     size, largest = propeller.diameter, largest_advance(propeller, reynolds=reynolds)

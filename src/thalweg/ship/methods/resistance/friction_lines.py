@@ -85,9 +85,15 @@ def reynolds_number(
 
 
 def ittc_1957(reynolds: ArrayLike) -> FloatArray:
-    """ITTC 1957 model-ship correlation line, C_F = 0.075 / (log10 Re - 2)^2.
+    r"""ITTC 1957 model-ship correlation line, C_F = 0.075 / (log10 Re - 2)^2.
+
+    .. math:: C_F = \frac{0.075}{(\log_{10} Re - 2)^2}
 
     Source: 8th ITTC (1957), Madrid.
+
+    References
+    ----------
+    8th ITTC (1957), Madrid.
     """
     return np.asarray(0.075 / (np.log10(np.asarray(reynolds, dtype=float)) - 2.0) ** 2)
 
@@ -112,6 +118,10 @@ def dynamic_force(
     -------
     ndarray
         Force [N].
+
+    References
+    ----------
+    Definition of the force coefficients.
     """
     velocity = np.asarray(speed, dtype=float)
     force = 0.5 * np.asarray(density) * velocity**2 * np.asarray(area) * np.asarray(coefficient)

@@ -30,52 +30,12 @@ from thalweg.ship.methods.resistance.hollenbach_coefficients import (
     ResistanceVariant,
     SurfaceVariant,
 )
+from thalweg.ship.methods.resistance.hollenbach_hull import (
+    AppendageCounts,
+    HollenbachHull,
+    froude_length,
+)
 from thalweg.ship.methods.validity import RangeNote, range_notes
-
-
-@dataclass(frozen=True)
-class HollenbachHull:
-    """Particulars of a hull for Hollenbach's regressions; scalars or arrays that broadcast.
-
-    Attributes
-    ----------
-    length_between_perpendiculars, length_waterline : array_like
-        L and L_WL [m].
-    length_over_surface : array_like
-        L_OS [m], foremost to aftmost wetted point, bulb included.
-    breadth, draught_fore, draught_aft : array_like
-        B, T_F and T_A [m].
-    block_coefficient : array_like
-        C_B on L, B and the mean draught.
-    propeller_diameter : array_like
-        D_P [m].
-    """
-
-    length_between_perpendiculars: ArrayLike
-    length_waterline: ArrayLike
-    length_over_surface: ArrayLike
-    breadth: ArrayLike
-    draught_fore: ArrayLike
-    draught_aft: ArrayLike
-    block_coefficient: ArrayLike
-    propeller_diameter: ArrayLike
-
-
-@dataclass(frozen=True)
-class AppendageCounts:
-    """Numbers of appendages; they act on the twin-screw mean curves and surfaces only.
-
-    Attributes
-    ----------
-    rudders, brackets, bosses, thrusters : array_like
-        Counts; thrusters are side thrusters.
-    """
-
-    rudders: ArrayLike = 1
-    brackets: ArrayLike = 0
-    bosses: ArrayLike = 0
-    thrusters: ArrayLike = 0
-
 
 _ONE_RUDDER: Final = AppendageCounts()
 _SEA_WATER: Final = Water()
@@ -103,35 +63,21 @@ class HollenbachResistance:
     total: FloatArray
 
 
-def froude_length(
-    length_between_perpendiculars: ArrayLike, *, length_over_surface: ArrayLike
-) -> FloatArray:
-    """Length that enters the Froude number (Hollenbach 1998, Table 1).
-
-    Parameters
-    ----------
-    length_between_perpendiculars : array_like
-        L [m].
-    length_over_surface : array_like
-        L_OS [m], foremost to aftmost wetted point, bulb included.
-
-    Returns
-    -------
-    ndarray
-        L_OS below L_OS / L = 1; L + 2/3 (L_OS - L) up to 1.1; 1.0667 L from there on [m].
-    """
-    length = np.asarray(length_between_perpendiculars, dtype=float)
-    over = np.asarray(length_over_surface, dtype=float)
-    ratio = over / length
-    middle = length + 2.0 / 3.0 * (over - length)
-    known = np.where(ratio < 1.0, over, np.where(ratio < 1.1, middle, 1.0667 * length))
-    return np.where(np.isnan(ratio), np.nan, known)
-
-
 def standard_residuary(
     froude: ArrayLike, *, block_coefficient: ArrayLike, variant: ResistanceVariant = "single_design"
 ) -> FloatArray:
-    """Standard residuary coefficient C_R,standard, a quadratic in Fn and C_B."""
+    """Standard residuary coefficient C_R,standard, a quadratic in Fn and C_B.
+
+    .. math::
+        C_{R,std} = b_{11} + b_{12} Fn + b_{13} Fn^2 + C_B (b_{21} + b_{22} Fn + b_{23}
+            Fn^2) + C_B^2 (b_{31} + b_{32} Fn + b_{33} Fn^2)
+
+    References
+    ----------
+    U. Hollenbach, Schiffstechnik 45(2) (1998), as in Schneekluth and Bertram (1998) and Birk
+    (2019).
+    Yu (2021), eq. 5, with misprints.
+    """
     fn = np.asarray(froude, dtype=float)
     block = np.asarray(block_coefficient, dtype=float)
     rows = [b1 + b2 * fn + b3 * fn**2 for b1, b2, b3 in RESISTANCE_COEFFICIENTS[variant].residuary]
@@ -152,10 +98,20 @@ def critical_froude_number(
 def froude_factor(
     froude: ArrayLike, *, block_coefficient: ArrayLike, variant: ResistanceVariant = "single_design"
 ) -> FloatArray:
-    """Factor k_F: 1 below the critical Froude number, (Fn / Fn_crit)^c1 above.
+    r"""Factor k_F: 1 below the critical Froude number, (Fn / Fn_crit)^c1 above.
+
+    .. math::
+        k_F = 1\ (Fn < Fn_{crit}), \quad (Fn / Fn_{crit})^{c_1}\ (Fn \ge Fn_{crit}), \\
+        c_1 = Fn / Fn_{crit}, \quad \text{in ballast}\ c_1 = 10 C_B (Fn / Fn_{crit} - 1)
 
     The condition is on Fn, not on the factor: with the ballast exponent
     c1 = 10 C_B (Fn / Fn_crit - 1) the power exceeds one below the critical number as well.
+
+    References
+    ----------
+    U. Hollenbach, Schiffstechnik 45(2) (1998), as in Schneekluth and Bertram (1998) and Birk
+    (2019).
+    Yu (2021), eq. 6, with misprints.
     """
     fn = np.asarray(froude, dtype=float)
     block = np.asarray(block_coefficient, dtype=float)
@@ -173,7 +129,13 @@ def residuary_coefficient(
     appendages: AppendageCounts = _ONE_RUDDER,
     variant: ResistanceVariant = "single_design",
 ) -> FloatArray:
-    """Residuary coefficient C_R on the area B T (the printed one divided by ten).
+    r"""Residuary coefficient C_R on the area B T (the printed one divided by ten).
+
+    .. math::
+        C_R = \frac{1}{10} C_{R,std} k_F e_1 L^{e_2} (T/B)^{a_1} (B/L)^{a_2}
+            (L_{OS}/L_{WL})^{a_3} (L_{WL}/L)^{a_4} \\
+        (1 + (T_A - T_F)/L)^{a_5} (D_P/T_A)^{a_6} (1 + N_{rud})^{a_7} (1 + N_{brac})^{a_8}
+            (1 + N_{boss})^{a_9} (1 + N_{thr})^{a_{10}}
 
     C_R = 0.1 C_R,standard k_F k_L (T/B)^a1 (B/L)^a2 (L_OS/L_WL)^a3 (L_WL/L)^a4
     (1 + (T_A - T_F)/L)^a5 (D_P/T_A)^a6 (1 + N_rudders)^a7 (1 + N_brackets)^a8 (1 + N_bosses)^a9
@@ -192,6 +154,12 @@ def residuary_coefficient(
     -------
     ndarray
         C_R [-].
+
+    References
+    ----------
+    U. Hollenbach, Schiffstechnik 45(2) (1998), as in Schneekluth and Bertram (1998) and Birk
+    (2019).
+    Yu (2021), eq. 4, with misprints.
     """
     coefficients = RESISTANCE_COEFFICIENTS[variant]
     length = np.asarray(hull.length_between_perpendiculars, dtype=float)
@@ -230,7 +198,9 @@ def hollenbach_1998(
     friction_coefficient: ArrayLike | None = None,
     water: Water = _SEA_WATER,
 ) -> HollenbachResistance:
-    """Calm-water resistance, mean or minimum line, R = 0.5 rho V^2 (C_F S + C_R B T).
+    r"""Calm-water resistance, mean or minimum line.
+
+    .. math:: R = \frac{1}{2} \rho V^2 (C_F S + C_R B T + C_A S)
 
     Parameters
     ----------
@@ -253,6 +223,12 @@ def hollenbach_1998(
     HollenbachResistance
         Components [N]. Outside the Froude range (`hollenbach_validity`) the curve is still
         evaluated; the caller decides.
+
+    References
+    ----------
+    U. Hollenbach, Schiffstechnik 45(2) (1998), as in Schneekluth and Bertram (1998) and Birk
+    (2019). C_A is zero in the publication.
+    Yu (2021), eq. 13, with misprints.
     """
     velocity = ship_speed(speed)
     length = hull.length_between_perpendiculars
@@ -281,9 +257,16 @@ def maximum_factor(variant: ResistanceVariant = "single_design") -> float:
 
 
 def correlation_allowance(length_between_perpendiculars: ArrayLike) -> FloatArray:
-    """C_A = (0.35 - 0.002 L) 1e-3 below L = 175 m, else 0.
+    r"""C_A = (0.35 - 0.002 L) 1e-3 below L = 175 m, else 0.
+
+    .. math:: C_A = \max(0, (0.35 - 0.002 L) \cdot 10^{-3})
 
     Source: Birk (2019), seen in one reprint only; an option, not part of the 1998 paper.
+
+    References
+    ----------
+    L. Birk, "Fundamentals of Ship Hydrodynamics" (2019), unverified: seen in one reprint only;
+    not part of the 1998 paper.
     """
     length = np.asarray(length_between_perpendiculars, dtype=float)
     return np.maximum((0.35 - 0.002 * length) * 1e-3, 0.0)
@@ -295,7 +278,13 @@ def hollenbach_wetted_surface(
     appendages: AppendageCounts = _ONE_RUDDER,
     variant: SurfaceVariant = "single_design",
 ) -> FloatArray:
-    """Wetted surface S = k L (B + 2 T) with Hollenbach's regression for k.
+    r"""Wetted surface S = k L (B + 2 T) with Hollenbach's regression for k.
+
+    .. math::
+        S = k L (B + 2 T), \quad k = s_0 + s_1 \frac{L_{OS}}{L_{WL}} + s_2 \frac{L_{WL}}{L}
+            + s_3 C_B + s_4 \frac{L}{B} + s_5 \frac{B}{T} + s_6 \frac{L}{T} \\
+        + s_7 \frac{T_A - T_F}{L} + s_8 \frac{D_P}{T} + s_9 N_{rud} + s_{10} N_{brac} +
+            s_{11} N_{boss}
 
     k = s0 + s1 L_OS/L_WL + s2 L_WL/L + s3 C_B + s4 L/B + s5 B/T + s6 L/T + s7 (T_A - T_F)/L
     + s8 D_P/T + s9 N_rudders + s10 N_brackets + s11 N_bosses.
@@ -311,6 +300,11 @@ def hollenbach_wetted_surface(
     -------
     ndarray
         Wetted surface [m2].
+
+    References
+    ----------
+    U. Hollenbach, Schiffstechnik 45(2) (1998), as in Schneekluth and Bertram (1998) and Birk
+    (2019).
     """
     length = np.asarray(hull.length_between_perpendiculars, dtype=float)
     waterline = np.asarray(hull.length_waterline, dtype=float)

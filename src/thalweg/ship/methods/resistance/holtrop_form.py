@@ -92,7 +92,11 @@ def hull_form(
 
 
 def wetted_surface(hull: HullForm, *, bulb_area: ArrayLike = 0.0) -> FloatArray:
-    """Wetted surface S of the bare hull [m2] (Holtrop and Mennen 1982).
+    r"""Wetted surface S of the bare hull [m2] (Holtrop and Mennen 1982).
+
+    .. math::
+        S = L (2 T + B) \sqrt{C_M} (0.453 + 0.4425 C_B - 0.2862 C_M - 0.003467 B/T + 0.3696
+            C_{WP}) + 2.38 A_{BT} / C_B
 
     L (2T + B) sqrt(C_M) (0.453 + 0.4425 C_B - 0.2862 C_M - 0.003467 B/T + 0.3696 C_WP)
     + 2.38 A_BT / C_B, with A_BT the transverse area of the bulb [m2].
@@ -108,6 +112,10 @@ def wetted_surface(hull: HullForm, *, bulb_area: ArrayLike = 0.0) -> FloatArray:
     -------
     ndarray
         Wetted surface [m2].
+
+    References
+    ----------
+    J. Holtrop and G.G.J. Mennen, International Shipbuilding Progress 29 (1982) 166-170.
     """
     shape = (
         0.453
@@ -121,7 +129,14 @@ def wetted_surface(hull: HullForm, *, bulb_area: ArrayLike = 0.0) -> FloatArray:
 
 
 def length_of_run(hull: HullForm) -> FloatArray:
-    """L_R = L (1 - C_P + 0.06 C_P lcb / (4 C_P - 1)) [m]."""
+    r"""L_R = L (1 - C_P + 0.06 C_P lcb / (4 C_P - 1)) [m].
+
+    .. math:: L_R = L \left(1 - C_P + \frac{0.06 C_P\, lcb}{4 C_P - 1}\right)
+
+    References
+    ----------
+    J. Holtrop and G.G.J. Mennen, International Shipbuilding Progress 29 (1982) 166-170.
+    """
     prismatic = hull.prismatic_coefficient
     return hull.length * (
         1.0 - prismatic + 0.06 * prismatic * hull.lcb_percent / (4.0 * prismatic - 1.0)
@@ -129,7 +144,13 @@ def length_of_run(hull: HullForm) -> FloatArray:
 
 
 def form_factor_1982(hull: HullForm, *, stern_shape: ArrayLike = 0.0) -> FloatArray:
-    """Form factor 1 + k1 of Holtrop and Mennen (1982).
+    r"""Form factor 1 + k1 of Holtrop and Mennen (1982).
+
+    .. math::
+        1 + k_1 = c_{13} \left[0.93 + c_{12} (B / L_R)^{0.92497} (0.95 - C_P)^{-0.521448} (1
+            - C_P + 0.0225\, lcb)^{0.6906}\right] \\
+        c_{12} = (T/L)^{0.2228446}\ (T/L > 0.05), \quad 48.20 (T/L - 0.02)^{2.078} +
+            0.479948\ (> 0.02), \quad 0.479948; \quad c_{13} = 1 + 0.003 C_{stern}
 
     `stern_shape` is C_stern: -25 pram with gondola, -10 V-shaped, 0 normal, +10 U-shaped sections.
 
@@ -144,6 +165,10 @@ def form_factor_1982(hull: HullForm, *, stern_shape: ArrayLike = 0.0) -> FloatAr
     -------
     ndarray
         Form factor 1 + k1 [-].
+
+    References
+    ----------
+    J. Holtrop and G.G.J. Mennen, International Shipbuilding Progress 29 (1982) 166-170.
     """
     ratio = hull.draught / hull.length
     middle = 48.20 * np.maximum(ratio - 0.02, 0.0) ** 2.078 + 0.479948
@@ -160,7 +185,12 @@ def form_factor_1982(hull: HullForm, *, stern_shape: ArrayLike = 0.0) -> FloatAr
 
 
 def form_factor_1984(hull: HullForm, *, stern_shape: ArrayLike = 0.0) -> FloatArray:
-    """Form factor 1 + k1 of Holtrop (1984); `stern_shape` as in `form_factor_1982`.
+    r"""Form factor 1 + k1 of Holtrop (1984); `stern_shape` as in `form_factor_1982`.
+
+    .. math::
+        1 + k_1 = 0.93 + 0.487118\, c_{14} (B/L)^{1.06806} (T/L)^{0.46106}
+            (L/L_R)^{0.121563} (L^3/\nabla)^{0.36486} (1 - C_P)^{-0.604247} \\
+        c_{14} = 1 + 0.011 C_{stern}
 
     Parameters
     ----------
@@ -173,6 +203,11 @@ def form_factor_1984(hull: HullForm, *, stern_shape: ArrayLike = 0.0) -> FloatAr
     -------
     ndarray
         Form factor 1 + k1 [-].
+
+    References
+    ----------
+    J. Holtrop, International Shipbuilding Progress 31 (1984) 272-276.
+    Schless (2023), eq. 3.21, prints the exponent -0.60247.
     """
     c14 = 1.0 + 0.011 * np.asarray(stern_shape)
     return 0.93 + 0.487118 * c14 * (
@@ -185,7 +220,16 @@ def form_factor_1984(hull: HullForm, *, stern_shape: ArrayLike = 0.0) -> FloatAr
 
 
 def half_angle_of_entrance(hull: HullForm) -> FloatArray:
-    """Half angle of entrance of the waterline i_E [deg] (Holtrop and Mennen 1982)."""
+    r"""Half angle of entrance of the waterline i_E [deg] (Holtrop and Mennen 1982).
+
+    .. math::
+        i_E = 1 + 89 \exp\left[-(L/B)^{0.80856} (1 - C_{WP})^{0.30484} (1 - C_P - 0.0225\,
+            lcb)^{0.6367} (L_R/B)^{0.34574} (100 \nabla / L^3)^{0.16302}\right]
+
+    References
+    ----------
+    J. Holtrop and G.G.J. Mennen, International Shipbuilding Progress 29 (1982) 166-170.
+    """
     fullness = 1.0 - hull.prismatic_coefficient - 0.0225 * hull.lcb_percent
     return 1.0 + 89.0 * np.exp(
         -((hull.length / hull.breadth) ** 0.80856)

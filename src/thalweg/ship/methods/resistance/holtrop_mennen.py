@@ -88,10 +88,20 @@ def bulb_resistance(
     density: float = SEA_WATER_DENSITY,
     gravity: float = GRAVITY,
 ) -> FloatArray:
-    """Pressure resistance R_B of a bulbous bow near the surface [N]; 0 without a bulb.
+    r"""Pressure resistance R_B of a bulbous bow near the surface [N]; 0 without a bulb.
+
+    .. math::
+        R_B = 0.11\, e^{-3 P_B^{-2}} Fn_i^3 A_{BT}^{1.5} \rho g / (1 + Fn_i^2), \quad P_B =
+            0.56 \sqrt{A_{BT}} / (T_F - 1.5 h_B) \\
+        Fn_i = V / \sqrt{g (T_F - h_B - 0.25 \sqrt{A_{BT}}) + 0.15 V^2}
 
     The centre of the bulb h_B counts at most 0.6 T_F, the limit of the method, and the immersion
     T_F - h_B - 0.25 sqrt(A_BT) at least zero.
+
+    References
+    ----------
+    J. Holtrop and G.G.J. Mennen, International Shipbuilding Progress 29 (1982) 166-170.
+    Schless (2023), eqs. 3.35 to 3.37.
     """
     velocity = np.asarray(speed, dtype=float)
     area, fore = np.asarray(bulb_area, dtype=float), np.asarray(draught_fore, dtype=float)
@@ -113,7 +123,17 @@ def transom_resistance(
     density: float = SEA_WATER_DENSITY,
     gravity: float = GRAVITY,
 ) -> FloatArray:
-    """Pressure resistance R_TR of an immersed transom [N]; 0 when it runs dry (Fn_T >= 5)."""
+    r"""Pressure resistance R_TR of an immersed transom [N]; 0 when it runs dry (Fn_T >= 5).
+
+    .. math::
+        R_{TR} = \frac{1}{2} \rho V^2 A_T c_6, \quad c_6 = 0.2 (1 - 0.2 Fn_T)\ (\ge 0),
+            \quad Fn_T = V / \sqrt{2 g A_T / (B + B C_{WP})}
+
+    References
+    ----------
+    J. Holtrop and G.G.J. Mennen, International Shipbuilding Progress 29 (1982) 166-170.
+    Schless (2023), eq. 3.40, without the limit at Fn_T = 5.
+    """
     area = np.asarray(transom_area, dtype=float)
     wet = np.where(area == 0.0, 1.0, area)
     depth = 2.0 * gravity * wet / (hull.breadth * (1.0 + hull.waterplane_coefficient))
@@ -124,7 +144,16 @@ def transom_resistance(
 def correlation_coefficient(
     hull: HullForm, *, draught_fore: ArrayLike, bulb_factor: ArrayLike = 1.0
 ) -> FloatArray:
-    """Model-ship correlation allowance C_A for a hull in trial condition."""
+    r"""Model-ship correlation allowance C_A for a hull in trial condition.
+
+    .. math::
+        C_A = 0.006 (L + 100)^{-0.16} - 0.00205 + 0.003 \sqrt{L / 7.5}\, C_B^4 c_2 (0.04 -
+            c_4), \quad c_4 = \min(T_F / L, 0.04)
+
+    References
+    ----------
+    J. Holtrop and G.G.J. Mennen, International Shipbuilding Progress 29 (1982) 166-170.
+    """
     c4 = np.minimum(np.asarray(draught_fore) / hull.length, 0.04)
     slender = 0.003 * np.sqrt(hull.length / 7.5) * hull.block_coefficient**4
     slim = 0.006 * (hull.length + 100.0) ** -0.16 - 0.00205
@@ -171,7 +200,9 @@ def holtrop(
     viscosity: float = SEA_WATER_VISCOSITY,
     gravity: float = GRAVITY,
 ) -> HoltropResistance:
-    """Calm-water resistance R = R_F (1 + k1) + R_APP + R_W + R_B + R_TR + R_A.
+    """Calm-water resistance.
+
+    .. math:: R = R_F (1 + k_1) + R_{APP} + R_W + R_B + R_{TR} + R_A
 
     Parameters
     ----------
@@ -205,6 +236,11 @@ def holtrop(
     -------
     HoltropResistance
         Components [N].
+
+    References
+    ----------
+    J. Holtrop and G.G.J. Mennen, International Shipbuilding Progress 29 (1982) 166-170. J.
+    Holtrop, International Shipbuilding Progress 31 (1984) 272-276.
     """
     velocity = ship_speed(speed)
     waves = velocity if wave_speed is None else ship_speed(wave_speed)

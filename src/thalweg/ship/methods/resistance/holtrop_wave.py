@@ -64,6 +64,10 @@ def bulb_wave_factor(
     -------
     ndarray
         Factor c2 [-].
+
+    References
+    ----------
+    J. Holtrop and G.G.J. Mennen, International Shipbuilding Progress 29 (1982) 166-170.
     """
     area = np.asarray(bulb_area, dtype=float)
     height = bulb_height(bulb_centre_height, draught_fore)
@@ -155,7 +159,23 @@ def wave_resistance(
     density: float = SEA_WATER_DENSITY,
     gravity: float = GRAVITY,
 ) -> FloatArray:
-    """Wave-making resistance R_W.
+    r"""Wave-making resistance R_W.
+
+    .. math::
+        R_W = c_1 c_2 c_5 \nabla \rho g \exp\left[m_1 Fn^{-0.9} + m_4 \cos(\lambda
+            Fn^{-2})\right] \\
+        c_1 = 2223105\, c_7^{3.78613} (T/B)^{1.07961} (90 - i_E)^{-1.37565} \\
+        c_7 = 0.229577 (B/L)^{1/3}\ (B/L < 0.11), \quad B/L, \quad 0.5 - 0.0625 L/B\ (B/L >
+            0.25) \\
+        m_1 = 0.0140407 L/T - 1.75254 \nabla^{1/3}/L - 4.79323 B/L - c_{16}, \quad \lambda =
+            1.446 C_P - 0.03 L/B\ (L/B < 12),\ 1.446 C_P - 0.36 \\
+        c_{16} = 8.07981 C_P - 13.8673 C_P^2 + 6.984388 C_P^3\ (C_P < 0.8), \quad 1.73014 -
+            0.7067 C_P \\
+        1982: m_4 = c_{15} C_P^2 e^{-0.1 Fn^{-2}}; \quad 1984: m_4 = 0.4 c_{15} e^{-0.034
+            Fn^{-3.29}} \\
+        Fn > 0.55\ (1984): c_1 \to c_{17} = 6919.3\, C_M^{-1.3346} (\nabla/L^3)^{2.00977}
+            (L/B - 2)^{1.40692}, \quad m_1 \to m_3 = -7.2035 (B/L)^{0.326869}
+            (T/B)^{0.605375}
 
     Parameters
     ----------
@@ -177,6 +197,12 @@ def wave_resistance(
     -------
     ndarray
         [N].
+
+    References
+    ----------
+    J. Holtrop and G.G.J. Mennen, International Shipbuilding Progress 29 (1982) 166-170. J.
+    Holtrop, International Shipbuilding Progress 31 (1984) 272-276.
+    Schless (2023), eq. 3.34, for Fn between 0.4 and 0.55.
     """
     fn = froude_number(speed, length=hull.length, gravity=gravity)
     resolved = np.maximum(fn, _LEAST_FROUDE_NUMBER)

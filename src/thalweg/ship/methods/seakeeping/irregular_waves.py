@@ -60,7 +60,11 @@ def wave_components(
     generator: np.random.Generator,
     scheme: str = "deterministic",
 ) -> WaveComponents:
-    """Return sinusoids with the energy of a spectrum.
+    r"""Return sinusoids with the energy of a spectrum.
+
+    .. math::
+        \eta(t) = \sum_j \sqrt{2 S(\omega_j) \Delta\omega} \cos(\omega_j t + \phi_j), \quad
+            \phi_j\ \text{uniform in}\ [0, 2\pi)
 
     Parameters
     ----------
@@ -132,7 +136,11 @@ def _multiples(frequency: FloatArray) -> bool:
 
 
 def wave_history(components: WaveComponents, time: ArrayLike) -> WaveHistory:
-    """Return elevation, velocity and acceleration of the surface at times.
+    r"""Return elevation, velocity and acceleration of the surface at times.
+
+    .. math::
+        \eta = \Re \sum_j a_j e^{i \omega_j t}, \quad \dot\eta = \Re \sum_j i \omega_j a_j
+            e^{i \omega_j t}, \quad \ddot\eta = -\Re \sum_j \omega_j^2 a_j e^{i \omega_j t}
 
     Parameters
     ----------

@@ -30,7 +30,15 @@ def _standard_normal_distribution(z: FloatArray) -> FloatArray:
 
 
 def wf_weighting(frequency_hz: ArrayLike) -> FloatArray:
-    """Return the frequency weighting W_f of ISO 2631-1 for motion sickness.
+    r"""Return the frequency weighting W_f of ISO 2631-1 for motion sickness.
+
+    .. math::
+        W_f = |H_h| |H_l| |H_t| |H_s|, \quad |H_h| = \sqrt{\frac{f^4}{f^4 + f_1^4}}, \quad
+            |H_l| = \sqrt{\frac{f_2^4}{f^4 + f_2^4}} \\
+        |H_t| = \frac{f_4^2 Q_4}{\sqrt{f^4 Q_4^2 + f^2 f_4^2 (1 - 2 Q_4^2) + f_4^4 Q_4^2}}
+            \\
+        |H_s| = \frac{Q_6}{Q_5} \sqrt{\frac{f^4 Q_5^2 + f^2 f_5^2 (1 - 2 Q_5^2) + f_5^4
+            Q_5^2}{f^4 Q_6^2 + f^2 f_6^2 (1 - 2 Q_6^2) + f_6^4 Q_6^2}}
 
     Parameters
     ----------
@@ -59,7 +67,9 @@ def wf_weighting(frequency_hz: ArrayLike) -> FloatArray:
 
 
 def weighted_acceleration(parts: ArrayLike, encounter_frequency: ArrayLike) -> FloatArray:
-    """Return the W_f-weighted root mean square of a vertical acceleration.
+    r"""Return the W_f-weighted root mean square of a vertical acceleration.
+
+    .. math:: a_w = \sqrt{\sum_j W_f^2(\omega_{e,j} / 2\pi)\, \sigma_j^2}
 
     Parameters
     ----------
@@ -106,7 +116,9 @@ def motion_sickness_dose(weighted_rms: ArrayLike, *, duration: ArrayLike) -> Flo
 
 
 def combined_dose(weighted_rms: ArrayLike, *, durations: ArrayLike) -> FloatArray:
-    """Return the dose of consecutive stretches: the square root of the summed squares.
+    r"""Return the dose of consecutive stretches: the square root of the summed squares.
+
+    .. math:: MSDV_z = \sqrt{\sum_k a_{w,k}^2 t_k}
 
     Parameters
     ----------

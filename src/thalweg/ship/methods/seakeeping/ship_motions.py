@@ -70,7 +70,9 @@ class MotionHull:
 def encounter_ratio(
     frequency: ArrayLike, *, speed: ArrayLike, wave_angle: ArrayLike, gravity: float = GRAVITY
 ) -> FloatArray:
-    """Return encounter over wave frequency in deep water: 1 + w V cos(angle) / g.
+    r"""Return encounter over wave frequency in deep water.
+
+    .. math:: \omega_e / \omega = 1 + \omega V \cos\beta / g
 
     Parameters
     ----------
@@ -88,6 +90,10 @@ def encounter_ratio(
     -------
     ndarray
         Ratio [-]; negative where the ship overtakes the waves.
+
+    References
+    ----------
+    Definition, deep water; MSC.1/Circ.1228, 1.6, has the same for the period.
     """
     ahead = as_float_array(speed) * np.cos(as_float_array(wave_angle))
     return 1.0 + as_float_array(frequency) * ahead[..., None] / gravity
@@ -258,7 +264,9 @@ def ship_response(
     decay: str = "strip",
     gravity: float = GRAVITY,
 ) -> ShipResponse:
-    """Return heave, pitch, vertical motion and acceleration in long-crested JONSWAP seas.
+    r"""Return heave, pitch, vertical motion and acceleration in long-crested JONSWAP seas.
+
+    .. math:: m_n = \int_0^\infty |\omega_e|^n |H(\omega)|^2 S(\omega) \, d\omega
 
     Parameters
     ----------
@@ -290,6 +298,11 @@ def ship_response(
     -----
     All conditions are worked at once with 48 frequencies each: a million conditions need about
     400 MB per intermediate array, so give long lists in parts.
+
+    References
+    ----------
+    J. J. Jensen, A. E. Mansour, A. S. Olsen, Ocean Engineering 31 (2004) 61-85, for the
+    response H; see `jensen_motions`.
     """
     hs, tp, angle, v, x = np.broadcast_arrays(
         *(as_float_array(values) for values in (height, period, wave_angle, speed, forward))

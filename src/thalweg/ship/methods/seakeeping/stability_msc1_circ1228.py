@@ -208,7 +208,11 @@ def dangerous_situations(
     roll_tolerance: float = 0.1,
     harmless_wave_height: float = 0.0,
 ) -> DangerousSituations:
-    """Return the warnings of MSC.1/Circ.1228 in given waves.
+    r"""Return the warnings of MSC.1/Circ.1228 in given waves.
+
+    .. math::
+        V > 1.8 \sqrt{L} / \cos(180^\circ - \alpha); \quad \lambda > 0.8 L\ \text{and}\ H_s
+            > 0.04 L; \quad T_E \approx T_R; \quad T_E \approx T_R / 2
 
     Parameters
     ----------

@@ -130,7 +130,11 @@ def jonswap(
 
 
 def bretschneider(frequency: ArrayLike, *, height: ArrayLike, period: ArrayLike) -> FloatArray:
-    """Return the two-parameter Bretschneider (Pierson-Moskowitz type) spectrum.
+    r"""Return the two-parameter Bretschneider (Pierson-Moskowitz type) spectrum.
+
+    .. math::
+        S(\omega) = \frac{5}{16} H_s^2 \frac{\omega_p^4}{\omega^5} \exp\left[-\frac{5}{4}
+            \left(\frac{\omega_p}{\omega}\right)^4\right]
 
     Parameters
     ----------
@@ -174,10 +178,40 @@ def pierson_moskowitz_period(height: ArrayLike, *, gravity: float = GRAVITY) -> 
     return period
 
 
+def pierson_moskowitz_wind(height: ArrayLike, *, gravity: float = GRAVITY) -> FloatArray:
+    """Return the wind at 10 m that raises a fully developed sea of given height [m/s].
+
+    From Hs = 2 U^2 sqrt(0.0081 / 0.74) / g with the wind U at 19.5 m, which is 1.026 times that at
+    10 m.
+
+    Parameters
+    ----------
+    height : array_like
+        Significant height [m].
+    gravity : float
+        [m/s2].
+
+    Returns
+    -------
+    ndarray
+        Wind speed [m/s].
+
+    References
+    ----------
+    W. J. Pierson, L. Moskowitz, J. Geophys. Res. 69 (1964); R. H. Stewart, Introduction to Physical
+    Oceanography (2008), section 16.4, for the factor 1.026.
+    """
+    steepness = 2.0 * np.sqrt(0.0081 / 0.74)
+    wind: FloatArray = np.sqrt(as_float_array(height) * gravity / steepness) / 1.026
+    return wind
+
+
 def spectral_moment(
     density: ArrayLike, weights: ArrayLike, *, frequency: ArrayLike, order: float
 ) -> FloatArray:
-    """Return a spectral moment: the sum of |w|^n S over the last axis with weights.
+    r"""Return a spectral moment: the sum of |w|^n S over the last axis with weights.
+
+    .. math:: m_n = \int_0^\infty |\omega|^n S(\omega) \, d\omega
 
     Parameters
     ----------
@@ -196,6 +230,10 @@ def spectral_moment(
     -------
     ndarray
         m_n.
+
+    References
+    ----------
+    Definition; DNV-RP-C205 (2010), 3.5.
     """
     power = np.abs(as_float_array(frequency)) ** order if order else 1.0
     total: FloatArray = np.sum(as_float_array(density) * as_float_array(weights) * power, axis=-1)

@@ -57,10 +57,18 @@ def _positive(depth: ArrayLike) -> FloatArray:
 
 
 def bottom_speed_ratio(depth_to_draught: ArrayLike) -> FloatArray:
-    """Speed under a flat bottom over the ship's speed, V_B / V (Zeng et al. 2019).
+    r"""Speed under a flat bottom over the ship's speed, V_B / V (Zeng et al. 2019).
+
+    .. math:: V_B / V = \max(1, 0.4277 \exp[(D/T)^{-0.07634}])
 
     0.4277 exp{(D/T)^-0.07634}, not below one. The paper ends the formula at D/T = 4, where it
     jumps by 5 %; extended, it reaches one at D/T = 8.5 and is continuous.
+
+    References
+    ----------
+    Q. Zeng, C. Thill, R. Hekkenberg, E. Rotteveel, J. Marine Science and Technology 24 (2019)
+    642-657.
+    Schless (2023), eq. 3.17.
     """
     ratio = np.asarray(depth_to_draught, dtype=float)
     known = np.where(ratio > 1.0, ratio, np.nan)
@@ -76,7 +84,15 @@ def zeng_2019_friction(
     wetted_surface: ArrayLike,
     flat_bottom_area: ArrayLike,
 ) -> FloatArray:
-    """Friction coefficient of a ship in shallow water.
+    r"""Friction coefficient of a ship in shallow water.
+
+    .. math::
+        C_F = C_{ITTC57} + (C_x - C_{Katsui}) (S_B / S) q, \quad C_{Katsui} =
+            \frac{0.0066577}{(\log_{10} Re - 4.3762)^{0.042612 \log_{10} Re + 0.56725}} \\
+        \frac{D - T}{L} > 1: C_x = \frac{0.08169}{(\log_{10} Re - 1.717)^2},\ q = 1; \quad
+            \text{else}\ C_x = \frac{0.08169}{(\log_{10} Re - 1.717)^2} \left[1 +
+            \frac{0.003998}{\log_{10} Re - 4.393} \left(\frac{D -
+            T}{L}\right)^{-1.083}\right],\ q = (V_B / V)^2
 
     C_F = C_ITTC57 + (C_x - C_Katsui) (S_B / S) q. With (D - T) / L above one C_x is the flat-plate
     line of deep water and q = 1; below it the shallow one, and q = (V_B / V)^2.
@@ -98,6 +114,12 @@ def zeng_2019_friction(
     -------
     ndarray
         NaN where the depth does not exceed the draught.
+
+    References
+    ----------
+    Q. Zeng, C. Thill, R. Hekkenberg, E. Rotteveel, J. Marine Science and Technology 24 (2019)
+    642-657.
+    Schless (2023), eq. 3.20, prints the power of (D - T) / L inside the denominator; corrected.
     """
     log = np.log10(np.asarray(reynolds, dtype=float))
     water, deep = np.asarray(depth, dtype=float), np.asarray(draught, dtype=float)
@@ -128,7 +150,9 @@ def _curve(index: NDArray[np.intp], froude: FloatArray) -> FloatArray:
 def karpov(
     depth_froude: ArrayLike, depth_to_draught: ArrayLike, *, raw_bands: bool = False
 ) -> FloatArray:
-    """Karpov's alpha**: the wave resistance in shallow water is that of the speed V / alpha**.
+    r"""Karpov's alpha**: the wave resistance in shallow water is that of the speed V / alpha**.
+
+    .. math:: \alpha^{**}(Fn_h) = \sum_k a_k(D/T) Fn_h^k
 
     Source: polynomials fitted to Karpov's chart, printed by Schless (2023), Appendix B (after van
     Terwisga 1989 and Rotteveel 2013).
@@ -148,6 +172,11 @@ def karpov(
     -------
     ndarray
         NaN where D / T is not above one.
+
+    References
+    ----------
+    Schless (2023), Appendix B: polynomials by band of D/T, after van Terwisga (1989) and
+    Rotteveel (2013).
     """
     froude, ratio = np.broadcast_arrays(
         np.asarray(depth_froude, dtype=float), np.asarray(depth_to_draught, dtype=float)
@@ -176,7 +205,9 @@ def karpov_speed(
     raw_bands: bool = False,
     gravity: float = GRAVITY,
 ) -> FloatArray:
-    """Speed V / alpha** [m/s] at which deep-water formulas give the wave resistance.
+    r"""Speed V / alpha** [m/s] at which deep-water formulas give the wave resistance.
+
+    .. math:: V_{wave} = V / \alpha^{**}(V / \sqrt{g D}, D / T)
 
     Parameters
     ----------
@@ -193,6 +224,10 @@ def karpov_speed(
     -------
     ndarray
         NaN where the depth does not exceed the draught.
+
+    References
+    ----------
+    Schless (2023), Appendix B.
     """
     water = _positive(depth)
     froude = froude_number(speed, length=water, gravity=gravity)
@@ -232,7 +267,11 @@ def lackenby_1963_speed_loss(
     midship_area: ArrayLike,
     gravity: float = GRAVITY,
 ) -> FloatArray:
-    """Speed loss dV / V = 0.1242 (A_M / h^2 - 0.05) + 1 - sqrt(tanh(g h / V^2)).
+    r"""Speed loss dV / V = 0.1242 (A_M / h^2 - 0.05) + 1 - sqrt(tanh(g h / V^2)).
+
+    .. math::
+        \frac{\Delta V}{V} = 0.1242 \left(\frac{A_M}{h^2} - 0.05\right) + 1 - \sqrt{\tanh(g
+            h / V^2)}
 
     Source: H. Lackenby, "The effect of shallow water on ship speed", Shipbuilder and Marine
     Engine Builder 70 (1963), as in ITTC Recommended Procedure 7.5-04-01-01.1.
@@ -254,6 +293,10 @@ def lackenby_1963_speed_loss(
         A part of the speed, not below zero; NaN where the depth is not positive. The procedure
         applies the formula from A_M / h^2 = 0.05; below that the first term is taken as zero, so
         that it fades out. The draught is not known here: the caller checks where the ship grounds.
+
+    References
+    ----------
+    H. Lackenby, Shipbuilder and Marine Engine Builder 70 (1963), as in ITTC 7.5-04-01-01.1.
     """
     velocity, water = np.asarray(speed, dtype=float), _positive(depth)
     blocked = np.maximum(np.asarray(midship_area) / water**2 - 0.05, 0.0)
@@ -269,7 +312,9 @@ def lackenby_1963_deep_speed(
     midship_area: ArrayLike,
     gravity: float = GRAVITY,
 ) -> FloatArray:
-    """Deep-water speed with the same power, V (1 + dV / V) [m/s], see `lackenby_1963_speed_loss`.
+    r"""Deep-water speed with the same power, V (1 + dV / V) [m/s], see `lackenby_1963_speed_loss`.
+
+    .. math:: V_{deep} = V (1 + \Delta V / V)
 
     The resistance in shallow water is that of this speed in deep water, times it over V.
 
@@ -288,6 +333,10 @@ def lackenby_1963_deep_speed(
     -------
     ndarray
         Speed in deep water [m/s].
+
+    References
+    ----------
+    H. Lackenby, Shipbuilder and Marine Engine Builder 70 (1963), as in ITTC 7.5-04-01-01.1.
     """
     loss = lackenby_1963_speed_loss(speed, depth=depth, midship_area=midship_area, gravity=gravity)
     return np.asarray(np.asarray(speed, dtype=float) * (1.0 + loss))

@@ -1,4 +1,4 @@
-"""Squat: sinkage of a ship by its own speed, and the speed that the depth allows."""
+"""The speed that the depth allows: by the flow around the ship, and by its squat."""
 
 from __future__ import annotations
 
@@ -8,12 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.types import FloatArray
-from thalweg.core.units import GRAVITY, KNOT
+from thalweg.core.units import GRAVITY
 from thalweg.ship.methods.array_conversion import as_float_array
-from thalweg.ship.methods.validity import RangeNote, range_notes
-
-#: Width of open water that takes part in the flow, in ship breadths (van Halem 2019).
-OPEN_WATER_BREADTHS: Final = 9.0
+from thalweg.ship.methods.shallow_water.barrass_squat import barrass_speed, waterway_width
 
 _DEEP_WATER_DEPTH: Final = 1e5  # used as infinite depth [m]
 _LANDWEBER: Final = (1.002, 0.005, -0.1159, 0.0191)
@@ -21,220 +18,6 @@ _LANDWEBER: Final = (1.002, 0.005, -0.1159, 0.0191)
 _LARGEST_BLOCKAGE_PARAMETER: Final = float(
     np.polynomial.Polynomial(_LANDWEBER).deriv().roots().max()
 )
-
-#: Published ranges of both of Barrass's forms; deeper water is not reported: squat tends to zero.
-_BLOCK_COEFFICIENT_RANGE: Final = (0.5, 0.9)
-_LEAST_DEPTH_TO_DRAUGHT: Final = 1.1  # depth over draught
-
-
-def _waterway_width(breadth: ArrayLike, channel_width: ArrayLike | None) -> FloatArray:
-    if channel_width is None:
-        return OPEN_WATER_BREADTHS * as_float_array(breadth)
-    return as_float_array(channel_width)
-
-
-def blockage_ratio(
-    depth: ArrayLike,
-    draught: ArrayLike,
-    *,
-    breadth: ArrayLike,
-    channel_width: ArrayLike | None = None,
-) -> FloatArray:
-    """Return the blockage S2 = A_s / (b h - A_s): the ship's section over the water beside it.
-
-    Parameters
-    ----------
-    depth, draught, breadth : array_like
-        Water depth h, draught T and breadth B [m].
-    channel_width : array_like, optional
-        Width b of the waterway [m]; without it 9 B, open water.
-
-    Returns
-    -------
-    ndarray
-        Blockage [-]; infinite where the ship fills the waterway.
-
-    References
-    ----------
-    C. B. Barrass, "The phenomenon of ship squat", Int. Shipbuilding Progress 26 (1979).
-    """
-    h, section = as_float_array(depth), as_float_array(breadth) * as_float_array(draught)
-    free = _waterway_width(breadth, channel_width) * h - section
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(free > 0.0, section / free, np.where(np.isnan(free), np.nan, np.inf))
-
-
-def barrass_squat(
-    speed: ArrayLike,
-    depth: ArrayLike,
-    *,
-    draught: ArrayLike,
-    breadth: ArrayLike,
-    block_coefficient: ArrayLike,
-    channel_width: ArrayLike | None = None,
-) -> FloatArray:
-    """Return the largest squat by Barrass (1979): C_B S2^(2/3) V_kn^2.08 / 30.
-
-    Parameters
-    ----------
-    speed : array_like
-        Speed through the water [m/s].
-    depth, draught, breadth : array_like
-        Water depth, draught and breadth [m].
-    block_coefficient : array_like
-        Block coefficient [-], 0.5 to 0.9.
-    channel_width : array_like, optional
-        Width of the waterway [m]; without it 9 B, open water.
-
-    Returns
-    -------
-    ndarray
-        Squat [m], 0 at rest; infinite where the ship fills the waterway.
-
-    Notes
-    -----
-    The speed of the formula is in knots; the conversion is done here. Published for
-    depth/draught 1.1 to 1.5; at greater depth it tends to zero as it should.
-
-    References
-    ----------
-    C. B. Barrass, "The phenomenon of ship squat", Int. Shipbuilding Progress 26 (1979).
-    """
-    blockage = blockage_ratio(depth, draught, breadth=breadth, channel_width=channel_width)
-    knots = np.abs(as_float_array(speed)) / KNOT
-    sink = knots**2.08 / 30.0
-    with np.errstate(invalid="ignore"):
-        return np.where(
-            knots == 0.0,
-            0.0 * blockage,
-            as_float_array(block_coefficient) * blockage ** (2.0 / 3.0) * sink,
-        )
-
-
-def barrass_2004_squat(
-    speed: ArrayLike,
-    depth: ArrayLike,
-    *,
-    draught: ArrayLike,
-    breadth: ArrayLike,
-    block_coefficient: ArrayLike,
-    channel_width: ArrayLike | None = None,
-) -> FloatArray:
-    """Return the largest squat by Barrass's later form: C_B K^0.81 V_kn^2.08 / 20.
-
-    K = B T / (b h) is the blockage factor; without a channel width b is Barrass's width of
-    influence 7.04 B / C_B^0.85 (that constant is from memory). Published for C_B 0.5 to 0.9,
-    depth/draught 1.1 to 1.4 and K 0.100 to 0.265.
-
-    Parameters
-    ----------
-    speed : array_like
-        Speed through the water [m/s].
-    depth, draught, breadth : array_like
-        Water depth, draught and breadth [m].
-    block_coefficient : array_like
-        Block coefficient [-].
-    channel_width : array_like, optional
-        Width of the waterway [m].
-
-    Returns
-    -------
-    ndarray
-        Squat [m].
-
-    References
-    ----------
-    C. B. Barrass, "Thirty-two years of research into ship squat", Squat Workshop, Oldenburg
-    (2004).
-    """
-    block = as_float_array(block_coefficient)
-    width = (
-        7.04 / block**0.85 * as_float_array(breadth)
-        if channel_width is None
-        else as_float_array(channel_width)
-    )
-    h = as_float_array(depth)
-    knots = np.abs(as_float_array(speed)) / KNOT
-    with np.errstate(divide="ignore", invalid="ignore"):
-        blockage = (
-            as_float_array(breadth) * as_float_array(draught) / (width * np.where(h > 0, h, np.nan))
-        )
-        return block * blockage**0.81 * knots**2.08 / 20.0
-
-
-def barrass_2004_speed(
-    squat: ArrayLike,
-    depth: ArrayLike,
-    *,
-    draught: ArrayLike,
-    breadth: ArrayLike,
-    block_coefficient: ArrayLike,
-    channel_width: ArrayLike | None = None,
-) -> FloatArray:
-    """Return the speed at which `barrass_2004_squat` reaches a given squat [m/s].
-
-    Parameters
-    ----------
-    squat : array_like
-        Squat that is allowed [m]; zero or less gives speed zero.
-    depth, draught, breadth, block_coefficient, channel_width
-        As in `barrass_2004_squat`.
-
-    Returns
-    -------
-    ndarray
-        Speed through the water [m/s].
-    """
-    at_one_knot = barrass_2004_squat(
-        KNOT,
-        depth,
-        draught=draught,
-        breadth=breadth,
-        block_coefficient=block_coefficient,
-        channel_width=channel_width,
-    )
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return KNOT * (np.maximum(as_float_array(squat), 0.0) / at_one_knot) ** (1.0 / 2.08)
-
-
-def barrass_speed(
-    squat: ArrayLike,
-    depth: ArrayLike,
-    *,
-    draught: ArrayLike,
-    breadth: ArrayLike,
-    block_coefficient: ArrayLike,
-    channel_width: ArrayLike | None = None,
-) -> FloatArray:
-    """Return the speed at which `barrass_squat` reaches a given squat.
-
-    Parameters
-    ----------
-    squat : array_like
-        Squat that is allowed [m]; zero or less gives speed zero.
-    depth, draught, breadth, block_coefficient, channel_width
-        As in `barrass_squat`.
-
-    Returns
-    -------
-    ndarray
-        Speed through the water [m/s], the inverse of `barrass_squat`.
-
-    Notes
-    -----
-    van Halem (2019), eq. 2.5, prints min(0, ...) for max(0, ...), leaves out the power 1/2.08
-    and gives the blockage as a length; the program published with the thesis compares the
-    result, which is in knots, with metres per second. All four are put right here.
-    """
-    allowed = as_float_array(squat)
-    blockage = blockage_ratio(depth, draught, breadth=breadth, channel_width=channel_width)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        base = (
-            30.0
-            * np.maximum(allowed, 0.0)
-            / (as_float_array(block_coefficient) * blockage ** (2.0 / 3.0))
-        )
-        return KNOT * base ** (1.0 / 2.08)
 
 
 def shallow_water_speed(
@@ -246,21 +29,25 @@ def shallow_water_speed(
     channel_width: ArrayLike | None = None,
     gravity: float = GRAVITY,
 ) -> FloatArray:
-    """Return the speed in shallow water at the power of a deep-water speed.
+    r"""Return the speed in shallow water at the power of a deep-water speed.
 
-    V = V_max sqrt(tanh(g h / V_max^2)) (1.002 + 0.005 q - 0.1159 q^2 + 0.0191 q^3), with
-    q = sqrt(A_s) / R_H, the root of the midship section over the hydraulic radius.
+    .. math::
+        V = V_{max} \sqrt{\tanh(g h / V_{max}^2)}
+            (1.002 + 0.005 q - 0.1159 q^2 + 0.0191 q^3), \quad q = \sqrt{A_s} / R_H, \\
+        A_s = B T, \quad R_H = (b h - A_s) / (b + 2 h + 2 T + B)
+
+    q is the root of the midship section over the hydraulic radius.
 
     Parameters
     ----------
     deep_speed : array_like
         Speed through deep water V_max [m/s].
     depth, draught, breadth : array_like
-        Water depth, draught and breadth [m].
+        Water depth h, draught T and breadth B [m].
     channel_width : array_like, optional
-        Width of the waterway [m]; without it 9 B, open water.
+        Width b of the waterway [m]; without it 9 B, open water.
     gravity : float
-        Acceleration of gravity [m/s2].
+        Acceleration of gravity g [m/s2].
 
     Returns
     -------
@@ -280,7 +67,7 @@ def shallow_water_speed(
     where V_max and the root of the tanh are missing and 0.0191 is rounded to 0.019.
     """
     v, h = as_float_array(deep_speed), np.minimum(as_float_array(depth), _DEEP_WATER_DEPTH)
-    b, width = as_float_array(breadth), _waterway_width(breadth, channel_width)
+    b, width = as_float_array(breadth), waterway_width(breadth, channel_width)
     section = b * as_float_array(draught)
     free = width * h - section
     open_water = (free > 0.0) & (h > 0.0)
@@ -305,9 +92,11 @@ def shallow_water_speed_limit(
     channel_width: ArrayLike | None = None,
     gravity: float = GRAVITY,
 ) -> FloatArray:
-    """Return the speed a depth allows: the smaller of `shallow_water_speed` and `barrass_speed`.
+    r"""Return the speed a depth allows: the smaller of `shallow_water_speed` and `barrass_speed`.
 
-    The squat that is allowed is depth - draught - clearance.
+    .. math:: V = \min(V_{shallow}(h), V_{squat}(h - T - c))
+
+    The squat that is allowed is the depth h less the draught T and the clearance c.
 
     Parameters
     ----------
@@ -376,32 +165,3 @@ def dynamic_under_keel_clearance(
         Clearance [m], negative where the ship would touch the bed.
     """
     return as_float_array(depth) - as_float_array(draught) - as_float_array(squat)
-
-
-def squat_validity(
-    depth: ArrayLike, *, draught: ArrayLike, block_coefficient: ArrayLike
-) -> list[RangeNote]:
-    """Return where `barrass_squat` or `barrass_2004_squat` is used outside its published range.
-
-    Deep water is not reported: squat tends to zero there.
-
-    Parameters
-    ----------
-    depth, draught : array_like
-        [m].
-    block_coefficient : array_like
-        [-].
-
-    Returns
-    -------
-    list of RangeNote
-        Empty when all are inside.
-    """
-    ratio = as_float_array(depth) / as_float_array(draught)
-    return range_notes(
-        "Barrass squat",
-        {
-            "block coefficient": (block_coefficient, *_BLOCK_COEFFICIENT_RANGE),
-            "depth over draught": (ratio, _LEAST_DEPTH_TO_DRAUGHT, np.inf),
-        },
-    )

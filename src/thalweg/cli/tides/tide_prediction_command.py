@@ -62,6 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     times = _times(arguments)
     out = option_values.prepare_output_file(arguments.out) if arguments.out else None
+    arguments.progress(f"predicting from {arguments.file}")
     constants = read_constituents(arguments.file, station=arguments.station)
     series = _series(constants, times, arguments.at)
     if arguments.json:
@@ -82,7 +83,7 @@ def _times(arguments: argparse.Namespace) -> FloatArray:
     if not (np.isfinite(step) and step > 0.0 and end >= start):
         raise InputError(
             f"Times every {arguments.step:g} minutes from {arguments.start} to {arguments.end} are "
-            "asked for.",
+            "requested.",
             "The step is positive, and the end is not before the start.",
             "Correct --start, --end or --step.",
         )

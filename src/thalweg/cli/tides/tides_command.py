@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from thalweg.cli import options, tide_analysis_command, tide_prediction_command
+from thalweg.cli import options
+from thalweg.cli.tides import tide_analysis_command, tide_prediction_command
 
 
 def add_command(commands: Any) -> None:

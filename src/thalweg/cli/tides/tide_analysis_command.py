@@ -80,6 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
             "Correct --rayleigh.",
         )
     out = option_values.prepare_output_file(arguments.out) if arguments.out else None
+    arguments.progress(f"analysing {arguments.file}")
     of_record = is_text_record(arguments.file)
     analysis, source = _analyse_record(arguments) if of_record else _analyse_model(arguments)
     if out:

@@ -1,0 +1,316 @@
+"""Port approaches: the line from the berth of a port to open sea.
+
+Harbours and rivers are land on most coastlines, or water that leads nowhere. The table
+``data/port_approaches.csv.gz`` has a line for each port from its berth to its sea end, the first
+place two nautical miles from land in the open sea. A ship sails this line at no more than
+`MAX_APPROACH_SPEED`; voyages are optimised from sea end to sea end. The lines are made by
+``tools/make_port_approaches.py``: the best way in the coastline GSHHG h, or by hand where that
+coastline does not show the water. They are for planning and are not surveyed.
+"""
+
+from __future__ import annotations
+
+import csv
+import gzip
+import itertools
+from collections import defaultdict
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import resources
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.chart.ports import PORTS, Port
+from thalweg.core.geodesy import METRES_PER_DEGREE, Position, distance
+from thalweg.core.types import FloatArray
+from thalweg.core.units import KNOT, NAUTICAL_MILE
+
+MAX_APPROACH_SPEED: Final = 10.0 * KNOT  #: speed over ground in approaches [m/s]
+ON_LINE: Final = 100.0  #: a position within this distance of a line is on it [m]
+_CELL: Final = 0.25  # side of the cells by which segments are found [deg]
+_LENGTH_TOLERANCE: Final = 0.02  # of a leg that follows a line, relative
+#: Two lines are joined where they are this close [m] ...
+_SAME_WATER: Final = 0.15 * NAUTICAL_MILE
+#: ... or this close with only water between them.
+_LONGEST_JOINT: Final = 1.0 * NAUTICAL_MILE
+_JOINT_SPACING: Final = 0.1 * NAUTICAL_MILE
+
+
+@dataclass(frozen=True)
+class PortApproach:
+    """The approach of one port.
+
+    Attributes
+    ----------
+    port : Port
+    line : tuple of (lat, lon)
+        From the berth to the sea end [deg].
+    half_width : float
+        Least distance from the charted part of the line to land [m]; NaN if none is charted.
+    quality : str
+        "computed", "by hand" or "checked" (by hand and compared with a source).
+    source : str
+    max_draught, max_length : float
+        Of ships, in the World Port Index [m]; NaN where unknown.
+    """
+
+    port: Port
+    line: tuple[Position, ...]
+    half_width: float
+    quality: str
+    source: str
+    max_draught: float = float("nan")
+    max_length: float = float("nan")
+
+    @property
+    def berth(self) -> Position:
+        """The berth (lat, lon) [deg]."""
+        return self.line[0]
+
+    @property
+    def sea_end(self) -> Position:
+        """The end in open sea (lat, lon) [deg]."""
+        return self.line[-1]
+
+    @cached_property
+    def length(self) -> float:
+        """Length of the line [m]."""
+        return line_length(self.line)
+
+
+def line_length(line: tuple[Position, ...]) -> float:
+    """Return the length of a line of positions (lat, lon) [deg] in metres."""
+    if len(line) < 2:
+        return 0.0
+    lat, lon = np.array(line, float).T
+    return float(np.sum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
+
+
+@dataclass(frozen=True)
+class PortApproaches:
+    """The approaches of all ports, read on first use."""
+
+    def of(self, port: Port) -> PortApproach | None:
+        """Return the approach of a port; None where it has none (see `reason`)."""
+        row = self._rows.get(port)
+        if port not in self._made and row and row["line"]:
+            self._made[port] = _approach_of(port, row)
+        return self._made.get(port)
+
+    def reason(self, port: Port) -> str:
+        """Return why a port has no approach; empty where it has one or is not in the table."""
+        row = self._rows.get(port)
+        return row["source"] if row and not row["line"] else ""
+
+    @cached_property
+    def all(self) -> tuple[PortApproach, ...]:
+        """Every approach of the table."""
+        every = (self.of(port) for port in self._rows)
+        return tuple(approach for approach in every if approach is not None)
+
+    def nearest(self, lat: float, lon: float, *, within: float) -> tuple[Port, float] | None:
+        """Return the nearest port with an approach and its distance [m]; None if none is near.
+
+        Parameters
+        ----------
+        lat, lon : float
+            Position [deg].
+        within : float
+            Largest distance [m].
+        """
+        ports = self._ports_with_approach
+        near = np.abs(ports[1] - lat) * METRES_PER_DEGREE <= 1.01 * within
+        which = np.flatnonzero(near)
+        if not len(which):
+            return None
+        apart = np.asarray(distance(lat, lon, ports[1][which], ports[2][which]))
+        best = int(np.argmin(apart))
+        return (ports[0][which[best]], float(apart[best])) if apart[best] <= within else None
+
+    def legs(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+        """Return which legs of a track run along approaches.
+
+        A leg does if both ends lie within `ON_LINE` of one line and it is as long as the line
+        between them, or if it is a joint from one line to another one.
+
+        Parameters
+        ----------
+        lat, lon : float64 array (n,)
+            Waypoints [deg].
+
+        Returns
+        -------
+        bool array (n - 1,)
+        """
+        found = np.zeros(len(lat) - 1, np.bool_)
+        here = self._lines_at(float(lat[0]), float(lon[0]))
+        for leg in range(len(found)):
+            there = self._lines_at(float(lat[leg + 1]), float(lon[leg + 1]))
+            if here and there:
+                length = float(distance(lat[leg], lon[leg], lat[leg + 1], lon[leg + 1]))
+                slack = 2.0 * ON_LINE + _LENGTH_TOLERANCE * length
+                found[leg] = length <= _LONGEST_JOINT or any(
+                    abs(abs(there[line] - along) - length) <= slack
+                    for line, along in here.items()
+                    if line in there
+                )
+            here = there
+        return found
+
+    def _lines_at(self, lat: float, lon: float) -> dict[int, float]:
+        """Return the lines on which a position lies, and how far along each [m]."""
+        near = self._segments_by_cell.get(_cell(lat, lon))
+        if near is None:
+            return {}
+        a_lat, a_lon, b_lat, b_lon, start, line = (column[near] for column in self._segments)
+        scale = np.cos(np.radians(lat))
+        bx, by = _wrapped(b_lon - a_lon) * scale, b_lat - a_lat
+        px, py = _wrapped(lon - a_lon) * scale, lat - a_lat
+        share = np.clip((px * bx + py * by) / np.maximum(bx**2 + by**2, 1e-18), 0.0, 1.0)
+        apart = np.hypot(px - share * bx, py - share * by) * METRES_PER_DEGREE
+        along = start + share * np.hypot(bx, by) * METRES_PER_DEGREE
+        on = np.flatnonzero(apart <= ON_LINE)
+        return {int(line[k]): float(along[k]) for k in on}
+
+    @cached_property
+    def _segments(self) -> tuple[FloatArray, ...]:
+        """Ends [deg] of all segments, distance of the first along its line [m], and its line."""
+        rows = []
+        for number, approach in enumerate(self.all):
+            line = np.array(approach.line, float)
+            lengths = distance(line[:-1, 0], line[:-1, 1], line[1:, 0], line[1:, 1])
+            start = np.concatenate([[0.0], np.cumsum(lengths)])[:-1]
+            whose = np.full(len(start), float(number))
+            rows.append(np.column_stack([line[:-1], line[1:], start, whose]))
+        return tuple(np.concatenate(rows).T) if rows else tuple(np.empty((6, 0)))
+
+    @cached_property
+    def _segments_by_cell(self) -> dict[tuple[int, int], NDArray[np.int64]]:
+        cells: dict[tuple[int, int], list[int]] = defaultdict(list)
+        a_lat, a_lon, b_lat, b_lon = self._segments[:4]
+        b_lon = a_lon + _wrapped(b_lon - a_lon)
+        for k, (p, q, r, s) in enumerate(zip(a_lat, a_lon, b_lat, b_lon)):
+            for row in range(
+                int((min(p, r) - 0.01) // _CELL), int((max(p, r) + 0.01) // _CELL) + 1
+            ):
+                first, last = (min(q, s) - 0.05) // _CELL, (max(q, s) + 0.05) // _CELL
+                for column in range(int(first), int(last) + 1):
+                    cells[row, column % round(360.0 / _CELL)].append(k)
+        return {cell: np.array(which) for cell, which in cells.items()}
+
+    @cached_property
+    def _made(self) -> dict[Port, PortApproach]:
+        """The approaches made so far."""
+        return {}
+
+    @cached_property
+    def _ports_with_approach(self) -> tuple[list[Port], FloatArray, FloatArray]:
+        ports = [port for port, row in self._rows.items() if row["line"]]
+        return ports, np.array([p.lat for p in ports]), np.array([p.lon for p in ports])
+
+    @cached_property
+    def _rows(self) -> dict[Port, dict[str, str]]:
+        """The rows of the table by port."""
+        by_key = {_key(port): port for port in PORTS.all}
+        packed = resources.files("thalweg.chart").joinpath("data/port_approaches.csv.gz")
+        rows = csv.DictReader(gzip.decompress(packed.read_bytes()).decode("utf-8").splitlines())
+        named = ((by_key.get((r["unlocode"], r["name"], r["country_code"])), r) for r in rows)
+        return {port: row for port, row in named if port is not None}
+
+
+def line_between(
+    start: PortApproach, goal: PortApproach, *, legs_blocked: object
+) -> tuple[Position, ...] | None:
+    """Return the line from one berth to another along their approaches, where these meet.
+
+    Parameters
+    ----------
+    start, goal : PortApproach
+    legs_blocked : callable
+        Test of legs, as of `thalweg.chart.Chart`.
+
+    Returns
+    -------
+    tuple of (lat, lon), or None
+        None where the two approaches do not meet before the open sea.
+    """
+    first, second = _dense(start.line), _dense(goal.line)
+    north = first[:, None, 0] - second[None, :, 0]
+    east = _wrapped(first[:, None, 1] - second[None, :, 1]) * np.cos(np.radians(first[:, :1]))
+    apart = np.hypot(north, east) * METRES_PER_DEGREE
+    total = first[:, None, 2] + apart + second[None, :, 2]
+    close = np.argwhere(apart <= _LONGEST_JOINT)
+    close = close[np.argsort(total[close[:, 0], close[:, 1]], kind="stable")]
+    far = apart[close[:, 0], close[:, 1]] > _SAME_WATER
+    joint = np.concatenate([first[close[:, 0], :2], second[close[:, 1], :2]], axis=1)
+    blocked = far.copy()
+    blocked[far] = legs_blocked(*joint[far].T)  # type: ignore[operator]
+    free = np.flatnonzero(~blocked)
+    if not len(free):
+        return None
+    i, j = (int(k) for k in close[free[0]])
+    way = [*_part_of(start.line, first[i, 2]), *_part_of(goal.line, second[j, 2])[::-1]]
+    return tuple(a for k, a in enumerate(way) if k == 0 or _metres(a, way[k - 1]) > 1.0)
+
+
+def _part_of(line: tuple[Position, ...], along: float) -> list[Position]:
+    """Return the vertices of a line up to a distance [m] from its start, and the place there."""
+    part, sailed = [line[0]], 0.0
+    for a, b in itertools.pairwise(line):
+        length = _metres(a, b)
+        if sailed + length >= along - 1.0:
+            share = (along - sailed) / length if length > 0.0 else 0.0
+            turn = float(_wrapped(np.array(b[1] - a[1])))
+            part.append((a[0] + share * (b[0] - a[0]), a[1] + share * turn))
+            break
+        part.append(b)
+        sailed += length
+    return part
+
+
+def _dense(line: tuple[Position, ...]) -> FloatArray:
+    """Return rows (lat, lon [deg], distance from the first [m]) at most `_JOINT_SPACING` apart."""
+    rows, sailed = [(*line[0], 0.0)], 0.0
+    for a, b in itertools.pairwise(line):
+        length = _metres(a, b)
+        turn = float(_wrapped(np.array(b[1] - a[1])))
+        for share in np.linspace(0.0, 1.0, int(length / _JOINT_SPACING) + 2)[1:]:
+            place = (a[0] + share * (b[0] - a[0]), a[1] + share * turn, sailed + share * length)
+            rows.append(place)
+        sailed += length
+    return np.array(rows)
+
+
+def _metres(a: Position, b: Position) -> float:
+    return float(distance(*a, *b))
+
+
+def _wrapped(degrees: FloatArray) -> FloatArray:
+    """Return differences of longitude in -180 to 180 degrees."""
+    return np.asarray((degrees + 180.0) % 360.0 - 180.0)
+
+
+def _cell(lat: float, lon: float) -> tuple[int, int]:
+    return int(lat // _CELL), int(lon // _CELL) % round(360.0 / _CELL)
+
+
+def _key(port: Port) -> tuple[str, str, str]:
+    return port.locode, port.name, port.country_code
+
+
+def _approach_of(port: Port, row: dict[str, str]) -> PortApproach:
+    pairs = (pair.split(",") for pair in row["line"].split())
+    return PortApproach(
+        port,
+        tuple((float(lat), float(lon)) for lat, lon in pairs),
+        float(row["half_width_nm"] or "nan") * NAUTICAL_MILE,
+        row["quality"],
+        row["source"],
+        float(row.get("max_draught_m") or "nan"),
+        float(row.get("max_length_m") or "nan"),
+    )
+
+
+PORT_APPROACHES = PortApproaches()

@@ -1,0 +1,76 @@
+"""``thalweg distance``: the distance by sea between ports or positions."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import TYPE_CHECKING, Any
+
+from thalweg.cli.exit_codes import SUCCESS
+from thalweg.core.units import NAUTICAL_MILE
+
+if TYPE_CHECKING:
+    from thalweg.planning.sea_distance import SeaDistance
+
+
+def add_command(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "distance",
+        help="distance by sea between ports or positions",
+        description="Print the shortest distance by sea, with the approaches of ports from the "
+        "berth, the canals used and the straits passed. The first call builds a graph of all seas "
+        "(10 to 20 s), which is kept.",
+        epilog="Example: thalweg distance Rotterdam Singapore --avoid suez --speed 13.5",
+    )
+    parser.add_argument("start", metavar="FROM", help="port, UN/LOCODE or LAT,LON [deg]")
+    parser.add_argument("goal", metavar="TO", help="port, UN/LOCODE or LAT,LON [deg]")
+    parser.add_argument(
+        "--via", action="append", default=[], metavar="PLACE", help="place to pass; may be repeated"
+    )
+    parser.add_argument(
+        "--speed", type=float, metavar="KN", help="print the days at this speed [kn] as well"
+    )
+    parser.add_argument(
+        "--avoid",
+        action="append",
+        default=None,
+        metavar="CANAL",
+        help="canal that is not used, for example suez,panama, or all; none uses every canal "
+        "(default: corinth, which is too small for most ships); may be repeated",
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the distance."""
+    from thalweg.planning.sea_distance import SMALL_CANALS, sea_distance
+
+    avoid: tuple[str, ...] = SMALL_CANALS
+    if arguments.avoid is not None:
+        names = [name.strip() for text in arguments.avoid for name in text.split(",")]
+        avoid = tuple(name for name in names if name and name != "none")
+    arguments.progress("finding the shortest way")
+    found = sea_distance(arguments.start, arguments.goal, via=arguments.via, avoid=avoid)
+    days = None if arguments.speed is None else found.days(arguments.speed)
+    if arguments.json:
+        more = {} if days is None else {"speed_kn": arguments.speed, "days": days}
+        print(json.dumps(found.to_dict() | more, indent=2, allow_nan=False))
+    else:
+        _print_distance(found, arguments.speed, days)
+    return SUCCESS
+
+
+def _print_distance(found: SeaDistance, speed: float | None, days: float | None) -> None:
+    print(f"{found.start} to {found.goal}: {found.nm:,.0f} nm")
+    if days is not None:
+        print(f"  {days:.1f} days ({24.0 * days:.1f} h) at {speed:g} kn, canals at that speed")
+    if found.canals:
+        print(f"  canals: {', '.join(found.canals)}")
+    if found.straits:
+        print(f"  passes: {', '.join(found.straits)}")
+    for name, length in found.approaches:
+        print(f"  approach of {name}: {length / NAUTICAL_MILE:.1f} nm, part of the distance")
+    for note in found.notes:
+        print(f"  note: {note}")

@@ -1,0 +1,1 @@
+"""The command ``thalweg tides`` and its actions."""

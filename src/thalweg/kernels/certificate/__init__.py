@@ -1,0 +1,1 @@
+"""Kernels of the certificate: barrier functions of the arrival time on a mesh of triangles."""

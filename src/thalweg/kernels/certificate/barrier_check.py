@@ -1,0 +1,237 @@
+"""Check of a barrier function: no ship crosses it from later to earlier times.
+
+This part of the certificate has to be right; how the function was found does not matter.
+"""
+
+import math
+
+import numpy as np
+
+from thalweg.kernels.certificate.cell_conditions import (
+    MAX_INSTANTS,
+    SECTORS,
+    CellBuffers,
+    cell_speeds,
+    read_cell,
+)
+from thalweg.kernels.codes import AXIS_COUNT, CHANNEL_COUNT
+from thalweg.kernels.compilation.decorators import kernel_only
+from thalweg.kernels.compilation.jit import jit
+
+_GOLDEN = 0.6180339887498949
+_HALF = math.pi / SECTORS
+_SINE, _COSINE = math.sin(_HALF), math.cos(_HALF)
+_HEADINGS_EAST = np.sin(2.0 * _HALF * np.arange(SECTORS))
+_HEADINGS_NORTH = np.cos(2.0 * _HALF * np.arange(SECTORS))
+
+
+@kernel_only
+def _support(east, north, speed, top, disc):
+    """Return the greatest scalar product of (east, north) with a velocity through the water."""
+    size = math.sqrt(east * east + north * north)
+    if disc:
+        return top * size
+    best = 0.0
+    for k in range(SECTORS):
+        along = east * _HEADINGS_EAST[k] + north * _HEADINGS_NORTH[k]
+        across = abs(east * _HEADINGS_NORTH[k] - north * _HEADINGS_EAST[k])
+        if along >= _COSINE * size:
+            value = size
+        else:
+            value = along * _COSINE + across * _SINE
+        best = max(best, speed[k] * value)
+    return best
+
+
+@kernel_only
+def _triangle(p_east, p_north, corners, twist, currents, instants, speed, top, disc):
+    """Return the greatest of current and ship along a gradient [s/m] over a triangle.
+
+    ``corners`` are the two corners of the cell that the triangle has beside the centre.
+    """
+    one, two = corners
+    best = -math.inf
+    for k in range(instants):
+        a = currents[k, one, 0] * p_east + currents[k, one, 1] * p_north
+        b = currents[k, two, 0] * p_east + currents[k, two, 1] * p_north
+        m = 0.0
+        turn_east = currents[k, 0, 0] - currents[k, 1, 0] - currents[k, 2, 0] + currents[k, 3, 0]
+        turn_north = currents[k, 0, 1] - currents[k, 1, 1] - currents[k, 2, 1] + currents[k, 3, 1]
+        for c in range(4):
+            m += 0.25 * (currents[k, c, 0] * p_east + currents[k, c, 1] * p_north)
+        value = max(a, b, m) + twist * abs(turn_east * p_east + turn_north * p_north)
+        best = max(best, value)
+    return best + _support(p_east, p_north, speed, top, disc)
+
+
+@kernel_only
+def _greatest_rate(phi, centre, scales, currents, instants, speed, top, disc):
+    """Return the greatest rate of the barrier along any motion in a cell (1 is as fast as time)."""
+    a, b, c, d = phi
+    per_east_low, per_east_high, per_north, slack = scales
+    best = -math.inf
+    for side in range(4):
+        if side == 0:
+            x, y, pair = b - a, 2.0 * centre - a - b, (0, 1)
+        elif side == 1:
+            x, y, pair = d - c, c + d - 2.0 * centre, (2, 3)
+        elif side == 2:
+            x, y, pair = 2.0 * centre - a - c, c - a, (0, 2)
+        else:
+            x, y, pair = b + d - 2.0 * centre, d - b, (1, 3)
+        y *= per_north
+        for per_east in (per_east_low, per_east_high):
+            value = _triangle(x * per_east, y, pair, 0.0625, currents, instants, speed, top, disc)
+            best = max(best, value + slack * abs(y))
+    return best
+
+
+@kernel_only
+def _replace_unknown(currents, instants):
+    """Replace unknown currents at corners by the mean of the known ones; return the strongest."""
+    strongest = 0.0
+    for k in range(instants):
+        east, north, count = 0.0, 0.0, 0
+        for c in range(4):
+            if currents[k, c, 0] == currents[k, c, 0] and currents[k, c, 1] == currents[k, c, 1]:
+                east += currents[k, c, 0]
+                north += currents[k, c, 1]
+                count += 1
+                strongest = max(strongest, math.hypot(currents[k, c, 0], currents[k, c, 1]))
+        for c in range(4):
+            known = (
+                currents[k, c, 0] == currents[k, c, 0] and currents[k, c, 1] == currents[k, c, 1]
+            )
+            if not known:
+                currents[k, c, 0] = east / count if count else 0.0
+                currents[k, c, 1] = north / count if count else 0.0
+    return strongest
+
+
+@jit
+def make_buffers():
+    """Return the work arrays of one thread."""
+    return CellBuffers(
+        np.full(CHANNEL_COUNT, np.nan),
+        np.zeros((MAX_INSTANTS, 4, 2)),
+        np.zeros((4 * MAX_INSTANTS, 2)),
+        np.zeros((4 * MAX_INSTANTS, 2)),
+        np.zeros(AXIS_COUNT),
+        np.zeros(AXIS_COUNT),
+        np.zeros(4 * AXIS_COUNT),
+        np.zeros(SECTORS),
+    )
+
+
+@kernel_only
+def _check_cell(world, phi, j, i, window, forward, strict, centre_before, buffers):
+    """Return (excess, centre value): how far the barrier rises faster than time in one cell."""
+    a, b, c, d = phi[j, i], phi[j, i + 1], phi[j + 1, i], phi[j + 1, i + 1]
+    least, greatest = min(a, b, c, d), max(a, b, c, d)
+    first, last = window
+    if forward:  # centre values are searched within half the spread of the corners
+        spread = greatest - least
+        first, last = least - 0.5 * spread - 1.0, greatest + 0.5 * spread
+    instants, is_open, field_high, winds, waves = read_cell(world, j, i, first, last, buffers)
+    if not is_open:
+        return -1.0, 0.25 * (a + b + c + d)
+    top, disc = cell_speeds(world, instants, field_high, winds, waves, buffers)
+    sign = 1.0 if forward else -1.0
+    if instants < 0:  # a window of too many instants
+        return math.inf, 0.25 * (a + b + c + d)
+    strongest = _replace_unknown(buffers.current, instants)
+    dlat = world.raster.corner[1] / world.refinement
+    dlon = world.raster.corner[3] / world.refinement
+    south, north = world.metres_north[j] * dlat, world.metres_north[j + 1] * dlat
+    scales = (
+        sign / (world.metres_east[j] * dlon),
+        sign / (world.metres_east[j + 1] * dlon),
+        sign / min(south, north),
+        abs(south - north) / min(south, north) * (strongest + top),
+    )
+    corners = (a, b, c, d)
+    centre = 0.25 * (a + b + c + d)
+    currents, speed = buffers.current, buffers.speed
+    rate = _greatest_rate(corners, centre, scales, currents, instants, speed, top, disc)
+    if rate > 1.0 + (-6e-4 if strict else 2e-4):
+        low, high = min(0.5 * (a + d), 0.5 * (b + c)), max(0.5 * (a + d), 0.5 * (b + c))
+        low, high = low - 0.5 * (high - low), high + 0.5 * (high - low)
+        low, high = (
+            max(low, least - 0.4 * (greatest - least)),
+            min(high, greatest + 0.4 * (greatest - least)),
+        )
+        one, two = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+        at_one = _greatest_rate(corners, one, scales, currents, instants, speed, top, disc)
+        at_two = _greatest_rate(corners, two, scales, currents, instants, speed, top, disc)
+        for _ in range(7):
+            if at_one < at_two:
+                high, two, at_two = two, one, at_one
+                one = high - _GOLDEN * (high - low)
+                at_one = _greatest_rate(corners, one, scales, currents, instants, speed, top, disc)
+            else:
+                low, one, at_one = one, two, at_two
+                two = low + _GOLDEN * (high - low)
+                at_two = _greatest_rate(corners, two, scales, currents, instants, speed, top, disc)
+        if at_one < rate:
+            rate, centre = at_one, one
+        if at_two < rate:
+            rate, centre = at_two, two
+    return rate - 1.0, centre
+
+
+@jit
+def check_barrier(
+    world, phi, candidate, window_first, window_last, forward, strict, excess, centre
+):
+    """Fill for each candidate cell how far the barrier rises faster than time, at most.
+
+    Parameters
+    ----------
+    world : BarrierWorld
+    phi : float64[Y, X]
+        The barrier at the nodes: time since departure [s], or until arrival.
+    candidate : bool[Y - 1, X - 1]
+        Cells to check.
+    window_first, window_last : float64[Y - 1, X - 1]
+        For a barrier until arrival: the times at which a ship may be in each cell [s].
+    forward : bool
+        Whether the barrier counts from the departure; its own values are then the times.
+    strict : bool
+        Whether centre values are searched for the smallest excess too.
+    excess : float64[Y - 1, X - 1]
+        Greatest rate less 1; -1 where no ship may be, or where it is not checked.
+    centre : float64[Y - 1, X - 1]
+        Value of the barrier at the centre of each cell [s].
+    """
+    buffers = make_buffers()
+    for j in range(phi.shape[0] - 1):
+        for i in range(phi.shape[1] - 1):
+            if not candidate[j, i]:
+                excess[j, i] = -1.0
+                centre[j, i] = 0.25 * (
+                    phi[j, i] + phi[j, i + 1] + phi[j + 1, i] + phi[j + 1, i + 1]
+                )
+                continue
+            window = (window_first[j, i], window_last[j, i])
+            excess[j, i], centre[j, i] = _check_cell(
+                world, phi, j, i, window, forward, strict, centre[j, i], buffers
+            )
+
+
+@jit
+def closed_throughout(world, first, last, closed):
+    """Fill which cells no ship may be in at any moment of their windows of time.
+
+    Parameters
+    ----------
+    world : BarrierWorld
+    first, last : float64[Y - 1, X - 1]
+        Windows [s].
+    closed : bool[Y - 1, X - 1]
+        Whether to test each cell before; whether it is closed after.
+    """
+    buffers = make_buffers()
+    for j in range(closed.shape[0]):
+        for i in range(closed.shape[1]):
+            if closed[j, i]:
+                closed[j, i] = not read_cell(world, j, i, first[j, i], last[j, i], buffers)[1]

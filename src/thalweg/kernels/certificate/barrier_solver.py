@@ -1,0 +1,240 @@
+"""First approximation of the arrival time on a mesh, by sweeps over its nodes.
+
+Any function may be checked as a barrier; this one is near the earliest arrival.
+"""
+
+import math
+
+import numpy as np
+
+from thalweg.kernels.certificate.cell_conditions import sample_node, time_step_of
+from thalweg.kernels.codes import CHANNEL_COUNT, OK
+from thalweg.kernels.compilation.decorators import kernel_only
+from thalweg.kernels.compilation.jit import jit
+from thalweg.kernels.leg.point_speed import point_speed_with_axes
+
+COURSES = 32  # directions to the square of neighbours round a node
+_RENEWAL = 0.02  # of the step of the data, after which times round a node are found again
+_PER_SIDE = COURSES // 8  # points between two neighbours
+UNREACHED = 1e29
+_GOLDEN = 0.6180339887498949
+
+# offsets of the points on the square of neighbours: row, column, counterclockwise from the east
+_RING = np.array(
+    [[0, 1], [1, 1], [1, 0], [1, -1], [0, -1], [-1, -1], [-1, 0], [-1, 1]], dtype=np.int64
+)
+
+
+@kernel_only
+def _course_offset(course):
+    """Return (rows, columns) from a node to a point on the square of its neighbours."""
+    side, part = course // _PER_SIDE, (course % _PER_SIDE) / _PER_SIDE
+    after = (side + 1) % 8
+    rows = _RING[side, 0] + part * (_RING[after, 0] - _RING[side, 0])
+    columns = _RING[side, 1] + part * (_RING[after, 1] - _RING[side, 1])
+    return rows, columns
+
+
+@kernel_only
+def _fill_times(world, j, i, t, forward, fallback, sample, limits, out):
+    """Fill the times [s] from the points round a node to it (or from it to them) at one moment."""
+    step, fraction = time_step_of(world.raster.times, t)
+    sample_node(world, j, i, step, fraction, sample)
+    dlat = world.raster.corner[1] / world.refinement
+    dlon = world.raster.corner[3] / world.refinement
+    south, west = world.metres_north[j] * dlat, world.metres_east[j] * dlon
+    for course in range(COURSES):
+        rows, columns = _course_offset(course)
+        north, east = rows * south, columns * west
+        size = math.hypot(east, north)
+        east, north = east / size, north / size
+        if forward:
+            east, north = -east, -north
+        speed, status = point_speed_with_axes(
+            sample, world.raster.channel_index, east, north, world.table, world.setting,
+            math.inf, limits, world.needs,
+        )  # fmt: skip
+        if status != OK:
+            speed = fallback
+        out[course] = size / speed if speed > 0.0 else UNREACHED
+
+
+@kernel_only
+def _update(phi, f, j, i, times, aspect):
+    """Return the least time at a node by way of the square of its neighbours."""
+    ny, nx = phi.shape
+    best, best_course = UNREACHED, -1
+    for course in range(COURSES):
+        value = _through(phi, f, j, i, course, times, ny, nx)
+        if value < best:
+            best, best_course = value, course
+    if best_course < 0:
+        return best
+    # the least time through the ring is between its points: a golden section on both sides
+    for side in range(2):
+        first = best_course if side else (best_course + COURSES - 1) % COURSES
+        low, high = 0.0, 1.0
+        one, two = 1.0 - _GOLDEN, _GOLDEN
+        at_one = _between(phi, f, j, i, first, one, times, aspect, ny, nx)
+        at_two = _between(phi, f, j, i, first, two, times, aspect, ny, nx)
+        for _ in range(9):
+            if at_one < at_two:
+                high, two, at_two = two, one, at_one
+                one = high - _GOLDEN * (high - low)
+                at_one = _between(phi, f, j, i, first, one, times, aspect, ny, nx)
+            else:
+                low, one, at_one = one, two, at_two
+                two = low + _GOLDEN * (high - low)
+                at_two = _between(phi, f, j, i, first, two, times, aspect, ny, nx)
+        best = min(best, at_one, at_two)
+    return best
+
+
+@kernel_only
+def _between(phi, f, j, i, course, share, times, aspect, ny, nx):
+    """Return the time at a node by way of a point between two courses of the ring.
+
+    ``aspect`` is the width of a cell over its height.
+    """
+    after = (course + 1) % COURSES
+    row, column = _course_offset(course)
+    row_after, column_after = _course_offset(after)
+    slow = times[course] / math.hypot(row, column * aspect)
+    slow_after = times[after] / math.hypot(row_after, column_after * aspect)
+    row += share * (row_after - row)
+    column += share * (column_after - column)
+    far = math.hypot(row, column * aspect)
+    side = course // _PER_SIDE
+    part = (course % _PER_SIDE + share) / _PER_SIDE
+    a, b = j + _RING[side, 0], i + _RING[side, 1]
+    if a < 0 or b < 0 or a >= ny or b >= nx:
+        return UNREACHED
+    value = phi[a, b]
+    side = (side + 1) % 8
+    a, b = j + _RING[side, 0], i + _RING[side, 1]
+    if a < 0 or b < 0 or a >= ny or b >= nx:
+        return UNREACHED
+    value += part * (phi[a, b] - value)
+    if value >= 0.5 * UNREACHED:
+        return UNREACHED
+    return value + f[j, i] * far * (slow + share * (slow_after - slow))
+
+
+@kernel_only
+def _through(phi, f, j, i, course, times, ny, nx):
+    side, part = course // _PER_SIDE, (course % _PER_SIDE) / _PER_SIDE
+    row, column = j + _RING[side, 0], i + _RING[side, 1]
+    if row < 0 or column < 0 or row >= ny or column >= nx:
+        return UNREACHED
+    value = phi[row, column]
+    if part > 0.0:
+        after = (side + 1) % 8
+        row, column = j + _RING[after, 0], i + _RING[after, 1]
+        if row < 0 or column < 0 or row >= ny or column >= nx:
+            return UNREACHED
+        value += part * (phi[row, column] - value)
+    if value >= 0.5 * UNREACHED:
+        return UNREACHED
+    return value + f[j, i] * times[course]
+
+
+@jit
+def solve_barrier(
+    world, phi, fixed, f, solvable, window_first, window_last, forward, cap, ring_times, ring_moment
+):
+    """Fill ``phi`` with approximate earliest arrivals, or least times to the goal.
+
+    Parameters
+    ----------
+    world : BarrierWorld
+    phi : float64[Y, X]
+        `UNREACHED` but at the nodes where it is given.
+    fixed : bool[Y, X]
+        Nodes whose value is given.
+    f : float64[Y, X]
+        Factor on the times at each node.
+    solvable : bool[Y, X]
+        Nodes that take part.
+    window_first, window_last : float64[Y, X]
+        Times [s] whose best conditions count, for a barrier until arrival.
+    forward : bool
+        Whether the barrier counts from the departure.
+    cap : float
+        Values from here on are not passed on [s].
+    ring_times : float32[Y, X, COURSES]
+        Times round each node, kept between calls [s].
+    ring_moment : float64[Y, X]
+        The moment they hold for [s]; NaN where they are still to be computed.
+
+    Returns
+    -------
+    int
+        Number of sweeps.
+    """
+    ny, nx = phi.shape
+    active = np.zeros((ny, nx), np.bool_)
+    for j in range(ny):
+        for i in range(nx):
+            if fixed[j, i]:
+                for k in range(8):
+                    row, column = j + _RING[k, 0], i + _RING[k, 1]
+                    if 0 <= row < ny and 0 <= column < nx:
+                        active[row, column] = True
+    sample, times = np.full(CHANNEL_COUNT, np.nan), np.empty(COURSES)
+    other = np.empty(COURSES)
+    limits = world.limits.copy()
+    limits[0] = -np.inf
+    limits[1:] = np.inf
+    axis = world.raster.times
+    renewal = max(_RENEWAL * (axis[1] - axis[0]), 30.0)
+    fallback = world.top_speed
+    sweep = 0
+    for sweep in range(300):
+        changes = 0
+        for row in range(ny):
+            j = row if sweep & 1 == 0 else ny - 1 - row
+            for column in range(nx):
+                i = column if sweep & 2 == 0 else nx - 1 - column
+                if not active[j, i]:
+                    continue
+                active[j, i] = False
+                if fixed[j, i] or not solvable[j, i]:
+                    continue
+                moment = phi[j, i]
+                if moment >= cap:
+                    moment = UNREACHED
+                    for k in range(8):
+                        a, b = j + _RING[k, 0], i + _RING[k, 1]
+                        if 0 <= a < ny and 0 <= b < nx:
+                            moment = min(moment, phi[a, b])
+                if moment >= cap:
+                    continue
+                if not forward:
+                    moment = 0.0
+                if not abs(ring_moment[j, i] - moment) <= renewal:
+                    ring_moment[j, i] = moment
+                    if forward:
+                        _fill_times(world, j, i, moment, True, fallback, sample, limits, times)
+                    else:
+                        times[:] = UNREACHED
+                        for part in range(5):
+                            share = 0.25 * part
+                            t = window_first[j, i] * (1.0 - share) + window_last[j, i] * share
+                            _fill_times(world, j, i, t, False, fallback, sample, limits, other)
+                            for k in range(COURSES):
+                                times[k] = min(times[k], other[k])
+                    for k in range(COURSES):
+                        ring_times[j, i, k] = times[k]
+                aspect = world.metres_east[j] * world.raster.corner[3]
+                aspect /= world.metres_north[j] * world.raster.corner[1]
+                value = _update(phi, f, j, i, ring_times[j, i], aspect)
+                if value < phi[j, i] * (1.0 - 1e-9):
+                    phi[j, i] = value
+                    changes += 1
+                    for k in range(8):
+                        a, b = j + _RING[k, 0], i + _RING[k, 1]
+                        if 0 <= a < ny and 0 <= b < nx:
+                            active[a, b] = True
+        if changes == 0:
+            break
+    return sweep + 1

@@ -1,0 +1,345 @@
+"""What a ship may meet in one cell of a mesh during a window of time, and how fast it is there."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from thalweg.kernels.certificate.speed_ranges import greatest_speed
+from thalweg.kernels.codes import (
+    AXIS_DEPTH,
+    AXIS_WAVE_ANGLE,
+    AXIS_WAVE_HEIGHT,
+    AXIS_WAVE_PERIOD,
+    AXIS_WIND_ANGLE,
+    AXIS_WIND_SPEED,
+    BED_DEPTH,
+    CURRENT_EAST,
+    CURRENT_NORTH,
+    LIMIT_REQUIRED_DEPTH,
+    LIMIT_WAVE_HEIGHT,
+    LIMIT_WIND_SPEED,
+    SPEED_FIELD,
+    WATER_LEVEL,
+    WAVE_EAST,
+    WAVE_HEIGHT_CHANNEL,
+    WAVE_NORTH,
+    WAVE_PERIOD,
+    WIND_EAST,
+    WIND_NORTH,
+)
+from thalweg.kernels.compilation.decorators import kernel_only
+from thalweg.kernels.leg.raster_sampling import RasterArrays
+from thalweg.kernels.leg.table_lookup import TableArrays
+
+SECTORS = 48  # of headings
+MAX_INSTANTS = 128  # of one window; longer windows are treated as unlimited
+_ANGLES = (1 << AXIS_WIND_ANGLE) | (1 << AXIS_WAVE_ANGLE)
+_WIND = (1 << AXIS_WIND_SPEED) | (1 << AXIS_WIND_ANGLE)
+
+
+class BarrierWorld(NamedTuple):
+    """Sea, ship and land on a mesh of cells that divides the cells of a raster evenly.
+
+    Attributes
+    ----------
+    raster : RasterArrays
+        The sea; times since departure [s].
+    refinement : int
+        Cells of the mesh along the side of a cell of the raster.
+    first_row, first_column : int
+        Row and column of the raster at the south-west corner of the mesh.
+    metres_east, metres_north : float64[Y]
+        Length of one degree of longitude and latitude at the rows of nodes [m].
+    closed : bool[Y - 1, X - 1]
+        Cells without any navigable water, whatever the time.
+    deepest : float32[Y - 1, X - 1]
+        Greatest charted depth in each cell [m below datum]; +inf where it is unknown.
+    table : TableArrays
+        Speed through water.
+    setting : int
+    needs : int
+        Axes of the table (`axes_needed`).
+    limits : float64[LIMITS]
+    top_speed : float
+        Upper bound of the speed through water [m/s].
+    """
+
+    raster: RasterArrays
+    refinement: int
+    first_row: int
+    first_column: int
+    metres_east: np.ndarray
+    metres_north: np.ndarray
+    closed: np.ndarray
+    deepest: np.ndarray
+    table: TableArrays
+    setting: int
+    needs: int
+    limits: np.ndarray
+    top_speed: float
+
+
+class CellBuffers(NamedTuple):
+    """Work arrays of one thread.
+
+    Attributes
+    ----------
+    sample : float64[CHANNELS]
+    current : float64[INSTANTS, 4, 2]
+        Current at the corners at each instant of the window.
+    wind, waves : float64[INSTANTS * 4, 2]
+        Known vectors of the wind over the water and of the direction of the waves.
+    low, high : float64[AXES]
+        Ranges of the conditions.
+    place : float64[4 * AXES]
+    speed : float64[SECTORS]
+        Greatest speed for headings in each sector [m/s].
+    """
+
+    sample: np.ndarray
+    current: np.ndarray
+    wind: np.ndarray
+    waves: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    place: np.ndarray
+    speed: np.ndarray
+
+
+@kernel_only
+def time_step_of(times, t):
+    """Return (step, fraction) of a time on an increasing axis, held inside it."""
+    last = times.shape[0] - 2
+    if t <= times[0]:
+        return 0, 0.0
+    if t >= times[last + 1]:
+        return last, 1.0
+    step = np.searchsorted(times, t, side="right") - 1
+    step = min(max(step, 0), last)
+    return step, (t - times[step]) / (times[step + 1] - times[step])
+
+
+@kernel_only
+def sample_node(world, j, i, step, fraction, sample):
+    """Fill ``sample`` by channel at a node of the mesh; NaN where a value is unknown."""
+    raster, m = world.raster, world.refinement
+    row, column = world.first_row + j // m, world.first_column + i // m
+    fy, fx = (j % m) / m, (i % m) / m
+    values, channels = raster.values, raster.channels
+    for k in range(channels.shape[0]):
+        total = 0.0
+        for later in range(2):
+            in_time = fraction if later else 1.0 - fraction
+            if in_time == 0.0:
+                continue
+            for up in range(2):
+                for side in range(2):
+                    weight = in_time * (fy if up else 1.0 - fy) * (fx if side else 1.0 - fx)
+                    if weight != 0.0:
+                        total += weight * values[step + later, row + up, column + side, k]
+        sample[channels[k]] = total
+
+
+@kernel_only
+def _widen(low, high, value):
+    return min(low, value), max(high, value)
+
+
+@kernel_only
+def direction_range(vectors, count):
+    """Return (least, greatest, shortest, longest) of the azimuths and lengths of a hull of vectors.
+
+    Azimuths are from north, the way they point [rad]; the whole circle where the hull may hold the
+    zero vector.
+    """
+    east, north, longest = 0.0, 0.0, 0.0
+    for k in range(count):
+        east += vectors[k, 0]
+        north += vectors[k, 1]
+        longest = max(longest, math.hypot(vectors[k, 0], vectors[k, 1]))
+    size = math.hypot(east, north)
+    if size <= 1e-12 * max(longest, 1e-300) * count or count == 0:
+        return -math.pi, math.pi, 0.0, longest
+    east, north = east / size, north / size
+    least, greatest, shortest = 0.0, 0.0, math.inf
+    for k in range(count):
+        along = vectors[k, 0] * east + vectors[k, 1] * north
+        across = vectors[k, 0] * north - vectors[k, 1] * east  # clockwise positive
+        if along <= 0.0:
+            return -math.pi, math.pi, 0.0, longest
+        turn = math.atan2(across, along)
+        least, greatest = min(least, turn), max(greatest, turn)
+        shortest = min(shortest, along)
+    middle = math.atan2(east, north)
+    return middle + least, middle + greatest, shortest, longest
+
+
+@kernel_only
+def _angle_from_bow_range(first, last):
+    """Return the range of the angle from the bow [0, pi] over a range of relative azimuths."""
+    if last - first >= 2.0 * math.pi:
+        return 0.0, math.pi
+    turns = math.floor(first / (2.0 * math.pi))
+    first -= 2.0 * math.pi * turns
+    last -= 2.0 * math.pi * turns  # first in [0, 2 pi)
+    low = min(_folded(first), _folded(last))
+    high = max(_folded(first), _folded(last))
+    if last >= 2.0 * math.pi:
+        low = 0.0
+    if (first <= math.pi and last >= math.pi) or last >= 3.0 * math.pi:
+        high = math.pi
+    return low, high
+
+
+@kernel_only
+def _folded(angle):
+    angle = angle % (2.0 * math.pi)
+    return 2.0 * math.pi - angle if angle > math.pi else angle
+
+
+@kernel_only
+def read_cell(world, j, i, first, last, buffers):
+    """Collect the conditions in a cell during a window of time.
+
+    Returns (instants, open): 0 instants where nothing is known; ``open`` is False where no ship
+    may be in the cell at any moment of the window. Fills the ranges of the conditions, the
+    vectors of wind and waves and the currents at the corners of ``buffers``.
+    """
+    times, index = world.raster.times, world.raster.channel_index
+    final = times.shape[0] - 1
+    low, high = buffers.low, buffers.high
+    low[:] = math.inf
+    high[:] = -math.inf
+    bed_high, level_low, level_high, bed_low = -math.inf, math.inf, -math.inf, math.inf
+    field_high = -math.inf
+    calmest = math.inf
+    winds, waves, known_corners, instants = 0, 0, 0, 0
+    unlimited = False
+    if world.closed[j, i] or first > times[final] or last < times[0]:
+        return 0, False, 0.0, 0, 0
+    t = max(first, times[0])
+    end = min(last, times[final])
+    while True:
+        if instants == MAX_INSTANTS:
+            unlimited = True
+            break
+        step, fraction = time_step_of(times, t)
+        for corner in range(4):
+            sample = buffers.sample
+            sample_node(world, j + corner // 2, i + corner % 2, step, fraction, sample)
+            east, north = 0.0, 0.0
+            if index[CURRENT_EAST] >= 0 and index[CURRENT_NORTH] >= 0:
+                east, north = sample[CURRENT_EAST], sample[CURRENT_NORTH]
+            buffers.current[instants, corner, 0] = east
+            buffers.current[instants, corner, 1] = north
+            if not (east == east and north == north):
+                continue
+            known = True
+            if index[SPEED_FIELD] >= 0:
+                known = sample[SPEED_FIELD] == sample[SPEED_FIELD]
+                if known:
+                    field_high = max(field_high, sample[SPEED_FIELD])
+            if index[WAVE_HEIGHT_CHANNEL] >= 0:
+                height = sample[WAVE_HEIGHT_CHANNEL]
+                if height == height:
+                    low[AXIS_WAVE_HEIGHT], high[AXIS_WAVE_HEIGHT] = _widen(
+                        low[AXIS_WAVE_HEIGHT], high[AXIS_WAVE_HEIGHT], height
+                    )
+                    calmest = min(calmest, height)
+                elif world.needs & (1 << AXIS_WAVE_HEIGHT):
+                    known = False
+                if index[WAVE_EAST] >= 0 and index[WAVE_NORTH] >= 0:
+                    a, b = sample[WAVE_EAST], sample[WAVE_NORTH]
+                    if a == a and b == b:
+                        buffers.waves[waves, 0], buffers.waves[waves, 1] = a, b
+                        waves += 1
+                    elif height == height:
+                        buffers.waves[waves, 0], buffers.waves[waves, 1] = 0.0, 0.0
+                        waves += 1
+            if index[WAVE_PERIOD] >= 0:
+                period = sample[WAVE_PERIOD]
+                if period == period:
+                    low[AXIS_WAVE_PERIOD], high[AXIS_WAVE_PERIOD] = _widen(
+                        low[AXIS_WAVE_PERIOD], high[AXIS_WAVE_PERIOD], period
+                    )
+            if index[WIND_EAST] >= 0 and index[WIND_NORTH] >= 0:
+                a, b = sample[WIND_EAST] - east, sample[WIND_NORTH] - north
+                if a == a and b == b:
+                    buffers.wind[winds, 0], buffers.wind[winds, 1] = a, b
+                    winds += 1
+                elif world.needs & _WIND:
+                    known = False
+            if index[BED_DEPTH] >= 0 and sample[BED_DEPTH] == sample[BED_DEPTH]:
+                bed_low, bed_high = _widen(bed_low, bed_high, sample[BED_DEPTH])
+            if index[WATER_LEVEL] >= 0 and sample[WATER_LEVEL] == sample[WATER_LEVEL]:
+                level_low, level_high = _widen(level_low, level_high, sample[WATER_LEVEL])
+            known_corners += known
+        instants += 1
+        if t >= end:
+            break
+        t = min(end, times[min(step + 1 + (fraction >= 1.0), final)])
+    if known_corners < 2 or (unlimited and instants == 0):
+        return 0, False, 0.0, 0, 0
+    # depth
+    deep = world.deepest[j, i]
+    if index[BED_DEPTH] >= 0:
+        if bed_high == -math.inf:
+            bed_low, bed_high = -math.inf, math.inf
+        deep = min(deep, bed_high)
+    else:
+        bed_low = -math.inf
+    if index[WATER_LEVEL] >= 0 and level_high > -math.inf:
+        deep += level_high
+        bed_low += level_low
+    elif index[WATER_LEVEL] >= 0:
+        deep, bed_low = math.inf, -math.inf
+    low[AXIS_DEPTH], high[AXIS_DEPTH] = bed_low, deep
+    if unlimited:
+        return -1, True, field_high, winds, waves
+    is_open = deep >= world.limits[LIMIT_REQUIRED_DEPTH]
+    if calmest < math.inf:
+        is_open = is_open and calmest <= world.limits[LIMIT_WAVE_HEIGHT]
+    if winds > 0 and world.limits[LIMIT_WIND_SPEED] < math.inf:
+        shortest = direction_range(buffers.wind, winds)[2]
+        is_open = is_open and shortest <= world.limits[LIMIT_WIND_SPEED]
+    return instants, is_open, field_high, winds, waves
+
+
+@kernel_only
+def cell_speeds(world, instants, field_high, winds, waves, buffers):
+    """Fill the greatest speed by sector of heading; return (greatest, same for all headings)."""
+    index, table = world.raster.channel_index, world.table
+    if index[SPEED_FIELD] >= 0:
+        top = field_high if instants > 0 else world.top_speed
+        buffers.speed[:] = max(top, 0.0)
+        return max(top, 0.0), True
+    if instants < 0:
+        buffers.speed[:] = world.top_speed
+        return world.top_speed, True
+    low, high, needs = buffers.low, buffers.high, world.needs
+    wind_first, wind_last, shortest, longest = direction_range(buffers.wind, winds)
+    wave_first, wave_last, _, _ = direction_range(buffers.waves, waves)
+    low[AXIS_WIND_SPEED], high[AXIS_WIND_SPEED] = shortest, longest
+    for axis in range(low.shape[0]):
+        if not low[axis] <= high[axis]:  # nothing known: anything
+            low[axis], high[axis] = -math.inf, math.inf
+    if not needs & _ANGLES:
+        top = greatest_speed(table, world.setting, low, high, world.top_speed, buffers.place)
+        buffers.speed[:] = top
+        return top, True
+    half = math.pi / SECTORS
+    top = 0.0
+    for sector in range(SECTORS):
+        heading = 2.0 * half * sector
+        # what travels towards an azimuth comes from the opposite one
+        low[AXIS_WIND_ANGLE], high[AXIS_WIND_ANGLE] = _angle_from_bow_range(
+            wind_first + math.pi - heading - half, wind_last + math.pi - heading + half
+        )
+        low[AXIS_WAVE_ANGLE], high[AXIS_WAVE_ANGLE] = _angle_from_bow_range(
+            wave_first + math.pi - heading - half, wave_last + math.pi - heading + half
+        )
+        speed = greatest_speed(table, world.setting, low, high, world.top_speed, buffers.place)
+        buffers.speed[sector] = speed
+        top = max(top, speed)
+    return top, False

@@ -1,0 +1,284 @@
+"""A graph of all seas for distances: the globe grid with the canals, kept ready on disk.
+
+It is used to find the shortest way between two positions within a fraction of a second; networks
+for planning are built by `thalweg.network.globe`.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import zipfile
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from thalweg.core.cache_folder import cache_folder
+from thalweg.core.errors import NoRouteError
+from thalweg.core.file_writing import replacing_file
+from thalweg.core.geodesy import Position, distance, format_position
+from thalweg.core.types import BoolArray, FloatArray, Int32Array, IntArray
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.kernels.network.static_paths import static_astar
+from thalweg.network.assembly import Pairs, directed_edges, measured_pairs
+from thalweg.network.distance_bounds import distance_bounds
+from thalweg.network.endpoints import concatenate_pairs
+from thalweg.network.global_grid.endpoint_attachment import Attachment, ConnectedWaters, attach
+from thalweg.network.global_grid.grid import FORMAT, GlobeGrid, GridResolution, globe_grid
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+_FORMAT: Final = 4  # increase when the arrays or their construction change
+_RESOLUTION: Final = GridResolution(4, 5, 4, 12)
+_LINK_REACH: Final = 2.2  # positions are joined to nodes within this many legs of the uniform grid
+#: Water nearer to land than this counts up to `_NEAR_LAND_FACTOR` times in the choice of the way.
+_OFFING: Final = 2.0 * NAUTICAL_MILE
+_NEAR_LAND_FACTOR: Final = 1.5
+#: Water beyond these latitudes [deg], where ice is likely, is used only by ways that begin or end
+#: there: 72 N closes the Northwest and Northeast Passages and leaves the North Cape open.
+ICE_LATITUDES: Final = (-65.0, 72.0)
+_ICE_MARGIN: Final = 1.0  # ends this near to a limit count as beyond it [deg]
+_IN_ICE: Final = -2  # among the canals of edges
+
+
+@dataclass(frozen=True, eq=False)
+class SeaGraph:
+    """All seas of a chart as a graph.
+
+    Attributes
+    ----------
+    waters : ConnectedWaters
+        The nodes and their connected waters.
+    indptr : int32[N + 1]
+        Where the edges of each node begin.
+    target : int32[E]
+        Head of each edge.
+    weight : float64[E]
+        Length of each edge [m], times a factor near land.
+    canal : int8[E]
+        Index of the canal of the chart, -1 at sea, -2 beyond the latitudes where ice is likely.
+    """
+
+    waters: ConnectedWaters
+    indptr: Int32Array
+    target: Int32Array
+    weight: FloatArray
+    canal: IntArray
+
+    def way(
+        self, chart: Chart, start: Position, goal: Position, *, closed: Sequence[int] = ()
+    ) -> list[Position]:
+        """Return the positions of the shortest way between two positions over the graph.
+
+        Parameters
+        ----------
+        chart : Chart
+            Tests the legs that join the positions to the graph.
+        start, goal : (lat, lon)
+            Positions on navigable water [deg].
+        closed : sequence of int
+            Canals of the chart that may not be used.
+
+        Raises
+        ------
+        NoRouteError
+            If there is no way.
+        """
+        sea = chart.without_canals("all")
+        ends = [
+            attach(sea, self.waters, place, what=what)
+            for place, what in ((start, "start"), (goal, "goal"))
+        ]
+        if outside_ice(start, goal):
+            closed = (*closed, _IN_ICE)
+        lat = np.concatenate([self.waters.lat, *(end.lat for end in ends)])
+        lon = np.concatenate([self.waters.lon, *(end.lon for end in ends)])
+        first = len(self.waters.lat)
+        second = first + len(ends[0].lat)
+        links = [_joint_pairs(end, at, lat, lon) for end, at in zip(ends, (first, second))]
+        indptr, target, weight = self._with_links(concatenate_pairs(links), len(lat), closed)
+        known, parent = np.empty(len(lat)), np.empty(len(lat), np.int64)
+        bound = distance_bounds(lat, lon, *goal)
+        static_astar(indptr, target, weight, bound, first, second, known, parent)
+        if not np.isfinite(known[second]):
+            names = format_position(*start), format_position(*goal)
+            raise NoRouteError(
+                f"There is no way by sea from {names[0]} to {names[1]}.",
+                "Both positions are on water, but their waters do not meet on this chart.",
+                "Allow canals, or choose another position.",
+            )
+        path = [second]
+        while parent[path[-1]] >= 0:
+            path.append(int(parent[path[-1]]))
+        return [(float(lat[k]), float(lon[k])) for k in reversed(path)]
+
+    def _with_links(
+        self, links: Pairs, count: int, closed: Sequence[int]
+    ) -> tuple[Int32Array, Int32Array, FloatArray]:
+        """Return the graph with links in both directions added, and canals closed."""
+        weight = self.weight
+        if len(closed):
+            weight = np.where(np.isin(self.canal, closed), np.inf, weight)
+        tail = np.concatenate([links.first, links.second])
+        head = np.concatenate([links.second, links.first]).astype(np.int32)
+        length = np.concatenate([links.length, links.length])
+        order = np.argsort(tail, kind="stable")
+        tail, head, length = tail[order], head[order], length[order]
+        ends = np.concatenate([self.indptr, np.full(count - len(self.indptr) + 1, self.indptr[-1])])
+        at = ends[tail + 1]
+        more = np.concatenate([[0], np.cumsum(np.bincount(tail, minlength=count))])
+        indptr = (ends + more).astype(np.int32)
+        target = np.insert(self.target, at, head)
+        return indptr, target, np.insert(weight, at, length)
+
+
+def outside_ice(*places: Position) -> bool:
+    """Return whether all positions are between the latitudes where ice is likely."""
+    lowest, highest = ICE_LATITUDES[0] + _ICE_MARGIN, ICE_LATITUDES[1] - _ICE_MARGIN
+    return all(lowest <= place[0] <= highest for place in places)
+
+
+def _joint_pairs(joint: Attachment, at: int, lat: FloatArray, lon: FloatArray) -> Pairs:
+    """Return the links of an attachment whose first position is node ``at``."""
+    chain = np.arange(at, at + len(joint.lat))
+    first = np.concatenate([at + joint.link_waypoint, chain[:-1]]).astype(np.int32)
+    second = np.concatenate([joint.link_node, chain[1:]]).astype(np.int32)
+    return measured_pairs(lat, lon, first, second)
+
+
+def sea_graph(chart: Chart) -> SeaGraph:
+    """Return the graph of a chart's coastline and canals, from memory or disk if made before.
+
+    Parameters
+    ----------
+    chart : Chart
+        Zones, depth and the area of the chart are not used.
+    """
+    bare = type(chart)(chart.coastline, canals=chart.canals, passages=chart.passages)
+    lines = [(passage.name, passage.line) for passage in chart.passages]
+    facts = (FORMAT, _FORMAT, bare.fingerprint(), _RESOLUTION, _OFFING, _NEAR_LAND_FACTOR, lines)
+    name = hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
+    return _load_or_make(_GraphRequest(bare, cache_folder("globe") / f"sea-{name}.npz"))
+
+
+@dataclass(frozen=True)
+class _GraphRequest:
+    """A graph to make, and its file in the cache; two requests for one file are equal."""
+
+    chart: Chart
+    path: Path
+
+    def __hash__(self) -> int:
+        return hash(self.path)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _GraphRequest) and other.path == self.path
+
+
+@lru_cache(maxsize=2)
+def _load_or_make(request: _GraphRequest) -> SeaGraph:
+    try:
+        return _load_graph(request.path)
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        graph = make_sea_graph(request.chart)
+    with contextlib.suppress(OSError):
+        _save_graph(request.path, graph)
+    return graph
+
+
+def make_sea_graph(chart: Chart) -> SeaGraph:
+    """Make the graph of a chart's coastline and canals (see `sea_graph`)."""
+    grid = globe_grid(chart, _RESOLUTION)
+    sea = chart.without_canals("all")
+    usable = np.ones(len(grid.lat), bool)
+    reach = _LINK_REACH * grid.spacing
+    waters = ConnectedWaters.of_pairs(grid.lat, grid.lon, grid.pairs, usable, reach)
+    pairs = [replace(grid.pairs, length=grid.pairs.length * _factors(sea, grid))]
+    canal = [np.where(_in_ice(grid), _IN_ICE, -1)]
+    lat, lon = [grid.lat], [grid.lon]
+    count = len(grid.lat)
+    for number, one in enumerate(chart.canals):
+        joints = []
+        with contextlib.suppress(NoRouteError):  # where the grid is too coarse for a canal
+            what = f"end of the {one.title}"
+            joints = [attach(sea, waters, end, what=what, approach=False) for end in one.ends]
+        if not joints:
+            continue
+        lat, lon = [*lat, *(j.lat for j in joints)], [*lon, *(j.lon for j in joints)]
+        every = np.concatenate(lat), np.concatenate(lon)
+        ends = [_joint_pairs(j, count + k, *every) for k, j in enumerate(joints)]
+        nodes = np.array([count], np.int32), np.array([count + 1], np.int32)
+        through = Pairs(*nodes, np.array([one.length]), np.array([0.0], np.float32))
+        pairs += [*ends, through]
+        canal += [np.full(sum(len(p.first) for p in ends), -1), np.array([number])]
+        count += 2
+    every_pair = concatenate_pairs(pairs)
+    edges = directed_edges(count, every_pair)
+    return SeaGraph(
+        _grown(waters, np.concatenate(lat), np.concatenate(lon)),
+        edges.graph.indptr.astype(np.int32),
+        edges.graph.target.astype(np.int32),
+        every_pair.length[edges.pair].astype(np.float64),
+        np.concatenate(canal)[edges.pair].astype(np.int8),
+    )
+
+
+def _factors(chart: Chart, grid: GlobeGrid) -> FloatArray:
+    """Return the factor of the length of every pair near land."""
+    off = np.asarray(chart.coastline.shore_distance(grid.lat, grid.lon, cap=_OFFING))
+    near = 1.0 - np.minimum(off, _OFFING) / _OFFING
+    node = 1.0 + (_NEAR_LAND_FACTOR - 1.0) * near
+    return np.asarray(0.5 * (node[grid.pairs.first] + node[grid.pairs.second]))
+
+
+def _in_ice(grid: GlobeGrid) -> BoolArray:
+    """Return which pairs reach beyond the latitudes where ice is likely."""
+    lowest, highest = ICE_LATITUDES
+    beyond = (grid.lat < lowest) | (grid.lat > highest)
+    return np.asarray(beyond[grid.pairs.first] | beyond[grid.pairs.second])
+
+
+def _grown(waters: ConnectedWaters, lat: FloatArray, lon: FloatArray) -> ConnectedWaters:
+    """Return waters with more nodes, which no position is joined to."""
+    more = len(lat) - len(waters.lat)
+    return ConnectedWaters(
+        lat,
+        lon,
+        np.append(waters.water, np.full(more, -1)),
+        np.append(waters.size, np.zeros(more, np.int64)),
+        waters.reach,
+    )
+
+
+def way_length(line: Sequence[Position]) -> float:
+    """Return the length of the geodesics along positions [m]."""
+    lat, lon = np.array(line, float).T
+    return float(np.sum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
+
+
+def _load_graph(path: Path) -> SeaGraph:
+    with np.load(path, allow_pickle=False) as file:
+        lat, lon, water, size = (file[name] for name in ("lat", "lon", "water", "size"))
+        waters = ConnectedWaters(lat, lon, water, size, float(file["reach"]))
+        graph = SeaGraph(waters, *(file[n] for n in ("indptr", "target", "weight", "canal")))
+    n, e = len(waters.lat), len(graph.target)
+    if len(graph.indptr) != n + 1 or int(graph.indptr[-1]) != e or int(graph.target.max()) >= n:
+        raise ValueError("the arrays do not fit together")
+    if not len(graph.weight) == len(graph.canal) == e:
+        raise ValueError("the arrays do not fit together")
+    return graph
+
+
+def _save_graph(path: Path, graph: SeaGraph) -> None:
+    waters = graph.waters
+    with replacing_file(path) as file:
+        np.savez(
+            file, allow_pickle=False, lat=waters.lat, lon=waters.lon, water=waters.water,
+            size=waters.size, reach=np.array(waters.reach), indptr=graph.indptr,
+            target=graph.target, weight=graph.weight, canal=graph.canal,
+        )  # fmt: skip

@@ -1,0 +1,278 @@
+"""The approaches at both ends of a voyage: sailed at a fixed speed, outside the optimised part."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from thalweg.chart.approaches import PortApproach, line_between, line_length
+from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.geodesy import Position
+from thalweg.core.time import format_time
+from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
+from thalweg.planning.plan import Plan
+from thalweg.planning.plan_data import PlotContext, Proof
+from thalweg.planning.plan_front import BaselineComparison, ParetoFront
+from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.provenance import provenance
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.request.voyage_objective import priced_objective
+from thalweg.planning.voyage import Voyage
+from thalweg.route import Route, Track
+from thalweg.route import join as join_routes
+from thalweg.route.canal_legs import approach_speed
+
+_NO_CHOICE = "exact: the whole voyage follows the approaches of its ports"
+
+
+@dataclass(frozen=True)
+class ApproachSailing:
+    """How a ship sails the approaches of a voyage.
+
+    Attributes
+    ----------
+    outward, inward : PortApproach or None
+        Of the port of departure and of arrival.
+    setting : int
+        Speed setting of the track: the slowest that reaches the speed of approaches.
+    speed : float
+        Over ground [m/s].
+    """
+
+    outward: PortApproach | None
+    inward: PortApproach | None
+    setting: int
+    speed: float
+
+    @classmethod
+    def of_voyage(cls, context: PlanningContext, ends: Sequence[Endpoint]) -> ApproachSailing:
+        """Return the approaches of the first and last end of a voyage."""
+        speed = approach_speed(context.ship, context.setting)
+        speeds = np.asarray(context.ship.speeds, float)
+        fast = np.flatnonzero(speeds[: context.setting + 1] >= speed * (1.0 - 1e-9))
+        setting = int(fast[0]) if len(fast) else context.setting
+        return cls(ends[0].approach, ends[-1].approach, setting, speed)
+
+    def voyage_at_sea(self, voyage: Voyage) -> Voyage:
+        """Return the voyage from sea end to sea end, with its times shifted by the approaches.
+
+        Raises
+        ------
+        NoRouteError
+            If the approaches alone take longer than the latest arrival allows.
+        """
+        first, last = self._duration(self.outward), self._duration(self.inward)
+        if not first + last:
+            return voyage
+        if voyage.arrive_by is not None:
+            latest = float(voyage.arrive_by)  # type: ignore[arg-type]
+            left = latest - voyage.earliest_departure
+            if left <= first + last:
+                raise NoRouteError(
+                    f"No route arrives by {format_time(latest)}.",
+                    f"The approaches of the ports alone take {(first + last) / HOUR:.1f} h.",
+                    "Allow more time.",
+                )
+        window = voyage.depart_window
+        shifted = None if window is None else tuple(float(t) + first for t in window)  # type: ignore[arg-type]
+        by = voyage.arrive_by
+        return replace(
+            voyage,
+            depart=None if voyage.depart is None else float(voyage.depart) + first,  # type: ignore[arg-type]
+            depart_window=shifted,  # type: ignore[arg-type]
+            arrive_by=None if by is None else float(by) - last,  # type: ignore[arg-type]
+        )
+
+    def with_approaches(self, plan: Plan, voyage: Voyage, context: PlanningContext) -> Plan:
+        """Return a plan from sea end to sea end with the approaches added to all its figures.
+
+        Parameters
+        ----------
+        plan : Plan
+            Of `voyage_at_sea`.
+        voyage : Voyage
+            The request.
+        context : PlanningContext
+            With a chart that has the approaches.
+        """
+        if self.outward is None and self.inward is None:
+            return plan
+        routes = tuple(self._joined(route, context) for route in plan.routes)
+        added = _difference(routes[0], plan.best, voyage, context)
+        proof = Proof(
+            plan.proof.lower_bound + added[1],
+            plan.proof.kind,
+            plan.proof.certain + added[1],
+            plan.proof.solver_total + added[1],
+        )
+        front = plan.front and self._front(plan.front, added, context)
+        return replace(
+            plan,
+            voyage=voyage,
+            routes=routes,
+            proof=proof,
+            front=front,
+            notes=(*self.notes(context), *plan.notes),
+            plot_context=plan.plot_context and _with_approach_lines(plan.plot_context, context),
+        )
+
+    def notes(self, context: PlanningContext) -> tuple[str, ...]:
+        """Return a note about each approach."""
+        draught = float(context.ship.draught)
+        found = []
+        for approach, way in ((self.outward, "out of"), (self.inward, "into")):
+            if approach is None:
+                continue
+            found.append(
+                f"+{approach.length / NAUTICAL_MILE:.1f} nm {way} {approach.port.label} along its "
+                f"approach ({self._duration(approach) / HOUR:.1f} h at "
+                f"{self.speed / KNOT:.1f} kn, line {approach.quality}): counted in all totals; "
+                "weather, tide and depth are not considered there."
+            )
+            if draught > approach.max_draught:
+                found.append(
+                    f"The World Port Index gives {approach.max_draught:g} m as the largest draught "
+                    f"in {approach.port.label}; the ship draws {draught:.1f} m."
+                )
+        return tuple(found)
+
+    def _duration(self, approach: PortApproach | None) -> float:
+        """Return the time of an approach [s]."""
+        return 0.0 if approach is None else approach.length / self.speed
+
+    def _joined(self, route: Route, context: PlanningContext) -> Route:
+        """Return a route with the approaches at its ends."""
+        parts = [route]
+        if self.outward is not None and self.outward.length > 1.0:
+            depart = route.depart - self._duration(self.outward)
+            parts.insert(0, self.sail(self.outward.line, depart, context))
+        if self.inward is not None and self.inward.length > 1.0 and math.isfinite(route.arrive):
+            parts.append(self.sail(self.inward.line[::-1], route.arrive, context))
+        return join_routes([_connected(a, b) for a, b in zip(parts, [*parts[1:], None])])
+
+    def sail(self, line: Sequence[Position], depart: float, context: PlanningContext) -> Route:
+        """Return the line of an approach as sailed; departure in s since 1970."""
+        lat, lon = np.array(line, float).T
+        track = Track(lat, lon, depart, None, np.full(len(lat) - 1, self.setting))  # type: ignore[arg-type]
+        voyage = context.voyage
+        terms = priced_objective(voyage, context.ship).terms if voyage.chooses_speeds else None
+        return context.evaluate(track, terms)
+
+    def _front(
+        self, front: ParetoFront, added: tuple[float, float], context: PlanningContext
+    ) -> ParetoFront:
+        """Return a front with the time [h] and value of the approaches added."""
+        comparison = front.comparison
+        if comparison is not None:
+            routes = tuple(self._joined(route, context) for route in comparison.routes)
+            values = np.asarray(comparison.values) + added[1]
+            rows = tuple(
+                row
+                | {"time_h": route.time_h, "value": float(value), "distance_nm": route.distance_nm}
+                | {"saved_percent": _percent(row["saved"], float(value))}
+                for row, route, value in zip(comparison.rows, routes, values)
+            )
+            comparison = BaselineComparison(routes, values, rows)
+        lower = np.asarray(front.lower) + np.array(added)[:, None]
+        return replace(
+            front, values=np.asarray(front.values) + added[1], lower=lower, comparison=comparison
+        )
+
+
+def _with_approach_lines(plots: PlotContext, context: PlanningContext) -> PlotContext:
+    """Return the data of plots with the approaches of ports on their chart."""
+    chart = replace(plots.chart, approaches=context.chart.approaches)
+    return replace(plots, chart=chart)
+
+
+def _connected(route: Route, after: Route | None) -> Route:
+    """Return a route that ends exactly when the next one departs."""
+    if after is None or after.depart == route.arrive:
+        return route
+    legs = dict(route.legs)
+    legs["arrive"] = np.append(legs["arrive"][:-1], after.depart)
+    return replace(route, legs=legs)
+
+
+def _percent(saved: float | None, value: float) -> float | None:
+    return None if saved is None or value <= 0.0 else 100.0 * saved / value
+
+
+def _difference(
+    whole: Route, part: Route, voyage: Voyage, context: PlanningContext
+) -> tuple[float, float]:
+    """Return the time [h] and value [unit of the objective] of a route beyond a part of it."""
+    hours = whole.time_h - part.time_h
+    if voyage.chooses_speeds:
+        objective = priced_objective(voyage, context.ship)
+        return hours, objective.value(whole) - objective.value(part)
+    if voyage.objective == "distance":
+        return hours, whole.distance_nm - part.distance_nm
+    return hours, hours
+
+
+def shared_line(context: PlanningContext, ends: Sequence[Endpoint]) -> tuple[Position, ...] | None:
+    """Return the line between two berths whose approaches meet before the sea, else None."""
+    if len(ends) != 2 or ends[0].approach is None or ends[1].approach is None:
+        return None
+    return line_between(ends[0].approach, ends[1].approach, legs_blocked=context.chart.legs_blocked)
+
+
+def plan_along_approaches(
+    context: PlanningContext, ends: Sequence[Endpoint], line: tuple[Position, ...]
+) -> Plan:
+    """Plan a voyage that does not leave the approaches of its two ports.
+
+    Raises
+    ------
+    NoRouteError
+        If it does not arrive in time.
+    InputError
+        If the two berths are the same place.
+    """
+    voyage = context.voyage
+    if line_length(line) < 1.0:
+        raise InputError(
+            f"{ends[0].name} and {ends[-1].name} have one berth in the table of approaches.",
+            "Berths are at least 1 m apart.",
+            "Choose two different places.",
+        )
+    sailing = ApproachSailing.of_voyage(context, ends)
+    route = sailing.sail(line, voyage.earliest_departure, context)
+    if route.arrive > context.latest_arrival + 1.0:
+        raise NoRouteError(
+            f"No route arrives by {format_time(context.latest_arrival)}.",
+            f"The approaches take {route.time_h:.1f} h at "
+            f"{sailing.speed / KNOT:.1f} kn: arrival {format_time(route.arrive)}.",
+            "Allow more time.",
+        )
+    front, value = None, route.time_h
+    if voyage.chooses_speeds:
+        objective = priced_objective(voyage, context.ship)
+        total = objective.value(route)
+        one = np.array([total])
+        lower = np.array([[route.time_h], [total]])
+        front = ParetoFront(objective.name, objective.unit, one, ("exact",), ("approach",), lower)
+        value = route.time_h if voyage.objective == "front" else total
+    elif voyage.objective == "distance":
+        value = route.distance_nm
+    none = np.empty(0)
+    note = (
+        f"{line_length(line) / NAUTICAL_MILE:.1f} nm from berth to berth along the approaches of "
+        f"{ends[0].name} and {ends[1].name}, at {sailing.speed / KNOT:.1f} kn: weather, tide and "
+        "depth are not considered there."
+    )
+    notes = [note, *(end.note for end in ends if end.note), *context.needs.notes]
+    return Plan(
+        voyage=voyage,
+        routes=(route,),
+        proof=Proof(value, _NO_CHOICE, value, value),
+        rejections={},
+        notes=tuple(dict.fromkeys(notes)),
+        provenance=provenance(context, list(ends), [], [sailing.speed / KNOT]),
+        plot_context=PlotContext(none, none, none, context.chart, context.sea, context.ship),
+        front=front,
+    )

@@ -1,0 +1,142 @@
+"""Speeds in blocks that a bridge can order: no setting is held for a few minutes only."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.types import FloatArray
+from thalweg.core.units import HOUR
+from thalweg.planning.pareto.front_points import essential_nodes
+from thalweg.planning.pareto.trade_off_context import RefereedCandidate, TradeOffContext
+from thalweg.route import Route, Track
+
+#: A block is at least this share of the passage where that is less than the asked duration.
+_SHARE_OF_PASSAGE = 0.25
+
+
+def in_speed_blocks(
+    trade_off: TradeOffContext, scored: list[RefereedCandidate]
+) -> list[RefereedCandidate]:
+    """Return routes whose speed settings last for the asked duration, scored by the referee.
+
+    Parameters
+    ----------
+    trade_off : TradeOffContext
+        Its voyage asks for the least duration of a block (`Voyage.speed_block_h`).
+    scored : list of RefereedCandidate
+
+    Returns
+    -------
+    list of RefereedCandidate
+        A route keeps its own speeds where no merging of short blocks keeps every limit and the
+        latest arrival. The notes of the trade-off state what the blocks cost.
+    """
+    context = trade_off.context
+    asked = context.voyage.speed_block_h * HOUR
+    if asked <= 0.0 or context.voyage.method == "exact" or len(trade_off.settings) < 2:
+        return scored
+    found = [_blocked(trade_off, item, asked) for item in scored]
+    _note_costs(trade_off, scored, found)
+    return found
+
+
+def merged_settings(
+    setting: NDArray[np.int64], hours: FloatArray, speeds: FloatArray, least: float, *, late: bool
+) -> NDArray[np.int64]:
+    """Return the settings of legs with every run that is too short given to a neighbour.
+
+    Parameters
+    ----------
+    setting : int64 array (legs,)
+    hours : float64 array (legs,)
+        Time of sailing of each leg, in any unit.
+    speeds : float64 array (settings,)
+        Calm-water speeds, ascending.
+    least : float
+        Least time of a run, in the unit of ``hours``.
+    late : bool
+        Whether the passage may become longer; otherwise short runs are given to the faster
+        neighbour.
+
+    Returns
+    -------
+    int64 array (legs,)
+        With one setting where the passage is shorter than two runs.
+    """
+    setting, debt = np.array(setting), 0.0
+    while True:
+        first = np.flatnonzero(np.concatenate([[True], setting[1:] != setting[:-1]]))
+        if len(first) == 1:
+            return setting
+        lasting = np.add.reduceat(hours, first)
+        short = int(np.argmin(lasting))
+        if lasting[short] >= least * (1.0 - 1e-9):
+            return setting
+        own = int(setting[first[short]])
+        sides = [int(setting[first[i]]) for i in (short - 1, short + 1) if 0 <= i < len(first)]
+        changes = [lasting[short] * (speeds[own] / speeds[side] - 1.0) for side in sides]
+        cost = [abs(debt + change) if late else change for change in changes]
+        best = int(np.argmin(cost))
+        debt += changes[best]
+        stop = first[short + 1] if short + 1 < len(first) else len(setting)
+        setting[first[short] : stop] = sides[best]
+
+
+def _blocked(
+    trade_off: TradeOffContext, item: RefereedCandidate, asked: float
+) -> RefereedCandidate:
+    """Return a route in blocks; the same where none of the mergings keeps the limits."""
+    route, context = item.route, trade_off.context
+    hours = route.legs["arrive"] - route.legs["depart"]
+    least = min(asked, _SHARE_OF_PASSAGE * float(hours.sum()))
+    speeds = np.asarray(context.ship.speeds, float)
+    for late in (True, False):
+        setting = merged_settings(route.track.setting, hours, speeds, least, late=late)
+        if np.array_equal(setting, route.track.setting):
+            return item
+        tried = context.evaluate(_with_settings(route.track, setting))
+        in_time = tried.arrive <= context.latest_arrival + 1.0
+        value = trade_off.objective.value(tried)
+        if tried.feasible and in_time and np.isfinite(value):
+            return replace(item, route=tried, value=value)
+    return item
+
+
+def _with_settings(track: Track, setting: NDArray[np.int64]) -> Track:
+    """Return a track with other settings, without waypoints that no longer change anything."""
+    keep = np.flatnonzero(essential_nodes(track.lat, track.lon, setting, track.wait))
+    return track.replaced(setting=setting).kept(keep)
+
+
+def _note_costs(
+    trade_off: TradeOffContext, before: list[RefereedCandidate], after: list[RefereedCandidate]
+) -> None:
+    """Note what the blocks cost against speeds that change at will, at the same time."""
+    free = sorted((one.route.time_h, one.value) for one in before)
+    time, value = (np.array(column) for column in zip(*free))
+    value = np.minimum.accumulate(value)
+    changed = [new for old, new in zip(before, after) if new is not old]
+    kept = sum(_has_short_blocks(trade_off, one.route) for one in after)
+    if not changed and not kept:
+        return
+    extra = [one.value / float(np.interp(one.route.time_h, time, value)) - 1.0 for one in changed]
+    hours = trade_off.context.voyage.speed_block_h
+    note = f"Speeds are ordered in blocks of at least {hours:g} h or a quarter of the passage"
+    if extra:
+        note += f", at a cost of up to {max(0.0, *extra):.1%} {trade_off.objective.name}"
+    if kept:
+        note += f"; {kept} of {len(after)} routes keep shorter ones, to stay within the limits"
+    trade_off.notes.append(f"{note}.")
+
+
+def _has_short_blocks(trade_off: TradeOffContext, route: Route) -> bool:
+    """Return whether a route holds a setting for less than the asked duration."""
+    hours = route.legs["arrive"] - route.legs["depart"]
+    asked = trade_off.context.voyage.speed_block_h * HOUR
+    least = min(asked, _SHARE_OF_PASSAGE * float(hours.sum()))
+    speeds = np.asarray(trade_off.context.ship.speeds, float)
+    setting = merged_settings(route.track.setting, hours, speeds, least, late=True)
+    return not np.array_equal(setting, route.track.setting)

@@ -1,0 +1,179 @@
+"""Land, enclosed water, zones, control areas and storm tracks on a map."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thalweg.core.units import DAY
+from thalweg.planning.plots.map_extent import MapExtent
+from thalweg.planning.plots.map_labels import LabelPlacer, marked_times, time_label
+from thalweg.sea.models.cyclone_layer import StormLayer
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.planning.plan_data import PlotContext
+    from thalweg.sea.models.cyclone_track import BestTrack
+
+_LAND, _SHORE, _STORM = "#e2d6b5", "#6f6650", "#4a148c"
+_NO_GO, _PENALTY, _CONTROL = "#c62828", "#ef6c00", "#00796b"
+_LEAST_CELLS, _OPENING = 4, 0.15  # of enclosed water; part of its outline that may be open
+_NEAR = 2.5  # spacings of the network within which water counts as searched
+
+
+def draw_land(axes: Any, chart: Chart, box: MapExtent) -> None:
+    """Draw the land of a chart."""
+    for polygon in chart.coastline.polygons(box.south, box.north, box.west, box.east):
+        axes.add_patch(_patch(polygon, fc=_LAND, ec=_SHORE, lw=0.5, zorder=3))
+
+
+def draw_enclosed_water(
+    axes: Any, world: PlotContext, box: MapExtent, on_water: np.ndarray, grid: tuple[Any, Any]
+) -> np.ndarray:
+    """Hatch water inside the map that the search did not reach, such as lakes behind dams.
+
+    Parameters
+    ----------
+    axes : matplotlib Axes
+    world : PlotContext
+    box : MapExtent
+    on_water : bool array (rows, columns)
+        Where there is water.
+    grid : (ndarray, ndarray)
+        Latitudes and longitudes of the raster [deg].
+
+    Returns
+    -------
+    bool array (rows, columns)
+        Where it was hatched.
+    """
+    from scipy.ndimage import label
+    from scipy.spatial import cKDTree
+
+    lat, lon = grid
+    reached = np.isfinite(world.arrival)
+    places = np.column_stack([world.lat, box.unwrapped(world.lon) / box_stretch(box)])[reached]
+    none = np.zeros(lat.shape, bool)
+    if len(places) < 10:
+        return none
+    tree = cKDTree(places)
+    sample = places[:: max(1, len(places) // 500)]
+    spacing = float(np.median(tree.query(sample, k=2)[0][:, 1]))
+    away, _ = tree.query(np.column_stack([lat.ravel(), lon.ravel() / box_stretch(box)]))
+    lonely = on_water & (away.reshape(lat.shape) > _NEAR * spacing)
+    enclosed = none.copy()
+    pieces, count = label(lonely, np.ones((3, 3), int))
+    for number in range(1, count + 1):
+        piece = pieces == number
+        if not (piece[[0, -1]].any() or piece[:, [0, -1]].any()):
+            enclosed |= piece if _is_enclosed(piece, on_water) else False
+    if enclosed.any():
+        axes.contourf(
+            lon, lat, enclosed.astype(float), levels=[0.5, 1.5], colors=[_LAND], hatches=["////"],
+            zorder=2,
+        )  # fmt: skip
+    return np.asarray(enclosed)
+
+
+def _is_enclosed(piece: np.ndarray, on_water: np.ndarray) -> bool:
+    """Return whether a piece of water has land around it, up to a narrow opening."""
+    from scipy.ndimage import binary_dilation
+
+    around = binary_dilation(piece, np.ones((3, 3), bool)) & ~piece
+    return int(piece.sum()) >= _LEAST_CELLS and float(on_water[around].mean()) <= _OPENING
+
+
+def box_stretch(box: MapExtent) -> float:
+    """Return degrees of longitude that are as long as one of latitude, in the middle of a map."""
+    return 1.0 / max(0.05, float(np.cos(np.radians(0.5 * (box.south + box.north)))))
+
+
+def draw_zones(axes: Any, chart: Chart, box: MapExtent) -> list[tuple[str, float, float]]:
+    """Draw the areas of a chart; return the labels of control areas with their positions."""
+    for shapes, colour, hatch in (
+        (chart.zones.no_go, _NO_GO, "xxx"),
+        ([shape for shape, _ in chart.zones.penalty], _PENALTY, "..."),
+        ([shape for shape, _ in chart.zones.price], _CONTROL, ""),
+    ):
+        for shape in shapes:
+            for turn in (-360.0, 0.0, 360.0):
+                style = {"fc": "none", "ec": colour, "hatch": hatch, "lw": 0.9, "zorder": 4}
+                axes.add_patch(_patch(shape, turn, **style))
+    return _draw_control_areas(axes, chart, box)
+
+
+def _draw_control_areas(axes: Any, chart: Chart, box: MapExtent) -> list[tuple[str, float, float]]:
+    """Draw the emission control areas that count; return their labels with positions."""
+    labels = []
+    areas = chart.control_areas or chart.zones
+    for area in areas.eca:
+        for first, last in zip(area.rings.start[:-1], area.rings.start[1:]):
+            lat, lon = area.rings.lat[first:last], area.rings.lon[first:last]
+            for turn in (-360.0, 0.0, 360.0):
+                if not (
+                    lon.max() + turn > box.west
+                    and lon.min() + turn < box.east
+                    and lat.max() > box.south
+                    and lat.min() < box.north
+                ):
+                    continue
+                here = (lon + turn > box.west) & (lon + turn < box.east)
+                here &= (lat > box.south) & (lat < box.north)
+                axes.plot(lon + turn, lat, color=_CONTROL, lw=0.9, ls=(0, (6, 3)), zorder=2.5)
+                if here.any():
+                    middle = int(np.flatnonzero(here)[len(np.flatnonzero(here)) // 2])
+                    labels.append(
+                        (f"ECA {_plain(area.name)}", float(lon[middle] + turn), float(lat[middle]))
+                    )
+    return list({name: (name, x, y) for name, x, y in labels}.values())
+
+
+def storm_track(world: PlotContext) -> BestTrack | None:
+    """Return the track of the modelled storm of a sea; None if there is none."""
+    tracks = [layer.track for layer in world.sea.layers if isinstance(layer, StormLayer)]
+    return tracks[0] if tracks else None
+
+
+def draw_storm(
+    axes: Any, track: BestTrack, box: MapExtent, start: float, end: float
+) -> list[tuple[str, float, float]]:
+    """Draw the track of a storm during a voyage; return labels of its days with positions."""
+    first, last = max(start, float(track.time[0])), min(end, float(track.time[-1]))
+    if last <= first:
+        return []
+    lat, lon = track.position(np.linspace(first, last, 200))
+    axes.plot(
+        box.line(lon), lat, color=_STORM, lw=1.3, ls=(0, (2, 1.5)), zorder=6,
+        label=f"track of {track.name}",
+    )  # fmt: skip
+    times, _ = marked_times(first, last, 7)
+    lat, lon = track.position(times)
+    x = box.unwrapped(lon)
+    axes.plot(x, lat, "v", color=_STORM, ms=4, zorder=6)
+    step = DAY if len(times) < 2 else float(times[1] - times[0])
+    labels = [(time_label(float(t), step), float(a), float(b)) for t, a, b in zip(times, x, lat)]
+    return [
+        item for item in labels
+        if box.west < item[1] < box.east and box.south < item[2] < box.north
+    ]  # fmt: skip
+
+
+def place_labels(placer: LabelPlacer, labels: list[tuple[str, float, float]]) -> None:
+    """Place small labels, as far as there is room."""
+    for text, lon, lat in labels:
+        placer.place(text, lon, lat, fontsize=6.5, color=_CONTROL if "ECA" in text else _STORM)
+
+
+def _patch(polygon: Any, turn: float = 0.0, **style: Any) -> Any:
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Outline
+
+    rings = [np.asarray(ring.coords) for ring in (polygon.exterior, *polygon.interiors)]
+    shifted = [np.column_stack([ring[:, 0] + turn, ring[:, 1]]) for ring in rings]
+    outline = Outline.make_compound_path(*(Outline(ring, closed=True) for ring in shifted))
+    return PathPatch(outline, **style)
+
+
+def _plain(name: str) -> str:
+    return name.replace("-", " ").title()

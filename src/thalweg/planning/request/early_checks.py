@@ -1,0 +1,39 @@
+"""Checks that need neither the chart nor a network: they come before anything large is loaded."""
+
+from __future__ import annotations
+
+from thalweg.kernels import codes
+from thalweg.planning.request.ordered_speed import with_ordered_speed
+from thalweg.planning.request.requirements import check_departure_in_data, check_variables
+from thalweg.planning.voyage import Voyage
+from thalweg.sea import Sea, standard_names
+from thalweg.ship import Ship
+
+_CURRENT = (codes.CURRENT_EAST, codes.CURRENT_NORTH)
+
+
+def check_request(voyage: Voyage, ship: Ship, sea: Sea) -> None:
+    """Check that the ship has the speed and the sea the variables and times of a voyage.
+
+    Parameters
+    ----------
+    voyage : Voyage
+    ship : Ship
+    sea : Sea
+        A single sea or an ensemble.
+
+    Raises
+    ------
+    InputError
+        If the ship does not have the speed.
+    MissingVariableError
+        If the ship needs variables that the sea does not have.
+    OutsidePeriodError
+        If the departure is outside the period of the data.
+    """
+    with_ordered_speed(ship, voyage.speed_kn)
+    check_variables(ship, sea)
+    channels = {c for c, name in standard_names.CHANNEL_VARIABLES.items() if name in ship.needs}
+    if all(name in sea.variables for name in standard_names.CURRENT.pair):
+        channels.update(_CURRENT)
+    check_departure_in_data(voyage, sea, channels)

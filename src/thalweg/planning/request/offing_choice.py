@@ -1,0 +1,188 @@
+"""The offing of a voyage: how far a ship stays from land, and which passages she may use."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from thalweg.chart import Chart
+from thalweg.chart.canals import CANALS
+from thalweg.chart.coast.snapping import joined_positions
+from thalweg.chart.offing import OffingDisc, disc_at
+from thalweg.chart.passages import PASSAGES, Passage, find_passages
+from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.geodesy import distance
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.voyage import Voyage
+from thalweg.ship import Ship
+
+#: Offings [nm] by size: the length and the draught [m] below which they hold.
+_DEFAULT_OFFINGS: Final = ((0.5, 50.0, 4.0), (1.0, 120.0, 7.0))
+_LARGE_SHIP_OFFING: Final = 2.0  # [nm]
+_DISC_RADII: Final = (0.0, 10.0 * NAUTICAL_MILE, 40.0 * NAUTICAL_MILE)
+_LOOK_BEYOND: Final = 12.0 * NAUTICAL_MILE
+_ENOUGH_POSITIONS: Final = 30  # positions of a grid as far from land as the offing: open water
+_RIVER_OFFING: Final = 300.0  # off the banks before a canal [m]
+_NEAR_ENOUGH: Final = 0.9  # an end at this share of the offing leaves it without a test
+_PASSAGE_DETOUR: Final = 1.03  # passages closed to a ship are mentioned where so near the geodesic
+
+
+def default_offing(ship: Ship) -> float:
+    """Return the offing of a ship by her size [m].
+
+    0.5 nautical miles below 50 m of length or 4 m of draught, 1 below 120 m and 7 m, else 2. Where
+    the length is not known the draught alone counts.
+    """
+    length, draught = ship.length, float(ship.draught)
+    (small, length_small, draught_small), (medium, length_medium, draught_medium) = _DEFAULT_OFFINGS
+    if draught < draught_small or (length is not None and length < length_small):
+        return small * NAUTICAL_MILE
+    if draught < draught_medium and (length is None or length < length_medium):
+        return medium * NAUTICAL_MILE
+    return _LARGE_SHIP_OFFING * NAUTICAL_MILE
+
+
+def chosen_offing(voyage: Voyage, ship: Ship) -> float:
+    """Return the offing of a voyage [m]: the one it gives, else that of the ship's size."""
+    if voyage.offing_nm is not None:
+        return voyage.offing_nm * NAUTICAL_MILE
+    return default_offing(ship)
+
+
+def restrict_passages(
+    chart: Chart, voyage: Voyage, ship: Ship, ends: Sequence[Endpoint], offing: float
+) -> tuple[Chart, list[str]]:
+    """Return the chart without the passages that are avoided or closed to the ship, and notes.
+
+    A voyage that keeps no offing closes only those it avoids.
+
+    Raises
+    ------
+    InputError
+        If a passage or canal is unknown (with near matches), or both opened and avoided.
+    """
+    opened = find_passages(voyage.open)
+    canals, avoided = split_avoided(voyage.avoid)
+    for passage in opened:
+        if passage in avoided or passage.use == "never":
+            raise InputError(
+                f"The passage {passage.name!r} cannot be opened.",
+                "It is avoided as well." if passage in avoided else "It is closed to ships.",
+                "Leave it out.",
+                field="open",
+            )
+    if canals:
+        chart = chart.without_canals(*canals)
+    closed, notes = list(avoided), []
+    for passage in chart.passages if offing > 0.0 else ():
+        why = "" if passage in opened or passage in closed else _restriction(passage, ship)
+        if why:
+            closed.append(passage)
+            if any(_near_geodesic(passage, a, b) for a, b in itertools.pairwise(ends)):
+                notes.append(f"Passage closed: {why} (open it with open = {passage.name!r}).")
+    if closed:
+        chart = chart.without_passages(*(passage.name for passage in closed))
+    return chart, notes
+
+
+def split_avoided(names: Sequence[str]) -> tuple[list[str], list[Passage]]:
+    """Return the canals and the passages among names to avoid.
+
+    Raises
+    ------
+    InputError
+        If a name is neither; the message lists similar names.
+    """
+    canals, passages = [], []
+    known = {canal.name for canal in CANALS}
+    for name in names:
+        plain = name.casefold().removesuffix("canal").strip(" -_")
+        if plain in known:
+            canals.append(plain)
+            continue
+        try:
+            passages += find_passages([name])
+        except InputError:
+            every = [*sorted(known), *(passage.name for passage in PASSAGES)]
+            raise unknown_name_error("passage or canal", name, every) from None
+    return canals, passages
+
+
+def _restriction(passage: Passage, ship: Ship) -> str:
+    return passage.ship_restriction(
+        draught=float(ship.draught) or None, beam=ship.breadth, length=ship.length
+    )
+
+
+def _near_geodesic(passage: Passage, start: Endpoint, goal: Endpoint) -> bool:
+    """Return whether the route through a passage is not much longer than the geodesic."""
+    one, other = passage.line[0], passage.line[-1]
+    straight = float(distance(start.lat, start.lon, goal.lat, goal.lon))
+    lengths = (
+        distance(start.lat, start.lon, *a) + passage.length + distance(*b, goal.lat, goal.lon)
+        for a, b in ((one, other), (other, one))
+    )
+    return float(min(lengths)) < _PASSAGE_DETOUR * straight
+
+
+def chart_off_land(chart: Chart, ends: Sequence[Endpoint], offing: float) -> Chart:
+    """Return the chart with an offing [m], smaller round ends and canals nearer to land."""
+    if offing <= 0.0:
+        return chart
+    canals = [Endpoint(canal.title, *end, 0.0) for canal in chart.canals for end in canal.ends]
+    discs = [_disc_of_end(chart, end, offing) for end in ends]
+    discs += [_disc_of_end(chart, end, offing, in_river=True) for end in canals]
+    return chart.with_offing(offing, discs=[disc for disc in discs if disc is not None])
+
+
+def _disc_of_end(
+    chart: Chart, end: Endpoint, offing: float, *, in_river: bool = False
+) -> OffingDisc | None:
+    """Return the smallest disc that joins an end to water as far from land as the offing.
+
+    For some miles before the end of a canal in a river a small distance from land is enough.
+    """
+    place = end.lat, end.lon
+    shore = float(chart.coastline.shore_distance(*place, cap=offing))
+    if shore >= 0.999 * offing:
+        return None
+    least = min(0.9 * shore, _RIVER_OFFING) if in_river else 0.0
+    for radius in _DISC_RADII[in_river:]:
+        disc = disc_at(chart.coastline, place, radius=radius)
+        disc = replace(disc, least=max(disc.least, least))
+        if shore >= _NEAR_ENOUGH * offing and not in_river:
+            return disc
+        local = chart.with_offing(offing, discs=[disc])
+        lat, lon = joined_positions(
+            *place,
+            radius + _LOOK_BEYOND,
+            is_navigable=local.is_navigable,
+            legs_blocked=local.legs_blocked,
+        )
+        off = chart.coastline.shore_distance(lat, lon, cap=offing) >= 0.999 * offing
+        if int(np.sum(off)) >= _ENOUGH_POSITIONS:
+            return disc
+    return disc
+
+
+def offing_note(chart: Chart, ends: Sequence[Endpoint], wanted: float) -> str:
+    """Return a note for the user: how far off land a plan on a chart keeps, and wanted to [m]."""
+    kept = chart.offing.distance
+    text = f"Keeps {wanted / NAUTICAL_MILE:.2g} nm off land"
+    if kept < wanted:
+        text = f"No route exists {wanted / NAUTICAL_MILE:.2g} nm off land: "
+        text += f"keeps {kept / NAUTICAL_MILE:.2g} nm" if kept else "keeps no distance from land"
+    names = []
+    for disc in chart.offing.discs:
+        end = min(ends, key=lambda e: math.hypot(e.lat - disc.lat, e.lon - disc.lon))
+        if math.hypot(end.lat - disc.lat, end.lon - disc.lon) > 1e-6:
+            continue  # at the end of a canal
+        within = f" within {disc.radius / NAUTICAL_MILE:.0f} nm of it" if disc.radius else ""
+        names.append(f"{end.name}{within}")
+    return f"{text}; less near {' and '.join(dict.fromkeys(names))}." if names else f"{text}."

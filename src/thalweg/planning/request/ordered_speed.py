@@ -1,0 +1,57 @@
+"""The ordered speed of a voyage: a setting of the ship, or a speed between its settings."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.core.units import KNOT
+from thalweg.ship import Ship
+
+_SAME_SPEED_KN = 0.05  #: an ordered speed this near to a setting is that setting
+
+
+def with_ordered_speed(ship: Ship, speed_kn: float | None) -> Ship:
+    """Return a ship that has a setting for an ordered speed.
+
+    Parameters
+    ----------
+    ship : Ship
+    speed_kn : float or None
+        Ordered speed through calm water [kn].
+
+    Returns
+    -------
+    Ship
+        The ship itself where it has the setting or no speed is ordered; otherwise with this speed
+        alone, by its own law of power and fuel.
+
+    Raises
+    ------
+    InputError
+        If the ship does not reach the speed, or no speed can be ordered.
+    """
+    if speed_kn is None or _misses(ship, speed_kn).min() <= _SAME_SPEED_KN:
+        return ship
+    top = float(np.max(ship.speeds)) / KNOT
+    if not ship.is_resistance_based and speed_kn > top:
+        listed = ", ".join(f"{speed / KNOT:.1f}" for speed in ship.speeds)
+        raise InputError(
+            f"The ship {ship.name!r} has no setting for {speed_kn:g} kn.",
+            f"Its speeds are {listed} kn, and its power is not known above the highest.",
+            f"Order at most {top:.1f} kn.",
+            field="speed_kn",
+        )
+    return ship.with_speeds([speed_kn * KNOT])
+
+
+def ordered_setting(ship: Ship, speed_kn: float | None) -> int:
+    """Return the index of the setting for an ordered speed [kn]; the highest where none is."""
+    if speed_kn is None:
+        return len(ship.speeds) - 1
+    return int(np.argmin(_misses(ship, speed_kn)))
+
+
+def _misses(ship: Ship, speed_kn: float) -> np.ndarray:
+    """Return how far the settings are from a speed [kn]."""
+    return np.asarray(np.abs(np.asarray(ship.speeds) / KNOT - speed_kn))

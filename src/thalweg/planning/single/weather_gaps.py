@@ -1,0 +1,163 @@
+"""Water without data on the way: edges that cross it, and the error where it cannot be passed.
+
+The search samples the sea at stations, the referee along every leg, so that a masked cell between
+two stations is seen by the referee alone. Where that happens, the edges that cross unknown water
+are left out, sampled as closely as the data, and the passage is searched again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from thalweg.core.errors import NoRouteError
+from thalweg.core.geodesy import METRES_PER_DEGREE, direct, distance, format_position, inverse
+from thalweg.core.time import format_time
+from thalweg.kernels import codes
+from thalweg.network import Network
+from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.route import Route
+from thalweg.route.referee.limit_checks import is_data_gap
+from thalweg.route.route import Violation
+from thalweg.sea import Sea
+from thalweg.sea.standard_names import inseparable_variables
+
+MAX_GAPS: Final = 12  #: gaps that are planned round before finer networks are tried
+_PER_CELL: Final = 12.0  # samples of an edge per cell of the data
+_SHORTEST_STEP: Final = 100.0  # least distance of samples [m]
+_NEAR: Final = 2_000.0  # detour by a gap up to which an edge counts as near it [m]
+_POINTS_AT_ONCE: Final = 200_000
+
+
+def data_gaps_on_route(route: Route) -> tuple[Violation, ...]:
+    """Return where a route meets water without data, once for each variable and place.
+
+    Parameters
+    ----------
+    route : Route
+        Scored by the referee.
+    """
+    gaps = [v for v in route.violations if is_data_gap(v) and v.reason.endswith("(gap)")]
+    return tuple(gaps[:MAX_GAPS])
+
+
+def without_unknown_edges(
+    context: PlanningContext, network: Network, gaps: Sequence[Violation]
+) -> Network:
+    """Return a network without the edges on which a variable is unknown at the time of a gap.
+
+    Parameters
+    ----------
+    context : PlanningContext
+        Request and data of the plan.
+    network : Network
+        The network that was searched.
+    gaps : sequence of Violation
+        Where and when the referee found data missing.
+    """
+    keep = np.ones(network.n_edges, bool)
+    sailed = np.isnan(network.edges.fixed_time)
+    # both components of a vector are unknown together: one of them is enough
+    wanted = {
+        (inseparable_variables(_variable(gap))[0], gap.time, gap.lat, gap.lon): gap for gap in gaps
+    }
+    for (name, *_), gap in wanted.items():
+        step = max(_data_spacing(context.sea, name) / _PER_CELL, _SHORTEST_STEP)
+        rows = np.flatnonzero(keep & sailed)
+        keep[rows] = _known_along(network, rows, context.sea, (name, gap.time, step))
+        rows = np.flatnonzero(keep & sailed & _near(network, gap))
+        fine = (name, gap.time, _SHORTEST_STEP)  # an edge may clip the corner of a cell
+        keep[rows] = _known_along(network, rows, context.sea, fine)
+    return network if keep.all() else network.with_some_edges(keep)
+
+
+def _near(network: Network, gap: Violation) -> np.ndarray:
+    """Return which edges may pass through a place: it is nearer than their length."""
+    apart = distance(network.lat, network.lon, gap.lat, gap.lon)
+    tails, target = network.tails(), network.graph.target
+    return np.asarray(apart[tails] + apart[target] <= 1.001 * network.edges.length + _NEAR)
+
+
+def check_times_known(route: Route, start: Endpoint, goal: Endpoint) -> None:
+    """Raise `NoRouteError` if a route ends in water without data: its time is unknown.
+
+    Parameters
+    ----------
+    route : Route
+        The best route found, which the referee refuses.
+    start, goal : Endpoint
+        Its ends.
+    """
+    if math.isfinite(route.time_h):
+        return
+    gaps = [v for v in route.violations if is_data_gap(v)]
+    if not gaps:
+        return
+    first = gaps[0]
+    names = sorted({_variable(v) for v in gaps if v.time == first.time})
+    place = format_position(first.lat, first.lon)
+    raise NoRouteError(
+        f"No route from {start.name} to {goal.name} was found in known water: "
+        f"{', '.join(names)} {'is' if len(names) == 1 else 'are'} unknown at {place} at "
+        f"{format_time(first.time)}.",
+        "Cells of the data without values next to land, in ice or in a gap in time are not sailed.",
+        "Add data that cover it, or fill by name, for example --fill currents=nearest:25 or "
+        "currents=0.",
+        reasons={codes.REASONS[codes.NO_DATA]: len(gaps)},
+        nearest=(first.lat, first.lon),
+        variables=names,
+    )
+
+
+def _variable(gap: Violation) -> str:
+    """Return the variable that a violation names: "no data: NAME (gap)"."""
+    return gap.reason.partition(": ")[2].partition(" (")[0]
+
+
+def _known_along(
+    network: Network, rows: np.ndarray, sea: Sea, sampled: tuple[str, float, float]
+) -> np.ndarray:
+    """Return which edges have known values all along; ``sampled``: variable, time, step [m]."""
+    name, time, step = sampled
+    tails, target = network.tails(), network.graph.target
+    low, high = np.minimum(tails, target)[rows], np.maximum(tails, target)[rows]
+    _, one, both = np.unique(
+        low.astype(np.int64) * network.n_nodes + high, return_index=True, return_inverse=True
+    )
+    rows = rows[one]  # there and back is the same water
+    known = np.ones(len(rows), bool)
+    count = np.ceil(network.edges.length[rows] / step).astype(np.int64) + 1
+    cuts = np.searchsorted(np.cumsum(count), np.arange(0, count.sum(), _POINTS_AT_ONCE))
+    for first, last in zip(cuts, [*cuts[1:], len(rows)]):
+        edge, number = rows[first:last], count[first:last]
+        if not edge.size:
+            continue
+        part = np.repeat(np.arange(edge.size), number)
+        within = np.arange(part.size) - np.repeat(np.cumsum(number) - number, number)
+        share = within / (number[part] - 1)
+        lat, lon = network.stations.lat, network.stations.lon
+        a, b = tails[edge][part], target[edge][part]
+        y, x = _between(lat[a], lon[a], lat[b], lon[b], share)
+        values = sea.sample([name], time, y, x)[name]
+        unknown = np.bincount(part[np.isnan(values)], minlength=edge.size)
+        known[first:last] = unknown == 0
+    return known[both]
+
+
+def _between(
+    lat1: np.ndarray, lon1: np.ndarray, lat2: np.ndarray, lon2: np.ndarray, share: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions at shares of geodesics between pairs of positions [deg]."""
+    length, course, _ = inverse(lat1, lon1, lat2, lon2)
+    return direct(lat1, lon1, course, share * length)
+
+
+def _data_spacing(sea: Sea, name: str) -> float:
+    """Return the least spacing [m] of the data of a variable; 10 km where it has none."""
+    rows = [row.spacing_deg for row in sea.coverage() if row.variable == name]
+    spacings = [spacing for spacing in rows if spacing]
+    return METRES_PER_DEGREE * min(spacings) if spacings else 10_000.0

@@ -1,0 +1,248 @@
+"""The waypoints of a route file: few, and joined by rhumb lines that keep to the route.
+
+The legs of a route are geodesics (great circles), while plotters join waypoints by rhumb lines. A
+leg is therefore broken until its rhumb lines stay within a cross-track limit; waypoints that lie on
+the line of their neighbours are left out.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import MEAN_RADIUS, direct, distance, inverse
+from thalweg.core.rhumb_lines import densify_for_rhumb, rhumb_cross_track, rhumb_pieces
+from thalweg.core.types import FloatArray
+from thalweg.core.units import KNOT, NAUTICAL_MILE
+from thalweg.route.formats.parsed_track import RHUMB_DEVIATION
+from thalweg.route.formats.route_file_options import RouteFileOptions
+from thalweg.route.route import Route
+
+DECIMALS = 6  #: of positions in files [deg]; 0.1 m
+_THINNING_SHARE = 0.1  # of the cross-track limit, for leaving out waypoints
+_SAME_SPEED = 0.01 * KNOT  # differences of ordered speeds below this are none [m/s]
+_SAME_PLACE = 20.0  # waypoints closer than this are one [m]
+_CLEARING_SHARES = (1.0, 0.2, 0.04, 0.01)  # of the limit, tried in turn beside land
+_RHUMB_TEST = 5.0  # geodesics this close stand for a rhumb line in tests against land [m]
+_MOVES = (5.0, 15.0, 40.0, 80.0)  # of waypoints on the shore [m]
+_WIDEST = 200.0  # times the limit, for a given number of waypoints
+
+
+@dataclass(frozen=True, eq=False)
+class FileVertices:
+    """Waypoints of a route file.
+
+    Attributes
+    ----------
+    lat, lon : float64 array (n,)
+        Positions [deg], as written.
+    leg : int64 array (n,)
+        Leg of the route that goes on from the waypoint (the last leg at the last waypoint).
+    at : float64 array (n,)
+        Distance from the start of the route [m], as the referee sailed it.
+    cross_track : float
+        Greatest distance of the route from the rhumb lines between the waypoints [m].
+    """
+
+    lat: FloatArray
+    lon: FloatArray
+    leg: NDArray[np.int64]
+    at: FloatArray
+    cross_track: float
+
+
+def file_vertices(route: Route, options: RouteFileOptions) -> FileVertices:
+    """Return the waypoints of a file for a route.
+
+    Parameters
+    ----------
+    route : Route
+    options : RouteFileOptions
+
+    Returns
+    -------
+    FileVertices
+
+    Raises
+    ------
+    InputError
+        If the route needs more waypoints than are allowed.
+    """
+    most, limit = options.max_waypoints, options.limit
+    found = _vertices(route, options, limit)
+    if most is None or len(found.lat) <= most:
+        return found
+    least = _vertices(route, options, low := limit * _WIDEST)
+    if len(least.lat) > most:
+        raise InputError(
+            f"A route of at most {most} waypoints was requested.",
+            f"It needs {len(least.lat)}: its turns, waits and changes of speed, with rhumb lines "
+            f"within {low / NAUTICAL_MILE:.0f} nm of it and clear of land.",
+            "Allow more waypoints.",
+            waypoints=len(least.lat),
+        )
+    narrow, wide = limit, low
+    for _ in range(20):
+        middle = math.sqrt(narrow * wide)
+        tried = _vertices(route, options, middle)
+        if len(tried.lat) <= most:
+            wide, least = middle, tried
+        else:
+            narrow = middle
+    return least
+
+
+def _vertices(route: Route, options: RouteFileOptions, limit: float) -> FileVertices:
+    thinning = _THINNING_SHARE * limit
+    kept = _thinned(route, options, thinning)
+    lats, lons, places = [], [], []
+    start = np.concatenate([[0.0], np.cumsum(route.legs["length"])])
+    for first, last in itertools.pairwise(kept):
+        lat, lon = _broken_leg(route, options, first, last, limit - thinning)
+        lats.append(lat[:-1])
+        lons.append(lon[:-1])
+        places.append(np.linspace(start[first], start[last], len(lat))[:-1])
+    track = route.track
+    lat = np.round(np.concatenate([*lats, track.lat[-1:]]), DECIMALS)
+    lon = np.round(np.concatenate([*lons, track.lon[-1:]]), DECIMALS)
+    lon = np.where(lon >= 180.0, lon - 360.0, lon)
+    lat, lon = _off_land(options, lat, lon)
+    at = np.concatenate([*places, start[-1:]])
+    leg = np.searchsorted(start, at + 1e-6, side="right") - 1
+    leg = np.minimum(leg, len(track) - 2).astype(np.int64)
+    return FileVertices(lat, lon, leg, at, _cross_track(route, lat, lon, at))
+
+
+def _thinned(route: Route, options: RouteFileOptions, tolerance: float) -> list[int]:
+    """Return the waypoints of the track that are kept: turns, waits, changes of speed, canals."""
+    held = _held(route)
+    kept = [0]
+    for first, last in itertools.pairwise(held):
+        kept += _between(route, options, first, last, tolerance)
+        kept.append(last)
+    return _without_repeats(route, kept)
+
+
+def _held(route: Route) -> list[int]:
+    """Return the waypoints that are never left out."""
+    track, speed = route.track, route.legs["ordered_speed"]
+    held = track.wait > 0.0
+    held[[0, -1]] = True
+    held[1:-1] |= np.abs(np.diff(speed)) > _SAME_SPEED
+    canal = _canal_legs(route)
+    held[:-1] |= canal
+    held[1:] |= canal
+    return [int(index) for index in np.flatnonzero(held)]
+
+
+def _canal_legs(route: Route) -> NDArray[np.bool_]:
+    """Return which legs follow the line of a canal: those longer than their geodesic."""
+    return np.asarray(route.legs["length"] > 1.0001 * route.track.lengths + 1.0)
+
+
+def _without_repeats(route: Route, kept: list[int]) -> list[int]:
+    """Return the waypoints without those that are too close to the one before, if they may go."""
+    track, canal = route.track, _canal_legs(route)
+    found = [kept[0]]
+    for index in kept[1:]:
+        before = found[-1]
+        place = track.lat[before], track.lon[before], track.lat[index], track.lon[index]
+        if float(distance(*place)) < _SAME_PLACE and not canal[before:index].any():
+            if index == kept[-1] and before != kept[0] and track.wait[before] == 0.0:
+                found[-1] = index
+                continue
+            if index != kept[-1] and track.wait[index] == 0.0 and not canal[index]:
+                continue
+        found.append(index)
+    return found
+
+
+def _between(
+    route: Route, options: RouteFileOptions, first: int, last: int, tolerance: float
+) -> list[int]:
+    """Return the waypoints to keep between two others (Douglas and Peucker 1973)."""
+    if last - first < 2:
+        return []
+    lat, lon = route.track.lat, route.track.lon
+    inner = slice(first + 1, last)
+    away, bearing, _ = inverse(lat[first], lon[first], lat[inner], lon[inner])
+    length, course, _ = inverse(lat[first], lon[first], lat[last], lon[last])
+    arc = away / MEAN_RADIUS
+    aside = np.abs(np.arcsin(np.sin(arc) * np.sin(bearing - course))) * MEAN_RADIUS
+    ahead = away * np.cos(bearing - course)
+    behind = (ahead < 0.0) | (ahead > length)
+    aside = np.where(behind, np.minimum(away, np.abs(away - length)) + aside, aside)
+    worst = first + 1 + int(np.argmax(aside))
+    ends = lat[first], lon[first], lat[last], lon[last]
+    if aside.max() <= tolerance and not (options.chart and options.chart.legs_blocked(*ends)):
+        return []
+    before = _between(route, options, first, worst, tolerance)
+    return [*before, worst, *_between(route, options, worst, last, tolerance)]
+
+
+def _broken_leg(
+    route: Route, options: RouteFileOptions, first: int, last: int, limit: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return a leg between two waypoints, broken where its rhumb line is too far from it."""
+    lat, lon = route.track.lat[[first, last]], route.track.lon[[first, last]]
+    if _canal_legs(route)[first]:
+        return lat, lon
+    for share in _CLEARING_SHARES:
+        found = densify_for_rhumb(lat, lon, share * limit, options.spacing)[:2]
+        if options.chart is None or not _touches_land(options, *found):
+            break
+    return found
+
+
+def _off_land(
+    options: RouteFileOptions, lat: FloatArray, lon: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the waypoints, those on the very shore moved by some metres until both legs clear it.
+
+    Routes may touch the charted shore, where rounding and rhumb lines would put them on land.
+    """
+    if options.chart is None:
+        return lat, lon
+    lat, lon = lat.copy(), lon.copy()
+    bearings = np.radians(np.arange(0.0, 360.0, 30.0))
+    for index in range(1, len(lat) - 1):
+        near = slice(index - 1, index + 2)
+        if not _touches_land(options, lat[near], lon[near], RHUMB_DEVIATION):
+            continue
+        here = lat[index], lon[index]
+        for metres, bearing in itertools.product(_MOVES, bearings):
+            moved = direct(*here, bearing, metres)
+            lat[index], lon[index] = (np.round(float(x), DECIMALS) for x in moved)
+            if not _touches_land(options, lat[near], lon[near], RHUMB_DEVIATION):
+                break
+        else:
+            lat[index], lon[index] = here
+    return lat, lon
+
+
+def _touches_land(
+    options: RouteFileOptions, lat: FloatArray, lon: FloatArray, deviation: float = _RHUMB_TEST
+) -> bool:
+    assert options.chart is not None
+    lat, lon, _ = rhumb_pieces(lat, lon, deviation)
+    return bool(options.chart.legs_blocked(lat[:-1], lon[:-1], lat[1:], lon[1:]).any())
+
+
+def _cross_track(route: Route, lat: FloatArray, lon: FloatArray, at: FloatArray) -> float:
+    """Return the greatest distance of the sampled route from the rhumb lines [m]."""
+    samples, canal = route.samples, _canal_legs(route)
+    leg = samples["leg"].astype(np.int64)
+    worst = 0.0
+    for index in range(len(lat) - 1):
+        here = (samples["distance"] >= at[index]) & (samples["distance"] <= at[index + 1])
+        here &= ~canal[leg]
+        if here.any():
+            ends = (lat[index], lon[index]), (lat[index + 1], lon[index + 1])
+            aside = rhumb_cross_track(*ends, samples["lat"][here], samples["lon"][here])
+            worst = max(worst, float(aside.max()))
+    return worst

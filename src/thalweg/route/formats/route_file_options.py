@@ -1,0 +1,88 @@
+"""How a route is written into files for a bridge."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from thalweg.core.errors import InputError
+from thalweg.core.units import NAUTICAL_MILE
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+RTZ_VERSIONS = ("1.0", "1.1", "1.2")
+_MAX_CROSS_TRACK = 9.99  #: RTZ allows less than 10 nm [nm]
+
+
+@dataclass(frozen=True)
+class RouteFileOptions:
+    """How a route is written into files for a bridge.
+
+    Attributes
+    ----------
+    start, goal : str
+        Names of the places at both ends, for the names of waypoints.
+    cross_track_nm : float
+        Cross-track limit [nm]: the rhumb lines between the waypoints of the file are closer to the
+        route than this. Above 0 and below 10.
+    spacing_nm : float or None
+        Greatest distance between waypoints [nm]; None: as the cross-track limit requires.
+    max_waypoints : int or None
+        Greatest number of waypoints; the cross-track limit grows as far as this needs.
+    rtz_version : {"1.2", "1.1", "1.0"}
+        Version of RTZ files.
+    chart : Chart or None
+        Rhumb lines that touch land of this chart are broken into shorter ones.
+
+    Raises
+    ------
+    InputError
+        If a number is outside its range or the version unknown.
+    """
+
+    start: str = ""
+    goal: str = ""
+    cross_track_nm: float = 0.1
+    spacing_nm: float | None = None
+    max_waypoints: int | None = None
+    rtz_version: str = "1.2"
+    chart: Chart | None = None
+
+    def __post_init__(self) -> None:
+        spacing, most = self.spacing_nm, self.max_waypoints
+        if not 0.001 <= self.cross_track_nm <= _MAX_CROSS_TRACK:
+            raise InputError(
+                f"The cross-track limit is {self.cross_track_nm:g} nm.",
+                f"It is between 0.001 and {_MAX_CROSS_TRACK:g} nm.",
+                "Correct it; 0.1 nm is usual.",
+            )
+        if spacing is not None and not 0.1 <= spacing <= 10_000.0:
+            raise InputError(
+                f"The distance between waypoints is {spacing:g} nm.",
+                "It is between 0.1 and 10000 nm.",
+                "Correct it, or leave it out.",
+            )
+        if most is not None and most < 2:
+            raise InputError(
+                f"A route of at most {most} waypoints was requested.",
+                "A route has at least two waypoints.",
+                "Give a larger number, or leave it out.",
+            )
+        if self.rtz_version not in RTZ_VERSIONS:
+            raise InputError(
+                f"RTZ {self.rtz_version} is not known.",
+                f"Versions {', '.join(RTZ_VERSIONS)} can be written.",
+                "Choose one of them.",
+            )
+
+    @property
+    def limit(self) -> float:
+        """The cross-track limit [m]."""
+        return self.cross_track_nm * NAUTICAL_MILE
+
+    @property
+    def spacing(self) -> float:
+        """Greatest distance between waypoints [m]."""
+        return math.inf if self.spacing_nm is None else self.spacing_nm * NAUTICAL_MILE

@@ -1,0 +1,207 @@
+"""Reading of RTZ, the route exchange format of IEC 61174; also inside a ZIP (``.rtzp``).
+
+The elements are found by name, whatever their namespace and version; what a file has otherwise than
+the standard is noted. A leg is a rhumb line unless it is marked ``Orthodrome``.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import zipfile
+from collections.abc import Iterator, Mapping
+from typing import Any
+from xml.etree import ElementTree
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import Position
+from thalweg.core.time import parse_time
+from thalweg.route.formats.parsed_track import (
+    ParsedTrack,
+    WaypointOrder,
+    position_of,
+    waypoint_order,
+)
+from thalweg.route.formats.rtz_writer import MANUFACTURER, ORDER, RTZ_NAMESPACE
+
+LARGEST_RTZ = 5_000_000  #: bytes of XML; the standard requires 400 kB
+_DURATION = re.compile(r"^P(?:(\d+)D)?(?:T(?:(\d+)H)?(?:(\d+)M)?(?:(\d+(?:\.\d*)?)S)?)?$")
+_CLOCK = re.compile(r"^(\d{1,2}):(\d{2}):(\d{2})")
+_SCHEDULE_ELEMENTS = ("scheduleElement", "sheduleElement")  # the schema of 1.0 has the second
+
+
+def parse_rtz(data: bytes) -> ParsedTrack:
+    """Read the route of an RTZ file.
+
+    Raises
+    ------
+    InputError
+        If it is too large, not XML, declares entities, or is no route.
+    """
+    from defusedxml import DefusedXmlException
+    from defusedxml.ElementTree import fromstring
+
+    if len(data) > LARGEST_RTZ:
+        raise InputError(
+            f"The RTZ has {len(data) / 1e6:.1f} MB.",
+            f"RTZ files up to {LARGEST_RTZ / 1e6:.0f} MB are read.",
+            "Remove what is not the route.",
+        )
+    try:
+        root = fromstring(data)
+    except (ElementTree.ParseError, DefusedXmlException, ValueError, LookupError) as error:
+        raise InputError(
+            f"The RTZ cannot be read: {error}.",
+            "The file must be well-formed XML without entities.",
+            "Check that the file is complete.",
+        ) from None
+    notes = _version_notes(root)
+    waypoints = [e for group in _children(root, "waypoints") for e in _children(group, "waypoint")]
+    if _local_name(root) != "route" or len(waypoints) < 2:
+        raise InputError(
+            "The RTZ holds no route.",
+            "A route is an element route with two or more waypoints.",
+            "Export the route as RTZ.",
+        )
+    positions = [_position(waypoint, i, notes) for i, waypoint in enumerate(waypoints, start=1)]
+    notes += _waypoint_notes(root, waypoints)
+    first_time, stays = _schedule(root, waypoints, notes)
+    orders = [
+        _order(waypoint, number, stay)
+        for number, (waypoint, stay) in enumerate(zip(waypoints, stays), start=1)
+    ]
+    if first_time is not None:
+        first_time -= orders[0].wait  # the departure of the schedule comes after the wait
+    rhumb = [_is_rhumb(root, waypoint, notes) for waypoint in waypoints[1:]]
+    return ParsedTrack(positions, first_time, orders, rhumb, list(dict.fromkeys(notes)))
+
+
+def parse_rtzp(data: bytes) -> ParsedTrack:
+    """Read the RTZ file inside a ZIP.
+
+    Raises
+    ------
+    InputError
+        If it is not a ZIP with one RTZ file in it, or that is too large.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            found = [i for i in archive.infolist() if i.filename.casefold().endswith(".rtz")]
+            if len(found) == 1 and found[0].file_size <= LARGEST_RTZ:
+                with archive.open(found[0]) as file:
+                    return parse_rtz(file.read(LARGEST_RTZ + 1))
+    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, OSError) as error:
+        raise InputError(
+            f"The RTZP cannot be read: {error}.",
+            "It is a ZIP file with one RTZ file in it.",
+            "Give the RTZ file itself.",
+        ) from None
+    raise InputError(
+        f"The RTZP holds {len(found)} RTZ files" + (", too large." if len(found) == 1 else "."),
+        f"It holds one, of {LARGEST_RTZ / 1e6:.0f} MB at most.",
+        "Give the RTZ file itself.",
+    )
+
+
+def _version_notes(root: ElementTree.Element) -> list[str]:
+    version = str(root.get("version", "none"))
+    namespace = str(root.tag).partition("}")[0].lstrip("{") if "}" in str(root.tag) else "none"
+    if namespace == RTZ_NAMESPACE + version.rpartition(".")[2] and version.startswith("1."):
+        return []
+    return [f"the version is {version} and the namespace {namespace}, which do not belong together"]
+
+
+def _waypoint_notes(root: ElementTree.Element, waypoints: list[ElementTree.Element]) -> list[str]:
+    """Return what the waypoints have otherwise than the standard."""
+    notes = []
+    names = [waypoint.get("id") for waypoint in waypoints]
+    if len(set(names)) < len(names) or None in names:
+        notes.append("waypoints have no id, or the id of another one: their order is used")
+    if root.get("version") == "1.2" and any(w.get("revision") is None for w in waypoints):
+        notes.append("waypoints have no revision, which version 1.2 requires")
+    return notes
+
+
+def _position(waypoint: ElementTree.Element, number: int, notes: list[str]) -> Position:
+    place = next(_children(waypoint, "position"), None)
+    found = {} if place is None else place.attrib
+    texts = [str(found.get(name, "")).strip() for name in ("lat", "lon")]
+    if any("," in text for text in texts):
+        notes.append("positions have a decimal comma")
+        texts = [text.replace(",", ".") for text in texts]
+    return position_of(texts[0], texts[1], number)
+
+
+def _is_rhumb(root: ElementTree.Element, waypoint: ElementTree.Element, notes: list[str]) -> bool:
+    """Return whether the leg that ends at a waypoint is a rhumb line."""
+    default = [
+        e for group in _children(root, "waypoints") for e in _children(group, "defaultWaypoint")
+    ]
+    legs = [leg for place in (waypoint, *default) for leg in _children(place, "leg")]
+    kind = next((leg.get("geometryType") for leg in legs if leg.get("geometryType")), "Loxodrome")
+    if str(kind) not in ("Loxodrome", "Orthodrome"):
+        notes.append(f"a leg has the geometry {kind!r}: a rhumb line is used")
+    return str(kind) != "Orthodrome"
+
+
+def _schedule(
+    root: ElementTree.Element, waypoints: list[ElementTree.Element], notes: list[str]
+) -> tuple[float | None, list[float]]:
+    """Return the departure, and the stays at the waypoints [s], of the first schedule with one."""
+    stays = [0.0] * len(waypoints)
+    number_of = {waypoint.get("id"): n for n, waypoint in reversed(list(enumerate(waypoints)))}
+    schedules = [s for group in _children(root, "schedules") for s in _children(group, "schedule")]
+    if len(schedules) > 1:
+        notes.append(f"it has {len(schedules)} schedules: the first with a departure is used")
+    for kind in ("manual", "calculated"):
+        for schedule in schedules:
+            parts = [e for group in _children(schedule, kind) for e in group]
+            parts = [e for e in parts if _local_name(e) in _SCHEDULE_ELEMENTS]
+            if any(e.get("waypointId") not in number_of for e in parts):
+                notes.append("a schedule names waypoints that the route does not have")
+            rows = {number_of[n]: e for e in parts if (n := e.get("waypointId")) in number_of}
+            first = rows.get(0)
+            if first is None or not first.get("etd"):
+                continue
+            if any(row.get("speed") for row in rows.values()):
+                notes.append(
+                    "the speeds of its schedule are over ground and are not used; ordered speeds "
+                    "through calm water are"
+                )
+            for number, row in rows.items():
+                if 0 < number < len(waypoints) - 1:
+                    stays[number] = _stay(row)
+            return parse_time(str(first.get("etd"))), stays
+    return None, stays
+
+
+def _stay(row: ElementTree.Element) -> float:
+    """Return how long the ship stays at a waypoint of a schedule [s]."""
+    text = str(row.get("stay", "")).strip()
+    if (match := _DURATION.match(text)) is not None:
+        days, hours, minutes, seconds = (float(part or 0.0) for part in match.groups())
+        return 86_400.0 * days + 3_600.0 * hours + 60.0 * minutes + seconds
+    if (match := _CLOCK.match(text)) is not None:
+        hours, minutes, seconds = (float(part) for part in match.groups())
+        return 3_600.0 * hours + 60.0 * minutes + seconds
+    if row.get("eta") and row.get("etd"):
+        return max(0.0, parse_time(str(row.get("etd"))) - parse_time(str(row.get("eta"))))
+    return 0.0
+
+
+def _order(waypoint: ElementTree.Element, number: int, stay: float) -> WaypointOrder:
+    """Return the wait and the ordered speed: those of our own extension, else the stay."""
+    own: Mapping[str, Any] = {}
+    for group in _children(waypoint, "extensions"):
+        for extension in _children(group, "extension"):
+            if (extension.get("manufacturer"), extension.get("name")) == (MANUFACTURER, ORDER):
+                own = extension.attrib
+    return waypoint_order({"waiting_s": stay or None} | dict(own), number)
+
+
+def _children(element: ElementTree.Element, name: str) -> Iterator[ElementTree.Element]:
+    return (child for child in element if _local_name(child) == name)
+
+
+def _local_name(element: ElementTree.Element) -> str:
+    return str(element.tag).rpartition("}")[2]

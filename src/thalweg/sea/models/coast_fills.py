@@ -1,0 +1,363 @@
+"""Layers that fill what data leave unknown next to land: nearest known values, and head seas.
+
+Grids of waves and currents mask the cells that touch land, so that the first cells off a coast are
+unknown. A user may state by name what holds there; nothing is filled unasked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+from scipy import ndimage
+from scipy.spatial import cKDTree
+
+from thalweg.core.bounding_box import WORLD, BoundingBox
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import MEAN_RADIUS, geocentric_unit_vectors
+from thalweg.core.types import BoolArray, FloatArray
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.sea import standard_names as nm
+from thalweg.sea.coverage import Coverage
+from thalweg.sea.grids.gridded_layer import GridLayer
+from thalweg.sea.grids.source_variables import GridWindow
+from thalweg.sea.layer import Layer, Samples
+from thalweg.sea.layer_stack import (
+    sample_stack,
+    series_of_stack,
+    stack_period,
+    stack_times,
+    stack_variables,
+)
+from thalweg.sea.triangle_mesh import Mesh
+
+PERIOD_OF_ROOT_HEIGHT: Final = 5.0  #: [s / sqrt(m)] peak period of a fully developed sea
+COAST_CELLS: Final = 2  #: cells from an unknown one up to which known ones are candidates
+SHORTEST_PERIOD: Final = 1.0  #: [s]
+
+
+@dataclass(frozen=True, eq=False)
+class HeadSeasLayer:
+    """Waves of known height without direction or period, taken from ahead on every course.
+
+    The direction is the vector of length zero, which counts as head seas for every heading. The
+    peak period is that of a fully developed sea (Pierson and Moskowitz 1964):
+    ``T = 5.0 s/sqrt(m) * sqrt(Hs)``, at least 1 s.
+
+    Attributes
+    ----------
+    layers : tuple of Layer
+        The layers with the height, in order of priority.
+    """
+
+    layers: tuple[Layer, ...]
+
+    @property
+    def variables(self) -> frozenset[str]:
+        """Direction and peak period of the waves."""
+        return frozenset({*nm.WAVES.pair, nm.WAVE_PERIOD})
+
+    @property
+    def area(self) -> BoundingBox:
+        """The world; the height limits where waves are known."""
+        return WORLD
+
+    @property
+    def period(self) -> tuple[float, float] | None:
+        """The period of the height."""
+        return _finite_period(self.layers, (nm.WAVE_HEIGHT,))
+
+    def sample(
+        self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> Samples:
+        """Return values at points; NaN where the height is unknown."""
+        height = sample_stack(self.layers, [nm.WAVE_HEIGHT], time, lat, lon)[nm.WAVE_HEIGHT]
+        return _head_seas(names, height)
+
+    def series(
+        self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> Samples:
+        """Return values (S, T) at stations for all times."""
+        height = series_of_stack(self.layers, [nm.WAVE_HEIGHT], times, lat, lon)[nm.WAVE_HEIGHT]
+        return _head_seas(names, height)
+
+    def times(self, start: float, end: float) -> FloatArray:
+        """Return the times of the height."""
+        return stack_times(self.layers, start, end, names=[nm.WAVE_HEIGHT])
+
+    def inside(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
+        """Return whether the height may be known at positions."""
+        return _inside_holders(self.layers, {nm.WAVE_HEIGHT}, lat, lon)
+
+    def coverage(self) -> list[Coverage]:
+        """Return the rows of the height, for direction and period."""
+        rows = [r for x in self.layers for r in x.coverage() if r.variable == nm.WAVE_HEIGHT]
+        return [
+            replace(row, variable=name, source=f"head seas with the height of {row.source}")
+            for row in rows
+            for name in sorted(self.variables)
+        ]
+
+    def mesh(self) -> Mesh | None:
+        """Return None: the layer has no mesh."""
+        return None
+
+    def provenance(self) -> Mapping[str, Any]:
+        """Return what is assumed."""
+        return {"kind": "head seas", "period_s_per_root_m": PERIOD_OF_ROOT_HEIGHT}
+
+
+@dataclass(frozen=True, eq=False)
+class NearestLayer:
+    """Values of the nearest known position of the grids, up to a distance.
+
+    Only positions inside the area of a grid are filled: its cells without data next to land.
+
+    Attributes
+    ----------
+    layers : tuple of Layer
+        The layers that are filled, in order of priority.
+    names : frozenset of str
+        Canonical names of what is filled.
+    distance : float
+        Greatest distance [m].
+    """
+
+    layers: tuple[Layer, ...]
+    names: frozenset[str]
+    distance: float
+
+    @property
+    def variables(self) -> frozenset[str]:
+        """What is filled, as far as the layers hold it."""
+        return self.names & stack_variables(self.layers)
+
+    @property
+    def area(self) -> BoundingBox:
+        """The world; the grids limit where values are filled."""
+        return WORLD
+
+    @property
+    def period(self) -> tuple[float, float] | None:
+        """The period of the layers."""
+        return _finite_period(self.layers, tuple(self.variables))
+
+    @cached_property
+    def _grids(self) -> list[tuple[frozenset[str], FloatArray, FloatArray, cKDTree]]:
+        """Return for each grid its variables, and the known positions near its unknown ones."""
+        found = []
+        for layer in self.layers:
+            held = self.names & layer.variables
+            if not isinstance(layer, GridLayer) or not held:
+                continue
+            lat, lon = _known_near_unknown(layer, held)
+            if lat.size:
+                tree = cKDTree(geocentric_unit_vectors(lat, lon))
+                found.append((held, lat, lon, tree))
+        return found
+
+    def sample(
+        self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> Samples:
+        """Return values at points of one shape; NaN where nothing is known near enough."""
+        return self._filled(
+            names, lat, lon, lambda n, k, y, x: sample_stack(self.layers, n, time[k], y, x), ()
+        )
+
+    def series(
+        self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> Samples:
+        """Return values (S, T) at stations for all times."""
+        return self._filled(
+            names,
+            lat,
+            lon,
+            lambda n, k, y, x: series_of_stack(self.layers, n, times, y, x),
+            (times.size,),
+        )
+
+    def _filled(
+        self,
+        names: Sequence[str],
+        lat: FloatArray,
+        lon: FloatArray,
+        read: Callable[[list[str], Any, FloatArray, FloatArray], Samples],
+        more: tuple[int, ...],
+    ) -> Samples:
+        samples = {name: np.full((lat.size, *more), np.nan) for name in names}
+        limit = 2.0 * np.sin(min(0.5 * self.distance / MEAN_RADIUS, 0.5 * np.pi))
+        here = geocentric_unit_vectors(lat, lon)
+        for held, y, x, tree in self._grids:
+            mine = [n for n in names if n in held]
+            rows = np.flatnonzero(_inside_holders(self.layers, held, lat, lon))
+            if not (mine and rows.size):
+                continue
+            far, nearest = tree.query(here[rows], distance_upper_bound=limit)
+            rows, nearest = rows[np.isfinite(far)], nearest[np.isfinite(far)]
+            if rows.size == 0:
+                continue
+            values = read(mine, rows, y[nearest], x[nearest])
+            for name in mine:
+                old = samples[name][rows]
+                samples[name][rows] = np.where(np.isnan(old), values[name], old)
+        return samples
+
+    def times(self, start: float, end: float) -> FloatArray:
+        """Return the times of the layers that are filled."""
+        return stack_times(self.layers, start, end, names=sorted(self.variables))
+
+    def inside(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
+        """Return whether positions are in the area of a layer that is filled."""
+        return _inside_holders(self.layers, self.variables, lat, lon)
+
+    def coverage(self) -> list[Coverage]:
+        """Return the rows of the layers that are filled."""
+        text = f"nearest within {self.distance / NAUTICAL_MILE:g} nm of "
+        return [
+            replace(row, source=text + row.source)
+            for layer in self.layers
+            for row in layer.coverage()
+            if row.variable in self.variables
+        ]
+
+    def mesh(self) -> Mesh | None:
+        """Return None: the layer has no mesh."""
+        return None
+
+    def provenance(self) -> Mapping[str, Any]:
+        """Return what is filled and how far."""
+        return {
+            "kind": "nearest known values",
+            "variables": sorted(self.variables),
+            "distance_m": self.distance,
+        }
+
+
+def head_seas_layer(layers: Sequence[Layer]) -> HeadSeasLayer:
+    """Return a layer of head seas for waves of known height.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers in order of priority.
+
+    Raises
+    ------
+    InputError
+        If the layers hold no wave height.
+    """
+    variables = stack_variables(layers)
+    if nm.WAVE_HEIGHT not in variables:
+        raise InputError(
+            "Waves are to be taken from ahead, but the sea holds no wave height.",
+            f"The sea holds: {', '.join(sorted(variables)) or 'nothing'}.",
+            "Add a file with the significant wave height, or fill waves with a height.",
+        )
+    return HeadSeasLayer(tuple(layers))
+
+
+def nearest_layer(layers: Sequence[Layer], names: Sequence[str], distance: float) -> NearestLayer:
+    """Return a layer of the nearest known values of some variables.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers in order of priority.
+    names : sequence of str
+        Canonical names.
+    distance : float
+        Greatest distance [m].
+
+    Raises
+    ------
+    InputError
+        If no layer that was read from a file holds one of them.
+    """
+    wanted = frozenset(names)
+    if not any(isinstance(x, GridLayer) and wanted & x.variables for x in layers):
+        raise InputError(
+            f"The nearest values of {', '.join(sorted(wanted))} were requested, but no file holds "
+            "them.",
+            f"The sea holds: {', '.join(sorted(stack_variables(layers))) or 'nothing'}.",
+            "Add a file with them, or fill with a value.",
+        )
+    return NearestLayer(tuple(layers), wanted, distance)
+
+
+def _head_seas(names: Sequence[str], height: FloatArray) -> Samples:
+    still = np.where(np.isnan(height), np.nan, 0.0)
+    period = np.maximum(PERIOD_OF_ROOT_HEIGHT * np.sqrt(height), SHORTEST_PERIOD)
+    made = {nm.WAVE_TO_EAST: still, nm.WAVE_TO_NORTH: still, nm.WAVE_PERIOD: period}
+    return {name: made[name].copy() for name in names if name in made}
+
+
+def _finite_period(layers: Sequence[Layer], names: Sequence[str]) -> tuple[float, float] | None:
+    start, end = stack_period(layers, names)
+    return (start, end) if np.isfinite([start, end]).all() else None
+
+
+def _inside_holders(
+    layers: Sequence[Layer], names: set[str] | frozenset[str], lat: FloatArray, lon: FloatArray
+) -> BoolArray:
+    inside = np.zeros(lat.shape, bool)
+    for layer in layers:
+        if names & layer.variables:
+            inside |= np.asarray(layer.inside(lat, lon), bool)
+    return inside
+
+
+def _known_near_unknown(layer: GridLayer, names: frozenset[str]) -> tuple[FloatArray, FloatArray]:
+    """Return the grid points [deg] next to unknown ones where all names are known.
+
+    A point counts as known if it is so at the first, middle and last time, and can be sampled.
+    """
+    rows, columns = layer.grid.shape
+    count = max(1, layer.axis.times.size)
+    levels = sorted({0, count // 2, count - 1})
+    known = np.ones(rows * columns, bool)
+    for level in levels:
+        window = GridWindow(level, level + 1, 0, rows, 0, columns)
+        for quantity in layer.quantities:
+            if names & set(quantity.names):
+                for values in quantity.read(window, columns).values():
+                    known &= ~np.isnan(values[0])
+    known &= _beside_unknown(known.reshape(rows, columns), layer.grid.wraps).ravel()
+    lat, lon = grid_positions(layer.grid)
+    known &= np.isfinite(lat) & np.isfinite(lon)
+    lat, lon = lat[known], lon[known]
+    moments = layer.axis.times[levels] if layer.axis.times.size else np.zeros(1)
+    series = layer.series(sorted(names), moments, lat, lon)
+    sound = np.all([np.isfinite(v).all(axis=1) for v in series.values()], axis=0)
+    return lat[sound], lon[sound]
+
+
+def _beside_unknown(known: BoolArray, wraps: bool) -> BoolArray:
+    """Return which points have an unknown one within `COAST_CELLS`; all points of a mesh."""
+    if known.shape[0] == 1:
+        return np.ones(known.shape, bool)
+    pad = COAST_CELLS
+    wide = np.pad(~known, ((0, 0), (pad, pad)), mode="wrap" if wraps else "edge")
+    near = ndimage.binary_dilation(wide, np.ones((2 * pad + 1, 2 * pad + 1), bool))
+    return np.asarray(near[:, pad:-pad])
+
+
+def grid_positions(grid: Any) -> tuple[FloatArray, FloatArray]:
+    """Return latitude and longitude [deg] of all points of a grid, in the order of its values.
+
+    Parameters
+    ----------
+    grid : Grid
+        A rectilinear grid or a grid of triangles.
+
+    Returns
+    -------
+    lat, lon : float64 array (rows * columns,)
+    """
+    rows, columns = grid.shape
+    lat, lon = np.asarray(grid.lat, float), np.asarray(grid.lon, float)
+    if lat.size == rows and lon.size == columns:
+        lat, lon = np.broadcast_arrays(lat[:, None], lon[None, :])
+    return np.ascontiguousarray(lat).ravel(), np.ascontiguousarray(lon).ravel()

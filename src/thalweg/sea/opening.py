@@ -1,0 +1,96 @@
+"""Open a mixture of met-ocean files and files of tidal constituents as layers."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from itertools import groupby
+from pathlib import Path
+from typing import Any, Final
+
+from thalweg.core.errors import DatasetError, InputError
+from thalweg.sea.files.file_opener import open_layers
+from thalweg.sea.layer import Layer
+from thalweg.sea.tides.constituent_files import is_constituent_file, read_constituents
+from thalweg.sea.tides.tidal_layer import tidal_layers
+from thalweg.sea.tides.tide_records import is_text_record, read_record
+
+LARGEST_TEXT: Final = 50_000_000  #: [bytes] larger files of text are not read as a record
+
+
+def layers_of_sources(
+    sources: Sequence[Any], mapping: Mapping[str, str] | None, draught: float | None
+) -> tuple[Layer, ...]:
+    """Return the layers of files, in order of priority (see `thalweg.sea.Sea.open`).
+
+    Parameters
+    ----------
+    sources : sequence of path-like or xarray.Dataset
+        Met-ocean files, and files of tidal constituents at three nodes or more.
+    mapping : mapping of str to str or None
+        Canonical name to name in the file.
+    draught : float, optional
+        Draught [m] over which currents in layers are averaged.
+
+    Raises
+    ------
+    InputError
+        If a file holds the series or the constituents of a single station.
+    DatasetError
+        If a file cannot be used.
+    """
+    groups = [(is_tide, list(group)) for is_tide, group in groupby(sources, _is_tidal)]
+    if mapping and sum(not is_tide for is_tide, _ in groups) > 1:
+        raise InputError(
+            "Variables are mapped, and a file of tidal constituents is between other files.",
+            "A mapping applies to all files that hold variables, opened together.",
+            "Give the tidal constituents first or last.",
+        )
+    layers: list[Layer] = []
+    for is_tide, group in groups:
+        if is_tide:
+            layers += [layer for path in group for layer in _tidal_layers(path)]
+        else:
+            layers += open_layers(group, mapping, draught)
+    return tuple(layers) if groups else tuple(open_layers((), mapping, draught))
+
+
+def _is_tidal(source: Any) -> bool:
+    """Return whether a source is a file of tidal constituents; refuse series of one station."""
+    if not isinstance(source, (str, os.PathLike)):
+        return False
+    try:
+        path = Path(source).expanduser()
+        text = path.is_file() and path.stat().st_size <= LARGEST_TEXT and is_text_record(path)
+    except (OSError, ValueError, DatasetError):  # the opener states what is wrong
+        return False
+    if not text:
+        return False
+    if is_constituent_file(path):
+        return True
+    try:
+        record = read_record(path)
+    except (DatasetError, InputError):
+        return False
+    raise InputError(
+        f"{path.name} is the series of one station ({record.description}).",
+        "A sea needs fields on a grid or mesh, or a tide in an area.",
+        f"Find its tide with 'thalweg tides analyse {path.name} --out tide.json', and apply it to "
+        "an area in Python: Sea.from_tides(read_constituents('tide.json'), area=(south, north, "
+        "west, east)).",
+        file=str(path),
+    )
+
+
+def _tidal_layers(path: str | os.PathLike[str]) -> tuple[Layer, ...]:
+    where = Path(path).expanduser()
+    constants = read_constituents(where)
+    if constants.lat.size == 1:
+        raise InputError(
+            f"{where.name} holds the tidal constituents of one station.",
+            "The tide of one station applies to an area, which the command line cannot state.",
+            f"In Python: Sea.from_tides(read_constituents({where.name!r}), area=(south, north, "
+            "west, east)); or give constituents at three nodes or more.",
+            file=str(where),
+        )
+    return tidal_layers(constants)

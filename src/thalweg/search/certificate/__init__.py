@@ -1,0 +1,1 @@
+"""Certified lower bounds of the time of a passage, by barrier functions of the arrival time."""

@@ -1,0 +1,298 @@
+"""Barrier functions: search, check and scaling on one mesh."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+
+from thalweg.core.geodesy import inverse
+from thalweg.core.types import BoolArray, FloatArray
+from thalweg.kernels.certificate.barrier_check import check_barrier, closed_throughout
+from thalweg.kernels.certificate.barrier_solver import COURSES, UNREACHED, solve_barrier
+from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
+from thalweg.search.certificate.barrier_mesh import BarrierMesh
+
+_CAP_RATIO = 1.25  # barriers are cut off at this multiple of the known time
+_ROUNDING = 1e-9
+_LEAST_FACTOR = 0.05
+_SETTLED, _LEAST_GAIN = 1e-3, 2e-4  # excess and gain of a round at which no more are made
+_CLOSING_ROUNDS, _CLOSING_MARGIN = 12, 4e-4  # rounds that lower only, and below the limit
+_RAISE = 0.4  # of the slack, where the barrier rises more slowly than it may
+_PLANE_CELLS = 6.0  # half the width of the plane at the source
+_NEAR_SOURCE = 3.0  # over-correction beside the source
+
+
+@dataclass(frozen=True, eq=False)
+class CheckedBarrier:
+    """A barrier function that passed the check.
+
+    Attributes
+    ----------
+    phi : float64 array (Y, X)
+        Values at the nodes [s].
+    centre : float64 array (Y - 1, X - 1)
+        Values at the centres of the cells [s].
+    value : float
+        At the position to be bounded [s].
+    complete : bool
+        Whether no checked cell touches the edge of the mesh.
+    factor : float64 array (Y, X)
+        Factors on the times with which it was solved: a start for finer meshes.
+    """
+
+    phi: FloatArray
+    centre: FloatArray
+    value: float
+    complete: bool
+    factor: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class BarrierTask:
+    """What a barrier function on one mesh is for.
+
+    Attributes
+    ----------
+    mesh : BarrierMesh
+    source, target : tuple of float
+        Where the barrier is zero, and where its value is wanted [deg].
+    known : float
+        Time of a route that exists [s].
+    own, other : float64 array (Y - 1, X - 1)
+        Lower bounds of the time between the source and each cell, and between it and the target.
+    forward : bool
+        Whether the source is the departure.
+    course : float, optional
+        Course [rad from north] on which the barrier should rise at the source; by default that of
+        the geodesic to the target.
+    factor : float64 array (Y, X), optional
+        Factors on the times to begin with (see `finer_factors`); by default 1.
+    """
+
+    mesh: BarrierMesh
+    source: tuple[float, float]
+    target: tuple[float, float]
+    known: float
+    own: FloatArray
+    other: FloatArray
+    forward: bool
+    course: float | None = None
+    factor: FloatArray | None = None
+
+    @property
+    def band(self) -> BoolArray:
+        """The cells that a route faster than the known one may touch."""
+        return np.asarray(self.own + self.other < self.known)
+
+
+def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
+    """Return the best barrier found in some rounds of solving, checking and correcting.
+
+    Parameters
+    ----------
+    task : BarrierTask
+    rounds : int
+
+    Returns
+    -------
+    CheckedBarrier or None
+        None where no function passed the check.
+    """
+    mesh, known = task.mesh, task.known
+    shape = mesh.shape
+    cells = shape[0] - 1, shape[1] - 1
+    windows = _windows(task)
+    closed = task.band.copy()
+    closed_throughout(mesh.world, *windows, closed)
+    solvable = _nodes_of(task.band & ~closed, shape)
+    node_windows = _node_minimum(windows[0]), -_node_minimum(-windows[1])
+    given = _plane_at_source(task)
+    fixed = ~np.isnan(given)
+    f = np.ones(shape) if task.factor is None else task.factor.copy()
+    rings = np.zeros((*shape, COURSES), np.float32), np.full(shape, math.nan)
+    excess, centre = np.empty(cells), np.empty(cells)
+    best, best_f, before, closing = -math.inf, f, -math.inf, 0
+    for number in range(rounds + _CLOSING_ROUNDS):
+        phi = np.where(fixed, given, UNREACHED)
+        solve_barrier(
+            mesh.world, phi, fixed, f, solvable, *node_windows, task.forward,
+            _CAP_RATIO * known, *rings,
+        )  # fmt: skip
+        np.minimum(phi, _CAP_RATIO * known, out=phi)
+        candidate = task.band & (cell_minimum(phi) / 1.3 + task.other < known)
+        check_barrier(
+            mesh.world, phi, candidate, *windows, task.forward, closing > 0, excess, centre
+        )
+        scale = _least_scale(task, phi, excess)
+        if closing and scale == 0.0:
+            return _verified(task, phi, f, windows)
+        value = mesh.value_at(phi, centre, *task.target) / (1.0 + scale)
+        if value > best:
+            best, best_f = value, f.copy()
+        settled = scale < _SETTLED and value - before < _LEAST_GAIN * known
+        before = value
+        if not closing and (number + 1 >= rounds or settled):
+            f, closing = best_f, 1
+        elif closing == _CLOSING_ROUNDS:
+            break
+        else:
+            _correct(f, excess + (closing > 0) * _CLOSING_MARGIN, task, raising=not closing)
+            closing += closing > 0
+    return None
+
+
+def _verified(
+    task: BarrierTask,
+    phi: FloatArray,
+    factor: FloatArray,
+    windows: tuple[FloatArray, FloatArray],
+) -> CheckedBarrier | None:
+    """Check a barrier for good, in every cell that a faster route may touch; None if it fails."""
+    mesh = task.mesh
+    cells = phi.shape[0] - 1, phi.shape[1] - 1
+    excess, centre = np.empty(cells), np.empty(cells)
+    mask = task.band & (cell_minimum(phi) + task.other < task.known)
+    check_barrier(mesh.world, phi, mask, *windows, task.forward, True, excess, centre)
+    if float(excess[mask].max(initial=-1.0)) > -_ROUNDING:
+        return None
+    low = np.minimum(cell_minimum(phi), centre) + task.other < task.known
+    if (low & task.band & ~mask).any():
+        return None
+    edges = mask[0].any() or mask[-1].any() or mask[:, 0].any() or mask[:, -1].any()
+    value = mesh.value_at(phi, centre, *task.target)
+    return CheckedBarrier(phi, centre, min(value, task.known), not edges, factor)
+
+
+def _least_scale(task: BarrierTask, phi: FloatArray, excess: FloatArray) -> float:
+    """Return the least R with excess <= R in all cells that count once the barrier is scaled."""
+    least, scale = cell_minimum(phi), 0.0
+    for _ in range(60):
+        mask = task.band & (least / (1.0 + scale) + task.other < task.known)
+        needed = max(0.0, float(excess[mask].max(initial=0.0)))
+        if needed <= scale:
+            break
+        scale = needed
+    return scale
+
+
+def _plane_at_source(task: BarrierTask) -> FloatArray:
+    """Return values at nodes round the source (NaN elsewhere): a plane that rises to the target.
+
+    The plane is zero at the source and rises no faster than the local speed over ground allows.
+    It is a few cells wide, so that fronts towards the target are straight and not curved.
+    """
+    mesh, (lat, lon) = task.mesh, task.source
+    j, i = mesh.cell_of(lat, lon)
+    rows, columns = _block(j, mesh.shape[0]), _block(i, mesh.shape[1])
+    toward = task.course if task.course is not None else float(inverse(lat, lon, *task.target)[1])
+    north = (mesh.lat[rows] - lat) * mesh.world.metres_north[j]
+    east = ((mesh.lon[columns] - lon + 180.0) % 360.0 - 180.0) * mesh.world.metres_east[j]
+    ahead = north[:, None] * math.cos(toward) + east[None, :] * math.sin(toward)
+    aside = east[None, :] * math.cos(toward) - north[:, None] * math.sin(toward)
+    height = (mesh.lat[1] - mesh.lat[0]) * mesh.world.metres_north[j]
+    width = (mesh.lon[1] - mesh.lon[0]) * mesh.world.metres_east[j]
+    size = max(height, width)
+    part = (np.abs(ahead) <= size) & (np.abs(aside) <= _PLANE_CELLS * size)
+    part[j - rows.start : j - rows.start + 2, i - columns.start : i - columns.start + 2] = True
+    values = np.full(mesh.shape, math.nan)
+    speed = (mesh.world.top_speed + strongest_current_near(mesh, rows, columns)) * 1.002
+    east_scale = mesh.world.metres_east[rows][part.any(axis=1)]
+    speed *= float(mesh.world.metres_east[j] / east_scale.min())  # meridians converge
+    values[rows, columns] = np.where(part, ahead / speed, math.nan)
+    return values
+
+
+def _block(middle: int, count: int) -> slice:
+    reach = int(2 * _PLANE_CELLS) + 2
+    return slice(max(middle - reach, 0), min(middle + reach + 2, count))
+
+
+def strongest_current_near(mesh: BarrierMesh, rows: slice, columns: slice) -> float:
+    """Return the strongest current [m/s] in a block of nodes of a mesh, at any time."""
+    raster, m = mesh.world.raster, mesh.world.refinement
+    east, north = raster.channel_index[CURRENT_EAST], raster.channel_index[CURRENT_NORTH]
+    if east < 0 or north < 0:
+        return 0.0
+    part = raster.values[
+        :, rows.start // m : rows.stop // m + 2, columns.start // m : columns.stop // m + 2
+    ]
+    speed = np.hypot(part[..., east], part[..., north])
+    known = speed[np.isfinite(speed)]
+    return float(known.max(initial=0.0))
+
+
+def slope_direction(mesh: BarrierMesh, phi: FloatArray, lat: float, lon: float) -> float | None:
+    """Return the course [rad from north] in which a barrier falls fastest at a position."""
+    j, i = mesh.cell_of(lat, lon)
+    a, b, c, d = phi[j, i], phi[j, i + 1], phi[j + 1, i], phi[j + 1, i + 1]
+    height = (mesh.lat[1] - mesh.lat[0]) * mesh.world.metres_north[j]
+    width = (mesh.lon[1] - mesh.lon[0]) * mesh.world.metres_east[j]
+    north, east = (c + d - a - b) / height, (b + d - a - c) / width
+    return math.atan2(-east, -north) if math.hypot(east, north) > 0.0 else None
+
+
+def _correct(f: FloatArray, excess: FloatArray, task: BarrierTask, *, raising: bool) -> None:
+    """Lower the factor on the times where the barrier rises too fast.
+
+    Cells beside the source have corners whose values are given: the others are corrected more.
+    """
+    node = np.full(f.shape, -1.0)
+    for rows in (slice(None, -1), slice(1, None)):
+        for columns in (slice(None, -1), slice(1, None)):
+            part = node[rows, columns]
+            np.maximum(part, excess, out=part)
+    node = ndimage.maximum_filter(node, 3)
+    reach = int(_PLANE_CELLS) + 3
+    source = task.mesh.cell_of(*task.source)
+    near = tuple(slice(max(k - reach, 0), k + reach + 2) for k in source)
+    node[near] = np.where(node[near] > 0.0, _NEAR_SOURCE * node[near], node[near])
+    raised = np.minimum(_RAISE * np.maximum(-node, 0.0), _RAISE * (1.0 - f))
+    f /= 1.0 + np.where(node > 0.0, node, 0.0)
+    if raising:
+        f *= 1.0 + np.where((node < 0.0) & (node > -1.0), raised, 0.0)
+    np.clip(f, _LEAST_FACTOR, 1.0, out=f)
+
+
+def finer_factors(factor: FloatArray) -> FloatArray:
+    """Return factors for a mesh with cells of half the size, where deficits are half as large."""
+    rows = np.empty((2 * factor.shape[0] - 1, factor.shape[1]))
+    rows[::2], rows[1::2] = factor, 0.5 * (factor[1:] + factor[:-1])
+    fine = np.empty((rows.shape[0], 2 * rows.shape[1] - 1))
+    fine[:, ::2], fine[:, 1::2] = rows, 0.5 * (rows[:, 1:] + rows[:, :-1])
+    result: FloatArray = 0.5 + 0.5 * fine
+    return result
+
+
+def _windows(task: BarrierTask) -> tuple[FloatArray, FloatArray]:
+    """Return the times since departure at which a faster route may be in each cell [s]."""
+    if task.forward:
+        return task.own, task.known - task.other
+    return task.other, np.maximum(task.known - task.own, task.other)
+
+
+def _nodes_of(band: BoolArray, shape: tuple[int, int]) -> BoolArray:
+    """Return the nodes of the cells in a band."""
+    nodes = np.zeros(shape, bool)
+    for rows in (slice(None, -1), slice(1, None)):
+        for columns in (slice(None, -1), slice(1, None)):
+            nodes[rows, columns] |= band
+    return nodes
+
+
+def cell_minimum(nodes: FloatArray) -> FloatArray:
+    """Return for each cell the least value of its four nodes."""
+    low = np.minimum(nodes[:-1], nodes[1:])
+    return np.minimum(low[:, :-1], low[:, 1:])
+
+
+def _node_minimum(cells: FloatArray) -> FloatArray:
+    """Return for each node the least value of the cells round it."""
+    nodes = np.full((cells.shape[0] + 1, cells.shape[1] + 1), np.inf)
+    for rows in (slice(None, -1), slice(1, None)):
+        for columns in (slice(None, -1), slice(1, None)):
+            part = nodes[rows, columns]
+            np.minimum(part, cells, out=part)
+    return nodes

@@ -1,0 +1,158 @@
+"""The sea on a raster for barrier functions: on the lines of the data where that is possible."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thalweg.core.types import FloatArray
+from thalweg.kernels.leg.raster_sampling import RasterArrays
+from thalweg.route.evaluators.time_evaluator import raster_arrays
+from thalweg.sea.frozen_fields import GridFields
+from thalweg.sea.grids.gridded_layer import GridLayer
+from thalweg.sea.grids.rectilinear_grid import RectilinearGrid
+
+if TYPE_CHECKING:
+    from thalweg.sea import Sea
+
+_MOST_VALUES = 60_000_000
+_MOST_CELLS = 400_000
+_LINE_TOLERANCE = 1e-4  # of the spacing
+
+
+@dataclass(frozen=True)
+class BarrierRaster:
+    """The sea on a raster.
+
+    Attributes
+    ----------
+    arrays : RasterArrays
+        Times since departure [s].
+    sampling : str
+        "" where the raster has the values and the interpolation of the data; otherwise a note on
+        how it differs.
+    """
+
+    arrays: RasterArrays
+    sampling: str
+
+
+@dataclass(frozen=True)
+class RasterRequest:
+    """What is to be frozen.
+
+    Attributes
+    ----------
+    sea : Sea
+    channels : sequence of int
+    box : tuple of float
+        South, north, west and east [deg]; east above west, without jump.
+    period : tuple of float
+        [s since 1970-01-01T00:00Z].
+    cells : int
+        Number of cells wanted along the longer side where the data are no finer.
+    """
+
+    sea: Sea
+    channels: Sequence[int]
+    box: tuple[float, float, float, float]
+    period: tuple[float, float]
+    cells: int
+
+
+def freeze_barrier_raster(request: RasterRequest) -> BarrierRaster:
+    """Freeze the sea in a box.
+
+    Parameters
+    ----------
+    request : RasterRequest
+
+    Returns
+    -------
+    BarrierRaster
+    """
+    south, north, west, east = request.box
+    width, height = east - west, north - south
+    instants = max(len(request.sea.times(*request.period)), 2)
+    numbers = max(len(request.channels), 1) * instants
+    wanted = max(width, height) / request.cells
+    least = math.sqrt(width * height / min(_MOST_VALUES / numbers, _MOST_CELLS))
+    lines, notes = _data_lines(request.sea), []
+    if lines is None:
+        spacing = max(wanted, least)
+        if any(not _is_uniform(layer) for layer in request.sea.layers):
+            notes.append(f"the sea sampled every {spacing:.3g} degrees")
+    else:
+        first_lat, first_lon, spacing = lines
+        skipped = math.ceil(least / spacing - 1e-9)
+        if skipped > 1:
+            notes.append(f"every {skipped} lines of the data")
+            spacing *= skipped
+        if not _all_on_lines(request.sea, first_lat, first_lon, spacing):
+            notes.append(f"the sea sampled every {spacing:.3g} degrees")
+        south = first_lat + spacing * math.floor((south - first_lat) / spacing)
+        west = first_lon + spacing * math.floor((west - first_lon) / spacing)
+        north = south + spacing * math.ceil((north - south) / spacing - 1e-9)
+        east = west + spacing * math.ceil((east - west) / spacing - 1e-9)
+    fields = request.sea.freeze_grid(
+        south, min(north, 89.9), west, east, *request.period, request.channels,
+        spacing_deg=spacing,
+    )  # fmt: skip
+    if any(layer.period is None and not _is_uniform(layer) for layer in request.sea.layers):
+        step = np.diff(fields.times).max() if fields.times.size > 1 else 0.0
+        if lines is None and step > 0.0:
+            notes.append(f"and every {step / 60.0:.0f} minutes")
+    return BarrierRaster(_arrays(fields, request.period[0]), ", ".join(notes))
+
+
+def _arrays(fields: GridFields, origin: float) -> RasterArrays:
+    """Return a raster as kernels take it, with two times at least."""
+    arrays = raster_arrays(fields, origin)
+    if arrays.times.size > 1:
+        return arrays
+    times = np.array([arrays.times[0], arrays.times[0] + 1.0])
+    return arrays._replace(times=times, values=np.repeat(arrays.values, 2, axis=0))
+
+
+def _is_uniform(layer: object) -> bool:
+    """Return whether a layer has the same values everywhere."""
+    return bool(getattr(layer, "is_uniform", False))
+
+
+def _data_lines(sea: Sea) -> tuple[float, float, float] | None:
+    """Return (latitude, longitude, spacing) [deg] of the lines of the finest regular grid."""
+    found: list[tuple[float, float, float]] = []
+    for layer in sea.layers:
+        if not isinstance(layer, GridLayer) or not isinstance(layer.grid, RectilinearGrid):
+            continue
+        spacing = _even_spacing(layer.grid)
+        if spacing is not None:
+            found.append((float(layer.grid.lat.min()), float(layer.grid.lon[0]), spacing))
+    return min(found, key=lambda row: row[2]) if found else None
+
+
+def _even_spacing(grid: RectilinearGrid) -> float | None:
+    """Return the spacing [deg] of a grid with even and equal steps both ways, else None."""
+    if grid.lat.size < 2 or grid.lon.size < 2:
+        return None
+    steps: FloatArray = np.concatenate([np.abs(np.diff(grid.lat)), np.diff(grid.lon)])
+    middle = float(np.median(steps))
+    return middle if np.abs(steps - middle).max() < 1e-3 * middle else None
+
+
+def _all_on_lines(sea: Sea, lat: float, lon: float, spacing: float) -> bool:
+    """Return whether the lines of every layer are among lines of one grid."""
+    for layer in sea.layers:
+        if _is_uniform(layer):
+            continue
+        if not isinstance(layer, GridLayer) or not isinstance(layer.grid, RectilinearGrid):
+            return False
+        for axis, start in ((layer.grid.lat, lat), (layer.grid.lon, lon)):
+            place = (axis - start) / spacing
+            if np.abs(place - np.round(place)).max() > max(_LINE_TOLERANCE, 1e-3):
+                return False
+    return True

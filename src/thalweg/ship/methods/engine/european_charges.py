@@ -1,0 +1,158 @@
+"""Charges of the European Union on the fuel of a voyage: emission allowances and FuelEU Maritime.
+
+The shares of voyages are those of Directive 2003/87/EC, article 3ga, and of Regulation (EU)
+2023/1805, article 2: all of a voyage between two ports of the Union (and of the European Economic
+Area), half of one that begins or ends outside, nothing of others.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
+from thalweg.core.units import TONNE
+
+VOYAGE_SHARES: Final = (0.0, 0.5, 1.0)  #: outside, to or from, and within the Union
+REFERENCE_INTENSITY: Final = 91.16  #: Regulation (EU) 2023/1805, article 4(2) [gCO2eq/MJ]
+_PENALTY_EUR_PER_T: Final = 2400.0  # annex IV, part B, per tonne of VLSFO
+_VLSFO_HEAT: Final = 41_000.0  # annex IV, part B [MJ/t]
+#: reduction of the intensity from a year on, article 4(2); the latest first
+_REDUCTIONS: Final = (
+    *((2050, 0.80), (2045, 0.62), (2040, 0.31)),
+    *((2035, 0.145), (2030, 0.06), (2025, 0.02)),
+)
+
+
+class WellToWake(NamedTuple):
+    """Intensity [gCO2eq/MJ] and lower heating value [MJ/kg] of a fuel."""
+
+    intensity: float
+    heat: float
+
+
+#: By the default factors of Regulation (EU) 2023/1805, annex II (well to tank, CO2, CH4, N2O with
+#: warming potentials 1, 25 and 298) of slow and medium speed Diesel engines.
+WELL_TO_WAKE: Final[Mapping[str, WellToWake]] = MappingProxyType(
+    {
+        "hfo": WellToWake(13.5 + (3.114 + 25 * 5e-5 + 298 * 1.8e-4) / 0.0405, 40.5),
+        "lfo": WellToWake(13.2 + (3.151 + 25 * 5e-5 + 298 * 1.8e-4) / 0.0410, 41.0),
+        "mgo": WellToWake(14.4 + (3.206 + 25 * 5e-5 + 298 * 1.8e-4) / 0.0427, 42.7),
+    }
+)
+
+
+def ets_phase_in(year: int) -> float:
+    """Return the share of verified emissions for which allowances are surrendered.
+
+    40 % of those of 2024, 70 % of 2025, all from 2026: Directive 2003/87/EC, article 3gb, as
+    amended by Directive (EU) 2023/959.
+    """
+    return {2024: 0.4, 2025: 0.7}.get(year, 1.0 if year >= 2026 else 0.0)
+
+
+def fueleu_target(year: int) -> float:
+    """Return the greatest intensity of the energy used on board [gCO2eq/MJ]; inf before 2025.
+
+    Reductions of 2 % (2025), 6, 14.5, 31, 62 and 80 % (2050) from 91.16: Regulation (EU)
+    2023/1805, article 4(2).
+    """
+    for first, reduction in _REDUCTIONS:
+        if year >= first:
+            return REFERENCE_INTENSITY * (1.0 - reduction)
+    return math.inf
+
+
+def fueleu_penalty(energy: ArrayLike, *, intensity: float, year: int) -> FloatArray:
+    r"""Return the FuelEU penalty of energy at an intensity above the target [EUR].
+
+    .. math:: \frac{(g - g_{target}) E}{g \cdot 41\,000} \cdot 2400
+
+    Regulation (EU) 2023/1805, annex IV, part B; for a first year above the target. No surplus is
+    paid out.
+
+    Parameters
+    ----------
+    energy : array_like
+        Energy E in scope [MJ].
+    intensity : float
+        Well-to-wake intensity g [gCO2eq/MJ].
+    year : int
+    """
+    excess = max(intensity - fueleu_target(year), 0.0) / intensity
+    return np.asarray(energy, float) * excess / _VLSFO_HEAT * _PENALTY_EUR_PER_T
+
+
+@dataclass(frozen=True)
+class EuropeanCharges:
+    """Prices of the European Union on the fuel of a voyage.
+
+    Attributes
+    ----------
+    voyage_share : float
+        1 between ports of the Union, 0.5 to or from one, 0 otherwise.
+    allowance_price : float
+        Of a tonne of CO2 [currency of the ship's prices]; 0: not counted.
+    euro_price : float
+        Of a euro in that currency, for the FuelEU penalty; 0: not counted.
+    year : int
+        Of the emissions.
+
+    Raises
+    ------
+    InputError
+        For prices below zero and other shares.
+    """
+
+    voyage_share: float
+    allowance_price: float = 0.0
+    euro_price: float = 0.0
+    year: int = 2026
+
+    def __post_init__(self) -> None:
+        prices = (self.allowance_price, self.euro_price)
+        if self.voyage_share in VOYAGE_SHARES and all(0.0 <= p < math.inf for p in prices):
+            return
+        raise InputError(
+            f"Charges of the European Union by a voyage share of {self.voyage_share!r}, an "
+            f"allowance price of {prices[0]!r} and a price of the euro of {prices[1]!r}.",
+            "The share is 0, 0.5 or 1; prices are numbers of zero or more.",
+            "Correct them.",
+            field="voyage_share",
+        )
+
+    def per_kg(self, fuel_name: str, co2: float) -> float:
+        """Return the charge of a kilogram of fuel.
+
+        Parameters
+        ----------
+        fuel_name : str
+            Short name of the fuel (`thalweg.ship.methods.engine.fuel_properties.FUELS`).
+        co2 : float
+            Its CO2 [kg/kg].
+
+        Returns
+        -------
+        float
+            In the currency of the prices; NaN where the charge of the fuel is not
+            known.
+        """
+        if self.voyage_share == 0.0:
+            return 0.0
+        charge = 0.0
+        if self.allowance_price > 0.0:
+            charge += self.allowance_price * ets_phase_in(self.year) * co2 / TONNE
+        if self.euro_price > 0.0:
+            known = WELL_TO_WAKE.get(fuel_name)
+            if known is None:
+                return math.nan
+            penalty = fueleu_penalty(known.heat, intensity=known.intensity, year=self.year)
+            charge += self.euro_price * float(penalty)
+        return self.voyage_share * charge

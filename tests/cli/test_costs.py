@@ -1,0 +1,107 @@
+"""The same route costs the same by plan, by evaluate from the shell and by the library."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from thalweg import Chart, Sea, Ship, evaluate
+from thalweg.cli.main import main
+
+START, GOAL = (55.0, 4.0), (55.0, 5.0)  # in the North Sea, inside a control area
+BULKER = Ship.load("handysize-bulker")
+SHIP = ("--ship", "handysize-bulker", "--calm", "--coast", "none")
+DEPART = ("--depart", "2026-01-01T00:00Z")
+
+
+@pytest.fixture
+def track(tmp_path):
+    path = tmp_path / "route.csv"
+    path.write_text("lat,lon\n55,4\n55,5\n")
+    return str(path)
+
+
+def run_json(capsys, *arguments):
+    code = main([*arguments, "--json"])
+    return code, json.loads(capsys.readouterr().out)
+
+
+def test_a_route_costs_the_same_by_plan_shell_and_library(capsys, track):
+    """Table 5.2 of Seuren (2020): 300 USD/t outside, 1.5593 times that inside."""
+    code, plan = run_json(capsys, "plan", "55,4", "55,5", *SHIP, *DEPART)
+    planned = plan["routes"][0]
+    assert code == 0
+    assert planned["fuel_eca_t"] == pytest.approx(planned["fuel_t"], rel=1e-9)
+    assert planned["cost_usd"] == pytest.approx(300.0 * 1.5593 * planned["fuel_t"], rel=1e-9)
+    _, scored = run_json(capsys, "evaluate", track, *SHIP, *DEPART)
+    assert scored["cost_usd"] == pytest.approx(planned["cost_usd"], rel=1e-6)
+    for chart in (None, Chart.open_water(), Chart.open_water().with_eca()):
+        given = evaluate([START, GOAL], ship=BULKER, sea=Sea.calm(), chart=chart, depart=0)
+        assert given.cost == pytest.approx(scored["cost_usd"], rel=1e-9)
+
+
+def test_without_control_areas_the_fuel_inside_is_unknown(capsys, track):
+    _, plan = run_json(capsys, "plan", "55,4", "55,5", *SHIP, *DEPART, "--no-eca")
+    _, scored = run_json(capsys, "evaluate", track, *SHIP, *DEPART, "--no-eca")
+    for route in (plan["routes"][0], scored):
+        assert route["fuel_eca_t"] is None
+        assert route["cost_usd"] == pytest.approx(300.0 * route["fuel_t"], rel=1e-9)
+
+
+def test_prices_of_the_command_count_whatever_is_minimised(capsys, track):
+    prices = ("--fuel-price", "600", "--eca-price-factor", "2", "--time-price", "100")
+    _, plan = run_json(capsys, "plan", "55,4", "55,5", *SHIP, *DEPART, *prices)
+    _, scored = run_json(capsys, "evaluate", track, *SHIP, *DEPART, *prices)
+    for route in (plan["routes"][0], scored):
+        expected = 1200.0 * route["fuel_t"] + 100.0 * route["time_h"]
+        assert route["cost_usd"] == pytest.approx(expected, rel=1e-9)
+        parts = route["cost_parts"]
+        assert parts["fuel"] == pytest.approx(1200.0 * route["fuel_t"], rel=1e-9)
+        assert sum(parts.values()) == pytest.approx(route["cost_usd"], rel=1e-12)
+
+
+def test_every_sum_names_its_currency_its_prices_and_their_source(capsys, track):
+    _, scored = run_json(capsys, "evaluate", track, *SHIP, *DEPART, "--time-price", "100")
+    prices = scored["prices"]
+    assert scored["currency"] == prices["currency"] == "USD"
+    assert prices["fuel_per_t"] == {"value": 300.0, "source": "ship file"}
+    assert prices["fuel_in_eca_per_t"]["value"] == pytest.approx(467.79)
+    assert prices["time_per_day"] == {"value": pytest.approx(2400.0), "source": "request"}
+
+
+def test_a_route_that_breaks_a_limit_ends_with_code_4_and_shows_its_clearance(
+    capsys, track, tmp_path
+):
+    depth = tmp_path / "depth.nc"
+    lat, lon = np.linspace(54.5, 55.5, 11), np.linspace(3.5, 5.5, 21)
+    grid = xr.DataArray(
+        np.full((11, 21), -12.0), coords={"lat": lat, "lon": lon}, dims=("lat", "lon")
+    )
+    grid.attrs = {"standard_name": "height_above_mean_sea_level", "units": "m"}
+    xr.Dataset({"elevation": grid}).to_netcdf(depth)
+    charted = ("evaluate", track, *SHIP, *DEPART, "--depth", str(depth))
+    assert main([*charted]) == 0
+    assert "least under-keel clearance 2.5 m" in capsys.readouterr().out  # draught 9.5 m
+    code, scored = run_json(capsys, *charted, "--ukc", "3")
+    assert code == 4 and not scored["feasible"]
+    assert scored["min_ukc_m"] == pytest.approx(2.5)
+
+
+def test_charges_of_the_european_union_are_a_part_of_the_cost(capsys, track):
+    words = ("--ets-price", "80", "--eu-share", "100", "--eu-year", "2024")
+    _, scored = run_json(capsys, "evaluate", track, *SHIP, *DEPART, *words)
+    expected = 0.4 * 80.0 * scored["co2_t"]
+    assert scored["cost_parts"]["EU charges"] == pytest.approx(expected, rel=1e-9)
+    code, refusal = run_json(capsys, "evaluate", track, *SHIP, *DEPART, "--ets-price", "80")
+    assert code == 2 and "share of the voyage" in json.dumps(refusal)
+
+
+def test_a_held_speed_is_named_and_needs_a_speed(capsys, track):
+    _, scored = run_json(
+        capsys, "evaluate", track, *SHIP, *DEPART, "--speed", "12", "--hold", "speed"
+    )
+    assert scored["engine_order"] == "constant speed"
+    assert scored["time_h"] == pytest.approx(scored["distance_nm"] / 12.0, rel=1e-6)
+    code, _ = run_json(capsys, "evaluate", track, *SHIP, *DEPART, "--hold", "speed")
+    assert code == 2

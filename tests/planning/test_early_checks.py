@@ -1,0 +1,71 @@
+"""Requests that cannot work are refused before the chart and the network are made."""
+
+from __future__ import annotations
+
+import tracemalloc
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from thalweg import Chart
+from thalweg.cli import option_values
+from thalweg.cli.main import main
+from thalweg.core.errors import InputError
+from thalweg.network import lattice
+from thalweg.network.regional_lattice import lattice_builder
+
+
+@pytest.fixture
+def no_chart(monkeypatch):
+    """Make the chart an error: nothing may load it."""
+
+    def refuse(*_):
+        raise AssertionError("the chart was loaded")
+
+    monkeypatch.setattr(option_values, "open_chart", refuse)
+
+
+def heights(tmp_path):
+    times = np.datetime64("2026-01-01T00:00", "ns") + np.arange(3) * np.timedelta64(6, "h")
+    data = xr.Dataset(
+        {"swh": (("time", "lat", "lon"), np.full((3, 3, 3), 1.0), {"units": "m"})},
+        {"time": times, "lat": [50.0, 51.0, 52.0], "lon": [1.0, 2.0, 3.0]},
+    )
+    data.to_netcdf(tmp_path / "height.nc")
+    return str(tmp_path / "height.nc")
+
+
+PLACES = ["plan", "50.5,1.2", "50.5,2.8", "--ship", "kvlcc2"]
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--sea", "{file}"], "eastward_wind"),
+        (["--calm", "--speed", "60"], "60 kn"),
+        (["--calm", "--resolution", "1000"], "resolution"),
+        (["--calm", "--objective", "fule"], "fuel"),
+        (["--calm", "--depth", "absent.nc"], "no file absent.nc"),
+        (["--calm", "--zones", "absent.json"], "no file absent.json"),
+        (["--sea", "{file}", "--fill", "wind=0", "waves=head_seas", "--depart", "2027-01-01"],
+         "outside the data"),
+    ],
+)  # fmt: skip
+def test_cheap_faults_are_found_first(tmp_path, capsys, no_chart, options, words):
+    path = heights(tmp_path)
+    code = main([*PLACES, *(o.format(file=path) for o in options)])
+    assert code not in (0, 1)
+    assert words in capsys.readouterr().err
+
+
+def test_a_lattice_that_does_not_fit_in_memory_is_refused_before_it_is_built(monkeypatch):
+    monkeypatch.setattr(lattice_builder, "_MAX_NODE_BUDGET", 100_000)
+    water = Chart.open_water(40.0, 60.0, -20.0, 10.0)
+    tracemalloc.start()
+    with pytest.raises(InputError, match=r"would have over [\d,]+ nodes and take .* GB") as caught:
+        lattice(water, (50.0, -5.0), (50.0, 0.0), spacing=330.0)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert "larger spacing" in caught.value.remedy
+    assert peak < 400_000_000  # 11.8 GB once

@@ -1,0 +1,132 @@
+"""A plan in words: what a master reads, and which proofs are stated."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.core.geodesy import format_position_minutes, parse_position
+from thalweg.planning.report.plan_summary import (
+    MAX_LINES,
+    duration_text,
+    limits_text,
+    proven_gap,
+    quality_text,
+    summary_with_notes,
+    utc_text,
+    worst_weather,
+)
+from thalweg.route import Violation
+
+WAVES = "sea_surface_wave_significant_height"
+
+
+@pytest.fixture(scope="module")
+def answer():
+    sea = Sea.from_functions(
+        {
+            "eastward_wind": lambda time, lat, lon: 10.0 + 0.0 * lat,
+            "northward_wind": lambda time, lat, lon: 0.0 * lat,
+            WAVES: lambda time, lat, lon: 2.0 + lon,
+            "sea_surface_wave_from_direction": lambda time, lat, lon: 270.0 + 0.0 * lat,
+            "sea_surface_wave_mean_period": lambda time, lat, lon: 8.0 + 0.0 * lat,
+        }
+    )
+    chart = Chart.open_water(50.0, 52.5, 1.0, 4.0).with_depth(lambda lat, lon: 30.0 - 4.0 * lon)
+    voyage = Voyage(start=(51.0, 2.0), goal=(51.5, 3.0), depart="2026-01-01T00:00Z")
+    return plan(voyage, ship=Ship.simple(speed_kn=8.0, draught_m=5.0), sea=sea, chart=chart)
+
+
+def test_at_most_twelve_lines_with_what_a_master_needs(answer):
+    text = str(answer)
+    lines = text.splitlines()
+    assert len(lines) <= MAX_LINES and max(map(len, lines)) <= 120
+    assert [line.split()[0] for line in lines[1:10]] == [
+        "Depart", "Arrive", "Distance", "Fuel", "Cost", "Weather", "Depth", "Limits", "Quality",
+    ]  # fmt: skip
+    assert "2026-01-01 00:00 UTC" in lines[1]
+    assert utc_text(answer.best.arrive) in lines[2]
+    assert "waves 5.0 m, wind 19 kn at 51 30.0N 003 00.0E" in text
+    assert "least under-keel clearance 13.0 m at 51 " in lines[7]
+    assert "not known: the ship file has no fuel" in text
+    for jargon in ("network", "kappa", "bound", "fingerprint"):
+        assert jargon not in text.casefold()
+
+
+def test_one_line_and_a_table_for_notebooks(answer):
+    assert repr(answer).count("\n") == 0 and "nm" in repr(answer)
+    table = answer._repr_html_()
+    assert table.startswith("<table") and "Weather" in table
+    odd = replace(answer, notes=("a <b> & c",))
+    assert "a &lt;b&gt; &amp; c" in odd._repr_html_()
+
+
+def test_notes_that_do_not_fit_are_counted(answer):
+    many = replace(answer, notes=("No depth in the data: x.", *(f"note {n}" for n in range(9))))
+    lines = summary_with_notes(many)
+    assert len(lines) == MAX_LINES
+    assert lines[-1] == "Note      note 1 (7 more notes: --verbose, plan.notes)"
+    assert "No depth" not in "".join(lines)
+
+
+def with_bounds(answer, certain, searched):
+    value = answer.objective_value
+    proof = replace(answer.proof, certain=certain * value, lower_bound=searched * value)
+    return replace(answer, proof=proof)
+
+
+@pytest.mark.parametrize(
+    ("certain", "searched", "text"),
+    [
+        (0.963, 0.99, "at most 3.7 % from the best possible"),
+        (1.0, 1.0, "at most 0.1 % from the best possible"),
+        (0.6, 0.99, "about 1.0 % from the best by the search, which is not a proof; proven: at "
+         "most 40.0 %"),
+        (0.6, 1.1, "at most 40.0 % from the best possible"),
+        (1.158, 1.158, "not known: no valid lower bound was found"),
+        (0.0, 0.9, "not known: no valid lower bound was found"),
+        (np.nan, 0.9, "not known: no valid lower bound was found"),
+    ],
+)  # fmt: skip
+def test_only_valid_and_useful_bounds_are_stated_as_proof(answer, certain, searched, text):
+    assert quality_text(with_bounds(answer, certain, searched)) == text
+
+
+def test_an_interrupted_plan_and_one_that_breaks_a_limit(answer):
+    assert quality_text(replace(answer, cancelled=True)).startswith("stopped early; ")
+    violation = Violation("wave height above the limit", answer.best.depart, 51.2, 2.5, 4.0, 3.0)
+    broken = replace(answer, routes=(replace(answer.best, violations=(violation, violation)),))
+    assert quality_text(broken) == "not stated: the route breaks a limit"
+    assert limits_text(broken).startswith("NOT KEPT: wave height above the limit at 51.2")
+    assert limits_text(broken).endswith("(4.00, limit 3.00), and 1 more")
+    assert proven_gap(broken, 0.5 * broken.objective_value) == pytest.approx(0.5)
+
+
+def test_limits_that_closed_other_water(answer):
+    met = {"land": 900, "under-keel clearance": 5, "wave height above the limit": 20}
+    assert limits_text(replace(answer, rejections=met)) == (
+        "all kept; other water was closed by: wave height above the limit, under-keel clearance"
+    )
+    assert "land" in limits_text(replace(answer, rejections={"land": 3}))
+
+
+def test_weather_is_that_of_the_sea_even_if_the_ship_ignores_it(answer):
+    assert WAVES not in answer.best.samples
+    assert worst_weather(answer).startswith("waves 5.0 m")
+    calm = replace(answer, plot_context=None)
+    assert worst_weather(calm).startswith("calm or not known")
+    wind = {"eastward_wind": np.full(len(answer.best.samples["lat"]), -8.0)}
+    wind["northward_wind"] = 0.0 * wind["eastward_wind"]
+    windy = replace(answer.best, samples=dict(answer.best.samples) | wind)
+    assert worst_weather(replace(calm, routes=(windy,))).startswith("wind 16 kn at ")
+
+
+def test_times_and_positions_as_they_are_spoken():
+    assert duration_text(7 * 86400 + 21 * 3600 + 25 * 60 + 29) == "7 d 21 h 25 min"
+    assert duration_text(1800) == "30 min"
+    assert utc_text(1767225569.0) == "2025-12-31 23:59 UTC"
+    assert utc_text(float("nan")) == "not known"
+    text = format_position_minutes(-33.99999, 151.20833)
+    assert text == "34 00.0S 151 12.5E"
+    assert parse_position(text) == pytest.approx((-34.0, 151.2083), abs=1e-3)

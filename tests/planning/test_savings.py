@@ -1,0 +1,71 @@
+"""Savings over weather-blind routes: references keep the limits, and the saving has two parts."""
+
+import numpy as np
+import pytest
+
+from thalweg import Chart, Sea, Ship, Voyage, plan
+
+START, GOAL = (0.0, 0.0), (0.0, 2.0)
+CHART = Chart.open_water(-1.0, 1.0, -0.5, 2.5)
+KNOT = 1852.0 / 3600.0
+
+
+def front(sea, **limits):
+    ship = Ship.from_dict(
+        {
+            "name": "cubic",
+            "hull": {"draught_m": 5.0},
+            "speeds_kn": [8.0, 10.0, 12.0],
+            "engine": {"reference_speed_kn": 12.0},
+            "fuel": {"reference_t_per_day": 24.0},
+            "models": {"calm_water": "cubic"},
+            "limits": limits,
+        }
+    )
+    voyage = Voyage(
+        start=START, goal=GOAL, depart="2026-01-01T00:00Z", objective="front", method="exact"
+    )
+    return plan(voyage, ship=ship, sea=sea, chart=CHART, resolution=6.0 * 1852.0)
+
+
+def on_the_way(lat, lon, half_width):
+    """1 in the middle of the geodesic, falling to 0 at the half-width [deg] to both sides."""
+    across = np.clip(2.0 - np.abs(lat) / half_width, 0.0, 1.0)
+    along = np.clip(3.0 - 5.0 * np.abs(lon - 1.0), 0.0, 1.0)
+    return across * along
+
+
+def test_a_reference_that_breaks_a_limit_saves_nothing():
+    waves = {
+        "sea_surface_wave_significant_height": lambda t, a, o: 6.0 * on_the_way(a, o, 0.2),
+    }
+    answer = front(Sea.from_functions(waves), max_significant_wave_height_m=4.0)
+    assert answer.best.feasible
+    rows = answer.front.comparison.rows
+    assert rows and not any(row["feasible"] for row in rows)
+    assert all(row["saved"] is None and row["saved_h"] is None for row in rows)
+    (note,) = [note for note in answer.notes if "weather-blind" in note]
+    assert note.startswith("No weather-blind route is feasible: wave height")
+
+
+def test_a_saving_is_that_of_the_route_and_that_of_the_speeds():
+    """Against 4 kn on the way alone: at a constant speed the ship saves by sailing round it."""
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": lambda t, a, o: -4.0 * KNOT * on_the_way(a, o, 0.2),
+            "northward_sea_water_velocity": lambda t, a, o: 0.0 * a,
+        }
+    )
+    rows = [row for row in front(sea).front.comparison.rows if row["saved"] is not None]
+    assert rows
+    for row in rows:
+        assert row["feasible"]
+        assert row["saved_by_route"] >= 0.0 and row["saved_by_speed"] >= 0.0
+        assert row["saved"] == pytest.approx(row["saved_by_route"] + row["saved_by_speed"])
+    middle = rows[len(rows) // 2]
+    assert middle["saved_by_route"] > 0.5 * middle["saved"] > 0.0
+
+
+def test_in_calm_water_neither_part_saves():
+    for row in front(Sea.calm()).front.comparison.rows:
+        assert row["saved_by_route"] == pytest.approx(0.0, abs=1e-6 * row["value"])

@@ -1,0 +1,117 @@
+"""Distances by sea against published ones, and their properties."""
+
+import json
+
+import numpy as np
+import pytest
+
+import thalweg
+from thalweg.cli.main import main
+from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.sea_distance import sea_distance
+
+# Distances [nm] as tables commonly quote them, to about 1 %: New York to Colombo is quoted from NGA
+# Publication 151 (Distances Between Ports, 11th edition); the others are from general knowledge.
+PUBLISHED = [
+    ("Rotterdam", "New York", 3_310),
+    ("Rotterdam", "Singapore", 8_288),
+    ("New York", "Colombo", 8_604),
+    ("Sydney, AU", "Auckland", 1_274),
+    ("Santos", "Rotterdam", 5_430),
+    ("Shanghai", "Los Angeles", 5_708),
+    ("Gibraltar", "Port Said", 1_920),
+]
+
+
+@pytest.mark.parametrize(("start", "goal", "miles"), PUBLISHED)
+def test_published_distances(start, goal, miles):
+    assert sea_distance(start, goal).nm == pytest.approx(miles, rel=0.015)
+
+
+def test_the_same_distance_both_ways():
+    there, back = sea_distance("Santos", "Durban"), sea_distance("Durban", "Santos")
+    assert there.nm == pytest.approx(back.nm, rel=2e-3)
+    assert there.line[0] == pytest.approx(back.line[-1])
+
+
+def test_the_whole_is_the_sum_of_its_line():
+    found = sea_distance("Rotterdam", "New York")
+    line = np.array(found.line)
+    legs = thalweg.core.geodesy.distance(line[:-1, 0], line[:-1, 1], line[1:, 0], line[1:, 1])
+    assert found.length == pytest.approx(legs.sum(), rel=1e-9)
+    names = [name for name, _ in found.approaches]
+    assert names == ["Rotterdam, NL", "New York City, US"]
+    assert "Dover" in found.straits
+
+
+def test_canals_are_used_avoided_and_have_their_own_length():
+    short = sea_distance("Rotterdam", "Singapore")
+    long = sea_distance("Rotterdam", "Singapore", avoid=["suez"])
+    assert short.canals == ("Suez Canal",)
+    assert long.canals == ()
+    assert "Cape of Good Hope" in long.straits
+    assert 3_200 < long.nm - short.nm < 3_700  # 11,755 against 8,288 nm in tables
+    kiel = sea_distance("Hamburg", "Gdansk")
+    assert kiel.canals == ("Kiel Canal",)
+    with pytest.raises(InputError, match="canal"):
+        sea_distance("Rotterdam", "Singapore", avoid=["sues"])
+
+
+def test_corinth_is_used_only_when_asked():
+    assert sea_distance("Piraeus", "Messina").canals == ()
+    assert sea_distance("Piraeus", "Messina", avoid=()).canals == ("Corinth Canal",)
+
+
+def test_ways_do_not_cross_ice_unless_they_begin_there():
+    north = np.array(sea_distance("Yokohama", "Bremerhaven", avoid=["suez", "panama"]).line)
+    assert np.abs(north[:, 0]).max() < 66.0
+    south = sea_distance("Rio de Janeiro", "Brisbane")  # the great circle reaches 72 S
+    assert np.array(south.line)[:, 0].min() >= -65.0
+    assert np.array(sea_distance("Murmansk", "Hammerfest").line)[:, 0].max() < 72.0
+    assert 514.0 < sea_distance("Longyearbyen", "Tromso").nm < 590.0  # great circle: 514 nm
+
+
+def test_places_to_pass():
+    direct = sea_distance("Rotterdam", "New York")
+    north = sea_distance("Rotterdam", "New York", via=["58.7N 4.0W"])
+    assert north.nm > direct.nm
+    assert "Dover" not in north.straits
+
+
+def test_ports_of_one_river():
+    found = sea_distance("Rotterdam", "Hook of Holland")
+    assert found.nm == pytest.approx(14.4, abs=2.0)
+    assert found.straits == ()
+
+
+def test_days_count_approaches_at_ten_knots():
+    found = sea_distance("Hamburg", "Rotterdam")
+    near = sum(length for _, length in found.approaches) / NAUTICAL_MILE
+    assert found.days(20.0) * 24.0 == pytest.approx((found.nm - near) / 20.0 + near / 10.0)
+    assert found.days(5.0) * 24.0 == pytest.approx(found.nm / 5.0)
+    for speed in (0.0, -3.0, float("nan"), "fast"):
+        with pytest.raises(InputError, match="speed"):
+            found.days(speed)
+
+
+def test_errors_of_the_request():
+    with pytest.raises(InputError, match="same place"):
+        sea_distance("Rotterdam", "Rotterdam")
+    with pytest.raises(InputError, match="no port named"):
+        sea_distance("Rotterdam", "Atlantis")
+    with pytest.raises(InputError, match="Great Lakes"):
+        sea_distance("Rotterdam", "Chicago")
+    assert issubclass(NoRouteError, thalweg.ThalwegError)
+
+
+def test_command(capsys):
+    assert main(["distance", "Rotterdam", "Hamburg", "--speed", "12", "--quiet"]) == 0
+    text = capsys.readouterr().out
+    assert "Rotterdam, NL to Hamburg, DE" in text
+    assert "days" in text
+    assert "approach of Hamburg, DE" in text
+    assert main(["distance", "Rotterdam", "Hamburg", "--json", "--quiet"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["distance_nm"] == pytest.approx(thalweg.distance("Rotterdam", "Hamburg").nm)
+    assert main(["distance", "Rotterdam", "Nowhere", "--quiet"]) == 2

@@ -1,0 +1,82 @@
+"""Speeds in blocks that a bridge can order."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from thalweg import Chart, Sea, Ship, Voyage, evaluate
+from thalweg.core.units import KNOT
+from thalweg.planning.pareto.speed_blocks import in_speed_blocks, merged_settings
+from thalweg.planning.pareto.trade_off_context import RefereedCandidate, TrackCandidate
+from thalweg.route import Track
+
+SPEEDS = np.array([9.9, 14.1])
+DEPART = 1767225600.0  # 2026-01-01
+
+
+def runs(setting, hours):
+    first = np.flatnonzero(np.concatenate([[True], setting[1:] != setting[:-1]]))
+    return np.add.reduceat(hours, first)
+
+
+def test_a_short_leg_between_legs_of_one_speed_takes_theirs():
+    setting, hours = np.array([0, 1, 0, 0]), np.array([7.0, 0.2, 3.0, 5.0])
+    assert merged_settings(setting, hours, SPEEDS, 6.0, late=True).tolist() == [0, 0, 0, 0]
+
+
+def test_long_blocks_stay_as_they_are():
+    setting, hours = np.array([0, 0, 1, 1]), np.array([3.0, 3.0, 4.0, 2.5])
+    assert merged_settings(setting, hours, SPEEDS, 6.0, late=False).tolist() == [0, 0, 1, 1]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_merged_blocks_last_and_are_not_late_if_they_must_not(seed):
+    draw = np.random.default_rng(seed)
+    setting, hours = draw.integers(0, 4, 30), draw.uniform(0.1, 4.0, 30)
+    speeds = np.array([8.0, 10.0, 12.0, 14.0])
+    for late in (True, False):
+        merged = merged_settings(setting, hours, speeds, 6.0, late=late)
+        lasting = runs(merged, hours)
+        assert len(lasting) == 1 or lasting.min() >= 6.0
+        time = (hours * speeds[setting] / speeds[merged]).sum()
+        assert abs(time / hours.sum() - 1.0) < 0.35
+    assert set(merged) <= set(setting)
+
+
+def test_a_short_block_goes_and_its_cost_is_stated():
+    """14.1 kn for 2.6 nm between hours at 9.9 kn, in still water."""
+    ship = Ship.load("handysize-bulker").with_speeds(SPEEDS * KNOT)
+    lon = np.array([0.0, 1.0, 1.0 + 2.6 / 60.0, 2.0])
+
+    def score(track):
+        return evaluate(track, ship=ship, sea=Sea.calm(), chart=Chart.open_water())
+
+    context = SimpleNamespace(
+        voyage=Voyage(start=(0, 0), goal=(0, 2), depart=DEPART, objective="fuel"),
+        ship=ship,
+        evaluate=score,
+        latest_arrival=np.inf,
+    )
+    trade_off = SimpleNamespace(
+        context=context,
+        settings=np.arange(2),
+        notes=[],
+        objective=SimpleNamespace(name="fuel", value=lambda route: route.fuel_t),
+    )
+    routes = [
+        score(Track(np.zeros(4), lon, DEPART, None, np.array([0, middle, 0]))) for middle in (1, 0)
+    ]
+    before = [
+        RefereedCandidate(TrackCandidate(r.track, "polish", "", r.time_h, r.fuel_t), r, r.fuel_t)
+        for r in routes
+    ]
+    after = in_speed_blocks(trade_off, before)
+    assert [len(item.route.track) for item in after] == [2, 4]  # two waypoints suffice
+    assert after[0].route.fuel_t == pytest.approx(routes[1].fuel_t, rel=1e-6)
+    (note,) = trade_off.notes
+    assert note.startswith("Speeds are ordered in blocks of at least 6 h") and "0.0% fuel" in note
+    context.latest_arrival = routes[0].arrive  # in time only with the short block
+    kept = in_speed_blocks(trade_off, before[:1])
+    assert kept[0] is before[0]
+    assert "keep shorter ones" in trade_off.notes[-1]

@@ -1,0 +1,58 @@
+"""Emission allowances and FuelEU Maritime: published figures."""
+
+import math
+
+import pytest
+
+from thalweg import InputError, Sea, Ship, evaluate
+from thalweg.ship.methods.engine.european_charges import (
+    WELL_TO_WAKE,
+    EuropeanCharges,
+    ets_phase_in,
+    fueleu_penalty,
+    fueleu_target,
+)
+
+BULKER = Ship.load("handysize-bulker")
+AT_SEA = [(0, -30), (0, -29)]
+
+
+def test_the_phase_in_and_the_targets_are_those_of_the_regulations():
+    assert [ets_phase_in(y) for y in (2023, 2024, 2025, 2026, 2030)] == [0.0, 0.4, 0.7, 1.0, 1.0]
+    assert fueleu_target(2025) == pytest.approx(89.3368)  # 89.34 as published
+    assert fueleu_target(2030) == pytest.approx(85.6904)
+    assert fueleu_target(2050) == pytest.approx(18.232)
+    assert math.isinf(fueleu_target(2024))
+
+
+def test_default_intensities_of_fuels():
+    assert WELL_TO_WAKE["hfo"].intensity == pytest.approx(91.74, abs=0.005)
+    assert WELL_TO_WAKE["mgo"].intensity == pytest.approx(90.77, abs=0.005)
+
+
+def test_the_penalty_of_a_tonne_of_heavy_fuel_oil_in_2025():
+    """(91.744 - 89.337) x 40,500 / (91.744 x 41,000) x 2400 EUR = 62.2 EUR."""
+    penalty = fueleu_penalty(40_500.0, intensity=WELL_TO_WAKE["hfo"].intensity, year=2025)
+    assert float(penalty) == pytest.approx(62.2, abs=0.05)
+    assert float(fueleu_penalty(40_500.0, intensity=80.0, year=2025)) == 0.0
+
+
+def test_charges_are_a_part_of_the_cost_by_the_share_of_the_voyage():
+    plain = evaluate(AT_SEA, ship=BULKER, sea=Sea.calm(), depart=0)
+    for share in (0.0, 0.5, 1.0):
+        charges = EuropeanCharges(share, allowance_price=80.0, year=2025)
+        route = evaluate(AT_SEA, ship=BULKER.with_charges(charges), sea=Sea.calm(), depart=0)
+        expected = share * 0.7 * 80.0 * plain.co2_t
+        assert route.cost_parts["EU charges"] == pytest.approx(expected, rel=1e-9)
+        assert route.cost == pytest.approx(plain.cost + expected, rel=1e-9)
+        assert route.prices["european_charges"]["allowance_price"] == 80.0
+    both = BULKER.with_charges(EuropeanCharges(1.0, euro_price=1.1, year=2025))
+    route = evaluate(AT_SEA, ship=both, sea=Sea.calm(), depart=0)
+    assert route.cost_parts["EU charges"] == pytest.approx(1.1 * 62.2 * plain.fuel_t, rel=1e-3)
+
+
+def test_charges_need_a_price_of_fuel_and_a_share_of_the_rules():
+    with pytest.raises(InputError, match="fuel has no price"):
+        Ship.simple(8.0, 5.0).with_charges(EuropeanCharges(1.0, 80.0))
+    with pytest.raises(InputError, match=r"voyage share of 0\.3"):
+        EuropeanCharges(0.3, 80.0)

@@ -1,0 +1,169 @@
+"""What a bridge gets: few waypoints with names, joined by rhumb lines that keep to the route."""
+
+import csv
+
+import numpy as np
+import pytest
+
+from tests.route.planar import ship
+from thalweg.chart import Chart
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import distance
+from thalweg.core.rhumb_lines import inverse_rhumb, rhumb_deviation, rhumb_pieces
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.route import (
+    RouteFileOptions,
+    Track,
+    evaluate,
+    read_track,
+    write_csv,
+    write_geojson,
+    write_gpx,
+    write_rtz,
+)
+from thalweg.route.formats.file_route import file_route
+from thalweg.route.formats.waypoint_names import waypoint_names
+from thalweg.sea import Sea
+
+WRITERS = {"csv": write_csv, "geojson": write_geojson, "gpx": write_gpx, "rtz": write_rtz}
+DEPART = "2026-03-01T06:00:00Z"
+OCEAN = [(49.7, -6.5), (47.0, -40.0), (40.4, -73.0)]
+
+
+def swell(_time, lat, lon):
+    return 1.2 * np.sin(np.radians(12.0 * lon)) + 0.0 * lat
+
+
+SEA = Sea.from_functions(
+    {
+        "eastward_sea_water_velocity": swell,
+        "northward_sea_water_velocity": lambda time, lat, lon: 0.3 + 0.0 * lat,
+    }
+)
+
+
+@pytest.fixture(scope="module")
+def ocean():
+    return evaluate(OCEAN, ship=ship(7.0), sea=SEA, depart=DEPART)
+
+
+def positions(rows):
+    return np.array([row["lat"] for row in rows]), np.array([row["lon"] for row in rows])
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+def test_a_file_sailed_along_rhumb_lines_is_the_plan(tmp_path, suffix, ocean):
+    path = tmp_path / f"route.{suffix}"
+    WRITERS[suffix](ocean, path, RouteFileOptions("Bishop Rock", "New York"))
+    read = read_track(path)
+    lat, lon, _ = rhumb_pieces(read.lat, read.lon, 20.0)
+    sailed = evaluate(Track(lat, lon, read.depart), ship=ship(7.0), sea=SEA)
+    assert sailed.time_h == pytest.approx(ocean.time_h, rel=1e-3)
+    assert sailed.distance_nm == pytest.approx(ocean.distance_nm, rel=1e-3)
+
+
+def test_great_circles_are_broken_below_the_cross_track_limit(ocean):
+    found = file_route(ocean)
+    lat, lon = positions(found.rows)
+    assert 40 < len(lat) < 90
+    assert found.cross_track_m <= 0.1 * NAUTICAL_MILE
+    assert rhumb_deviation(lat, lon).max() <= 0.1 * NAUTICAL_MILE
+    bound = file_route(ocean, RouteFileOptions(cross_track_nm=1.0))
+    assert len(bound.rows) < 0.4 * len(lat)
+    assert 0.1 * NAUTICAL_MILE < bound.cross_track_m <= NAUTICAL_MILE
+    close = positions(file_route(ocean, RouteFileOptions(spacing_nm=20.0)).rows)
+    assert distance(close[0][:-1], close[1][:-1], close[0][1:], close[1][1:]).max() < 37_041.0
+
+
+def test_rows_of_broken_legs(ocean):
+    rows = file_route(ocean).rows
+    lat, lon = positions(rows)
+    assert all(round(x, 6) == x for x in (*lat, *lon))
+    assert rows[-1]["distance_nm"] == pytest.approx(ocean.distance_nm, abs=1e-3)
+    assert rows[-1]["time"] == ocean.waypoints()[-1]["time"]
+    times = np.array([row["time"].removesuffix("Z") for row in rows], "datetime64[s]")
+    hours = np.diff(times).astype(float) / 3600.0
+    speed = np.array([row["speed_over_ground_kn"] for row in rows[:-1]])
+    step = np.diff([row["distance_nm"] for row in rows])
+    np.testing.assert_allclose(hours * speed, step, rtol=2e-3)
+    course = np.degrees(inverse_rhumb(lat[:-1], lon[:-1], lat[1:], lon[1:])[1])
+    np.testing.assert_allclose([row["course_deg"] for row in rows[:-1]], course, atol=0.01)
+
+
+def test_at_most_so_many_waypoints(ocean):
+    found = file_route(ocean, RouteFileOptions(max_waypoints=12))
+    assert 10 <= len(found.rows) <= 12
+    assert found.cross_track_m > 0.5 * NAUTICAL_MILE
+    with pytest.raises(InputError, match="It needs"):
+        file_route(ocean, RouteFileOptions(max_waypoints=2))
+
+
+def test_no_repeated_and_no_collinear_waypoints():
+    lat = np.concatenate([np.linspace(52.0, 52.4, 20), [52.400003, 52.6, 52.600002]])
+    lon = np.concatenate([np.linspace(3.5, 3.5, 20), [3.5, 3.9, 3.9]])
+    wait = np.zeros(len(lat))
+    wait[5] = 600.0
+    speed = np.full(len(lat) - 1, 6.0)
+    speed[15:] = 5.0
+    vessel = ship(6.0).with_speeds([5.0, 6.0])
+    route = evaluate(Track(lat, lon, 0.0, wait, speed=speed), ship=vessel, sea=Sea.calm())
+    rows = file_route(route).rows
+    assert [row["waiting_h"] > 0 for row in rows] == [False, True, False, False, False]
+    assert rows[1]["lat"] == pytest.approx(lat[5], abs=1e-6)
+    assert rows[2]["lat"] == pytest.approx(lat[15], abs=1e-6)  # the speed changes
+    got = positions(rows)
+    assert distance(got[0][:-1], got[1][:-1], got[0][1:], got[1][1:]).min() > 100.0
+    assert rows[-1]["time"] == route.waypoints()[-1]["time"]
+    assert [r["ordered_speed_kn"] for r in rows[:-1]] == pytest.approx(
+        [11.663, 11.663, 9.719, 9.719], abs=1e-3
+    )
+
+
+def test_rhumb_lines_that_touch_land_are_broken_again():
+    # a spit whose tip the great circle clears by 60 m
+    whole = evaluate([(45.0, -20.0), (45.0, -16.0)], ship=ship(6.0), sea=Sea.calm(), depart=DEPART)
+    middle = int(np.argmin(np.abs(whole.samples["lon"] + 18.0)))
+    tip = float(whole.samples["lat"][middle]) - 60.0 / 111_132.0
+    ring = [[-18.01, 44.5], [-17.99, 44.5], [-18.0, tip], [-18.01, 44.5]]
+    chart = Chart.from_geojson({"type": "Polygon", "coordinates": [ring]})
+
+    def touches(options):
+        lat, lon = positions(file_route(whole, options).rows)
+        lat, lon, _ = rhumb_pieces(lat, lon, 1.0)
+        return chart.legs_blocked(lat[:-1], lon[:-1], lat[1:], lon[1:]).any()
+
+    assert touches(RouteFileOptions(cross_track_nm=2.0))
+    assert not touches(RouteFileOptions(cross_track_nm=2.0, chart=chart))
+
+
+def test_names_of_waypoints(tmp_path, ocean):
+    miles = np.array([0.0, 3.0, 11.0, 60.0, 300.0, 390.0, 400.0]) * NAUTICAL_MILE
+    assert waypoint_names(miles, "Rotterdam (moved)", "Hull") == [
+        "Rotterdam", "WP 2", "Rotterdam approach", "WP 4", "WP 5", "Hull approach", "Hull",
+    ]  # fmt: skip
+    speed = np.array([5.0, 5.0, 5.0, 7.0, 7.0, 5.0])
+    named = waypoint_names(miles, "Rotterdam, NL", "49.7000N 6.5000W", speed)
+    assert named[0] == "Rotterdam" and named[3] == "Rotterdam approach" and named[-1] == "WP 7"
+    assert waypoint_names(miles[:2]) == ["WP 1", "WP 2"]
+    assert waypoint_names(miles[:2], "Hull", "Hull") == ["Hull", "Hull (end)"]
+    path = tmp_path / "route.csv"
+    write_csv(ocean, path, RouteFileOptions("Bishop Rock", "New York"))
+    names = [row["name"] for row in csv.DictReader(path.open())]
+    assert names[0] == "Bishop Rock" and names[-1] == "New York" and names[1] == "WP 2"
+    assert len(set(names)) == len(names)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"cross_track_nm": 0.0},
+        {"cross_track_nm": 10.0},
+        {"cross_track_nm": float("nan")},
+        {"spacing_nm": 0.0},
+        {"max_waypoints": 1},
+        {"rtz_version": "2.0"},
+    ],
+)
+def test_impossible_options_are_refused(given):
+    with pytest.raises(InputError):
+        RouteFileOptions(**given)

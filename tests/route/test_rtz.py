@@ -1,0 +1,196 @@
+"""RTZ: files against the schemas of the standard, and files as other programs write them."""
+
+import warnings
+import zipfile
+
+import numpy as np
+import pytest
+
+from tests.conftest import data_file
+from tests.route.planar import ship
+from thalweg.core.errors import InputError, ThalwegWarning
+from thalweg.core.geodesy import distance
+from thalweg.core.rhumb_lines import inverse_rhumb
+from thalweg.core.units import KNOT
+from thalweg.route import RouteFileOptions, Track, evaluate, read_track, write_rtz
+from thalweg.sea import Sea
+
+DEPART = "2026-03-01T06:00:00Z"
+HEAD = '<route xmlns="http://www.cirm.org/RTZ/1/0" version="1.0"><routeInfo routeName="a"/>'
+
+
+@pytest.fixture(scope="module")
+def voyage():
+    vessel = ship(7.5).with_speeds([5.0, 7.5])
+    lat, lon = [52.0, 52.1, 50.2, 50.3], [4.0, 3.9, 0.1, -0.5]
+    track = Track(lat, lon, 0.0, [600.0, 0.0, 4834.5, 0.0], [1, 0, 1])
+    current = {
+        "eastward_sea_water_velocity": lambda time, lat, lon: 0.4 + 0.0 * lat,
+        "northward_sea_water_velocity": lambda time, lat, lon: -0.2 + 0.0 * lat,
+    }
+    return evaluate(track, ship=vessel, sea=Sea.from_functions(current), depart=DEPART)
+
+
+@pytest.mark.parametrize("version", ["1.0", "1.1", "1.2"])
+def test_files_are_valid_by_the_schema(tmp_path, version, voyage):
+    etree = pytest.importorskip("lxml.etree")
+    schema = data_file(f"rtz/schema/RTZ Schema version {version.replace('.', '_')}.xsd")
+    write_rtz(voyage, tmp_path / "a.rtz", RouteFileOptions("Hull", "Dover", rtz_version=version))
+    etree.XMLSchema(etree.parse(str(schema))).assertValid(etree.parse(str(tmp_path / "a.rtz")))
+
+
+@pytest.mark.parametrize("version", ["1.0", "1.1", "1.2"])
+def test_round_trip(tmp_path, version, voyage):
+    path = tmp_path / "a.rtz"
+    write_rtz(voyage, path, RouteFileOptions(rtz_version=version))
+    text = path.read_text()
+    assert f'version="{version}"' in text and 'routeName="a"' in text
+    assert 'etd="2026-03-01T06:10:00Z"' in text  # the departure after the first wait
+    assert text.count('geometryType="Loxodrome"') == text.count("<waypoint ") - 1
+    read = read_track(path)
+    assert read.depart == pytest.approx(voyage.track.depart, abs=0.01)
+    assert read.wait.sum() == pytest.approx(voyage.track.wait.sum(), abs=0.01)
+    assert set(np.round(read.speed, 4)) == {5.0, 7.5}
+    for name in ("lat", "lon"):
+        np.testing.assert_allclose(
+            getattr(read, name)[[0, -1]], getattr(voyage.track, name)[[0, -1]], atol=1e-6
+        )
+
+
+def test_loxodromes_are_sailed_as_rhumb_lines(tmp_path):
+    path = tmp_path / "a.rtz"
+    waypoints = (
+        '<waypoint id="1"><position lat="50" lon="-5"/></waypoint>'
+        '<waypoint id="2"><position lat="45" lon="-45"/>{}</waypoint>'
+    )
+    whole = {}
+    for kind in ("", '<leg geometryType="Loxodrome"/>', '<leg geometryType="Orthodrome"/>'):
+        path.write_text(f"{HEAD}<waypoints>{waypoints.format(kind)}</waypoints></route>")
+        track = read_track(path, depart=0)
+        whole[kind[19:22]] = track.lengths.sum()
+    rhumb = float(inverse_rhumb(50, -5, 45, -45)[0])
+    assert whole[""] == whole["Lox"] == pytest.approx(rhumb, rel=1e-6)
+    assert whole["Ort"] == pytest.approx(float(distance(50, -5, 45, -45)), rel=1e-12)
+    default = '<defaultWaypoint><leg geometryType="Orthodrome"/></defaultWaypoint>'
+    path.write_text(f"{HEAD}<waypoints>{default}{waypoints.format('')}</waypoints></route>")
+    assert len(read_track(path, depart=0)) == 2
+
+
+POINTS = (
+    '<waypoint id="1" revision="0"><position lat="50" lon="-5"/></waypoint>'
+    '<waypoint id="2" revision="0"><position lat="50.1" lon="-5"/></waypoint>'
+    '<waypoint id="3" revision="0"><position lat="50.2" lon="-5"/></waypoint>'
+)
+
+
+def schedule(elements: str) -> str:
+    return f'<schedules><schedule id="1"><manual>{elements}</manual></schedule></schedules>'
+
+
+def test_departure_and_stays_of_a_schedule(tmp_path):
+    path = tmp_path / "a.rtz"
+    rows = (
+        '<scheduleElement waypointId="2" stay="PT1H5M"/>'
+        '<scheduleElement waypointId="1" etd="2026-03-01T06:00:00Z"/>'
+        '<scheduleElement waypointId="3" eta="2026-03-01T16:00:00Z"/>'
+    )
+    path.write_text(f"{HEAD}<waypoints>{POINTS}</waypoints>{schedule(rows)}</route>")
+    track = read_track(path)
+    assert track.wait.tolist() == [0.0, 3900.0, 0.0]
+    assert track.depart == evaluate(track, ship=ship(5.0), sea=Sea.calm()).depart
+    assert track.depart == 1772344800.0
+
+
+@pytest.mark.parametrize(
+    ("text", "note"),
+    [
+        (f"<route><waypoints>{POINTS}</waypoints></route>", "do not belong together"),
+        (f"{HEAD}<waypoints>{POINTS.replace('50.1', '50,1')}</waypoints></route>", "decimal comma"),
+        (f"{HEAD}<waypoints>{POINTS}</waypoints></route>".replace('"2"', '"1"'), "no id"),
+        (
+            f"{HEAD}<waypoints>{POINTS}</waypoints>".replace("1/0", "1/2")
+            .replace('"1.0"', '"1.2"')
+            .replace(' revision="0"', "")
+            + "</route>",
+            "no revision",
+        ),
+        (
+            f"{HEAD}<waypoints>{POINTS}</waypoints>".replace(
+                'lon="-5"/></waypoint>', 'lon="-5"/><leg geometryType="Curve"/></waypoint>'
+            )
+            + "</route>",
+            "geometry 'Curve'",
+        ),
+        (
+            f"{HEAD}<waypoints>{POINTS}</waypoints>"
+            + schedule('<scheduleElement waypointId="9" etd="2026-03-01T06:00:00Z"/>')
+            + "</route>",
+            "does not have",
+        ),
+    ],
+)
+def test_what_differs_from_the_standard_is_noted(tmp_path, text, note):
+    path = tmp_path / "a.rtz"
+    path.write_text(text)
+    with pytest.warns(ThalwegWarning, match=note):
+        track = read_track(path, depart=0)
+    assert track.lat.tolist() == [50.0, 50.1, 50.2]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("<route", "cannot be read"),
+        ('<!DOCTYPE a [<!ENTITY x "y">]><route>&x;</route>', "cannot be read"),
+        (f"{HEAD}</route>", "no route"),
+        (f"{HEAD}<waypoints>{POINTS[:80]}</waypoints></route>".replace("</w", "</w", 1), "."),
+        (f"{HEAD}<waypoints>{POINTS.replace('50.1', 'x')}</waypoints></route>", "not a number"),
+        (f"{HEAD}<waypoints>{POINTS.replace('50.1', '95')}</waypoints></route>", "beyond 90"),
+    ],
+)
+def test_what_is_no_rtz_is_refused(tmp_path, text, message):
+    path = tmp_path / "a.rtz"
+    path.write_text(text)
+    with pytest.raises(InputError, match=message):
+        read_track(path, depart=0)
+
+
+def test_rtz_in_a_zip(tmp_path, monkeypatch):
+    path = tmp_path / "a.rtzp"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("a.rtz", f"{HEAD}<waypoints>{POINTS}</waypoints></route>")
+        archive.writestr("note.txt", "x")
+    assert len(read_track(path, depart=0)) == 3
+    monkeypatch.setattr("thalweg.route.formats.rtz_reader.LARGEST_RTZ", 100)
+    with pytest.raises(InputError, match="too large"):
+        read_track(path, depart=0)
+    path.write_text("no zip")
+    with pytest.raises(InputError, match="cannot be read"):
+        read_track(path, depart=0)
+
+
+def test_ordered_speed_counts_and_planned_speed_over_ground_does_not(tmp_path):
+    path = tmp_path / "a.rtz"
+    rows = '<scheduleElement waypointId="1" etd="2026-03-01T06:00:00Z" speed="20"/>'
+    path.write_text(f"{HEAD}<waypoints>{POINTS}</waypoints>{schedule(rows)}</route>")
+    with pytest.warns(ThalwegWarning, match="not used"):
+        track = read_track(path)
+    assert np.isnan(track.speed).all()
+    sailed = evaluate(track, ship=ship(5.0), sea=Sea.calm())
+    assert sailed.legs["ordered_speed"][0] == pytest.approx(5.0)
+    assert sailed.distance_nm / sailed.time_h == pytest.approx(5.0 / KNOT, rel=1e-6)
+
+
+def test_samples_of_the_reference_data_are_read():
+    folder = data_file("rtz/samples")
+    read, refused = {}, []
+    for path in sorted(folder.rglob("*.rtz*")):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ThalwegWarning)
+            try:
+                read[path.name] = read_track(path, depart=0)
+            except InputError:
+                refused.append(path.name)
+    assert len(read) >= 20 and len(refused) <= 4
+    # 1.2: six waypoints over the Pacific, the Tasman Sea and both capes
+    assert read["JPNGO_STLAW_BASIC_RTZ.rtz"].lat[-1] == pytest.approx(44.55386667)

@@ -1,0 +1,89 @@
+"""Tidal constituents as a sea, and clear refusals for series of one station."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.sea import hydrodynamic_runs as hydro
+from tests.sea.small_datasets import EAST, NORTH, regular
+from thalweg.core.errors import DatasetError, InputError
+from thalweg.core.time import format_time
+from thalweg.sea import Sea
+from thalweg.sea.tides.constituent_files import write_constituents
+from thalweg.sea.tides.constituents import Constituents
+
+LEVEL = "sea_surface_height_above_geopotential_datum"
+
+
+def constants(nodes: int) -> Constituents:
+    lat = np.array([50.0, 50.0, 51.0, 51.0])[:nodes]
+    lon = np.array([2.0, 3.0, 2.0, 3.0])[:nodes]
+    amplitude = np.full((1, nodes), 1.5)
+    phase = np.full((1, nodes), 40.0)
+    return Constituents(
+        ("M2",), {LEVEL: amplitude}, {LEVEL: phase}, {LEVEL: np.zeros(nodes)}, lat, lon
+    )
+
+
+def test_the_analysis_of_a_model_run_is_a_sea(tmp_path) -> None:
+    path = tmp_path / "run.json"
+    write_constituents(constants(4), path)
+    sea = Sea.open(path)
+    got = sea.sample([LEVEL], hydro.T0 + 3600.0 * np.arange(24.0), 50.4, 2.3)[LEVEL]
+    assert np.ptp(got) == pytest.approx(3.0, rel=0.15)
+    expected = Sea.from_tides(constants(4)).sample([LEVEL], hydro.T0, 50.4, 2.3)[LEVEL]
+    assert float(sea.sample([LEVEL], hydro.T0, 50.4, 2.3)[LEVEL]) == pytest.approx(float(expected))
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_tides_and_files_keep_their_order_of_priority(tmp_path, first) -> None:
+    write_constituents(constants(4), tmp_path / "run.json")
+    data = regular(
+        lat=(50.0, 51.0),
+        lon=(2.0, 3.0),
+        fields={"zos": {"units": "m"}},
+        field=lambda t, y, x: 9.0 + 0.0 * (t + y + x),
+    )
+    data.to_netcdf(tmp_path / "level.nc")
+    names = ["run.json", "level.nc"] if first else ["level.nc", "run.json"]
+    sea = Sea.open(*(tmp_path / n for n in names))
+    start = sea.period_of([LEVEL])
+    time = float(data["time"].values[0])
+    assert start == (-np.inf, np.inf)
+    got = float(sea.sample([LEVEL], time, 50.5, 2.5)[LEVEL])
+    assert (got == 9.0) is not first
+
+
+def test_the_tide_of_one_station_is_refused_with_what_to_do(tmp_path) -> None:
+    write_constituents(constants(1), tmp_path / "gauge.json")
+    with pytest.raises(InputError, match=r"one station.*area="):
+        Sea.open(tmp_path / "gauge.json")
+
+
+@pytest.mark.parametrize("header", ["time,water_level", "time,current_east,current_north"])
+def test_a_series_of_one_station_is_refused_with_what_to_do(tmp_path, header) -> None:
+    rows = [header]
+    for hour in range(48):
+        values = ",".join(["0.5"] * header.count(","))
+        rows.append(f"{format_time(hydro.T0 + 3600.0 * hour)},{values}")
+    (tmp_path / "gauge.csv").write_text("\n".join(rows))
+    with pytest.raises(InputError, match=r"series of one station.*tides analyse"):
+        Sea.open(tmp_path / "gauge.csv")
+
+
+def test_other_text_is_still_no_data(tmp_path) -> None:
+    (tmp_path / "zones.json").write_text('{"type": "FeatureCollection", "features": []}')
+    with pytest.raises(DatasetError, match="not in a known format"):
+        Sea.open(tmp_path / "zones.json")
+
+
+def test_a_mapping_needs_the_files_together(tmp_path) -> None:
+    write_constituents(constants(4), tmp_path / "run.json")
+    regular(fields={"a": {"units": "m"}}).to_netcdf(tmp_path / "a.nc")
+    regular(fields={"b": {"units": "m/s"}, "c": {"units": "m/s"}}).to_netcdf(tmp_path / "b.nc")
+    mapping = {"sea_surface_wave_significant_height": "a", EAST: "b", NORTH: "c"}
+    paths = [tmp_path / n for n in ("a.nc", "run.json", "b.nc")]
+    with pytest.raises(InputError, match="first or last"):
+        Sea.open(*paths, mapping=mapping)
+    assert EAST in Sea.open(*paths[::2], paths[1], mapping=mapping).variables

@@ -1,0 +1,211 @@
+"""Certified lower bounds: below every known optimum and near it; the check itself, repeated."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from thalweg.chart import Chart
+from thalweg.core.geodesy import direct, distance
+from thalweg.core.limits import Limits
+from thalweg.kernels import codes
+from thalweg.sea import Sea
+from thalweg.search.certificate import time_certificate
+from thalweg.search.certificate.barrier_mesh import ShipInBarrier
+from thalweg.search.certificate.time_certificate import (
+    PassageToBound,
+    TimeCertificate,
+    certify_time,
+)
+from thalweg.ship import PerformanceTable, Ship, TableError, TablePart
+
+EAST, NORTH = "eastward_sea_water_velocity", "northward_sea_water_velocity"
+CURRENTS = (codes.CURRENT_EAST, codes.CURRENT_NORTH)
+START, GOAL = (10.0, 20.0), (10.5, 21.5)
+SPEED = 5.0
+
+
+def ship_of_one_speed(speed: float, limits: Limits | None = None) -> ShipInBarrier:
+    part = TablePart((), (), np.array([speed], np.float32))
+    table = PerformanceTable((part,), np.array([speed]), "", TableError(0.0, 0.0, 0.0))
+    return ShipInBarrier(table.kernel_arrays(), 0, (limits or Limits()).array, speed)
+
+
+def sea_of(east, north, time_step: float = 0.0) -> Sea:
+    return Sea.from_functions({EAST: east, NORTH: north}, time_step=time_step)
+
+
+def bound(sea, known, *, chart=None, ship=None, ends=(START, GOAL), seconds=0.0) -> TimeCertificate:
+    ship = ship or ship_of_one_speed(SPEED)
+    channels = CURRENTS if EAST in sea.variables else ()
+    found = certify_time(
+        PassageToBound(sea, chart, ship, channels, *ends, depart=1e9, known=known),
+        seconds=seconds,
+    )
+    assert found is not None
+    return found
+
+
+def test_in_still_water_the_bound_is_the_geodesic_to_a_per_cent_and_a_half():
+    best = float(distance(*START, *GOAL)) / SPEED
+    found = bound(Sea.calm(), 1.002 * best, seconds=5.0)
+    assert 0.985 * best < found.value <= best
+
+
+@pytest.mark.parametrize("east, north", [(2.0, 0.0), (-1.5, 1.0), (0.0, -3.0)])
+def test_in_a_uniform_current_the_bound_is_that_of_the_current_triangle(east, north):
+    length = float(distance(*START, *GOAL))
+    lat, lon = (np.array([a, b]) for a, b in zip(START, GOAL))
+    course = math.atan2(math.radians(lon[1] - lon[0]) * math.cos(math.radians(lat.mean())),
+                        math.radians(lat[1] - lat[0]))  # fmt: skip
+    along = east * math.sin(course) + north * math.cos(course)
+    across = east * math.cos(course) - north * math.sin(course)
+    best = length / (along + math.sqrt(SPEED**2 - across**2))
+    sea = sea_of(lambda t, y, x: east + 0 * x, lambda t, y, x: north + 0 * x)
+    found = bound(sea, 1.003 * best)
+    assert 0.97 * best < found.value <= 1.001 * best  # the course is that of a plane
+
+
+def test_in_a_current_that_turns_with_the_tide_the_bound_follows_the_times():
+    """A uniform current u(t): the ship arrives when the drift and V t together make the way."""
+    period, strength = 12.42 * 3600.0, 2.5
+    length = float(distance(0.0, 0.0, 0.0, 2.0))
+
+    def drift(t):  # integral of strength * cos(2 pi t / period)
+        return strength * period / (2 * np.pi) * np.sin(2 * np.pi * t / period)
+
+    times = np.linspace(0.0, 2e5, 2_000_001)
+    best = float(times[np.argmax(drift(times) + SPEED * times >= length)])
+    sea = sea_of(
+        lambda t, y, x: strength * np.cos(2 * np.pi * (t - 1e9) / period) + 0 * x,
+        lambda t, y, x: 0 * x,
+        time_step=1800.0,
+    )
+    found = bound(sea, 1.003 * best, ends=((0.0, 0.0), (0.0, 2.0)))
+    assert 0.95 * best < found.value <= 1.0005 * best
+
+
+@pytest.mark.slow
+def test_a_jet_beside_the_way_is_bounded_from_below():
+    """A jet of 4.5 m/s, 1.5 km half-width, 11.1 km off: 9.706 h is the optimum, 8.3 h all jet."""
+    wide = math.degrees(300e3 / 6378137.0)
+    sea = sea_of(
+        lambda t, y, x: 4.5 * np.exp(-(((y * 110574.0 - 11100.0) / 1800.0) ** 2)) + 0 * x,
+        lambda t, y, x: 0 * x,
+    )
+    found = bound(sea, 9.777 * 3600.0, ends=((0.0, 0.0), (0.0, wide)), seconds=20.0)
+    assert 0.94 * 9.706 < found.value / 3600.0 <= 9.706
+
+
+def test_land_between_lengthens_the_bound():
+    wall = {
+        "type": "Polygon",
+        "coordinates": [[[20.7, 9.0], [20.8, 9.0], [20.8, 10.6], [20.7, 10.6], [20.7, 9.0]]],
+    }
+    chart = Chart.from_geojson(wall)
+    ends = (10.0, 20.0), (10.0, 21.5)
+    corner = [(10.6, 20.7), (10.6, 20.8)]
+    legs = [ends[0], *corner, ends[1]]
+    best = sum(float(distance(*a, *b)) for a, b in itertools.pairwise(legs)) / SPEED
+    straight = float(distance(*ends[0], *ends[1])) / SPEED
+    found = bound(Sea.calm(), 1.002 * best, chart=chart, ends=ends, seconds=0.1)
+    assert 1.1 * straight < 0.96 * best < found.value <= best
+
+
+def test_a_limit_of_waves_closes_water_to_the_bound_as_to_the_ship():
+    """High waves all over a strip of the way: a ship with a limit goes round, as by land."""
+    names = "sea_surface_wave_significant_height"
+    sea = Sea.from_functions(
+        {names: lambda t, y, x: np.where((abs(x - 20.75) < 0.08) & (y < 10.6), 9.0, 1.0)},
+        time_step=0,
+    )
+    ends = (10.0, 20.0), (10.0, 21.5)
+    straight = float(distance(*ends[0], *ends[1])) / SPEED
+    limited = ship_of_one_speed(SPEED, Limits(wave_height=5.0))
+    passages = [
+        PassageToBound(sea, None, ship, (codes.WAVE_HEIGHT_CHANNEL,), *ends, 1e9, 1.4 * straight)
+        for ship in (limited, ship_of_one_speed(SPEED))
+    ]
+    closed, free = (certify_time(one, seconds=0.0) for one in passages)
+    assert free.value <= straight < 1.1 * straight < closed.value
+
+
+@pytest.mark.slow
+def test_no_ship_crosses_the_barrier_backwards_in_wind(monkeypatch):
+    """The check, repeated: at random points, times from the barrier, headings and the ship's own
+    table, the barrier never rises faster than time.
+    """
+    monkeypatch.setattr(time_certificate, "_FIRST_CELLS", 80)
+    ship = Ship.load("handysize-bulker")
+    table, setting = ship.tabulate(), len(ship.speeds) - 1
+    depart = 1e9
+    sea = Sea.from_functions(
+        {
+            "eastward_wind": lambda t, y, x: 12.0 * np.sin(x + y / 2.0 + (t - depart) / 20_000.0),
+            "northward_wind": lambda t, y, x: 14.0 * np.cos(x / 2.0 - y),
+        },
+        time_step=10_800.0,
+    )
+    ends = (46.0, -35.0), (49.0, -20.0)
+    top = float(ship.top_speed(setting))
+    length = float(distance(*ends[0], *ends[1]))
+    names = {codes.WIND_EAST: "eastward_wind", codes.WIND_NORTH: "northward_wind"}
+    barrier = ShipInBarrier(table.kernel_arrays(), setting, Limits().array, top)
+    passage = PassageToBound(sea, None, barrier, tuple(names), *ends, depart, 1.15 * length / top)
+    found = certify_time(passage, seconds=0.0)
+    rate = _rates_at_random_points(found, ship=table, setting=setting, count=20_000)
+    assert found.value > 0.99 * length / top
+    assert np.nanmax(rate) <= 1.0 + 1e-6
+    assert np.nanpercentile(rate, 99) > 0.9  # the barrier is steep where it matters
+
+
+def _rates_at_random_points(found: TimeCertificate, *, ship, setting: int, count: int):
+    """Return rates of the barrier along motions, from the raster by NumPy alone."""
+    rng = np.random.default_rng(8)
+    mesh, barrier, raster = found.mesh, found.barrier, found.mesh.world.raster
+    phi, centre = barrier.phi, barrier.centre
+    cells = np.argwhere(found.task.band & (phi[:-1, :-1] + found.task.other < found.task.known))
+    j, i = cells[rng.integers(len(cells), size=count)].T
+    y, x = rng.uniform(size=(2, count))
+    a, b, c, d, m = phi[j, i], phi[j, i + 1], phi[j + 1, i], phi[j + 1, i + 1], centre[j, i]
+    u, v = x - 0.5, y - 0.5
+    flat = np.abs(v) >= np.abs(u)
+    low, high = np.where(v < 0, a, c), np.where(v < 0, b, d)
+    left, right = np.where(u < 0, a, b), np.where(u < 0, c, d)
+    turn_v, turn_u = np.where(v < 0, -1, 1), np.where(u < 0, -1, 1)
+    slope_x = np.where(flat, high - low, 2 * turn_u * (0.5 * (left + right) - m))
+    slope_y = np.where(flat, 2 * turn_v * (0.5 * (low + high) - m), right - left)
+    value = m + slope_x * u + slope_y * v
+    lat = mesh.lat[j] + y * (mesh.lat[1] - mesh.lat[0])
+    north_m, east_m = direct(lat, 0.0 * lat, 0.0, 1.0), direct(lat, 0.0 * lat, math.pi / 2, 1.0)
+    p_north = slope_y / (mesh.lat[1] - mesh.lat[0]) * (north_m[0] - lat)
+    p_east = slope_x / (mesh.lon[1] - mesh.lon[0]) * east_m[1]
+    sample = {}
+    row, column = (j + y) / mesh.world.refinement, (i + x) / mesh.world.refinement
+    for channel in raster.channels:
+        sample[channel] = _interpolated(raster, raster.channel_index[channel], value, row, column)
+    wind_east, wind_north = sample[codes.WIND_EAST], sample[codes.WIND_NORTH]
+    heading = rng.uniform(0.0, 2 * np.pi, count)
+    steep = rng.uniform(size=count) < 0.5  # half of the ships steer up the barrier
+    heading = np.where(steep, np.arctan2(p_east, p_north) + rng.normal(0, 0.3, count), heading)
+    comes_from = np.arctan2(-wind_east, -wind_north)
+    angle = np.abs((comes_from - heading + np.pi) % (2 * np.pi) - np.pi)
+    where = {"wind_speed": np.hypot(wind_east, wind_north), "wind_angle": angle}
+    speed = ship.lookup(where, np.full(count, setting))
+    return speed * (p_east * np.sin(heading) + p_north * np.cos(heading))
+
+
+def _interpolated(raster, k, time, row, column):
+    step = np.clip(np.searchsorted(raster.times, time, side="right") - 1, 0, len(raster.times) - 2)
+    f = np.clip((time - raster.times[step]) / np.diff(raster.times)[step], 0.0, 1.0)
+    j, i = row.astype(int), column.astype(int)
+    y, x, values = row - j, column - i, raster.values[..., k].astype(float)
+
+    def plane(t):
+        south = values[t, j, i] * (1 - x) + values[t, j, i + 1] * x
+        return south * (1 - y) + y * (values[t, j + 1, i] * (1 - x) + values[t, j + 1, i + 1] * x)
+
+    return plane(step) * (1 - f) + plane(step + 1) * f
