@@ -8,7 +8,10 @@ import numpy as np
 
 from thalweg.kernels.compilation.jit import jit
 
-INSIDE_TOLERANCE = -1e-9  # least barycentric weight that still counts as inside
+#: Least barycentric weight that still counts as inside: positions of six decimals at the edge of a
+#: mesh are in it.
+INSIDE_TOLERANCE = -1e-3
+_BIN_MARGIN = 1e-3  # of the size of a bin, for the same reason
 
 
 @jit(inline="always")
@@ -90,10 +93,10 @@ def bin_range(x, y, t, frame, rows, columns):
     right = max(x[t, 0], x[t, 1], x[t, 2])
     low = min(y[t, 0], y[t, 1], y[t, 2])
     high = max(y[t, 0], y[t, 1], y[t, 2])
-    c1 = max(0, min(columns - 1, int((left - frame[0]) / frame[2] - 1e-6)))
-    c2 = max(0, min(columns - 1, int((right - frame[0]) / frame[2] + 1e-6)))
-    r1 = max(0, min(rows - 1, int((low - frame[1]) / frame[3] - 1e-6)))
-    r2 = max(0, min(rows - 1, int((high - frame[1]) / frame[3] + 1e-6)))
+    c1 = max(0, min(columns - 1, int((left - frame[0]) / frame[2] - _BIN_MARGIN)))
+    c2 = max(0, min(columns - 1, int((right - frame[0]) / frame[2] + _BIN_MARGIN)))
+    r1 = max(0, min(rows - 1, int((low - frame[1]) / frame[3] - _BIN_MARGIN)))
+    r2 = max(0, min(rows - 1, int((high - frame[1]) / frame[3] + _BIN_MARGIN)))
     return c1, c2, r1, r2
 
 
@@ -101,15 +104,18 @@ def bin_range(x, y, t, frame, rows, columns):
 def find_triangles(px, py, x, y, frame, shape, start, items, triangle, weight):
     """Find the triangle that holds each point and its barycentric weights.
 
-    ``triangle`` (N,) gets -1 where there is none; ``weight`` (N, 3) sums to 1.
+    ``triangle`` (N,) gets -1 where there is none; ``weight`` (N, 3) sums to 1. Just outside the
+    mesh (`INSIDE_TOLERANCE`) the nearest triangle is used, with no weight below 0.
     """
     rows, columns = shape
     for i in range(px.shape[0]):
         triangle[i] = -1
         fc = (px[i] - frame[0]) / frame[2]
         fr = (py[i] - frame[1]) / frame[3]
-        if not (fc >= -1e-6 and fr >= -1e-6 and fc <= columns + 1e-6 and fr <= rows + 1e-6):
+        over, under = columns + _BIN_MARGIN, rows + _BIN_MARGIN
+        if not (-_BIN_MARGIN <= fc <= over and -_BIN_MARGIN <= fr <= under):
             continue
+        best = INSIDE_TOLERANCE
         b = min(rows - 1, max(0, int(fr))) * columns + min(columns - 1, max(0, int(fc)))
         for k in range(start[b], start[b + 1]):
             t = items[k]
@@ -123,12 +129,15 @@ def find_triangles(px, py, x, y, frame, shape, start, items, triangle, weight):
             w1 = (qx * cy - qy * cx) / area
             w2 = (bx * qy - by * qx) / area
             w0 = 1.0 - w1 - w2
-            if w0 >= INSIDE_TOLERANCE and w1 >= INSIDE_TOLERANCE and w2 >= INSIDE_TOLERANCE:
+            least = min(w0, w1, w2)
+            if least > best:
+                best = least
                 w0, w1, w2 = max(w0, 0.0), max(w1, 0.0), max(w2, 0.0)
                 total = w0 + w1 + w2
                 weight[i, 0], weight[i, 1], weight[i, 2] = w0 / total, w1 / total, w2 / total
                 triangle[i] = t
-                break
+                if least >= 0.0:
+                    break
 
 
 @jit

@@ -15,16 +15,22 @@ from thalweg.core.time import TimeLike
 from thalweg.planning.plots.route_profile import draw_profile
 from thalweg.planning.plots.space_time_diagram import write_space_time_diagram
 from thalweg.planning.plots.voyage_map import draw_map
+from thalweg.planning.request.requirements import required_under_keel_clearance
 from thalweg.route import (
     Route,
     RouteFileOptions,
+    evaluate,
     write_csv,
     write_geojson,
     write_gpx,
     write_rtz,
 )
+from thalweg.route.formats.file_route import file_track
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.sea_maps import draw_maps, map_area
+
+#: Share of the thinning and decimals of positions, tried in turn while a file breaks a limit.
+_FINER_FILES = ((1.0, 6), (1.0, 8), (0.1, 8), (0.0, 8))
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData
@@ -58,7 +64,8 @@ def write_plan(
     folder = make_folder(folder)
     options = _of_plan(plan, options or RouteFileOptions())
     plan.to_json(folder / "plan.json")
-    files = [folder / "plan.json", *_write_formats(plan.best, folder, options)]
+    best = keeping_limits(plan, plan.best, options)
+    files = [folder / "plan.json", *_write_formats(plan.best, folder, best)]
     draw_map(plan, folder / "map.png", beside=beside)
     draw_profile(plan.best, folder / "profile.png")
     files += [folder / "map.png", folder / "profile.png", *write_space_time_diagram(plan, folder)]
@@ -70,6 +77,52 @@ def _of_plan(plan: PlanData, options: RouteFileOptions) -> RouteFileOptions:
     start, goal = (str(plan.provenance.get(key) or "") for key in ("from", "to"))
     chart = plan.plot_context.chart if plan.plot_context is not None else None
     return replace(options, chart=chart, start=start, goal=goal)
+
+
+def keeping_limits(plan: PlanData, route: Route, options: RouteFileOptions) -> RouteFileOptions:
+    """Return options whose route files keep the limits of the plan where its depth is known.
+
+    Few waypoints of six decimals may leave a narrow gully by metres. The track of the file is
+    therefore scored by the referee; while it breaks a limit, fewer waypoints are left out and more
+    decimals written.
+
+    Parameters
+    ----------
+    plan : PlanData
+    route : Route
+        One of its routes.
+    options : RouteFileOptions
+
+    Returns
+    -------
+    RouteFileOptions
+        The options given where no finer ones help, the route has no known clearance or has legs in
+        canals or port approaches, or a number of waypoints was given.
+    """
+    context, voyage = plan.plot_context, plan.voyage
+    clearance = route.legs["under_keel_clearance"]
+    own = np.any(route.legs.get("leg_kind", 0))
+    if context is None or options.max_waypoints is not None or not route.feasible or own:
+        return options
+    if not np.isfinite(clearance).any():
+        return options
+    for share, decimals in _FINER_FILES:
+        tried = replace(
+            options,
+            thinning=share * options.thinning,
+            decimals=max(decimals, options.decimals),
+        )
+        again = evaluate(
+            file_track(route, tried),
+            ship=context.ship,
+            sea=context.sea,
+            chart=context.chart,
+            min_ukc=required_under_keel_clearance(voyage, context.ship),
+            strict=False,
+        )
+        if again.feasible:
+            return tried
+    return options
 
 
 def _write_front(plan: PlanData, folder: Path, options: RouteFileOptions) -> list[Path]:
@@ -85,7 +138,8 @@ def _write_front(plan: PlanData, folder: Path, options: RouteFileOptions) -> lis
         files.append(_write_table(front.comparison.rows, folder / "comparison.csv"))
     each = make_folder(folder / "routes")
     for number, route in enumerate(plan.routes, start=1):
-        files += _write_formats(route, each, options, f"route_{number:02d}")
+        own = keeping_limits(plan, route, options)
+        files += _write_formats(route, each, own, f"route_{number:02d}")
     return files
 
 

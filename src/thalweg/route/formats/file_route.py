@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from thalweg.core.rhumb_lines import inverse_rhumb
 from thalweg.core.types import FloatArray, IntArray
-from thalweg.route.formats.file_waypoints import DECIMALS, FileVertices, file_vertices
+from thalweg.route.formats.file_waypoints import FileVertices, file_vertices
 from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.formats.waypoint_names import waypoint_names
 from thalweg.route.route import Route
@@ -77,7 +77,7 @@ def file_route(route: Route, options: RouteFileOptions | None = None) -> FileRou
     rows = [
         {
             "name": name,
-            **{k: _rounded(k, v) for k, v in row.items()},
+            **{k: _rounded(k, v, options.decimals) for k, v in row.items()},
             "course_deg": round(bearing, 2),
         }
         for name, row, bearing in zip(names, rows, bearings)
@@ -85,9 +85,34 @@ def file_route(route: Route, options: RouteFileOptions | None = None) -> FileRou
     return FileRoute(rows, vertices.cross_track)
 
 
-def _rounded(name: str, value: Any) -> Any:
+def file_track(route: Route, options: RouteFileOptions | None = None) -> Track:
+    """Return the track that a reader of the files of a route sails.
+
+    Parameters
+    ----------
+    route : Route
+    options : RouteFileOptions, optional
+
+    Returns
+    -------
+    Track
+
+    Raises
+    ------
+    InputError
+        If the route needs more waypoints than the options allow.
+    """
+    cut = _cut(route, file_vertices(route, options or RouteFileOptions()))
+    return replace(cut.track, speed=cut.legs["ordered_speed"])
+
+
+def _rounded(name: str, value: Any, decimals: int) -> Any:
     """Return a value with the decimals that mean something."""
-    digits = DECIMALS if name in ("lat", "lon", "waiting_h", "ordered_speed_kn") else 3
+    digits = 3
+    if name in ("lat", "lon"):
+        digits = decimals
+    elif name in ("waiting_h", "ordered_speed_kn"):
+        digits = 6
     return round(value, digits) if isinstance(value, float) else value
 
 

@@ -23,8 +23,6 @@ from thalweg.route.formats.parsed_track import RHUMB_DEVIATION
 from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.route import Route
 
-DECIMALS = 6  #: of positions in files [deg]; 0.1 m
-_THINNING_SHARE = 0.1  # of the cross-track limit, for leaving out waypoints
 _SAME_SPEED = 0.01 * KNOT  # differences of ordered speeds below this are none [m/s]
 _SAME_PLACE = 20.0  # waypoints closer than this are one [m]
 _CLEARING_SHARES = (1.0, 0.2, 0.04, 0.01)  # of the limit, tried in turn beside land
@@ -98,7 +96,7 @@ def file_vertices(route: Route, options: RouteFileOptions) -> FileVertices:
 
 
 def _vertices(route: Route, options: RouteFileOptions, limit: float) -> FileVertices:
-    thinning = _THINNING_SHARE * limit
+    thinning = options.thinning * limit
     kept = _thinned(route, options, thinning)
     lats, lons, places = [], [], []
     start = np.concatenate([[0.0], np.cumsum(route.legs["length"])])
@@ -108,8 +106,8 @@ def _vertices(route: Route, options: RouteFileOptions, limit: float) -> FileVert
         lons.append(lon[:-1])
         places.append(np.linspace(start[first], start[last], len(lat))[:-1])
     track = route.track
-    lat = np.round(np.concatenate([*lats, track.lat[-1:]]), DECIMALS)
-    lon = np.round(np.concatenate([*lons, track.lon[-1:]]), DECIMALS)
+    lat = np.round(np.concatenate([*lats, track.lat[-1:]]), options.decimals)
+    lon = np.round(np.concatenate([*lons, track.lon[-1:]]), options.decimals)
     lon = np.where(lon >= 180.0, lon - 360.0, lon)
     lat, lon = _off_land(options, lat, lon)
     at = np.concatenate([*places, start[-1:]])
@@ -217,7 +215,7 @@ def _off_land(
         here = lat[index], lon[index]
         for metres, bearing in itertools.product(_MOVES, bearings):
             moved = direct(*here, bearing, metres)
-            lat[index], lon[index] = (np.round(float(x), DECIMALS) for x in moved)
+            lat[index], lon[index] = (np.round(float(x), options.decimals) for x in moved)
             if not _touches_land(options, lat[near], lon[near], RHUMB_DEVIATION):
                 break
         else:

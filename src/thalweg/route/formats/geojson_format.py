@@ -14,7 +14,6 @@ from thalweg.core.geodesy import Position, densify, positions_along
 from thalweg.core.time import parse_time
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route.formats.file_route import file_route
-from thalweg.route.formats.file_waypoints import DECIMALS
 from thalweg.route.formats.parsed_track import ParsedTrack, position_of, waypoint_order
 from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.route import Route
@@ -96,10 +95,11 @@ def write_geojson(route: Route, path: str | Path, options: RouteFileOptions | No
     options : RouteFileOptions, optional
         Names and waypoints.
     """
+    options = options or RouteFileOptions()
     written = file_route(route, options)
     totals = {k: v for k, v in route.as_dict().items() if k not in ("waypoints", "violations")}
     totals["cross_track_error_m"] = round(written.cross_track_m, 1)
-    parts = _line_parts(route)
+    parts = _line_parts(route, options.decimals)
     line = (
         {"type": "LineString", "coordinates": parts[0]}
         if len(parts) == 1
@@ -169,7 +169,7 @@ def _without_cuts(positions: list[Position]) -> list[Position]:
     return remaining
 
 
-def _line_parts(route: Route) -> list[list[list[float]]]:
+def _line_parts(route: Route, decimals: int) -> list[list[list[float]]]:
     """Return the line as lists of [lon, lat], split where it crosses the antimeridian."""
     track = route.track
     lat, lon, _ = densify(track.lat, track.lon, _LINE_SPACING)
@@ -181,7 +181,7 @@ def _line_parts(route: Route) -> list[list[list[float]]]:
             parts[-1].append([side, crossing])
             parts.append([[-side, crossing]])
         parts[-1].append([float(there[1]), float(there[0])])
-    return [[[round(x, DECIMALS), round(y, DECIMALS)] for x, y in part] for part in parts]
+    return [[[round(x, decimals), round(y, decimals)] for x, y in part] for part in parts]
 
 
 def _crossing_latitude(here: tuple[float, float], there: tuple[float, float]) -> float:

@@ -35,6 +35,11 @@ class RouteFileOptions:
         Version of RTZ files.
     chart : Chart or None
         Rhumb lines that touch land of this chart are broken into shorter ones.
+    thinning : float
+        Waypoints this close to the line of their neighbours are left out [share of the cross-track
+        limit], 0 to 1.
+    decimals : int
+        Decimals of positions [deg], 5 to 9; six are 0.1 m.
 
     Raises
     ------
@@ -49,6 +54,8 @@ class RouteFileOptions:
     max_waypoints: int | None = None
     rtz_version: str = "1.2"
     chart: Chart | None = None
+    thinning: float = 0.1
+    decimals: int = 6
 
     def __post_init__(self) -> None:
         spacing, most = self.spacing_nm, self.max_waypoints
@@ -69,6 +76,12 @@ class RouteFileOptions:
                 f"A route of at most {most} waypoints was requested.",
                 "A route has at least two waypoints.",
                 "Give a larger number, or leave it out.",
+            )
+        if not (0.0 <= self.thinning <= 1.0 and 5 <= self.decimals <= 9):
+            raise InputError(
+                f"Thinning by {self.thinning:g} and {self.decimals} decimals were requested.",
+                "Thinning is a share of the limit, 0 to 1; positions have 5 to 9 decimals.",
+                "Correct them, or leave them out.",
             )
         if self.rtz_version not in RTZ_VERSIONS:
             raise InputError(
