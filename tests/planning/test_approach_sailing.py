@@ -1,6 +1,7 @@
 """Voyages from berth to berth: approaches at fixed speed, counted in every total."""
 
 import functools
+import itertools
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -14,8 +15,10 @@ from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
 from thalweg.planning.request.voyage_endpoints import resolve_endpoint, without_approach
+from thalweg.route import RouteFileOptions
 from thalweg.route.canal_legs import approach_speed
 from thalweg.route.formats.csv_format import write_csv
+from thalweg.route.formats.file_route import file_route
 from thalweg.route.formats.geojson_format import write_geojson
 from thalweg.route.formats.gpx_format import write_gpx
 
@@ -91,6 +94,18 @@ def test_a_written_route_has_the_same_totals_when_it_is_read_back(form, tmp_path
     assert rows[0]["leg_kind"] == "approach"
     assert rows[-1]["leg_kind"] is None
     assert len(again.track) == len(rows)
+
+
+def test_parts_of_a_divided_leg_have_its_kind():
+    route = planned().best
+    rows = file_route(route, RouteFileOptions(spacing_nm=0.5)).rows
+    assert len(rows) > 3 * len(route.waypoints())
+    kinds = [row["leg_kind"] for row in rows[:-1]]
+    assert set(kinds) == {"approach", "sea"}  # a part was once called a canal
+    turns = [a for a, b in itertools.pairwise([*kinds, ""]) if a != b]
+    assert turns == ["approach", "sea", "approach"]
+    held = {row["held"] for row in rows[:-1] if row["leg_kind"] == "approach"}
+    assert held == {"constant speed over ground"}
 
 
 def test_rotterdam_leaves_by_the_maas_and_not_by_the_haringvliet():

@@ -81,13 +81,18 @@ def _add_route_file_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
-def add_hold_option(parser: argparse.ArgumentParser) -> None:
-    """Add ``--hold``: what the engine holds at the speed of ``--speed``."""
+def add_hold_option(parser: argparse.ArgumentParser, *, with_arrival: bool = False) -> None:
+    """Add ``--hold``: what is held at the speed of ``--speed``, or ``--arrive`` where it exists."""
+    text = (
+        "what is held at --speed: the power that makes this speed in calm water, or the speed "
+        "through water itself while the power allows"
+    )
+    if with_arrival:
+        text += "; or ground, at the speed that arrives at --arrive: the speed over ground"
     parser.add_argument(
         "--hold",
-        choices=("power", "speed"),
-        help="what the engine holds at --speed: the power that makes this speed in calm water, or "
-        "the speed through water itself while the power allows; default: as the ship file orders",
+        choices=("power", "speed", "ground") if with_arrival else ("power", "speed"),
+        help=f"{text}; default: as the ship file orders",
     )
 
 

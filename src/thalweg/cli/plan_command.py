@@ -65,13 +65,20 @@ def _add_time_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--arrive-by", metavar="TIME", help="latest arrival (ISO 8601, UTC)")
     parser.add_argument(
+        "--arrive",
+        metavar="TIME",
+        help="arrival (ISO 8601, UTC): with --depart the one speed that arrives then (see --hold), "
+        "without it the latest departure at --speed or the highest speed; with --objective fuel, "
+        "energy, cost, co2 or front the same as --arrive-by",
+    )
+    parser.add_argument(
         "--speed",
         type=float,
         metavar="KN",
         help="ordered speed through calm water [kn], also between the settings of the ship file; "
         "default: its highest (for time and distance), or a choice leg by leg",
     )
-    options.add_hold_option(parser)
+    options.add_hold_option(parser, with_arrival=True)
     parser.add_argument(
         "--speed-block",
         type=float,
@@ -181,7 +188,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Plan the voyage, print it and write its files."""
     from thalweg.planning import plan
     from thalweg.planning.request.early_checks import check_request
-    from thalweg.planning.request.ordered_speed import with_ordered_speed
+    from thalweg.planning.request.ordered_speed import with_exact_speed, with_ordered_speed
     from thalweg.route import with_wind_speed
 
     option_values.prepare_output_folder(arguments)
@@ -189,8 +196,11 @@ def run(arguments: argparse.Namespace) -> int:
     resolution = option_values.resolution_m(arguments.resolution)
     option_values.check_chart_files(arguments)
     ship = option_values.with_given_prices(option_values.open_ship(arguments), arguments)
-    ship = option_values.with_held_order(ship, arguments)
-    with_ordered_speed(ship, arguments.speed)  # refuses a speed before data are opened
+    if arguments.speed is not None:  # a speed is refused before data are opened
+        if arguments.hold is None:
+            with_ordered_speed(ship, arguments.speed)
+        else:
+            with_exact_speed(ship, arguments.speed, arguments.hold)
     sea = option_values.open_sea(arguments)
     voyage = _voyage(arguments, sea, ship)
     if not sea.members:
@@ -225,7 +235,7 @@ def _voyage(arguments: argparse.Namespace, sea: Sea, ship: Ship) -> Voyage:
     from thalweg.planning import Voyage
 
     depart = arguments.depart
-    if depart is None and arguments.depart_window is None:
+    if depart is None and arguments.depart_window is None and arguments.arrive is None:
         depart = _default_departure(arguments, sea, ship)
     return Voyage(
         start=arguments.start,
@@ -234,9 +244,11 @@ def _voyage(arguments: argparse.Namespace, sea: Sea, ship: Ship) -> Voyage:
         depart=depart,
         depart_window=tuple(arguments.depart_window) if arguments.depart_window else None,
         arrive_by=arguments.arrive_by,
+        arrive=arguments.arrive,
         objective=arguments.objective,
         wait=arguments.wait,
         speed_kn=arguments.speed,
+        hold=arguments.hold,
         speed_block_h=arguments.speed_block,
         min_ukc_m=arguments.ukc,
         seed=arguments.seed,

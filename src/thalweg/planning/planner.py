@@ -37,7 +37,7 @@ from thalweg.planning.request.coverage_check import check_argument_types, endpoi
 from thalweg.planning.request.early_checks import check_request
 from thalweg.planning.request.network_choice import NetworkBuilder, NetworkChoice
 from thalweg.planning.request.offing_choice import chosen_offing, restrict_passages
-from thalweg.planning.request.ordered_speed import ordered_setting, with_ordered_speed
+from thalweg.planning.request.ordered_speed import ordered_setting, with_order
 from thalweg.planning.request.requirements import derive_requirements
 from thalweg.planning.request.voyage_endpoints import (
     Endpoint,
@@ -108,7 +108,25 @@ def plan(
     """
     chart = Chart.gshhg("i") if chart is None else chart
     check_argument_types(voyage, ship, sea, chart)
-    ship = with_ordered_speed(with_voyage_prices(ship, voyage), voyage.speed_kn)
+    ship = with_voyage_prices(ship, voyage)
+    if voyage.arrive is not None:
+        from thalweg.planning.arrival_planner import ArrivalRequest, plan_arrival
+
+        def plan_at_speed(request: Voyage, with_speed: Ship) -> Plan:
+            return plan(
+                request,
+                ship=with_speed,
+                sea=sea,
+                chart=chart,
+                network=network,
+                resolution=resolution,
+                proof=proof,
+                progress=progress,
+            )
+
+        check_request(voyage, ship, with_wind_speed(ship, sea))
+        return plan_arrival(ArrivalRequest(voyage, ship, sea, chart, plan_at_speed))
+    ship = with_order(ship, voyage)
     if sea.members:
         from thalweg.planning.ensemble_plan import plan_ensemble
 

@@ -16,9 +16,10 @@ from thalweg.planning.voyage_parts import Itinerary, Schedule, SearchRequest, Vo
 
 #: The entries of a voyage in the order of its files.
 _ENTRIES: Final = (
-    "start", "goal", "depart", "depart_window", "objective", "via", "arrive_by", "wait",
-    "speed_kn", "min_ukc_m", "seed", "fuel_price_usd", "eca_price_factor", "time_price_usd_per_h",
-    "forbid", "open", "avoid", "offing_nm", "method", "ensemble", "speed_block_h",
+    "start", "goal", "depart", "depart_window", "objective", "via", "arrive_by", "arrive", "wait",
+    "speed_kn", "hold", "min_ukc_m", "seed", "fuel_price_usd", "eca_price_factor",
+    "time_price_usd_per_h", "forbid", "open", "avoid", "offing_nm", "method", "ensemble",
+    "speed_block_h",
 )  # fmt: skip
 
 
@@ -46,10 +47,18 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
         Places to pass, in this order.
     arrive_by : time, optional
         Latest arrival.
+    arrive : time, optional
+        Arrival. With a departure the ship holds one speed or power (`hold`) that arrives in the
+        minute before this time; without one the latest departure is found, at `speed_kn` or the
+        highest speed. With an objective that chooses speeds it is the latest arrival.
     wait : bool
         Whether the ship may stop and wait (for a tide, for weather).
     speed_kn : float, optional
         Ordered speed through water in calm water [kn]; by default the highest of the ship.
+    hold : {"speed", "power", "ground"}, optional
+        What is held at `speed_kn` or at the speed found for `arrive`: the speed through water as
+        long as the power allows, the power, or (with `arrive` and `depart`) the speed over ground.
+        By default as the ship file orders.
     min_ukc_m : float, optional
         Least under-keel clearance [m]; by default the limit of the ship file, else zero. Where the
         chart or the sea provides depth, water of unknown depth is forbidden. Where neither does, a
@@ -95,6 +104,7 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
         self._check_schedule()
         self._check_prices()
         self._check_search()
+        self._check_order()
         if self.chooses_speeds and self.depart_window is not None:
             raise InputError(
                 f"A departure window is given with the objective {self.objective!r}.",
@@ -102,6 +112,40 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
                 "the start.",
                 "Give a departure, and the latest arrival with arrive_by.",
                 field="depart_window",
+            )
+
+    def _check_order(self) -> None:
+        """Check what is held, and the speed beside a time of arrival."""
+        if self.arrive is not None and self.depart is not None and self.speed_kn is not None:
+            raise InputError(
+                "A departure, a time of arrival and a speed are given.",
+                "Two of them give the third.",
+                "Leave one of them out, or give the latest arrival with arrive_by.",
+                field="speed_kn",
+            )
+        if self.arrive is not None and self.depart is None and self.chooses_speeds:
+            raise InputError(
+                f"The latest departure is asked with the objective {self.objective!r}.",
+                "It is found at one speed, for the objectives 'time' and 'distance'.",
+                "Add the departure, or change the objective.",
+                field="arrive",
+            )
+        if self.hold is None:
+            return
+        if self.speed_kn is None and (self.arrive is None or self.chooses_speeds):
+            raise InputError(
+                f"hold {self.hold} is given without a speed.",
+                "It says what the engine holds at speed_kn (--speed), or at the speed found for "
+                "arrive (--arrive).",
+                "Add one of these, or leave out hold.",
+                field="hold",
+            )
+        if self.hold == "ground" and (self.arrive is None or self.depart is None):
+            raise InputError(
+                "A speed over ground is to be held without both times.",
+                "It follows from the departure and the arrival.",
+                "Give depart and arrive, or hold the speed through water or the power.",
+                field="hold",
             )
 
     def to_dict(self) -> dict[str, Any]:
@@ -201,7 +245,7 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
 
 
 def _plain_value(name: str, value: Any) -> Any:
-    if name in ("depart", "arrive_by"):
+    if name in ("depart", "arrive_by", "arrive"):
         return format_time(value)
     if name == "depart_window":
         return [format_time(t) for t in value]

@@ -24,6 +24,7 @@ OBJECTIVES: tuple[VoyageObjective, ...] = (
 TRADE_OFF_OBJECTIVES: tuple[VoyageObjective, ...] = ("fuel", "energy", "cost", "co2", "front")
 METHODS = ("default", "exact", "nsga2", "spea2", "mpaes")
 RISK_MEASURES = ("mean", "cvar")
+HELD = ("speed", "power", "ground")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,13 +78,20 @@ class Schedule:
     depart : time, optional
     depart_window : pair of times, optional
     arrive_by : time, optional
+    arrive : time, optional
     wait : bool
     """
 
     depart: TimeLike | None = None
     depart_window: tuple[TimeLike, TimeLike] | None = None
     arrive_by: TimeLike | None = None
+    arrive: TimeLike | None = None
     wait: bool = True
+
+    @property
+    def departure_is_open(self) -> bool:
+        """Whether the departure follows from the time of arrival."""
+        return self.depart is None and self.depart_window is None
 
     @property
     def earliest_departure(self) -> float:
@@ -99,7 +107,9 @@ class Schedule:
 
     def _check_schedule(self) -> None:
         """Check the times, and turn them into seconds since 1970."""
-        if (self.depart is None) == (self.depart_window is None):
+        if self.arrive is not None:
+            self._check_arrival()
+        elif (self.depart is None) == (self.depart_window is None):
             raise InputError(
                 "A voyage needs a departure: a time or a window, and not both.",
                 "Either depart=... or depart_window=(earliest, latest).",
@@ -107,18 +117,32 @@ class Schedule:
             )
         if self.depart_window is not None:
             object.__setattr__(self, "depart_window", _window(self.depart_window))
-        else:
-            assert self.depart is not None  # by the check above
+        elif self.depart is not None:
             object.__setattr__(self, "depart", parse_time(self.depart))
-        if self.arrive_by is not None:
-            latest = parse_time(self.arrive_by)
-            object.__setattr__(self, "arrive_by", latest)
-            if latest <= self.earliest_departure:
+        for name, words in (("arrive_by", "The latest arrival"), ("arrive", "The arrival")):
+            given = getattr(self, name)
+            if given is None:
+                continue
+            latest = parse_time(given)
+            object.__setattr__(self, name, latest)
+            if not self.departure_is_open and latest <= self.earliest_departure:
                 raise InputError(
-                    f"The latest arrival {format_time(latest)} is not after the departure "
+                    f"{words} {format_time(latest)} is not after the departure "
                     f"({format_time(self.earliest_departure)}).",
                     "A voyage arrives after it departs.",
                     "Give a later arrival or an earlier departure.",
+                )
+
+    def _check_arrival(self) -> None:
+        """Check that a time of arrival stands beside what it can be combined with."""
+        for name in ("arrive_by", "depart_window"):
+            if getattr(self, name) is not None:
+                raise InputError(
+                    f"Both arrive and {name} are given.",
+                    "arrive is a time of arrival, met by the speed (with depart) or by the "
+                    "departure (without).",
+                    "Give one of them.",
+                    field="arrive",
                 )
 
 
@@ -166,6 +190,7 @@ class SearchRequest:
     seed : int
     speed_kn : float, optional
         [kn].
+    hold : {"speed", "power", "ground"}, optional
     min_ukc_m : float, optional
         [m].
     speed_block_h : float
@@ -179,6 +204,7 @@ class SearchRequest:
     ensemble: str | None = None
     seed: int = 0
     speed_kn: float | None = None
+    hold: str | None = None
     min_ukc_m: float | None = None
     speed_block_h: float = 6.0
     offing_nm: float | None = None
@@ -202,6 +228,8 @@ class SearchRequest:
                 "Give such a number.",
                 field="seed",
             )
+        if self.hold is not None and self.hold not in HELD:
+            raise unknown_name_error("quantity to hold", str(self.hold), HELD)
         if self.method not in METHODS:
             raise unknown_name_error("method", str(self.method), METHODS)
         if self.ensemble is not None and self.ensemble not in RISK_MEASURES:

@@ -37,6 +37,10 @@ class SailedRoute(Protocol):
         """Results at the fine samples."""
 
     @property
+    def engine_order(self) -> str:
+        """What is held on the legs at sea."""
+
+    @property
     def cost_name(self) -> str:
         """Name of the column of costs."""
 
@@ -53,11 +57,12 @@ def waypoint_rows(route: SailedRoute) -> list[dict[str, Any]]:
     and conditions are those on leaving (at the last waypoint: on arriving); speeds are means over
     the time of the leg that begins there, ``ukc_m`` the least clearance on it. Distance, fuel,
     energy, CO2 and cost are sums up to the waypoint; those of each leg are in ``route.legs``.
-    ``leg_kind`` is the kind of the leg that begins there: sea, canal or approach (of a port).
+    ``leg_kind`` is the kind of the leg that begins there: sea, canal or approach (of a port), and
+    ``held`` what is constant on it: the power, the speed through water or that over ground.
     """
     columns = waypoint_columns(route)
     times = columns.pop("time")
-    kinds = _leg_kind_names(route)
+    kinds, held = _leg_kind_names(route), _held_names(route)
     return [
         {
             "lat": float(columns["lat"][i]),
@@ -65,6 +70,7 @@ def waypoint_rows(route: SailedRoute) -> list[dict[str, Any]]:
             "time": format_time(times[i]) if math.isfinite(times[i]) else None,
             **{k: none_if_nan(v[i]) for k, v in columns.items() if k not in ("lat", "lon")},
             "leg_kind": kinds[i],
+            "held": held[i],
         }
         for i in range(len(times))
     ]
@@ -79,7 +85,17 @@ def waypoint_frame(route: SailedRoute) -> pd.DataFrame:
     known = np.isfinite(time)
     stamps = np.where(known, to_datetime64(np.where(known, time, 0.0)), np.datetime64("NaT", "ns"))
     first = {"lat": columns["lat"], "lon": columns["lon"], "time": stamps}
-    return pd.DataFrame(first | columns | {"leg_kind": _leg_kind_names(route)})
+    names = {"leg_kind": _leg_kind_names(route), "held": _held_names(route)}
+    return pd.DataFrame(first | columns | names)
+
+
+def _held_names(route: SailedRoute) -> list[str | None]:
+    """Return what is constant on the leg that begins at each waypoint; None at the last one."""
+    at_sea = route.engine_order or None
+    words = {"constant speed": "constant speed through water"}
+    at_sea = words.get(at_sea, at_sea) if at_sea else None
+    kinds = _leg_kind_names(route)[:-1]
+    return [*(at_sea if kind == "sea" else "constant speed over ground" for kind in kinds), None]
 
 
 def _leg_kind_names(route: SailedRoute) -> list[str | None]:

@@ -179,6 +179,8 @@ def quality_text(plan: PlanData) -> str:
     early = "stopped early; " if plan.cancelled else ""
     if not plan.best.feasible:
         return f"{early}not stated: the route breaks a limit"
+    if plan.voyage.arrive is not None and math.isnan(plan.proof.certain):
+        return "not stated: the times are given, and the speed over ground follows from them"
     if proven is None:
         return f"{early}not known: no valid lower bound was found"
     if proven <= _CLOSE_GAP or searched is None or searched >= proven:
@@ -213,6 +215,8 @@ def _title(plan: PlanData) -> str:
         if (objective == "front" and plan.front is not None)
         else f"least {objective}"
     )
+    if plan.voyage.arrive is not None:
+        what += f", to arrive at {utc_text(float(plan.voyage.arrive))}"  # type: ignore[arg-type]
     return f"{start} to {goal}, {what}"
 
 

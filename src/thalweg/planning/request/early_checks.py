@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from thalweg.kernels import codes
-from thalweg.planning.request.ordered_speed import with_ordered_speed
+from thalweg.planning.request.ordered_speed import with_order
 from thalweg.planning.request.requirements import check_departure_in_data, check_variables
 from thalweg.planning.voyage import Voyage
 from thalweg.sea import Sea, standard_names
@@ -31,8 +31,10 @@ def check_request(voyage: Voyage, ship: Ship, sea: Sea) -> None:
     OutsidePeriodError
         If the departure is outside the period of the data.
     """
-    with_ordered_speed(ship, voyage.speed_kn)
+    with_order(ship, voyage)
     check_variables(ship, sea)
+    if voyage.departure_is_open:
+        return
     channels = {c for c, name in standard_names.CHANNEL_VARIABLES.items() if name in ship.needs}
     if all(name in sea.variables for name in standard_names.CURRENT.pair):
         channels.update(_CURRENT)

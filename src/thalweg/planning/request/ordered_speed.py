@@ -6,7 +6,9 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
+from thalweg.planning.voyage import Voyage
 from thalweg.ship import Ship
+from thalweg.ship.held_speed import with_held_power, with_held_speed
 
 _SAME_SPEED_KN = 0.05  #: an ordered speed this near to a setting is that setting
 
@@ -43,6 +45,57 @@ def with_ordered_speed(ship: Ship, speed_kn: float | None) -> Ship:
             field="speed_kn",
         )
     return ship.with_speeds([speed_kn * KNOT])
+
+
+def with_exact_speed(ship: Ship, speed_kn: float, hold: str | None) -> Ship:
+    """Return a ship with one setting: a speed, and what the engine holds at it.
+
+    Parameters
+    ----------
+    ship : Ship
+    speed_kn : float
+        Speed through calm water [kn].
+    hold : {"speed", "power", "ground"} or None
+        None: as the ship file orders. ``"ground"`` orders as that, too.
+
+    Returns
+    -------
+    Ship
+        With this speed as its only setting.
+
+    Raises
+    ------
+    InputError
+        If the ship does not reach the speed, or cannot hold it.
+    """
+    if hold == "speed":
+        return with_held_speed(ship, speed_kn)
+    if hold == "power":
+        return with_held_power(ship, speed_kn)
+    return ship.with_speeds([speed_kn * KNOT])
+
+
+def with_order(ship: Ship, voyage: Voyage) -> Ship:
+    """Return a ship that can sail at the ordered speed of a voyage, held as it asks.
+
+    Parameters
+    ----------
+    ship : Ship
+    voyage : Voyage
+        Its `speed_kn` and `hold` count.
+
+    Returns
+    -------
+    Ship
+
+    Raises
+    ------
+    InputError
+        If the ship does not reach the speed, or cannot hold it.
+    """
+    if voyage.hold is None or voyage.speed_kn is None:
+        return with_ordered_speed(ship, voyage.speed_kn)
+    return with_exact_speed(ship, voyage.speed_kn, voyage.hold)
 
 
 def ordered_setting(ship: Ship, speed_kn: float | None) -> int:

@@ -144,17 +144,42 @@ def required_under_keel_clearance(voyage: Voyage, ship: Ship) -> float:
     return ship.min_under_keel_clearance
 
 
-def check_departure_in_data(voyage: Voyage, sea: Sea, channels: Iterable[int]) -> float:
-    """Return the last time at which all channels are covered; check that the ship departs in it."""
-    needed = {standard_names.CHANNEL_VARIABLES[channel] for channel in channels}
+def period_of_data(ship: Ship, sea: Sea) -> tuple[float, float]:
+    """Return the first and last time at which all that a ship needs is covered [s since 1970].
+
+    Parameters
+    ----------
+    ship : Ship
+    sea : Sea
+        Its currents count as well, where it has them.
+
+    Returns
+    -------
+    first, last : float
+        Infinite where the sea does not change with time.
+    """
+    names = {name for name in standard_names.CHANNEL_VARIABLES.values() if name in ship.needs}
+    if all(name in sea.variables for name in standard_names.CURRENT.pair):
+        names.update(standard_names.CURRENT.pair)
+    return _covered_period(sea, names)
+
+
+def _covered_period(sea: Sea, names: set[str]) -> tuple[float, float]:
     periods: dict[str, list[tuple[float, float]]] = {}
     for row in sea.coverage():
-        if row.variable in needed:
+        if row.variable in names:
             start = -math.inf if row.start is None else row.start
             end = math.inf if row.end is None else row.end
             periods.setdefault(row.variable, []).append((start, end))
     first = max((min(s for s, _ in rows) for rows in periods.values()), default=-math.inf)
     last = min((max(e for _, e in rows) for rows in periods.values()), default=math.inf)
+    return first, last
+
+
+def check_departure_in_data(voyage: Voyage, sea: Sea, channels: Iterable[int]) -> float:
+    """Return the last time at which all channels are covered; check that the ship departs in it."""
+    needed = {standard_names.CHANNEL_VARIABLES[channel] for channel in channels}
+    first, last = _covered_period(sea, needed)
     if not first <= voyage.earliest_departure < last or voyage.latest_departure >= last:
         asked = (
             voyage.latest_departure

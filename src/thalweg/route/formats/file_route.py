@@ -18,7 +18,9 @@ from thalweg.route.route_tables import waypoint_rows
 from thalweg.route.track import Track
 
 #: Results of legs that are not sums over their parts.
-_NO_SUMS = ("length", "course", "depart", "arrive", "ordered_speed", "under_keel_clearance")
+_NO_SUMS = (
+    "length", "course", "depart", "arrive", "ordered_speed", "under_keel_clearance", "leg_kind",
+)  # fmt: skip
 _DIRECTIONS = ("course", "heading", "leg")  # not interpolated
 
 
@@ -47,6 +49,7 @@ class _CutRoute:
     legs: Mapping[str, FloatArray]
     samples: Mapping[str, FloatArray]
     cost_name: str
+    engine_order: str
 
 
 def file_route(route: Route, options: RouteFileOptions | None = None) -> FileRoute:
@@ -132,11 +135,12 @@ def _cut(route: Route, vertices: FileVertices) -> _CutRoute:
         "depart": leaving["time"][:-1],
         "arrive": arriving["time"][1:],
         "ordered_speed": route.legs["ordered_speed"][leg[:-1]],
+        "leg_kind": route.legs["leg_kind"][leg[:-1]],
         "under_keel_clearance": _least_clearance(route, samples, leg, wait),
     }
     for name in set(route.legs) - set(_NO_SUMS):
         legs[name] = np.diff(_sum_until(route, name, leg, at - start[leg]))
-    return _CutRoute(cut_track, legs, samples, route.cost_name)
+    return _CutRoute(cut_track, legs, samples, route.cost_name, route.engine_order)
 
 
 def _samples_at(route: Route, leg: IntArray, at: FloatArray) -> dict[str, FloatArray]:

@@ -1,0 +1,355 @@
+"""Plans that arrive at a given time: by the speed, or by the departure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from scipy.optimize import brentq
+
+from thalweg.chart import Chart
+from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
+from thalweg.core.geodesy import distance
+from thalweg.core.time import format_time
+from thalweg.core.units import HOUR, KNOT, MINUTE
+from thalweg.planning.plan import Plan
+from thalweg.planning.plan_data import Proof
+from thalweg.planning.report.plan_summary import duration_text, utc_text
+from thalweg.planning.request.ordered_speed import with_exact_speed
+from thalweg.planning.request.requirements import period_of_data, required_under_keel_clearance
+from thalweg.planning.request.voyage_endpoints import resolve_endpoint
+from thalweg.planning.voyage import Voyage
+from thalweg.route import Route, Track, evaluate
+from thalweg.route.ground_speed import ENGINE_ORDER, at_constant_ground_speed
+from thalweg.sea import Sea
+from thalweg.ship import Ship
+
+#: A plan that arrives this much too early or too late arrives on time [s].
+_EARLY, _LATE = MINUTE, 1.0
+_AIM = 20.0  # before the time asked [s]
+_MOST_PLANS = 8
+_LONGEST_RATIO = 10.0  # of the time before the arrival that is searched, over the passage
+_LEAST_SPEED_RATIO = 0.5  # of the slowest setting of the ship file
+
+
+@dataclass(frozen=True)
+class ArrivalRequest:
+    """A voyage that arrives at a given time, with its data.
+
+    Attributes
+    ----------
+    voyage : Voyage
+        With `arrive`.
+    ship : Ship
+    sea : Sea
+    chart : Chart
+    plan_one : callable
+        Plans a voyage without `arrive` for a ship.
+    """
+
+    voyage: Voyage
+    ship: Ship
+    sea: Sea
+    chart: Chart
+    plan_one: Callable[[Voyage, Ship], Plan]
+
+    @property
+    def arrive(self) -> float:
+        """Time of arrival [s since 1970]."""
+        return float(self.voyage.arrive)  # type: ignore[arg-type]
+
+    def at_speed(self, speed: float) -> Ship:
+        """Return the ship that holds a speed [m/s] as the voyage orders."""
+        return with_exact_speed(self.ship, speed / KNOT, self.voyage.hold)
+
+    def sail(self, plan: Plan, ship: Ship, depart: float | None = None) -> float:
+        """Return the arrival [s since 1970] on the track of a plan; inf where it does not end."""
+        track = plan.best.track.replaced(setting=None, speed=None)
+        route = evaluate(
+            track, ship=ship, sea=self.sea, chart=self.chart, depart=depart, strict=False
+        )
+        return route.arrive if math.isfinite(route.arrive) else math.inf
+
+
+def plan_arrival(request: ArrivalRequest) -> Plan:
+    """Plan a voyage that arrives at the time of its request.
+
+    With an objective that chooses the speeds this is the latest arrival. Otherwise one speed or
+    power is held: with a departure it is found so that the ship arrives in the minute before the
+    time; without one the latest departure is found.
+
+    Parameters
+    ----------
+    request : ArrivalRequest
+
+    Returns
+    -------
+    Plan
+        Its notes state what is held.
+
+    Raises
+    ------
+    InputError
+        If the sea is an ensemble, or the ship cannot hold what is asked.
+    NoRouteError
+        If the ship cannot arrive at this time; the error says when it can.
+    OutsidePeriodError
+        If the data do not cover the voyage.
+    """
+    if request.sea.members:
+        raise InputError(
+            "A time of arrival is asked for an ensemble of forecasts.",
+            "Each member of it gives another arrival.",
+            "Use one member, or give the latest arrival with arrive_by.",
+            field="arrive",
+        )
+    _check_end_of_data(request)
+    voyage = request.voyage
+    if voyage.chooses_speeds:
+        limited = replace(voyage, arrive=None, arrive_by=request.arrive)
+        found = request.plan_one(limited, request.ship)
+        note = "The speeds are chosen leg by leg; the ship arrives at the time asked or before it."
+    elif voyage.depart is None:
+        found, note = _latest_departure(request)
+    else:
+        found, note = _at_found_speed(request)
+    return replace(found, voyage=voyage, notes=(note, *found.notes))
+
+
+def _check_end_of_data(request: ArrivalRequest) -> None:
+    first, last = period_of_data(request.ship, request.sea)
+    if not first < request.arrive <= last:
+        raise OutsidePeriodError(
+            f"The arrival {format_time(request.arrive)} is outside the data.",
+            f"The data run from {format_time(first)} to {format_time(last)}.",
+            "Choose an arrival in that period, or add data.",
+        )
+
+
+def _at_found_speed(request: ArrivalRequest) -> tuple[Plan, str]:
+    """Return the plan at the speed that arrives in time, and a note that states it."""
+    top, low = float(request.ship.speeds[-1]), _lowest_speed(request)
+    fixed = replace(request.voyage, arrive=None, hold=None)
+
+    def plan_at(speed: float) -> Plan:
+        return request.plan_one(fixed, request.at_speed(speed))
+
+    def arrival_on(plan: Plan, speed: float) -> float:
+        return request.sail(plan, request.at_speed(speed))
+
+    fastest = plan_at(top)
+    _check_possible(request, fastest, (low, top), arrival_on(fastest, low))
+    # with the sign changed, so that the arrival grows with the value
+    speed, found = _solve(
+        _Search(
+            lambda value: plan_at(-value),
+            lambda plan, value: arrival_on(plan, -value),
+            request.arrive,
+            (-top, -low),
+        ),
+        (-top, fastest),
+    )
+    held = found.best.engine_order or "constant speed"
+    if request.voyage.hold == "ground":
+        found = _over_ground(request, found)
+        held = ENGINE_ORDER
+        speed = -_ground_speed(found.best)
+    word = {
+        "constant power": "Constant power, that of {:.2f} kn in calm water",
+        "constant speed": "Constant speed through water of {:.2f} kn",
+        ENGINE_ORDER: "Constant speed over ground of {:.2f} kn at sea, set hour by hour",
+    }.get(held, "Constant ordered speed of {:.2f} kn")
+    return found, f"{word.format(-speed / KNOT)}: {_on_time(found, request)}."
+
+
+def _lowest_speed(request: ArrivalRequest) -> float:
+    """Return half the slowest setting [m/s], or that setting where the ship has none below it."""
+    slowest = float(request.ship.speeds[0])
+    try:
+        request.at_speed(_LEAST_SPEED_RATIO * slowest)
+    except InputError:
+        return slowest
+    return _LEAST_SPEED_RATIO * slowest
+
+
+def _check_possible(
+    request: ArrivalRequest, fastest: Plan, speeds: tuple[float, float], slow_arrival: float
+) -> None:
+    """Raise `NoRouteError` unless the time asked is between the fastest and slowest arrival."""
+    low, top = speeds
+    arrive = fastest.best.arrive
+    if not fastest.best.feasible or not math.isfinite(arrive):
+        limit = f": {fastest.best.violations[0]}" if fastest.best.violations else ""
+        raise NoRouteError(
+            "No route at the highest speed keeps all limits" + limit + ".",
+            "The speed is found from that route.",
+            "Relax the limits, or give the latest arrival with arrive_by.",
+        )
+    if arrive > request.arrive + _LATE:
+        late = arrive - request.arrive
+        raise NoRouteError(
+            f"The ship cannot arrive at {utc_text(request.arrive)}.",
+            f"At its highest speed of {top / KNOT:.1f} kn it arrives at {utc_text(arrive)}, "
+            f"{duration_text(late)} later.",
+            f"Ask for that time or a later one, or depart about {duration_text(late)} earlier; "
+            "without a departure the latest one is found.",
+        )
+    if slow_arrival < request.arrive - _EARLY:
+        raise NoRouteError(
+            f"The ship arrives before {utc_text(request.arrive)} at every speed considered.",
+            f"At {low / KNOT:.1f} kn, the lowest of them, it arrives at {utc_text(slow_arrival)}.",
+            f"Depart about {duration_text(request.arrive - slow_arrival)} later, leave out the "
+            "departure to get the latest one, or let it wait with arrive_by.",
+        )
+
+
+def _latest_departure(request: ArrivalRequest) -> tuple[Plan, str]:
+    """Return the plan with the latest departure that arrives in time, and a note."""
+    voyage = request.voyage
+    speed = request.ship.speeds[-1] if voyage.speed_kn is None else voyage.speed_kn * KNOT
+    ship = request.at_speed(float(speed))
+    fixed = replace(voyage, arrive=None, hold=None, speed_kn=None, depart=0.0)
+
+    def plan_at(depart: float) -> Plan:
+        return request.plan_one(replace(fixed, depart=depart), ship)
+
+    first = period_of_data(ship, request.sea)[0]
+    ends = [resolve_endpoint(p, request.chart, "place") for p in (voyage.start, voyage.goal)]
+    away = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon)) / float(speed)
+    guess = max(request.arrive - away, first)
+    plan = plan_at(guess)
+    if guess == first and plan.best.arrive > request.arrive + _LATE:
+        raise _data_begin_too_late(request, first, plan.best.arrive)
+    earliest = max(first, request.arrive - _LONGEST_RATIO * (away + plan.best.time_h * HOUR))
+    search = _Search(
+        plan_at,
+        lambda found, depart: request.sail(found, ship, depart),
+        request.arrive,
+        (earliest, request.arrive),
+    )
+    depart, found = _solve(search, (guess, plan))
+    note = (
+        f"Latest departure {utc_text(depart)} at {found.best.engine_order or 'constant speed'} "
+        f"({speed / KNOT:.1f} kn ordered): {_on_time(found, request)}."
+    )
+    return found, note
+
+
+def _data_begin_too_late(request: ArrivalRequest, first: float, arrive: float) -> NoRouteError:
+    return NoRouteError(
+        f"The ship cannot arrive at {utc_text(request.arrive)}.",
+        f"The data begin at {utc_text(first)}; departing then it arrives at {utc_text(arrive)}.",
+        "Ask for a later arrival, order a higher speed, or add earlier data.",
+    )
+
+
+@dataclass(frozen=True)
+class _Search:
+    """A search for the value (departure, or speed with its sign changed) of a given arrival.
+
+    The arrival does not decrease with the value. ``plan_at`` plans at a value, ``arrival_on`` sails
+    the track of a plan at another one.
+    """
+
+    plan_at: Callable[[float], Plan]
+    arrival_on: Callable[[Plan, float], float]
+    arrive: float
+    limits: tuple[float, float]
+
+    def on_time(self, plan: Plan) -> bool:
+        """Return whether a plan arrives in the minute before the time."""
+        return plan.best.feasible and -_EARLY <= plan.best.arrive - self.arrive <= _LATE
+
+
+def _solve(search: _Search, first: tuple[float, Plan]) -> tuple[float, Plan]:
+    """Return the value and the plan that arrives in time; where arrivals jump, the one before."""
+    value, plan = first
+    low, high = search.limits
+    best: tuple[float, Plan] | None = None
+    for _ in range(_MOST_PLANS):
+        if search.on_time(plan):
+            return value, plan
+        if plan.best.feasible and plan.best.arrive <= search.arrive + _LATE:
+            low = max(low, value)
+            if best is None or plan.best.arrive > best[1].best.arrive:
+                best = value, plan
+        else:
+            high = min(high, value)
+        if high - low <= 1e-6 * max(abs(low), 1.0) and high - low < _EARLY:
+            break
+        value = _next_value(search, plan, low, high)
+        try:
+            plan = search.plan_at(value)
+        except NoRouteError:
+            high = value
+            if best is None:
+                raise
+            plan = best[1]
+    if best is None:
+        raise NoRouteError(
+            f"No route that arrives at {utc_text(search.arrive)} was found.",
+            f"{_MOST_PLANS} departures or speeds were tried; the last arrives at "
+            f"{utc_text(plan.best.arrive)}.",
+            "Give the latest arrival with arrive_by, which allows waits.",
+        )
+    return best
+
+
+def _next_value(search: _Search, plan: Plan, low: float, high: float) -> float:
+    """Return the value at which the track of a plan arrives in time; else the middle."""
+    aim = search.arrive - _AIM
+
+    def late(value: float) -> float:
+        return min(search.arrival_on(plan, value) - aim, 1e9)
+
+    try:
+        found = float(brentq(late, low, high, xtol=1e-5 * (high - low), maxiter=30))
+    except ValueError:  # no change of sign on this track
+        return 0.5 * (low + high)
+    inside = low < found < high
+    return found if inside else 0.5 * (low + high)
+
+
+def _over_ground(request: ArrivalRequest, plan: Plan) -> Plan:
+    """Return the plan with its route sailed at one speed over ground, arriving in time."""
+    route, chart = plan.best, plan.plot_context.chart if plan.plot_context else request.chart
+    at_sea = route.legs["leg_kind"] == 0
+    passed = float((route.legs["arrive"] - route.legs["depart"])[~at_sea].sum())
+    time = request.arrive - _AIM - route.depart - passed - float(route.track.wait.sum())
+    speed = float(route.legs["length"][at_sea].sum()) / time
+    clearance = required_under_keel_clearance(request.voyage, request.ship)
+
+    def sail(track: Track) -> Route:
+        return evaluate(
+            track,
+            ship=request.ship,
+            sea=request.sea,
+            chart=chart,
+            min_ukc=clearance,
+            strict=False,
+        )
+
+    limits = _lowest_speed(request), float(request.ship.speeds[-1])
+    found = at_constant_ground_speed(route, speed, sail, ordered_range=limits)
+    kind = "none: the time is given, and the speed over ground follows from it"
+    proof = Proof(math.nan, kind, math.nan, plan.proof.solver_total)
+    return replace(plan, routes=(found,), proof=proof)
+
+
+def _ground_speed(route: Route) -> float:
+    """Return the mean speed over ground at sea [m/s]."""
+    at_sea = route.legs["leg_kind"] == 0
+    legs = route.legs
+    time = (legs["arrive"] - legs["depart"])[at_sea].sum()
+    return float(legs["length"][at_sea].sum() / time)
+
+
+def _on_time(plan: Plan, request: ArrivalRequest) -> str:
+    early = request.arrive - plan.best.arrive
+    if early <= 2.0 * _EARLY:
+        return "the ship arrives at the time asked"
+    return (
+        f"the ship arrives {duration_text(early)} before the time asked; the next later arrival "
+        f"is after it ({early / HOUR:.1f} h are left)"
+    )

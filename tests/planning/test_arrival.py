@@ -1,0 +1,137 @@
+"""A given time of arrival: by the speed, by the departure, and what is held on the way."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.sea.small_datasets import regular
+from thalweg import Chart, NoRouteError, Sea, Ship, Voyage, plan
+from thalweg.core.errors import InputError, OutsidePeriodError
+from thalweg.core.geodesy import distance
+from thalweg.core.units import HOUR, KNOT
+from thalweg.planning.request.requirements import period_of_data
+
+DEPART = 1767225600.0
+LENGTH = float(distance(0.0, 0.0, 0.0, 2.0))
+ENDS = {"start": (0.0, 0.0), "goal": (0.0, 2.0)}
+CHART = Chart.open_water(-0.6, 0.6, -0.2, 2.2)
+WAVES = "sea_surface_wave_significant_height"
+SHIP = Ship.load("handysize-bulker")
+
+
+def sea_with_current(amplitude_kn: float, period: float = math.inf) -> Sea:
+    """A current along the route, the same everywhere; with a period it turns like a tide."""
+
+    def east(time, lat, lon):
+        return amplitude_kn * KNOT * np.cos(2.0 * np.pi * (time - DEPART) / period) + 0.0 * lat
+
+    names = ("northward_sea_water_velocity", "eastward_wind", "northward_wind", WAVES)
+    still = {name: lambda time, lat, lon: 0.0 * lat for name in names}
+    return Sea.from_functions({"eastward_sea_water_velocity": east, **still})
+
+
+def planned(sea: Sea, **voyage):
+    given = {"ship": SHIP, "sea": sea, "chart": CHART, "resolution": 10_000.0}
+    return plan(Voyage(**ENDS, **voyage), **given)
+
+
+def mid_speed_time(current_kn: float = 0.0) -> float:
+    """Duration at a speed in the middle of the ship's range [s]."""
+    return LENGTH / (0.8 * float(SHIP.speeds[-1]) + current_kn * KNOT)
+
+
+@pytest.mark.parametrize("hold", [None, "power", "speed"])
+def test_the_speed_found_is_that_of_length_time_and_current(hold) -> None:
+    time = mid_speed_time(current_kn=1.0)
+    found = planned(sea_with_current(1.0), depart=DEPART, arrive=DEPART + time, hold=hold)
+    assert -60.0 <= found.best.arrive - (DEPART + time) <= 1.0
+    ordered = found.best.legs["ordered_speed"]
+    # the current makes a wind over the water, which slows the ship where the power is held
+    accuracy = 2e-3 if hold == "speed" else 1e-2
+    assert ordered == pytest.approx(LENGTH / time - KNOT, rel=accuracy)
+    held = "constant speed through water" if hold == "speed" else "constant power"
+    assert {row["held"] for row in found.best.waypoints()[:-1]} == {held}
+    assert found.notes[0].startswith("Constant ")
+
+
+def test_one_speed_over_ground_in_a_current_that_turns() -> None:
+    time = mid_speed_time()
+    sea = sea_with_current(0.8, period=12.42 * HOUR)
+    found = planned(sea, depart=DEPART, arrive=DEPART + time, hold="ground")
+    route = found.best
+    assert -60.0 <= route.arrive - (DEPART + time) <= 1.0
+    over_ground = route.legs["length"] / (route.legs["arrive"] - route.legs["depart"])
+    assert over_ground == pytest.approx(LENGTH / time, rel=2e-3)
+    middle = 0.5 * (route.legs["depart"] + route.legs["arrive"])
+    current = 0.8 * KNOT * np.cos(2.0 * np.pi * (middle - DEPART) / (12.42 * HOUR))
+    assert route.legs["ordered_speed"] == pytest.approx(over_ground - current, abs=0.05 * KNOT)
+    assert {row["held"] for row in route.waypoints()[:-1]} == {"constant speed over ground"}
+    assert "set hour by hour" in found.notes[0]
+
+
+def test_the_latest_departure_is_the_arrival_less_the_passage() -> None:
+    arrive = DEPART + 40.0 * HOUR
+    found = planned(sea_with_current(1.0), arrive=arrive)
+    passage = LENGTH / (float(SHIP.speeds[-1]) + KNOT)
+    assert found.best.depart == pytest.approx(arrive - passage, abs=240.0)
+    assert -60.0 <= found.best.arrive - arrive <= 1.0
+    slower = planned(sea_with_current(1.0), arrive=arrive, speed_kn=10.0)
+    assert slower.best.depart == pytest.approx(arrive - LENGTH / (11.0 * KNOT), abs=240.0)
+    assert "Latest departure" in slower.notes[0]
+
+
+def test_an_impossible_arrival_states_what_is_possible() -> None:
+    sea = sea_with_current(0.0)
+    with pytest.raises(NoRouteError) as caught:
+        planned(sea, depart=DEPART, arrive=DEPART + HOUR)
+    assert "At its highest speed" in caught.value.possible
+    assert "later" in caught.value.possible and "earlier" in caught.value.remedy
+    with pytest.raises(NoRouteError) as caught:
+        planned(sea, depart=DEPART, arrive=DEPART + 400.0 * HOUR)
+    assert "at every speed considered" in caught.value.asked
+    assert "leave out the departure" in caught.value.remedy
+
+
+def test_the_least_fuel_arrives_by_the_time_asked() -> None:
+    arrive = DEPART + 1.2 * mid_speed_time()
+    given = {"objective": "fuel", "method": "exact"}
+    found = planned(sea_with_current(0.0), depart=DEPART, arrive=arrive, **given)
+    assert found.best.arrive <= arrive + 1.0
+    assert found.best.time_h > 0.9 * mid_speed_time() / HOUR
+    assert found.voyage.arrive == arrive and found.voyage.arrive_by is None
+
+
+@pytest.mark.parametrize(
+    "voyage",
+    [
+        {"depart": DEPART, "arrive": DEPART + HOUR, "arrive_by": DEPART + HOUR},
+        {"depart": DEPART, "arrive": DEPART + HOUR, "speed_kn": 9.0},
+        {"arrive": DEPART, "objective": "fuel"},
+        {"depart_window": (DEPART, DEPART + HOUR), "arrive": DEPART + 2 * HOUR},
+        {"depart": DEPART, "hold": "speed"},
+        {"depart": DEPART, "speed_kn": 9.0, "hold": "ground"},
+        {"depart": DEPART, "speed_kn": 9.0, "hold": "rudder"},
+        {"depart": DEPART, "arrive": DEPART - HOUR},
+        {},
+    ],
+)
+def test_contradictory_times_are_refused(voyage) -> None:
+    with pytest.raises(InputError):
+        Voyage(**ENDS, **voyage)
+
+
+def test_an_arrival_after_the_data_is_refused() -> None:
+    sea = Sea.open(
+        regular((-1.0, 1.0), (-1.0, 3.0), fields={"swh": {"standard_name": WAVES, "units": "m"}})
+    ).filled(wind=0.0)
+    first, last = period_of_data(SHIP, sea)
+    with pytest.raises(OutsidePeriodError, match="arrival") as caught:
+        planned(sea, depart=first, arrive=last + HOUR)
+    assert "The data run from" in caught.value.possible
+
+
+def test_a_voyage_file_keeps_the_arrival(tmp_path) -> None:
+    voyage = Voyage(**ENDS, depart=DEPART, arrive=DEPART + 9 * HOUR, hold="ground")
+    voyage.save(tmp_path / "voyage.yaml")
+    assert Voyage.load(tmp_path / "voyage.yaml") == voyage
