@@ -124,6 +124,7 @@ RENAMED: Final[Mapping[str, Mapping[str, tuple[str, str]]]] = {
     "thalweg.route": {
         "Distribution": ("thalweg.route.ensemble_evaluation", "EnsembleResult"),
         "Spread": ("thalweg.route.ensemble_evaluation", "MemberStatistics"),
+        "polish": ("thalweg.route.refinement.cost_refinement", "refine_cost"),
     },
     "thalweg.search": {
         "Bound": ("thalweg.search.lower_bounds", "LowerBound"),

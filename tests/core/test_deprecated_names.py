@@ -15,6 +15,7 @@ from thalweg.network import lattice, paths_without_canals
 from thalweg.network.alternatives.path_search import alternative_paths
 from thalweg.operations.openclsim.plugin import PlannedRouteMovable
 from thalweg.operations.waiting.waiting_study import break_even_power, waiting_study
+from thalweg.planning.plan_front import ParetoFront
 from thalweg.sea import Sea
 
 OLD = [
@@ -109,6 +110,11 @@ def test_other_renamed_methods():
     (canal, *_) = Chart.gshhg("c").canals
     with pytest.warns(DeprecationWarning, match=r"use Canal.transit_restriction"):
         assert canal.why_not(draught=99.0, beam=10.0)
+
+
+def test_an_earlier_stage_of_a_front_is_read_as_that_of_today():
+    front = ParetoFront("fuel", "t", np.ones(2), ("polish", "exact"), ("", ""), np.ones((2, 1)))
+    assert front.stages == ("local search", "exact")
 
 
 def test_limits_may_be_an_array():

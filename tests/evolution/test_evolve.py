@@ -105,7 +105,7 @@ def test_refined_front_of_the_jet_and_eddies(size, lines, least):
     best_known = np.array([23.436, 19.870, 17.633])
     order = np.argsort(told[:, 0])
     assert (np.interp(hours, told[order, 0], told[order, 1]) < 1.001 * best_known).all()
-    assert {"polish"} <= set(front.origin) <= {"seed", "polish", "nsga2"}
+    assert {"local search"} <= set(front.origin) <= {"seed", "local search", "nsga2"}
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ from thalweg.kernels.network.static_paths import meridian_crossings
 from thalweg.network import EdgeWeights, alternative_paths, globe, lattice, paths_without_canals
 from thalweg.network.alternatives.homotopy import obstacles
 from thalweg.network.alternatives.path_search import _best_of_each_class, without_each_set_of_canals
-from thalweg.network.alternatives.path_shortening import pull_taut, total_cost
+from thalweg.network.alternatives.path_shortening import string_pull_path, total_cost
 
 WEST, EAST = (0.0, -1.0), (0.0, 1.0)
 #: An island north of the line between, wider to the south of it, and a rock further south.
@@ -123,7 +123,7 @@ def test_pulling_never_costs_more_and_never_touches_land(seed):
     assert way.length <= total_cost(before)
     legs = way.lat[:-1], way.lon[:-1], way.lat[1:], way.lon[1:]
     assert not chart.legs_blocked(*legs).any()
-    again = pull_taut(chart, way.lat, way.lon)
+    again = string_pull_path(chart, way.lat, way.lon)
     assert total_cost(again) <= way.length * (1 + 1e-12)
 
 
@@ -137,7 +137,7 @@ def test_pulling_with_a_cost_avoids_expensive_areas():
         return length * (1.0 + 4.0 * share * near)
 
     lat, lon = np.array([0.0, 0.0]), np.array([-1.0, 1.0])
-    y, x = pull_taut(chart, lat, lon, leg_cost=cost)
+    y, x = string_pull_path(chart, lat, lon, leg_cost=cost)
     assert total_cost((y, x), cost) < 0.75 * total_cost((lat, lon), cost)
     assert np.abs(y).max() > 0.2
 
@@ -147,7 +147,7 @@ def test_canals_stay_in_shortened_paths_with_their_length():
     suez = chart.canals[0]
     (a, b), (c, d) = suez.ends
     lat, lon = np.array([32.5, 32.0, a, c, 28.5]), np.array([31.0, 32.0, b, d, 33.2])
-    y, x = pull_taut(chart, lat, lon)
+    y, x = string_pull_path(chart, lat, lon)
     assert (chart.canal_of_legs(y[:-1], x[:-1], y[1:], x[1:]) == 0).sum() == 1
 
 

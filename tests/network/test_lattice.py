@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from tests.network.worlds import geojson, land_chart
@@ -294,9 +294,30 @@ def test_depth_and_factors_are_on_the_edges():
     assert np.all(network.edges.depth[np.abs(lon) < 0.1] == 4.0)
 
 
+def outside_polar_cap(start, goal, latitude: float) -> float:
+    """Ratio of the shortest path that stays below a latitude to the great circle.
+
+    Two great circles that touch the parallel and the arc of the parallel between them, on a sphere.
+    """
+    pole = 1.0 if start[0] + goal[0] > 0.0 else -1.0
+    a, b = (math.radians(90.0 - pole * place[0]) for place in (start, goal))
+    cap, turn = math.radians(90.0 - latitude), math.radians(abs(goal[1] - start[1]) % 360.0)
+    turn = min(turn, 2.0 * math.pi - turn)
+    straight = math.acos(math.cos(a) * math.cos(b) + math.sin(a) * math.sin(b) * math.cos(turn))
+    arc = turn - sum(math.acos(math.tan(cap) / math.tan(side)) for side in (a, b))
+    if arc <= 0.0:
+        return 1.0
+    tangents = sum(math.acos(math.cos(side) / math.cos(cap)) for side in (a, b))
+    return (tangents + arc * math.sin(cap)) / straight
+
+
 @pytest.mark.slow
 @settings(max_examples=15)
 @example(-58.0, 0.0, 3.0, 2_162_673.0, 32, "latlon")  # edges over 3 x 470 km of the equator
+@example(-62.0, 0.0, 3.0, 1_891_161.0, 32, "latlon")
+@example(-73.0, 0.0, 3.0, 2_635_000.0, 32, "latlon")
+@example(-62.2366, 0.0, 3.04819, 3_379_416.6, 16, "latlon")  # 12 % longer, around 84 S
+@example(60.0767, 0.0, -0.0853, 3_991_552.0, 32, "latlon")  # the goal just below the last row
 @given(
     st.floats(-75, 75), st.floats(-180, 180), st.floats(0, 6.28), st.floats(5e3, 4e6),
     st.sampled_from([8, 16, 32]), st.sampled_from(["great_circle", "latlon"]),
@@ -305,13 +326,26 @@ def test_the_path_is_within_the_direction_error_anywhere(
     lat, lon, course, length, directions, orientation
 ):
     goal = tuple(float(v) for v in geodesy.direct(lat, lon, course, length))
+    around = 1.0
+    if orientation == "latlon":  # its last row is less than a spacing below 84 degrees
+        row = length / 12 / 6_371_000.0 / math.cos(math.radians(0.5 * (lat + goal[0])))
+        last = math.atan(math.sinh(math.asinh(math.tan(math.radians(84.0))) - row))
+        assume(abs(goal[0]) < math.degrees(last))
+        around = outside_polar_cap((lat, lon), goal, math.degrees(last))
     network = lattice(
         OPEN, (lat, lon), goal,
         directions=directions, orientation=orientation, spacing=length / 12, slack=0.1,
         coast_levels=0,
     )  # fmt: skip
     check_network(network, symmetric=True)
-    assert 1.0 - 1e-9 <= ratio(network) <= 1.0 / math.cos(network.meta.gap_rad / 2.0) + 5e-3
+    direction_error = 1.0 / math.cos(network.meta.gap_rad / 2.0)
+    assert 1.0 - 1e-9 <= ratio(network) <= around * direction_error + 5e-3
+
+
+def test_rows_along_parallels_end_at_84_degrees():
+    with pytest.raises(InputError, match="does not reach the goal") as refusal:
+        lattice(OPEN, (60.0, 0.0), (89.0, 15.0), orientation="latlon", spacing=200e3)
+    assert "great_circle" in str(refusal.value)
 
 
 @pytest.mark.slow

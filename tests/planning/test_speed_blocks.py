@@ -68,7 +68,7 @@ def test_a_short_block_goes_and_its_cost_is_stated():
         score(Track(np.zeros(4), lon, DEPART, None, np.array([0, middle, 0]))) for middle in (1, 0)
     ]
     before = [
-        RefereedCandidate(TrackCandidate(r.track, "polish", "", r.time_h, r.fuel_t), r, r.fuel_t)
+        RefereedCandidate(TrackCandidate(r.track, "exact", "", r.time_h, r.fuel_t), r, r.fuel_t)
         for r in routes
     ]
     after = in_speed_blocks(trade_off, before)

@@ -16,7 +16,7 @@ from thalweg.core.geodesy import positions_along
 from thalweg.core.limits import Limits
 from thalweg.core.units import DAY, NAUTICAL_MILE, TONNE
 from thalweg.planning import Voyage, plan
-from thalweg.route import RefinementConditions, Route, Track, evaluate, polish
+from thalweg.route import RefinementConditions, Route, Track, evaluate, refine_cost
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 
@@ -163,10 +163,10 @@ def test_cheapest_speeds_for_the_time(fastest, chart, way, days, thousands):
 
 
 @pytest.mark.parametrize(("way", "days"), [("R1", 4.28), ("R2", 5.0)])
-def test_polishing_finds_the_speeds_or_better(fastest, chart, way, days):
+def test_cost_refinement_finds_the_speeds_or_better(fastest, chart, way, days):
     inside, zones = zones_of(fastest[way], chart)
     mixed = as_route(at_mix(fastest[way], inside, best_mix(zones, days * DAY)), chart)
-    route = polish(
+    route = refine_cost(
         fastest[way],
         RefinementConditions(
             ship=SHIP,

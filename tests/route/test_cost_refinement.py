@@ -15,7 +15,15 @@ from thalweg.chart.canals import SUEZ
 from thalweg.core.errors import InputError
 from thalweg.core.limits import Limits
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
-from thalweg.route import RefinementConditions, Track, better_route, evaluate, join, polish, smooth
+from thalweg.route import (
+    RefinementConditions,
+    Track,
+    better_route,
+    evaluate,
+    join,
+    refine_cost,
+    smooth,
+)
 from thalweg.route.refinement.speed_profile import _efficient_settings, _knapsack
 from thalweg.sea import Sea
 from thalweg.ship import Ship
@@ -38,8 +46,8 @@ def zone(west, south, east, north, **properties):
     return {"type": "Feature", "properties": {"kind": "eca", **properties}, "geometry": geometry}
 
 
-def polished(route, ship=BULKER, sea=None, chart=OPEN, **more):
-    return polish(
+def refined(route, ship=BULKER, sea=None, chart=OPEN, **more):
+    return refine_cost(
         route,
         RefinementConditions(
             ship=ship,
@@ -63,7 +71,7 @@ def test_jet_and_eddies_from_a_straight_line(hours, best, floor):
         jet.straight(9).to_track(jet.T0), ship=ship, sea=sea, chart=chart, min_ukc=None
     )
     latest = jet.T0 + hours * HOUR / jet.SHRINK
-    route = polish(
+    route = refine_cost(
         start,
         RefinementConditions(
             ship=ship, sea=sea, chart=chart, table=jet.speed_table(), limits=FREE, min_ukc=None
@@ -119,7 +127,7 @@ def test_cubic_law_speeds(lengths, currents, hours, speeds, fuel):
         }
     )
     start = evaluate([(0.0, x) for x in edges], ship=ship, sea=sea, chart=OPEN, depart=0)
-    route = polished(start, ship, sea, objective="fuel", arrive_by=hours * HOUR)
+    route = refined(start, ship, sea, objective="fuel", arrive_by=hours * HOUR)
     assert route.arrive <= hours * HOUR + 1e-6
     assert route.fuel_t * 1000.0 == pytest.approx(fuel, rel=5e-4)
     middle = 0.5 * (route.track.lon[:-1] + route.track.lon[1:])
@@ -145,7 +153,7 @@ def test_slower_inside_a_control_area_at_the_same_arrival():
         outside = _cheapest(length, speeds, 300.0 * rate, latest * shares)
         inside = _cheapest(length, speeds, 300.0 * 1.5593 * rate, latest * (1.0 - shares))
         expected = np.min(outside + inside)
-        route = polished(start, chart=chart, arrive_by=latest)
+        route = refined(start, chart=chart, arrive_by=latest)
         assert route.arrive <= latest + 1e-6
         assert route.cost == pytest.approx(expected, rel=3e-4)
 
@@ -170,17 +178,17 @@ def _cheapest(length, speeds, rate, time):
 
 def test_never_worse_and_invalid_objectives_are_refused():
     start = evaluate([(0, 0), (0, 2)], ship=BULKER, sea=Sea.calm(), chart=OPEN, depart=0)
-    same = polished(start)
+    same = refined(start)
     assert same.cost <= start.cost
     assert same.arrive <= start.arrive + 1e-6
     with pytest.raises(InputError, match="cost refinement named 'speed'"):
-        polished(start, objective="speed")
+        refined(start, objective="speed")
     unpriced = Ship.from_dict({k: v for k, v in BULKER.data.items() if k != "fuel"})
     with pytest.raises(InputError, match="no price of fuel"):
-        polished(start, unpriced)
+        refined(start, unpriced)
     with pytest.raises(InputError, match="carbon factor of its fuel"):
-        polished(start, unpriced, objective="co2")
-    assert polished(start, unpriced, objective="fuel").fuel_t <= start.fuel_t
+        refined(start, unpriced, objective="co2")
+    assert refined(start, unpriced, objective="fuel").fuel_t <= start.fuel_t
 
 
 def by_cubed_speed(**costs):
@@ -192,7 +200,7 @@ def by_cubed_speed(**costs):
 
 def by_cost(start, ship, chart, arrive_by):
     table = ship.tabulate()
-    return polish(
+    return refine_cost(
         start,
         RefinementConditions(ship=ship, sea=Sea.calm(), chart=chart, table=table, limits=FREE),
         fuel=table,
@@ -206,11 +214,11 @@ def test_the_cost_of_time_and_cubed_speed():
     ship = by_cubed_speed()
     track = Track([0, 0.4, 0], [0, 1, 2], 0.0, None, [3, 3])
     start = evaluate(track, ship=ship, sea=Sea.calm(), chart=OPEN)
-    taut = evaluate([(0, 0), (0, 2)], ship=ship, sea=Sea.calm(), chart=OPEN, depart=0)
+    shortest = evaluate([(0, 0), (0, 2)], ship=ship, sea=Sea.calm(), chart=OPEN, depart=0)
     route = by_cost(start, ship, OPEN, 24 * HOUR)
     speed = 8.0 * KNOT
     per_second = 700_000.0 / 604_800.0 + 0.008 * speed**3
-    wanted = per_second * taut.distance_nm * NAUTICAL_MILE / speed
+    wanted = per_second * shortest.distance_nm * NAUTICAL_MILE / speed
     assert route.cost == pytest.approx(wanted, rel=1e-4)
 
 
@@ -227,7 +235,7 @@ def test_refinement_is_never_worse_for_any_sea_and_start(u, v, later, setting):
     track = Track([0, 0.3, 0.1, 0.5], [0, 0.5, 1.0, 1.6], 0.0, None, [setting] * 3)
     start = evaluate(track, ship=BULKER, sea=sea, chart=OPEN)
     latest = later * start.arrive
-    route = polished(start, sea=sea, objective="co2", arrive_by=latest)
+    route = refined(start, sea=sea, objective="co2", arrive_by=latest)
     assert route.feasible
     assert route.arrive <= latest + 1e-6
     assert route.co2_t <= start.co2_t * (1 + 1e-12)
@@ -242,13 +250,13 @@ def test_refinement_avoids_land():
     start = evaluate(
         [(0, 0), (0.6, 1.0), (0, 2)], ship=BULKER, sea=Sea.calm(), chart=chart, depart=0
     )
-    route = polished(start, chart=chart, objective="fuel")
+    route = refined(start, chart=chart, objective="fuel")
     assert route.feasible
-    taut = evaluate(
+    shortest = evaluate(
         [(0, 0), (0.3001, 0.8999), (0.3001, 1.1001), (0, 2)],
         ship=BULKER, sea=Sea.calm(), chart=chart, depart=0,
     )  # fmt: skip
-    assert route.distance_nm < 1.01 * taut.distance_nm
+    assert route.distance_nm < 1.01 * shortest.distance_nm
     assert route.fuel_t < 0.9 * start.fuel_t
 
 
@@ -261,7 +269,7 @@ def test_time_lost_to_weather_is_not_used():
     )
     start = evaluate([(0, 0), (0, 1), (0, 2)], ship=ship, sea=sea, chart=OPEN, depart=0)
     assert 7.5 < start.time_h < 8.2 and start.feasible
-    route = polish(
+    route = refine_cost(
         start,
         RefinementConditions(
             ship=ship, sea=sea, chart=OPEN, table=ship.tabulate(), limits=Limits(wave_height=4.0)
@@ -342,7 +350,7 @@ def test_canals_count_by_cubed_speed_where_the_rest_does(world):
 def test_cost_refinement_keeps_the_canal(world):
     start = suez_route(world)
     assert start.feasible, start.violations
-    route = polished(start, chart=world, arrive_by=1.3 * start.arrive)
+    route = refined(start, chart=world, arrive_by=1.3 * start.arrive)
     assert _through_suez(route)
     assert route.arrive <= 1.3 * start.arrive
     assert route.cost < 0.99 * start.cost

@@ -169,8 +169,8 @@ def test_the_route_around_a_square_island_is_shortest(points, objective):
     chart = Islands(rectangle(plane, -1, -1, 1, 1))
     track = Track.from_positions([plane.place(*p) for p in points], depart=0)
     _, better = improved(track, boat, Sea.calm(), chart=chart, objective=objective)
-    taut = math.hypot(2, 1) + 2 + math.hypot(2, 0.7)
-    assert better.distance_nm * 1852 == pytest.approx(taut * plane.unit, rel=3e-6)
+    shortest = math.hypot(2, 1) + 2 + math.hypot(2, 0.7)
+    assert better.distance_nm * 1852 == pytest.approx(shortest * plane.unit, rel=3e-6)
     assert len(better.track) <= 6
 
 
@@ -230,9 +230,9 @@ def test_smoothing_violates_no_limit_of_a_field():
     track = Track.from_positions([plane.place(*p) for p in [(0, 0), (5, 3), (10, 0)]], depart=0)
     scored, better = improved(track, boat, sea, limits=Limits(wave_height=3.0))
     radius = math.sqrt(2 * math.log(2))  # where the height is 3 m
-    taut = 2 * math.sqrt(25 - radius**2) + radius * (math.pi - 2 * math.acos(radius / 5))
+    shortest = 2 * math.sqrt(25 - radius**2) + radius * (math.pi - 2 * math.acos(radius / 5))
     assert scored.distance_nm > better.distance_nm
-    assert better.distance_nm * 1.852 == pytest.approx(taut, rel=2e-3)
+    assert better.distance_nm * 1.852 == pytest.approx(shortest, rel=2e-3)
     assert max(better.samples["sea_surface_wave_significant_height"]) <= 3.0 + 1e-6
 
 

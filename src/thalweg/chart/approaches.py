@@ -251,8 +251,8 @@ def line_between(
     if not len(free):
         return None
     i, j = (int(k) for k in close[free[0]])
-    way = [*_part_of(start.line, first[i, 2]), *_part_of(goal.line, second[j, 2])[::-1]]
-    return tuple(a for k, a in enumerate(way) if k == 0 or _metres(a, way[k - 1]) > 1.0)
+    line = [*_part_of(start.line, first[i, 2]), *_part_of(goal.line, second[j, 2])[::-1]]
+    return tuple(a for k, a in enumerate(line) if k == 0 or _metres(a, line[k - 1]) > 1.0)
 
 
 def _part_of(line: tuple[Position, ...], along: float) -> list[Position]:

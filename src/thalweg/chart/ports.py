@@ -182,12 +182,12 @@ class Ports:
         elsewhere = _separate_ports(self._with_name(name)) if comma else []
         code = "" if comma else country_code_of(text)
         if elsewhere:
-            asked = f"There is no port named {name.strip()!r} in {place.strip()!r}."
-            return _listing_error(asked, "Ports of this name: ", elsewhere, text, name)
+            problem = f"There is no port named {name.strip()!r} in {place.strip()!r}."
+            return _listing_error(problem, "Ports of this name: ", elsewhere, text, name)
         if code:
             inside = _by_importance(port for port in self.all if port.country_code == code)
-            asked = f"There is no port named {text!r}: it is a country or territory."
-            return _listing_error(asked, "Its largest ports: ", inside[:5], text)
+            problem = f"There is no port named {text!r}: it is a country or territory."
+            return _listing_error(problem, "Its largest ports: ", inside[:5], text)
         return self._misspelt(text, normalised_port_name(name))
 
     def _misspelt(self, text: str, wanted: str) -> InputError:
@@ -237,20 +237,20 @@ def _clearly_largest(named: Mapping[Port, bool], text: str) -> Port:
 
 def _ambiguous(text: str, found: Sequence[Port]) -> InputError:
     name = text.rpartition(",")[0] if "," in text else text
-    asked = f"{len(found)} ports of comparable size can be meant by {text!r}."
-    return _listing_error(asked, "They are ", found, text, name)
+    problem = f"{len(found)} ports of comparable size can be meant by {text!r}."
+    return _listing_error(problem, "They are ", found, text, name)
 
 
 def _listing_error(
-    asked: str, before: str, found: Sequence[Port], text: str, name: str = ""
+    problem: str, before: str, found: Sequence[Port], text: str, name: str = ""
 ) -> InputError:
     """Return an error that lists ports and how to write each."""
     listed = list(found[:_MOST_LISTED])
-    ways = [_way_to_write(port, found, name.strip()) for port in listed]
+    spellings = [_unambiguous_name(port, found, name.strip()) for port in listed]
     return InputError(
-        asked,
+        problem,
         before + "; ".join(map(_described, listed)) + ".",
-        f"Write {' or '.join(map(repr, ways))}.",
+        f"Write {' or '.join(map(repr, spellings))}.",
         value=text,
         near=[port.locode or port.label for port in listed],
     )
@@ -261,7 +261,7 @@ def _described(port: Port) -> str:
     return f"{port.label} ({', '.join(fact for fact in facts if fact)})"
 
 
-def _way_to_write(port: Port, found: Sequence[Port], name: str) -> str:
+def _unambiguous_name(port: Port, found: Sequence[Port], name: str) -> str:
     """Return a text that names one of the ports found: with country, LOCODE, region or position."""
     name = name or port.name
     compatriots = [p for p in found if p.country_code == port.country_code and p is not port]

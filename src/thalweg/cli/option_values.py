@@ -148,8 +148,8 @@ def _parse_fill_policy(text: str) -> tuple[str, float | str]:
         if name not in FILLABLE:
             raise ValueError
         of_waves = name == "waves" and value in ("wind", "head_seas")
-        worded = of_waves or value.startswith("nearest:")
-        return name, value if worded else float(value)
+        is_text = of_waves or value.startswith("nearest:")
+        return name, value if is_text else float(value)
     except ValueError:
         raise InputError(
             f"--fill {text} is not understood.",

@@ -165,11 +165,15 @@ def rhumb_cross_track(
     psi, _ = _isometric_step(np.array([start[0]]), np.array([end[0]]))
     turn = np.radians(wrap_longitude(end[1] - start[1]))
     rise, _ = _isometric_step(np.full(lat.shape, start[0]), lat)
-    aside = np.radians(wrap_longitude(lon - start[1]))
+    lon_change = np.radians(wrap_longitude(lon - start[1]))
     length = math.hypot(float(turn), float(psi[0]))
     phi = np.radians(lat)
     scale = EQUATORIAL_RADIUS * np.cos(phi) / np.sqrt(1 - _ECCENTRICITY_SQUARED * np.sin(phi) ** 2)
-    apart = np.hypot(aside, rise) if length == 0.0 else (aside * psi[0] - rise * turn) / length
+    apart = (
+        np.hypot(lon_change, rise)
+        if length == 0.0
+        else (lon_change * psi[0] - rise * turn) / length
+    )
     return np.asarray(np.abs(apart) * scale)
 
 

@@ -55,15 +55,15 @@ class EvolutionaryAlgorithm(ABC):
         )
         self.population, self.scores = first, np.empty((0, 3))
         self._steps = self._search()
-        self._asked = next(self._steps)
+        self._unscored = next(self._steps)
 
     def ask(self) -> Population:
         """Return the tracks that are to be scored next."""
-        return self._asked
+        return self._unscored
 
     def tell(self, scores: FloatArray) -> None:
         """Accept the scores (N, 3) of the requested tracks; see `Evaluator.score`."""
-        self._asked = self._steps.send(scores)
+        self._unscored = self._steps.send(scores)
 
     @abstractmethod
     def _search(self) -> ScoreRequests:

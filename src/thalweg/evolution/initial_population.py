@@ -66,9 +66,9 @@ def initial_population(
         Seeds first, then mutants.
     """
     genomes = as_genomes(evaluator, seeds)
-    top, thrifty = evaluator.settings - 1, least_cost_setting(evaluator)
+    top, economical = evaluator.settings - 1, least_cost_setting(evaluator)
     fast = [_at_setting(genome, top) for genome in genomes]
-    slow = [_at_setting(genome, thrifty) for genome in genomes]
+    slow = [_at_setting(genome, economical) for genome in genomes]
     population = evaluator.population([*genomes, *fast, *slow], capacity=capacity_for(genomes))
     base, missing = population, size - len(population)
     mix = replace(

@@ -110,7 +110,7 @@ def refine_front(
     Returns
     -------
     EvolutionResult
-        ``origin`` is "seed", "polish" (local search) or "nsga2" for each track.
+        ``origin`` is "seed", "local search" or "nsga2" for each track.
 
     Notes
     -----
@@ -148,7 +148,7 @@ def refine_front(
         refined = scalarised_local_search(priced, stop=monitor.stop)
         monitor.report(refined.scores)
         filled = fill_front(refined, size)
-        pool.add("polish", concatenated_populations(refined.population, filled))
+        pool.add("local search", concatenated_populations(refined.population, filled))
     limits = _remaining(stopping, begun)
     work = RunSummary(0, work.evaluations, "cancelled" if monitor.cancelled else "generations")
     if not monitor.cancelled and limits.generations != 0:

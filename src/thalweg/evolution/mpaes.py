@@ -187,7 +187,7 @@ class Mpaes(EvolutionaryAlgorithm):
             return False
         if dominates(child[None], archive).any():
             return True
-        elders = self.scores[parents]
-        both = np.vstack([_scores_without(archive, elders), elders, child])
+        parent_scores = self.scores[parents]
+        both = np.vstack([_scores_without(archive, parent_scores), parent_scores, child])
         crowding = crowding_distance(both[:, :2])
         return bool(crowding[-1] > crowding[-3:-1].min())

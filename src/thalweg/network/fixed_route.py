@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 _PIECES_PER_EDGE: Final = 2  # pieces in which every edge is sampled
 
 
-def fixed_route(chart: Chart, way: Sequence[Position], *, spacing: float) -> Network:
+def fixed_route(chart: Chart, positions: Sequence[Position], *, spacing: float) -> Network:
     """Return the network of a given route, on which a ship only chooses its speeds.
 
     Parameters
     ----------
     chart : Chart
         The legs of the route must be allowed on it; those through canals are not divided.
-    way : sequence of (lat, lon)
+    positions : sequence of (lat, lon)
         Waypoints [deg], at least two.
     spacing : float
         Longest edge [m], above 0. Edges also end at borders of emission control areas.
@@ -41,7 +41,7 @@ def fixed_route(chart: Chart, way: Sequence[Position], *, spacing: float) -> Net
     Network
         Its start is the first node, its goal the last.
     """
-    lat, lon = np.asarray(way, float).T
+    lat, lon = np.asarray(positions, float).T
     canal = np.asarray(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:])) >= 0
     length = np.asarray(geodesy.distance(lat[:-1], lon[:-1], lat[1:], lon[1:]))
     parts = np.where(canal, 1, np.maximum(1, np.ceil(length / spacing))).astype(int)

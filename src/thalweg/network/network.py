@@ -27,7 +27,8 @@ class NetworkMeta:
         Number of directions that leave a node in open water.
     gap_rad : float
         Largest angle between neighbouring directions [rad]; the shortest path on the network is at
-        most ``1 / cos(gap_rad / 2)`` times as long as the shortest path in open water.
+        most ``1 / cos(gap_rad / 2)`` times as long as the shortest path in the open water that the
+        nodes cover (a lattice along parallels has none beyond 84 degrees of latitude).
     rejected : dict of str to int
         How many legs were refused while building, by reason.
     start, goal : int

@@ -123,11 +123,11 @@ class ApproachSailing:
         """Return a note about each approach."""
         draught = float(context.ship.draught)
         found = []
-        for approach, way in ((self.outward, "out of"), (self.inward, "into")):
+        for approach, to in ((self.outward, "out of"), (self.inward, "into")):
             if approach is None:
                 continue
             found.append(
-                f"+{approach.length / NAUTICAL_MILE:.1f} nm {way} {approach.port.label} along its "
+                f"+{approach.length / NAUTICAL_MILE:.1f} nm {to} {approach.port.label} along its "
                 f"approach ({self._duration(approach) / HOUR:.1f} h at "
                 f"{self.speed / KNOT:.1f} kn, line {approach.quality}): counted in all totals; "
                 "weather, tide and depth are not considered there."

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from thalweg.route import Route
 
 
+#: Earlier names of stages that saved fronts may have.
+_RENAMED_STAGES = {"polish": "local search"}
+
+
 @dataclass(frozen=True, eq=False)
 class BaselineComparison:
     """The shortest route, sailed at constant settings through the same weather.
@@ -53,8 +57,8 @@ class ParetoFront:
     stages : tuple of str (n,)
         Source of each route: ``"fastest"`` (refined for time), ``"exact"``,
         ``"alternative path"`` (a fixed route past other land or through other canals, with its
-        best speeds), ``"polish"``, the evolutionary method, or ``"constant speed"`` (of the
-        weather-blind route).
+        best speeds), ``"local search"``, the evolutionary method, or ``"constant speed"`` (of
+        the weather-blind route). The earlier name ``"polish"`` is read as ``"local search"``.
     ways : tuple of str (n,)
         Label of each route: its canals, or ``"open sea"``, and the sides of land where these
         differ (`thalweg.planning.pareto.route_names.route_labels`).
@@ -72,6 +76,10 @@ class ParetoFront:
     ways: tuple[str, ...]
     lower: FloatArray
     comparison: BaselineComparison | None = None
+
+    def __post_init__(self) -> None:
+        stages = tuple(_RENAMED_STAGES.get(stage, stage) for stage in self.stages)
+        object.__setattr__(self, "stages", stages)
 
     def lower_at(self, time_h: float) -> float:
         """Return the value of the lower front at a time [h]; NaN before its first time."""

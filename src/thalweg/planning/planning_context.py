@@ -87,8 +87,8 @@ class PlanningContext:
     @property
     def latest_arrival(self) -> float:
         """Latest arrival that the voyage allows [s since 1970]; inf without any."""
-        asked = self.voyage.arrive_by
-        return math.inf if asked is None else float(asked)  # type: ignore[arg-type]
+        deadline = self.voyage.arrive_by
+        return math.inf if deadline is None else float(deadline)  # type: ignore[arg-type]
 
     def evaluate(self, track: Track, terms: FuelTerms | None = None) -> Route:
         """Return a track scored by the referee; broken limits are listed, not raised."""

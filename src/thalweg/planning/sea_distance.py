@@ -18,12 +18,12 @@ from thalweg.core.geodesy import Position, densify, distance
 from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.types import FloatArray
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
-from thalweg.network.alternatives.path_shortening import pull_taut
+from thalweg.network.alternatives.path_shortening import string_pull_path
 from thalweg.network.global_grid.sea_graph import (
     ICE_LATITUDES,
     outside_ice,
+    path_length,
     sea_graph,
-    way_length,
 )
 from thalweg.planning.request.voyage_endpoints import (
     Endpoint,
@@ -204,13 +204,13 @@ def sea_distance(
             along = ((f"{first.port.label} to {last.port.label}", length),)
             return SeaDistance(ends[0].name, ends[-1].name, length, (), (), along, line, notes)
     numbers = [k for k, canal in enumerate(chart.canals) if canal not in left]
-    parts = [_way_at_sea(chart, a, b, numbers) for a, b in itertools.pairwise(ends)]
-    way = [parts[0][0], *(place for part in parts for place in part[1:])]
-    length, canals = _length_and_canals(chart, way)
+    parts = [_path_at_sea(chart, a, b, numbers) for a, b in itertools.pairwise(ends)]
+    path = [parts[0][0], *(place for part in parts for place in part[1:])]
+    length, canals = _length_and_canals(chart, path)
     approaches = tuple((a.port.label, a.length) for a in (first, last) if a is not None)
     line = (
         *(first.line[:-1] if first else ()),
-        *way,
+        *path,
         *(last.line[-2::-1] if last else ()),
     )
     total = length + sum(miles for _, miles in approaches)
@@ -218,29 +218,29 @@ def sea_distance(
     return SeaDistance(ends[0].name, ends[-1].name, total, canals, straits, approaches, line, notes)
 
 
-def _way_at_sea(
+def _path_at_sea(
     chart: Chart, start: Endpoint, goal: Endpoint, closed: Sequence[int]
 ) -> list[Position]:
     """Return the shortest way between two positions at sea."""
     ends = (start.lat, start.lon), (goal.lat, goal.lon)
     if float(distance(*ends[0], *ends[1])) < 1.0:
         return [ends[0]]
-    way = sea_graph(chart).way(chart, *ends, closed=closed)
+    path = sea_graph(chart).path(chart, *ends, closed=closed)
     if outside_ice(*ends):
         chart = chart.within(*ICE_LATITUDES, -180.0, 180.0)
-    lat, lon = pull_taut(chart, *np.array(way).T)
+    lat, lon = string_pull_path(chart, *np.array(path).T)
     return list(zip(lat.tolist(), lon.tolist()))
 
 
-def _length_and_canals(chart: Chart, way: Sequence[Position]) -> tuple[float, tuple[str, ...]]:
+def _length_and_canals(chart: Chart, path: Sequence[Position]) -> tuple[float, tuple[str, ...]]:
     """Return the length [m] of a way, canals with their own, and the titles of its canals."""
-    if len(way) < 2:
+    if len(path) < 2:
         return 0.0, ()
-    lat, lon = np.array(way).T
+    lat, lon = np.array(path).T
     canal = np.asarray(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:]))
-    length = way_length(way)
+    length = path_length(path)
     for leg in np.flatnonzero(canal >= 0).tolist():
-        length += chart.canals[canal[leg]].length - way_length(way[leg : leg + 2])
+        length += chart.canals[canal[leg]].length - path_length(path[leg : leg + 2])
     return length, tuple(chart.canals[k].title for k in canal[canal >= 0])
 
 

@@ -22,7 +22,7 @@ from thalweg.route.refinement.better_route import (
     better_route,
     shorten_waits,
 )
-from thalweg.route.refinement.cost_refinement import polish
+from thalweg.route.refinement.cost_refinement import refine_cost
 from thalweg.route.refinement.smoothing import smooth
 from thalweg.route.route import Route, Violation
 from thalweg.route.route_concatenation import join
@@ -41,8 +41,8 @@ __all__ = [
     "evaluate",
     "evaluate_members",
     "join",
-    "polish",
     "read_track",
+    "refine_cost",
     "shorten_waits",
     "smooth",
     "with_wind_speed",

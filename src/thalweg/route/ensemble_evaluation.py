@@ -329,10 +329,14 @@ def evaluate_members(
             "Members whose data end too early are always reported.",
             "Leave it out.",
         )
-    asked: Mapping[str, Any] = options if terms is None else {**options, "terms": terms}
+    evaluation_options: Mapping[str, Any] = (
+        options if terms is None else {**options, "terms": terms}
+    )
     routes: list[Route] = []
     for index in range(count):
-        routes.append(evaluate(route, ship=ship, sea=sea.member(index), strict=False, **asked))
+        routes.append(
+            evaluate(route, ship=ship, sea=sea.member(index), strict=False, **evaluation_options)
+        )
         if progress is not None:
             progress(index + 1, count)
     return EnsembleResult(tuple(routes), alpha)

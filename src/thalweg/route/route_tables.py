@@ -167,8 +167,8 @@ def _conditions(route: SailedRoute, at: np.ndarray) -> dict[str, FloatArray]:
         if east in samples and north in samples:
             u, v = samples[east], samples[north]
             found[f"{name}_speed_kn"] = np.hypot(u, v) / KNOT
-            way = "from" if origin else "towards"
-            found[f"{name}_{way}_deg"] = _bearing(-u, -v) if origin else _bearing(u, v)
+            sense = "from" if origin else "towards"
+            found[f"{name}_{sense}_deg"] = _bearing(-u, -v) if origin else _bearing(u, v)
     height, period = "sea_surface_wave_significant_height", "sea_surface_wave_period"
     for name, values in samples.items():
         if name == height:

@@ -247,9 +247,9 @@ def _layer_difference(first: Layer, other: Layer) -> str:
         same = a is b or (a.shape == b.shape and _same_positions(a, b))
         rows, columns = b.shape
         return "" if same else f"is on another grid ({rows} x {columns} points) than member 0"
-    mine = [replace(row, source="") for row in first.coverage()]
+    own = [replace(row, source="") for row in first.coverage()]
     theirs = [replace(row, source="") for row in other.coverage()]
-    same = [_coverage_values(row) for row in mine] == [_coverage_values(row) for row in theirs]
+    same = [_coverage_values(row) for row in own] == [_coverage_values(row) for row in theirs]
     return "" if same else "covers another area or period, or has other time steps, than member 0"
 
 

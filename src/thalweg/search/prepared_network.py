@@ -188,12 +188,12 @@ class PreparedNetwork:
             self.network, self.tails, self.sea, self.strongest, caps, required, times
         )
         count = len(self.network.can_wait)
-        ahead = np.empty(count)
+        to_goal = np.empty(count)
         memory = np.empty(count, np.int32), np.empty(count), np.full(count, -1, np.int32)
         kernel.least_times_to_goal(
-            self.incoming_ptr, self.incoming_edges, self.tails, times, goal, ahead, memory
+            self.incoming_ptr, self.incoming_edges, self.tails, times, goal, to_goal, memory
         )
-        return kernel.TravelTimeBounds(ahead, times)
+        return kernel.TravelTimeBounds(to_goal, times)
 
 
 def _speed_caps(ship: ShipArrays, fastest: float) -> FloatArray:

@@ -117,7 +117,7 @@ class ProfileSearch:
     ship : ShipArrays
     states : TidalStates
         Times afloat of every node.
-    ahead : TravelTimeBounds
+    to_goal : TravelTimeBounds
         Lower bounds of the time to go.
     ends : tuple of int
         Start and goal.
@@ -130,7 +130,7 @@ class ProfileSearch:
     prepared: PreparedNetwork
     ship: ShipArrays
     states: TidalStates
-    ahead: kernel.TravelTimeBounds
+    to_goal: kernel.TravelTimeBounds
     ends: tuple[int, int]
     slowness: float
     wait: bool
@@ -138,7 +138,7 @@ class ProfileSearch:
     @property
     def shortest(self) -> float:
         """Lower bound of the time of any passage [s]; inf if no tide ever opens a path."""
-        return float(self.ahead.node[self.ends[0]])
+        return float(self.to_goal.node[self.ends[0]])
 
     @cached_property
     def _network(self) -> NetworkArrays:
@@ -263,7 +263,7 @@ class ProfileSearch:
         )
         sea = self.prepared.by_time
         cost = kernel.search_departure(
-            self._network, self.states, sea, self.ship, trip, self.ahead, self._workspace
+            self._network, self.states, sea, self.ship, trip, self.to_goal, self._workspace
         )
         return trip, float(cost)
 

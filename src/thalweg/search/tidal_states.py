@@ -155,9 +155,9 @@ def _copy_edges(network: NetworkArrays, states: NetworkArrays, begin: FloatArray
     degree = np.diff(network.indptr)[states.station]
     tail = np.repeat(np.arange(len(states.station)), degree)
     edge = _ranges(network.indptr[states.station], degree)
-    ways = copies[network.target[edge]]
-    head = order[_ranges(where[network.target[edge]], ways)]
-    tail, edge = np.repeat(tail, ways), np.repeat(edge, ways)
+    state_count = copies[network.target[edge]]
+    head = order[_ranges(where[network.target[edge]], state_count)]
+    tail, edge = np.repeat(tail, state_count), np.repeat(edge, state_count)
     latest = np.where(network.can_wait[states.station[tail]], states.until[tail], np.inf)
     longest = np.fmax(network.length[edge] / _MIN_SPEED_OVER_GROUND, network.fixed_time[edge])
     latest = np.maximum(latest, states.closes[tail]) + longest

@@ -300,8 +300,8 @@ def _missing_results(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]
     if not known("brake_power_kw"):
         found.append("power: models.calm_water with a hull, table.power_kw, or the cubic law")
     if not known("fuel_kg_per_h"):
-        ways = "engine.type with fuel.type, engine.sfoc_g_per_kwh, or table.fuel_t_per_day"
-        found.append(f"fuel: {ways}" if known("brake_power_kw") else "fuel: power, or a table")
+        keys = "engine.type with fuel.type, engine.sfoc_g_per_kwh, or table.fuel_t_per_day"
+        found.append(f"fuel: {keys}" if known("brake_power_kw") else "fuel: power, or a table")
     elif not known("co2_kg_per_h"):
         found.append("CO2: fuel.type or fuel.carbon_factor")
     elif not known("cii"):

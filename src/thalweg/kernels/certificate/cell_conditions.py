@@ -213,7 +213,7 @@ def read_cell(world, j, i, first, last, buffers):
     high[:] = -math.inf
     bed_high, level_low, level_high, bed_low = -math.inf, math.inf, -math.inf, math.inf
     field_high = -math.inf
-    calmest = math.inf
+    lowest_wave = math.inf
     winds, waves, known_corners, instants = 0, 0, 0, 0
     unlimited = False
     if world.closed[j, i] or first > times[final] or last < times[0]:
@@ -246,7 +246,7 @@ def read_cell(world, j, i, first, last, buffers):
                     low[AXIS_WAVE_HEIGHT], high[AXIS_WAVE_HEIGHT] = _widen(
                         low[AXIS_WAVE_HEIGHT], high[AXIS_WAVE_HEIGHT], height
                     )
-                    calmest = min(calmest, height)
+                    lowest_wave = min(lowest_wave, height)
                 elif world.needs & (1 << AXIS_WAVE_HEIGHT):
                     known = False
                 if index[WAVE_EAST] >= 0 and index[WAVE_NORTH] >= 0:
@@ -298,8 +298,8 @@ def read_cell(world, j, i, first, last, buffers):
     if unlimited:
         return -1, True, field_high, winds, waves
     is_open = deep >= world.limits[LIMIT_REQUIRED_DEPTH]
-    if calmest < math.inf:
-        is_open = is_open and calmest <= world.limits[LIMIT_WAVE_HEIGHT]
+    if lowest_wave < math.inf:
+        is_open = is_open and lowest_wave <= world.limits[LIMIT_WAVE_HEIGHT]
     if winds > 0 and world.limits[LIMIT_WIND_SPEED] < math.inf:
         shortest = direction_range(buffers.wind, winds)[2]
         is_open = is_open and shortest <= world.limits[LIMIT_WIND_SPEED]

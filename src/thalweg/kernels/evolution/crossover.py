@@ -46,11 +46,11 @@ def _nearest(a, genes, count, weight, tried):
     best, least = -1, math.inf
     scale = math.cos(a[LAT] * RADIANS)
     for j in range(1, count - 1):
-        fresh = True
+        is_new = True
         for k in range(tried):
-            fresh &= weight[k] != j
+            is_new &= weight[k] != j
         x, y = planar_difference(a, genes[j], scale)
-        if fresh and x * x + y * y < least:
+        if is_new and x * x + y * y < least:
             best, least = j, x * x + y * y
     return best
 
@@ -101,7 +101,17 @@ def crossover(a, na, b, nb, coast, c, d, state, weight):
 
 @allocation_free
 def make_offspring(
-    count, genes, pairs, coast, settings, variation_settings, states, born, offspring, work, weights
+    count,
+    genes,
+    pairs,
+    coast,
+    settings,
+    variation_settings,
+    states,
+    counts_out,
+    offspring,
+    work,
+    weights,
 ):
     """Make two children of each pair of parents.
 
@@ -119,7 +129,7 @@ def make_offspring(
     variation_settings : float64[VARIATION_SETTING_COUNT]
     states : uint64[K, 1]
         A seed for each pair.
-    born : int64[K, 2]
+    counts_out : int64[K, 2]
         Points of the children; filled.
     offspring : float64[K, 2, M, COLUMNS]
         The children; filled.
@@ -145,4 +155,4 @@ def make_offspring(
             nc = mutate(c, nc, coast, settings, variation_settings, state, weight, spare)
         if not crossed or random_uniform(state) < variation_settings[MUTATION_PROBABILITY]:
             nd = mutate(d, nd, coast, settings, variation_settings, state, weight, spare)
-        born[k, 0], born[k, 1] = nc, nd
+        counts_out[k, 0], counts_out[k, 1] = nc, nd

@@ -87,20 +87,20 @@ def strengths(first, second, violation, strength, raw):
     ones the one with the smaller violation.
     """
     n = first.shape[0]
-    beats = np.zeros((n, n), dtype=np.bool_)
+    dominates = np.zeros((n, n), dtype=np.bool_)
     for i in range(n):
         for j in range(n):
             if violation[i] != violation[j]:
-                beats[i, j] = violation[i] < violation[j]
+                dominates[i, j] = violation[i] < violation[j]
             elif first[i] <= first[j] and second[i] <= second[j]:
-                beats[i, j] = first[i] < first[j] or second[i] < second[j]
+                dominates[i, j] = first[i] < first[j] or second[i] < second[j]
         strength[i] = 0.0
         for j in range(n):
-            strength[i] += beats[i, j]
+            strength[i] += dominates[i, j]
     for i in range(n):
         raw[i] = 0.0
         for j in range(n):
-            if beats[j, i]:
+            if dominates[j, i]:
                 raw[i] += strength[j]
 
 
@@ -148,8 +148,8 @@ def truncate(first, second, keep):
         for i in range(n):
             if left[i]:
                 dx, dy = first[i] - first[worst], second[i] - second[worst]
-                gone = math.sqrt(dx * dx + dy * dy)
-                k = np.searchsorted(near[i, :size], gone)
+                separation = math.sqrt(dx * dx + dy * dy)
+                k = np.searchsorted(near[i, :size], separation)
                 for q in range(k, size - 1):
                     near[i, q] = near[i, q + 1]
         size -= 1

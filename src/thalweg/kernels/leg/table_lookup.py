@@ -283,13 +283,13 @@ def _speed_at_intersection(table, axis_values, setting):
     guess = table.curve_guess[setting]
     column = guess
     while high - low > 1:
-        asked = _sum_at_column(table, planes, column)
-        if asked != asked:
+        target_sum = _sum_at_column(table, planes, column)
+        if target_sum != target_sum:
             return 0.0, False
-        if asked < table.curve[setting, column * CURVE_REFINEMENT]:
-            low, under = column, asked
+        if target_sum < table.curve[setting, column * CURVE_REFINEMENT]:
+            low, under = column, target_sum
         else:
-            high, over = column, asked
+            high, over = column, target_sum
         if low < 0:  # down in growing steps, up one by one, then in halves
             column = high - 1 if high == guess else high >> 1
         else:

@@ -66,7 +66,7 @@ class InterpolationBounds(NamedTuple):
         Whether leaving later may be useful; 2 where the edge is closed at one of the two slices.
     along : float64[E]
         Largest current along an edge [m/s].
-    fastest, thriftiest : float64[S]
+    fastest, least_rate : float64[S]
         Greatest speed through water [m/s], least fuel rate [kg/s].
     """
 
@@ -76,7 +76,7 @@ class InterpolationBounds(NamedTuple):
     gains: np.ndarray
     along: np.ndarray
     fastest: np.ndarray
-    thriftiest: np.ndarray
+    least_rate: np.ndarray
 
 
 class ScalarisedLabelTarget(NamedTuple):
@@ -133,9 +133,9 @@ def _widened_errors(errors, estimate, time, cost, price):
     """Return errors widened by a passage that takes and costs other than the estimate of both."""
     duration, spent = estimate
     own = spent - price * duration
-    dearer = (cost - price * time) / own - 1.0 if own > 0.0 else 0.0
+    excess_cost = (cost - price * time) / own - 1.0 if own > 0.0 else 0.0
     slower = time / duration - 1.0
-    return max(errors[0], -slower), max(errors[1], -dearer), max(errors[2], slower)
+    return max(errors[0], -slower), max(errors[1], -excess_cost), max(errors[2], slower)
 
 
 @inlined
@@ -241,7 +241,7 @@ def _least_in_any_sea(search, edge, s, rate, longest):
         return duration, prices.fee[edge] + fuel + duration * (prices.time_price - rate)
     speed = bounds.fastest[s] + bounds.along[edge]
     duration = world.network.length[edge] / speed if speed > 0.0 else math.inf
-    net = bounds.thriftiest[s] * prices.weight[edge] + prices.time_price - rate
+    net = bounds.least_rate[s] * prices.weight[edge] + prices.time_price - rate
     return duration, prices.fee[edge] + net * (duration if net > 0.0 else longest)
 
 

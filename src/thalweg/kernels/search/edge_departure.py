@@ -19,8 +19,10 @@ def _sail_edge_at(network, sea, ship, edge, tail_node, k, t, work):
 
 
 @kernel_only
-def _find_opening(network, sea, ship, edge, tail_node, k, shut, opened, arrival, useless, work):
-    """Return the earliest (departure, arrival) of an edge that opens in (shut, opened].
+def _find_opening(
+    network, sea, ship, edge, tail_node, k, closed, open_from, arrival, useless, work
+):
+    """Return the earliest (departure, arrival) of an edge that opens in (closed, open_from].
 
     Where depth is what lacks, which is linear between the times of the data, two departures
     give the time when it suffices; else by halving. The arrival is inf if no departure before
@@ -29,19 +31,19 @@ def _find_opening(network, sea, ship, edge, tail_node, k, shut, opened, arrival,
     required, depth = ship.limits[LIMIT_REQUIRED_DEPTH], float(network.depth[edge])
     guess, share, checking = math.nan, 0.001, False
     passed, lacked = math.nan, math.nan
-    while opened - shut > OPENING_TOLERANCE:
-        if shut >= useless:
-            return opened, math.inf
-        guessed = shut < guess < opened
-        probe = guess if guessed else shut + share * (opened - shut)
+    while open_from - closed > OPENING_TOLERANCE:
+        if closed >= useless:
+            return open_from, math.inf
+        guessed = closed < guess < open_from
+        probe = guess if guessed else closed + share * (open_from - closed)
         then, status = _sail_edge_at(network, sea, ship, edge, tail_node, k, probe, work)
         if status == OK:
-            opened, arrival = probe, then
+            open_from, arrival = probe, then
             if guessed:  # once just before it, to see that it is closed there
                 guess = math.nan if checking else probe - 0.9 * OPENING_TOLERANCE
                 checking = not checking
         else:
-            shut, guess, checking = probe, math.nan, False
+            closed, guess, checking = probe, math.nan, False
             if status == DEPTH:
                 sample = work[2] if then > probe else work[1]
                 lack = required - water_depth(sample, sea.channel_index, depth)
@@ -51,12 +53,12 @@ def _find_opening(network, sea, ship, edge, tail_node, k, shut, opened, arrival,
                 passed, lacked = then, lack
         if not guessed:
             share = min(60.0 * share, 0.5)
-    return opened, arrival
+    return open_from, arrival
 
 
 @kernel_only
 def wait_for_edge(
-    network, sea, ship, edge, tail, k, t, until, arrival, status, factor, quickest, enough, work
+    network, sea, ship, edge, tail, k, t, until, arrival, status, factor, least_time, enough, work
 ):
     """Find the best departure of an edge for a ship that may wait at its tail since t.
 
@@ -75,7 +77,7 @@ def wait_for_edge(
         What `sail_edge` gives for departing at t.
     factor : float
         Weight of the time under way; waiting weighs 1.
-    quickest : float
+    least_time : float
         Lower bound of the time under way on this edge [s].
     enough : float
         A departure is useful only if waiting plus ``factor`` times sailing is below this [s].
@@ -113,7 +115,7 @@ def wait_for_edge(
                 continue
             break
         earliest = s if before_status == OK else before
-        if earliest - t + factor * quickest >= min(best, enough):
+        if earliest - t + factor * least_time >= min(best, enough):
             break
         then, now = _sail_edge_at(network, sea, ship, edge, tail, interval, s, work)
         if now == OUTSIDE_PERIOD:
@@ -127,7 +129,7 @@ def wait_for_edge(
             if value < best:
                 departure, arrival, best, status = start, then, value, OK
             if before_status != OK:
-                useless = t + min(best, enough) - factor * quickest
+                useless = t + min(best, enough) - factor * least_time
                 start, then = _find_opening(
                     network, sea, ship, edge, tail, j - 1, before, start, then, useless, work
                 )

@@ -215,7 +215,7 @@ def least_edge_times(network, tails, sea, strongest, caps, required, times):
 
 
 @allocation_free
-def least_times_to_goal(reverse_ptr, reverse_edge, tails, times, goal, ahead, memory):
+def least_times_to_goal(reverse_ptr, reverse_edge, tails, times, goal, to_goal, memory):
     """Fill the least sums of edge times to the goal from every node (Dijkstra backwards).
 
     Parameters
@@ -225,15 +225,15 @@ def least_times_to_goal(reverse_ptr, reverse_edge, tails, times, goal, ahead, me
     tails : int32[E]
     times : float64[E]
     goal : int
-    ahead : float64[N]
+    to_goal : float64[N]
         Filled; inf where there is no path.
     memory : tuple of int32[N], float64[N], int32[N]
         Heap; its places are -1.
     """
     nodes, keys, place = memory
-    for n in range(ahead.shape[0]):
-        ahead[n] = math.inf
-    ahead[goal] = 0.0
+    for n in range(to_goal.shape[0]):
+        to_goal[n] = math.inf
+    to_goal[goal] = 0.0
     size = heap.push_or_lower(nodes, keys, place, 0, goal, 0.0)
     while size > 0:
         node, reached, size = heap.pop_least(nodes, keys, place, size)
@@ -241,13 +241,15 @@ def least_times_to_goal(reverse_ptr, reverse_edge, tails, times, goal, ahead, me
             edge = reverse_edge[k]
             away = reached + times[edge]
             tail = tails[edge]
-            if away < ahead[tail]:
-                ahead[tail] = away
+            if away < to_goal[tail]:
+                to_goal[tail] = away
                 size = heap.push_or_lower(nodes, keys, place, size, tail, away)
 
 
 @inlined_by_numba
-def _best_passage(network, sea, ship, trip, node, edge, k, time, until, enough, quickest, work):
+def _best_passage(
+    network, sea, ship, trip, node, edge, k, time, until, enough, least_edge_time, work
+):
     """Return (departure, arrival, status) of the best use of an edge since a time."""
     factor = float(network.factor[edge])
     cutoff = MarchCutoff(time + enough / factor, trip.slowness)
@@ -258,32 +260,32 @@ def _best_passage(network, sea, ship, trip, node, edge, k, time, until, enough, 
         return time, arrival, status
     pause = sea.times[k + 1] - time  # until the next time of the data
     useful = min(enough, factor * (arrival - time))
-    if status == OK and pause + quickest >= useful:
+    if status == OK and pause + least_edge_time >= useful:
         return time, arrival, status
     return wait_for_edge(
         network, sea, ship, edge, node, k, time, until,
-        arrival, status, factor, quickest / factor, enough, work,
+        arrival, status, factor, least_edge_time / factor, enough, work,
     )  # fmt: skip
 
 
 @inlined_by_numba
-def _relax_edge_from_state(network, states, sea, ship, trip, ahead, marks, state, edge, k, size):
+def _relax_edge_from_state(network, states, sea, ship, trip, to_goal, marks, state, edge, k, size):
     """Improve the labels of an edge's head if the edge can; return the size of the heap."""
     head, node = network.target[edge], states.node[state]
     cost, time = marks.cost[state], marks.time[state]
-    left, quickest = ahead.node[head], ahead.edge[edge]
+    left, least_edge_time = to_goal.node[head], to_goal.edge[edge]
     reach = min(trip.limit, marks.cost[trip.goal]) - cost - left
     for s in range(states.ptr[head], states.ptr[head + 1]):
-        if not quickest < reach or states.opens[s] - time >= reach:
+        if not least_edge_time < reach or states.opens[s] - time >= reach:
             break
         enough = min(reach, marks.cost[s] - cost)
-        if states.closes[s] <= time or marks.settled[s] or not quickest < enough:
+        if states.closes[s] <= time or marks.settled[s] or not least_edge_time < enough:
             continue
         marks.counts[SAILED] += 1
         network.opens[head], network.closes[head] = states.opens[s], states.closes[s]
         departure, arrival, status = _best_passage(
             network, sea, ship, trip, node, edge, k, time, states.until[state],
-            enough, quickest, marks.samples,
+            enough, least_edge_time, marks.samples,
         )  # fmt: skip
         if status != OK or arrival == math.inf or arrival > trip.latest:
             continue
@@ -312,7 +314,7 @@ def reset_workspace(marks):
 
 
 @allocation_free
-def search_departure(network, states, sea, ship, trip, ahead, marks):
+def search_departure(network, states, sea, ship, trip, to_goal, marks):
     """Search one departure; return its cost [s], inf if the goal is not reached within the limit.
 
     Parameters
@@ -322,19 +324,19 @@ def search_departure(network, states, sea, ship, trip, ahead, marks):
     states : TidalStates
     sea, ship : SeaArrays, ShipArrays
     trip : DepartureQuery
-    ahead : TravelTimeBounds
+    to_goal : TravelTimeBounds
         Bounds that obey the triangle inequality with the times of edges.
     marks : ProfileWorkspace
         Holds the labels until the next `reset_workspace`, which must have been called before.
     """
     nodes, keys, place, counts = marks.nodes, marks.keys, marks.place, marks.counts
     counts[SETTLED] = counts[SAILED] = 0
-    if not ahead.node[states.node[trip.start]] <= trip.limit:
+    if not to_goal.node[states.node[trip.start]] <= trip.limit:
         return math.inf
     marks.touched[0], counts[TOUCHED] = trip.start, 1
     marks.cost[trip.start], marks.time[trip.start] = 0.0, trip.depart
     size = heap.push_or_lower(
-        nodes, keys, place, 0, trip.start, ahead.node[states.node[trip.start]]
+        nodes, keys, place, 0, trip.start, to_goal.node[states.node[trip.start]]
     )
     while size > 0 and counts[SETTLED] < trip.most:
         state, _, size = heap.pop_least(nodes, keys, place, size)
@@ -349,7 +351,7 @@ def search_departure(network, states, sea, ship, trip, ahead, marks):
         sample_station(sea, node, k, time, marks.samples[0])
         for edge in range(network.indptr[node], network.indptr[node + 1]):
             size = _relax_edge_from_state(
-                network, states, sea, ship, trip, ahead, marks, state, edge, k, size
+                network, states, sea, ship, trip, to_goal, marks, state, edge, k, size
             )
     return math.inf
 

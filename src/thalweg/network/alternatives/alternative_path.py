@@ -15,7 +15,7 @@ from thalweg.network.alternatives.path_shortening import (
     LegCost,
     PassingSides,
     leg_lengths,
-    pull_taut,
+    string_pull_path,
     total_cost,
 )
 from thalweg.network.network import Network
@@ -162,13 +162,13 @@ def checked_edge_weights(network: Network, edge_weights: EdgeWeights) -> FloatAr
     return weight
 
 
-def taut_path(
+def shortened_path(
     network: Network, chart: Chart, path: IntArray, ratio: float, edge_weights: EdgeWeights,
     sides: PassingSides | None = None,
 ) -> AlternativePath:  # fmt: skip
     """Return a path of nodes after string pulling; ``ratio`` as in `AlternativePath`."""
     lat, lon = network.lat[path], network.lon[path]
-    lat, lon = pull_taut(chart, lat, lon, leg_cost=edge_weights.leg_cost, sides=sides)
+    lat, lon = string_pull_path(chart, lat, lon, leg_cost=edge_weights.leg_cost, sides=sides)
     weight = checked_edge_weights(network, edge_weights)
     length, cost = total_cost((lat, lon)), total_cost((lat, lon), edge_weights.leg_cost)
     names: list[str] = []

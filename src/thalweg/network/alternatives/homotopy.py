@@ -101,9 +101,9 @@ def _large_land(network: Network, chart: Chart, island: float) -> FloatArray:
     offset = wrap_longitude(rings.lon - lon0)
     west, east = (f.reduceat(offset, begin) for f in (np.minimum, np.maximum))
     area = ring_areas(rings)
-    mine = wrap_longitude(network.lon - lon0)
+    own = wrap_longitude(network.lon - lon0)
     near = (low <= network.lat.max()) & (high >= network.lat.min())
-    near &= (west <= mine.max()) & (east >= mine.min())
+    near &= (west <= own.max()) & (east >= own.min())
     chosen = np.flatnonzero(near & (area >= island**2))
     chosen = chosen[np.argsort(-area[chosen])][:_MAX_ISLANDS]
     return np.stack([rings.lat[begin[chosen]], rings.lon[begin[chosen]]], axis=1)

@@ -20,7 +20,7 @@ from thalweg.network.alternatives.alternative_path import (
     canal_edges,
     checked_edge_weights,
     path_edges,
-    taut_path,
+    shortened_path,
 )
 from thalweg.network.alternatives.homotopy import Obstacles, obstacles
 from thalweg.network.alternatives.path_shortening import total_cost
@@ -104,7 +104,7 @@ def alternative_paths(
             : _CANDIDATES_PER_PATH * most
         ]
     found.sort(key=lambda kind: (kind.ratio, kind.order))
-    return _taut_paths(network, chart, seen, found, edge_weight_sets, most)
+    return _shortened_paths(network, chart, seen, found, edge_weight_sets, most)
 
 
 def without_each_set_of_canals(
@@ -181,10 +181,10 @@ def paths_without_canals(
     for other in others:
         if other[0] <= (1.0 + threshold) * first[0]:
             found.setdefault(tuple(other[1]), other)
-    ways = sorted(found.values(), key=lambda pair: pair[0])
+    paths = sorted(found.values(), key=lambda pair: pair[0])
     return tuple(
-        taut_path(network, chart, np.array(path), cost / first[0], edge_weights)
-        for cost, path in ways
+        shortened_path(network, chart, np.array(path), cost / first[0], edge_weights)
+        for cost, path in paths
     )
 
 
@@ -281,29 +281,31 @@ def _path_through_node(previous: IntArray, following: IntArray, node: int) -> li
     return path
 
 
-def _taut_paths(
+def _shortened_paths(
     network: Network, chart: Chart, seen: Obstacles, kinds: list[_PathClass],
     edge_weight_sets: Sequence[EdgeWeights], most: int,
 ) -> tuple[AlternativePath, ...]:  # fmt: skip
     """Return paths after string pulling, each homotopy class once."""
-    ways: list[tuple[bytes, AlternativePath]] = []
+    paths: list[tuple[bytes, AlternativePath]] = []
     known: set[bytes] = set()
     for kind in kinds:
-        if len(ways) == most:
+        if len(paths) == most:
             break
         if kind.ratio > 1.0 and kind.signature in known:
             continue
         known.add(kind.signature)
         edge_weights = edge_weight_sets[kind.order]
-        way = taut_path(network, chart, kind.path, kind.ratio, edge_weights, seen.sides)
-        signature = seen.along(chart, way.lat, way.lon)
-        alike = [other for mark, other in ways if mark == signature]
+        route = shortened_path(network, chart, kind.path, kind.ratio, edge_weights, seen.sides)
+        signature = seen.along(chart, route.lat, route.lon)
+        alike = [other for mark, other in paths if mark == signature]
         if kind.ratio > 1.0 and alike:
             continue
-        limit = (1.0 + _MIN_COST_DIFFERENCE) * total_cost((way.lat, way.lon), edge_weights.leg_cost)
+        limit = (1.0 + _MIN_COST_DIFFERENCE) * total_cost(
+            (route.lat, route.lon), edge_weights.leg_cost
+        )
         if all(total_cost((o.lat, o.lon), edge_weights.leg_cost) > limit for o in alike):
-            ways.append((signature, way))
-    return tuple(way for _, way in ways)
+            paths.append((signature, route))
+    return tuple(route for _, route in paths)
 
 
 def _cheapest_path(network: Network, weight: FloatArray) -> tuple[float, list[int]] | None:

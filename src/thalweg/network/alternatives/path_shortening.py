@@ -56,7 +56,7 @@ class _LegRules:
         return np.asarray((self.sides(*start, *end) == round_it).all(axis=1))
 
 
-def pull_taut(
+def string_pull_path(
     chart: Chart,
     lat: FloatArray,
     lon: FloatArray,
@@ -100,9 +100,9 @@ def pull_taut(
         k = np.flatnonzero(canal >= 0)
         if len(k):
             parts = np.split(np.arange(len(line[0])), k + 1)
-            drawn = [_pull_until_taut(rules, (line[0][p], line[1][p]), move, rounds) for p in parts]
+            drawn = [_string_pulled(rules, (line[0][p], line[1][p]), move, rounds) for p in parts]
             return np.concatenate([d[0] for d in drawn]), np.concatenate([d[1] for d in drawn])
-    return _pull_until_taut(rules, line, move, rounds)
+    return _string_pulled(rules, line, move, rounds)
 
 
 def total_cost(line: PolylineCoordinates, leg_cost: LegCost | None = None) -> float:
@@ -124,7 +124,7 @@ def total_cost(line: PolylineCoordinates, leg_cost: LegCost | None = None) -> fl
     return float(np.sum((leg_cost or leg_lengths)(lat[:-1], lon[:-1], lat[1:], lon[1:])))
 
 
-def _pull_until_taut(
+def _string_pulled(
     rules: _LegRules, line: PolylineCoordinates, move: bool, rounds: int
 ) -> PolylineCoordinates:
     line = _drop_waypoints(rules, line)
@@ -168,21 +168,21 @@ def _cheapest_subset(rules: _LegRules, line: PolylineCoordinates) -> IntArray:
     near = second - first <= _MAX_SKIPPED_WAYPOINTS
     first, second = first[near], second[near]
     price = rules.cost(lat[first], lon[first], lat[second], lon[second])
-    hop = np.flatnonzero(second - first > 1)  # neighbours are known to be joined
-    a, b = first[hop], second[hop]
+    shortcut = np.flatnonzero(second - first > 1)  # neighbours are known to be joined
+    a, b = first[shortcut], second[shortcut]
     free = rules.allowed((lat[a], lon[a]), (lat[b], lon[b]))
     if rules.sides is not None and count > 1:
         passed = rules.sides(lat[:-1], lon[:-1], lat[1:], lon[1:]).astype(np.int16)
         past = np.concatenate([np.zeros((1, passed.shape[1]), np.int16), passed.cumsum(axis=0)])
         own = rules.sides(lat[a], lon[a], lat[b], lon[b])
         free &= (own == past[b] - past[a]).all(axis=1)
-    price[hop[~free]] = np.inf
+    price[shortcut[~free]] = np.inf
     return _cheapest_chain(count, first, second, price)
 
 
 def _cheapest_chain(count: int, first: IntArray, second: IntArray, price: FloatArray) -> IntArray:
     """Return the cheapest chain of ascending indices from the first to the last."""
-    best, came = np.full(count, np.inf), np.zeros(count, np.int64)
+    best, predecessor = np.full(count, np.inf), np.zeros(count, np.int64)
     best[0] = 0.0
     rows = np.searchsorted(first, np.arange(count + 1))
     for here in range(count - 1):
@@ -190,10 +190,10 @@ def _cheapest_chain(count: int, first: IntArray, second: IntArray, price: FloatA
         reach = best[here] + price[row] * (1.0 + 1e-12)  # of equal paths, prefer fewer waypoints
         better = reach < best[second[row]]
         best[second[row][better]] = reach[better]
-        came[second[row][better]] = here
+        predecessor[second[row][better]] = here
     chain = [count - 1]
     while chain[-1] > 0:
-        chain.append(int(came[chain[-1]]))
+        chain.append(int(predecessor[chain[-1]]))
     return np.array(chain[::-1], np.int64)
 
 

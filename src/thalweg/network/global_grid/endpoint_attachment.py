@@ -13,7 +13,7 @@ from thalweg.core.geodesy import MEAN_RADIUS, Position, distance, format_positio
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels import codes
-from thalweg.network.alternatives.path_shortening import pull_taut
+from thalweg.network.alternatives.path_shortening import string_pull_path
 from thalweg.network.assembly import Pairs
 from thalweg.network.conformal_projection import conformal_unit_vectors
 from thalweg.network.regional_lattice.lattice_builder import lattice
@@ -250,7 +250,7 @@ def _fine_path(
     except NoRouteError:
         return None
     _, path = shortest_path(fine, fine.meta.start, fine.meta.goal)
-    return pull_taut(chart, fine.lat[path], fine.lon[path], rounds=0)
+    return string_pull_path(chart, fine.lat[path], fine.lon[path], rounds=0)
 
 
 def _attach_along(

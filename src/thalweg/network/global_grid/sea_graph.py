@@ -70,7 +70,7 @@ class SeaGraph:
     weight: FloatArray
     canal: IntArray
 
-    def way(
+    def path(
         self, chart: Chart, start: Position, goal: Position, *, closed: Sequence[int] = ()
     ) -> list[Position]:
         """Return the positions of the shortest way between two positions over the graph.
@@ -255,7 +255,7 @@ def _grown(waters: ConnectedWaters, lat: FloatArray, lon: FloatArray) -> Connect
     )
 
 
-def way_length(line: Sequence[Position]) -> float:
+def path_length(line: Sequence[Position]) -> float:
     """Return the length of the geodesics along positions [m]."""
     lat, lon = np.array(line, float).T
     return float(np.sum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))

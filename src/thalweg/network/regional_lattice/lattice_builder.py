@@ -25,7 +25,7 @@ from thalweg.network.endpoints import check_endpoints
 from thalweg.network.network import Network, NetworkMeta
 from thalweg.network.regional_lattice.directions import largest_angle_gap, unique_offsets
 from thalweg.network.regional_lattice.refinement_levels import LatticeSpecification, TooManyPoints
-from thalweg.network.regional_lattice.region import Box, Corridor, Region
+from thalweg.network.regional_lattice.region import LARGEST_LATITUDE, Box, Corridor, Region
 from thalweg.network.regional_lattice.unassembled_lattice import (
     UnassembledLattice,
     grow_lattice,
@@ -106,7 +106,9 @@ def lattice(
         8.2, 2.7, 1.31, 0.75, 0.49 or 0.34 % longer than the shortest path in open water.
     orientation : str, optional
         ``"great_circle"``: rows along the great circle from start to goal. ``"latlon"``: rows and
-        columns along parallels and meridians.
+        columns along parallels and meridians, up to 84 degrees of latitude. A shortest path that
+        passes nearer a pole is replaced by one around that parallel, and the percentages are over
+        the length of this one.
     coast_levels : int, optional
         How often the spacing is halved towards coasts; by default until 1.5 nautical miles, or
         1.5 times the offing of the chart.
@@ -132,7 +134,8 @@ def lattice(
     Raises
     ------
     InputError
-        For values out of range, start or goal not on navigable water, or both the same.
+        For values out of range, start or goal not on navigable water, or both the same, or beyond
+        84 degrees of latitude with rows along parallels.
     NoRouteError
         If start and goal do not connect on the largest and finest lattice, or not by a path within
         ``detour``.
@@ -141,6 +144,8 @@ def lattice(
     di, dj = unique_offsets(directions)
     distance = float(geodesy.distance(*start, *goal))
     _check(spacing, coast_levels, orientation, slack)
+    if orientation == "latlon":
+        _check_latitudes(start, goal)
     if along is None:
         request = _make_request(
             chart, start, goal, distance, spacing, coast_levels, orientation, area
@@ -210,6 +215,20 @@ def _check(
         raise InputError(
             f"A slack of {slack!r} is not possible.", "It is 0 or more.", "Give 0.35, for example."
         )
+
+
+def _check_latitudes(start: Position, goal: Position) -> None:
+    """Refuse ends that lie nearer a pole than the rows and columns of parallels and meridians."""
+    for what, place in (("start", start), ("goal", goal)):
+        if abs(place[0]) > LARGEST_LATITUDE:
+            raise InputError(
+                f"A lattice along parallels does not reach the {what} "
+                f"{geodesy.format_position(*place)}.",
+                f"It ends at {LARGEST_LATITUDE:g} degrees of latitude.",
+                "Choose the orientation great_circle.",
+                field="orientation",
+                value="latlon",
+            )
 
 
 def _make_request(

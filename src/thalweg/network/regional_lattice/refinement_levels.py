@@ -66,9 +66,9 @@ class Level:
 
     def where(self, keep: BoolArray, new_node: IntArray) -> Level:
         """Return the level with only the selected nodes, renumbered."""
-        mine = keep[self.node]
-        node = new_node[self.node[mine]].astype(np.int32)
-        return Level(self.step, self.i[mine], self.j[mine], node, self.around)
+        own = keep[self.node]
+        node = new_node[self.node[own]].astype(np.int32)
+        return Level(self.step, self.i[own], self.j[own], node, self.around)
 
 
 @dataclass(frozen=True)

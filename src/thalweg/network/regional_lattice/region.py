@@ -18,7 +18,7 @@ from thalweg.network.conformal_projection import (
 
 Box: TypeAlias = tuple[float, float, float, float]
 
-_LARGEST_LATITUDE = np.radians(84.0)  # of the frame; beyond it Mercator lattices grow too fine
+LARGEST_LATITUDE = 84.0  #: of a Mercator frame [deg]; nearer its poles lattices grow too fine
 _LARGEST_ELLIPSE = 2.4  # [rad] sum of distances above which the whole globe is taken
 
 
@@ -138,7 +138,7 @@ class Region:
 
     def bounds(self, frame: ConformalProjection) -> tuple[float, float, float, float]:
         """Return (least x, largest x, least y, largest y) of the region in a frame's units."""
-        top = float(np.arcsinh(np.tan(_LARGEST_LATITUDE)))
+        top = float(np.arcsinh(np.tan(np.radians(LARGEST_LATITUDE))))
         box = (-np.pi, np.pi, -top, top)
         if not self.covers_globe:
             box = _overlap(box, self._ellipse_bounds(frame))

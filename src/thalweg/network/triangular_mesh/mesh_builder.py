@@ -209,8 +209,8 @@ def _inside_mesh(plane: _MercatorPlane, faces: IntArray, a: IntArray, b: IntArra
     line = np.repeat(line, 2)
     direction = xy[b[line]] - xy[a[line]]
     along = ((xy[ends] - xy[a[line]]) * direction).sum(1) / (direction**2).sum(1)
-    aside = np.abs(np.cross(_with_zero_z(direction), _with_zero_z(xy[ends] - xy[a[line]]))[:, 2])
-    on_line = (aside <= 1e-9 * (direction**2).sum(1)) & (along > 0.0) & (along < 1.0)
+    offset = np.abs(np.cross(_with_zero_z(direction), _with_zero_z(xy[ends] - xy[a[line]]))[:, 2])
+    on_line = (offset <= 1e-9 * (direction**2).sum(1)) & (along > 0.0) & (along < 1.0)
     every = np.arange(len(lines))
     of = np.concatenate([every, every, line[on_line]])
     share = np.concatenate([np.zeros(len(lines)), np.ones(len(lines)), along[on_line]])

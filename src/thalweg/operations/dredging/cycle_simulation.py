@@ -69,7 +69,7 @@ class Simulator:
     ----------
     project : Project
     world : ProjectEnvironment
-    ways : SiteNetwork
+    site_network : SiteNetwork
     factors : sequence of float, optional
         Loads to choose from; default: those of the project.
     report : callable, optional
@@ -82,18 +82,18 @@ class Simulator:
         self,
         project: Project,
         world: ProjectEnvironment,
-        ways: SiteNetwork,
+        site_network: SiteNetwork,
         *,
         factors: Sequence[float] | None = None,
         report: MessageCallback = lambda text: None,
         name: str = "",
     ) -> None:
         self.project, self.report, self.name = project, report, name
-        self.sailor = SiteLegPlanner(world, ways)
-        back = self.sailor.passages(0.0, outward=False)
+        self.leg_planner = SiteLegPlanner(world, site_network)
+        back = self.leg_planner.passages(0.0, outward=False)
         chosen = project.work.load_factors if factors is None else factors
         self.both = [
-            RoundTrip(x, self.sailor.passages(x, outward=True), replace(back))
+            RoundTrip(x, self.leg_planner.passages(x, outward=True), replace(back))
             for x in sorted(set(chosen))
             if x > 0.0
         ]
@@ -177,11 +177,11 @@ class Simulator:
         work, option = self.project.work, choice.option
         loading, unloading = work.loading.time(option.share), work.unloading.time(option.share)
         load_factor = option.both.load_factor
-        sailor = self.sailor
-        out = sailor.sail(load_factor, time + loading, outward=True, passage=choice.full)
+        leg_planner = self.leg_planner
+        out = leg_planner.sail(load_factor, time + loading, outward=True, passage=choice.full)
         if out is None:
             return None
-        back = sailor.sail(0.0, out.arrive + unloading, outward=False)
+        back = leg_planner.sail(0.0, out.arrive + unloading, outward=False)
         if back is None:
             return None
         return DredgingCycle(
@@ -201,7 +201,7 @@ class Simulator:
             f"By {format_time(project.end)} only {moved:,.0f} of {project.work.volume:,.0f} m3 "
             f"can be moved{which}.",
             f"The last complete cycle ends {format_time(time)}."
-            + data_gap_text(self.sailor.world, (project.start, project.end)),
+            + data_gap_text(self.leg_planner.world, (project.start, project.end)),
             "Give more days (and data for them), or a smaller volume.",
             moved_m3=moved,
         )

@@ -275,17 +275,17 @@ def _mesh_near_sites(
     lat: FloatArray, lon: FloatArray, triangles: NDArray[np.int64], sites: Sites
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
     """Return the sites, the nodes of a model around them, and the triangles between these."""
-    direct_way = float(distance(*sites.load, *sites.unload))
+    direct_distance = float(distance(*sites.load, *sites.unload))
     to_load = distance(lat, lon, *sites.load)
     to_unload = distance(lat, lon, *sites.unload)
-    use = to_load + to_unload <= sites.network.detour * direct_way
+    use = to_load + to_unload <= sites.network.detour * direct_distance
     use &= np.minimum(to_load, to_unload) > _SAME_PLACE
     number = np.full(lat.size, -1, np.int64)
     number[use] = 2 + np.arange(int(use.sum()))
     if use.sum() < 3:
         raise InputError(
             "The mesh of the sea has no nodes around the sites, which are "
-            f"{direct_way:,.0f} m apart.",
+            f"{direct_distance:,.0f} m apart.",
             f"It has {lat.size} nodes between {lat.min():.3f} and {lat.max():.3f} N, "
             f"{lon.min():.3f} and {lon.max():.3f} E.",
             "Choose sites inside it, farther apart than its nodes.",

@@ -92,35 +92,35 @@ def run_project(
     world = ProjectEnvironment.open(project.sites, period, ship=ship, sea=sea, chart=chart)
     check_sites(world)
     report("building the network")
-    ways = freeze_site_network(world, project_network(world), report)
+    site_network = freeze_site_network(world, project_network(world), report)
     factors = project.work.load_factors
-    optimised = _simulate_run(project, world, ways, factors, name=OPTIMISED, report=report)
+    optimised = _simulate_run(project, world, site_network, factors, name=OPTIMISED, report=report)
     base = None
     if project.base is not None:
         given = project.base.load_factor
         line = freeze_site_network(world, fixed_route_network(chart, project.base.route), report)
         chosen = factors if given == BEST_LOAD_FACTOR else (float(given),)
         base = _simulate_run(project, world, line, chosen, name=BASE_CASE, report=report)
-    return ProjectResult(project, world, optimised, base, _provenance(world, ways))
+    return ProjectResult(project, world, optimised, base, _provenance(world, site_network))
 
 
 def _simulate_run(
     project: Project,
     world: ProjectEnvironment,
-    ways: SiteNetwork,
+    site_network: SiteNetwork,
     factors: tuple[float, ...],
     *,
     name: str,
     report: MessageCallback,
 ) -> ProjectRun:
     report(f"{name}: preparing {len(factors)} loads")
-    simulator = Simulator(project, world, ways, factors=factors, report=report, name=name)
+    simulator = Simulator(project, world, site_network, factors=factors, report=report, name=name)
     possible = simulator.possible
     if not possible:
-        raise no_passage_error(world, ways, min(x for x in factors if x > 0.0), name)
+        raise no_passage_error(world, site_network, min(x for x in factors if x > 0.0), name)
     notes: tuple[str, ...] = ()
-    shut = [x for x in factors if x > max(possible)]
-    if shut:
+    impassable = [x for x in factors if x > max(possible)]
+    if impassable:
         notes = (f"Load factors above {max(possible):g} have no route at any tide.",)
     cycles = simulator.run()
     return summarise_run(name, cycles, project=project, ship=world.ship, notes=notes)
@@ -194,7 +194,7 @@ def _depth_at(world: ProjectEnvironment, place: Position) -> tuple[np.ndarray, n
 
 
 def no_passage_error(
-    world: ProjectEnvironment, ways: SiteNetwork, load_factor: float, name: str
+    world: ProjectEnvironment, site_network: SiteNetwork, load_factor: float, name: str
 ) -> NoRouteError:
     """Return the error for a project without a route at any tide for its lightest load.
 
@@ -203,10 +203,14 @@ def no_passage_error(
     """
     loaded = world.loaded(load_factor)
     required = loaded.required_depth
-    open_to = _passable_depth(ways, loaded) if math.isfinite(required) else -math.inf
+    open_to = _passable_depth(site_network, loaded) if math.isfinite(required) else -math.inf
     summary = f"There is no route at any tide with load factor {load_factor:g} ({name})."
     if not math.isfinite(open_to):
-        unknown = _first_unknown_depth(ways.network) if ways.network.meta.kind == LINE else None
+        unknown = (
+            _first_unknown_depth(site_network.network)
+            if site_network.network.meta.kind == LINE
+            else None
+        )
         if unknown is not None:
             return NoRouteError(
                 summary,
@@ -219,7 +223,7 @@ def no_passage_error(
             "The sites are not connected by water of known depth.",
             "Check the chart, the data and the detour.",
         )
-    place, when = _bottleneck(ways, open_to)
+    place, when = _bottleneck(site_network, open_to)
     return NoRouteError(
         summary,
         f"The best route is {required - open_to:.2f} m too shallow: at {format_position(*place)} "
@@ -232,14 +236,14 @@ def no_passage_error(
     )
 
 
-def _passable_depth(ways: SiteNetwork, loaded: Any) -> float:
+def _passable_depth(site_network: SiteNetwork, loaded: Any) -> float:
     """Return the greatest least depth of all routes at their highest tides [m]."""
     low, high = -_MAX_DEPTH, _MAX_DEPTH
     limits = loaded.limits
 
     def passable(depth: float) -> bool:
         tried = limits.with_required_depth(depth)
-        return ways.passages(loaded, full=True, limits=tried).shortest < math.inf
+        return site_network.passages(loaded, full=True, limits=tried).shortest < math.inf
 
     if not passable(low):
         return -math.inf
@@ -258,9 +262,9 @@ def _first_unknown_depth(network: Network) -> Position | None:
     return float(network.lat[node]), float(network.lon[node])
 
 
-def _bottleneck(ways: SiteNetwork, depth: float) -> tuple[Position, float]:
+def _bottleneck(site_network: SiteNetwork, depth: float) -> tuple[Position, float]:
     """Return the shallowest node of the best route, and the time of its highest water."""
-    waters, network = ways.waters, ways.network
+    waters, network = site_network.waters, site_network.network
     sea = waters.sea
     charted = network.edges.depth + sea.highest[network.graph.target]
     best = np.minimum(charted, sea.deepest[network.graph.target])
@@ -272,10 +276,10 @@ def _bottleneck(ways: SiteNetwork, depth: float) -> tuple[Position, float]:
     return (float(network.lat[node]), float(network.lon[node])), when
 
 
-def _provenance(world: ProjectEnvironment, ways: SiteNetwork) -> dict[str, Any]:
+def _provenance(world: ProjectEnvironment, site_network: SiteNetwork) -> dict[str, Any]:
     from importlib.metadata import version
 
-    network = ways.network
+    network = site_network.network
     return {
         "thalweg": version("thalweg"),
         "ship": {"name": world.ship.name, "fingerprint": world.ship.fingerprint()},

@@ -31,12 +31,12 @@ class SiteLegPlanner:
     Parameters
     ----------
     world : ProjectEnvironment
-    ways : SiteNetwork
+    site_network : SiteNetwork
     """
 
-    def __init__(self, world: ProjectEnvironment, ways: SiteNetwork) -> None:
-        self.world, self.ways = world, ways
-        self.step = 0.5 * min(ways.network.meta.spacing_m, LARGEST_STEP)
+    def __init__(self, world: ProjectEnvironment, site_network: SiteNetwork) -> None:
+        self.world, self.site_network = world, site_network
+        self.step = 0.5 * min(site_network.network.meta.spacing_m, LARGEST_STEP)
         self._loaded: dict[float, LoadedShip] = {}
         self._passages: dict[tuple[float, bool, int], ProfileSearch] = {}
 
@@ -55,7 +55,7 @@ class SiteLegPlanner:
         if key not in self._passages:
             loaded = self.loaded(load_factor)
             limits = loaded.limits.tightened(SITE_LEG_TIGHTENING[step])
-            self._passages[key] = self.ways.passages(loaded, full=outward, limits=limits)
+            self._passages[key] = self.site_network.passages(loaded, full=outward, limits=limits)
         return self._passages[key]
 
     def sail(
@@ -101,10 +101,10 @@ class SiteLegPlanner:
     def _evaluated_passage(self, passage: NetworkPassage, loaded: LoadedShip) -> Route:
         """Return the route by the corners of a passage; by all nodes where these leave the data."""
         route = self._evaluated_track(
-            track_from_passage(self.ways, passage, loaded.setting), loaded
+            track_from_passage(self.site_network, passage, loaded.setting), loaded
         )
         if any(is_data_gap(violation) for violation in route.violations):
-            track = track_from_passage(self.ways, passage, loaded.setting, corners=False)
+            track = track_from_passage(self.site_network, passage, loaded.setting, corners=False)
             return self._evaluated_track(track, loaded)
         return route
 
@@ -122,13 +122,13 @@ class SiteLegPlanner:
 
 
 def track_from_passage(
-    ways: SiteNetwork, passage: NetworkPassage, setting: int, *, corners: bool = True
+    site_network: SiteNetwork, passage: NetworkPassage, setting: int, *, corners: bool = True
 ) -> Track:
     """Return the track of a passage by its corners or all its nodes, without waits below 1 s."""
     wait = np.maximum(0.0, passage.node_depart - passage.node_arrive)
     wait[-1] = 0.0
     wait = np.where(wait < 1.0, 0.0, wait)
-    network = ways.network
+    network = site_network.network
     lat, lon = network.lat[passage.nodes], network.lon[passage.nodes]
     keep = _essential_nodes(lat, lon) | (wait > 0.0) if corners else np.ones(len(lat), bool)
     count = int(keep.sum())
@@ -143,8 +143,8 @@ def _essential_nodes(lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
     first = 0
     for last in range(2, len(lat)):
         across = np.cross(points[first], points[last])  # of the great circle between them
-        aside = MEAN_RADIUS * np.abs(points[first + 1 : last] @ across)
-        if aside.max() > _CROSS_TRACK_TOLERANCE * float(np.linalg.norm(across)):
+        cross_track = MEAN_RADIUS * np.abs(points[first + 1 : last] @ across)
+        if cross_track.max() > _CROSS_TRACK_TOLERANCE * float(np.linalg.norm(across)):
             first = last - 1
             keep[first] = True
     return keep

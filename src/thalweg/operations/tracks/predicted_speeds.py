@@ -54,11 +54,11 @@ def predicted_speeds_through_water(
     """
     found = np.full(len(segments), np.nan)
     for kind, (loaded, setting) in ordered_settings(segments, ship, speed_kn=speed_kn).items():
-        mine = segments.kind == SAILING_KINDS.index(kind)
+        own = segments.kind == SAILING_KINDS.index(kind)
         world = make_sailing_environment(loaded, with_wind_speed(loaded, sea), None)
         check_depth_available(world)
-        here = segments.part(mine)
-        found[mine] = solve_sailing_state(
+        here = segments.part(own)
+        found[own] = solve_sailing_state(
             world, _segment_points(here, setting), here.time
         ).speed_through_water
     return found
@@ -75,13 +75,13 @@ def ordered_settings(
     wanted = mean_speeds(segments, 1.0)
     wanted = np.where(np.isfinite(wanted), wanted, mean_speeds(segments, 0.0))
     for index, load_factor in ((0, 1.0), (1, 0.0)):
-        mine = segments.kind == index
-        if not mine.any():
+        own = segments.kind == index
+        if not own.any():
             continue
         loaded = ship.with_load_factor(load_factor)
         if speed_kn is not None:
             loaded = loaded.with_speeds([speed_kn * KNOT])
-        setting = int(np.argmin(np.abs(loaded.speeds - wanted[mine][0])))
+        setting = int(np.argmin(np.abs(loaded.speeds - wanted[own][0])))
         found[SAILING_KINDS[index]] = (loaded, setting)
     return found
 

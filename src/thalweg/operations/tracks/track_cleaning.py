@@ -108,8 +108,8 @@ class TrackLog:
         """
         before = np.maximum(np.arange(len(self)) - 1, 0)
         after = np.minimum(np.arange(len(self)) + 1, len(self) - 1)
-        way = distance(self.lat[before], self.lon[before], self.lat[after], self.lon[after])
-        derived = way / (self.time[after] - self.time[before])
+        sailed = distance(self.lat[before], self.lon[before], self.lat[after], self.lon[after])
+        derived = sailed / (self.time[after] - self.time[before])
         measured = self.values.get("speed")
         if measured is None:
             return np.asarray(derived)
@@ -221,8 +221,8 @@ def _reachable_positions(
     keep, jumps = np.ones(count, dtype=bool), np.zeros(count, dtype=bool)
     if count < 2:
         return keep, jumps
-    way = distance(raw.lat[:-1], raw.lon[:-1], raw.lat[1:], raw.lon[1:])
-    cuts = np.flatnonzero(way > rules.fastest * np.diff(raw.time)) + 1
+    sailed = distance(raw.lat[:-1], raw.lon[:-1], raw.lat[1:], raw.lon[1:])
+    cuts = np.flatnonzero(sailed > rules.fastest * np.diff(raw.time)) + 1
     starts = np.concatenate([[0], cuts])
     ends = np.concatenate([cuts, [count]])
     long = ends - starts > rules.max_outliers
@@ -244,8 +244,8 @@ def _reachable_positions(
 
 
 def _reachable(raw: RawTrack, i: int, j: int, rules: CleaningRules) -> bool:
-    way = float(distance(raw.lat[i], raw.lon[i], raw.lat[j], raw.lon[j]))
-    return way <= rules.fastest * float(raw.time[j] - raw.time[i])
+    sailed = float(distance(raw.lat[i], raw.lon[i], raw.lat[j], raw.lon[j]))
+    return sailed <= rules.fastest * float(raw.time[j] - raw.time[i])
 
 
 def _add_notes(

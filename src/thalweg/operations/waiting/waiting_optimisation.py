@@ -182,12 +182,12 @@ class _DepartureGrid:
         if not possible.any():
             raise _no_departure_error(trip)
         if trip.periodic:
-            ahead = index + np.flatnonzero(possible[(index + np.arange(count)) % count])
+            possible_at = index + np.flatnonzero(possible[(index + np.arange(count)) % count])
         else:
-            ahead = index + np.flatnonzero(possible[index:])
-        if not ahead.size:
+            possible_at = index + np.flatnonzero(possible[index:])
+        if not possible_at.size:
             raise self._too_short(trip.start + index * trip.step)
-        return np.asarray(ahead[ahead <= ahead[0] + self.width], dtype=np.int64)
+        return np.asarray(possible_at[possible_at <= possible_at[0] + self.width], dtype=np.int64)
 
     def cost(self, trip: TripTable, at: NDArray[np.int64], last: bool) -> FloatArray:
         """Return the energy [J] of a trip and of the time until the next can begin."""
@@ -232,10 +232,10 @@ class _DepartureGrid:
         count = len(trip)
         least = _windowed_minimum(values, self.width)
         at = np.arange(len(values))
-        ahead = np.where(np.isfinite(trip.duration[at % count]), at, len(values))
-        ahead = np.minimum.accumulate(ahead[::-1])[::-1]  # the next possible departure
+        possible_at = np.where(np.isfinite(trip.duration[at % count]), at, len(values))
+        possible_at = np.minimum.accumulate(possible_at[::-1])[::-1]
         padded = np.append(least, np.inf)
-        return np.asarray(padded[ahead] - self.hotel * at)[:count]
+        return np.asarray(padded[possible_at] - self.hotel * at)[:count]
 
     def follow(self, rule: str, index: int, values: list[FloatArray] | None) -> WaitingPlan:
         """Return the plan of all trips by a rule, from the departure ``index``."""

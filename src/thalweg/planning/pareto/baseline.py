@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 _MAX_SPEEDS = 6
-_MAX_WAYS = 5  #: routes of a front that are sailed at constant speeds
+_MAX_ROUTES = 5  #: routes of a front that are sailed at constant speeds
 
 
 def weather_blind_tracks(
@@ -81,11 +81,11 @@ def constant_speed_tracks(
     list of (int, Track)
         With the number of the track given.
     """
-    ways = np.unique(np.linspace(0, len(tracks) - 1, min(_MAX_WAYS, len(tracks))).round())
+    selected = np.unique(np.linspace(0, len(tracks) - 1, min(_MAX_ROUTES, len(tracks))).round())
     chosen = settings[np.unique(np.linspace(0, len(settings) - 1, _MAX_SPEEDS).round().astype(int))]
     return [
-        (way, tracks[way].replaced(wait=None, setting=np.full(len(tracks[way]) - 1, s), speed=None))
-        for way in ways.astype(int).tolist()
+        (k, tracks[k].replaced(wait=None, setting=np.full(len(tracks[k]) - 1, s), speed=None))
+        for k in selected.astype(int).tolist()
         for s in chosen
     ]
 

@@ -41,8 +41,8 @@ def explore_alternative(
     context = trade_off.context
     depart = context.voyage.earliest_departure
     context.report_progress(f"freezing the sea: {alternative.name}")
-    ahead = extend_horizon(trade_off, alternative.network)
-    frozen, first, latest = ahead.frozen, ahead.first, ahead.latest
+    horizon = extend_horizon(trade_off, alternative.network)
+    frozen, first, latest = horizon.frozen, horizon.first, horizon.latest
     context.report_progress(f"searching: {alternative.name}")
     if not first.found:
         raise no_route_error(
@@ -57,7 +57,7 @@ def explore_alternative(
     if first.arrive > context.latest_arrival:
         raise late_arrival_error(context.latest_arrival, first.arrive)
     fastest = refine_track(
-        context, track_from_result(alternative.network, first, ahead.setting), trade_off.limits
+        context, track_from_result(alternative.network, first, horizon.setting), trade_off.limits
     )
     trade_off.interrupt_guard.begin()
     context.report_progress(f"searching the front: {alternative.name}")

@@ -172,14 +172,14 @@ def _constant_speed_candidates(
 ) -> list[RefereedCandidate]:
     """Return the shortest route, and routes of the front, at constant speeds within the limits."""
     context, objective = trade_off.context, trade_off.objective
-    ways = [item for item in scored if item.route.feasible]
-    ways.sort(key=lambda item: item.route.time_h)
+    feasible = [item for item in scored if item.route.feasible]
+    feasible.sort(key=lambda item: item.route.time_h)
     found = [(route, "") for route in blind]
-    if ways and len(trade_off.settings) > 1 and not trade_off.interrupt_guard.stopped():
+    if feasible and len(trade_off.settings) > 1 and not trade_off.interrupt_guard.stopped():
         context.report_progress("evaluating constant speeds")
-        tracks = constant_speed_tracks([item.route.track for item in ways], trade_off.settings)
+        tracks = constant_speed_tracks([item.route.track for item in feasible], trade_off.settings)
         found += [
-            (context.evaluate(track), ways[way].candidate.alternative) for way, track in tracks
+            (context.evaluate(track), feasible[way].candidate.alternative) for way, track in tracks
         ]
     priced = [(route, name, objective.value(route)) for route, name in found]
     return [

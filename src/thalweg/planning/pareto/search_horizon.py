@@ -73,7 +73,7 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
         If the sea over the shortest period exceeds the memory limit.
     """
     context, depart = trade_off.context, trade_off.context.voyage.earliest_departure
-    asked = math.isfinite(context.latest_arrival)
+    has_deadline = math.isfinite(context.latest_arrival)
     tides = context.needs.limits.depth_checked
     length = shortest_path_length(network)
     if math.isinf(length):  # no path: the period of the geodesic
@@ -82,25 +82,29 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
     still = length / float(context.ship.speeds[most_economical_setting(trade_off)])
     slow = depart + _SLOWEST_TIME_RATIO * still + (_TWO_TIDES if tides else 0.0)
     final = min(context.data_end, depart + _MAX_TIME_RATIO * still + _TWO_TIDES)
-    latest = min(context.latest_arrival, context.data_end) if asked else min(slow, final)
-    ahead: SearchHorizon | None = None
+    latest = min(context.latest_arrival, context.data_end) if has_deadline else min(slow, final)
+    found: SearchHorizon | None = None
     while True:
-        until = latest if asked else min(latest + _HORIZON_MARGIN * (latest - depart), final)
+        until = latest if has_deadline else min(latest + _HORIZON_MARGIN * (latest - depart), final)
         until = max(until, min(slow, final))
         try:
             frozen = freeze_at_stations(context, network, depart, until)
         except InputError:
-            if ahead is None:
+            if found is None:
                 raise
-            return ahead  # the longest period that fits into memory
+            return found  # the longest period that fits into memory
         warm_up.wait_until_compiled()
         first, setting = fastest_at_highest_feasible_setting(trade_off, network, frozen)
-        ahead = SearchHorizon(frozen, first, setting, latest)
-        need = first.arrive if asked else _latest_useful_arrival(trade_off, network, frozen, until)
+        found = SearchHorizon(frozen, first, setting, latest)
+        need = (
+            first.arrive
+            if has_deadline
+            else _latest_useful_arrival(trade_off, network, frozen, until)
+        )
         if need <= until or until >= final:
-            return ahead
+            return found
         slow = depart + _HORIZON_GROWTH * (until - depart) if math.isinf(need) else need
-        latest = latest if asked else min(slow, final)
+        latest = latest if has_deadline else min(slow, final)
 
 
 def _latest_useful_arrival(

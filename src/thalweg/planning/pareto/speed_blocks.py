@@ -35,10 +35,10 @@ def in_speed_blocks(
         latest arrival. The notes of the trade-off state what the blocks cost.
     """
     context = trade_off.context
-    asked = context.voyage.speed_block_h * HOUR
-    if asked <= 0.0 or context.voyage.method == "exact" or len(trade_off.settings) < 2:
+    block_duration = context.voyage.speed_block_h * HOUR
+    if block_duration <= 0.0 or context.voyage.method == "exact" or len(trade_off.settings) < 2:
         return scored
-    found = [_blocked(trade_off, item, asked) for item in scored]
+    found = [_blocked(trade_off, item, block_duration) for item in scored]
     _note_costs(trade_off, scored, found)
     return found
 
@@ -66,7 +66,7 @@ def merged_settings(
     int64 array (legs,)
         With one setting where the passage is shorter than two runs.
     """
-    setting, debt = np.array(setting), 0.0
+    setting, time_change = np.array(setting), 0.0
     while True:
         first = np.flatnonzero(np.concatenate([[True], setting[1:] != setting[:-1]]))
         if len(first) == 1:
@@ -78,20 +78,20 @@ def merged_settings(
         own = int(setting[first[short]])
         sides = [int(setting[first[i]]) for i in (short - 1, short + 1) if 0 <= i < len(first)]
         changes = [lasting[short] * (speeds[own] / speeds[side] - 1.0) for side in sides]
-        cost = [abs(debt + change) if late else change for change in changes]
+        cost = [abs(time_change + change) if late else change for change in changes]
         best = int(np.argmin(cost))
-        debt += changes[best]
+        time_change += changes[best]
         stop = first[short + 1] if short + 1 < len(first) else len(setting)
         setting[first[short] : stop] = sides[best]
 
 
 def _blocked(
-    trade_off: TradeOffContext, item: RefereedCandidate, asked: float
+    trade_off: TradeOffContext, item: RefereedCandidate, block_duration: float
 ) -> RefereedCandidate:
     """Return a route in blocks; the same where none of the mergings keeps the limits."""
     route, context = item.route, trade_off.context
     hours = route.legs["arrive"] - route.legs["depart"]
-    least = min(asked, _SHARE_OF_PASSAGE * float(hours.sum()))
+    least = min(block_duration, _SHARE_OF_PASSAGE * float(hours.sum()))
     speeds = np.asarray(context.ship.speeds, float)
     for late in (True, False):
         setting = merged_settings(route.track.setting, hours, speeds, least, late=late)
@@ -135,8 +135,8 @@ def _note_costs(
 def _has_short_blocks(trade_off: TradeOffContext, route: Route) -> bool:
     """Return whether a route holds a setting for less than the asked duration."""
     hours = route.legs["arrive"] - route.legs["depart"]
-    asked = trade_off.context.voyage.speed_block_h * HOUR
-    least = min(asked, _SHARE_OF_PASSAGE * float(hours.sum()))
+    block_duration = trade_off.context.voyage.speed_block_h * HOUR
+    least = min(block_duration, _SHARE_OF_PASSAGE * float(hours.sum()))
     speeds = np.asarray(trade_off.context.ship.speeds, float)
     setting = merged_settings(route.track.setting, hours, speeds, least, late=True)
     return not np.array_equal(setting, route.track.setting)

@@ -101,12 +101,12 @@ def _map_extent(plan: PlanData, beside: Route | None) -> MapExtent:
     stretch = math.cos(math.radians(min(80.0, float(np.max(np.abs(lat))))))
     grow = max(0.0, 0.42 * max(wide, high) - high) / 2
     widen = max(0.0, 0.6 * high - wide) / 2
-    aside = min((margin + widen) / stretch, max(0.0, 0.5 * (359.0 - float(np.ptp(lon)))))
+    side_margin = min((margin + widen) / stretch, max(0.0, 0.5 * (359.0 - float(np.ptp(lon)))))
     return MapExtent(
         max(-89.9, float(lat.min()) - margin - grow),
         min(89.9, float(lat.max()) + margin + grow),
-        float(lon.min()) - aside,
-        float(lon.max()) + aside,
+        float(lon.min()) - side_margin,
+        float(lon.max()) + side_margin,
     )
 
 

@@ -171,7 +171,7 @@ def _moved_into_coverage(end: Endpoint, coverage_probe: _CoverageProbe, chart: C
             why = "in water that is too shallow or outside the data"
             return replace(
                 end, lat=near[0], lon=near[1], moved_distance_m=near[2], why=why, approach=None,
-                asked=end.origin,
+                given_position=end.origin,
             )  # fmt: skip
     lacking = coverage_probe.missing(*here)
     if not lacking:

@@ -33,7 +33,7 @@ class Endpoint:
         Position used [deg]; of a port with an approach its sea end.
     moved_distance_m : float
         Distance moved to navigable water [m].
-    asked : (lat, lon), optional
+    given_position : (lat, lon), optional
         Requested position [deg], where it was moved.
     is_port : bool
         Whether the end point is a port.
@@ -49,7 +49,7 @@ class Endpoint:
     lat: float
     lon: float
     moved_distance_m: float
-    asked: tuple[float, float] | None = None
+    given_position: tuple[float, float] | None = None
     is_port: bool = False
     why: str = "on charted land"
     approach: PortApproach | None = None
@@ -58,7 +58,7 @@ class Endpoint:
     @property
     def origin(self) -> tuple[float, float]:
         """Requested position (lat, lon) [deg]."""
-        return self.asked or (self.lat, self.lon)
+        return self.given_position or (self.lat, self.lon)
 
     @property
     def note(self) -> str:
@@ -164,7 +164,7 @@ def _snap_to_water(
             _swap_hint(lat, lon, chart) or "Give that position, or a port by name.",
             field=what,
         )
-    return Endpoint(name, float(near_lat), float(near_lon), float(moved), asked=(lat, lon))
+    return Endpoint(name, float(near_lat), float(near_lon), float(moved), given_position=(lat, lon))
 
 
 def _swap_hint(lat: float, lon: float, chart: Chart) -> str:

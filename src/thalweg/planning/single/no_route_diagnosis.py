@@ -86,9 +86,9 @@ def _unknown_beyond(network: Network, node: int, fields: StationFields) -> str:
     if node < 0:
         return ""
     first, last = network.graph.indptr[node : node + 2]
-    ways = range(int(first), int(last))
+    edges = range(int(first), int(last))
     samples = [network.samples.station_b[network.samples.ptr[e] : network.samples.ptr[e + 1]]
-               for e in ways]  # fmt: skip
+               for e in edges]  # fmt: skip
     beyond = np.unique(np.concatenate([network.graph.target[first:last], *samples, [node]]))
     unknown = np.isnan(fields.values[beyond]).any(axis=1)
     names = [

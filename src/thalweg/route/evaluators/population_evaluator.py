@@ -234,9 +234,9 @@ class Evaluator:
         required = self.world.limits[codes.LIMIT_REQUIRED_DEPTH]
         if obstacles and chart.has_depth and math.isfinite(required):
             lines = np.stack([lat1, lat2], axis=1), np.stack([lon1, lon2], axis=1)
-            shut, depth = self.time_evaluator.look_up_legs(*lines)
-            if shut is not None and depth is not None:
-                blocked, charted = shut[:, 0].astype(float), depth[:, 0]
+            closed_legs, depth = self.time_evaluator.look_up_legs(*lines)
+            if closed_legs is not None and depth is not None:
+                blocked, charted = closed_legs[:, 0].astype(float), depth[:, 0]
         elif obstacles:
             blocked[:] = chart.legs_blocked(*ends)
         zones: Any = chart.zones

@@ -171,13 +171,15 @@ def _between(
     away, bearing, _ = inverse(lat[first], lon[first], lat[inner], lon[inner])
     length, course, _ = inverse(lat[first], lon[first], lat[last], lon[last])
     arc = away / MEAN_RADIUS
-    aside = np.abs(np.arcsin(np.sin(arc) * np.sin(bearing - course))) * MEAN_RADIUS
-    ahead = away * np.cos(bearing - course)
-    behind = (ahead < 0.0) | (ahead > length)
-    aside = np.where(behind, np.minimum(away, np.abs(away - length)) + aside, aside)
-    worst = first + 1 + int(np.argmax(aside))
+    cross_track = np.abs(np.arcsin(np.sin(arc) * np.sin(bearing - course))) * MEAN_RADIUS
+    along = away * np.cos(bearing - course)
+    beyond = (along < 0.0) | (along > length)
+    cross_track = np.where(
+        beyond, np.minimum(away, np.abs(away - length)) + cross_track, cross_track
+    )
+    worst = first + 1 + int(np.argmax(cross_track))
     ends = lat[first], lon[first], lat[last], lon[last]
-    if aside.max() <= tolerance and not (options.chart and options.chart.legs_blocked(*ends)):
+    if cross_track.max() <= tolerance and not (options.chart and options.chart.legs_blocked(*ends)):
         return []
     before = _between(route, options, first, worst, tolerance)
     return [*before, worst, *_between(route, options, worst, last, tolerance)]
@@ -241,6 +243,6 @@ def _cross_track(route: Route, lat: FloatArray, lon: FloatArray, at: FloatArray)
         here &= ~canal[leg]
         if here.any():
             ends = (lat[index], lon[index]), (lat[index + 1], lon[index + 1])
-            aside = rhumb_cross_track(*ends, samples["lat"][here], samples["lon"][here])
-            worst = max(worst, float(aside.max()))
+            cross_track = rhumb_cross_track(*ends, samples["lat"][here], samples["lon"][here])
+            worst = max(worst, float(cross_track.max()))
     return worst

@@ -225,8 +225,8 @@ def _data_gap_violations(
     if world.charted:
         missing["charted depth"] = np.isnan(points.charted)
     found = []
-    for name, gone in missing.items():
-        for first, _ in _stretches(gone & reached, points.leg):
+    for name, absent in missing.items():
+        for first, _ in _stretches(absent & reached, points.leg):
             why = ""
             if name in sampled:
                 place = (float(time[first]), float(points.lat[first]), float(points.lon[first]))

@@ -118,11 +118,11 @@ def solve_passage_times(
     while waiting:
         first, last = waiting.pop()
         settled = _iterate_pieces(passage, slowness_at, first, last)
-        stuck = first + settled
-        if stuck < last:
-            window = min(stuck + 1 + max(4 * settled, _MIN_WINDOW), last)
-            ahead = [(window, last), (stuck + 1, window), (stuck, stuck + 1)]
-            waiting += [(a, b) for a, b in ahead if a < b]
+        failed = first + settled
+        if failed < last:
+            window = min(failed + 1 + max(4 * settled, _MIN_WINDOW), last)
+            remaining = [(window, last), (failed + 1, window), (failed, failed + 1)]
+            waiting += [(a, b) for a, b in remaining if a < b]
     passage.start += depart
     passage.inside += depart
     return passage

@@ -54,13 +54,15 @@ class SailedTrack:
         first = np.concatenate([[True], last[:-1]])
         depart = passage.start[:-1][first]
         arrive = passage.start[1:][last] - self.pieces.wait[last]
-        stuck = (
+        last_leg = (
             self.pieces.leg[passage.first_infeasible]
             if passage.first_infeasible < len(last)
             else len(depart)
         )
         legs = np.arange(len(depart))
-        return np.where(legs <= stuck, depart, math.nan), np.where(legs < stuck, arrive, math.nan)
+        return np.where(legs <= last_leg, depart, math.nan), np.where(
+            legs < last_leg, arrive, math.nan
+        )
 
 
 def sail_track(

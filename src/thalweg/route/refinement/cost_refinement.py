@@ -54,7 +54,7 @@ _MIN_ZONE_SHARE = (
 )
 
 
-def polish(
+def refine_cost(
     scored: Route,
     conditions: RefinementConditions,
     *,

@@ -58,8 +58,8 @@ def remove_points(lines: ScoredTracks, *, allowance: float) -> ScoredTracks:
     gain, keep_first = np.zeros(lines.free.shape), np.zeros(lines.free.shape, dtype=bool)
     slack = allowance * np.abs(lines.value[row])
     with np.errstate(invalid="ignore"):
-        bring = base - value.min(axis=0) + slack
-    gain[row, place] = np.where(np.isfinite(bring), bring, 0.0)
+        improvement = base - value.min(axis=0) + slack
+    gain[row, place] = np.where(np.isfinite(improvement), improvement, 0.0)
     keep_first[row, place] = value[0] <= value[1]
     return _without_points(lines, isolated_maxima(gain), keep_first, allowance)
 

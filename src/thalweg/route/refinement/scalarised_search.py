@@ -214,9 +214,9 @@ def _speed_exchanges(lines: ScoredTracks) -> list[tuple[SpeedExchanges, SpeedExc
     row, place = lines.legs
     time, cost = leg_times_and_costs_by_setting(lines, row, place)
     delays = delay_effects(lines)
-    ahead, dearer = delays.time[row, place + 1], delays.cost[row, place + 1]
+    time_factor, cost_rate = delays.time[row, place + 1], delays.cost[row, place + 1]
     with np.errstate(invalid="ignore"):
-        at_goal, cost_at_goal = ahead[:, None] * time, cost + dearer[:, None] * time
+        at_goal, cost_at_goal = time_factor[:, None] * time, cost + cost_rate[:, None] * time
     now = lines.population.genes[row, place, population_sailing.SETTING].astype(np.int64)
     out = []
     for k in range(len(lines)):

@@ -304,11 +304,11 @@ def delay_effects(lines: ScoredTracks) -> DelayEffects:
     )
     n = len(row)
     with np.errstate(invalid="ignore"):
-        slower = _clean((spent[n:] - spent[:n]) / late)
-        dearer = _clean((cost[n:] - cost[:n]) / late)
+        time_growth = _clean((spent[n:] - spent[:n]) / late)
+        cost_growth = _clean((cost[n:] - cost[:n]) / late)
     shape = lines.population.genes.shape[:2]
     growth, added = np.ones((shape[0], shape[1] - 1)), np.zeros((shape[0], shape[1] - 1))
-    growth[row, place], added[row, place] = 1.0 + slower, dearer
+    growth[row, place], added[row, place] = 1.0 + time_growth, cost_growth
     return DelayEffects(
         accumulated_delay_effects(growth, 0.0, 1.0), accumulated_delay_effects(growth, added, 0.0)
     )

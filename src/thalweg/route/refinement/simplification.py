@@ -69,9 +69,9 @@ def _track_through(track: Track, keep: NDArray[np.bool_]) -> Track:
 
 
 def _douglas_peucker(
-    track: Track, aside: float, held: NDArray[np.bool_] | None
+    track: Track, largest_offset: float, held: NDArray[np.bool_] | None
 ) -> NDArray[np.bool_]:
-    """Return which waypoints to keep for a largest offset ``aside`` [m] of the others.
+    """Return which waypoints to keep for a largest offset ``largest_offset`` [m] of the others.
 
     The algorithm of Douglas & Peucker (1973), on the sphere.
     """
@@ -94,7 +94,7 @@ def _douglas_peucker(
             np.abs(points[a + 1 : b] @ normal) / size if size > 0.0 else np.ones(b - a - 1)
         )
         k = int(np.argmax(cross_track))
-        if cross_track[k] * MEAN_RADIUS > aside:
+        if cross_track[k] * MEAN_RADIUS > largest_offset:
             keep[a + 1 + k] = True
             spans += [(a, a + 1 + k), (a + 1 + k, b)]
     return keep

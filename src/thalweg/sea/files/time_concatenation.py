@@ -63,10 +63,10 @@ def _signature(candidate: LayerCandidate) -> list[tuple[tuple[str, ...], tuple[s
 
 
 def _same_grid(a: GridPlacement, b: GridPlacement) -> bool:
-    mine, other = a.grid, b.grid
-    return mine.shape == other.shape and bool(
-        np.array_equal(getattr(mine, "lat", 0), getattr(other, "lat", 1), equal_nan=True)
-        and np.array_equal(getattr(mine, "lon", 0), getattr(other, "lon", 1), equal_nan=True)
+    own, other = a.grid, b.grid
+    return own.shape == other.shape and bool(
+        np.array_equal(getattr(own, "lat", 0), getattr(other, "lat", 1), equal_nan=True)
+        and np.array_equal(getattr(own, "lon", 0), getattr(other, "lon", 1), equal_nan=True)
     )
 
 

@@ -143,11 +143,11 @@ class GridLayer:
         """Return the values that are needed, by window."""
         found: dict[GridWindow, dict[str, NDArray[Any]]] = {}
         for quantity in self.quantities:
-            mine = [name for name in quantity.names if name in names]
-            if mine:
+            own = [name for name in quantity.names if name in names]
+            if own:
                 block = self.cache.block(quantity, wanted)
                 group = found.setdefault(block.window, {})
-                group.update((name, block.values[name]) for name in mine)
+                group.update((name, block.values[name]) for name in own)
         return list(found.items())
 
     def _window(

@@ -191,16 +191,16 @@ class NearestLayer:
         limit = 2.0 * np.sin(min(0.5 * self.distance / MEAN_RADIUS, 0.5 * np.pi))
         here = geocentric_unit_vectors(lat, lon)
         for held, y, x, tree in self._grids:
-            mine = [n for n in names if n in held]
+            own = [n for n in names if n in held]
             rows = np.flatnonzero(_inside_holders(self.layers, held, lat, lon))
-            if not (mine and rows.size):
+            if not (own and rows.size):
                 continue
             far, nearest = tree.query(here[rows], distance_upper_bound=limit)
             rows, nearest = rows[np.isfinite(far)], nearest[np.isfinite(far)]
             if rows.size == 0:
                 continue
-            values = read(mine, rows, y[nearest], x[nearest])
-            for name in mine:
+            values = read(own, rows, y[nearest], x[nearest])
+            for name in own:
                 old = samples[name][rows]
                 samples[name][rows] = np.where(np.isnan(old), values[name], old)
         return samples

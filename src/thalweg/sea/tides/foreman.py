@@ -191,14 +191,14 @@ def nodal_corrections(names: tuple[str, ...], times: FloatArray, latitude: float
 
 def _satellite_correction(k: int, times: FloatArray, latitude: float) -> ComplexArray:
     constituent, multiples, phase, ratio, rule = constituent_table().satellites
-    mine = constituent == k
-    if not mine.any():
+    own = constituent == k
+    if not own.any():
         return np.ones(times.size, np.complex128)
     sine = np.sin(np.radians(np.copysign(max(abs(latitude), 5.0), latitude)))
-    size = ratio[mine] * np.select(
-        [rule[mine] == 1, rule[mine] == 2],
+    size = ratio[own] * np.select(
+        [rule[own] == 1, rule[own] == 2],
         [0.36309 * (1.0 - 5.0 * sine**2) / sine, 2.59808 * sine],
         1.0,
     )
-    turn = multiples[mine] @ mean_longitudes(times)[3:6] + phase[mine][:, None]
+    turn = multiples[own] @ mean_longitudes(times)[3:6] + phase[own][:, None]
     return 1.0 + (size[:, None] * np.exp(2j * np.pi * turn)).sum(axis=0)

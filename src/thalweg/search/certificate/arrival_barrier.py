@@ -190,18 +190,18 @@ def _plane_at_source(task: BarrierTask) -> FloatArray:
     toward = task.course if task.course is not None else float(inverse(lat, lon, *task.target)[1])
     north = (mesh.lat[rows] - lat) * mesh.world.metres_north[j]
     east = ((mesh.lon[columns] - lon + 180.0) % 360.0 - 180.0) * mesh.world.metres_east[j]
-    ahead = north[:, None] * math.cos(toward) + east[None, :] * math.sin(toward)
-    aside = east[None, :] * math.cos(toward) - north[:, None] * math.sin(toward)
+    along = north[:, None] * math.cos(toward) + east[None, :] * math.sin(toward)
+    across = east[None, :] * math.cos(toward) - north[:, None] * math.sin(toward)
     height = (mesh.lat[1] - mesh.lat[0]) * mesh.world.metres_north[j]
     width = (mesh.lon[1] - mesh.lon[0]) * mesh.world.metres_east[j]
     size = max(height, width)
-    part = (np.abs(ahead) <= size) & (np.abs(aside) <= _PLANE_CELLS * size)
+    part = (np.abs(along) <= size) & (np.abs(across) <= _PLANE_CELLS * size)
     part[j - rows.start : j - rows.start + 2, i - columns.start : i - columns.start + 2] = True
     values = np.full(mesh.shape, math.nan)
     speed = (mesh.world.top_speed + strongest_current_near(mesh, rows, columns)) * 1.002
     east_scale = mesh.world.metres_east[rows][part.any(axis=1)]
     speed *= float(mesh.world.metres_east[j] / east_scale.min())  # meridians converge
-    values[rows, columns] = np.where(part, ahead / speed, math.nan)
+    values[rows, columns] = np.where(part, along / speed, math.nan)
     return values
 
 

@@ -121,7 +121,7 @@ def certify_time(
         None where no certificate was found: near a pole, across more than half of the globe, or
         where a canal may shorten the way.
     """
-    began = clock.perf_counter()
+    begin = clock.perf_counter()
     domain = _Domain.around(passage, seconds)
     if domain is None:
         return None
@@ -138,12 +138,12 @@ def certify_time(
         task, forward = level.certify(passage)
         if forward is not None and (best is None or forward.value > best.value):
             cells = round(length / domain.cell_height * refinement)
-            seconds_used = clock.perf_counter() - began
+            seconds_used = clock.perf_counter() - begin
             best = TimeCertificate(
                 forward.value, domain.sampling, mesh, forward, task, cells, seconds_used
             )
         used = clock.perf_counter() - started
-        left = seconds - (clock.perf_counter() - began)
+        left = seconds - (clock.perf_counter() - begin)
         done = best is not None and best.value >= (1.0 - target) * passage.known
         nodes = 4 * mesh.lat.size * mesh.lon.size
         if done or nodes > _MOST_NODES or _GROWTH * used > left:
@@ -202,13 +202,13 @@ class _Level:
         to_goal = mesh.least_times(*passage.goal, fastest)
         if coarser is None:
             return cls(mesh, from_start, to_goal, passage.known)
-        back, ahead = (None if f is None else finer_factors(f) for f in coarser.factors)
+        backward, forward = (None if f is None else finer_factors(f) for f in coarser.factors)
         return cls(
             mesh,
             np.maximum(from_start, _halved_cells(coarser.own)),
             np.maximum(to_goal, _halved_cells(coarser.other)),
             passage.known,
-            (back, ahead),
+            (backward, forward),
         )
 
     def band(self) -> BoolArray:
@@ -217,24 +217,24 @@ class _Level:
 
     def certify(self, passage: PassageToBound) -> tuple[BarrierTask, CheckedBarrier | None]:
         """Find barriers from the goal and from the start; return the latter with its task."""
-        back_factor, ahead_factor = self.factors
-        rounds = _FIRST_ROUNDS if back_factor is None else _LATER_ROUNDS
-        back = find_barrier(
+        backward_factor, forward_factor = self.factors
+        rounds = _FIRST_ROUNDS if backward_factor is None else _LATER_ROUNDS
+        backward = find_barrier(
             BarrierTask(
                 self.mesh, passage.goal, passage.start, self.known, self.other, self.own, False,
-                factor=back_factor,
+                factor=backward_factor,
             ),
             rounds[0],
         )  # fmt: skip
         course = None
-        if back is not None and back.complete:
+        if backward is not None and backward.complete:
             self.other = np.where(
-                self.band(), np.maximum(self.other, _least_in_cells(back)), self.other
+                self.band(), np.maximum(self.other, _least_in_cells(backward)), self.other
             )
-            course = slope_direction(self.mesh, back.phi, *passage.start)
+            course = slope_direction(self.mesh, backward.phi, *passage.start)
         task = BarrierTask(
             self.mesh, passage.start, passage.goal, self.known, self.own, self.other, True,
-            course, ahead_factor,
+            course, forward_factor,
         )  # fmt: skip
         forward = find_barrier(task, rounds[1])
         if forward is not None and not forward.complete:
@@ -244,7 +244,7 @@ class _Level:
                 self.band(), np.maximum(self.own, _least_in_cells(forward)), self.own
             )
         self.factors = (
-            None if back is None else back.factor,
+            None if backward is None else backward.factor,
             None if forward is None else forward.factor,
         )
         return task, forward

@@ -188,12 +188,12 @@ def _slices(
         if error < math.inf and needed > most:
             break
         before = error
-        error, shut = _table_error(front_problem, request, windows, clock, slices)
+        error, closes = _table_error(front_problem, request, windows, clock, slices)
         if len(slices) > own and error > _MAX_ERROR_RATIO * before and needed > _CHEAP:
             error = before
             break
         chosen, memory = slices, needed
-        fine = error <= _FINE and not shut
+        fine = error <= _FINE and not closes
     return chosen, error, memory
 
 
@@ -202,16 +202,16 @@ def _slice_candidates(times: FloatArray, horizon: float) -> list[FloatArray]:
     inside = times[(times > 0.0) & (times < horizon)]
     # edges left at the end of the data cannot be sailed; those before are not judged by them
     own = np.unique(np.concatenate(([0.0], inside, [(1.0 - _END_SHARE) * horizon, horizon])))
-    rungs = []
+    candidates = []
     stride = 1 << max(0, int(math.log2(max(len(own) / 8.0, 1.0))))
     while stride > 1:
-        rungs.append(np.append(own[:-1:stride], horizon))
+        candidates.append(np.append(own[:-1:stride], horizon))
         stride //= 2
-    rungs.append(own)
+    candidates.append(own)
     for parts in (2, 4, 8):
         within = own[:-1, None] + np.diff(own)[:, None] * (np.arange(parts) / parts)
-        rungs.append(np.append(within.ravel(), horizon))
-    return rungs
+        candidates.append(np.append(within.ravel(), horizon))
+    return candidates
 
 
 def _relaxations(front_problem: FrontProblem, windows: BinWindows) -> float:
@@ -282,9 +282,9 @@ def _table_error(
     with np.errstate(divide="ignore", invalid="ignore"):
         off = np.abs(0.5 * (found[0] + found[2]) / found[1] - 1.0)
     open_ = [np.isfinite(out[:, 0]) for out in found]
-    shut = bool(((open_[0] | open_[1] | open_[2]) & ~(open_[0] & open_[1] & open_[2])).any())
+    closes = bool(((open_[0] | open_[1] | open_[2]) & ~(open_[0] & open_[1] & open_[2])).any())
     off = off[np.isfinite(off).all(axis=1)]
-    return (float(np.quantile(off, 0.95)) if off.size else 0.0), shut
+    return (float(np.quantile(off, 0.95)) if off.size else 0.0), closes
 
 
 def _memory_error(

@@ -141,7 +141,7 @@ class FrontProblem(NamedTuple):
         Edge of the network that each edge of the world comes from.
     tails : int64[E]
         State that each edge leaves.
-    fastest, thriftiest : float64[S]
+    fastest, least_rate : float64[S]
         Greatest speed through water [m/s] and least fuel rate [kg/s] of each setting.
     """
 
@@ -151,7 +151,7 @@ class FrontProblem(NamedTuple):
     origin: IntArray
     tails: IntArray
     fastest: FloatArray
-    thriftiest: FloatArray
+    least_rate: FloatArray
 
 
 def make_front_problem(
@@ -170,7 +170,7 @@ def make_front_problem(
             "Make them with tabulate and tabulate_fuel of the same ship.",
         )
     fastest = table_bounds(ship.table, np.fmax)[request.settings]
-    thriftiest = np.maximum(table_bounds(burning, np.fmin)[request.settings], 0.0)
+    least_rate = np.maximum(table_bounds(burning, np.fmin)[request.settings], 0.0)
     top = float(np.nanmax(fastest)) if top_speed is None else float(top_speed)
     whole = make_search_problem(
         ShipOnNetwork(network, ship_on_network.fields, ship_on_network.table, highest, limits, top)
@@ -188,7 +188,7 @@ def make_front_problem(
     prices = _prices(network, origin, priced, request)
     tails = np.repeat(np.arange(len(net.station)), np.diff(net.indptr))
     world = FrontArrays(net, given.sea, priced, prices, request.depart)
-    return FrontProblem(world, given, whole, origin, tails, fastest, thriftiest)
+    return FrontProblem(world, given, whole, origin, tails, fastest, least_rate)
 
 
 def _with_states(

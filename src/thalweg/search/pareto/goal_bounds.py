@@ -60,7 +60,7 @@ class BackwardSearch:
         with np.errstate(divide="ignore", invalid="ignore"):
             pace = np.where(over_ground > 0.0, net.length / over_ground, math.inf)
         pace[~(front_problem.fastest > 0.0)] = math.inf
-        self._quickest = pace  # (S, E) [s]
+        self._least_times = pace  # (S, E) [s]
         self._order = np.argsort(net.target, kind="stable")
         nodes = np.arange(len(net.station) + 1)
         self._indptr = np.searchsorted(net.target[self._order], nodes).astype(np.int64)
@@ -70,7 +70,7 @@ class BackwardSearch:
         """Return the least time to the goal [s]."""
         fixed = self._got.world.prices.fixed_time
         return (
-            self._least(np.where(np.isnan(fixed), self._quickest.min(axis=0), fixed))
+            self._least(np.where(np.isnan(fixed), self._least_times.min(axis=0), fixed))
             * ROUNDING_FACTOR
         )
 
@@ -78,7 +78,7 @@ class BackwardSearch:
         """Return the least cost plus price of time to the goal."""
         return self._least(self._costs(rate)) * (1.0 - 1e-6)
 
-    def way(self, start: int, rate: float) -> IntArray:
+    def path_to_goal(self, start: int, rate: float) -> IntArray:
         """Return the states of the path of least cost plus priced time; empty if there is none."""
         parent = np.empty(len(self._indptr) - 1, np.int64)
         distance = self._least(self._costs(rate), parent)
@@ -94,9 +94,9 @@ class BackwardSearch:
         prices = self._got.world.prices
         second = prices.time_price + rate
         least = np.full(len(prices.fee), math.inf)
-        for quickest, fuel in zip(self._quickest, self._got.thriftiest):
+        for least_time, fuel in zip(self._least_times, self._got.least_rate):
             if math.isfinite(fuel):
-                np.fmin(least, quickest * (fuel * prices.weight + second), out=least)
+                np.fmin(least, least_time * (fuel * prices.weight + second), out=least)
         still = prices.fixed_fuel * prices.weight + prices.fixed_time * second
         least = np.where(np.isnan(prices.fixed_time), least, still)
         return least + prices.fee
@@ -124,7 +124,7 @@ def _time_prices(front_problem: FrontProblem, weight: float) -> FloatArray:
     """Return prices of time at which the thriftiest setting in still water changes, and 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
         pace = 1.0 / front_problem.fastest
-        spent = front_problem.thriftiest * pace * weight
+        spent = front_problem.least_rate * pace * weight
     front = non_dominated_indices(pace, spent)
     hull = front[lower_hull(pace[front], spent[front])]
     price = front_problem.world.prices.time_price

@@ -87,7 +87,7 @@ def _waiting_price_capped(front_problem: FrontProblem) -> FrontProblem:
     """
     prices = front_problem.world.prices
     spent = (prices.fixed_fuel * prices.weight + prices.fee) / prices.fixed_time
-    sailed = np.nanmin(front_problem.thriftiest, initial=np.inf) * prices.weight
+    sailed = np.nanmin(front_problem.least_rate, initial=np.inf) * prices.weight
     least = float(np.where(np.isnan(prices.fixed_time), sailed, spent).min(initial=np.inf))
     rate = min(prices.waiting_cost_rate, prices.time_price + least)
     return front_problem._replace(
@@ -244,5 +244,5 @@ def _new_slack(
         gains=np.empty(total, np.uint8),
         along=bounds.to_goal.along,
         fastest=front_problem.fastest,
-        thriftiest=front_problem.thriftiest,
+        least_rate=front_problem.least_rate,
     )

@@ -95,7 +95,7 @@ def seed_paths(
     paths = [fastest]
     known = {fastest.states.tobytes()}
     for rate in bounds.rates:
-        states = bounds.to_goal.way(request.start, float(rate))
+        states = bounds.to_goal.path_to_goal(request.start, float(rate))
         if len(states) > 1 and states.tobytes() not in known:
             known.add(states.tobytes())
             paths.append(_path_through(front_problem, states))

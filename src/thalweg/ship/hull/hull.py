@@ -274,10 +274,10 @@ def _available_regressions(missing: list[str]) -> str:
     """Return text on the regressions that could supply missing particulars, and their inputs."""
     from thalweg.ship.hull.particulars_regressions import ESTIMATORS  # many formulas, seldom needed
 
-    ways = [
+    remedies = [
         f"{key} follows from {', '.join(one.inputs)} ({one.source})"
         for key in missing
         for one in ESTIMATORS.get(key, ())
         if all(name.endswith(_UNITS) for name in one.inputs)
     ]
-    return f" {'; '.join(ways)}." if ways else ""
+    return f" {'; '.join(remedies)}." if remedies else ""

@@ -61,12 +61,12 @@ def bracketed_root(
         crossed = np.sign(fx) != np.sign(fb)
         with np.errstate(divide="ignore", invalid="ignore"):
             share = 1.0 - fx / fb
-            ahead = fx * (b - x) / (fx - fb)  # the next step along the secant
+            secant_step = fx * (b - x) / (fx - fb)  # the next step along the secant
         share = np.where((share > 0.0) & (share < 1.0), share, 0.5)
         a, fa = np.where(crossed, b, a), np.where(crossed, fb, share * fa)
         b, fb = x, fx
-        near = np.abs(ahead) < tolerance
-        root[active] = np.where(np.isnan(fx), np.nan, x + np.where(near, ahead, 0.0))
+        near = np.abs(secant_step) < tolerance
+        root[active] = np.where(np.isnan(fx), np.nan, x + np.where(near, secant_step, 0.0))
         going = (fx != 0.0) & ~np.isnan(fx) & ~near & (np.abs(b - a) > tolerance)
         active, a, b, fa, fb = active[going], a[going], b[going], fa[going], fb[going]
     return root

@@ -181,12 +181,12 @@ def reflection_terms(
     Recommended Procedure 7.5-04-01-01.1 (2021); unverified: see the text of this module.
     """
     draught, block, bow, stern = hull[2], hull[4], hull[6], hull[7]
-    ahead, aside = np.cos(angle), np.sin(angle)
+    ahead, sine_of_angle = np.cos(angle), np.sin(angle)
 
     def pair(end: FloatArray, side: float, inside: Any) -> tuple[FloatArray, FloatArray]:
         """Terms of one side of an end; sine and cosine of its angle plus or less that of waves."""
-        sine = np.sin(end) * ahead + side * np.cos(end) * aside
-        cosine = np.cos(end) * ahead - side * np.sin(end) * aside
+        sine = np.sin(end) * ahead + side * np.cos(end) * sine_of_angle
+        cosine = np.cos(end) * ahead - side * np.sin(end) * sine_of_angle
         square = np.where(inside, sine * sine, 0.0)
         return square, np.where(inside, ahead - np.cos(end) * cosine, 0.0)
 

@@ -155,10 +155,10 @@ class SnnmTable:
             at = tuple(a[abaft] for a in (speed, peak, angle, fn, scale, first, second))
             moved[abaft] = self._from_abaft(*at, cell=(cell[0][abaft], cell[1][abaft]))
         size = 3859.2 * breadth / length * block**1.34 * gyration**2 * (1.0 + 28.7 * trim)
-        thrown = self._reflection(speed, peak, angle, fn)
+        reflected = self._reflection(speed, peak, angle, fn)
         total = (
             LOG_FREQUENCY_STEP[_SPECTRUM] * size * moved
-            + 0.5625 * REFLECTION_STEP[_SPECTRUM] * thrown
+            + 0.5625 * REFLECTION_STEP[_SPECTRUM] * reflected
         )
         unknown = np.isnan(speed + peak + angle + fn)
         return np.where(unknown, np.nan, 2.0 * breadth * total)
@@ -215,7 +215,7 @@ class SnnmTable:
         """Sum of what bow and stern reflect."""
         b0, b1, s0, s1, deep = reflection_terms(speed, angle, fn, self.hull, GRAVITY)
         cell = self.bow.cell(peak)
-        thrown = b0 * self.bow.at(cell, 0) + b1 * self.bow.at(cell, 1)
+        reflected = b0 * self.bow.at(cell, 0) + b1 * self.bow.at(cell, 1)
         least = _least_depth(self.hull)
         place = (deep / self.hull[2] - least) / (1.0 - least) * (_DRAUGHT_POINTS - 1)
         place = np.clip(np.where(np.isnan(place), 0.0, place), 0.0, _DRAUGHT_POINTS - 1.001)
@@ -223,8 +223,8 @@ class SnnmTable:
         for power, factor in ((0, s0), (1, s1)):
             shallow = self.stern.at(cell, 2 * row + power)
             deeper = self.stern.at(cell, 2 * row + 2 + power)
-            thrown = thrown - factor * (shallow + (place - row) * (deeper - shallow))
-        return np.asarray(thrown)
+            reflected = reflected - factor * (shallow + (place - row) * (deeper - shallow))
+        return np.asarray(reflected)
 
 
 def _least_depth(hull: tuple[FloatArray, ...]) -> float:
