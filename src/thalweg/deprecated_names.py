@@ -126,6 +126,9 @@ RENAMED: Final[Mapping[str, Mapping[str, tuple[str, str]]]] = {
         "Spread": ("thalweg.route.ensemble_evaluation", "MemberStatistics"),
         "polish": ("thalweg.route.refinement.cost_refinement", "refine_cost"),
     },
+    "thalweg.sea": {
+        "Area": ("thalweg.core.bounding_box", "BoundingBox"),
+    },
     "thalweg.search": {
         "Bound": ("thalweg.search.lower_bounds", "LowerBound"),
         "Front": ("thalweg.search.pareto.front_result", "NetworkFront"),
@@ -163,26 +166,28 @@ def warn_renamed(old: str, new: str, *, level: int = 3) -> None:
     )
 
 
-def renamed(package: str) -> Callable[[str], Any]:
+def renamed(package: str, *, level: int = 3) -> Callable[[str], Any]:
     """Return a module's ``__getattr__`` that answers for old names.
 
     Parameters
     ----------
     package : str
-        A key of `MOVED` or `RENAMED`: the module that once had the names.
+        A key of `MOVED`, or a package: that which once had the names.
+    level : int
+        Frames between the warning and the caller's code.
 
     Returns
     -------
     callable
         Raises AttributeError for any other name.
     """
-    names = MOVED.get(package) or RENAMED[package]
+    names = MOVED.get(package) or RENAMED.get(package, {})
 
     def lookup(name: str) -> Any:
         if name not in names:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         module, new = names[name]
-        warn_renamed(f"{package}.{name}", f"{module}.{new}")
+        warn_renamed(f"{package}.{name}", f"{module}.{new}", level=level)
         return getattr(import_module(module), new)
 
     return lookup

@@ -1,5 +1,5 @@
 """What a nautical chart holds: coastline, depth, zones and ports."""
 
-from thalweg.chart.chart import Chart
+from thalweg.lazy_exports import lazy_exports
 
-__all__ = ["Chart"]
+__getattr__, __all__ = lazy_exports(__name__, __path__[0])

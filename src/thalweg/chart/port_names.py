@@ -44,7 +44,9 @@ _SHORTEST_PLACE: Final = 4
 
 def normalised_port_name(text: str) -> str:
     """Return text without case, accents, punctuation and double spaces; "St." is "saint"."""
-    plain = unicodedata.normalize("NFKD", text.casefold().translate(_LETTER_SUBSTITUTES))
+    plain = text.casefold()
+    if not plain.isascii():
+        plain = unicodedata.normalize("NFKD", plain.translate(_LETTER_SUBSTITUTES))
     kept = (c if c.isalnum() else " " for c in plain if not unicodedata.combining(c))
     words = "".join(kept).split()
     return " ".join("saint" if word == "st" else word for word in words)
@@ -52,6 +54,8 @@ def normalised_port_name(text: str) -> str:
 
 def place_name(normalised: str) -> str:
     """Return a normalised name without the word for "port" ("puerto colon" is "colon")."""
+    if not (normalised.startswith(_PORT_WORDS_BEFORE) or normalised.endswith(_PORT_WORDS_AFTER)):
+        return normalised
     for word in _PORT_WORDS_BEFORE:
         if normalised.startswith(word) and len(normalised) - len(word) >= _SHORTEST_PLACE:
             return normalised.removeprefix(word)

@@ -1,39 +1,5 @@
 """Multi-objective evolution of tracks: algorithms, variation operators and quality indicators."""
 
-from thalweg.deprecated_names import renamed
-from thalweg.evolution.evolve import (
-    EvolutionProgress,
-    EvolutionResult,
-    EvolutionSettings,
-    StoppingCriteria,
-    evolve,
-)
-from thalweg.evolution.memetic import FrontRefinementSettings, refine_front
-from thalweg.evolution.variation import OperatorWeights, VariationSettings
-from thalweg.route.evaluators.population import Genome, Population
-from thalweg.route.evaluators.population_evaluator import (
-    EvaluationResolution,
-    Evaluator,
-    TabulatedShip,
-    make_evaluator,
-)
+from thalweg.lazy_exports import lazy_exports
 
-__all__ = [
-    "EvaluationResolution",
-    "Evaluator",
-    "EvolutionProgress",
-    "EvolutionResult",
-    "EvolutionSettings",
-    "FrontRefinementSettings",
-    "Genome",
-    "OperatorWeights",
-    "Population",
-    "StoppingCriteria",
-    "TabulatedShip",
-    "VariationSettings",
-    "evolve",
-    "make_evaluator",
-    "refine_front",
-]
-
-__getattr__ = renamed("thalweg.evolution")
+__getattr__, __all__ = lazy_exports(__name__, __path__[0])

@@ -1,9 +1,5 @@
 """Planning: the request, the result, and the steps from one to the other."""
 
-from thalweg.planning.plan import Plan
-from thalweg.planning.plan_data import Proof
-from thalweg.planning.planner import plan
-from thalweg.planning.request.network_choice import NetworkChoice
-from thalweg.planning.voyage import Voyage
+from thalweg.lazy_exports import lazy_exports
 
-__all__ = ["NetworkChoice", "Plan", "Proof", "Voyage", "plan"]
+__getattr__, __all__ = lazy_exports(__name__, __path__[0])

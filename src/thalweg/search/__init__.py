@@ -1,50 +1,5 @@
 """Exact searches on networks through time-dependent water."""
 
-from thalweg.deprecated_names import renamed
-from thalweg.search.departure_window import DepartureWindow, best_departure
-from thalweg.search.earliest_arrival import earliest_arrival
-from thalweg.search.fifo import FifoReport, earliest_arrivals_with_waiting, fifo_report
-from thalweg.search.lower_bounds import LowerBound, direction_factor, lower_bound
-from thalweg.search.pareto.front_problem import FrontQuery, MultiSettingShipOnNetwork
-from thalweg.search.pareto.front_result import FrontPoint, FrontWork, NetworkFront, cheapest
-from thalweg.search.pareto.pareto_search import pareto_front
-from thalweg.search.prepared_network import PreparedNetwork
-from thalweg.search.profile_search import (
-    NetworkPassage,
-    Profile,
-    ProfileSearch,
-    prepare_profile_search,
-)
-from thalweg.search.search_problem import ShipOnNetwork
-from thalweg.search.search_result import SearchResult, SearchWork
-from thalweg.ship.tables.table_bounds import table_bounds
+from thalweg.lazy_exports import lazy_exports
 
-__all__ = [
-    "DepartureWindow",
-    "FifoReport",
-    "FrontPoint",
-    "FrontQuery",
-    "FrontWork",
-    "LowerBound",
-    "MultiSettingShipOnNetwork",
-    "NetworkFront",
-    "NetworkPassage",
-    "PreparedNetwork",
-    "Profile",
-    "ProfileSearch",
-    "SearchResult",
-    "SearchWork",
-    "ShipOnNetwork",
-    "best_departure",
-    "cheapest",
-    "direction_factor",
-    "earliest_arrival",
-    "earliest_arrivals_with_waiting",
-    "fifo_report",
-    "lower_bound",
-    "pareto_front",
-    "prepare_profile_search",
-    "table_bounds",
-]
-
-__getattr__ = renamed("thalweg.search")
+__getattr__, __all__ = lazy_exports(__name__, __path__[0])

@@ -13,7 +13,6 @@ import numpy as np
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.core.geodesy import wrap_longitude
 from thalweg.core.types import Float32Array, FloatArray
-from thalweg.sea.files.file_opener import open_file
 from thalweg.sea.plausible_values import (
     DEPTH_FILLS,
     holds_any,
@@ -241,6 +240,8 @@ def _check_plausible(depth: Float32Array, name: str) -> None:
 
 def _open_source(source: Any) -> tuple[str, Any]:
     import xarray as xr
+
+    from thalweg.sea.files.file_opener import open_file
 
     if isinstance(source, xr.DataArray):
         return "the array", source.to_dataset(name=source.name or "depth")

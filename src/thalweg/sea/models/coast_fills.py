@@ -9,11 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from scipy import ndimage
-from scipy.spatial import cKDTree
 
 from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.errors import InputError
@@ -33,6 +31,9 @@ from thalweg.sea.layer_stack import (
     stack_variables,
 )
 from thalweg.sea.triangle_mesh import Mesh
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 PERIOD_OF_ROOT_HEIGHT: Final = 5.0  #: [s / sqrt(m)] peak period of a fully developed sea
 COAST_CELLS: Final = 2  #: cells from an unknown one up to which known ones are candidates
@@ -148,6 +149,8 @@ class NearestLayer:
     @cached_property
     def _grids(self) -> list[tuple[frozenset[str], FloatArray, FloatArray, cKDTree]]:
         """Return for each grid its variables, and the known positions near its unknown ones."""
+        from scipy.spatial import cKDTree
+
         found = []
         for layer in self.layers:
             held = self.names & layer.variables
@@ -336,6 +339,8 @@ def _known_near_unknown(layer: GridLayer, names: frozenset[str]) -> tuple[FloatA
 
 def _beside_unknown(known: BoolArray, wraps: bool) -> BoolArray:
     """Return which points have an unknown one within `COAST_CELLS`; all points of a mesh."""
+    from scipy import ndimage
+
     if known.shape[0] == 1:
         return np.ones(known.shape, bool)
     pad = COAST_CELLS

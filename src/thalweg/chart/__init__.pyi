@@ -1,0 +1,3 @@
+from thalweg.chart.chart import Chart
+
+__all__ = ["Chart"]
