@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from thalweg.cli.exit_codes import SUCCESS
 from thalweg.core.errors import InputError
-from thalweg.core.time import format_time, parse_time
+from thalweg.core.given_numbers import to_number
+from thalweg.core.time import format_time
 from thalweg.core.units import HOUR
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ def add_command(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Download a forecast, or list the sources."""
     from thalweg.forecasts.fetching import estimate_forecast, fetch_forecast, source_named
-    from thalweg.forecasts.sources import SOURCES
+    from thalweg.forecasts.source_table import SOURCES
     from thalweg.forecasts.sources.gfs import Gfs
 
     if arguments.source is None:
@@ -156,14 +157,14 @@ def _request(arguments: argparse.Namespace) -> ForecastRequest:
             "A box is south,north,west,east in degrees.",
             "Give four values, for example --box 40,60,-75,5.",
         )
-    south, north, west, east = sides
+    south, north, west, east = (to_number(side) for side in sides)
     return ForecastRequest(
-        BoundingBox.checked(south, north, west, east),  # type: ignore[arg-type]
-        parse_time(arguments.start),
-        parse_time(arguments.end),
+        BoundingBox.checked(south, north, west, east),
+        arguments.start,
+        arguments.end,
         tuple(word.strip() for word in arguments.quantities.split(",") if word.strip()),
         arguments.step * HOUR,
-        None if arguments.run_time is None else parse_time(arguments.run_time),
+        arguments.run_time,
         arguments.members,
     )
 

@@ -19,7 +19,7 @@ from thalweg.core.time import format_time
 from thalweg.forecasts.download_client import DownloadClient
 from thalweg.forecasts.download_plan import DownloadPlan, ForecastSource, Progress
 from thalweg.forecasts.forecast_request import ForecastRequest
-from thalweg.forecasts.sources import SOURCES
+from thalweg.forecasts.source_table import SOURCES
 
 MOST_BYTES: Final = 2_000_000_000  #: of one request unless the user allows more
 
@@ -83,7 +83,7 @@ def estimate_forecast(
     ----------
     request : ForecastRequest
     source : str or ForecastSource
-        A name of `thalweg.forecasts.sources.SOURCES`, or a source.
+        A name of `thalweg.forecasts.source_table.SOURCES`, or a source.
     client : DownloadClient, optional
     now : float, optional
         The present [s since 1970].
@@ -132,7 +132,7 @@ def fetch_forecast(
     ----------
     request : ForecastRequest
     source : str or ForecastSource
-        A name of `thalweg.forecasts.sources.SOURCES`, or a source.
+        A name of `thalweg.forecasts.source_table.SOURCES`, or a source.
     out : path
         NetCDF file to write, whole or not at all. Fields on a second grid go to ``NAME_2.nc``.
     client : DownloadClient, optional

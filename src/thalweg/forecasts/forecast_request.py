@@ -9,7 +9,7 @@ from typing import Final
 
 from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError
-from thalweg.core.time import format_time
+from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import HOUR
 
 QUANTITIES: Final = ("wind", "waves", "current", "ice", "pressure")
@@ -22,16 +22,16 @@ class ForecastRequest:
 
     Parameters
     ----------
-    box : BoundingBox
-        Area; it may span the antimeridian.
-    start, end : float
-        Period [s since 1970].
+    box : BoundingBox or tuple of float
+        Area: south, north, west, east [deg]; it may span the antimeridian.
+    start, end : time
+        Period; kept as seconds since 1970.
     quantities : tuple of str
         Of `QUANTITIES`.
     step : float
         Time between fields [s], a whole number of hours. Sources with coarser fields deliver these.
-    run : float or None
-        Start of the forecast run [s since 1970]. None: the latest run that is complete and not
+    run : time or None
+        Start of the forecast run. None: the latest run that is complete and not
         after ``start``.
     members : int
         Members of an ensemble; 0: the single forecast.
@@ -52,6 +52,11 @@ class ForecastRequest:
     members: int = 0
 
     def __post_init__(self) -> None:
+        if not isinstance(self.box, BoundingBox):
+            object.__setattr__(self, "box", BoundingBox.checked(*self.box))
+        for name in ("start", "end", "run"):
+            if (moment := getattr(self, name)) is not None:
+                object.__setattr__(self, name, parse_time(moment))
         if not self.start < self.end <= self.start + _LONGEST:
             raise InputError(
                 f"The period from {format_time(self.start)} to {format_time(self.end)} was "

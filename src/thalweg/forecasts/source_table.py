@@ -1,0 +1,19 @@
+"""The sources by name."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Final
+
+from thalweg.forecasts.download_plan import ForecastSource
+from thalweg.forecasts.sources.copernicus_marine import CopernicusMarine
+from thalweg.forecasts.sources.ecmwf import EcmwfOpenData
+from thalweg.forecasts.sources.era5 import Era5
+from thalweg.forecasts.sources.gfs import Gfs
+from thalweg.forecasts.sources.open_meteo import OpenMeteo
+
+SOURCES: Final[Mapping[str, ForecastSource]] = MappingProxyType(
+    {
+        source.name: source
+        for source in (Gfs(), EcmwfOpenData(), OpenMeteo(), CopernicusMarine(), Era5())
+    }
+)
