@@ -67,6 +67,7 @@ def layered(
     layers: PerSection,
     fan: PerSection,
     offset: PerSection,
+    numbering: tuple[int, int] | None = None,
 ) -> Network:
     """Build a layered network from a start through waypoints to a goal.
 
@@ -88,6 +89,9 @@ def layered(
         H, 2 or more; an odd number has a segment straight ahead.
     offset : float or sequence of float
         d [m].
+    numbering : tuple of int, optional
+        Number of the first section in the voyage, from 0, and how many the voyage has, for
+        messages.
 
     Returns
     -------
@@ -114,7 +118,7 @@ def layered(
     free, rejected = allowed_legs(chart, draft.lat, draft.lon, draft.first, draft.second)
     used, keep = segments_on_paths(len(draft.lat), draft.first, draft.second, free)
     if not keep.any():
-        raise _broken_network(draft, free, rejected)
+        raise _broken_network(draft, free, rejected, numbering or (0, len(draft.shapes)))
     return _assembled(chart, draft, used, keep, rejected)
 
 
@@ -252,7 +256,9 @@ def _notes(draft: LayeredDraft, keep: BoolArray, used: BoolArray, pairs: Pairs) 
     return tuple(notes)
 
 
-def _broken_network(draft: LayeredDraft, free: BoolArray, rejected: RejectionCounts) -> NoPathError:
+def _broken_network(
+    draft: LayeredDraft, free: BoolArray, rejected: RejectionCounts, numbering: tuple[int, int]
+) -> NoPathError:
     """Return the error of a network without a path: where it ends, and what to try."""
     reached = _reached(len(draft.lat), draft.first[free], draft.second[free], 0)
     last = int(np.flatnonzero(reached)[-1])  # nodes are in the order of the layers
@@ -260,7 +266,7 @@ def _broken_network(draft: LayeredDraft, free: BoolArray, rejected: RejectionCou
     if layer == draft.shapes[section].layers + 1 and section + 1 < len(draft.shapes):
         section, layer = section + 1, 0
     tried = int((reached[draft.first] & _leaves(draft, section, layer)).sum())
-    shape = draft.shapes[section]
+    shape, number = draft.shapes[section], numbering[0] + section + 1
     better = SectionShape(
         2 * shape.layers + 1, shape.fan + 1 if shape.fan % 2 == 0 else shape.fan + 2,
         max(shape.offset / 2.0, 1.0),
@@ -268,7 +274,7 @@ def _broken_network(draft: LayeredDraft, free: BoolArray, rejected: RejectionCou
     reasons = " and ".join(f"{n:,} by {reason}" for reason, n in rejected.items())
     at = int(np.flatnonzero(reached)[-1])
     return NoPathError(
-        f"The layered network has no path through section {section + 1} of {len(draft.shapes)}: "
+        f"The layered network has no path through section {number} of {numbering[1]}: "
         f"it ends between layer {layer} and layer {layer + 1}, where all {tried:,} segments from "
         "the nodes that are reached are refused.",
         f"Of all {len(draft.first):,} segments the chart refuses {reasons}.",
@@ -276,7 +282,7 @@ def _broken_network(draft: LayeredDraft, free: BoolArray, rejected: RejectionCou
         f"{better.offset / NAUTICAL_MILE:.3g} nm, or move the waypoint away from land.",
         reasons=rejected,
         nearest=(float(draft.lat[at]), float(draft.lon[at])),
-        section=section + 1,
+        section=number,
         layer=layer,
         next_shape={"layers": better.layers, "fan": better.fan, "offset_m": better.offset},
     )

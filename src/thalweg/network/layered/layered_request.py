@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import itertools
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +24,10 @@ if TYPE_CHECKING:
 #: Layers that are tried where no shape is given: each time twice as close as before.
 _LADDER = (5, 11, 23, 47, 95)
 _LADDER_FAN = 7
-_HALF_WIDTH = 0.15  #: of the rhombus, as a share of the length of the section
+#: Half widths of the rhombus that are tried, as shares of the length of the section: courses then
+#: differ by up to 17 and 39 degrees from that of the section.
+_HALF_WIDTHS = (0.15, 0.4)
+_STRAIT_DISTANCE = 0.5 * NAUTICAL_MILE  #: of a node from a place that paths must pass
 _KEYS = ("layers", "fan", "offset_nm")
 
 
@@ -145,6 +149,7 @@ def layered_section(
     shape: SectionShape | None,
     *,
     spacing: float | None = None,
+    numbering: tuple[int, int] = (0, 1),
 ) -> Network:
     """Return the layered network of one section.
 
@@ -160,6 +165,8 @@ def layered_section(
     spacing : float, optional
         Layers are at most this far apart [m]; a shape that is coarser is made finer, with the
         same width.
+    numbering : tuple of int, optional
+        Number of the section in the voyage, from 0, and how many it has.
 
     Returns
     -------
@@ -172,11 +179,14 @@ def layered_section(
     """
     chosen = shape is None
     if shape is None:
-        shape = suggested_shape(chart, start, goal)
+        shape = suggested_shape(chart, start, goal, numbering=numbering)
     between = float(geodesy.distance(*start, *goal)) / (shape.layers + 1)
     if spacing is not None and between > 1.001 * spacing:
         shape = shape.finer(int(np.ceil(between / spacing - 1e-3)))
-    network = layered(chart, (start, goal), layers=shape.layers, fan=shape.fan, offset=shape.offset)
+    network = layered(
+        chart, (start, goal), layers=shape.layers, fan=shape.fan, offset=shape.offset,
+        numbering=numbering,
+    )  # fmt: skip
     if not chosen:
         return network
     note = (
@@ -188,11 +198,17 @@ def layered_section(
 
 
 def suggested_shape(
-    chart: Chart, start: Position, goal: Position, *, tolerance: float = 0.01
+    chart: Chart,
+    start: Position,
+    goal: Position,
+    *,
+    tolerance: float = 0.01,
+    contain: Sequence[Position] = (),
+    numbering: tuple[int, int] = (0, 1),
 ) -> SectionShape:
     """Return the shape with the fewest segments that is nearly as good as the finest.
 
-    Layers are made twice as close until 96 intervals, at one width of the network.
+    Layers are made twice as close until 96 intervals, at two widths of the network.
 
     Parameters
     ----------
@@ -202,6 +218,11 @@ def suggested_shape(
         Positions [deg].
     tolerance : float, optional
         By what share the shortest path may be longer than that on the finest network.
+    contain : sequence of (lat, lon), optional
+        Places [deg], such as straits, that paths of the network must pass within half a nautical
+        mile.
+    numbering : tuple of int, optional
+        Number of the section in the voyage, from 0, and how many it has.
 
     Returns
     -------
@@ -210,25 +231,46 @@ def suggested_shape(
     Raises
     ------
     NoPathError
-        If none of them has a path.
+        If none of them has a path, or none passes all these places.
     """
     length = float(geodesy.distance(*start, *goal))
     found: list[tuple[SectionShape, float]] = []
     refusal: NoPathError | None = None
-    for layers in _LADDER:
-        half = (layers + 1) // 2
-        shape = SectionShape(layers, _LADDER_FAN, max(_HALF_WIDTH * length / half, 1.0))
+    for layers, half_width in itertools.product(_LADDER, _HALF_WIDTHS):
+        offset = max(2.0 * half_width * length / (layers + 1), 1.0)
         try:
             network = layered(
-                chart, (start, goal), layers=layers, fan=shape.fan, offset=shape.offset
-            )
+                chart, (start, goal), layers=layers, fan=_LADDER_FAN, offset=offset,
+                numbering=numbering,
+            )  # fmt: skip
         except NoPathError as error:
             refusal = error
             continue
+        left_out = [place for place in contain if not _passes(network, place)]
+        if left_out:
+            refusal = _strait_error(left_out[0], layers)
+            continue
         distance, _ = shortest_path(network, network.meta.start, network.meta.goal)
+        shape = SectionShape(layers, _LADDER_FAN, offset)
         found.append((shape, float(distance[network.meta.goal])))
     if not found:
         assert refusal is not None  # one of the two happened
         raise refusal
     best = (1.0 + tolerance) * min(value for _, value in found)
     return next(shape for shape, value in found if value <= best)
+
+
+def _passes(network: Network, place: Position) -> bool:
+    """Return whether paths of a network pass a place: all of its nodes are on paths."""
+    away = geodesy.distance(network.lat, network.lon, *place)
+    return bool(np.min(away) <= _STRAIT_DISTANCE)
+
+
+def _strait_error(place: Position, layers: int) -> NoPathError:
+    return NoPathError(
+        f"No layered network of up to {layers} layers has a path through "
+        f"{geodesy.format_position(*place)}.",
+        "Straits are contained where a node on a path is within half a nautical mile.",
+        "Put waypoints in open water before and behind it, or use a finer coastline (h, f).",
+        nearest=place,
+    )

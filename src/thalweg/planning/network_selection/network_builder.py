@@ -46,7 +46,8 @@ def build_network(
     if choice.network == "globe":
         return globe(chart, *places)
     if choice.network == "layered":
-        return layered_section(chart, *places, choice.section_shape, spacing=choice.spacing)
+        shape, numbering = choice.section_shape, choice.section
+        return layered_section(chart, *places, shape, spacing=choice.spacing, numbering=numbering)
     return lattice_between(chart, *places, spacing=choice.spacing)
 
 
