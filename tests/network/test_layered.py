@@ -9,7 +9,7 @@ from shapely.geometry import LineString, box
 from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoPathError
-from thalweg.network import LayeredRequest, check_network, layered, shortest_path
+from thalweg.network import LayeredRequest, check_network, layered_network, shortest_path
 from thalweg.network.layered.layered_builder import layered_draft
 from thalweg.network.layered.layered_request import layered_section, suggested_shape
 
@@ -45,14 +45,14 @@ def test_layers_are_evenly_spaced_along_the_geodesic_and_nodes_across_it():
 
 
 def test_network_keeps_the_guarantees_and_leads_forward():
-    network = layered(Chart.open_water(), [(65.0, 0.0), (65.0, 4.0), (64.0, 6.0)], **SHAPE)
+    network = layered_network(Chart.open_water(), [(65.0, 0.0), (65.0, 4.0), (64.0, 6.0)], **SHAPE)
     check_network(network)
     assert (network.meta.start, network.meta.goal) == (0, network.n_nodes - 1)
     assert np.all(network.graph.target > network.tails())
 
 
 def test_no_segment_crosses_an_island_and_all_nodes_are_on_paths():
-    network = layered(_chart(ISLAND), [(65.0, 0.0), (65.0, 4.0)], **SHAPE)
+    network = layered_network(_chart(ISLAND), [(65.0, 0.0), (65.0, 4.0)], **SHAPE)
     tails, heads = network.tails(), network.graph.target
     for a, b in zip(tails, heads):
         line = geodesy.positions_along(
@@ -86,7 +86,7 @@ def test_a_network_without_a_path_names_section_layer_and_the_next_shape():
     wall = box(2.9, 64.0, 3.1, 66.0)
     places = [(65.0, 0.0), (65.0, 2.0), (65.0, 4.0)]
     with pytest.raises(NoPathError) as refusal:
-        layered(_chart(wall), places, layers=3, fan=3, offset=5000.0)
+        layered_network(_chart(wall), places, layers=3, fan=3, offset=5000.0)
     error = refusal.value
     assert (error.details["section"], error.details["layer"]) == (2, 1)
     assert error.details["next_shape"] == {"layers": 7, "fan": 5, "offset_m": 2500.0}
@@ -100,7 +100,7 @@ def test_zones_and_the_area_of_the_chart_are_tested_too():
         "type": "Polygon", "coordinates": [[[1.8, 64.9], [2.2, 64.9], [2.2, 65.1], [1.8, 65.1],
                                             [1.8, 64.9]]]}}  # fmt: skip
     chart = Chart.open_water(64.0, 65.2, -1.0, 5.0).with_zones(zone)
-    network = layered(chart, [(65.0, 0.0), (65.0, 4.0)], **SHAPE)
+    network = layered_network(chart, [(65.0, 0.0), (65.0, 4.0)], **SHAPE)
     assert sum(network.meta.rejected.values()) > 0
     assert network.lat.max() <= 65.2
     _, path = shortest_path(network, 0, network.meta.goal)
@@ -108,7 +108,9 @@ def test_zones_and_the_area_of_the_chart_are_tested_too():
 
 
 def test_shortest_path_is_the_least_of_all_walks():
-    network = layered(_chart(ISLAND), [(65.0, 0.0), (65.0, 4.0)], layers=5, fan=3, offset=12_000.0)
+    network = layered_network(
+        _chart(ISLAND), [(65.0, 0.0), (65.0, 4.0)], layers=5, fan=3, offset=12_000.0
+    )
     lengths = {}
     for tail, head, length in zip(network.tails(), network.graph.target, network.edges.length):
         lengths[int(tail), int(head)] = float(length)
@@ -136,7 +138,7 @@ def test_the_suggested_shape_is_the_coarsest_that_is_good_enough():
 
 
 def test_even_fan_is_noted():
-    network = layered(
+    network = layered_network(
         Chart.open_water(), [(65.0, 0.0), (65.0, 4.0)], layers=4, fan=4, offset=5000.0
     )
     assert any("even fan" in note for note in network.meta.notes)
@@ -155,7 +157,7 @@ def test_request_of_files_and_options():
 def test_random_segments_on_the_worlds_coast_agree_with_their_samples():
     chart = Chart.gshhg("i")
     places = [(63.6706, 9.2983), (66.5653, 11.6697)]
-    network = layered(chart, places, layers=30, fan=7, offset=4400.0)
+    network = layered_network(chart, places, layers=30, fan=7, offset=4400.0)
     tails, heads = network.tails(), network.graph.target
     for share in np.linspace(0.0, 1.0, 9):
         lat, lon = geodesy.positions_along(
@@ -167,7 +169,7 @@ def test_random_segments_on_the_worlds_coast_agree_with_their_samples():
 
 def test_sections_join_at_their_waypoints():
     places = [(65.0, 0.0), (65.0, 2.0), (65.0, 4.0)]
-    network = layered(Chart.open_water(), places, layers=3, fan=3, offset=2000.0)
+    network = layered_network(Chart.open_water(), places, layers=3, fan=3, offset=2000.0)
     at = [int(np.argmin(geodesy.distance(network.lat, network.lon, *p))) for p in places]
     _, path = shortest_path(network, network.meta.start, network.meta.goal)
     assert set(at) <= set(path)

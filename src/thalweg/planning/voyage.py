@@ -84,7 +84,7 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
         default by the size of the ship (0.5, 1 or 2), and 0 for none.
     layered : mapping, optional
         Search a layered network: ``{layers: S, fan: H, offset_nm: d}``, each one number, or a list
-        with one number for every section between via points (`thalweg.network.layered`).
+        with one number for every section between via points (`thalweg.network.layered_network`).
     method : {"default", "exact", "nsga2", "spea2", "mpaes"}
         How a trade-off is searched: the exact front of a network, refined by evolution (default);
         the exact front alone; or an evolutionary method from a few routes, for comparison.

@@ -60,7 +60,7 @@ class LayeredDraft:
     second: Int32Array
 
 
-def layered(
+def layered_network(
     chart: Chart,
     places: Sequence[Position],
     *,
@@ -125,7 +125,7 @@ def layered(
 def layered_draft(
     places: Sequence[Position], *, layers: PerSection, fan: PerSection, offset: PerSection
 ) -> LayeredDraft:
-    """Return the nodes and segments of a layered network without a chart; see `layered`."""
+    """Return the nodes and segments of a layered network without a chart; see `layered_network`."""
     shapes = section_shapes(max(len(places) - 1, 1), layers, fan, offset)
     lat, lon = [np.array([places[0][0]], float)], [np.array([places[0][1]], float)]
     section, layer = [np.zeros(1, np.int32)], [np.zeros(1, np.int32)]

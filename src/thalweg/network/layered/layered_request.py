@@ -13,7 +13,7 @@ from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoPathError, unknown_name_error
 from thalweg.core.geodesy import Position
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.network.layered.layered_builder import layered
+from thalweg.network.layered.layered_builder import layered_network
 from thalweg.network.layered.section_shape import PerSection, SectionShape, section_shapes
 from thalweg.network.network import Network
 from thalweg.network.shortest_paths import shortest_path
@@ -183,7 +183,7 @@ def layered_section(
     between = float(geodesy.distance(*start, *goal)) / (shape.layers + 1)
     if spacing is not None and between > 1.001 * spacing:
         shape = shape.finer(int(np.ceil(between / spacing - 1e-3)))
-    network = layered(
+    network = layered_network(
         chart, (start, goal), layers=shape.layers, fan=shape.fan, offset=shape.offset,
         numbering=numbering,
     )  # fmt: skip
@@ -239,7 +239,7 @@ def suggested_shape(
     for layers, half_width in itertools.product(_LADDER, _HALF_WIDTHS):
         offset = max(2.0 * half_width * length / (layers + 1), 1.0)
         try:
-            network = layered(
+            network = layered_network(
                 chart, (start, goal), layers=layers, fan=_LADDER_FAN, offset=offset,
                 numbering=numbering,
             )  # fmt: skip
