@@ -7,6 +7,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from thalweg.cli import option_values, options
+from thalweg.cli.coast.layered_options import add_layered_options, layered_request
 from thalweg.cli.exit_codes import INTERRUPTED, NO_ROUTE, SUCCESS
 from thalweg.cli.first_run import announce_compilation
 from thalweg.cli.tables import print_plan
@@ -128,10 +129,12 @@ def _add_network_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--network",
         default="auto",
-        metavar="auto|lattice|mesh|globe",
+        metavar="auto|lattice|mesh|globe|layered",
         help="network to search: a regular grid around the route (lattice), the mesh of the sea "
-        "data (mesh), or a global grid (globe); default: auto",
+        "data (mesh), a global grid (globe), or layers between every two places (layered); "
+        "default: auto",
     )
+    add_layered_options(parser)
     parser.add_argument(
         "--resolution",
         type=float,
@@ -259,6 +262,7 @@ def _voyage(arguments: argparse.Namespace, sea: Sea, ship: Ship) -> Voyage:
         open=tuple(arguments.open),
         avoid=tuple(arguments.avoid),
         offing_nm=arguments.offing,
+        layered=layered_request(arguments),  # type: ignore[arg-type]
         method=arguments.method,
         ensemble=arguments.ensemble,
     )

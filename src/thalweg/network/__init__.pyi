@@ -8,6 +8,8 @@ from thalweg.network.endpoints import with_endpoints
 from thalweg.network.fixed_route import fixed_route
 from thalweg.network.global_grid.globe_builder import globe
 from thalweg.network.global_grid.globe_options import GlobeOptions
+from thalweg.network.layered.layered_builder import layered_network
+from thalweg.network.layered.layered_request import LayeredRequest
 from thalweg.network.network import (
     Edges,
     Graph,
@@ -28,6 +30,7 @@ __all__ = [
     "Edges",
     "GlobeOptions",
     "Graph",
+    "LayeredRequest",
     "Network",
     "NetworkMeta",
     "Samples",
@@ -39,6 +42,7 @@ __all__ = [
     "fixed_route",
     "globe",
     "lattice",
+    "layered_network",
     "mesh",
     "paths_without_canals",
     "shortest_path",

@@ -79,7 +79,7 @@ def plan(
         Currents, levels, wind and waves. There is no default; use `Sea.calm` for still water.
     chart : Chart, optional
         Land, depth and zones; by default the GSHHG coastline at resolution "i".
-    network : {"auto", "lattice", "mesh", "globe"} or callable
+    network : {"auto", "lattice", "mesh", "globe", "layered"} or callable
         How the network is built; see
         `thalweg.planning.NetworkChoice`.
     resolution : float, optional
@@ -157,7 +157,9 @@ def plan(
             "Correct it, or leave it out.",
             field="proof",
         )
-    choice = NetworkChoice(network, resolution)
+    choice = NetworkChoice(network, resolution, voyage.layered)
+    if choice.layered is not None:
+        choice.layered.shapes(len(voyage.via) + 1)  # refuses lists of another length
     context, ends = _context(voyage, ship, with_wind_speed(ship, sea), chart, choice)
     context = replace(
         context, report_progress=progress or context.report_progress, proof_seconds=proof
@@ -225,8 +227,9 @@ def _endpoints(voyage: Voyage, chart: Chart) -> list[Endpoint]:
 def _plan_passages(context: PlanningContext, ends: list[Endpoint]) -> list[PassageResult]:
     window = (context.voyage.earliest_departure, context.voyage.latest_departure)
     passages: list[PassageResult] = []
-    for start, goal in itertools.pairwise(ends):
-        passage = plan_passage(context, start, goal, window)
+    for number, (start, goal) in enumerate(itertools.pairwise(ends)):
+        choice = context.choice.of_section(number, len(ends) - 1)
+        passage = plan_passage(replace(context, choice=choice), start, goal, window)
         passages.append(passage)
         window = (passage.route.arrive, passage.route.arrive)
     return passages

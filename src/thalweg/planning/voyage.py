@@ -19,7 +19,7 @@ _ENTRIES: Final = (
     "start", "goal", "depart", "depart_window", "objective", "via", "arrive_by", "arrive", "wait",
     "speed_kn", "hold", "min_ukc_m", "seed", "fuel_price_usd", "eca_price_factor",
     "time_price_usd_per_h", "forbid", "open", "avoid", "offing_nm", "method", "ensemble",
-    "speed_block_h",
+    "speed_block_h", "layered",
 )  # fmt: skip
 
 
@@ -82,6 +82,9 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
     offing_nm : float, optional
         Least distance from charted land [nm], outside named passages and harbour approaches; by
         default by the size of the ship (0.5, 1 or 2), and 0 for none.
+    layered : mapping, optional
+        Search a layered network: ``{layers: S, fan: H, offset_nm: d}``, each one number, or a list
+        with one number for every section between via points (`thalweg.network.layered_network`).
     method : {"default", "exact", "nsga2", "spea2", "mpaes"}
         How a trade-off is searched: the exact front of a network, refined by evolution (default);
         the exact front alone; or an evolutionary method from a few routes, for comparison.
@@ -249,6 +252,8 @@ def _plain_value(name: str, value: Any) -> Any:
         return format_time(value)
     if name == "depart_window":
         return [format_time(t) for t in value]
+    if name == "layered":
+        return value.as_dict()
     if name == "via":
         return [_plain_value("place", place) for place in value]
     return list(value) if isinstance(value, tuple) else value

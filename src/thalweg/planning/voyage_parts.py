@@ -13,6 +13,7 @@ from thalweg.core.geodesy import Position, check_position
 from thalweg.core.given_numbers import shortened_repr, to_number
 from thalweg.core.objective import ObjectiveName
 from thalweg.core.time import TimeLike, format_time, parse_time
+from thalweg.network.layered.layered_request import LayeredRequest
 
 Place: TypeAlias = "Position | str"
 VoyageObjective: TypeAlias = ObjectiveName | Literal["front"]
@@ -197,6 +198,8 @@ class SearchRequest:
         [h].
     offing_nm : float, optional
         [nm].
+    layered : LayeredRequest or mapping, optional
+        Shape of a layered network.
     """
 
     objective: VoyageObjective = "time"
@@ -208,6 +211,7 @@ class SearchRequest:
     min_ukc_m: float | None = None
     speed_block_h: float = 6.0
     offing_nm: float | None = None
+    layered: LayeredRequest | None = None
 
     @property
     def chooses_speeds(self) -> bool:
@@ -230,6 +234,8 @@ class SearchRequest:
             )
         if self.hold is not None and self.hold not in HELD:
             raise unknown_name_error("quantity to hold", str(self.hold), HELD)
+        if self.layered is not None:
+            object.__setattr__(self, "layered", LayeredRequest.from_dict(self.layered))
         if self.method not in METHODS:
             raise unknown_name_error("method", str(self.method), METHODS)
         if self.ensemble is not None and self.ensemble not in RISK_MEASURES:

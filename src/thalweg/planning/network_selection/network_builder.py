@@ -14,6 +14,7 @@ from thalweg.network import (
     shortest_path,
     with_endpoints,
 )
+from thalweg.network.layered.layered_request import layered_section
 from thalweg.planning.network_selection.model_mesh import model_mesh_network
 from thalweg.planning.request.network_choice import NetworkChoice
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -44,6 +45,9 @@ def build_network(
         return with_endpoints(network, chart, *places)
     if choice.network == "globe":
         return globe(chart, *places)
+    if choice.network == "layered":
+        shape, numbering = choice.section_shape, choice.section
+        return layered_section(chart, *places, shape, spacing=choice.spacing, numbering=numbering)
     return lattice_between(chart, *places, spacing=choice.spacing)
 
 

@@ -85,7 +85,11 @@ def _route_alternative(
     context: PlanningContext, ends: Sequence[Endpoint], chart: Chart
 ) -> RouteAlternative:
     context = replace(context, chart=chart)
-    stretches = [_network(context, a, b) for a, b in itertools.pairwise(ends)]
+    choices = [context.choice.of_section(i, len(ends) - 1) for i in range(len(ends) - 1)]
+    stretches = [
+        _network(replace(context, choice=choice), a, b)
+        for choice, (a, b) in zip(choices, itertools.pairwise(ends))
+    ]
     network = concatenate_networks(stretches, [None] * (len(stretches) - 1))
     return RouteAlternative(" and ".join(canals_used(network, chart)) or "open sea", network)
 

@@ -194,7 +194,8 @@ def _search_and_refine(
         if proof is not None and proof.value > floor.value:
             floor = proof
             bound = proof if proof.value > bound.value else bound
-    notes = tuple(f"The referee finds a limit exceeded: {v}." for v in route.violations[:5])
+    notes = network.meta.notes if network.meta.kind == "layered" else ()
+    notes += tuple(f"The referee finds a limit exceeded: {v}." for v in route.violations[:5])
     until = route.depart + _ISOCHRONE_TIME_RATIO * route.time_h * HOUR if route.feasible else None
     arrival = isochrones(context, network, frozen, route.depart, until)
     return PassageResult(route, result, bound, floor, network, arrival, notes)

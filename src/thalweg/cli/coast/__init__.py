@@ -1,0 +1,1 @@
+"""Options and tables for coasts: layered networks, motions and comfort."""

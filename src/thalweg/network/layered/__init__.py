@@ -1,0 +1,1 @@
+"""Layered networks between waypoints, for coasts with islands and straits."""

@@ -1,0 +1,294 @@
+"""The builder of layered networks: a rhombus of nodes around the line between two waypoints."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thalweg.core import geodesy
+from thalweg.core.errors import NoPathError
+from thalweg.core.geodesy import Position
+from thalweg.core.types import BoolArray, FloatArray, Int32Array
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.network.assembly import (
+    DirectedEdges,
+    Pairs,
+    RejectionCounts,
+    allowed_legs,
+    assemble,
+    evenly_spaced_samples,
+    measured_pairs,
+)
+from thalweg.network.endpoints import check_endpoints
+from thalweg.network.layered.section_shape import PerSection, SectionShape, section_shapes
+from thalweg.network.network import Graph, Network, NetworkMeta, Stations
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+_SAMPLE_SPACING = 5.0 * NAUTICAL_MILE  # at most this far apart is the sea sampled on segments
+
+
+@dataclass(frozen=True, eq=False)
+class LayeredDraft:
+    """All nodes and segments of a layered network, before any test.
+
+    Attributes
+    ----------
+    shapes : tuple of SectionShape
+        Of every section.
+    lat, lon : float64[N]
+        Nodes [deg], section by section, layer by layer, port to starboard. The end of a section
+        is the start of the next.
+    section, layer : int32[N]
+        Section and layer that a node belongs to; waypoints belong to the section they end.
+    first, second : int32[P]
+        The nodes that segments join.
+    """
+
+    shapes: tuple[SectionShape, ...]
+    lat: FloatArray
+    lon: FloatArray
+    section: Int32Array
+    layer: Int32Array
+    first: Int32Array
+    second: Int32Array
+
+
+def layered_network(
+    chart: Chart,
+    places: Sequence[Position],
+    *,
+    layers: PerSection,
+    fan: PerSection,
+    offset: PerSection,
+    numbering: tuple[int, int] | None = None,
+) -> Network:
+    """Build a layered network from a start through waypoints to a goal.
+
+    Between two waypoints lie S layers of nodes across the geodesic. The layers widen by d to
+    either side up to the middle, and narrow again: a rhombus of half width ``d m`` with
+    ``m = ceil(S/2)``. From every node H segments lead to the next layer; there is no way back.
+    Every segment is tested whole against land, zones and the area of the chart. Nodes that are not
+    on a path from start to goal are left out.
+
+    Parameters
+    ----------
+    chart : Chart
+        Land, zones and depth.
+    places : sequence of (lat, lon)
+        Start, waypoints that every path passes, and goal [deg]; two or more.
+    layers : int or sequence of int
+        S, for all sections or for each; 1 or more.
+    fan : int or sequence of int
+        H, 2 or more; an odd number has a segment straight ahead.
+    offset : float or sequence of float
+        d [m].
+    numbering : tuple of int, optional
+        Number of the first section in the voyage, from 0, and how many the voyage has, for
+        messages.
+
+    Returns
+    -------
+    Network
+        ``meta.start`` and ``meta.goal`` are the ends. Its edges lead forward only. It does not
+        bound routes off the network (``meta.gap_rad`` is 2 pi).
+
+    Raises
+    ------
+    InputError
+        For shapes that are not possible, or places that are not on navigable water.
+    NoPathError
+        If no path is left: ``details`` holds ``section`` and ``layer`` where it ends, and
+        ``next_shape``, the shape to try.
+
+    References
+    ----------
+    Prestegardshus (2020), sections 3.2 and 3.4, eqs. 3.26 to 3.37 with the placing by geodesics in
+    place of the plane, and whole segments tested in place of nodes.
+    """
+    draft = layered_draft(places, layers=layers, fan=fan, offset=offset)
+    for a, b in itertools.pairwise(places):
+        check_endpoints(chart, a, b)
+    free, rejected = allowed_legs(chart, draft.lat, draft.lon, draft.first, draft.second)
+    used, keep = segments_on_paths(len(draft.lat), draft.first, draft.second, free)
+    if not keep.any():
+        raise _broken_network(draft, free, rejected, numbering or (0, len(draft.shapes)))
+    return _assembled(chart, draft, used, keep, rejected)
+
+
+def layered_draft(
+    places: Sequence[Position], *, layers: PerSection, fan: PerSection, offset: PerSection
+) -> LayeredDraft:
+    """Return the nodes and segments of a layered network without a chart; see `layered_network`."""
+    shapes = section_shapes(max(len(places) - 1, 1), layers, fan, offset)
+    lat, lon = [np.array([places[0][0]], float)], [np.array([places[0][1]], float)]
+    section, layer = [np.zeros(1, np.int32)], [np.zeros(1, np.int32)]
+    first, second = [], []
+    count = 1
+    for number, (shape, (a, b)) in enumerate(zip(shapes, itertools.pairwise(places))):
+        in_layers = np.repeat(np.arange(shape.layers + 2), shape.nodes_in_layers)[1:]
+        there = _section_positions(shape, a, b)
+        lat.append(there[0][1:])
+        lon.append(there[1][1:])
+        section.append(np.full(len(in_layers), number, np.int32))
+        layer.append(in_layers.astype(np.int32))
+        tails, heads = shape.segments()
+        first.append(tails + np.int32(count - 1))
+        second.append(heads + np.int32(count - 1))
+        count += len(in_layers)
+    parts = (lat, lon, section, layer, first, second)
+    return LayeredDraft(shapes, *(np.concatenate(part) for part in parts))
+
+
+def _section_positions(
+    shape: SectionShape, start: Position, end: Position
+) -> tuple[FloatArray, FloatArray]:
+    """Return the nodes of a section [deg], its two waypoints included."""
+    length, course, _ = geodesy.inverse(*start, *end)
+    sizes = np.asarray(shape.nodes_in_layers)
+    along = np.arange(len(sizes)) / (len(sizes) - 1) * float(length)
+    middle_lat, middle_lon = geodesy.direct(*start, float(course), along)
+    _, onward, _ = geodesy.inverse(middle_lat[:-1], middle_lon[:-1], *end)
+    of = np.repeat(np.arange(len(sizes)), sizes)
+    rank = np.arange(len(of)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+    starboard = shape.spacing_in_layer() * (rank - 0.5 * (sizes[of] - 1))
+    across = np.append(onward, 0.0)[of] + 0.5 * math.pi
+    lat, lon = geodesy.direct(middle_lat[of], middle_lon[of], across, starboard)
+    lat[0], lon[0] = start
+    lat[-1], lon[-1] = end
+    return lat, lon
+
+
+def segments_on_paths(
+    n_nodes: int, first: Int32Array, second: Int32Array, free: BoolArray
+) -> tuple[BoolArray, BoolArray]:
+    """Return the nodes and segments on paths from the first node to the last, by two sweeps.
+
+    Parameters
+    ----------
+    n_nodes : int
+        Number of nodes.
+    first, second : int32 array (P,)
+        The nodes that segments join, in the direction of sailing.
+    free : bool array (P,)
+        Segments that may be sailed.
+
+    Returns
+    -------
+    used : bool array (n_nodes,)
+        Nodes that the start reaches and that reach the goal.
+    keep : bool array (P,)
+        Free segments between such nodes.
+    """
+    tails, heads = first[free], second[free]
+    used = _reached(n_nodes, tails, heads, 0) & _reached(n_nodes, heads, tails, n_nodes - 1)
+    keep = free & used[first] & used[second]
+    return used, keep
+
+
+def _reached(n_nodes: int, tails: Int32Array, heads: Int32Array, root: int) -> BoolArray:
+    """Return which nodes can be reached from one."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import breadth_first_order
+
+    table = csr_array((np.ones(len(tails), np.int8), (tails, heads)), shape=(n_nodes, n_nodes))
+    found = np.zeros(n_nodes, bool)
+    found[breadth_first_order(table, root, return_predecessors=False)] = True
+    return found
+
+
+def _assembled(
+    chart: Chart,
+    draft: LayeredDraft,
+    used: BoolArray,
+    keep: BoolArray,
+    rejected: RejectionCounts,
+) -> Network:
+    number = np.cumsum(used, dtype=np.int32) - np.int32(1)
+    stations = Stations(draft.lat[used], draft.lon[used], int(used.sum()))
+    first, second = number[draft.first[keep]], number[draft.second[keep]]
+    pairs = measured_pairs(stations.lat, stations.lon, first, second)
+    stations, samples = evenly_spaced_samples(stations, pairs, _SAMPLE_SPACING)
+    count = len(first)  # the segments are in the order of their first nodes
+    leaving = np.bincount(first, minlength=stations.n_nodes)
+    graph = Graph(np.concatenate([[0], np.cumsum(leaving)]).astype(np.int64), second)
+    directed = DirectedEdges(graph, np.arange(count, dtype=np.int32), np.zeros(count, bool))
+    meta = NetworkMeta(
+        kind="layered",
+        spacing_m=_layer_distance(draft),
+        directions=min(shape.fan for shape in draft.shapes),
+        gap_rad=2.0 * math.pi,
+        rejected=rejected,
+        start=0,
+        goal=stations.n_nodes - 1,
+        notes=_notes(draft, keep, used, pairs),
+    )
+    return assemble(chart, stations, pairs, samples, meta=meta, directed=directed)
+
+
+def _layer_distance(draft: LayeredDraft) -> float:
+    """Return the greatest distance between two layers [m]."""
+    ends = np.append(
+        np.cumsum([0] + [s.n_nodes - 1 for s in draft.shapes])[:-1], len(draft.lat) - 1
+    )
+    lat, lon = draft.lat[ends], draft.lon[ends]
+    between = geodesy.distance(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    return float(max(a / (s.layers + 1) for a, s in zip(between, draft.shapes)))
+
+
+def _notes(draft: LayeredDraft, keep: BoolArray, used: BoolArray, pairs: Pairs) -> tuple[str, ...]:
+    nodes, segments = len(draft.lat), len(draft.first)
+    notes = [
+        f"Of {nodes:,} nodes and {segments:,} segments of the layered network, {int(used.sum()):,} "
+        f"nodes and {int(keep.sum()):,} segments are on paths from start to goal."
+    ]
+    if any(shape.fan % 2 == 0 for shape in draft.shapes):
+        notes.append(
+            "A layered network with an even fan has no segment straight ahead: an odd number "
+            "gives shorter routes."
+        )
+    return tuple(notes)
+
+
+def _broken_network(
+    draft: LayeredDraft, free: BoolArray, rejected: RejectionCounts, numbering: tuple[int, int]
+) -> NoPathError:
+    """Return the error of a network without a path: where it ends, and what to try."""
+    reached = _reached(len(draft.lat), draft.first[free], draft.second[free], 0)
+    last = int(np.flatnonzero(reached)[-1])  # nodes are in the order of the layers
+    section, layer = int(draft.section[last]), int(draft.layer[last])
+    if layer == draft.shapes[section].layers + 1 and section + 1 < len(draft.shapes):
+        section, layer = section + 1, 0
+    tried = int((reached[draft.first] & _leaves(draft, section, layer)).sum())
+    shape, number = draft.shapes[section], numbering[0] + section + 1
+    better = SectionShape(
+        2 * shape.layers + 1, shape.fan + 1 if shape.fan % 2 == 0 else shape.fan + 2,
+        max(shape.offset / 2.0, 1.0),
+    )  # fmt: skip
+    reasons = " and ".join(f"{n:,} by {reason}" for reason, n in rejected.items())
+    at = int(np.flatnonzero(reached)[-1])
+    return NoPathError(
+        f"The layered network has no path through section {number} of {numbering[1]}: "
+        f"it ends between layer {layer} and layer {layer + 1}, where all {tried:,} segments from "
+        "the nodes that are reached are refused.",
+        f"Of all {len(draft.first):,} segments the chart refuses {reasons}.",
+        f"Take for this section {better.layers} layers, a fan of {better.fan} and an offset of "
+        f"{better.offset / NAUTICAL_MILE:.3g} nm, or move the waypoint away from land.",
+        reasons=rejected,
+        nearest=(float(draft.lat[at]), float(draft.lon[at])),
+        section=number,
+        layer=layer,
+        next_shape={"layers": better.layers, "fan": better.fan, "offset_m": better.offset},
+    )
+
+
+def _leaves(draft: LayeredDraft, section: int, layer: int) -> BoolArray:
+    """Return the segments that leave a layer of a section."""
+    heads = draft.second
+    return (draft.section[heads] == section) & (draft.layer[heads] == layer + 1)

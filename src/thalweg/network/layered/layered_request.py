@@ -1,0 +1,276 @@
+"""The request for a layered network: its shape in every section, or the choice of one."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thalweg.core import geodesy
+from thalweg.core.errors import InputError, NoPathError, unknown_name_error
+from thalweg.core.geodesy import Position
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.network.layered.layered_builder import layered_network
+from thalweg.network.layered.section_shape import PerSection, SectionShape, section_shapes
+from thalweg.network.network import Network
+from thalweg.network.shortest_paths import shortest_path
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+#: Layers that are tried where no shape is given: each time twice as close as before.
+_LADDER = (5, 11, 23, 47, 95)
+_LADDER_FAN = 7
+#: Half widths of the rhombus that are tried, as shares of the length of the section: courses then
+#: differ by up to 17 and 39 degrees from that of the section.
+_HALF_WIDTHS = (0.15, 0.4)
+_STRAIT_DISTANCE = 0.5 * NAUTICAL_MILE  #: of a node from a place that paths must pass
+_KEYS = ("layers", "fan", "offset_nm")
+
+
+@dataclass(frozen=True)
+class LayeredRequest:
+    """The shape of a layered network, as a user states it.
+
+    Parameters
+    ----------
+    layers : int or sequence of int
+        S, layers between two waypoints; one value for all sections, or one for each.
+    fan : int or sequence of int
+        H, segments that leave a node; odd numbers have one straight ahead.
+    offset_nm : float or sequence of float
+        d, by how much a layer is wider than the one before, to either side [nm].
+    """
+
+    layers: PerSection
+    fan: PerSection
+    offset_nm: PerSection
+
+    def __post_init__(self) -> None:
+        for name in _KEYS:
+            value = getattr(self, name)
+            if isinstance(value, np.ndarray):
+                value = value.tolist()
+            object.__setattr__(self, name, tuple(value) if isinstance(value, list) else value)
+        self.shapes(self._given_sections())
+
+    @classmethod
+    def from_dict(cls, data: Any) -> LayeredRequest:
+        """Read the request from plain data with the entries layers, fan and offset_nm.
+
+        Parameters
+        ----------
+        data : mapping
+            Every entry is a number, or a list with one number for each section.
+
+        Returns
+        -------
+        LayeredRequest
+
+        Raises
+        ------
+        InputError
+            For unknown or missing entries, and values that are not possible.
+        """
+        if isinstance(data, LayeredRequest):
+            return data
+        if not isinstance(data, Mapping):
+            raise InputError(
+                f"The layered network is {data!r}.",
+                "It is a mapping with layers, fan and offset_nm.",
+                "Give these three, for example {layers: 25, fan: 5, offset_nm: 2.4}.",
+                field="layered",
+            )
+        for key in data:
+            if key not in _KEYS:
+                raise unknown_name_error("entry of a layered network", str(key), _KEYS)
+        missing = [key for key in _KEYS if key not in data]
+        if missing:
+            raise InputError(
+                f"The layered network has no {' and no '.join(missing)}.",
+                "It has layers, fan and offset_nm, each a number or one number for each section.",
+                "Add what is missing, or leave out all three to have them chosen.",
+                field="layered",
+            )
+        return cls(**{key: data[key] for key in _KEYS})
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the request as plain data for files.
+
+        Returns
+        -------
+        dict
+            As `from_dict` reads it.
+        """
+        values = ((key, getattr(self, key)) for key in _KEYS)
+        return {key: list(v) if isinstance(v, tuple) else v for key, v in values}
+
+    def shapes(self, sections: int) -> tuple[SectionShape, ...]:
+        """Return the shape of every section.
+
+        Parameters
+        ----------
+        sections : int
+            How many there are.
+
+        Returns
+        -------
+        tuple of SectionShape
+
+        Raises
+        ------
+        InputError
+            If a list has another length.
+        """
+        offset = self.offset_nm
+        metres = (
+            [_metres(d) for d in offset] if isinstance(offset, (list, tuple)) else _metres(offset)
+        )
+        return section_shapes(sections, self.layers, self.fan, metres)
+
+    def _given_sections(self) -> int:
+        lengths = [len(v) for key in _KEYS if isinstance(v := getattr(self, key), tuple)]
+        return max(lengths, default=1)
+
+
+def _metres(offset_nm: Any) -> Any:
+    """Return an offset in metres; what is no number is left for `section_shapes` to refuse."""
+    number = isinstance(offset_nm, (int, float)) and not isinstance(offset_nm, bool)
+    return offset_nm * NAUTICAL_MILE if number else offset_nm
+
+
+def layered_section(
+    chart: Chart,
+    start: Position,
+    goal: Position,
+    shape: SectionShape | None,
+    *,
+    spacing: float | None = None,
+    numbering: tuple[int, int] = (0, 1),
+) -> Network:
+    """Return the layered network of one section.
+
+    Parameters
+    ----------
+    chart : Chart
+        Land, zones and depth.
+    start, goal : (lat, lon)
+        Positions [deg].
+    shape : SectionShape or None
+        None: the shape with the fewest segments whose shortest path is within 1 % of that of the
+        finest network tried (`suggested_shape`).
+    spacing : float, optional
+        Layers are at most this far apart [m]; a shape that is coarser is made finer, with the
+        same width.
+    numbering : tuple of int, optional
+        Number of the section in the voyage, from 0, and how many it has.
+
+    Returns
+    -------
+    Network
+
+    Raises
+    ------
+    NoPathError
+        If it has no path.
+    """
+    chosen = shape is None
+    if shape is None:
+        shape = suggested_shape(chart, start, goal, numbering=numbering)
+    between = float(geodesy.distance(*start, *goal)) / (shape.layers + 1)
+    if spacing is not None and between > 1.001 * spacing:
+        shape = shape.finer(int(np.ceil(between / spacing - 1e-3)))
+    network = layered_network(
+        chart, (start, goal), layers=shape.layers, fan=shape.fan, offset=shape.offset,
+        numbering=numbering,
+    )  # fmt: skip
+    if not chosen:
+        return network
+    note = (
+        f"The layered network has {shape.layers} layers, a fan of {shape.fan} and an offset of "
+        f"{shape.offset / NAUTICAL_MILE:.3g} nm, chosen for a shortest path within 1 % of that of "
+        "the finest network tried."
+    )
+    return replace(network, meta=replace(network.meta, notes=(note, *network.meta.notes)))
+
+
+def suggested_shape(
+    chart: Chart,
+    start: Position,
+    goal: Position,
+    *,
+    tolerance: float = 0.01,
+    contain: Sequence[Position] = (),
+    numbering: tuple[int, int] = (0, 1),
+) -> SectionShape:
+    """Return the shape with the fewest segments that is nearly as good as the finest.
+
+    Layers are made twice as close until 96 intervals, at two widths of the network.
+
+    Parameters
+    ----------
+    chart : Chart
+        Land, zones and depth.
+    start, goal : (lat, lon)
+        Positions [deg].
+    tolerance : float, optional
+        By what share the shortest path may be longer than that on the finest network.
+    contain : sequence of (lat, lon), optional
+        Places [deg], such as straits, that paths of the network must pass within half a nautical
+        mile.
+    numbering : tuple of int, optional
+        Number of the section in the voyage, from 0, and how many it has.
+
+    Returns
+    -------
+    SectionShape
+
+    Raises
+    ------
+    NoPathError
+        If none of them has a path, or none passes all these places.
+    """
+    length = float(geodesy.distance(*start, *goal))
+    found: list[tuple[SectionShape, float]] = []
+    refusal: NoPathError | None = None
+    for layers, half_width in itertools.product(_LADDER, _HALF_WIDTHS):
+        offset = max(2.0 * half_width * length / (layers + 1), 1.0)
+        try:
+            network = layered_network(
+                chart, (start, goal), layers=layers, fan=_LADDER_FAN, offset=offset,
+                numbering=numbering,
+            )  # fmt: skip
+        except NoPathError as error:
+            refusal = error
+            continue
+        left_out = [place for place in contain if not _passes(network, place)]
+        if left_out:
+            refusal = _strait_error(left_out[0], layers)
+            continue
+        distance, _ = shortest_path(network, network.meta.start, network.meta.goal)
+        shape = SectionShape(layers, _LADDER_FAN, offset)
+        found.append((shape, float(distance[network.meta.goal])))
+    if not found:
+        assert refusal is not None  # one of the two happened
+        raise refusal
+    best = (1.0 + tolerance) * min(value for _, value in found)
+    return next(shape for shape, value in found if value <= best)
+
+
+def _passes(network: Network, place: Position) -> bool:
+    """Return whether paths of a network pass a place: all of its nodes are on paths."""
+    away = geodesy.distance(network.lat, network.lon, *place)
+    return bool(np.min(away) <= _STRAIT_DISTANCE)
+
+
+def _strait_error(place: Position, layers: int) -> NoPathError:
+    return NoPathError(
+        f"No layered network of up to {layers} layers has a path through "
+        f"{geodesy.format_position(*place)}.",
+        "Straits are contained where a node on a path is within half a nautical mile.",
+        "Put waypoints in open water before and behind it, or use a finer coastline (h, f).",
+        nearest=place,
+    )

@@ -1,0 +1,50 @@
+"""Plans on layered networks."""
+
+import pytest
+
+from thalweg.chart import Chart
+from thalweg.core.errors import InputError, NoRouteError
+from thalweg.planning import Voyage, plan
+from thalweg.sea import Sea
+from thalweg.ship import Ship
+
+PLACES = {"start": (63.6706, 9.2983), "goal": (66.5653, 11.6697)}
+WAYPOINT = (64.6047, 10.5371)
+
+
+def _plan(voyage, **options):
+    ship = Ship.simple(speed_kn=10.0, draught_m=3.0)
+    return plan(voyage, ship=ship, sea=Sea.calm(), chart=Chart.gshhg("i"), **options)
+
+
+def _voyage(**changes):
+    return Voyage(depart="2026-01-01T00:00Z", offing_nm=0.0, **(PLACES | changes))
+
+
+def test_offshore_is_practically_the_geodesic():
+    offshore = _plan(_voyage(objective="distance"), network="layered")
+    assert offshore.provenance["networks"][0]["kind"] == "layered"
+    assert offshore.best.distance_nm == pytest.approx(184.3, abs=0.3)
+    assert any("chosen" in note for note in offshore.notes)
+
+
+def test_lists_need_one_value_for_each_section():
+    with pytest.raises(InputError, match="2 values of layers are given for 1 section"):
+        _plan(_voyage(layered={"layers": [1, 2], "fan": 3, "offset_nm": 1.0}))
+
+
+def test_layers_belong_to_the_layered_network():
+    with pytest.raises(InputError, match="Layers are given for the network 'lattice'"):
+        _plan(_voyage(layered={"layers": 5, "fan": 3, "offset_nm": 1.0}), network="lattice")
+
+
+def test_a_shape_without_a_route_is_refused_in_words():
+    with pytest.raises(NoRouteError, match="section 1 of 1: it ends between layer 0 and layer 1"):
+        _plan(_voyage(layered={"layers": 5, "fan": 3, "offset_nm": 9.0}))
+
+
+def test_files_of_voyages_keep_the_shape(tmp_path):
+    shape = {"layers": [3, 15], "fan": 5, "offset_nm": [1.0, 0.5]}
+    voyage = _voyage(via=[WAYPOINT], layered=shape)
+    voyage.save(tmp_path / "voyage.yaml")
+    assert Voyage.load(tmp_path / "voyage.yaml").to_dict()["layered"] == shape
