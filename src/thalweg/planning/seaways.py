@@ -11,7 +11,7 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.chart.canals import exclude_canals
 from thalweg.chart.offing import disc_at
-from thalweg.chart.passages import find_passages
+from thalweg.chart.passages import find_passages, split_avoided
 from thalweg.core.geodesy import Position, distance
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -22,7 +22,6 @@ from thalweg.network.global_grid.sea_graph import (
     path_length,
     sea_graph,
 )
-from thalweg.planning.request.offing_choice import split_avoided
 from thalweg.planning.request.voyage_endpoints import Endpoint
 
 _ROUNDS: Final = 4  # passes of string pulling; each may double the waypoints of a corner
