@@ -72,6 +72,44 @@ def test_ways_do_not_cross_ice_unless_they_begin_there():
     assert 514.0 < sea_distance("Longyearbyen", "Tromso").nm < 590.0  # great circle: 514 nm
 
 
+def test_only_passages_whose_water_the_way_goes_through_are_named():
+    found = sea_distance("New York", "Rotterdam")
+    assert "Verrazano Narrows" in found.straits
+    assert "Hell Gate (East River)" not in found.straits
+    assert found.straits.index("Verrazano Narrows") < found.straits.index("Dover")
+
+
+def test_passages_for_small_ships_are_used_only_when_opened():
+    cabot = sea_distance("Baltimore", "Montreal")
+    canso = sea_distance("Baltimore", "Montreal", open=["Canso"])
+    assert "Cabot" in cabot.straits
+    assert canso.straits[0] == "Canso (causeway lock)"
+    assert 50.0 < cabot.nm - canso.nm < 200.0
+
+
+def test_passages_can_be_avoided():
+    direct = sea_distance("Rotterdam", "New York")
+    north = sea_distance("Rotterdam", "New York", avoid=["Dover"])
+    assert "Dover" not in north.straits
+    assert {"Pentland Firth", "Fair Isle Channel"} & set(north.straits)
+    assert 20.0 < north.nm - direct.nm < 200.0
+    with pytest.raises(InputError, match="passage or canal"):
+        sea_distance("Rotterdam", "New York", avoid=["Atlantis Strait"])
+
+
+def test_ways_keep_off_land():
+    from thalweg import Chart
+
+    chart = Chart.gshhg("i")
+    found = sea_distance("Recife", "Las Palmas")
+    way = np.array(found.line[2:-2])
+    lat, lon, _ = thalweg.core.geodesy.densify(way[:, 0], way[:, 1], 0.5 * NAUTICAL_MILE)
+    near = chart.coastline.shore_distance(lat, lon) < 1.9 * NAUTICAL_MILE
+    assert near.mean() < 0.01  # where the graph has no water so far from land
+    with pytest.raises(InputError, match="offing"):
+        sea_distance("Recife", "Las Palmas", offing_nm=-1.0)
+
+
 def test_places_to_pass():
     direct = sea_distance("Rotterdam", "New York")
     north = sea_distance("Rotterdam", "New York", via=["58.7N 4.0W"])

@@ -25,6 +25,7 @@ from thalweg.core.geodesy import (
     geocentric_unit_vectors,
     inverse,
 )
+from thalweg.core.geodesy import distance as geodesic
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels.geometry.offing_tests import NO_OFFING, OffingArrays, required_distances
@@ -39,6 +40,8 @@ _MARGIN: Final = 1.3  # wider passages than so many offings need no corridor
 _SAMPLE: Final = 0.05 * NAUTICAL_MILE  # distances to land are measured so often along them
 _INLAND: Final = 0.7 * NAUTICAL_MILE  # smaller islands do not end a line across a passage
 _LONGEST_ARM: Final = 150.0 * NAUTICAL_MILE
+_WIDE_LINE: Final = 4.0  # of the distance to land: a line across that is longer misses land
+_TURNS: Final = tuple(np.radians([-60.0, -45.0, -30.0, -15.0, 15.0, 30.0, 45.0, 60.0]))
 
 
 @dataclass(frozen=True)
@@ -105,15 +108,21 @@ def chart_with_offing(
     InputError
         If the distance is not possible.
     """
-    if not 0.0 <= distance <= MAX_OFFING:
-        raise InputError(
-            f"An offing of {distance!r} m is not possible.",
-            f"It is 0 to {MAX_OFFING:.0f} m.",
-            "Correct it, or give 0 to sail as near to land as possible.",
-        )
+    check_offing(distance / NAUTICAL_MILE)
     ends = [end for canal in chart.canals for end in canal.ends]
     canals = tuple(disc_at(chart.coastline, end) for end in ends) if distance else ()
     return replace(chart, offing=Offing(float(distance), tuple(discs), canals))
+
+
+def check_offing(offing_nm: float) -> None:
+    """Raise `InputError` for an offing [nm] that is not possible."""
+    if not 0.0 <= offing_nm <= MAX_OFFING / NAUTICAL_MILE:
+        raise InputError(
+            f"An offing of {offing_nm!r} nm is not possible.",
+            f"It is 0 to {MAX_OFFING / NAUTICAL_MILE:.0f} nm.",
+            "Correct it, or give 0 to sail as near to land as possible.",
+            field="offing_nm",
+        )
 
 
 def chart_without_passages(chart: ChartType, *names: str) -> ChartType:
@@ -266,10 +275,21 @@ def closing_line(coastline: Coastline, passage: Passage) -> tuple[Position, Posi
     before, after = max(at - 3, 0), min(at + 3, len(lat) - 1)
     _, course, _ = inverse(lat[before], lon[before], lat[after], lon[after])
     place = float(lat[at]), float(lon[at])
-    return (
-        _landfall(coastline, place, float(course) - np.pi / 2),
-        _landfall(coastline, place, float(course) + np.pi / 2),
-    )
+    best, least = _line_through(coastline, place, float(course) + np.pi / 2)
+    if least > _WIDE_LINE * float(shore[at]):  # it misses the nearest land: try other courses
+        for turn in _TURNS:
+            line, length = _line_through(coastline, place, float(course) + np.pi / 2 + turn)
+            if length < least:
+                best, least = line, length
+    return best
+
+
+def _line_through(
+    coastline: Coastline, place: Position, course: float
+) -> tuple[tuple[Position, Position], float]:
+    """Return the line through a place on a course [rad] from land to land, and its length [m]."""
+    line = tuple(_landfall(coastline, place, course + half) for half in (np.pi, 0.0))
+    return (line[0], line[1]), sum(float(geodesic(*place, *end)) for end in line)
 
 
 def _landfall(coastline: Coastline, place: Position, course: float) -> Position:

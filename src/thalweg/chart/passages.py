@@ -19,6 +19,7 @@ from typing import Final
 
 import numpy as np
 
+from thalweg.chart.canals import CANALS
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import Position, distance
 from thalweg.core.types import FloatArray
@@ -167,6 +168,29 @@ def find_passages(names: Iterable[str], among: Sequence[Passage] | None = None) 
     """
     among = PASSAGES if among is None else among
     return [_find_passage(str(name), among) for name in names]
+
+
+def split_avoided(names: Sequence[str]) -> tuple[list[str], list[Passage]]:
+    """Return the canals and the passages among names to avoid.
+
+    Raises
+    ------
+    InputError
+        If a name is neither; the message lists similar names.
+    """
+    canals, passages = [], []
+    known = {canal.name for canal in CANALS}
+    for name in names:
+        plain = name.casefold().removesuffix("canal").strip(" -_")
+        if plain in known:
+            canals.append(plain)
+            continue
+        try:
+            passages += find_passages([name])
+        except InputError:
+            every = [*sorted(known), *(passage.name for passage in PASSAGES)]
+            raise unknown_name_error("passage or canal", name, every) from None
+    return canals, passages
 
 
 def _find_passage(name: str, among: Sequence[Passage]) -> Passage:

@@ -35,9 +35,26 @@ def add_command(commands: Any) -> None:
         "--avoid",
         action="append",
         default=None,
-        metavar="CANAL",
-        help="canal that is not used, for example suez,panama, or all; none uses every canal "
-        "(default: corinth, which is too small for most ships); may be repeated",
+        metavar="NAME",
+        help="canal or passage that is not used, for example suez,panama or 'Pentland Firth'; all: "
+        "all canals; none uses every canal (default: corinth, which is too small for most ships); "
+        "may be repeated",
+    )
+    parser.add_argument(
+        "--open",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="passage for small or local ships that may be used, for example Canso; may be "
+        "repeated",
+    )
+    parser.add_argument(
+        "--offing",
+        type=float,
+        default=2.0,
+        metavar="NM",
+        help="distance from land that is kept outside passages, where there is so much water [nm] "
+        "(default: 2)",
     )
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.set_defaults(run=run)
@@ -52,7 +69,14 @@ def run(arguments: argparse.Namespace) -> int:
         names = [name.strip() for text in arguments.avoid for name in text.split(",")]
         avoid = tuple(name for name in names if name and name != "none")
     arguments.progress("finding the shortest way")
-    found = sea_distance(arguments.start, arguments.goal, via=arguments.via, avoid=avoid)
+    found = sea_distance(
+        arguments.start,
+        arguments.goal,
+        via=arguments.via,
+        avoid=avoid,
+        open=tuple(arguments.open),
+        offing_nm=arguments.offing,
+    )
     days = None if arguments.speed is None else found.days(arguments.speed)
     if arguments.json:
         more = {} if days is None else {"speed_kn": arguments.speed, "days": days}

@@ -5,57 +5,31 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.chart.approaches import MAX_APPROACH_SPEED, line_between, line_length
-from thalweg.chart.canals import exclude_canals
-from thalweg.chart.passages import PASSAGES
+from thalweg.chart.offing import check_offing
+from thalweg.chart.passage_crossings import names_passed
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import Position, densify, distance
+from thalweg.core.geodesy import Position
 from thalweg.core.given_numbers import is_number, shortened_repr
-from thalweg.core.types import FloatArray
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
-from thalweg.network.alternatives.path_shortening import string_pull_path
-from thalweg.network.global_grid.sea_graph import (
-    ICE_LATITUDES,
-    outside_ice,
-    path_length,
-    sea_graph,
-)
 from thalweg.planning.request.voyage_endpoints import (
-    Endpoint,
     check_distinct,
     resolve_endpoint,
     without_approach,
 )
+from thalweg.planning.seaways import Seaways, path_length_and_canals
 from thalweg.planning.voyage_parts import Place
 
 #: Canals too small for most ships, which are not used by default.
 SMALL_CANALS: Final = ("corinth",)
-_NARROW: Final = 1.7 * NAUTICAL_MILE  # half width of passages that are named at their middle
-_NARROW_RADIUS: Final = 12.0  # [km]
-#: Straits that are wide and are named all the same: position [deg] and radius [km].
-_WIDE_STRAITS: Final[dict[str, tuple[float, float, float]]] = {
-    "Dover": (51.0, 1.45, 30.0),
-    "Gibraltar": (35.95, -5.55, 30.0),
-    "Bab el Mandeb": (12.55, 43.35, 35.0),
-    "Hormuz": (26.5, 56.5, 50.0),
-    "Malacca": (2.6, 101.3, 60.0),
-    "Sunda": (-5.95, 105.85, 30.0),
-    "Lombok": (-8.6, 115.75, 30.0),
-    "Taiwan": (24.3, 119.2, 110.0),
-    "Korea": (34.6, 129.3, 70.0),
-    "Windward": (20.0, -74.0, 50.0),
-    "Mona": (18.4, -67.7, 60.0),
-    "Yucatan": (21.8, -85.8, 100.0),
-    "Florida": (24.2, -81.0, 90.0),
-    "Skagen": (57.85, 10.8, 40.0),
-    "Cape of Good Hope": (-35.2, 19.0, 250.0),
-    "Cape Horn": (-56.3, -67.3, 250.0),
-}
+#: Distance from land that ways keep outside passages, where they can [nm].
+DEFAULT_OFFING_NM: Final = 2.0
 
 
 @dataclass(frozen=True)
@@ -71,7 +45,7 @@ class SeaDistance:
     canals : tuple of str
         Canals, in order.
     straits : tuple of str
-        Straits and capes that are passed, in order.
+        Named passages and capes whose water the way goes through, in order.
     approaches : tuple of (str, float)
         Name of the port and length of its approach [m], both part of the whole.
     line : tuple of (lat, lon)
@@ -152,6 +126,8 @@ def sea_distance(
     *,
     via: Sequence[Place] = (),
     avoid: Sequence[str] = SMALL_CANALS,
+    open: Sequence[str] = (),
+    offing_nm: float = DEFAULT_OFFING_NM,
     chart: Chart | None = None,
 ) -> SeaDistance:
     """Return the shortest way by sea between two ports or positions.
@@ -163,8 +139,14 @@ def sea_distance(
     via : sequence of places
         Places to pass, in this order; ports are passed off their sea ends.
     avoid : sequence of str
-        Canals that are not used: "suez", "panama", "kiel", "corinth" or "all". By default that of
-        Corinth, which is 7.2 m deep; give an empty list to use every canal.
+        Canals and passages that are not used, such as "suez", "Pentland Firth", or "all" for all
+        canals. By default the canal of Corinth, which is 7.2 m deep; give an empty list to use
+        every canal.
+    open : sequence of str
+        Passages for small or local ships that may be used, such as "Canso".
+    offing_nm : float
+        Distance from land [nm] that the way keeps outside passages, ends and canals, 0 to 50;
+        less only where the graph has no water so far from land.
     chart : Chart, optional
         By default the GSHHG coastline at resolution "i".
 
@@ -175,21 +157,21 @@ def sea_distance(
     Raises
     ------
     InputError
-        For places on land, unknown ports and unknown canals.
+        For places on land, unknown ports, and unknown canals and passages.
     NoRouteError
         If there is no way by sea.
 
     Notes
     -----
     The way is the shortest over a graph of all seas, where water within 2 nautical miles of land
-    counts up to half more, after string pulling over the coast. Water north of 72 N and south of
-    65 S is used only by ways that begin or end there.
-    Draught, traffic rules and weather are not considered. The graph is made once (10 to 20 s) and
-    kept in the cache.
+    counts up to half more, after string pulling. Passages for small or local ships are closed.
+    Water north of 72 N and south of 65 S is used only by ways that begin or end there. Draught,
+    traffic rules and weather are not considered. The graph is made once (10 to 20 s) and kept in
+    the cache.
     """
-    chart = Chart.gshhg("i") if chart is None else chart
+    chart = _world_chart() if chart is None else chart
+    check_offing(offing_nm)
     closed = (avoid,) if isinstance(avoid, str) else tuple(avoid)
-    left = exclude_canals(chart.canals, closed)
     places = [("start", start), *((f"via point {k + 1}", p) for k, p in enumerate(via))]
     ends = [resolve_endpoint(place, chart, what) for what, place in [*places, ("goal", goal)]]
     ends = [ends[0], *map(without_approach, ends[1:-1]), ends[-1]]
@@ -197,16 +179,17 @@ def sea_distance(
         check_distinct(a, b)
     notes = tuple(end.note for end in ends if end.note)
     first, last = ends[0].approach, ends[-1].approach
+    seas = Seaways.of_chart(chart, closed, opened=open)
     if len(ends) == 2 and first and last:
         line = line_between(first, last, legs_blocked=chart.legs_blocked)
         if line is not None:
             length = line_length(line)
             along = ((f"{first.port.label} to {last.port.label}", length),)
             return SeaDistance(ends[0].name, ends[-1].name, length, (), (), along, line, notes)
-    numbers = [k for k, canal in enumerate(chart.canals) if canal not in left]
-    parts = [_path_at_sea(chart, a, b, numbers) for a, b in itertools.pairwise(ends)]
+    offing = offing_nm * NAUTICAL_MILE
+    parts = [seas.path(a, b, offing=offing) for a, b in itertools.pairwise(ends)]
     path = [parts[0][0], *(place for part in parts for place in part[1:])]
-    length, canals = _length_and_canals(chart, path)
+    length, canals = path_length_and_canals(chart, path)
     approaches = tuple((a.port.label, a.length) for a in (first, last) if a is not None)
     line = (
         *(first.line[:-1] if first else ()),
@@ -214,57 +197,11 @@ def sea_distance(
         *(last.line[-2::-1] if last else ()),
     )
     total = length + sum(miles for _, miles in approaches)
-    straits = _straits_passed(line)
+    straits = names_passed(chart.coastline, chart.passages, *np.array(line, float).T)
     return SeaDistance(ends[0].name, ends[-1].name, total, canals, straits, approaches, line, notes)
 
 
-def _path_at_sea(
-    chart: Chart, start: Endpoint, goal: Endpoint, closed: Sequence[int]
-) -> list[Position]:
-    """Return the shortest way between two positions at sea."""
-    ends = (start.lat, start.lon), (goal.lat, goal.lon)
-    if float(distance(*ends[0], *ends[1])) < 1.0:
-        return [ends[0]]
-    path = sea_graph(chart).path(chart, *ends, closed=closed)
-    if outside_ice(*ends):
-        chart = chart.within(*ICE_LATITUDES, -180.0, 180.0)
-    lat, lon = string_pull_path(chart, *np.array(path).T)
-    return list(zip(lat.tolist(), lon.tolist()))
-
-
-def _length_and_canals(chart: Chart, path: Sequence[Position]) -> tuple[float, tuple[str, ...]]:
-    """Return the length [m] of a way, canals with their own, and the titles of its canals."""
-    if len(path) < 2:
-        return 0.0, ()
-    lat, lon = np.array(path).T
-    canal = np.asarray(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:]))
-    length = path_length(path)
-    for leg in np.flatnonzero(canal >= 0).tolist():
-        length += chart.canals[canal[leg]].length - path_length(path[leg : leg + 2])
-    return length, tuple(chart.canals[k].title for k in canal[canal >= 0])
-
-
-def _straits_passed(line: Sequence[Position]) -> tuple[str, ...]:
-    """Return the names of straits and capes near a line, in the order it passes them."""
-    if len(line) < 2:
-        return ()
-    whole = np.array(line)
-    lat, lon, _ = densify(whole[:, 0], whole[:, 1], 5.0 * NAUTICAL_MILE)
-    places = {
-        passage.name: (*passage.line[len(passage.line) // 2], _NARROW_RADIUS)
-        for passage in PASSAGES
-        if passage.half_width <= _NARROW
-    }
-    passed: list[tuple[int, str]] = []
-    for name, middle in (places | _WIDE_STRAITS).items():
-        near = _within(lat, lon, middle)
-        if near.any():
-            passed.append((int(np.argmax(near)), name))
-    return tuple(name for _, name in sorted(passed))
-
-
-def _within(lat: FloatArray, lon: FloatArray, place: tuple[float, float, float]) -> np.ndarray:
-    """Return which positions [deg] are within the radius [km] of a place."""
-    north = lat - place[0]
-    east = ((lon - place[1] + 180.0) % 360.0 - 180.0) * np.cos(np.radians(place[0]))
-    return np.hypot(north, east) * 111.2 < place[2]
+@lru_cache(maxsize=1)
+def _world_chart() -> Chart:
+    """Return the chart of the world's coasts, once for all questions of a process."""
+    return Chart.gshhg("i")

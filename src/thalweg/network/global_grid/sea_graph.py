@@ -17,10 +17,18 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from thalweg.chart.offing import closing_line
+from thalweg.chart.passages import Passage
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.errors import NoRouteError
 from thalweg.core.file_writing import replacing_file
-from thalweg.core.geodesy import Position, distance, format_position
+from thalweg.core.geodesy import (
+    MEAN_RADIUS,
+    Position,
+    distance,
+    format_position,
+    geocentric_unit_vectors,
+)
 from thalweg.core.types import BoolArray, FloatArray, Int32Array, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels.network.static_paths import static_astar
@@ -33,7 +41,7 @@ from thalweg.network.global_grid.grid import FORMAT, GlobeGrid, GridResolution, 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
-_FORMAT: Final = 4  # increase when the arrays or their construction change
+_FORMAT: Final = 5  # increase when the arrays or their construction change
 _RESOLUTION: Final = GridResolution(4, 5, 4, 12)
 _LINK_REACH: Final = 2.2  # positions are joined to nodes within this many legs of the uniform grid
 #: Water nearer to land than this counts up to `_NEAR_LAND_FACTOR` times in the choice of the way.
@@ -44,6 +52,7 @@ _NEAR_LAND_FACTOR: Final = 1.5
 ICE_LATITUDES: Final = (-65.0, 72.0)
 _ICE_MARGIN: Final = 1.0  # ends this near to a limit count as beyond it [deg]
 _IN_ICE: Final = -2  # among the canals of edges
+_LONGEST_EDGE: Final = 250e3  # of edges across a passage, between two coasts [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,18 +80,26 @@ class SeaGraph:
     canal: IntArray
 
     def path(
-        self, chart: Chart, start: Position, goal: Position, *, closed: Sequence[int] = ()
+        self,
+        chart: Chart,
+        start: Position,
+        goal: Position,
+        *,
+        closed: Sequence[int] = (),
+        passages: Sequence[Passage] = (),
     ) -> list[Position]:
         """Return the positions of the shortest way between two positions over the graph.
 
         Parameters
         ----------
         chart : Chart
-            Tests the legs that join the positions to the graph.
+            Tests the legs that join the positions to the graph, and those near closed passages.
         start, goal : (lat, lon)
             Positions on navigable water [deg].
         closed : sequence of int
             Canals of the chart that may not be used.
+        passages : sequence of Passage
+            Passages that are closed in the chart but not in the graph.
 
         Raises
         ------
@@ -96,12 +113,13 @@ class SeaGraph:
         ]
         if outside_ice(start, goal):
             closed = (*closed, _IN_ICE)
+        weight = self._weight_without(sea, closed, passages)
         lat = np.concatenate([self.waters.lat, *(end.lat for end in ends)])
         lon = np.concatenate([self.waters.lon, *(end.lon for end in ends)])
         first = len(self.waters.lat)
         second = first + len(ends[0].lat)
         links = [_joint_pairs(end, at, lat, lon) for end, at in zip(ends, (first, second))]
-        indptr, target, weight = self._with_links(concatenate_pairs(links), len(lat), closed)
+        indptr, target, weight = self._with_links(concatenate_pairs(links), len(lat), weight)
         known, parent = np.empty(len(lat)), np.empty(len(lat), np.int64)
         bound = distance_bounds(lat, lon, *goal)
         static_astar(indptr, target, weight, bound, first, second, known, parent)
@@ -117,13 +135,32 @@ class SeaGraph:
             path.append(int(parent[path[-1]]))
         return [(float(lat[k]), float(lon[k])) for k in reversed(path)]
 
-    def _with_links(
-        self, links: Pairs, count: int, closed: Sequence[int]
-    ) -> tuple[Int32Array, Int32Array, FloatArray]:
-        """Return the graph with links in both directions added, and canals closed."""
-        weight = self.weight
+    def _weight_without(
+        self, chart: Chart, closed: Sequence[int], passages: Sequence[Passage]
+    ) -> FloatArray:
+        """Return the weights, inf for closed canals and where a chart closes passages."""
+        weight = self.weight.copy()
         if len(closed):
-            weight = np.where(np.isin(self.canal, closed), np.inf, weight)
+            weight[np.isin(self.canal, closed)] = np.inf
+        lat, lon = self.waters.lat, self.waters.lon
+        tail = np.repeat(np.arange(len(lat)), np.diff(self.indptr)) if passages else self.target
+        for passage in passages:
+            one, other = geocentric_unit_vectors(
+                *np.array(closing_line(chart.coastline, passage)).T
+            )
+            middle = (one + other) / np.linalg.norm(one + other)
+            half = float(np.arccos(np.clip(one @ middle, -1.0, 1.0)))
+            beside = self.waters.vectors @ middle >= np.cos(half + _LONGEST_EDGE / MEAN_RADIUS)
+            near = np.flatnonzero(beside[tail] & (self.canal < 0))
+            first, second = tail[near], self.target[near]
+            blocked = chart.legs_blocked(lat[first], lon[first], lat[second], lon[second])
+            weight[near[np.asarray(blocked)]] = np.inf
+        return weight
+
+    def _with_links(
+        self, links: Pairs, count: int, weight: FloatArray
+    ) -> tuple[Int32Array, Int32Array, FloatArray]:
+        """Return the graph with links in both directions added, with other weights."""
         tail = np.concatenate([links.first, links.second])
         head = np.concatenate([links.second, links.first]).astype(np.int32)
         length = np.concatenate([links.length, links.length])
@@ -157,9 +194,14 @@ def sea_graph(chart: Chart) -> SeaGraph:
     Parameters
     ----------
     chart : Chart
-        Zones, depth and the area of the chart are not used.
+        Zones, depth, the area and the offing of the chart are not used.
     """
-    bare = type(chart)(chart.coastline, canals=chart.canals, passages=chart.passages)
+    bare = type(chart)(
+        chart.coastline,
+        canals=chart.canals,
+        passages=chart.passages,
+        closed_passages=chart.closed_passages,
+    )
     lines = [(passage.name, passage.line) for passage in chart.passages]
     facts = (FORMAT, _FORMAT, bare.fingerprint(), _RESOLUTION, _OFFING, _NEAR_LAND_FACTOR, lines)
     name = hashlib.sha256(repr(facts).encode()).hexdigest()[:16]

@@ -11,11 +11,10 @@ from typing import Final
 import numpy as np
 
 from thalweg.chart import Chart
-from thalweg.chart.canals import CANALS
 from thalweg.chart.coast.snapping import joined_positions
 from thalweg.chart.offing import OffingDisc, disc_at
-from thalweg.chart.passages import PASSAGES, Passage, find_passages
-from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.chart.passages import Passage, find_passages, split_avoided
+from thalweg.core.errors import InputError
 from thalweg.core.geodesy import distance
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -89,29 +88,6 @@ def restrict_passages(
     if closed:
         chart = chart.without_passages(*(passage.name for passage in closed))
     return chart, notes
-
-
-def split_avoided(names: Sequence[str]) -> tuple[list[str], list[Passage]]:
-    """Return the canals and the passages among names to avoid.
-
-    Raises
-    ------
-    InputError
-        If a name is neither; the message lists similar names.
-    """
-    canals, passages = [], []
-    known = {canal.name for canal in CANALS}
-    for name in names:
-        plain = name.casefold().removesuffix("canal").strip(" -_")
-        if plain in known:
-            canals.append(plain)
-            continue
-        try:
-            passages += find_passages([name])
-        except InputError:
-            every = [*sorted(known), *(passage.name for passage in PASSAGES)]
-            raise unknown_name_error("passage or canal", name, every) from None
-    return canals, passages
 
 
 def _restriction(passage: Passage, ship: Ship) -> str:

@@ -148,23 +148,43 @@ def _snap_to_water(
     if bool(chart.is_navigable(lat, lon)) and chart.is_joined_to_sea(lat, lon):
         return Endpoint(name, lat, lon, 0.0)
     found = chart.nearest_navigable(lat, lon, largest=MAX_SNAP_PORT)
+    if found is not None and found[2] <= limit:
+        return Endpoint(
+            name, float(found[0]), float(found[1]), float(found[2]), given_position=(lat, lon)
+        )
+    port = _nearest_port_text(lat, lon, chart)
     if found is None:
         raise InputError(
             f"The {what} {name} is not on navigable water.",
-            f"There is none within {MAX_SNAP_PORT / NAUTICAL_MILE:.0f} nm on this chart.",
-            _swap_hint(lat, lon, chart) or "Choose another position, or a chart that covers it.",
+            f"There is none within {MAX_SNAP_PORT / NAUTICAL_MILE:.0f} nm on this chart. {port}",
+            "Give that port by name, or a position at sea."
+            if port
+            else _swap_hint(lat, lon, chart)
+            or "Choose another position, or a chart that covers it.",
             field=what,
         )
     near_lat, near_lon, moved = found
-    if moved > limit:
-        raise InputError(
-            f"The {what} {name} is on land or in enclosed water.",
-            f"The nearest navigable water is {moved / NAUTICAL_MILE:.1f} nm away, at "
-            f"{format_position(near_lat, near_lon)}.",
-            _swap_hint(lat, lon, chart) or "Give that position, or a port by name.",
-            field=what,
-        )
-    return Endpoint(name, float(near_lat), float(near_lon), float(moved), given_position=(lat, lon))
+    raise InputError(
+        f"The {what} {name} is on land or in enclosed water.",
+        f"The nearest navigable water is {moved / NAUTICAL_MILE:.1f} nm away, at "
+        f"{format_position(near_lat, near_lon)}. {port}",
+        "Give that position, or " + ("that port by name." if port else "a port by name."),
+        field=what,
+    )
+
+
+def _nearest_port_text(lat: float, lon: float, chart: Chart) -> str:
+    """Return a sentence on the nearest port and its water, or nothing where none is near."""
+    if chart.approaches is None:
+        return ""
+    near = chart.approaches.nearest(lat, lon, within=MAX_SNAP_PORT)
+    approach = near and chart.approaches.of(near[0])
+    if not (near and approach):
+        return ""
+    return (
+        f"The nearest port is {near[0].label}, {near[1] / NAUTICAL_MILE:.1f} nm away; its approach "
+        f"meets the open sea at {format_position(*approach.sea_end)}."
+    )
 
 
 def _swap_hint(lat: float, lon: float, chart: Chart) -> str:
