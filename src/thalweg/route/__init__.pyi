@@ -19,6 +19,7 @@ from thalweg.route.refinement.better_route import (
     better_route,
     shorten_waits,
 )
+from thalweg.route.refinement.cost_refinement import refine_cost
 from thalweg.route.refinement.smoothing import smooth
 from thalweg.route.route import Route, Violation
 from thalweg.route.route_concatenation import join
