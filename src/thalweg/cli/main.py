@@ -27,6 +27,7 @@ from thalweg.cli import (
 from thalweg.cli.exit_codes import INTERRUPTED, SUCCESS, exit_code, print_error
 from thalweg.cli.options import accept_negative_positions, add_quiet_option
 from thalweg.cli.progress import ProgressMessages
+from thalweg.cli.serve import serve_command
 from thalweg.cli.tides import tides_command
 from thalweg.core.errors import InputError, ThalwegError, ThalwegWarning
 
@@ -41,6 +42,7 @@ _COMMANDS = (
     project_command.add_command,
     waiting_command.add_command,
     tracks_command.add_command,
+    serve_command.add_command,
     demo_command.add_command,
 )
 

@@ -1,0 +1,72 @@
+"""The chart of the map: cells of the coastline, emission control areas, canals, passages."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any, Literal
+
+import numpy as np
+from fastapi import APIRouter, Path, Response
+
+from thalweg.service.coast_map import CELL_SIDES, cell_names, cells_folder
+from thalweg.service.problem_details import not_found
+from thalweg.service.service_state import State
+
+chart_router = APIRouter(tags=["chart"])
+Level = Literal["c", "l", "i"]
+_FOREVER = {"Cache-Control": "private, max-age=31536000, immutable"}
+
+
+@chart_router.get("/coast/{level}")
+def coast_index(state: State, level: Level) -> dict[str, Any]:
+    """Return the side of the cells [deg], and the names of those with land.
+
+    The first request of a resolution cuts the coastline, which takes up to half a minute.
+    """
+    folder = cells_folder(level)
+    if not folder.exists():
+        state.map_worker.do("coast_cells", level=level)
+    return {"side": CELL_SIDES[level], "cells": cell_names(folder)}
+
+
+@chart_router.get("/coast/{level}/{cell}.json")
+def coast_cell(level: Level, cell: str = Path(pattern=r"^\d{1,3}_\d{1,3}$")) -> Response:
+    """Return the land of a cell: ``land`` (polygons) and ``coast`` (lines), flat lon, lat [deg]."""
+    path = cells_folder(level) / f"{cell}.json.gz"
+    if not path.exists():
+        raise not_found("cell", cell, "The cells with land are listed at /coast/{level}.")
+    headers = {**_FOREVER, "Content-Encoding": "gzip"}
+    return Response(path.read_bytes(), media_type="application/json", headers=headers)
+
+
+@chart_router.get("/chart")
+def chart_features() -> dict[str, Any]:
+    """Return emission control areas, canals and passages as lines, for the map."""
+    return _features()
+
+
+@cache
+def _features() -> dict[str, Any]:
+    from thalweg.chart.canals import CANALS
+    from thalweg.chart.chart import control_areas_in_force
+    from thalweg.chart.zones.emission_control_areas import emission_control_areas
+
+    titles = {area.name: area.title for area in emission_control_areas()}
+    areas = []
+    for zone in control_areas_in_force().eca:
+        rings = [
+            np.round(np.column_stack([zone.rings.lon[a:b], zone.rings.lat[a:b]]), 3).tolist()
+            for a, b in zip(zone.rings.start[:-1], zone.rings.start[1:])
+        ]
+        areas.append({"name": zone.name, "title": titles.get(zone.name, zone.name), "rings": rings})
+    canals = [
+        {
+            "name": canal.name,
+            "title": canal.title,
+            "path": [[lon, lat] for lat, lon in canal.path],
+            "hours": canal.transit_time / 3600.0,
+            "fee_usd": canal.fee,
+        }
+        for canal in CANALS
+    ]
+    return {"control_areas": areas, "canals": canals}

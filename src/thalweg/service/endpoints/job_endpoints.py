@@ -1,0 +1,255 @@
+"""Plans and evaluations as jobs: start, follow, stop, results."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import secrets
+from collections.abc import AsyncIterator
+from typing import Annotated, Any, Final, Literal
+
+from fastapi import APIRouter, Body, Header, Path, Query, Request, Response
+from fastapi.responses import FileResponse, StreamingResponse
+from starlette.concurrency import run_in_threadpool
+
+from thalweg.core.errors import InputError
+from thalweg.core.time import format_time
+from thalweg.service.jobs.job_store import FINAL_STATES, Job
+from thalweg.service.jobs.plan_request import PLAN_EXAMPLE, EvaluationRequest, PlanRequest
+from thalweg.service.problem_details import ServiceError, not_found
+from thalweg.service.service_state import ServiceState, State
+
+jobs_router = APIRouter(tags=["jobs"])
+JobId = Annotated[str, Path(pattern=r"^[0-9a-f]{16}$")]
+Kind = Literal["plan", "evaluation"]
+JobState = Literal["queued", "running", "done", "failed", "cancelled"]
+KEEP_ALIVE_SECONDS: Final = 15.0
+_MEDIA_TYPES: Final = {
+    "rtz": "application/xml",
+    "gpx": "application/gpx+xml",
+    "geojson": "application/geo+json",
+    "csv": "text/csv",
+}
+
+
+def job_dict(job: Job) -> dict[str, Any]:
+    """Return a job as plain data for JSON."""
+
+    def text(seconds: float | None) -> str | None:
+        return None if seconds is None else format_time(seconds)
+
+    return {
+        "id": job.id,
+        "number": job.number,
+        "kind": job.kind,
+        "state": job.state,
+        "title": job.request.get("title") or "",
+        "attempt": job.attempt,
+        "cancelling": job.cancelling,
+        "created": text(job.created),
+        "started": text(job.started),
+        "finished": text(job.finished),
+        "problem": job.problem,
+        "result": job.summary is not None,
+        "summary": job.summary,
+        "request": job.request,
+    }
+
+
+@jobs_router.post("/plans", status_code=202)
+def start_plan(
+    state: State,
+    response: Response,
+    request: Annotated[PlanRequest, Body(examples=[PLAN_EXAMPLE])],
+    idempotency_key: str | None = Header(None, max_length=200),
+) -> dict[str, Any]:
+    """Start planning a voyage; the answer comes at once, with the address of the job."""
+    request.checked_voyage()
+    return _start("plan", request.model_dump(mode="json"), response, idempotency_key, state)
+
+
+@jobs_router.post("/evaluate", status_code=202)
+def start_evaluation(
+    state: State,
+    response: Response,
+    request: EvaluationRequest,
+    idempotency_key: str | None = Header(None, max_length=200),
+) -> dict[str, Any]:
+    """Sail an imported route in given weather; the answer is a job like that of a plan."""
+    request.check_embedded()
+    return _start("evaluation", request.model_dump(mode="json"), response, idempotency_key, state)
+
+
+def _start(
+    kind: str, request: dict[str, Any], response: Response, key: str | None, state: ServiceState
+) -> dict[str, Any]:
+    _check_files(request, state)
+    job, _ = state.store.add(
+        secrets.token_hex(8), kind, request, key=key, queue=state.settings.limits.queue
+    )
+    state.runner.wake()
+    response.headers["Location"] = f"/api/v1/plans/{job.id}"
+    return job_dict(job)
+
+
+def _check_files(request: dict[str, Any], state: ServiceState) -> None:
+    """Raise an error at its field for a ship or sea that does not exist."""
+    if request["ship"] not in state.library_ships():
+        try:
+            state.ships.get(request["ship"])
+        except ServiceError:
+            raise InputError(
+                f"There is no ship {request['ship']!r}.",
+                f"Known: {', '.join(state.library_ships())}, and uploaded ships.",
+                "Choose one of these, or upload a ship file.",
+                field="ship",
+            ) from None
+    try:
+        state.files_of(request)
+    except ServiceError as error:
+        error.details["field"] = "route" if error.asked.startswith("There is no route") else "seas"
+        raise
+
+
+@jobs_router.get("/plans")
+def list_jobs(
+    state: State,
+    job_state: Annotated[JobState | None, Query(alias="state")] = None,
+    kind: Kind | None = None,
+    cursor: int = Query(0, ge=0, lt=2**62, description="of the page before"),
+    size: int = Query(50, ge=1, le=200),
+) -> dict[str, Any]:
+    """List jobs, the newest first; ``cursor`` of the answer gives the next page."""
+    found = state.store.page(state=job_state, kind=kind, before=cursor, size=size)
+    more = found[-1].number if len(found) == size else None
+    return {"jobs": [job_dict(job) for job in found], "cursor": more}
+
+
+@jobs_router.get("/plans/{job_id}")
+def get_job(state: State, job_id: JobId) -> dict[str, Any]:
+    """State of a job: queued, running, done, failed or cancelled; request and key figures."""
+    return job_dict(state.store.get(job_id))
+
+
+@jobs_router.delete("/plans/{job_id}", status_code=202)
+def stop_job(
+    state: State,
+    job_id: JobId,
+    forget: bool = Query(False, description="remove a finished job and its result"),
+) -> dict[str, Any]:
+    """Ask a job to stop; the best result so far is kept. A finished job stays as it is."""
+    job = state.store.get(job_id)
+    if job.state not in FINAL_STATES:
+        job = state.runner.cancel(job_id)
+    elif forget:
+        state.store.forget(job_id)
+        state.runner.discard(job_id)
+    return job_dict(job)
+
+
+@jobs_router.get(
+    "/plans/{job_id}/events",
+    response_class=StreamingResponse,
+    responses={200: {"content": {"text/event-stream": {}}}},
+)
+def job_events(
+    state: State,
+    request: Request,
+    job_id: JobId,
+    last_event_id: str | None = Header(None, max_length=20),
+    after: int = Query(0, ge=0, lt=2**62),
+) -> StreamingResponse:
+    """Progress as server-sent events, from the first, or after ``Last-Event-ID``.
+
+    Events: ``state`` (queued, running, done, failed, cancelled), ``stage`` (what is done now),
+    ``route`` (the best route so far). The stream ends with the final state.
+    """
+    state.store.get(job_id)
+    if last_event_id is not None and last_event_id.isascii() and last_event_id.isdigit():
+        after = max(after, int(last_event_id))
+    stream = _event_stream(job_id, after, state)
+    return StreamingResponse(
+        stream, media_type="text/event-stream", headers={"X-Accel-Buffering": "no"}
+    )
+
+
+async def _event_stream(job_id: str, after: int, state: ServiceState) -> AsyncIterator[str]:
+    with state.changes.waiting_for(job_id) as changed:
+        while True:
+            changed.clear()
+            events = await run_in_threadpool(state.store.events, job_id, after)
+            for event in events:
+                after = event.n
+                data = json.dumps({**event.data, "at": event.at}, allow_nan=False)
+                yield f"id: {event.n}\nevent: {event.kind}\ndata: {data}\n\n"
+                if event.kind == "state" and event.data.get("state") in FINAL_STATES:
+                    return
+            if not events:
+                try:
+                    await asyncio.wait_for(changed.wait(), KEEP_ALIVE_SECONDS)
+                except TimeoutError:
+                    yield ": still working\n\n"
+                    if (await run_in_threadpool(_state_of, state, job_id)) in (*FINAL_STATES, ""):
+                        return
+
+
+def _state_of(state: ServiceState, job_id: str) -> str:
+    try:
+        return state.store.get(job_id).state
+    except ServiceError:
+        return ""
+
+
+def result_file(job_id: str, name: str, state: ServiceState) -> Any:
+    """Return the path of a file of the result of a job.
+
+    Raises
+    ------
+    ServiceError
+        404 if there is no such job or file, 409 if the job has no result yet.
+    """
+    job = state.store.get(job_id)
+    path = state.runner.result_folder(job_id) / name
+    if path.exists():
+        return path
+    if job.summary is None:
+        raise ServiceError(
+            409,
+            f"The job has no result: it is {job.state}.",
+            "Results are there when a job is done, or cancelled after a first route.",
+            "Follow its events, or look at its problem.",
+        )
+    raise not_found("file", name, "The result of the job has no such file.")
+
+
+@jobs_router.get("/plans/{job_id}/result")
+def job_result(state: State, job_id: JobId) -> FileResponse:
+    """Return the result: of a plan exactly the file ``plan.json``, of an evaluation its route."""
+    name = "plan.json" if state.store.get(job_id).kind == "plan" else "route.json"
+    return FileResponse(result_file(job_id, name, state), media_type="application/json")
+
+
+@jobs_router.get("/plans/{job_id}/{part}.json")
+def job_part(state: State, part: Literal["isochrones", "beside"], job_id: JobId) -> FileResponse:
+    """Return the isochrones, or the route that ignores the weather with its profile."""
+    return FileResponse(result_file(job_id, f"{part}.json", state), media_type="application/json")
+
+
+@jobs_router.get("/plans/{job_id}/profiles/{number}")
+def job_profile(state: State, job_id: JobId, number: int = Path(ge=1, le=9999)) -> FileResponse:
+    """Return a route along time: positions, speeds, waves, wind, power, under-keel clearance."""
+    path = result_file(job_id, f"profile_{number:02d}.json", state)
+    return FileResponse(path, media_type="application/json")
+
+
+@jobs_router.get("/plans/{job_id}/routes/{number}.{form}")
+def job_route_file(
+    state: State,
+    form: Literal["rtz", "gpx", "geojson", "csv"],
+    job_id: JobId,
+    number: int = Path(ge=1, le=9999),
+) -> FileResponse:
+    """Return a route of a result as a file for other programs."""
+    path = result_file(job_id, f"route_{number:02d}.{form}", state)
+    name = f"thalweg_{job_id[:6]}_route_{number}.{form}"
+    return FileResponse(path, media_type=_MEDIA_TYPES[form], filename=name)

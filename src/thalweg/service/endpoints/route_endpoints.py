@@ -1,0 +1,135 @@
+"""Routes from files, and the comparison of routes."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from fastapi import APIRouter, UploadFile
+from pydantic import BaseModel, ConfigDict, Field
+
+from thalweg.core.errors import InputError
+from thalweg.service.endpoints.job_endpoints import result_file
+from thalweg.service.endpoints.upload_reading import chunks_of, kept_upload
+from thalweg.service.service_state import ServiceState, State
+
+routes_router = APIRouter(tags=["routes"])
+_FIGURES = (
+    "time_h",
+    "distance_nm",
+    "fuel_t",
+    "co2_t",
+    "energy_mwh",
+    "waiting_h",
+    "min_ukc_m",
+)
+
+
+class ComparedRoute(BaseModel):
+    """A route of a result: number 1 and up; 0 is the one that ignores the weather."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    job: str = Field(pattern=r"^[0-9a-f]{16}$")
+    number: int = Field(1, ge=0, le=9999)
+
+
+class Comparison(BaseModel):
+    """Routes to compare with the first of them."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    routes: list[ComparedRoute] = Field(min_length=2, max_length=12)
+
+
+@routes_router.post("/routes", status_code=201)
+async def add_route(state: State, file: UploadFile) -> dict[str, Any]:
+    """Upload a route as RTZ, RTZP, GPX, GeoJSON or CSV; returns its waypoints [lat, lon]."""
+
+    def facts(path: str) -> dict[str, Any]:
+        found, _ = state.file_worker.do("import_route", path=path)
+        return found
+
+    stored = await kept_upload(state.routes, file.filename or "", chunks_of(file), facts)
+    return stored.as_dict()
+
+
+@routes_router.get("/routes/{route_id}")
+def get_route(state: State, route_id: str) -> dict[str, Any]:
+    """Return an uploaded route."""
+    return state.routes.get(route_id).as_dict()
+
+
+@routes_router.post("/compare")
+def compare(state: State, request: Comparison) -> dict[str, Any]:
+    """Return key figures of routes, and their differences to the first; unknown is null."""
+    rows = [_row(one, state) for one in request.routes]
+    first = rows[0]
+    for row in rows:
+        row["difference"] = {
+            name: None if row[name] is None or first[name] is None else row[name] - first[name]
+            for name in (*_FIGURES, "cost")
+        }
+        if row["currency"] != first["currency"]:
+            row["difference"]["cost"] = None
+    return {"routes": rows}
+
+
+def _row(one: ComparedRoute, state: ServiceState) -> dict[str, Any]:
+    job = state.store.get(one.job)
+    route = _route(one, job.kind, state)
+    figures = {name: route.get(name) for name in _FIGURES}
+    currency = route.get("currency")
+    worst = _worst(one, state)
+    return {
+        "job": one.job,
+        "number": one.number,
+        "title": job.request.get("title") or "",
+        "depart": route["depart"],
+        "arrive": route["arrive"],
+        "feasible": route["feasible"],
+        "violations": len(route["violations"]),
+        "currency": currency,
+        "cost": route.get(f"cost_{str(currency).casefold()}"),
+        **figures,
+        **worst,
+    }
+
+
+def _route(one: ComparedRoute, kind: str, state: ServiceState) -> dict[str, Any]:
+    if one.number == 0:
+        found: dict[str, Any] = json.loads(result_file(one.job, "beside.json", state).read_text())
+        return found
+    if kind == "evaluation":
+        evaluated: dict[str, Any] = json.loads(
+            result_file(one.job, "route.json", state).read_text()
+        )
+        return evaluated
+    routes = json.loads(result_file(one.job, "plan.json", state).read_text())["routes"]
+    if one.number > len(routes):
+        raise InputError(
+            f"The plan {one.job} has no route {one.number}.",
+            f"It has {len(routes)}.",
+            "Choose one of them.",
+            field="routes",
+        )
+    chosen: dict[str, Any] = routes[one.number - 1]
+    return chosen
+
+
+def _worst(one: ComparedRoute, state: ServiceState) -> dict[str, float | None]:
+    """Return the highest waves and the strongest wind along a route."""
+    if one.number == 0:
+        profile = json.loads(result_file(one.job, "beside.json", state).read_text())["profile"]
+    else:
+        name = f"profile_{one.number:02d}.json"
+        profile = json.loads(result_file(one.job, name, state).read_text())
+
+    def most(column: str) -> float | None:
+        known = [value for value in profile.get(column, ()) if value is not None]
+        return max(known) if known else None
+
+    return {
+        "highest_waves_m": most("wave_height_m"),
+        "strongest_wind_kn": most("wind_speed_kn"),
+    }

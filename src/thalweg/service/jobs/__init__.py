@@ -1,0 +1,1 @@
+"""Plans and evaluations as jobs: kept on disk, each in a process of its own."""

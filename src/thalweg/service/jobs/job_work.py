@@ -1,0 +1,267 @@
+"""The work of one job in its child process: a plan or an evaluation, with all files of its result.
+
+Files are written into a draft folder; the server gives the complete folder its final name.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from thalweg.core.errors import ThalwegError
+from thalweg.core.file_writing import make_folder, write_text
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.service.jobs.child_messages import MessageWriter
+from thalweg.service.jobs.isochrone_lines import isochrone_lines
+from thalweg.service.jobs.plan_request import EvaluationRequest, PlanRequest
+from thalweg.service.jobs.request_objects import WorldOfJob, open_world
+from thalweg.service.jobs.route_profiles import first_look, route_profile
+
+if TYPE_CHECKING:
+    from thalweg.planning import Plan, Voyage
+    from thalweg.route import Route
+
+#: Formats of route files.
+ROUTE_FORMATS: Final = ("rtz", "gpx", "geojson", "csv")
+FIRST_FOLDER: Final = "first"  #: the result if the job is stopped before its own
+
+
+@dataclass(frozen=True)
+class JobOrder:
+    """What the server sends to a child.
+
+    Attributes
+    ----------
+    kind : str
+        ``plan`` or ``evaluation``.
+    request : dict
+    folder : str
+        Draft folder, which exists.
+    files : dict of str to str
+        Paths of uploaded files by id.
+    """
+
+    kind: str
+    request: dict[str, Any]
+    folder: str
+    files: dict[str, str]
+
+
+class StageMessages:
+    """Sends the stages of the work with the time since the start."""
+
+    def __init__(self, messages: MessageWriter) -> None:
+        self._messages = messages
+        self._start = time.monotonic()
+        self._last = ""
+
+    def __call__(self, text: str) -> None:
+        """State what begins now."""
+        if text != self._last:
+            self._last = text
+            self._messages.send("stage", {"text": text, "after_s": self.seconds()})
+
+    def seconds(self) -> float:
+        """Return the time since the start [s]."""
+        return round(time.monotonic() - self._start, 2)
+
+
+def run_order(order: JobOrder, messages: MessageWriter) -> tuple[str, dict[str, Any]]:
+    """Do the work of a job and write its files.
+
+    Parameters
+    ----------
+    order : JobOrder
+    messages : MessageWriter
+
+    Returns
+    -------
+    state : str
+        ``done`` or ``cancelled``.
+    summary : dict
+        Key figures of the result.
+    """
+    stages = StageMessages(messages)
+    if order.kind == "evaluation":
+        return "done", _evaluate(order, stages)
+    return _plan(order, messages, stages)
+
+
+def _plan(
+    order: JobOrder, messages: MessageWriter, stages: StageMessages
+) -> tuple[str, dict[str, Any]]:
+    from thalweg.planning import plan
+
+    request = PlanRequest.model_validate(order.request)
+    voyage = request.checked_voyage()
+    stages("reading the ship, the sea and the coastline")
+    world = open_world(request, order.files)
+    if voyage.chooses_speeds:
+        _plan_first(voyage, request, world, order, messages, stages)
+    found = plan(
+        voyage,
+        ship=world.ship,
+        sea=world.sea,
+        chart=world.chart,
+        network=request.network,
+        resolution=_metres(request.resolution_nm),
+        proof=request.proof_s,
+        progress=stages,
+    )
+    messages.send("route", {"route": first_look(found.best), "final": True})
+    folder = Path(order.folder)
+    beside = None if found.cancelled else _beside(found, world, request, stages)
+    stages("writing the files")
+    write_plan_result(found, folder, beside)
+    return "cancelled" if found.cancelled else "done", plan_summary(found, stages.seconds())
+
+
+def _plan_first(
+    voyage: Voyage,
+    request: PlanRequest,
+    world: WorldOfJob,
+    order: JobOrder,
+    messages: MessageWriter,
+    stages: StageMessages,
+) -> None:
+    """Plan the fastest route first, show it, and keep it as the result if the job is stopped."""
+    from thalweg.planning import plan
+
+    fastest = replace(voyage, objective="time", method="default", ensemble=None)
+    if world.sea.members:
+        return
+    stages("planning the fastest route first")
+    with suppress(ThalwegError):  # the plan itself states what is wrong
+        found = plan(
+            fastest,
+            ship=world.ship,
+            sea=world.sea,
+            chart=world.chart,
+            network=request.network,
+            resolution=_metres(request.resolution_nm),
+        )
+        note = "The job was stopped: this is the fastest route, the objective was not reached."
+        found = replace(found, notes=(note, *found.notes), cancelled=True)
+        write_plan_result(found, make_folder(Path(order.folder) / FIRST_FOLDER), None)
+        summary = plan_summary(found, stages.seconds())
+        messages.send(
+            "route", {"route": first_look(found.best), "final": False, "summary": summary}
+        )
+
+
+def _metres(miles: float | None) -> float | None:
+    return None if miles is None else miles * NAUTICAL_MILE
+
+
+def _beside(
+    found: Plan, world: WorldOfJob, request: PlanRequest, stages: StageMessages
+) -> Route | None:
+    """Return the route that ignores the weather, sailed in it; None where there is none."""
+    if request.seas == ["calm"] or world.sea.members:
+        return None
+    if found.front is not None:
+        compared = found.front.comparison
+        return compared.routes[0] if compared is not None and compared.routes else None
+    if found.voyage.depart is None:
+        return None
+    from thalweg.planning.demo_voyage import weather_blind
+
+    stages("sailing the route that ignores the weather")
+    with suppress(ThalwegError):
+        return weather_blind(found, ship=world.ship, sea=world.sea, chart=world.chart)
+    return None
+
+
+def write_plan_result(found: Plan, folder: Path, beside: Route | None) -> None:
+    """Write all files of a plan: plan.json, route files, profiles, isochrones.
+
+    Parameters
+    ----------
+    found : Plan
+    folder : Path
+        It exists.
+    beside : Route, optional
+        The route that ignores the weather.
+    """
+    from thalweg.route import RouteFileOptions
+
+    found.to_json(folder / "plan.json")
+    chart = None if found.plot_context is None else found.plot_context.chart
+    start, goal = (str(found.provenance.get(key) or "") for key in ("from", "to"))
+    options = RouteFileOptions(chart=chart, start=start, goal=goal)
+    for number, route in enumerate(found.routes, start=1):
+        write_route_files(route, folder, number, options, plan=found)
+    _write_json(folder / "isochrones.json", isochrone_lines(found))
+    if beside is not None:
+        _write_json(folder / "beside.json", {**beside.as_dict(), "profile": route_profile(beside)})
+
+
+def write_route_files(
+    route: Route, folder: Path, number: int, options: Any, *, plan: Plan | None = None
+) -> None:
+    """Write one route in every format, and its profile."""
+    from thalweg.planning.report.output_files import keeping_limits
+    from thalweg.route import write_csv, write_geojson, write_gpx, write_rtz
+
+    if plan is not None:
+        options = keeping_limits(plan, route, options)
+    writers = {"rtz": write_rtz, "gpx": write_gpx, "geojson": write_geojson, "csv": write_csv}
+    for suffix, write in writers.items():
+        write(route, folder / f"route_{number:02d}.{suffix}", options)
+    _write_json(folder / f"profile_{number:02d}.json", route_profile(route))
+
+
+def _write_json(path: Path, data: Mapping[str, Any] | None) -> None:
+    if data is not None:
+        write_text(path, json.dumps(data, allow_nan=False))
+
+
+def plan_summary(found: Plan, seconds: float) -> dict[str, Any]:
+    """Return the key figures of a plan for lists of jobs."""
+    best = found.best
+    return {
+        "from": found.provenance.get("from"),
+        "to": found.provenance.get("to"),
+        "objective": found.voyage.objective,
+        "routes": len(found.routes),
+        "feasible": best.feasible,
+        "cancelled": found.cancelled,
+        "seconds": seconds,
+        **_totals(best),
+        "gap": found.gap,
+    }
+
+
+def _totals(route: Route) -> dict[str, Any]:
+    first = first_look(route)
+    del first["points"]
+    return {**first, "co2_t": route.co2_t}
+
+
+def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
+    from thalweg.route import RouteFileOptions, evaluate
+
+    request = EvaluationRequest.model_validate(order.request)
+    request.check_embedded()
+    stages("reading the ship, the sea and the coastline")
+    world = open_world(request, order.files)
+    stages("sailing the route")
+    route = evaluate(
+        order.files[request.route],
+        ship=world.ship,
+        sea=world.sea,
+        chart=world.chart,
+        depart=request.depart,
+        speed_kn=request.speed_kn,
+        min_ukc=request.min_ukc_m,
+        strict=False,
+    )
+    folder = Path(order.folder)
+    _write_json(folder / "route.json", route.as_dict())
+    write_route_files(route, folder, 1, RouteFileOptions())
+    return {"feasible": route.feasible, "seconds": stages.seconds(), "routes": 1, **_totals(route)}

@@ -1,0 +1,101 @@
+"""Routes along time, for charts in the browser."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from thalweg.core.time import format_time
+from thalweg.core.types import FloatArray
+from thalweg.core.units import KNOT, NAUTICAL_MILE
+from thalweg.sea import standard_names as nm
+
+if TYPE_CHECKING:
+    from thalweg.route import Route
+
+MOST_POINTS: Final = 600  #: points of a profile
+#: Columns of a profile: source in the samples of a route, factor, decimals.
+_COLUMNS: Final[Mapping[str, tuple[str, float, int]]] = {
+    "lat": ("lat", 1.0, 5),
+    "lon": ("lon", 1.0, 5),
+    "distance_nm": ("distance", 1.0 / NAUTICAL_MILE, 2),
+    "course_deg": ("course", 180.0 / math.pi, 1),
+    "speed_over_ground_kn": ("speed_over_ground", 1.0 / KNOT, 2),
+    "speed_through_water_kn": ("speed_through_water", 1.0 / KNOT, 2),
+    "depth_m": ("depth", 1.0, 1),
+    "under_keel_clearance_m": ("under_keel_clearance", 1.0, 2),
+    "power_kw": ("power", 1e-3, 0),
+    "fuel_t_per_day": ("fuel_rate", 86.4, 2),
+    "wave_height_m": (nm.WAVE_HEIGHT, 1.0, 2),
+    "wave_period_s": (nm.WAVE_PERIOD, 1.0, 1),
+    "ice_fraction": (nm.ICE, 1.0, 2),
+}
+
+
+def route_profile(route: Route) -> dict[str, Any]:
+    """Return a route along time, thinned to at most `MOST_POINTS` points.
+
+    Parameters
+    ----------
+    route : Route
+
+    Returns
+    -------
+    dict
+        ``time`` [s since 1970] and columns of equal length whose names end with their unit; None
+        where a value is unknown. Columns without any known value are left out.
+    """
+    samples = route.samples
+    time = np.asarray(samples["time"], float)
+    take = _thinned(time)
+    columns: dict[str, Any] = {"time": [round(float(t), 1) for t in time[take]]}
+    for name, (source, factor, decimals) in _COLUMNS.items():
+        if source in samples:
+            _add(columns, name, np.asarray(samples[source], float)[take] * factor, decimals)
+    for name, pair in (("wind", nm.WIND.pair), ("current", nm.CURRENT.pair)):
+        if all(part in samples for part in pair):
+            east, north = (np.asarray(samples[part], float)[take] for part in pair)
+            _add(columns, f"{name}_speed_kn", np.hypot(east, north) / KNOT, 2)
+            turn = 180.0 if name == "wind" else 0.0
+            word = "from" if name == "wind" else "to"
+            _add(columns, f"{name}_{word}_deg", _bearing(east, north, turn), 0)
+    if all(part in samples for part in nm.WAVES.pair):
+        east, north = (np.asarray(samples[part], float)[take] for part in nm.WAVES.pair)
+        _add(columns, "waves_from_deg", _bearing(east, north, 180.0), 0)
+    return columns
+
+
+def _thinned(time: FloatArray) -> Any:
+    known = np.flatnonzero(np.isfinite(time))
+    if len(known) <= MOST_POINTS:
+        return known
+    return known[np.unique(np.linspace(0, len(known) - 1, MOST_POINTS).round().astype(int))]
+
+
+def _bearing(east: FloatArray, north: FloatArray, turn: float) -> FloatArray:
+    return np.asarray((np.degrees(np.arctan2(east, north)) + turn) % 360.0)
+
+
+def _add(columns: dict[str, Any], name: str, values: FloatArray, decimals: int) -> None:
+    if np.isfinite(values).any():
+        columns[name] = [round(float(v), decimals) if math.isfinite(v) else None for v in values]
+
+
+def first_look(route: Route) -> dict[str, Any]:
+    """Return a route with few points and its totals, to be shown while planning goes on."""
+    samples = route.samples
+    take = _thinned(np.asarray(samples["time"], float))[::4]
+    points = np.column_stack([samples["lon"], samples["lat"]])[take]
+    return {
+        "points": np.round(points, 4).tolist(),
+        "depart": format_time(route.depart),
+        "arrive": format_time(route.arrive),
+        "time_h": route.time_h,
+        "distance_nm": route.distance_nm,
+        "fuel_t": route.fuel_t,
+        "cost": route.cost,
+        "currency": route.currency,
+    }

@@ -1,0 +1,141 @@
+"""Errors as problem details (RFC 9457), with what was asked, what is possible and what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from starlette.exceptions import HTTPException
+
+from thalweg.core.errors import CoverageError, InputError, NoRouteError, ThalwegError
+
+MEDIA_TYPE: Final = "application/problem+json"
+_TITLES: Final = {
+    400: "Bad request",
+    401: "Not authorised",
+    403: "Not allowed",
+    404: "Not found",
+    405: "Not possible here",
+    409: "In conflict",
+    413: "Too large",
+    415: "Kind of file not known",
+    422: "Not possible",
+    429: "Too many jobs",
+    507: "Storage full",
+}
+#: What a number or text in a request must be, by the kind of fault that pydantic states.
+_SHAPES: Final = {
+    "missing": "is missing",
+    "extra_forbidden": "is not a known entry",
+    "json_invalid": "is not JSON",
+}
+
+
+class ServiceError(ThalwegError):
+    """An error of the service itself.
+
+    Parameters
+    ----------
+    status : int
+        HTTP status.
+    asked, possible, remedy : str
+        As in `ThalwegError`.
+    """
+
+    def __init__(
+        self, status: int, asked: str, possible: str = "", remedy: str = "", **details: Any
+    ) -> None:
+        self.status = status
+        super().__init__(asked, possible, remedy, **details)
+
+
+def not_found(kind: str, name: str, remedy: str) -> ServiceError:
+    """Return the error for something that does not exist."""
+    return ServiceError(404, f"There is no {kind} {name!r}.", "", remedy)
+
+
+def problem_of(error: ThalwegError, status: int = 422) -> dict[str, Any]:
+    """Return an error as problem details.
+
+    Parameters
+    ----------
+    error : ThalwegError
+    status : int
+        HTTP status, if the error states none.
+
+    Returns
+    -------
+    dict
+        ``type``, ``title``, ``status``, ``detail``, ``asked``, ``possible``, ``remedy``,
+        ``field`` (of the request, or None), ``reasons`` and ``nearest`` (where no route exists),
+        and ``details``.
+    """
+    plain = error.as_dict()
+    status = getattr(error, "status", status)
+    details = plain["details"]
+    problem = {
+        "type": f"/problems/{plain['error']}",
+        "title": _TITLES.get(status, plain["error"]),
+        "status": status,
+        "detail": str(error),
+        "asked": plain["asked"],
+        "possible": plain["possible"],
+        "remedy": plain["remedy"],
+        "field": details.get("field"),
+        "details": details,
+    }
+    if isinstance(error, NoRouteError):
+        problem |= {"reasons": details.get("reasons", {}), "nearest": details.get("nearest")}
+    if isinstance(error, (InputError, CoverageError)) and status == 422:
+        problem["title"] = "Bad input" if isinstance(error, InputError) else "Not covered by data"
+    return problem
+
+
+def problem_response(
+    error: ThalwegError, status: int = 422, headers: Mapping[str, str] | None = None
+) -> JSONResponse:
+    """Return an error as a response."""
+    problem = problem_of(error, status)
+    return JSONResponse(
+        problem, problem["status"], media_type=MEDIA_TYPE, headers=dict(headers or {})
+    )
+
+
+def add_problem_handlers(application: FastAPI) -> None:
+    """Make an application answer every error with problem details."""
+
+    @application.exception_handler(ThalwegError)
+    def _of_library(request: Request, error: ThalwegError) -> JSONResponse:
+        retry = {"Retry-After": "10"} if getattr(error, "status", 0) == 429 else None
+        return problem_response(error, headers=retry)
+
+    @application.exception_handler(RequestValidationError)
+    def _of_shape(request: Request, error: RequestValidationError) -> JSONResponse:
+        return problem_response(_shape_error(error))
+
+    @application.exception_handler(HTTPException)
+    def _of_path(request: Request, error: HTTPException) -> JSONResponse:
+        asked = {404: f"There is nothing at {request.url.path}."}.get(
+            error.status_code, f"{request.method} {request.url.path}: {error.detail}."
+        )
+        remedy = "The paths are listed at /api/docs and in /openapi.json."
+        return problem_response(ServiceError(error.status_code, asked, "", remedy))
+
+
+def _shape_error(error: RequestValidationError) -> ServiceError:
+    """Return the first fault of a request that has not the form of its schema."""
+    first = error.errors()[0]
+    place = [str(part) for part in first["loc"] if part not in ("body", "query", "path", "header")]
+    name = ".".join(place) or "The body"
+    what = _SHAPES.get(first["type"], f"is not possible: {first['msg']}")
+    return ServiceError(
+        422,
+        f"{name} {what}.",
+        "The form of requests is in /openapi.json, with examples.",
+        "Correct the request.",
+        field=name if place else None,
+        faults=len(error.errors()),
+    )

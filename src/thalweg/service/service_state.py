@@ -1,0 +1,148 @@
+"""`ServiceState`: the stores and processes of a running service, which all endpoints share."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+from typing import Annotated, Any, Final
+
+from fastapi import Depends, Request
+
+from thalweg.core.errors import InputError
+from thalweg.service.jobs.job_runner import JobRunner
+from thalweg.service.jobs.job_store import JobStore
+from thalweg.service.jobs.plan_request import EMBEDDED_SEAS
+from thalweg.service.service_settings import ServiceSettings
+from thalweg.service.upload_store import UploadStore
+from thalweg.service.worker.worker_client import WorkerClient
+
+SEA_ENDINGS: Final = (".nc", ".nc4", ".cdf", ".grb", ".grb2", ".grib", ".grib1", ".grib2", ".gri")
+SHIP_ENDINGS: Final = (".yaml", ".yml", ".json")
+ROUTE_ENDINGS: Final = (".rtz", ".rtzp", ".gpx", ".geojson", ".json", ".csv", ".txt")
+
+
+class JobChanges:
+    """Wakes the streams of events when a job has changed.
+
+    The store calls `notify` from any thread; streams wait in the loop of the server.
+    """
+
+    def __init__(self) -> None:
+        self._waiting: dict[str, set[asyncio.Event]] = {}
+        self._loop: asyncio.AbstractEventLoop | None = None
+
+    def attach(self) -> None:
+        """Remember the loop in which streams wait."""
+        self._loop = asyncio.get_running_loop()
+
+    def notify(self, job_id: str) -> None:
+        """Wake the streams of a job."""
+        if self._loop is not None:
+            with contextlib.suppress(RuntimeError):  # the loop has ended
+                self._loop.call_soon_threadsafe(self._wake, job_id)
+
+    def _wake(self, job_id: str) -> None:
+        for waiting in self._waiting.get(job_id, ()):
+            waiting.set()
+
+    @contextlib.contextmanager
+    def waiting_for(self, job_id: str) -> Any:
+        """Give an event that is set whenever the job changes."""
+        event = asyncio.Event()
+        self._waiting.setdefault(job_id, set()).add(event)
+        try:
+            yield event
+        finally:
+            self._waiting[job_id].discard(event)
+            if not self._waiting[job_id]:
+                del self._waiting[job_id]
+
+
+class ServiceState:
+    """The stores and processes of a service.
+
+    Parameters
+    ----------
+    settings : ServiceSettings
+    """
+
+    def __init__(self, settings: ServiceSettings) -> None:
+        self.settings = settings
+        limits = settings.limits
+        self._lock = _folder_lock(settings)
+        small = limits.small_upload_bytes
+        self.seas = UploadStore(
+            settings.subfolder("seas"), "sea", SEA_ENDINGS,
+            largest=limits.upload_bytes, total=limits.store_bytes,
+        )  # fmt: skip
+        self.ships = UploadStore(
+            settings.subfolder("ships"), "ship", SHIP_ENDINGS, largest=small, total=100 * small
+        )
+        self.routes = UploadStore(
+            settings.subfolder("routes"), "route", ROUTE_ENDINGS, largest=small, total=100 * small
+        )
+        self.store = JobStore(settings.folder / "jobs.sqlite")
+        self.runner = JobRunner(self.store, settings, self.files_of)
+        self.changes = JobChanges()
+        self.store.listen(self.changes.notify)
+        self.map_worker = WorkerClient(limits.worker_seconds)
+        self.file_worker = WorkerClient(limits.worker_seconds)
+
+    def files_of(self, request: dict[str, Any]) -> dict[str, str]:
+        """Return the paths of the uploaded files that a request names, by their ids."""
+        names = [*request.get("seas", ()), *request.get("depths", ())]
+        found = {name: str(self.seas.get(name).path) for name in names if name not in EMBEDDED_SEAS}
+        ship = str(request.get("ship", ""))
+        if ship not in self.library_ships():
+            found[ship] = str(self.ships.get(ship).path)
+        if "route" in request:
+            found[request["route"]] = str(self.routes.get(request["route"]).path)
+        return found
+
+    @staticmethod
+    def library_ships() -> list[str]:
+        """Return the names of the ships that need no file."""
+        from thalweg.ship import library_names, plugin_names
+
+        return [*library_names(), *plugin_names()]
+
+    def close(self) -> None:
+        """End all processes and close the files."""
+        self.runner.stop()
+        self.map_worker.close()
+        self.file_worker.close()
+        self.store.close()
+        if self._lock is not None:
+            os.close(self._lock)
+
+
+def state_of(request: Request) -> ServiceState:
+    """Return the state of the service that answers a request."""
+    state: ServiceState = request.app.state.service
+    return state
+
+
+#: The state as a parameter of an endpoint.
+State = Annotated[ServiceState, Depends(state_of)]
+
+
+def _folder_lock(settings: ServiceSettings) -> int | None:
+    """Take the data folder for this process; the system frees it when the process ends."""
+    try:
+        import fcntl
+    except ImportError:  # not on this system
+        return None
+    path = settings.subfolder("") / "lock"
+    handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        os.close(handle)
+        raise InputError(
+            f"Another service uses the folder {str(settings.folder)!r}.",
+            "Each service needs a folder of its own.",
+            "End the other one, or give another folder with --data.",
+            field="data",
+        ) from None
+    return handle

@@ -1,0 +1,196 @@
+"""The tasks of the worker process: frames, coast cells, inspections, imports, ship sheets."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.core.time import format_time
+from thalweg.sea import standard_names as nm
+
+if TYPE_CHECKING:
+    from thalweg.sea import Sea
+
+TaskResult = tuple[dict[str, Any], bytes]
+FRAME_HEADER: Final = struct.Struct("<4sHHHHf4f")  #: magic, nx, ny, fields, 0, scale, box
+UNKNOWN: Final = -32768  #: an unknown value in a frame
+#: Variables of frames: names of the sea, and the value of one unit of a frame.
+FRAME_VARIABLES: Final[Mapping[str, tuple[tuple[str, ...], float]]] = {
+    "waves": ((nm.WAVE_HEIGHT, *nm.WAVES.pair), 0.01),
+    "wind": (nm.WIND.pair, 0.01),
+    "current": (nm.CURRENT.pair, 0.001),
+    "ice": ((nm.ICE,), 0.001),
+    "depth": ((nm.BED_DEPTH,), 0.5),
+}
+
+
+def frame(task: Mapping[str, Any]) -> TaskResult:
+    """Return a field on a raster whose rows are equally spaced on a Mercator map.
+
+    Parameters
+    ----------
+    task : mapping
+        ``seas`` and ``files`` as of a job, ``variable`` (of `FRAME_VARIABLES`), ``time``
+        [s since 1970], ``box`` (south, north, west, east) [deg], ``nx`` and ``ny``.
+
+    Returns
+    -------
+    dict
+        Empty.
+    bytes
+        A header (`FRAME_HEADER`) of 32 bytes; then for each field rows from north to south of
+        16-bit integers, little-endian, in units of the scale; `UNKNOWN` where unknown.
+    """
+    names, scale = FRAME_VARIABLES[task["variable"]]
+    sea = _sea(tuple(task["seas"]), tuple(sorted(task["files"].items())))
+    if sea.members:
+        sea = sea.member(0)
+    south, north, west, east = task["box"]
+    nx, ny = task["nx"], task["ny"]
+    y = np.linspace(_mercator(north), _mercator(south), ny)
+    lat = np.degrees(2.0 * np.arctan(np.exp(y)) - np.pi / 2)
+    lon = np.linspace(west, east, nx)
+    at = np.meshgrid(lat, (lon + 180.0) % 360.0 - 180.0, indexing="ij")
+    known = [name for name in names if name in sea.variables]
+    values = sea.sample(known, task["time"], *at) if known else {}
+    shape = (ny, nx)
+    fields = [values.get(name, np.full(shape, np.nan)) for name in names]
+    data = np.stack([_as_integers(np.broadcast_to(field, shape), scale) for field in fields])
+    header = FRAME_HEADER.pack(b"TWF1", nx, ny, len(names), 0, scale, south, north, west, east)
+    return {}, header + data.astype("<i2").tobytes()
+
+
+def _mercator(lat: float) -> float:
+    return float(np.log(np.tan(np.pi / 4 + np.radians(lat) / 2)))
+
+
+def _as_integers(values: Any, scale: float) -> Any:
+    rounded = np.round(np.asarray(values, float) / scale)
+    return np.where(np.isfinite(rounded), np.clip(rounded, -32767, 32767), UNKNOWN)
+
+
+@lru_cache(maxsize=4)
+def _sea(seas: tuple[str, ...], files: tuple[tuple[str, str], ...]) -> Sea:
+    from thalweg.service.jobs.request_objects import open_seas
+
+    return open_seas(list(seas), {}, dict(files))
+
+
+def inspect(task: Mapping[str, Any]) -> TaskResult:
+    """Return what a sea holds: variables, box, period, times, ignored variables.
+
+    Parameters
+    ----------
+    task : mapping
+        ``seas`` and ``files``.
+    """
+    sea = _sea(tuple(task["seas"]), tuple(sorted(task["files"].items())))
+    one = sea.member(0) if sea.members else sea
+    rows = one.coverage()
+    starts = [row.start for row in rows if row.start is not None]
+    ends = [row.end for row in rows if row.end is not None]
+    steps = [row.step_s for row in rows if row.step_s]
+    frames = [name for name, row in FRAME_VARIABLES.items() if one.variables & set(row[0])]
+    facts = {
+        "variables": sorted(one.variables),
+        "frames": frames,
+        "members": sea.members,
+        "box": _box(rows),
+        "start": format_time(max(starts)) if starts else None,
+        "end": format_time(min(ends)) if ends else None,
+        "step_s": min(steps) if steps else None,
+        "assumptions": list(sea.assumptions),
+    }
+    if task.get("in_detail"):
+        found = sea.describe()
+        facts["ignored"] = found.as_dict()["ignored"]
+        facts["missing_fraction"] = dict(found.missing)
+        if not sea.variables:
+            raise InputError(
+                "The file holds no variable that is used.",
+                "Used are wind, waves, currents, water level, depth and ice.",
+                "Choose another file.",
+                field="file",
+            )
+    return facts, b""
+
+
+def _box(rows: Any) -> list[float] | None:
+    """Return (south, north, west, east) around all data; None for formulas of the whole world."""
+    gridded = [row for row in rows if row.spacing_deg is not None]
+    if not gridded:
+        return None
+    return [
+        min(row.south for row in gridded),
+        max(row.north for row in gridded),
+        min(row.west for row in gridded),
+        max(row.east for row in gridded),
+    ]
+
+
+def import_route(task: Mapping[str, Any]) -> TaskResult:
+    """Return the waypoints of a route file.
+
+    Parameters
+    ----------
+    task : mapping
+        ``path``.
+    """
+    from thalweg.route import read_track
+
+    try:
+        track, times = read_track(task["path"]), True
+    except InputError as error:
+        if "departure" not in error.asked.casefold():
+            raise
+        track, times = read_track(task["path"], depart=0.0), False
+    return {
+        "waypoints": [
+            [round(float(a), 6), round(float(b), 6)] for a, b in zip(track.lat, track.lon)
+        ],
+        "depart": format_time(track.depart) if times else None,
+    }, b""
+
+
+def ship_sheet(task: Mapping[str, Any]) -> TaskResult:
+    """Return the performance sheet of a ship, with its limits.
+
+    Parameters
+    ----------
+    task : mapping
+        ``ship`` (name or path).
+    """
+    from thalweg.ship import Ship
+    from thalweg.ship.performance_sheet import performance_sheet
+
+    ship = Ship.load(task["ship"])
+    facts: dict[str, Any] = {"name": ship.name}
+    if ship.speed_field is None:
+        facts = performance_sheet(ship)
+    limits = ship.limits
+    facts["limits"] = {
+        "wave_height_m": limits.wave_height if np.isfinite(limits.wave_height) else None,
+        "wind_speed_m_s": limits.wind_speed if np.isfinite(limits.wind_speed) else None,
+    }
+    return facts, b""
+
+
+def coast_cells(task: Mapping[str, Any]) -> TaskResult:
+    """Cut the coastline of a resolution into cells on the disk; return where they are."""
+    from thalweg.service.coast_map import build_cells
+
+    return {"folder": str(build_cells(task["level"]))}, b""
+
+
+TASKS: Final[Mapping[str, Callable[[Mapping[str, Any]], TaskResult]]] = {
+    "frame": frame,
+    "inspect": inspect,
+    "import_route": import_route,
+    "ship_sheet": ship_sheet,
+    "coast_cells": coast_cells,
+}
