@@ -44,6 +44,10 @@ class ProgressMessages:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        self.end()
+
+    def end(self) -> None:
+        """Print nothing any more: the command has begun to serve, or has ended."""
         self._ended.set()
 
     def __call__(self, stage: str) -> None:

@@ -80,7 +80,7 @@ def problem_of(error: ThalwegError, status: int = 422) -> dict[str, Any]:
         "type": f"/problems/{plain['error']}",
         "title": _TITLES.get(status, plain["error"]),
         "status": status,
-        "detail": str(error),
+        "detail": " ".join(plain[key] for key in ("asked", "possible", "remedy") if plain[key]),
         "asked": plain["asked"],
         "possible": plain["possible"],
         "remedy": plain["remedy"],

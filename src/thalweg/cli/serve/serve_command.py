@@ -63,6 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
     from thalweg.service.server import run_server
 
     announce_compilation(search=True, quiet=arguments.quiet)
+    arguments.progress.end()
     page = "demo" if arguments.demo else ""
     run_server(settings_of(arguments), _announce, open_page=arguments.open, page=page)
     return 0

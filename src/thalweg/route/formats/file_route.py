@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -69,7 +70,11 @@ def file_route(route: Route, options: RouteFileOptions | None = None) -> FileRou
     InputError
         If the route needs more waypoints than the options allow.
     """
-    options = options or RouteFileOptions()
+    return _cut_at_waypoints(route, options or RouteFileOptions())
+
+
+@lru_cache(maxsize=1)  # the files of all formats are written one after the other
+def _cut_at_waypoints(route: Route, options: RouteFileOptions) -> FileRoute:
     vertices = file_vertices(route, options)
     cut = _cut(route, vertices)
     rows = waypoint_rows(cut)

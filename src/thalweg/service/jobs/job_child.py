@@ -54,12 +54,21 @@ def _ended(order: dict[str, Any], messages: MessageWriter) -> dict[str, Any]:
         state, summary = run_order(JobOrder(**order), messages)
         return {"state": state, "summary": summary}
     except ThalwegError as error:
-        return {"state": "failed", "problem": problem_of(error)}
+        return {"state": "failed", "problem": _without_paths(problem_of(error), order["files"])}
     except MemoryError:
         return {"state": "failed", "problem": problem_of(_memory_error())}
     except Exception as error:  # noqa: BLE001 a fault of the program ends one job, not the service
         traceback.print_exc()
         return {"state": "failed", "problem": problem_of(_program_error(error))}
+
+
+def _without_paths(problem: dict[str, Any], files: dict[str, str]) -> dict[str, Any]:
+    """Return a problem in which no path of this computer stands."""
+    text = json.dumps(problem)
+    for path in files.values():
+        text = text.replace(json.dumps(path)[1:-1], "the uploaded file")
+    found: dict[str, Any] = json.loads(text)
+    return found
 
 
 def _memory_error() -> ThalwegError:

@@ -117,8 +117,9 @@ def _plan(
     folder = Path(order.folder)
     beside = None if found.cancelled else _beside(found, world, request, stages)
     stages("writing the files")
-    write_plan_result(found, folder, beside)
-    return "cancelled" if found.cancelled else "done", plan_summary(found, stages.seconds())
+    parts = write_plan_result(found, folder, beside)
+    summary = {**plan_summary(found, stages.seconds()), "parts": parts}
+    return "cancelled" if found.cancelled else "done", summary
 
 
 def _plan_first(
@@ -147,8 +148,8 @@ def _plan_first(
         )
         note = "The job was stopped: this is the fastest route, the objective was not reached."
         found = replace(found, notes=(note, *found.notes), cancelled=True)
-        write_plan_result(found, make_folder(Path(order.folder) / FIRST_FOLDER), None)
-        summary = plan_summary(found, stages.seconds())
+        parts = write_plan_result(found, make_folder(Path(order.folder) / FIRST_FOLDER), None)
+        summary = {**plan_summary(found, stages.seconds()), "parts": parts}
         messages.send(
             "route", {"route": first_look(found.best), "final": False, "summary": summary}
         )
@@ -177,7 +178,7 @@ def _beside(
     return None
 
 
-def write_plan_result(found: Plan, folder: Path, beside: Route | None) -> None:
+def write_plan_result(found: Plan, folder: Path, beside: Route | None) -> list[str]:
     """Write all files of a plan: plan.json, route files, profiles, isochrones.
 
     Parameters
@@ -187,6 +188,11 @@ def write_plan_result(found: Plan, folder: Path, beside: Route | None) -> None:
         It exists.
     beside : Route, optional
         The route that ignores the weather.
+
+    Returns
+    -------
+    list of str
+        ``isochrones`` and ``beside``, where there are such files.
     """
     from thalweg.route import RouteFileOptions
 
@@ -196,9 +202,12 @@ def write_plan_result(found: Plan, folder: Path, beside: Route | None) -> None:
     options = RouteFileOptions(chart=chart, start=start, goal=goal)
     for number, route in enumerate(found.routes, start=1):
         write_route_files(route, folder, number, options, plan=found)
-    _write_json(folder / "isochrones.json", isochrone_lines(found))
-    if beside is not None:
-        _write_json(folder / "beside.json", {**beside.as_dict(), "profile": route_profile(beside)})
+    lines = isochrone_lines(found)
+    other = None if beside is None else {**beside.as_dict(), "profile": route_profile(beside)}
+    parts = {"isochrones": lines, "beside": other}
+    for name, data in parts.items():
+        _write_json(folder / f"{name}.json", data)
+    return [name for name, data in parts.items() if data is not None]
 
 
 def write_route_files(
@@ -223,6 +232,8 @@ def _write_json(path: Path, data: Mapping[str, Any] | None) -> None:
 
 def plan_summary(found: Plan, seconds: float) -> dict[str, Any]:
     """Return the key figures of a plan for lists of jobs."""
+    from thalweg.planning.report.plan_summary import quality_text
+
     best = found.best
     return {
         "from": found.provenance.get("from"),
@@ -233,7 +244,7 @@ def plan_summary(found: Plan, seconds: float) -> dict[str, Any]:
         "cancelled": found.cancelled,
         "seconds": seconds,
         **_totals(best),
-        "gap": found.gap,
+        "quality": quality_text(found),
     }
 
 

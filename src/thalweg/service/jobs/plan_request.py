@@ -34,8 +34,10 @@ class WeatherLimits(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    wave_height_m: float | None = Field(None, gt=0, le=40, description="significant wave height")
-    wind_speed_kn: float | None = Field(None, gt=0, le=200, description="wind at 10 m")
+    wave_height_m: Annotated[
+        float | None, Field(gt=0, le=40, description="significant wave height")
+    ] = None
+    wind_speed_kn: Annotated[float | None, Field(gt=0, le=200, description="wind at 10 m")] = None
 
 
 class ShipAndSea(BaseModel):

@@ -44,11 +44,9 @@ def open_world(request: ShipAndSea, files: Mapping[str, str]) -> WorldOfJob:
         chart = chart.with_depth(files[name])
     if request.areas:
         chart = chart.with_zones(request.areas)
-    return WorldOfJob(
-        open_ship_of(request, files),
-        open_seas(request.seas, {str(k): v for k, v in request.fill.items()}, files),
-        chart,
-    )
+    fill = {str(name): value for name, value in request.fill.items()}
+    sea = open_seas(request.seas, fill, files)
+    return WorldOfJob(open_ship_of(request, files), sea, chart)
 
 
 def open_ship_of(request: ShipAndSea, files: Mapping[str, str]) -> Ship:

@@ -1,0 +1,210 @@
+// The chart: coast, graticule, ports, control areas, canals, weather, routes, drawn areas.
+
+import { Map as OlMap, View, Overlay, Graticule, ScaleLine, Zoom, Draw, Modify, Snap, GeoJSON, toLonLat, transformExtent, extent as extents, defaultInteractions } from "../vendor/ol.mjs";
+import { get } from "./api.js";
+import { CoastLayers } from "./coast_layer.js";
+import { bandColours, KINDS, WeatherLayer } from "./weather_layer.js";
+import { RouteLayers, layer, stroke, FONT, Feature, Point, Polygon, LineString, Style, Fill, Stroke, Circle, Text, fromLonLat } from "./route_layers.js";
+import { colour, fill, h } from "./elements.js";
+import { position } from "./format.js";
+
+export class Chart extends EventTarget {
+  constructor(element) {
+    super();
+    this.element = element;
+    this.map = new OlMap({
+      target: element,
+      controls: [new Zoom({ zoomInTipLabel: "Closer (+)", zoomOutTipLabel: "Farther (−)" }), new ScaleLine({ units: "nautical", target: document.getElementById("scale") })],
+      interactions: defaultInteractions({ altShiftDragRotate: false, pinchRotate: false }),
+      view: new View({ center: fromLonLat([-28, 46]), zoom: 3.6, minZoom: 1.6, maxZoom: 15, extent: [-Infinity, -20037508, Infinity, 20037508], constrainOnlyCenter: true }),
+      keyboardEventTarget: element,
+    });
+    this.coast = new CoastLayers(this.map);
+    this.weather = new WeatherLayer(this.map);
+    this.routes = new RouteLayers();
+    this.eca = layer(13, { visible: false });
+    this.canals = layer(14);
+    this.ports = layer(15, { declutter: true, minZoom: 2.5 });
+    this.areas = layer(18);
+    [...this.coast.layers, this.weather.layer, this.eca, this.canals, this.ports, this.areas, ...this.routes.layers].forEach((one) => this.map.addLayer(one));
+    this.graticule = null;
+    this.#pointer();
+    this.#chooser();
+    this.#loadChart();
+    this.map.once("rendercomplete", () => element.setAttribute("data-idle", "true"));
+    this.paint();
+    this.coast.load();
+  }
+
+  paint() {
+    this.coast.paint();
+    this.element.style.backgroundColor = colour("sea");
+    if (this.graticule) this.map.removeLayer(this.graticule);
+    const text = new Text({ font: '11px system-ui, "DejaVu Sans", sans-serif', fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 2.5 }) });
+    const label = (style) => { const one = text.clone(); Object.entries(style).forEach(([name, value]) => one[name](value)); return one; };
+    this.graticule = new Graticule({
+      strokeStyle: new Stroke({ color: colour("graticule"), width: 0.6 }), showLabels: true, wrapX: true, zIndex: 9, targetSize: 120,
+      lonLabelPosition: 0.005, latLabelPosition: 0.998,
+      lonLabelStyle: label({ setTextBaseline: "bottom" }), latLabelStyle: label({ setTextAlign: "end", setTextBaseline: "bottom" }),
+      lonLabelFormatter: (value) => degrees(value, "E", "W"), latLabelFormatter: (value) => degrees(value, "N", "S"),
+      intervals: [30, 20, 10, 5, 2, 1, 0.5, 0.25, 1 / 6, 1 / 12, 1 / 30, 1 / 60],
+    });
+    this.map.addLayer(this.graticule);
+    for (const one of [...this.routes.layers, this.eca, this.canals, this.ports, this.areas]) one.changed();
+    this.weather.repaint();
+    this.showLegend();
+  }
+
+  async #loadChart() {
+    const [chart, ports] = await Promise.all([get("/chart"), get("/ports?count=900")]);
+    for (const area of chart.control_areas) {
+      for (const ring of area.rings) {
+        const feature = new Feature(new Polygon([ring.map((p) => fromLonLat(p))]));
+        feature.setStyle(() => new Style({ stroke: new Stroke({ color: colour("eca"), width: 1.4 }), fill: new Fill({ color: colour("eca") + "12" }), text: new Text({ text: area.title, font: FONT, placement: "line", textBaseline: "bottom", fill: new Fill({ color: colour("eca") }), stroke: new Stroke({ color: colour("sea"), width: 3 }) }) }));
+        this.eca.getSource().addFeature(feature);
+      }
+    }
+    for (const canal of chart.canals) {
+      const feature = new Feature(new LineString(canal.path.map((p) => fromLonLat(p))));
+      feature.setStyle(() => [stroke(colour("casing"), 4), stroke(colour("imported"), 2)]);
+      this.canals.getSource().addFeature(feature);
+    }
+    const most = ports.map((port) => port.importance);
+    ports.forEach((port, i) => {
+      const feature = new Feature({ geometry: new Point(fromLonLat([port.lon, port.lat])), port });
+      feature.setStyle((_, resolution) => {
+        const zoom = this.map.getView().getZoomForResolution(resolution);
+        if (most[i] < 150 / 2 ** ((zoom - 2) * 1.15)) return null;
+        return new Style({
+          zIndex: port.importance,
+          image: new Circle({ radius: 2.2, fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 1 }), declutterMode: "obstacle" }),
+          text: new Text({ text: port.name, font: '11px system-ui, "DejaVu Sans", sans-serif', offsetX: 6, textAlign: "left", fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 2.5 }) }),
+        });
+      });
+      this.ports.getSource().addFeature(feature);
+    });
+  }
+
+  #pointer() {
+    const output = document.getElementById("position");
+    this.map.on("pointermove", (event) => {
+      const [lon, lat] = toLonLat(event.coordinate);
+      output.textContent = position(lat, lon);
+      if (event.dragging) return;
+      const found = this.#routeAt(event.pixel);
+      this.element.style.cursor = found === null ? "" : "pointer";
+      this.dispatchEvent(new CustomEvent("hoverroute", { detail: found }));
+    });
+    this.element.addEventListener("pointerleave", () => this.dispatchEvent(new CustomEvent("hoverroute", { detail: null })));
+    this.map.on("singleclick", (event) => {
+      if (this.drawing) return;
+      const [lon, lat] = toLonLat(event.coordinate);
+      const number = this.#routeAt(event.pixel);
+      const port = this.map.forEachFeatureAtPixel(event.pixel, (feature) => feature.get("port"), { layerFilter: (one) => one === this.ports, hitTolerance: 5 });
+      this.dispatchEvent(new CustomEvent("click", { detail: { lat, lon, number, port: port || null, coordinate: event.coordinate } }));
+    });
+  }
+
+  #routeAt(pixel) {
+    const number = this.map.forEachFeatureAtPixel(pixel, (feature) => feature.get("number"), { layerFilter: (one) => one === this.routes.others || one === this.routes.chosen, hitTolerance: 5 });
+    return number === undefined ? null : number;
+  }
+
+  // A small menu at a clicked position.
+  #chooser() {
+    this.menu = h("div.floating.chooser", { role: "menu" });
+    this.overlay = new Overlay({ element: this.menu, positioning: "top-left", offset: [10, 10], stopEvent: true });
+    this.map.addOverlay(this.overlay);
+  }
+
+  choose(coordinate, title, choices) {
+    fill(this.menu, h("b", {}, title), choices.map(([text, act]) => h("button", { type: "button", role: "menuitem", onclick: () => { this.closeMenu(); act(); } }, text)));
+    this.overlay.setPosition(coordinate);
+  }
+
+  closeMenu() {
+    this.overlay.setPosition(undefined);
+  }
+
+  fit(points) {
+    if (!points.length) return;
+    const box = extents.boundingExtent(points.map((p) => fromLonLat(p)));
+    this.map.getView().fit(extents.buffer(box, Math.max(2e4, 0.06 * Math.max(extents.getWidth(box), extents.getHeight(box)))), { padding: [28, 40, 28, 40], maxZoom: 11, duration: 0 });
+  }
+
+  showLegend(state = this.legendState) {
+    this.legendState = state;
+    const box = document.getElementById("legend");
+    const { kind } = this.weather;
+    box.hidden = !kind;
+    if (!kind) return;
+    const { title, unit, top } = KINDS[kind];
+    const bar = h("canvas", { width: 180, height: 10, "aria-hidden": "true" });
+    const colours = bandColours(kind), pen = bar.getContext("2d");
+    colours.forEach((c, i) => { pen.fillStyle = `rgb(${c.join(",")})`; pen.fillRect((180 * i) / colours.length, 0, 180 / colours.length + 1, 10); });
+    const words = { loading: "loading …", "no data": "no data at this time", failed: "the field cannot be read" }[state];
+    fill(box, h("b", {}, title), words ? ` · ${words}` : null, bar, h("div.ends", {}, h("span", {}, "0"), h("span", {}, `${top / 2}`), h("span", {}, `${top} ${unit}`)), h("div.none", {}, h("i", {}), "no data"));
+  }
+
+  // Draw an area by hand; resolves with a ring [[lon, lat], ...] or null.
+  draw() {
+    const interaction = new Draw({ source: new (this.areas.getSource().constructor)(), type: "Polygon" });
+    this.map.addInteraction(interaction);
+    this.drawing = interaction;
+    return new Promise((resolve) => {
+      const end = (ring) => {
+        this.map.removeInteraction(interaction);
+        document.removeEventListener("keydown", escape, true);
+        setTimeout(() => { this.drawing = null; }, 300); // the double click that ends it is no click
+        resolve(ring);
+      };
+      const escape = (event) => { if (event.key === "Escape") { event.stopPropagation(); end(null); } };
+      document.addEventListener("keydown", escape, true);
+      interaction.on("drawend", (event) => end(event.feature.getGeometry().getCoordinates()[0].map((c) => toLonLat(c).map((v) => Number(v.toFixed(4))))));
+    });
+  }
+
+  // areas: [{kind, factor, ring}]; changes by hand are reported.
+  showAreas(areas, onChange) {
+    const source = this.areas.getSource();
+    source.clear();
+    areas.forEach((area, number) => {
+      const feature = new Feature({ geometry: new Polygon([area.ring.map((p) => fromLonLat(p))]), area: number });
+      const name = area.kind === "no-go" ? "danger" : "amber";
+      feature.setStyle(() => new Style({ stroke: new Stroke({ color: colour(name), width: 1.8 }), fill: new Fill({ color: hatch(colour(name)) }), text: new Text({ text: area.kind === "no-go" ? "no-go" : `× ${area.factor}`, font: `600 ${FONT}`, fill: new Fill({ color: colour(name) }), stroke: new Stroke({ color: colour("casing"), width: 3.5 }) }) }));
+      source.addFeature(feature);
+    });
+    if (!this.modify) {
+      this.modify = new Modify({ source });
+      this.map.addInteraction(this.modify);
+      this.map.addInteraction(new Snap({ source }));
+      this.modify.on("modifyend", () => {
+        for (const feature of source.getFeatures()) this.onAreaChange?.(feature.get("area"), feature.getGeometry().getCoordinates()[0].map((c) => toLonLat(c).map((v) => Number(v.toFixed(4)))));
+      });
+    }
+    this.onAreaChange = onChange;
+    this.modify.setActive(Boolean(onChange));
+  }
+
+  get view() {
+    return transformExtent(this.map.getView().calculateExtent(), "EPSG:3857", "EPSG:4326");
+  }
+}
+
+function degrees(value, plus, minus) {
+  const size = Math.abs(value), whole = Math.floor(size + 1e-9), minutes = Math.round((size - whole) * 60);
+  return `${whole}°${minutes ? `${String(minutes).padStart(2, "0")}′` : ""}${size < 1e-9 ? "" : value < 0 ? minus : plus}`;
+}
+
+function hatch(color) {
+  const tile = document.createElement("canvas");
+  tile.width = tile.height = 8;
+  const pen = tile.getContext("2d");
+  pen.strokeStyle = color;
+  pen.globalAlpha = 0.55;
+  for (const shift of [-8, 0, 8]) { pen.moveTo(shift, 8); pen.lineTo(shift + 8, 0); }
+  pen.stroke();
+  return pen.createPattern(tile, "repeat");
+}
+
+export { GeoJSON };

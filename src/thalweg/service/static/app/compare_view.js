@@ -1,0 +1,120 @@
+// Two to six routes side by side, with differences to the first; ready studies and scored files.
+
+import { get, post, uploadForm } from "./api.js";
+import { errorBox, fill, h } from "./elements.js";
+import { duration, known, number, seconds, signed, signedDuration, time } from "./format.js";
+
+const MOST = 6;
+export const DASHES = [null, [10, 6], [2, 6], [12, 5, 2, 5], [18, 6], [4, 4]];
+export const PAINTS = ["route", "imported", "good", "amber", "ink", "other"];
+const FIGURES = [["Time", "time_h", duration, signedDuration], ["Distance", "distance_nm", (v) => `${number(v, 1)} nm`, (v) => signed(v, 1)], ["Fuel", "fuel_t", (v) => (known(v) ? `${number(v, 1)} t` : "unknown"), (v) => signed(v, 1)], ["Cost", "cost", (v, row) => (known(v) ? `${number(v)} ${row.currency}` : "unknown"), (v) => signed(v, 0)], ["CO₂", "co2_t", (v) => (known(v) ? `${number(v)} t` : "unknown"), (v) => signed(v, 0)], ["Highest waves", "highest_waves_m", (v) => (known(v) ? `${number(v, 1)} m` : "unknown"), null], ["Strongest wind", "strongest_wind_kn", (v) => (known(v) ? `${number(v)} kn` : "unknown"), null]];
+
+export class CompareView {
+  chosen = []; // {job, number, title}
+
+  constructor(handlers) {
+    this.handlers = handlers;
+    this.list = h("div");
+    this.table = h("div");
+    this.problem = h("div");
+    this.file = h("input.hidden", { type: "file", id: "route-file", accept: ".rtz,.rtzp,.gpx,.geojson,.json,.csv", tabindex: "-1", onchange: () => this.#score() });
+    this.element = [h("div.scroll", {}, h("h1", {}, "Compare routes"), h("p.lead", {}, "Choose two to six. The first is the one that the others are compared with."), this.problem, h("div.block", {}, this.list), h("div.block", {}, h("h2", {}, "Ready studies"), h("p.facts", {}, "Each plans the voyage of the first chosen route again, and adds the results."), h("div.exports", {},
+      h("button.quiet.small", { type: "button", onclick: () => this.#study("speeds") }, "Three speeds"), h("button.quiet.small", { type: "button", onclick: () => this.#study("departures") }, "Departures +12, +24 h"), h("button.quiet.small", { type: "button", onclick: () => this.#study("calm") }, "Without weather"), h("button.quiet.small", { type: "button", onclick: () => this.#study("offing") }, "Without offing")),
+    h("div.block", {}, h("h2", {}, "A route of your own"), h("p.facts", {}, "An RTZ, GPX, GeoJSON or CSV file is sailed in the weather and by the ship of the first chosen route."), h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Score a route file …"), this.file)))];
+  }
+
+  add(job, number_, title) {
+    if (this.chosen.some((one) => one.job === job && one.number === number_)) return;
+    if (this.chosen.length < MOST) this.chosen.push({ job, number: number_, title });
+  }
+
+  async show() {
+    const { jobs } = await get("/plans?size=60");
+    this.jobs = jobs.filter((job) => job.result);
+    this.chosen = this.chosen.filter((one) => this.jobs.some((job) => job.id === one.job));
+    fill(this.list, this.jobs.length ? this.jobs.map((job) => this.#row(job)) : h("p.empty", {}, h("b", {}, "No routes yet"), "Plan a voyage first; its routes can then be compared here."));
+    await this.#compare();
+  }
+
+  #row(job) {
+    const entry = (number_, text) => h("div.jobrow", {}, h("label.check", {}, h("input", { type: "checkbox", checked: this.chosen.some((one) => one.job === job.id && one.number === number_), onchange: (event) => this.#toggle(event.target, job, number_, text) }), h("span", {}, text, h("small", {}, `${number_ === 0 ? "planned without weather, sailed in it" : `${duration(job.summary.time_h)} · ${number(job.summary.distance_nm, 0)} nm`} · ${time(seconds(job.created))}`))));
+    const name = job.title || "Plan";
+    return [entry(1, job.kind === "evaluation" ? `${name} (from a file)` : name), job.kind === "plan" && job.request.seas[0] !== "calm" && job.summary.objective === "time" && !job.summary.cancelled ? entry(0, `${name}, weather ignored`) : null];
+  }
+
+  #toggle(box, job, number_, title) {
+    if (box.checked && this.chosen.length >= MOST) { box.checked = false; fill(this.problem, errorBox({ asked: "Six routes are chosen.", remedy: "Remove one first." })); return; }
+    if (box.checked) this.chosen.push({ job: job.id, number: number_, title });
+    else this.chosen = this.chosen.filter((one) => !(one.job === job.id && one.number === number_));
+    fill(this.problem);
+    this.#compare();
+  }
+
+  async #compare() {
+    if (this.chosen.length < 2) {
+      this.handlers.show([], h("p.empty", {}, h("b", {}, this.chosen.length ? "Choose one more route" : "Choose routes to compare"), "Their figures and differences stand here, and all of them on the chart."));
+      if (this.chosen.length) this.handlers.show(await this.#points(), null);
+      return;
+    }
+    try {
+      const { routes } = await post("/compare", { routes: this.chosen.map(({ job, number: n }) => ({ job, number: n })) });
+      this.handlers.show(await this.#points(), this.#table(routes));
+    } catch (problem) {
+      fill(this.problem, errorBox(problem));
+    }
+  }
+
+  async #points() {
+    return Promise.all(this.chosen.map(async ({ job, number: n }) => {
+      const profile = n ? await get(`/plans/${job}/profiles/${n}`) : (await get(`/plans/${job}/beside.json`)).profile;
+      return profile.lon.map((lon, i) => [lon, profile.lat[i]]);
+    }));
+  }
+
+  #table(rows) {
+    const key = (i) => { const mark = h("span.key"); mark.style.borderTopColor = `var(--${PAINTS[i]})`; mark.style.borderTopStyle = i ? "dashed" : "solid"; return mark; };
+    return h("div.table", { tabindex: 0 }, h("table.compare-table", {}, h("caption.hidden", {}, "Routes compared with the first"), h("thead", {}, h("tr", {}, h("th.text", { scope: "col" }, "Route"), h("th.text", { scope: "col" }, "Leaves, arrives"), FIGURES.map(([name]) => h("th", { scope: "col" }, name)))), h("tbody", {}, rows.map((row, i) => h("tr", {}, h("td.text", {}, key(i), h("b", {}, this.chosen[i].title), row.feasible ? null : h("small", {}, `breaks ${row.violations} limits`)), h("td.text", {}, time(seconds(row.depart)), h("small", {}, time(seconds(row.arrive)))), FIGURES.map(([, name, text, change]) => h("td", {}, h("b", {}, text(row[name], row)), i && change && known(row.difference[name]) ? h("small", {}, change(row.difference[name])) : null)))))));
+  }
+
+  // Plan the voyage of the first chosen route again, with changes.
+  async #study(kind) {
+    fill(this.problem);
+    const first = this.jobs.find((job) => job.id === this.chosen[0]?.job && job.kind === "plan");
+    if (!first) { fill(this.problem, errorBox({ asked: "No planned route is chosen.", remedy: "Choose a plan first; the study starts from its voyage." })); return; }
+    const base = structuredClone(first.request);
+    const plans = [];
+    const change = (title, edit) => { const request = structuredClone(base); edit(request); request.title = `${base.title || "Plan"}, ${title}`; plans.push(request); };
+    if (kind === "speeds") {
+      const top = Math.max(...(await get(`/ships/${encodeURIComponent(base.ship)}`)).settings.map((row) => row.speed_kn));
+      for (const share of [0.8, 0.9]) { const speed = Number((top * share).toFixed(1)); change(`${speed} kn`, (r) => { r.voyage.speed_kn = speed; r.voyage.objective = "time"; }); }
+    } else if (kind === "departures") {
+      for (const hours of [12, 24]) change(`+${hours} h`, (r) => { r.voyage.depart = new Date(Date.parse(r.voyage.depart || r.voyage.depart_window[0]) + hours * 3.6e6).toISOString().slice(0, 19) + "Z"; delete r.voyage.depart_window; });
+    } else if (kind === "calm") change("no weather", (r) => { r.seas = ["calm"]; r.fill = {}; });
+    else change("no offing", (r) => { r.voyage.offing_nm = 0; });
+    try {
+      for (const request of plans) await this.handlers.run(await post("/plans", request), (job) => { if (job.result) this.add(job.id, 1, job.title); });
+      await this.show();
+    } catch (problem) {
+      fill(this.problem, errorBox(problem));
+    }
+  }
+
+  async #score() {
+    const [file] = this.file.files;
+    this.file.value = "";
+    const first = this.jobs.find((job) => job.id === this.chosen[0]?.job);
+    if (!file) return;
+    if (!first) { fill(this.problem, errorBox({ asked: "No route is chosen.", remedy: "Choose the route whose ship and weather are used." })); return; }
+    fill(this.problem);
+    try {
+      const route = await uploadForm("/routes", file);
+      const { ship, seas, fill: filled, limits, areas, coast, load_factor, depths } = first.request;
+      const request = { title: file.name, route: route.id, ship, seas, fill: filled, limits, areas, coast, load_factor, depths };
+      if (!route.depart) request.depart = first.summary.depart;
+      await this.handlers.run(await post("/evaluate", request), (job) => { if (job.result) this.add(job.id, 1, file.name); });
+      await this.show();
+    } catch (problem) {
+      fill(this.problem, errorBox(problem));
+    }
+  }
+}

@@ -1,0 +1,225 @@
+// The drawer: time and player, profile along time, front, legs. All follow the one selection.
+
+import uPlot from "../vendor/uplot.mjs";
+import { colour, fill, h } from "./elements.js";
+import { bearing, duration, known, number, plainPosition, seconds, time } from "./format.js";
+import { FrontDiagram } from "./front_diagram.js";
+import { selection } from "./selection.js";
+
+const SERIES = [
+  ["speed_over_ground_kn", "Speed over ground", "kn", "speed", "--imported", 1],
+  ["speed_through_water_kn", "Speed through water", "kn", "speed", "--good", 1],
+  ["wave_height_m", "Waves", "m", "waves", "--accent", 1],
+  ["wind_speed_kn", "Wind", "kn", "speed", "--ink-3", 0],
+  ["power_kw", "Power", "kW", "power", "--amber", 0],
+  ["fuel_t_per_day", "Fuel", "t/d", "fuel", "--amber", 1],
+  ["under_keel_clearance_m", "Under-keel clearance", "m", "depth", "--coast", 1],
+  ["depth_m", "Depth", "m", "depth", "--other", 0],
+  ["current_speed_kn", "Current", "kn", "speed", "--isochrone", 1],
+];
+const FIRST = ["speed_over_ground_kn", "wave_height_m"];
+
+export class Drawer {
+  constructor(element, onTab) {
+    this.element = element;
+    this.onTab = onTab;
+    this.shown = new Set(FIRST);
+    this.tab = "profile";
+    this.play = h("button.play", { type: "button", "aria-label": "Play (space)", onclick: () => this.toggle() });
+    this.slider = h("input", { type: "range", min: 0, max: 1000, step: 1, value: 0, id: "time", "aria-label": "Time", oninput: () => selection.at(this.from + (Number(this.slider.value) / 1000) * (this.to - this.from)) });
+    this.output = h("output", { for: "time" });
+    this.tabs = h("div.tabs", { role: "tablist", "aria-label": "Diagrams" });
+    this.sheet = h("div.sheet", { role: "tabpanel", id: "sheet" });
+    fill(element, h("div.player", {}, this.play, this.slider, this.output, this.tabs), this.sheet);
+    this.#icon();
+    selection.addEventListener("time", () => this.#moved());
+    new ResizeObserver(() => this.#resize()).observe(this.sheet);
+  }
+
+  range(from, to) {
+    this.from = from;
+    this.to = to;
+  }
+
+  hide() { this.stop(); this.element.hidden = true; }
+
+  // result: {plan, kind, profile, speedRange}; redraws the open tab.
+  show(result) {
+    this.element.hidden = false;
+    this.result = result;
+    if (this.tab === "front" && !result.front) this.tab = "profile";
+    const names = [["profile", "Profile"], ...(result.front ? [["front", "Front"]] : []), ["legs", "Legs"]];
+    fill(this.tabs, names.map(([name, text]) => h("button", { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": "sheet", "aria-selected": String(name === this.tab), tabindex: name === this.tab ? 0 : -1, onclick: () => this.open(name), onkeydown: (event) => this.#tabKey(event, names) }, text)));
+    this.sheet.setAttribute("aria-labelledby", `tab-${this.tab}`);
+    this.plot?.destroy();
+    this.plot = null;
+    this.front = null;
+    if (this.tab === "front") this.#showFront();
+    else if (this.tab === "legs") this.#showLegs();
+    else this.#showProfile();
+    this.#moved();
+  }
+
+  open(tab) {
+    this.tab = tab;
+    if (this.result) this.show(this.result);
+    this.tabs.querySelector(`#tab-${tab}`)?.focus();
+  }
+
+  #tabKey(event, names) {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const at = names.findIndex(([name]) => name === this.tab);
+    this.open(names[(at + step + names.length) % names.length][0]);
+  }
+
+  // Player
+
+  toggle() { this.timer ? this.stop() : this.start(); }
+
+  start() {
+    if (!known(this.to)) return;
+    const whole = 16000; // the voyage in milliseconds
+    let last = performance.now();
+    if (selection.time >= this.to - 60) selection.at(this.from);
+    const tick = (now) => {
+      const next = selection.time + ((now - last) / whole) * (this.to - this.from);
+      last = now;
+      if (next >= this.to) { selection.at(this.to); this.stop(); return; }
+      selection.at(next);
+      this.timer = requestAnimationFrame(tick);
+    };
+    this.timer = requestAnimationFrame(tick);
+    this.#icon();
+  }
+
+  stop() {
+    cancelAnimationFrame(this.timer);
+    this.timer = null;
+    this.#icon();
+  }
+
+  step(hours) { if (known(this.to)) selection.at(Math.max(this.from, Math.min(this.to, (selection.time ?? this.from) + hours * 3600))); }
+
+  #icon() {
+    this.play.innerHTML = this.timer ? '<svg viewBox="0 0 12 12"><path d="M2 1h3v10H2zM7 1h3v10H7z"/></svg>' : '<svg viewBox="0 0 12 12"><path d="M2 0.5l9 5.5-9 5.5z"/></svg>';
+    this.play.setAttribute("aria-label", this.timer ? "Pause (space)" : "Play (space)");
+  }
+
+  #moved() {
+    const t = selection.time;
+    if (!known(t)) return;
+    this.output.textContent = time(t);
+    if (document.activeElement !== this.slider || this.timer) this.slider.value = String(Math.round(((t - this.from) / Math.max(1, this.to - this.from)) * 1000));
+    this.slider.setAttribute("aria-valuetext", `${time(t)} UTC`);
+    const profile = this.result?.profile;
+    if (this.plot && profile && !this.inPlot) this.plot.setCursor({ left: this.plot.valToPos(t, "x"), top: 10 }, false);
+    if (profile) this.#values(indexAt(profile.time, t));
+    if (this.tab === "legs") this.#currentLeg(t);
+  }
+
+  // Profile
+
+  #showProfile() {
+    const { profile } = this.result;
+    if (!profile) { fill(this.sheet, h("p.empty", {}, "The profile is loading …")); return; }
+    const there = SERIES.filter(([name]) => profile[name]);
+    if (!there.some(([name]) => this.shown.has(name))) this.shown.add(there[0]?.[0]);
+    this.holder = h("div.plot", { role: "img", "aria-label": "Profile of the route along time; the values at the chosen time stand beside it, and all legs in the table." });
+    this.chips = there.map(([name, text, unitText, , paint]) => {
+      const value = h("span.value");
+      const mark = h("i");
+      mark.style.background = `var(${paint})`;
+      const box = h("label.check", {}, h("input", { type: "checkbox", checked: this.shown.has(name), onchange: (event) => { event.target.checked ? this.shown.add(name) : this.shown.delete(name); this.#plot(); } }), mark, h("span", {}, text, h("small", {}, value, ` ${unitText}`)));
+      box.value = value;
+      box.name = name;
+      return box;
+    });
+    fill(this.sheet, this.holder, h("fieldset.chips", {}, h("legend.hidden", {}, "Curves"), this.chips));
+    this.#plot();
+  }
+
+  #plot() {
+    const { profile } = this.result;
+    this.plot?.destroy();
+    fill(this.holder);
+    const there = SERIES.filter(([name]) => profile[name] && this.shown.has(name));
+    const scales = [...new Set(there.map((row) => row[3]))];
+    const axis = { stroke: colour("ink-2"), grid: { stroke: colour("ground-3"), width: 1 }, ticks: { stroke: colour("line"), width: 1, size: 4 }, font: '11px system-ui, "DejaVu Sans", sans-serif' };
+    const units = { speed: "kn", waves: "m", power: "kW", fuel: "t/d", depth: "m" };
+    this.plot = new uPlot({
+      width: Math.max(200, this.holder.clientWidth - 8), height: Math.max(80, this.holder.clientHeight - 6), padding: [10, 8, 0, 0],
+      tzDate: (t) => uPlot.tzDate(new Date(t * 1000), "UTC"),
+      cursor: { y: false, points: { size: 6 }, drag: { x: false, y: false }, lock: false },
+      scales: { x: { time: true }, ...Object.fromEntries(scales.map((name) => [name, { range: (_, low, high) => uPlot.rangeNum(name === "depth" ? low : Math.min(0, low ?? 0), high ?? 1, { min: { pad: 0 }, max: { pad: 0.12, soft: 1 } }) }])) },
+      axes: [
+        { ...axis, size: 32, values: (u, ticks) => ticks.map((t, i) => { const d = new Date(t * 1000); const hour = d.getUTCHours(); return hour && i ? `${String(hour).padStart(2, "0")}:${String(d.getUTCMinutes()).padStart(2, "0")}` : time(t).split(" ").slice(0, 2).join(" "); }) },
+        ...scales.slice(0, 3).map((name, i) => ({ ...axis, scale: name, side: i ? 1 : 3, size: 46, label: units[name], labelSize: 16, labelFont: axis.font, labelGap: 0, grid: { ...axis.grid, show: i === 0 } })),
+      ],
+      series: [{}, ...there.map(([name, text, , scale, paint]) => ({ label: text, scale, stroke: getComputedStyle(document.documentElement).getPropertyValue(paint), width: 1.8, spanGaps: false }))],
+      legend: { show: false },
+      hooks: { setCursor: [(u) => { if (this.inPlot && u.cursor.idx !== null && u.cursor.left >= 0) selection.at(profile.time[u.cursor.idx]); }] },
+    }, [profile.time, ...there.map(([name]) => profile[name])], this.holder);
+    this.plot.over.addEventListener("pointerenter", () => { this.inPlot = true; });
+    this.plot.over.addEventListener("pointerleave", () => { this.inPlot = false; this.#moved(); });
+    this.#moved();
+  }
+
+  #values(i) {
+    for (const chip of this.chips || []) {
+      const row = SERIES.find(([name]) => name === chip.name);
+      const value = this.result.profile[chip.name]?.[i];
+      chip.value.textContent = known(value) ? number(value, row[5]) : "unknown";
+    }
+  }
+
+  #resize() {
+    if (this.plot && this.holder) this.plot.setSize({ width: Math.max(200, this.holder.clientWidth - 8), height: Math.max(80, this.holder.clientHeight - 6) });
+    if (this.front) this.front.draw();
+  }
+
+  // Front
+
+  #showFront() {
+    this.front = new FrontDiagram(this.result.plan);
+    const facts = h("div.aside");
+    this.front.facts = facts;
+    fill(this.sheet, this.front.element, facts);
+    this.front.draw();
+  }
+
+  // Legs
+
+  #showLegs() {
+    const rows = this.result.waypoints;
+    const cells = [["Time", "time", (w) => time(seconds(w.time)), true], ["Position", "", (w) => plainPosition(w.lat, w.lon), true], ["Course", "", (w) => bearing(w.course_deg)], ["Ordered", "kn", (w) => number(w.ordered_speed_kn, 1)], ["Over ground", "kn", (w) => number(w.speed_over_ground_kn, 1)], ["Distance", "nm", (w) => number(w.distance_nm, 1)], ["Wait", "", (w) => (w.waiting_h > 0 ? duration(w.waiting_h) : "")], ["Waves", "m", (w) => number(w.wave_height_m, 1)], ["Wind", "kn from", (w) => (known(w.wind_speed_kn) ? `${number(w.wind_speed_kn)} ${bearing(w.wind_from_deg)}` : "unknown")], ["UKC", "m", (w) => number(w.ukc_m, 1)], ["Fuel", "t", (w) => number(w.fuel_t, 1)]]
+      .filter(([name]) => name !== "Wait" || rows.some((w) => w.waiting_h > 0)).filter(([name]) => name !== "UKC" || rows.some((w) => known(w.ukc_m)));
+    this.rows = rows.map((w, i) => h("tr", { onclick: () => selection.at(seconds(w.time)), "data-time": seconds(w.time) }, h("td", {}, String(i + 1)), cells.map(([, , text, left]) => h(left ? "td.text" : "td", {}, text(w)))));
+    fill(this.sheet, h("div.table", { tabindex: 0 }, h("table", {}, h("caption.hidden", {}, "Waypoints of the chosen route, times in UTC"), h("thead", {}, h("tr", {}, h("th", {}, "#"), cells.map(([name, unitText, , left]) => h(left ? "th.text" : "th", { scope: "col" }, name, unitText && unitText !== "time" ? h("span.unit", {}, ` ${unitText}`) : null)))), h("tbody", {}, this.rows))));
+  }
+
+  #currentLeg(t) {
+    let last = null;
+    for (const row of this.rows || []) { row.removeAttribute("aria-current"); if (Number(row.dataset.time) <= t + 1) last = row; }
+    last?.setAttribute("aria-current", "true");
+  }
+}
+
+export function indexAt(times, t) {
+  let low = 0, high = times.length - 1;
+  while (high - low > 1) { const middle = (low + high) >> 1; times[middle] <= t ? (low = middle) : (high = middle); }
+  return t - times[low] < times[high] - t ? low : high;
+}
+
+export function placeAt(profile, t) {
+  const { time: times, lat, lon, course_deg: course } = profile;
+  let low = 0, high = times.length - 1;
+  if (t <= times[0]) high = 1;
+  else if (t >= times[high]) low = high - 1;
+  else while (high - low > 1) { const middle = (low + high) >> 1; times[middle] <= t ? (low = middle) : (high = middle); }
+  const f = Math.max(0, Math.min(1, (t - times[low]) / Math.max(1e-9, times[high] - times[low])));
+  const turn = ((lon[high] - lon[low] + 540) % 360) - 180;
+  return { lat: lat[low] + f * (lat[high] - lat[low]), lon: lon[low] + f * turn, course: course?.[low] ?? 0, index: low };
+}

@@ -1,0 +1,78 @@
+// Numbers, times and positions as text. Unknown is "unknown", never zero.
+
+const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
+const two = (n) => String(n).padStart(2, "0");
+
+export const known = (value) => value !== null && value !== undefined && Number.isFinite(value);
+
+export function number(value, decimals = 0) {
+  if (!known(value)) return "unknown";
+  return value.toLocaleString("en-GB", { minimumFractionDigits: decimals, maximumFractionDigits: decimals });
+}
+
+export function seconds(text) {
+  const value = Date.parse(text);
+  return Number.isFinite(value) ? value / 1000 : null;
+}
+
+export function time(s, withYear = false) {
+  if (!known(s)) return "unknown";
+  const d = new Date(s * 1000);
+  const year = withYear ? ` ${d.getUTCFullYear()}` : "";
+  return `${d.getUTCDate()} ${MONTHS[d.getUTCMonth()]}${year} ${two(d.getUTCHours())}:${two(d.getUTCMinutes())}`;
+}
+
+export function duration(hours) {
+  if (!known(hours)) return "unknown";
+  const minutes = Math.round(hours * 60);
+  if (minutes < 60) return `${minutes} min`;
+  const d = Math.floor(minutes / 1440), h = Math.floor((minutes % 1440) / 60), m = minutes % 60;
+  return d ? `${d} d ${two(h)} h` : `${h} h ${two(m)} min`;
+}
+
+export function signedDuration(hours) {
+  if (!known(hours)) return "";
+  return `${hours < 0 ? "−" : "+"}${duration(Math.abs(hours))}`;
+}
+
+export function signed(value, decimals = 1) {
+  if (!known(value)) return "";
+  return `${value < 0 ? "−" : "+"}${number(Math.abs(value), decimals)}`;
+}
+
+function angle(value, digits, plus, minus) {
+  const size = Math.abs(value);
+  let degrees = Math.floor(size), minutes = (size - degrees) * 60;
+  if (minutes >= 59.95) { degrees += 1; minutes = 0; }
+  return `${String(degrees).padStart(digits, "0")}° ${minutes.toFixed(1).padStart(4, "0")}′ ${value < 0 ? minus : plus}`;
+}
+
+export function position(lat, lon) {
+  const turned = ((((lon + 180) % 360) + 360) % 360) - 180;
+  return `${angle(lat, 2, "N", "S")}  ${angle(turned, 3, "E", "W")}`;
+}
+
+export function plainPosition(lat, lon) {
+  const turned = ((((lon + 180) % 360) + 360) % 360) - 180;
+  return `${Math.abs(lat).toFixed(4)}${lat < 0 ? "S" : "N"} ${Math.abs(turned).toFixed(4)}${turned < 0 ? "W" : "E"}`;
+}
+
+export const bearing = (degrees) => (known(degrees) ? `${String(Math.round(degrees) % 360).padStart(3, "0")}°` : "unknown");
+
+export function inputTime(s) {
+  return new Date(s * 1000).toISOString().slice(0, 16);
+}
+
+export function unwrapped(lons) {
+  const found = [];
+  let turn = 0;
+  lons.forEach((lon, i) => {
+    if (i) {
+      const step = lon + turn - found[i - 1];
+      if (step > 180) turn -= 360;
+      else if (step < -180) turn += 360;
+    }
+    found.push(lon + turn);
+  });
+  return found;
+}

@@ -1,0 +1,126 @@
+// The Pareto front of time against fuel or cost: hover, drag or arrow keys choose a route.
+
+import { fill, h } from "./elements.js";
+import { duration, known, number, signed, signedDuration } from "./format.js";
+import { selection } from "./selection.js";
+
+const SVG = "http://www.w3.org/2000/svg";
+
+function s(name, attributes = {}, text = null) {
+  const element = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) if (value !== null) element.setAttribute(key, value);
+  if (text !== null) element.textContent = text;
+  return element;
+}
+
+function ticks(low, high, count) {
+  const raw = (high - low) / count, size = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].map((m) => m * size).find((value) => value >= raw);
+  const found = [];
+  for (let v = Math.ceil(low / step) * step; v <= high + 1e-9; v += step) found.push(Number(v.toPrecision(12)));
+  return found;
+}
+
+export class FrontDiagram {
+  constructor(plan) {
+    this.plan = plan;
+    const { front } = plan;
+    this.column = Object.keys(front.points[0]).find((name) => name === `${front.criterion}_${front.unit.toLowerCase()}`);
+    this.points = front.points.map((row, i) => ({ ...row, i, x: row.time_h, y: row[this.column] })).filter((row) => known(row.x) && known(row.y));
+    this.lower = front.lower.map((row) => [row.time_h, row[this.column]]).filter((row) => row.every(known));
+    this.base = (plan.comparison || []).map((row) => ({ x: row.time_h, y: row.value, speed: row.speed_kn, feasible: row.feasible })).filter((row) => known(row.x) && known(row.y));
+    this.element = h("div.front");
+    this.svg = s("svg", { role: "group", "aria-label": `Front of time against ${front.criterion}. Arrow keys move along it.` });
+    this.element.append(this.svg);
+    this.svg.addEventListener("pointermove", (event) => this.#drag(event));
+    this.svg.addEventListener("pointerdown", (event) => { this.dragging = true; this.#drag(event); });
+    addEventListener("pointerup", () => { this.dragging = false; });
+    for (const kind of ["route", "hover"]) selection.addEventListener(kind, () => this.svg.isConnected && this.mark());
+  }
+
+  draw() {
+    const width = this.element.clientWidth, height = this.element.clientHeight;
+    if (width < 50 || height < 50 || !this.points.length) return;
+    const { front } = this.plan;
+    const left = 64, right = 16, top = 12, bottom = 34;
+    const xs = this.points.map((p) => p.x), ys = [...this.points.map((p) => p.y)];
+    const low = this.lower.filter(([x]) => x <= Math.max(...xs) * 1.01).map(([, y]) => y);
+    const pad = (a, b) => Math.max(1e-9, b - a) * 0.06;
+    const x0 = Math.min(...xs), x1 = Math.max(...xs), y0 = Math.min(...ys, ...low), y1 = Math.max(...ys);
+    const [xa, xb, ya, yb] = [x0 - pad(x0, x1), x1 + pad(x0, x1), y0 - pad(y0, y1), y1 + pad(y0, y1)];
+    this.px = (x) => left + ((x - xa) / (xb - xa)) * (width - left - right);
+    this.py = (y) => height - bottom - ((y - ya) / (yb - ya)) * (height - top - bottom);
+    this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    this.svg.replaceChildren();
+    const days = xb - xa > 60;
+    for (const x of ticks(days ? xa / 24 : xa, days ? xb / 24 : xb, Math.max(3, width / 110))) {
+      const at = this.px(days ? x * 24 : x);
+      this.svg.append(s("line", { class: "axis", x1: at, x2: at, y1: top, y2: height - bottom }), s("text", { x: at, y: height - bottom + 15, "text-anchor": "middle" }, `${Number(x.toFixed(2))} ${days ? "d" : "h"}`));
+    }
+    for (const y of ticks(ya, yb, Math.max(2, height / 46))) this.svg.append(s("line", { class: "axis", x1: left, x2: width - right, y1: this.py(y), y2: this.py(y) }), s("text", { x: left - 8, y: this.py(y) + 4, "text-anchor": "end" }, number(y, y1 - y0 < 5 ? 1 : 0)));
+    this.svg.append(s("text", { x: left - 8, y: 10, "text-anchor": "end" }, front.unit), s("text", { x: width - right, y: height - 4, "text-anchor": "end" }, "duration of the voyage"));
+    const inside = this.lower.filter(([x]) => x <= xb);
+    if (inside.length > 1) {
+      const step = inside.map(([x, y], k) => `${k ? `H${this.px(Math.max(x, xa))}V` : `M${this.px(Math.max(x, xa))} `}${this.py(Math.min(yb, Math.max(ya, y)))}`).join("") + `H${this.px(xb)}`;
+      this.svg.append(s("path", { class: "below", d: `${step}V${this.py(ya)}H${this.px(Math.max(inside[0][0], xa))}Z` }), s("path", { class: "lower", d: step }));
+    }
+    const order = this.points.slice().sort((a, b) => a.x - b.x);
+    this.svg.append(s("path", { class: "join", d: order.map((p, k) => `${k ? "L" : "M"}${this.px(p.x)} ${this.py(p.y)}`).join("") }));
+    for (const p of this.base) {
+      if (p.x < xa || p.x > xb || p.y < ya || p.y > yb) continue;
+      const dot = s("circle", { class: "base", cx: this.px(p.x), cy: this.py(p.y), r: 3.5 });
+      dot.append(s("title", {}, `Weather ignored, ${number(p.speed, 1)} kn all the way`));
+      this.svg.append(dot);
+    }
+    this.dots = order.map((p) => {
+      const dot = s("circle", { cx: this.px(p.x), cy: this.py(p.y), r: 5, tabindex: p.i === selection.route ? 0 : -1, role: "button", "aria-label": `Route ${p.i + 1}: ${duration(p.x)}, ${number(p.y, 1)} ${front.unit}` });
+      dot.addEventListener("click", () => selection.choose(p.i));
+      dot.addEventListener("pointerenter", () => selection.hover(p.i));
+      dot.addEventListener("pointerleave", () => selection.hover(null));
+      dot.addEventListener("keydown", (event) => this.#key(event, order));
+      dot.number = p.i;
+      this.svg.append(dot);
+      return dot;
+    });
+    this.mark();
+  }
+
+  mark() {
+    for (const dot of this.dots || []) {
+      const chosen = dot.number === selection.route;
+      dot.setAttribute("aria-pressed", String(chosen));
+      dot.setAttribute("r", chosen ? 7 : dot.number === selection.hovered ? 7 : 5);
+      dot.setAttribute("tabindex", chosen ? 0 : -1);
+    }
+    this.#facts();
+  }
+
+  #facts() {
+    if (!this.facts) return;
+    const p = this.points.find((one) => one.i === (selection.hovered ?? selection.route)) || this.points[0];
+    const fastest = this.points.reduce((a, b) => (b.x < a.x ? b : a));
+    const { unit: unitText, criterion } = this.plan.front;
+    fill(this.facts, h("p", {}, h("b", {}, `Route ${p.i + 1} of ${this.points.length}`)), h("p", {}, `${duration(p.x)}, ${number(p.y, p.y < 1000 ? 1 : 0)} ${unitText}`),
+      p === fastest ? h("p", {}, "The fastest of all.") : h("p", {}, `${signedDuration(p.x - fastest.x)} and ${signed(p.y - fastest.y, p.y < 1000 ? 1 : 0)} ${unitText} against the fastest.`),
+      known(p.gap) ? h("p", {}, `At its time no route of the network has a ${criterion} more than ${number(100 * p.gap, 1)} % lower.`) : null,
+      h("p", {}, "Grey: below the lower front. Rings: weather ignored, constant speed."));
+  }
+
+  #key(event, order) {
+    const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const at = order.findIndex((p) => p.i === selection.route);
+    selection.choose(order[Math.max(0, Math.min(order.length - 1, at + step))].i);
+    this.dots.find((dot) => dot.number === selection.route)?.focus();
+  }
+
+  #drag(event) {
+    if (!this.dragging || !this.px) return;
+    const box = this.svg.getBoundingClientRect();
+    const x = event.clientX - box.left, y = event.clientY - box.top;
+    const near = this.points.reduce((a, b) => (Math.hypot(this.px(b.x) - x, this.py(b.y) - y) < Math.hypot(this.px(a.x) - x, this.py(a.y) - y) ? b : a));
+    selection.choose(near.i);
+  }
+}

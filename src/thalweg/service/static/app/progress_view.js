@@ -1,0 +1,69 @@
+// The progress of a job: what is done now, the best route so far, and stopping it.
+
+import { follow, remove } from "./api.js";
+import { announce, errorBox, fill, h, unit } from "./elements.js";
+import { duration, known, number, time, seconds } from "./format.js";
+
+export class ProgressView {
+  constructor(job, handlers) {
+    this.job = job;
+    this.handlers = handlers;
+    this.steps = h("ol.steps");
+    this.best = h("div");
+    this.state = h("p.lead", { role: "status" }, "Waiting for its turn.");
+    this.problem = h("div");
+    this.cancel = h("button.quiet", { type: "button", onclick: () => this.stop() }, "Stop and keep the best so far");
+    this.element = [h("div.scroll", {}, h("h1", {}, job.title || "Plan"), this.state, this.steps, this.best, this.problem), h("div.foot", {}, this.cancel, h("button.quiet", { type: "button", onclick: handlers.leave }, "Leave it running"))];
+    this.close = follow(job.id, { state: (data) => this.#state(data), stage: (data) => this.#stage(data), route: (data) => this.#route(data), waiting: () => { this.state.textContent = "The service does not answer; the job goes on when it runs again."; }, open: () => this.#say() });
+  }
+
+  #say() {
+    this.state.textContent = { queued: "Waiting for its turn.", running: "Planning." }[this.now] || this.state.textContent;
+  }
+
+  #state(data) {
+    this.now = data.state;
+    if (data.state === "queued" && data.why) {
+      fill(this.steps);
+      this.state.textContent = `Started again: ${data.why}.`;
+      return;
+    }
+    if (data.state === "queued" || data.state === "running") { this.#say(); return; }
+    this.steps.querySelector(".now")?.classList.remove("now");
+    this.close();
+    announce(`The job is ${data.state}.`);
+    this.handlers.ended(data);
+  }
+
+  #stage(data) {
+    const before = this.steps.querySelector(".now");
+    if (before) {
+      before.classList.remove("now");
+      before.lastChild.textContent = `${number(Math.max(0, data.after_s - before.began), 1)} s`;
+    }
+    const words = data.text.replace(/\d{4}-\d\d-\d\dT[\d:]+Z/g, (text) => `${time(seconds(text))} UTC`);
+    const row = h("li.now", {}, h("span", {}, words[0].toUpperCase() + words.slice(1)), h("span.unit", {}));
+    row.began = data.after_s;
+    this.steps.append(row);
+    row.scrollIntoView({ block: "nearest" });
+    announce(data.text);
+  }
+
+  #route({ route, final }) {
+    fill(this.best, h("h2.block", {}, final ? "Route found" : "First route: the fastest"), h("dl.cards", {},
+      h("div.card", {}, h("dt", {}, "Time"), h("dd", {}, duration(route.time_h))),
+      h("div.card", {}, h("dt", {}, "Distance"), h("dd", {}, number(route.distance_nm, 1), unit("nm"))),
+      h("div.card", {}, h("dt", {}, "Fuel"), h("dd", {}, known(route.fuel_t) ? [number(route.fuel_t, 1), unit("t")] : "unknown")),
+      h("div.card", {}, h("dt", {}, "Cost"), h("dd", {}, known(route.cost) ? [number(route.cost), unit(route.currency)] : "unknown"))));
+    this.handlers.route(route.points);
+  }
+
+  async stop() {
+    this.cancel.textContent = "Stopping …";
+    try {
+      await remove(`/plans/${this.job.id}`);
+    } catch (problem) {
+      fill(this.problem, errorBox(problem));
+    }
+  }
+}

@@ -1,0 +1,121 @@
+// The result of a plan or an evaluation: key figures, proof, warnings, exports.
+
+import { fileAddress, get, resultAddress } from "./api.js";
+import { fill, h, unit } from "./elements.js";
+import { duration, known, number, plainPosition, seconds, signed, signedDuration, time } from "./format.js";
+import { selection } from "./selection.js";
+
+const OBJECTIVES = { time: "least time", distance: "shortest distance", fuel: "least fuel", energy: "least energy", cost: "least cost", co2: "least CO₂", front: "all trade-offs" };
+const REASONS = {
+  "nearer to land than the offing": "legs nearer to land than the offing", "no-go zone": "legs through closed areas", "outside the period of the data": "legs after the end of the data",
+  "wave height above the limit": "legs with waves above the limit", "wind speed above the limit": "legs with wind above the limit", "no data": "legs over water without data", land: "legs over land",
+};
+
+export async function loadResult(job) {
+  const raw = await get(`/plans/${job.id}/result`);
+  const plan = job.kind === "plan" ? raw : { routes: [raw], notes: raw.assumptions || [], rejections: {}, voyage: null, provenance: {} };
+  const optional = (part) => get(`/plans/${job.id}/${part}.json`).catch(() => null);
+  const parts = job.summary.parts || [];
+  const [isochrones, beside] = await Promise.all(["isochrones", "beside"].map((part) => (parts.includes(part) ? optional(part) : null)));
+  return { job, plan, isochrones, beside, front: plan.front || null, profiles: new Map() };
+}
+
+export async function profileOf(result, number_) {
+  if (!result.profiles.has(number_)) result.profiles.set(number_, await get(`/plans/${result.job.id}/profiles/${number_ + 1}`));
+  return result.profiles.get(number_);
+}
+
+export function costOf(route) {
+  return route[`cost_${(route.currency || "usd").toLowerCase()}`];
+}
+
+const worst = (profile, column) => { const values = (profile?.[column] || []).filter(known); return values.length ? Math.max(...values) : null; };
+
+export class ResultView {
+  constructor(result, handlers) {
+    this.result = result;
+    this.handlers = handlers;
+    this.body = h("div.scroll");
+    this.element = [this.body, h("div.foot", {}, h("button.primary", { type: "button", onclick: handlers.change }, "Change the voyage"), h("button.quiet", { type: "button", onclick: handlers.compare, title: "Compare (c)" }, "Compare"))];
+  }
+
+  show(profile) {
+    const { job, plan, beside } = this.result;
+    const route = plan.routes[selection.route];
+    const top = this.body.scrollTop;
+    const from = plan.provenance.from || job.title, to = plan.provenance.to;
+    fill(this.body,
+      h("h1", {}, to ? `${from} to ${to}` : job.title || "Route"),
+      h("p.lead", {}, `${plan.voyage ? OBJECTIVES[plan.objective] : "given route"} · ${job.request.ship} · leaves ${time(seconds(route.depart), true)} UTC`),
+      plan.cancelled ? h("p.note", {}, "Stopped: this is the best found so far.") : null,
+      this.#faults(route),
+      this.#cards(route, profile, beside),
+      plan.voyage ? this.#proof(plan) : null,
+      plan.routes.length > 1 ? this.#routes(plan) : null,
+      this.#notes(plan, route),
+      this.#exports(job, route));
+    this.body.scrollTop = top;
+  }
+
+  #faults(route) {
+    if (route.feasible) return null;
+    const rows = route.violations.slice(0, 6).map((one) => h("li", {}, `${one.reason} at ${plainPosition(one.lat, one.lon)}${one.time ? `, ${time(seconds(one.time))}` : ""}${known(one.value) && known(one.limit) ? `: ${number(one.value, 1)}, limit ${number(one.limit, 1)}` : ""}`));
+    return h("div.error", { role: "alert" }, h("b", {}, `This route breaks ${route.violations.length} limit${route.violations.length === 1 ? "" : "s"}.`), h("ul.list", {}, rows), h("span.remedy", {}, "The rings on the chart show where. A later departure or a lower speed may keep them."));
+  }
+
+  #cards(route, profile, beside) {
+    const card = (name, value, unitText, more) => h("div.card", {}, h("dt", {}, name), h("dd", {}, value, unitText && value !== "unknown" ? unit(unitText) : null), more ? h("small", {}, more) : null);
+    const than = (mine, other, text) => (known(mine) && known(other) && Math.abs(mine - other) > 1e-6 ? [h(`span.${mine < other ? "less" : "more"}`, {}, text(mine - other)), " against weather ignored"] : null);
+    const cost = costOf(route), other = beside ? costOf(beside) : null;
+    const waves = worst(profile, "wave_height_m"), wind = worst(profile, "wind_speed_kn");
+    const besideWaves = worst(beside?.profile, "wave_height_m");
+    const complete = beside && beside.feasible !== undefined && known(beside.time_h);
+    return h("dl.cards", {},
+      card("Time", duration(route.time_h), null, complete ? than(route.time_h, beside.time_h, signedDuration) : null),
+      card("Arrival", time(seconds(route.arrive)), "UTC", known(route.waiting_h) && route.waiting_h > 0 ? `waits ${duration(route.waiting_h)}` : null),
+      card("Fuel", number(route.fuel_t, 1), "t", complete ? than(route.fuel_t, beside.fuel_t, (d) => `${signed(d)} t`) : null),
+      card("Cost", number(cost), route.currency, complete ? than(cost, other, (d) => `${signed(d, 0)}`) : null),
+      card("Distance", number(route.distance_nm, 1), "nm", known(route.time_h) ? `mean ${number(route.distance_nm / route.time_h, 1)} kn` : null),
+      card("CO₂", number(route.co2_t, 0), "t"),
+      card("Highest waves", number(waves, 1), "m", known(besideWaves) && known(waves) ? `weather ignored: ${number(besideWaves, 1)} m` : known(waves) ? null : "no waves in the data"),
+      known(route.min_ukc_m) ? card("Least under-keel clearance", number(route.min_ukc_m, 1), "m") : card("Strongest wind", number(wind), "kn", known(wind) ? null : "no wind in the data"));
+  }
+
+  #proof(plan) {
+    const point = plan.front?.points[selection.route];
+    const gap = plan.front ? point?.gap : plan.gap;
+    const quality = this.result.job.summary.quality || "";
+    const said = plan.front ? (known(gap) ? `At most ${number(Math.ceil(1000 * gap) / 10, 1)} % above the lower front at its time` : "No bound is known for this route") : quality ? quality[0].toUpperCase() + quality.slice(1) : "No bound is known";
+    const bar = h("i");
+    bar.style.width = `${known(gap) ? Math.max(2, 100 * (1 - gap)) : 0}%`;
+    return h("div.proof", {}, h("b", {}, said), h("div.gauge", { role: "img", "aria-label": said }, bar),
+      h("details", {}, h("summary", {}, "How this is known"), h("ul.list", {},
+        known(plan.lower_bound) ? h("li", {}, `Lower bound of the network: ${number(plan.lower_bound, 1)} ${plan.front ? "" : plan.objective_unit}. ${plan.lower_bound_kind}.`) : null,
+        known(plan.lower_bound_certain) && !plan.front ? h("li", {}, `No ship of this speed can do better than ${number(plan.lower_bound_certain, 1)} ${plan.objective_unit}: the direct line at the greatest speed in the data.`) : null,
+        h("li", {}, "Every figure comes from sailing the route again in small steps."),
+        Object.entries(plan.rejections).map(([reason, count]) => h("li", {}, `${number(count)} ${REASONS[reason] || reason} were refused.`)))));
+  }
+
+  #routes(plan) {
+    const { front } = plan;
+    return h("div.block", {}, h("h2", {}, `${plan.routes.length} routes, fastest first`), h("ol.routes", {}, plan.routes.map((route, i) => h("li", {}, h("button", {
+      type: "button", "aria-pressed": String(i === selection.route), onclick: () => selection.choose(i), onpointerenter: () => selection.hover(i), onpointerleave: () => selection.hover(null),
+    }, h("span.swatch"), h("span", {}, duration(route.time_h), front && front.points[i]?.way !== "open sea" ? h("small.unit", {}, ` ${front.points[i]?.way}`) : null), h("span", {}, number(route.fuel_t, 1), unit("t")), h("span", {}, known(costOf(route)) ? [number(costOf(route)), unit(route.currency)] : ""))))));
+  }
+
+  #notes(plan, route) {
+    const notes = [...new Set([...plan.notes, ...(route.assumptions || [])])];
+    if (!notes.length) return null;
+    return h("div.block.plain", {}, h("h2", {}, "What was assumed, and warnings"), h("ul.list", {}, notes.slice(0, 3).map((text) => h("li", {}, text))), notes.length > 3 ? h("details", {}, h("summary", {}, `${notes.length - 3} more`), h("ul.list", {}, notes.slice(3).map((text) => h("li", {}, text)))) : null);
+  }
+
+  #exports(job, route) {
+    const number_ = selection.route + 1;
+    return h("div.block", {}, h("h2", {}, "Take it along"), h("div.exports", {},
+      ["rtz", "gpx", "geojson", "csv"].map((form) => h("a.quiet.small", { href: fileAddress(job.id, number_, form), download: "" }, { rtz: "RTZ", gpx: "GPX", geojson: "GeoJSON", csv: "CSV" }[form])),
+      job.kind === "plan" ? h("a.quiet.small", { href: resultAddress(job.id), download: "plan.json" }, "plan.json") : null,
+      h("button.quiet.small", { type: "button", onclick: () => print() }, "Print a brief"),
+      h("button.quiet.small", { type: "button", onclick: this.handlers.link }, "Copy link")),
+    h("p.facts", {}, `Route ${number_}. Check it against official charts and notices before use.`));
+  }
+}

@@ -1,0 +1,218 @@
+"""Jobs of the service: results as of the library, progress, cancelling, kills."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import time
+from typing import Any
+
+import pytest
+
+from tests.service.conftest import SHORT, ended
+
+pytest.importorskip("fastapi", reason='the extra "serve" is not installed')
+pytestmark = pytest.mark.slow
+
+CROSSING: dict[str, Any] = {
+    "voyage": {
+        "start": "47.0N 20.0W",
+        "goal": "47.0N 6.0W",
+        "depart": "1998-08-31T12:00Z",
+        "objective": "front",
+    },
+    "ship": "handysize-bulker",
+    "seas": ["storm"],
+    "coast": "c",
+}
+
+
+@pytest.fixture(scope="module")
+def done(client):
+    answer = client.post("/api/v1/plans", json=SHORT, headers={"Idempotency-Key": "one"})
+    assert answer.status_code == 202
+    job = ended(client.get, answer.json()["id"])
+    assert job["state"] == "done", job["problem"]
+    return job
+
+
+def test_the_result_is_the_plan_of_the_library(client, done):
+    from thalweg import Chart, Sea, Ship, Voyage, plan
+
+    result = client.get(f"/api/v1/plans/{done['id']}/result").json()
+    found = plan(
+        Voyage.from_dict(SHORT["voyage"]),
+        ship=Ship.load("handysize-bulker"),
+        sea=Sea.calm(),
+        chart=Chart.gshhg("c"),
+        resolution=4.0 * 1852.0,
+    )
+    assert result == json.loads(found.to_json())
+
+
+def test_the_same_key_is_the_same_job(client, done):
+    again = client.post("/api/v1/plans", json=SHORT, headers={"Idempotency-Key": "one"})
+    assert again.status_code == 202 and again.json()["id"] == done["id"]
+    other = {**SHORT, "title": "another"}
+    refused = client.post("/api/v1/plans", json=other, headers={"Idempotency-Key": "one"})
+    assert refused.status_code == 409
+
+
+def events_of(text: str) -> list[tuple[int, str, dict[str, Any]]]:
+    found = []
+    for block in text.strip().split("\n\n"):
+        rows = dict(line.split(": ", 1) for line in block.split("\n") if not line.startswith(":"))
+        found.append((int(rows["id"]), rows["event"], json.loads(rows["data"])))
+    return found
+
+
+def test_events_resume_after_the_last_one(client, done):
+    path = f"/api/v1/plans/{done['id']}/events"
+    every = events_of(client.get(path).text)
+    assert [n for n, _, _ in every] == list(range(1, len(every) + 1))
+    assert [data["state"] for _, kind, data in every if kind == "state"] == [
+        "queued",
+        "running",
+        "done",
+    ]
+    assert any(kind == "stage" and data["text"] == "searching" for _, kind, data in every)
+    rest = events_of(client.get(path, headers={"Last-Event-ID": "3"}).text)
+    assert rest == every[3:]
+
+
+def test_files_and_profile_of_a_route(client, done):
+    base = f"/api/v1/plans/{done['id']}"
+    assert client.get(f"{base}/routes/1.rtz").text.startswith("<?xml")
+    track = client.get(f"{base}/routes/1.geojson").json()
+    assert track["type"] == "FeatureCollection"
+    profile = client.get(f"{base}/profiles/1").json()
+    columns = {len(values) for values in profile.values()}
+    assert len(columns) == 1
+    assert profile["lat"][0] == pytest.approx(47.0, abs=1e-4)
+    assert profile["time"] == sorted(profile["time"])
+    assert client.get(f"{base}/routes/2.rtz").status_code == 404
+
+
+def test_an_exported_route_is_evaluated_and_compared(client, done):
+    rtz = client.get(f"/api/v1/plans/{done['id']}/routes/1.rtz").content
+    route = client.post("/api/v1/routes", files={"file": ("r.rtz", rtz, "application/xml")}).json()
+    given = {name: SHORT[name] for name in ("ship", "seas", "coast")}
+    started = client.post("/api/v1/evaluate", json={**given, "route": route["id"]}).json()
+    job = ended(client.get, started["id"])
+    assert job["state"] == "done", job["problem"]
+    body = {"routes": [{"job": done["id"]}, {"job": job["id"]}]}
+    rows = client.post("/api/v1/compare", json=body).json()["routes"]
+    assert rows[1]["time_h"] == pytest.approx(rows[0]["time_h"], rel=1e-3)
+    assert rows[1]["difference"]["fuel_t"] == pytest.approx(rows[1]["fuel_t"] - rows[0]["fuel_t"])
+
+
+def test_a_voyage_without_a_route_fails_with_its_reasons(client):
+    areas = {
+        "type": "Feature",
+        "properties": {"kind": "no-go"},
+        "geometry": {
+            "type": "Polygon",
+            "coordinates": [[[-6, 46.9], [-4, 46.9], [-4, 47.1], [-6, 47.1], [-6, 46.9]]],
+        },
+    }
+    started = client.post("/api/v1/plans", json={**SHORT, "areas": areas}).json()
+    job = ended(client.get, started["id"])
+    assert job["state"] == "failed" and not job["result"]
+    assert job["problem"]["asked"] and job["problem"]["remedy"]
+    assert client.get(f"/api/v1/plans/{job['id']}/result").status_code == 409
+
+
+def test_a_waiting_job_is_cancelled_at_once_and_lists_are_paged(client, done):
+    first = client.post("/api/v1/plans", json=CROSSING).json()
+    second = client.post("/api/v1/plans", json=SHORT).json()
+    assert client.delete(f"/api/v1/plans/{second['id']}").json()["state"] == "cancelled"
+    client.delete(f"/api/v1/plans/{first['id']}")
+    assert ended(client.get, first["id"])["state"] == "cancelled"
+    page = client.get("/api/v1/plans", params={"size": 1}).json()
+    assert len(page["jobs"]) == 1
+    more = client.get("/api/v1/plans", params={"size": 1, "cursor": page["cursor"]}).json()
+    assert more["jobs"][0]["number"] < page["jobs"][0]["number"]
+
+
+def test_cancelling_keeps_the_route_found_so_far(client):
+    job = client.post("/api/v1/plans", json=CROSSING).json()["id"]
+    limit = time.monotonic() + 120
+    while time.monotonic() < limit:
+        rows = events_of(_events(client, job))
+        if any(kind == "route" for _, kind, _ in rows):
+            break
+        time.sleep(0.1)
+    client.delete(f"/api/v1/plans/{job}")
+    found = ended(client.get, job)
+    assert found["state"] == "cancelled" and found["result"]
+    result = client.get(f"/api/v1/plans/{job}/result").json()
+    assert result["cancelled"] is True and result["routes"][0]["feasible"]
+
+
+def _events(client, job: str) -> str:
+    store = client.app.state.service.store
+    rows = store.events(job)
+    return "\n\n".join(f"id: {e.n}\nevent: {e.kind}\ndata: {json.dumps(e.data)}" for e in rows)
+
+
+def test_a_queue_that_is_full_says_so(tmp_path):
+    from thalweg.service.jobs.job_store import JobStore
+    from thalweg.service.problem_details import ServiceError
+
+    store = JobStore(tmp_path / "jobs.sqlite")
+    for name in "ab":
+        store.add(name, "plan", {}, key=None, queue=2)
+    with pytest.raises(ServiceError) as refused:
+        store.add("c", "plan", {}, key=None, queue=2)
+    assert refused.value.status == 429
+    store.close()
+
+
+def test_a_job_survives_a_kill_of_its_process_and_of_the_service(server):
+    started = server.http.post("/api/v1/plans", json=CROSSING).json()["id"]
+    waiting = server.http.post("/api/v1/plans", json=SHORT).json()["id"]
+    _until_running(server, started)
+    os.kill(_working_child(server), signal.SIGKILL)
+    limit = time.monotonic() + 30
+    while server.http.get(f"/api/v1/plans/{started}").json()["attempt"] < 2:
+        assert time.monotonic() < limit
+        time.sleep(0.05)
+    server.kill()
+    server.start()
+    assert server.http.get(f"/api/v1/plans/{waiting}").json()["state"] == "queued"
+    server.http.delete(f"/api/v1/plans/{started}")
+    assert ended(server.http.get, started)["state"] == "cancelled"
+    short = ended(server.http.get, waiting)
+    assert short["state"] == "done" and short["attempt"] == 1
+    kinds = events_of(server.http.get(f"/api/v1/plans/{started}/events").text)
+    assert [n for n, _, _ in kinds] == list(range(1, len(kinds) + 1))
+    left = [path.name for path in (server.folder / "results").iterdir()]
+    assert all((server.folder / "results" / name / "end.json").exists() for name in left)
+
+
+def _until_running(server, job: str) -> None:
+    limit = time.monotonic() + 60
+    while server.http.get(f"/api/v1/plans/{job}").json()["state"] != "running":
+        assert time.monotonic() < limit
+        time.sleep(0.05)
+
+
+def _working_child(server) -> int:
+    """Return the child that has done most work: the other one waits."""
+
+    def worked(pid: int) -> int:
+        with open(f"/proc/{pid}/stat") as stat:
+            fields = stat.read().rpartition(")")[2].split()
+        return int(fields[11]) + int(fields[12])
+
+    time.sleep(0.5)
+    return min(server.children())  # the first that was started took the first job
+
+
+def test_a_second_service_on_the_same_data_is_refused(client):
+    from thalweg.core.errors import InputError
+    from thalweg.service.application import create_application
+
+    with pytest.raises(InputError, match="Another service"):
+        create_application(client.app.state.service.settings)

@@ -1,0 +1,233 @@
+"""Requests of the service: access, errors at their field, catalogue, fields, coast, routes."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import math
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.service.conftest import SHORT, TOKEN
+
+pytest.importorskip("fastapi", reason='the extra "serve" is not installed')
+
+
+def problem(answer: Any, status: int) -> dict[str, Any]:
+    assert answer.status_code == status, answer.text
+    assert answer.headers["content-type"].startswith("application/problem+json")
+    found: dict[str, Any] = answer.json()
+    assert found["status"] == status and found["asked"]
+    return found
+
+
+def test_a_request_without_the_token_is_refused(client):
+    found = problem(client.get("/api/v1/health", headers={"Authorization": "Bearer wrong"}), 401)
+    assert "token" in found["asked"] and found["remedy"]
+    assert client.get("/static/app/main.js", headers={"Authorization": ""}).status_code == 401
+
+
+def test_the_first_page_turns_the_token_into_a_strict_cookie(client):
+    plain = {"Authorization": ""}
+    assert client.get("/", headers=plain).status_code == 401
+    wrong = client.get("/?token=wrong", headers=plain, follow_redirects=False)
+    assert wrong.status_code == 401
+    right = client.get(f"/?token={TOKEN}", headers=plain, follow_redirects=False)
+    assert right.status_code == 303 and right.headers["location"] == "/"
+    cookie = right.headers["set-cookie"]
+    assert "HttpOnly" in cookie and "SameSite=strict" in cookie
+    client.cookies.clear()
+
+
+def test_another_host_or_origin_is_refused(client):
+    problem(client.get("/api/v1/health", headers={"Host": "evil.example:8765"}), 403)
+    problem(client.get("/api/v1/health", headers={"Origin": "http://evil.example"}), 403)
+    own = client.get("/api/v1/health", headers={"Origin": "http://127.0.0.1:8765"})
+    assert own.status_code == 200
+
+
+def test_pages_load_nothing_from_other_sites(client):
+    page = client.get("/")
+    assert "default-src 'self'" in page.headers["content-security-policy"]
+    assert "unsafe" not in page.headers["content-security-policy"]
+    assert "http://" not in page.text and "https://" not in page.text
+
+
+def test_health_ships_and_ports(client):
+    assert client.get("/api/v1/health").json()["status"] == "ok"
+    ships = {ship["id"]: ship for ship in client.get("/api/v1/ships").json()}
+    assert ships["handysize-bulker"]["library"] is True
+    best = client.get("/api/v1/ports", params={"q": "rotter", "count": 1}).json()[0]
+    assert best["locode"] == "NLRTM"
+    near = client.get("/api/v1/ports", params={"near": "51.9,4.1", "count": 3}).json()
+    assert [p["distance_nm"] for p in near] == sorted(p["distance_nm"] for p in near)
+
+
+def test_a_place_is_shown_as_it_is_understood(client):
+    found = client.get("/api/v1/places", params={"text": "51 57.3N 004 02.1E"}).json()
+    assert found["lat"] == pytest.approx(51.955) and found["lon"] == pytest.approx(4.035)
+    unknown = problem(client.get("/api/v1/places", params={"text": "Rotterdamm"}), 422)
+    assert "Rotterdam" in unknown["possible"]
+
+
+@pytest.mark.parametrize(
+    ("change", "field", "word"),
+    [
+        ({"voyage": {**SHORT["voyage"], "start": "Nowhere at all"}}, "start", "port"),
+        ({"voyage": {**SHORT["voyage"], "goal": "Rotterdamm"}}, "goal", "port"),
+        ({"voyage": {**SHORT["voyage"], "speed_kn": -3}}, "speed_kn", "range"),
+        ({"ship": "titanic"}, "ship", "titanic"),
+        ({"seas": ["0123456789abcdef"]}, "seas", "sea"),
+        ({"seas": ["calm", "storm"]}, "seas", "calm"),
+        ({"seas": ["../../etc/passwd"]}, "seas.0", "pattern"),
+        ({"surprise": 1}, "surprise", "known"),
+    ],
+)
+def test_an_impossible_request_is_refused_at_its_field(client, change, field, word):
+    answer = client.post("/api/v1/plans", json={**SHORT, **change})
+    found = problem(answer, 404 if change.get("seas") == ["0123456789abcdef"] else 422)
+    assert found["field"] == field
+    assert word in found["asked"] + found["possible"]
+
+
+def test_unknown_jobs_and_paths_are_problems(client):
+    problem(client.get("/api/v1/plans/0123456789abcdef"), 404)
+    problem(client.get("/api/v1/plans/..%2f..%2fetc"), 404)
+    problem(client.get("/api/v1/nothing"), 404)
+    problem(client.put("/api/v1/plans"), 405)
+
+
+def test_a_body_above_the_limit_is_refused(client):
+    answer = client.post("/api/v1/plans", content=b"x" * 1_100_000)
+    assert problem(answer, 413)["possible"]
+
+
+def test_the_interface_is_described_with_an_example(client):
+    schema = client.get("/openapi.json").json()
+    assert set(schema["paths"]) >= {
+        "/api/v1/plans",
+        "/api/v1/plans/{job_id}/events",
+        "/api/v1/seas",
+        "/api/v1/evaluate",
+        "/api/v1/compare",
+    }
+    body = schema["paths"]["/api/v1/plans"]["post"]["requestBody"]["content"]["application/json"]
+    assert body["examples"] if "examples" in body else body["schema"]
+
+
+def test_a_frame_holds_the_field_of_the_sea(client):
+    from thalweg import Sea
+
+    query = {"variable": "waves", "time": "1998-09-03T00:00Z", "box": "30,60,-70,-10"}
+    answer = client.get("/api/v1/seas/storm/frames", params={**query, "nx": 31, "ny": 16})
+    data = answer.content
+    magic, nx, ny, fields, _, scale, south, north, west, east = struct.unpack_from(
+        "<4sHHHHf4f", data
+    )
+    assert (magic, nx, ny, fields) == (b"TWF1", 31, 16, 3)
+    assert (south, north, west, east) == (30.0, 60.0, -70.0, -10.0)
+    values = np.frombuffer(data, "<i2", offset=32).reshape(fields, ny, nx) * scale
+    low, high = (math.log(math.tan(math.pi / 4 + math.radians(lat) / 2)) for lat in (30.0, 60.0))
+    y = np.linspace(high, low, ny)[5]
+    lat = math.degrees(2 * math.atan(math.exp(y)) - math.pi / 2)
+    lon = np.linspace(-70.0, -10.0, nx)[7]
+    name = "sea_surface_wave_significant_height"
+    true = Sea.storm().sample([name], 904780800.0, lat, lon)[name]
+    assert values[0, 5, 7] == pytest.approx(float(true), abs=0.006)
+
+
+def test_unknown_values_of_a_frame_stay_unknown(client):
+    query = {"variable": "waves", "time": "1990-01-01T00:00Z", "box": "30,60,-70,-10"}
+    data = client.get("/api/v1/seas/storm/frames", params=query).content
+    assert (np.frombuffer(data, "<i2", offset=32) == -32768).all()
+
+
+def test_coast_cells_are_the_land_of_the_chart(client):
+    import shapely
+
+    from thalweg.chart import Chart
+
+    index = client.get("/api/v1/coast/c").json()
+    area = 0.0
+    for name in index["cells"]:
+        cell = client.get(f"/api/v1/coast/c/{name}.json").json()
+        column, row = (int(part) for part in name.split("_"))
+        side = index["side"]
+        west, south = -180 + column * side, -90 + row * side
+        box = shapely.box(west, south, west + side, south + side).buffer(0.03)
+        for rings in cell["land"]:
+            outer, *holes = (np.reshape(ring, (-1, 2)) for ring in rings)
+            polygon = shapely.Polygon(outer, holes)
+            assert box.contains(polygon)
+            area += polygon.area
+    whole = sum(p.area for p in Chart.gshhg("c").coastline.polygons(-90, 90, -180, 180))
+    assert area == pytest.approx(whole, rel=2e-3)
+
+
+def sea_file(folder: Path) -> Path:
+    import xarray as xr
+
+    lat, lon = np.arange(45.0, 50.1, 1.0), np.arange(-10.0, -1.9, 1.0)
+    time = np.array(["2026-01-01", "2026-01-05"], dtype="datetime64[ns]")
+    shape = (2, len(lat), len(lon))
+    waves = "sea_surface_wave_significant_height"
+    height = (("time", "lat", "lon"), np.full(shape, 2.5), {"units": "m", "standard_name": waves})
+    axes = {
+        "time": time,
+        "lat": ("lat", lat, {"units": "degrees_north"}),
+        "lon": ("lon", lon, {"units": "degrees_east"}),
+    }
+    one = xr.Dataset({"hs": height}, coords=axes)
+    path = folder / "waves.nc"
+    one.to_netcdf(path)
+    return path
+
+
+def test_an_uploaded_sea_is_inspected_and_kept_once(client, tmp_path):
+    data = sea_file(tmp_path).read_bytes()
+    first = client.post("/api/v1/seas", params={"name": "../waves.nc"}, content=data)
+    assert first.status_code == 201, first.text
+    found = first.json()
+    assert found["name"] == "waves.nc" and found["frames"] == ["waves"]
+    assert found["box"] == [45.0, 50.0, -10.0, -2.0] and found["start"].startswith("2026-01-01")
+    again = client.post("/api/v1/seas", params={"name": "waves.nc"}, content=data).json()
+    assert again["id"] == found["id"]
+    query = {"variable": "waves", "time": "2026-01-02T00:00Z", "box": "46,49,-9,-3"}
+    frame = client.get(f"/api/v1/seas/{found['id']}/frames", params=query).content
+    assert np.frombuffer(frame, "<i2", offset=32)[: 96 * 64].max() == 250
+    assert client.delete(f"/api/v1/seas/{found['id']}").status_code == 204
+    problem(client.get(f"/api/v1/seas/{found['id']}"), 404)
+
+
+def test_broken_uploads_are_refused_with_what_to_do(client, tmp_path):
+    broken = sea_file(tmp_path).read_bytes()[:2000]
+    found = problem(client.post("/api/v1/seas", params={"name": "a.nc"}, content=broken), 422)
+    assert found["remedy"] and "/tmp" not in json.dumps(found)
+    problem(client.post("/api/v1/seas", params={"name": "a.exe"}, content=b"x"), 415)
+    problem(client.post("/api/v1/seas", params={"name": "a.nc"}, content=b""), 422)
+    ship = {"file": ("ship.yaml", b"name: [", "text/yaml")}
+    problem(client.post("/api/v1/ships", files=ship), 422)
+
+
+def test_an_imported_route_has_the_waypoints_of_its_file(client):
+    text = b"lat,lon\n47.0,-5.0\n47.2,-5.1\n47.3,-5.3\n"
+    found = client.post("/api/v1/routes", files={"file": ("route.csv", text, "text/csv")}).json()
+    assert found["waypoints"] == [[47.0, -5.0], [47.2, -5.1], [47.3, -5.3]]
+    assert found["depart"] is None
+    packed = gzip.compress(text)
+    problem(client.post("/api/v1/routes", files={"file": ("r.gpx", packed, "text/xml")}), 422)
+
+
+def test_a_plan_of_a_ship_file_that_was_uploaded(client):
+    from importlib import resources
+
+    text = (resources.files("thalweg.ship") / "library" / "handysize-bulker.yaml").read_bytes()
+    ship = client.post("/api/v1/ships", files={"file": ("own.yaml", text, "text/yaml")}).json()
+    assert ship["name"].startswith("Handysize")
+    sheet = client.get(f"/api/v1/ships/{ship['id']}").json()
+    assert sheet["limits"]["wave_height_m"] == 8.0
+    assert sheet["limits"]["wind_speed_m_s"] is None
