@@ -61,7 +61,7 @@ def _ship_title(name: str) -> str:
 
 
 @catalogue.get("/ships/{ship_id}")
-def ship_sheet(state: State, ship_id: str) -> dict[str, Any]:
+def get_ship_sheet(state: State, ship_id: str) -> dict[str, Any]:
     """Return the performance sheet of a ship: power and fuel by speed in calm water, and limits."""
     name = ship_id if ship_id in state.library_ships() else str(state.ships.get(ship_id).path)
     sheet, _ = state.file_worker.do("ship_sheet", ship=name)

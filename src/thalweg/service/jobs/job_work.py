@@ -118,7 +118,7 @@ def _plan(
     beside = None if found.cancelled else _beside(found, world, request, stages)
     stages("writing the files")
     parts = write_plan_result(found, folder, beside)
-    summary = {**plan_summary(found, stages.seconds()), "parts": parts}
+    summary = {**job_summary(found, stages.seconds()), "parts": parts}
     return "cancelled" if found.cancelled else "done", summary
 
 
@@ -149,7 +149,7 @@ def _plan_first(
         note = "The job was stopped: this is the fastest route, the objective was not reached."
         found = replace(found, notes=(note, *found.notes), cancelled=True)
         parts = write_plan_result(found, make_folder(Path(order.folder) / FIRST_FOLDER), None)
-        summary = {**plan_summary(found, stages.seconds()), "parts": parts}
+        summary = {**job_summary(found, stages.seconds()), "parts": parts}
         messages.send(
             "route", {"route": first_look(found.best), "final": False, "summary": summary}
         )
@@ -230,7 +230,7 @@ def _write_json(path: Path, data: Mapping[str, Any] | None) -> None:
         write_text(path, json.dumps(data, allow_nan=False))
 
 
-def plan_summary(found: Plan, seconds: float) -> dict[str, Any]:
+def job_summary(found: Plan, seconds: float) -> dict[str, Any]:
     """Return the key figures of a plan for lists of jobs."""
     from thalweg.planning.report.plan_summary import quality_text
 
