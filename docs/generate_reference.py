@@ -80,7 +80,7 @@ MORE_NAMES: dict[str, tuple[str, ...]] = {
     ),
 }
 PACKAGES = ("sea", "ship", "chart", "network", "route", "search", "evolution", "planning")
-PAGES = (*PACKAGES, "operations", "forecasts", "core")
+PAGES = (*PACKAGES, "operations", "studies", "forecasts", "core")
 NOTE = "<!-- Written by docs/generate_reference.py (make docs). Change the docstrings instead. -->"
 WIDTH = 92
 

@@ -21,6 +21,7 @@ from thalweg.cli import (
     plan_command,
     project_command,
     ship_command,
+    study_command,
     tracks_command,
     waiting_command,
 )
@@ -40,6 +41,7 @@ _COMMANDS = (
     ship_command.add_command,
     tides_command.add_command,
     project_command.add_command,
+    study_command.add_command,
     waiting_command.add_command,
     tracks_command.add_command,
     serve_command.add_command,

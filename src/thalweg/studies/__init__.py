@@ -1,0 +1,20 @@
+"""Studies: many voyages over departures, ships, speeds, routes or samples, and their statistics.
+
+A `Study` is read from a file (`load_study`), run on one computer or a cluster (`run_study`), and
+summarised (`summarise_study`). Every voyage is a row; a study that was stopped goes on where it
+was.
+"""
+
+from thalweg.studies.study import Study, load_study
+from thalweg.studies.study_run import StudyProgress, run_study
+from thalweg.studies.study_summary import StudySummary, study_rows, summarise_study
+
+__all__ = [
+    "Study",
+    "StudyProgress",
+    "StudySummary",
+    "load_study",
+    "run_study",
+    "study_rows",
+    "summarise_study",
+]

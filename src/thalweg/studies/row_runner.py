@@ -1,0 +1,235 @@
+"""One row of a study: its inputs, opened once per process, and its result as plain data."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import thalweg
+from thalweg.chart import Chart
+from thalweg.core.errors import InputError, ThalwegError
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning import Plan, Voyage, plan
+from thalweg.route import Route, Track, evaluate, read_track
+from thalweg.sea import Sea
+from thalweg.ship import Ship
+from thalweg.studies.study import StudyRow, canonical_json
+
+#: Largest values over a route: column and sampled variables.
+_EXTREMES = {
+    "max_significant_wave_height_m": ("sea_surface_wave_significant_height",),
+    "max_wind_speed_ms": ("eastward_wind", "northward_wind"),
+    "max_current_ms": ("eastward_sea_water_velocity", "northward_sea_water_velocity"),
+}
+#: Entries of a voyage that do not change the route planned in calm weather.
+_OF_WEATHER = ("depart", "depart_window", "arrive", "arrive_by", "ensemble")
+_ANY_DATE = "2000-01-01T00:00Z"
+
+
+def run_rows(rows: Sequence[StudyRow], folder: str) -> list[dict[str, Any]]:
+    """Return the results of rows.
+
+    Parameters
+    ----------
+    rows : sequence of StudyRow
+        Best those that share ship, sea and places: these are opened once.
+    folder : str
+        Files are relative to it.
+
+    Returns
+    -------
+    list of dict
+        One per row, as `run_row`.
+    """
+    return [run_row(row, folder) for row in rows]
+
+
+def run_row(row: StudyRow, folder: str) -> dict[str, Any]:
+    """Return the result of one row as plain data.
+
+    Parameters
+    ----------
+    row : StudyRow
+    folder : str
+        Files are relative to it.
+
+    Returns
+    -------
+    dict
+        ``id``, the labels, the key figures of the route (None where unknown), ``refusal`` (the kind
+        of error, None for a route) with ``reason``, ``seconds`` and ``version``.
+    """
+    begin = time.perf_counter()
+    result: dict[str, Any] = {"id": row.id, **row.labels, "refusal": None, "reason": None}
+    try:
+        result |= _figures(row.request, Path(folder))
+    except ThalwegError as error:
+        result |= {"refusal": type(error).__name__, "reason": str(error)}
+    except (ArithmeticError, LookupError, TypeError, ValueError, AssertionError) as error:
+        result |= {"refusal": "InternalError", "reason": f"{type(error).__name__}: {error}"}
+    return result | {
+        "seconds": round(time.perf_counter() - begin, 4),
+        "version": thalweg.__version__,
+    }
+
+
+def _figures(request: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Return the key figures of the route of a request."""
+    ship = _ship(canonical_json([request.get("ship"), request.get("load_factor")]), str(folder))
+    sea = _sea(request, folder)
+    chart = _chart(str(request.get("coast", "i")))
+    voyage = request["voyage"]
+    if "track" in request:
+        path = folder / str(request["track"])
+        route = _evaluated(read_track(path), ship, sea, chart, voyage)
+        return _route_figures(route)
+    answer = _planned(voyage, ship, sea, chart, request)
+    figures = _route_figures(answer.best)
+    objective = answer.voyage.objective
+    figures |= {"objective": objective, "certified_gap": _certified_gap(answer)}
+    if answer.front is not None:
+        figures["front"] = canonical_json(
+            [[_known(route.time_h), _known(route.fuel_t)] for route in answer.routes]
+        )
+    if "weather_blind" in request.get("compare", ()):
+        figures |= _weather_blind(request, ship, sea, chart, folder)
+    return figures
+
+
+def _planned(
+    voyage: Mapping[str, Any], ship: Ship, sea: Sea, chart: Chart, request: Mapping[str, Any]
+) -> Plan:
+    resolution = request.get("resolution_nm")
+    return plan(
+        Voyage.from_dict(voyage),
+        ship=ship,
+        sea=sea,
+        chart=chart,
+        network=request.get("network", "auto"),
+        resolution=None if resolution is None else float(resolution) * NAUTICAL_MILE,
+    )
+
+
+def _certified_gap(answer: Plan) -> float | None:
+    """Return the excess over the lower bound that is certain, as a fraction."""
+    certain, value = answer.proof.certain, answer.objective_value
+    return _known((value - certain) / value) if value > 0.0 else None
+
+
+def _route_figures(route: Route) -> dict[str, Any]:
+    """Return the totals of a route and the worst weather on it."""
+    figures = {
+        key: value
+        for key, value in route.as_dict().items()
+        if isinstance(value, (int, float, str, bool)) or value is None
+    }
+    figures["first_violation"] = str(route.violations[0]) if route.violations else None
+    for column, variables in _EXTREMES.items():
+        parts = [route.samples[name] for name in variables if name in route.samples]
+        size = np.hypot(*parts) if len(parts) == 2 else parts[0] if parts else np.array([])
+        figures[column] = _known(float(size.max())) if size.size else None
+    return figures
+
+
+def _weather_blind(
+    request: Mapping[str, Any], ship: Ship, sea: Sea, chart: Chart, folder: Path
+) -> dict[str, Any]:
+    """Return time and fuel of the route planned in calm weather, sailed in the real weather."""
+    voyage = {key: value for key, value in request["voyage"].items() if key not in _OF_WEATHER}
+    key = canonical_json([voyage, {k: v for k, v in request.items() if k != "voyage"}])
+    track = _calm_track(key, str(folder))
+    blind = _evaluated(track, ship, sea, chart, request["voyage"])
+    return {
+        "blind_time_h": _known(blind.time_h),
+        "blind_fuel_t": _known(blind.fuel_t),
+        "blind_distance_nm": _known(blind.distance_nm),
+        "blind_feasible": blind.feasible,
+    }
+
+
+@lru_cache(maxsize=32)
+def _calm_track(key: str, folder: str) -> Track:
+    """Return the track planned in calm weather."""
+    import json
+
+    voyage, request = json.loads(key)
+    ship = _ship(canonical_json([request.get("ship"), request.get("load_factor")]), folder)
+    chart = _chart(str(request.get("coast", "i")))
+    answer = _planned({**voyage, "depart": _ANY_DATE}, ship, Sea.calm(), chart, request)
+    return answer.best.track
+
+
+def _evaluated(
+    track: Track, ship: Ship, sea: Sea, chart: Chart, voyage: Mapping[str, Any]
+) -> Route:
+    return evaluate(
+        track,
+        ship=ship,
+        sea=sea,
+        chart=chart,
+        depart=voyage.get("depart"),
+        min_ukc=voyage.get("min_ukc_m", 0.0),
+        speed_kn=voyage.get("speed_kn"),
+        strict=False,
+    )
+
+
+@lru_cache(maxsize=8)
+def _ship(key: str, folder: str) -> Ship:
+    import json
+
+    given, load_factor = json.loads(key)
+    if given is None:
+        raise InputError(
+            "The study names no ship.", "ship: is a name, a file or a mapping.", "Add it."
+        )
+    if isinstance(given, Mapping):
+        ship = Ship.from_dict(given, source="ship of the study")
+    else:
+        path = Path(folder) / str(given)
+        ship = Ship.load(path if path.is_file() else str(given))
+    return ship if load_factor is None else ship.with_load_factor(load_factor)
+
+
+def _sea(request: Mapping[str, Any], folder: Path) -> Sea:
+    parts = [request.get(key) for key in ("sea", "map", "fill")]
+    sea = _opened_sea(canonical_json(parts), str(folder))
+    member = request.get("member")
+    return sea if member is None else sea.member(int(member))
+
+
+@lru_cache(maxsize=4)
+def _opened_sea(key: str, folder: str) -> Sea:
+    """Return a sea; each process opens its files once."""
+    import json
+
+    given, mapping, fill = json.loads(key)
+    names = given if isinstance(given, list) else [given]
+    if not names or not all(isinstance(name, str) for name in names):
+        raise InputError(
+            "The study names no sea.",
+            "sea: is calm, storm, a file or a list of files.",
+            "Add it: Thalweg never assumes calm weather.",
+        )
+    if names == ["calm"]:
+        return Sea.calm()
+    layers = [Sea.storm()] if "storm" in names else []
+    files = [Path(folder) / name for name in names if name != "storm"]
+    if files:
+        layers.insert(0, Sea.open(*files, mapping=mapping))
+    sea = layers[0] if len(layers) == 1 else Sea.layered(*layers)
+    return sea if fill is None else sea.filled(**fill)
+
+
+@lru_cache(maxsize=4)
+def _chart(coast: str) -> Chart:
+    return Chart.open_water(-90.0, 90.0, -180.0, 180.0) if coast == "none" else Chart.gshhg(coast)
+
+
+def _known(value: float | None) -> float | None:
+    return None if value is None or not np.isfinite(value) else float(value)

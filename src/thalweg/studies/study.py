@@ -1,0 +1,402 @@
+"""`Study`: what is planned, over which axes and samples, and the rows that follow from it."""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import yaml
+
+from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.file_reading import read_text_file
+from thalweg.core.time import format_time, parse_time
+from thalweg.core.units import HOUR
+from thalweg.planning.voyage import Voyage
+
+#: Entries of a row beside those of a voyage.
+SURROUNDINGS: Final = (
+    "ship", "load_factor", "sea", "map", "fill", "member", "coast", "network", "resolution_nm",
+    "track",
+)  # fmt: skip
+_ENTRIES: Final = ("name", "voyage", "axes", "sample", "compare", *SURROUNDINGS)
+COMPARISONS: Final = ("weather_blind",)
+_MOST_ROWS: Final = 2_000_000
+_DISTRIBUTIONS: Final = {"uniform": 2, "normal": 2, "choice": None}
+
+
+@dataclass(frozen=True)
+class StudyRow:
+    """One voyage of a study.
+
+    Attributes
+    ----------
+    id : str
+        Hash of the request: the same voyage has the same id in every study.
+    request : mapping
+        ``voyage`` (the entries of a `Voyage`) and the entries of `SURROUNDINGS`; plain data.
+    labels : mapping
+        Value or name of each axis and sample, for tables.
+    """
+
+    id: str
+    request: Mapping[str, Any]
+    labels: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Study:
+    """Many voyages: one request, varied over axes and samples.
+
+    Parameters
+    ----------
+    name : str
+    base : mapping
+        Request that all rows share: ``voyage`` and the entries of `SURROUNDINGS`.
+    axes : mapping of str to sequence
+        Values of entries; the rows are all combinations. A value may be a mapping with ``name``
+        that sets several entries at once.
+    sample : mapping
+        ``count``, ``seed`` and, for each entry, a distribution: ``{uniform: [low, high]}``,
+        ``{normal: [mean, standard deviation]}`` or ``{choice: [values]}``. Every combination of the
+        axes gets ``count`` draws.
+    compare : sequence of str
+        ``weather_blind``: the route planned in calm weather, sailed in the real weather.
+    folder : Path
+        Files of the study are relative to it.
+
+    Raises
+    ------
+    InputError
+        If an entry is not known or not understood.
+    """
+
+    name: str
+    base: Mapping[str, Any]
+    axes: Mapping[str, Sequence[Any]] = field(default_factory=dict)
+    sample: Mapping[str, Any] = field(default_factory=dict)
+    compare: tuple[str, ...] = ()
+    folder: Path = Path()
+
+    def __post_init__(self) -> None:
+        for entry in (*self.axes, *(key for key in self.sample if key not in ("count", "seed"))):
+            for value in self.axes.get(entry, ()):
+                for key in value if isinstance(value, Mapping) else ():
+                    if key != "name":
+                        _check_entry(key)
+            named = all(isinstance(value, Mapping) for value in self.axes.get(entry, (None,)))
+            if not named:
+                _check_entry(entry)
+        for name in self.compare:
+            if name not in COMPARISONS:
+                raise unknown_name_error("comparison", name, COMPARISONS)
+        if self.size > _MOST_ROWS:
+            raise InputError(
+                f"The study has {self.size:,} voyages.",
+                f"At most {_MOST_ROWS:,} are run in one study.",
+                "Use fewer values, or several studies.",
+            )
+
+    @property
+    def size(self) -> int:
+        """Number of rows."""
+        return math.prod(len(values) for values in self.axes.values()) * self._draws
+
+    @property
+    def _draws(self) -> int:
+        return int(self.sample.get("count", 1))
+
+    def rows(self) -> Iterator[StudyRow]:
+        """Yield the rows: all combinations of the axes, each with all draws of the sample."""
+        draws = _draws(self.sample)
+        for values in itertools.product(*self.axes.values()):
+            for draw in draws:
+                chosen = dict(zip(self.axes, values)) | draw
+                yield _row(self.base, chosen, self.compare)
+
+    def chunks(self, rows: Sequence[StudyRow], length: int) -> list[list[StudyRow]]:
+        """Return rows in chunks that share ship, sea and places, in order of departure.
+
+        Parameters
+        ----------
+        rows : sequence of StudyRow
+        length : int
+            Most rows of a chunk.
+
+        Returns
+        -------
+        list of list of StudyRow
+        """
+        groups: dict[str, list[StudyRow]] = {}
+        for row in rows:
+            places = {key: row.request["voyage"].get(key) for key in ("start", "goal", "via")}
+            around = {key: row.request.get(key) for key in SURROUNDINGS}
+            groups.setdefault(canonical_json([places, around]), []).append(row)
+        chunks = []
+        for group in groups.values():
+            group.sort(key=lambda row: str(row.request["voyage"].get("depart", "")))
+            chunks += [group[k : k + length] for k in range(0, len(group), length)]
+        return chunks
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the study as plain data; `Study.from_dict` reads it."""
+        return {
+            "name": self.name,
+            **self.base,
+            "axes": {name: list(values) for name, values in self.axes.items()},
+            "sample": dict(self.sample),
+            "compare": list(self.compare),
+        }
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any], folder: Path = Path()) -> Study:
+        """Return the study that plain data describe.
+
+        Parameters
+        ----------
+        data : mapping
+            As in a study file.
+        folder : Path
+            Files of the study are relative to it.
+
+        Returns
+        -------
+        Study
+
+        Raises
+        ------
+        InputError
+            If an entry is not known or not understood.
+        """
+        if not isinstance(data, Mapping):
+            raise InputError(
+                "The study is not a mapping.",
+                f"It has the entries {', '.join(_ENTRIES)}.",
+                "See the example in the documentation.",
+            )
+        for key in data:
+            if key not in _ENTRIES:
+                raise unknown_name_error("entry of a study", str(key), _ENTRIES)
+        voyage = _plain(data.get("voyage", {}))
+        if not isinstance(voyage, dict) or (
+            not {"start", "goal"} & set(voyage) and "axes" not in data
+        ):
+            raise InputError(
+                "The study has no voyage.",
+                "voyage: holds start, goal and other entries of a voyage.",
+                "Add it.",
+                field="voyage",
+            )
+        for key in voyage:
+            _check_entry(str(key))
+        base = {"voyage": voyage}
+        base |= {key: _plain(data[key]) for key in SURROUNDINGS if key in data}
+        axes = data.get("axes") or {}
+        sample = data.get("sample") or {}
+        _check_mappings(axes, sample)
+        compare = data.get("compare") or ()
+        return cls(
+            str(data.get("name", "study")),
+            base,
+            {str(name): _values(str(name), values) for name, values in axes.items()},
+            _plain(sample),
+            (compare,) if isinstance(compare, str) else tuple(compare),
+            folder,
+        )
+
+
+def load_study(path: str | Path) -> Study:
+    """Return the study of a YAML file.
+
+    Parameters
+    ----------
+    path : path
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    InputError
+        If the file is missing, is not YAML, or has entries that are not understood.
+    """
+    text = read_text_file(path, "study")
+    try:
+        data = yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        raise InputError(
+            f"The study file {path} is not YAML: {str(error).splitlines()[0]}.",
+            "A study is a YAML mapping.",
+            "Correct the file.",
+        ) from error
+    return Study.from_dict(data, Path(path).resolve().parent)
+
+
+def canonical_json(value: Any) -> str:
+    """Return JSON that is the same for equal data.
+
+    Parameters
+    ----------
+    value : plain data
+
+    Returns
+    -------
+    str
+    """
+    return json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False)
+
+
+def _row(base: Mapping[str, Any], chosen: Mapping[str, Any], compare: Sequence[str]) -> StudyRow:
+    request: dict[str, Any] = {key: value for key, value in base.items() if key != "voyage"}
+    voyage = dict(base["voyage"])
+    labels: dict[str, Any] = {}
+    for name, value in chosen.items():
+        entries = {name: value}
+        labels[name] = value
+        if isinstance(value, Mapping):
+            entries = {key: part for key, part in value.items() if key != "name"}
+            labels[name] = value.get("name") or canonical_json(entries)
+        for key, part in entries.items():
+            (request if key in SURROUNDINGS else voyage)[key] = part
+    request["voyage"] = voyage
+    if compare:
+        request["compare"] = list(compare)
+    digest = hashlib.blake2b(canonical_json(request).encode(), digest_size=12).hexdigest()
+    return StudyRow(digest, request, labels)
+
+
+def _check_entry(name: str) -> None:
+    known = (*Voyage.__dataclass_fields__, *SURROUNDINGS)
+    if name not in known:
+        raise unknown_name_error("entry of a voyage", name, known)
+
+
+def _check_mappings(axes: Any, sample: Any) -> None:
+    for what, value in (("axes", axes), ("sample", sample)):
+        if not isinstance(value, Mapping):
+            raise InputError(
+                f"{what} is {value!r}.",
+                "It is a mapping of entries to their values.",
+                "Correct it.",
+                field=what,
+            )
+    for name, value in sample.items():
+        if name in ("count", "seed"):
+            whole = isinstance(value, int) and not isinstance(value, bool)
+            if not whole or value < (1 if name == "count" else 0):
+                raise InputError(
+                    f"{name} of the sample is {value!r}.", "It is a whole number.", "Correct it."
+                )
+        elif not _is_distribution(value):
+            raise InputError(
+                f"The distribution of {name} is {value!r}.",
+                "It is {uniform: [low, high]}, {normal: [mean, standard deviation]} or "
+                "{choice: [values]}.",
+                "Give one of these.",
+                field=name,
+            )
+
+
+def _is_distribution(value: Any) -> bool:
+    if not isinstance(value, Mapping) or len(value) != 1:
+        return False
+    ((kind, numbers),) = value.items()
+    if kind not in _DISTRIBUTIONS or not isinstance(numbers, list) or not numbers:
+        return False
+    return _DISTRIBUTIONS[kind] in (None, len(numbers))
+
+
+def _values(name: str, given: Any) -> list[Any]:
+    """Return the values of an axis: a list, or a range with from, to and step."""
+    if isinstance(given, Mapping) and {"from", "to"} <= set(given):
+        return _range(name, given)
+    values = given if isinstance(given, list) else [given]
+    if not values:
+        raise InputError(
+            f"The axis {name} has no values.",
+            "It is a list, or a range with from, to and step.",
+            "Add values.",
+            field=name,
+        )
+    return [_plain(value) for value in values]
+
+
+def _range(name: str, given: Mapping[str, Any]) -> list[Any]:
+    low, high = given["from"], given["to"]
+    if "step_h" in given:
+        first, last = parse_time(low), parse_time(high)
+        step = float(given["step_h"]) * HOUR
+        if not (step > 0.0 and last >= first):
+            raise _range_error(name, given)
+        count = _count(name, (last - first) / step)
+        return [format_time(first + k * step) for k in range(count)]
+    step = given.get("step", 1)
+    numbers = all(isinstance(value, (int, float)) for value in (low, high, step))
+    if not (numbers and step > 0 and high >= low):
+        raise _range_error(name, given)
+    count = _count(name, (high - low) / step)
+    return [low + k * step for k in range(count)]
+
+
+def _count(name: str, steps: float) -> int:
+    """Return the number of values of a range."""
+    if steps >= _MOST_ROWS:
+        raise InputError(
+            f"The range of {name} has {steps:,.0f} values.",
+            f"At most {_MOST_ROWS:,} voyages are run in one study.",
+            "Use a larger step.",
+            field=name,
+        )
+    return int(steps + 1e-9) + 1
+
+
+def _range_error(name: str, given: Mapping[str, Any]) -> InputError:
+    return InputError(
+        f"The range of {name} is {dict(given)!r}.",
+        "A range of times has from, to and step_h; a range of numbers from, to and step, with to "
+        "not below from.",
+        "Correct it.",
+        field=name,
+    )
+
+
+def _draws(sample: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return the draws of a sample; each entry has its own stream of random numbers."""
+    count = int(sample.get("count", 1))
+    columns: dict[str, list[Any]] = {}
+    for name, distribution in sample.items():
+        if name in ("count", "seed"):
+            continue
+        key = int.from_bytes(hashlib.blake2b(name.encode(), digest_size=8).digest(), "big")
+        generator = np.random.default_rng([int(sample.get("seed", 0)), key])
+        ((kind, numbers),) = distribution.items()
+        if kind == "choice":
+            picked = generator.integers(len(numbers), size=count)
+            columns[name] = [numbers[k] for k in picked]
+            continue
+        times = name in ("depart", "arrive", "arrive_by")
+        if times:
+            numbers = [parse_time(numbers[0]), parse_time(numbers[1])] if kind == "uniform" else [
+                parse_time(numbers[0]), float(numbers[1]) * HOUR
+            ]  # fmt: skip
+        draw = getattr(generator, kind)(*map(float, numbers), size=count)
+        columns[name] = [format_time(round(x)) if times else float(x) for x in draw]
+    return [dict(zip(columns, values)) for values in zip(*columns.values())] or [{}] * count
+
+
+def _plain(value: Any) -> Any:
+    """Return YAML data as JSON data: dates become text."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(part) for key, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(part) for part in value]
+    if value is None or isinstance(value, (str, int, float, bool)):
+        return value
+    return format_time(parse_time(value))

@@ -1,0 +1,229 @@
+"""`run_study`: all rows of a study, here, in processes of this computer, or on a Dask cluster.
+
+Finished rows are on disk: a study that was stopped, killed or extended does only what is missing.
+Results do not depend on the number of workers.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from thalweg.core.errors import InputError
+from thalweg.studies.row_runner import run_rows
+from thalweg.studies.study import Study, StudyRow
+from thalweg.studies.study_parts import read_parts, require_parquet, write_part, write_study
+
+CHUNK = 20  #: rows of a part
+ATTEMPTS = 3  #: of a chunk whose worker dies
+_AHEAD = 3  # chunks per worker that wait in a cluster
+
+Chunk = list[StudyRow]
+
+
+@dataclass(frozen=True)
+class StudyProgress:
+    """How far a study is.
+
+    Attributes
+    ----------
+    done, total : int
+        Rows with a result, and all rows.
+    refused : int
+        Rows of this run without a route.
+    seconds : float
+        Since the start of this run [s].
+    new : int
+        Rows done in this run.
+    """
+
+    done: int
+    total: int
+    refused: int
+    seconds: float
+    new: int
+
+    @property
+    def seconds_left(self) -> float | None:
+        """Estimate of the time that the rest takes [s]; None before the first result."""
+        return self.seconds / self.new * (self.total - self.done) if self.new else None
+
+
+def run_study(
+    study: Study,
+    out: str | Path,
+    *,
+    workers: int = 0,
+    scheduler: str | None = None,
+    chunk: int = CHUNK,
+    progress: Callable[[StudyProgress], None] | None = None,
+) -> StudyProgress:
+    """Run the rows of a study that have no result yet.
+
+    Parameters
+    ----------
+    study : Study
+    out : path
+        Folder of the results: ``study.json`` and Parquet files in ``parts``.
+    workers : int
+        Processes of this computer; 0: in this process.
+    scheduler : str, optional
+        Address of a Dask scheduler, such as ``tcp://host:8786``, whose workers have Thalweg and
+        the files of the study.
+    chunk : int
+        Rows that are done together, 1 or more; finished chunks survive a stop.
+    progress : callable, optional
+        Called after each chunk.
+
+    Returns
+    -------
+    StudyProgress
+        The state at the end.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written, or pyarrow or distributed is not installed.
+    """
+    require_parquet()
+    if chunk < 1 or workers < 0:
+        raise InputError(
+            f"{workers} workers with chunks of {chunk} were requested.",
+            "Workers are 0 or more, chunks hold 1 row or more.",
+            "Correct the numbers.",
+        )
+    folder = Path(out)
+    write_study(study, folder)
+    rows = list({row.id: row for row in study.rows()}.values())
+    known = set(read_parts(folder, ["id"])["id"])
+    missing = [row for row in rows if row.id not in known]
+    chunks = study.chunks(missing, chunk)
+    begin, refused, done = time.monotonic(), 0, 0
+    state = StudyProgress(len(rows) - len(missing), len(rows), 0, 0.0, 0)
+    for results in _results(chunks, str(study.folder), workers, scheduler):
+        write_part(results, folder)
+        done += len(results)
+        refused += sum(result["refusal"] is not None for result in results)
+        state = StudyProgress(
+            len(rows) - len(missing) + done, len(rows), refused, time.monotonic() - begin, done
+        )
+        if progress is not None:
+            progress(state)
+    return state
+
+
+def _results(
+    chunks: list[Chunk], folder: str, workers: int, scheduler: str | None
+) -> Iterator[list[dict[str, Any]]]:
+    if not chunks:
+        return iter(())
+    if scheduler is not None:
+        return _on_cluster(chunks, folder, scheduler)
+    if workers > 0:
+        return _in_processes(chunks, folder, workers)
+    return (run_rows(chunk, folder) for chunk in chunks)
+
+
+def _in_processes(chunks: list[Chunk], folder: str, workers: int) -> Iterator[list[dict[str, Any]]]:
+    """Yield the results of chunks as processes finish them; a chunk whose process dies is tried
+    again, and in the end refused.
+    """
+    waiting, attempts = list(reversed(chunks)), {id(chunk): 0 for chunk in chunks}
+    while waiting:
+        pool = ProcessPoolExecutor(
+            workers, multiprocessing.get_context("spawn"), _prepare_worker, (os.getpid(),)
+        )
+        running: dict[Future[list[dict[str, Any]]], Chunk] = {}
+        try:
+            while waiting or running:
+                while waiting and len(running) < workers:
+                    one = waiting.pop()
+                    running[pool.submit(run_rows, one, folder)] = one
+                finished, _ = wait(running, return_when=FIRST_COMPLETED)
+                for future in finished:
+                    results = future.result()
+                    del running[future]
+                    yield results
+        except BrokenProcessPool:
+            for one in running.values():
+                attempts[id(one)] += 1
+                if attempts[id(one)] < ATTEMPTS:
+                    waiting.append(one)
+                else:
+                    yield _refused(one)
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+            _stop(pool)
+
+
+def _stop(pool: ProcessPoolExecutor) -> None:
+    """End the processes of a pool: after Ctrl-C no row goes on."""
+    for process in list((pool._processes or {}).values()):
+        process.terminate()
+
+
+def _refused(chunk: Chunk) -> list[dict[str, Any]]:
+    """Return the results of rows whose process died every time."""
+    reason = f"The process that planned this voyage died {ATTEMPTS} times (out of memory?)."
+    return [
+        {"id": row.id, **row.labels, "refusal": "WorkerDied", "reason": reason} for row in chunk
+    ]
+
+
+def _prepare_worker(parent: int) -> None:
+    """Let Ctrl-C reach the driver alone, and end this process when the driver has died."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(1.0)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+def _on_cluster(chunks: list[Chunk], folder: str, scheduler: str) -> Iterator[list[dict[str, Any]]]:
+    """Yield the results of chunks as the workers of a Dask cluster finish them."""
+    try:
+        from distributed import Client, as_completed
+    except ImportError as error:
+        raise InputError(
+            "A cluster needs the package distributed.",
+            "Without it, --workers uses the processors of this computer.",
+            "pip install 'thalweg[cluster]'",
+        ) from error
+    try:
+        client = Client(scheduler, timeout="20s")
+    except (OSError, ValueError, TimeoutError) as error:
+        raise InputError(
+            f"The scheduler {scheduler} cannot be reached: {error}.",
+            "A Dask scheduler has an address such as tcp://host:8786.",
+            "Check the address, or start one with dask scheduler.",
+        ) from error
+    with client:
+        workers = max(len(client.scheduler_info()["workers"]), 1)
+        left = iter(chunks)
+        first = [chunk for _, chunk in zip(range(_AHEAD * workers), left)]
+
+        def submit(chunk: Chunk) -> Any:
+            return client.submit(run_rows, chunk, folder, pure=False, retries=ATTEMPTS - 1)
+
+        pending = {submit(chunk): chunk for chunk in first}
+        completed = as_completed(pending)
+        for future in completed:
+            chunk = pending.pop(future)
+            yield future.result() if future.status == "finished" else _refused(chunk)
+            following = next(left, None)
+            if following is not None:
+                another = submit(following)
+                pending[another] = following
+                completed.add(another)

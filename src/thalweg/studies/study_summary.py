@@ -1,0 +1,239 @@
+"""`summarise_study`: quantiles of key figures by month and axis, refusals, and the best month."""
+
+from __future__ import annotations
+
+import calendar
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import pandas as pd
+from scipy.stats import binom
+
+from thalweg.core.errors import InputError
+from thalweg.core.file_writing import make_folder, save_figure, write_csv_rows
+from thalweg.studies.study_parts import read_parts, read_study
+
+FIGURES: Final = ("time_h", "fuel_t", "co2_t", "distance_nm", "waiting_h")
+QUANTILES: Final = (0.1, 0.5, 0.9)
+_CONFIDENCE: Final = 0.9
+_MONTHS: Final = tuple(calendar.month_abbr)[1:]
+
+
+@dataclass(frozen=True)
+class StudySummary:
+    """Statistics of a study.
+
+    Attributes
+    ----------
+    table : pandas.DataFrame
+        One row per group (axes but the departure, and the month): ``voyages``, ``routes``,
+        ``without_route`` (share), and of each key figure ``_p10``, ``_p50``, ``_p90`` and the
+        confidence limits of the median ``_p50_low`` and ``_p50_high``.
+    refusals : pandas.DataFrame
+        ``refusal``, ``reason`` and ``voyages``, most frequent first.
+    best : pandas.DataFrame
+        The month with the least median time of each group of the other axes.
+    """
+
+    table: pd.DataFrame
+    refusals: pd.DataFrame
+    best: pd.DataFrame
+
+    def write(self, folder: str | Path) -> list[Path]:
+        """Write ``summary.csv``, ``refusals.csv`` and, with months, ``months.png``.
+
+        Parameters
+        ----------
+        folder : path
+
+        Returns
+        -------
+        list of Path
+        """
+        folder = make_folder(folder)
+        files = []
+        for name, frame in (("summary", self.table), ("refusals", self.refusals)):
+            path = folder / f"{name}.csv"
+            rows = frame.astype(object).where(frame.notna(), None).to_numpy().tolist()
+            write_csv_rows(path, [list(frame.columns), *rows])
+            files.append(path)
+        if "month" in self.table and self.table["routes"].sum():
+            files.append(_draw_months(self.table, folder / "months.png"))
+        return files
+
+
+def study_rows(folder: str | Path) -> pd.DataFrame:
+    """Return the results of a study, one row per voyage.
+
+    Parameters
+    ----------
+    folder : path
+        Of the study.
+
+    Returns
+    -------
+    pandas.DataFrame
+        With ``id``, the axes, the key figures, ``refusal`` and ``reason``; ``saved_time_h`` and
+        ``saved_fuel_t`` against the route that ignores the weather, where it was compared.
+
+    Raises
+    ------
+    InputError
+        If the folder has no study or no results.
+    """
+    study = read_study(folder)
+    frame = read_parts(folder)
+    wanted = {row.id for row in study.rows()}
+    frame = frame[frame["id"].isin(wanted)].reset_index(drop=True)
+    if frame.empty:
+        raise InputError(
+            f"The study in {str(folder)!r} has no results yet.",
+            "thalweg study run makes them.",
+            "Run the study first.",
+        )
+    for name in ("time_h", "fuel_t"):
+        if f"blind_{name}" in frame and name in frame:
+            kept = frame["blind_feasible"].fillna(False).astype(bool)
+            frame[f"saved_{name}"] = (frame[f"blind_{name}"] - frame[name]).where(kept)
+    return frame
+
+
+def summarise_study(folder: str | Path) -> StudySummary:
+    """Return the statistics of a study.
+
+    Parameters
+    ----------
+    folder : path
+        Of the study.
+
+    Returns
+    -------
+    StudySummary
+
+    Raises
+    ------
+    InputError
+        If the folder has no study or no results.
+
+    Notes
+    -----
+    The confidence interval of a median is that of its order statistics: with n voyages the ranks
+    follow the binomial distribution B(n, 1/2), whatever the distribution of the figure (Conover
+    1999, Practical Nonparametric Statistics, sec. 3.2; cited from memory). It covers 90 %.
+    Departures close in time are not independent, so the true interval is wider.
+    """
+    study = read_study(folder)
+    frame = study_rows(folder)
+    times = ("depart", "arrive")
+    by = [name for name in study.axes if name in frame and name not in times]
+    departs = frame.get("depart")
+    if departs is not None and departs.notna().any() and departs.nunique() > 1:
+        stamp = pd.to_datetime(departs, utc=True, format="ISO8601")
+        frame = frame.assign(month=stamp.dt.month)
+        by = [*by, "month"]
+    if "feasible" in frame:
+        usable = frame["refusal"].isna() & frame["feasible"].fillna(False).astype(bool)
+    else:
+        usable = pd.Series(False, index=frame.index)
+    figures = [name for name in (*FIGURES, "saved_time_h", "saved_fuel_t") if name in frame]
+    groups = frame.groupby(by, sort=True, dropna=False) if by else [((), frame)]
+    rows = []
+    for key, group in groups:
+        keys = key if isinstance(key, tuple) else (key,)
+        good = group[usable[group.index]]
+        row: dict[str, Any] = dict(zip(by, keys))
+        row |= {"voyages": len(group), "routes": len(good)}
+        row["without_route"] = 1.0 - len(good) / len(group)
+        for name in figures:
+            row |= _quantiles(name, good[name].astype(float).dropna().to_numpy())
+        rows.append(row)
+    table = pd.DataFrame(rows)
+    return StudySummary(table, _refusals(frame, usable), _best(table, by))
+
+
+def _quantiles(name: str, values: np.ndarray) -> dict[str, float | None]:
+    if not values.size:
+        return {f"{name}_p50": None}
+    found = {f"{name}_p{round(100 * q)}": float(np.quantile(values, q)) for q in QUANTILES}
+    low, high = median_interval(values)
+    return {**found, f"{name}_p50_low": low, f"{name}_p50_high": high}
+
+
+def median_interval(values: np.ndarray, confidence: float = _CONFIDENCE) -> tuple[float, float]:
+    """Return the confidence interval of a median by order statistics.
+
+    Parameters
+    ----------
+    values : float array (n,)
+    confidence : float
+        Least coverage, 0 to 1.
+
+    Returns
+    -------
+    tuple of float
+        NaN where n is too small for the coverage.
+    """
+    ordered = np.sort(values)
+    n = len(ordered)
+    rank = int(binom.ppf(0.5 * (1.0 - confidence), n, 0.5))
+    if rank < 1:
+        return float("nan"), float("nan")
+    return float(ordered[rank - 1]), float(ordered[n - rank])
+
+
+def _refusals(frame: pd.DataFrame, usable: pd.Series) -> pd.DataFrame:
+    lost = frame[~usable]
+    broken = lost.get("first_violation", pd.Series(index=lost.index, dtype=object))
+    reasons = pd.DataFrame(
+        {
+            "refusal": lost["refusal"].fillna("limit exceeded"),
+            "reason": lost["reason"].fillna(broken).astype(str).str.slice(0, 200),
+        }
+    )
+    counted = reasons.value_counts().rename("voyages").reset_index()
+    return counted.sort_values("voyages", ascending=False, ignore_index=True)
+
+
+def _best(table: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+    if "month" not in table or "time_h_p50" not in table:
+        return pd.DataFrame()
+    known = table.dropna(subset=["time_h_p50"])
+    others = [name for name in by if name != "month"]
+    if known.empty:
+        return known
+    if not others:
+        return known.loc[[known["time_h_p50"].idxmin()]]
+    return known.loc[known.groupby(others, dropna=False)["time_h_p50"].idxmin()]
+
+
+def _draw_months(table: pd.DataFrame, path: Path) -> Path:
+    """Draw the median time by month with its quantiles, and the share without a route."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8.0, 4.5), layout="constrained")
+    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
+    others = [
+        name
+        for name in table.columns[: list(table.columns).index("month")]
+        if table[name].nunique() > 1
+    ]
+    groups = table.groupby(others, dropna=False) if others else [((), table)]
+    for key, group in groups:
+        label = ", ".join(map(str, key if isinstance(key, tuple) else (key,)))
+        (line,) = top.plot(group["month"], group["time_h_p50"], marker="o", label=label)
+        if "time_h_p10" in group:
+            low, high = group["time_h_p10"].astype(float), group["time_h_p90"].astype(float)
+            top.fill_between(group["month"], low, high, alpha=0.15, color=line.get_color())
+        bottom.plot(group["month"], 100.0 * group["without_route"], color=line.get_color())
+    top.set_ylabel("passage [h]\nmedian, 10 to 90 %")
+    bottom.set_ylabel("without\nroute [%]")
+    bottom.set_ylim(0.0, 100.0)
+    bottom.set_xticks(range(1, 13), _MONTHS)
+    if others:
+        top.legend(fontsize="small")
+    for axes in (top, bottom):
+        axes.grid(alpha=0.3)
+    save_figure(figure, path, dpi=120)
+    return path

@@ -1,0 +1,258 @@
+"""Studies: rows, resume, processes that die, and statistics with a known answer."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+import yaml
+
+pytest.importorskip("pyarrow", reason="the extra 'studies' is not installed")
+
+from thalweg.cli.main import main
+from thalweg.core.errors import InputError
+from thalweg.core.time import parse_time
+from thalweg.studies import Study, run_study, study_rows, summarise_study
+from thalweg.studies.row_runner import run_row
+from thalweg.studies.study_parts import read_parts
+from thalweg.studies.study_summary import median_interval
+
+DAYS = [f"2026-03-0{day}T00:00Z" for day in range(1, 5)]
+
+
+def months_file(path: Path) -> Path:
+    """Write a year of current along the route: 1 m/s against the ship but 1 with it in June."""
+    time = pd.date_range("2025-12-01", "2027-02-01", freq="12h")
+    lat, lon = np.array([-1.0, 1.0]), np.array([-1.0, 5.0])
+    east = np.where(time.month == 6, 1.0, -1.0)
+    shape = len(time), 2, 2
+    fields = {
+        "eastward_sea_water_velocity": east[:, None, None] * np.ones(shape),
+        "northward_sea_water_velocity": np.zeros(shape),
+    }
+    xr.Dataset(
+        {name: (("time", "lat", "lon"), value, {"standard_name": name, "units": "m s-1"})
+         for name, value in fields.items()},
+        {"time": time, "lat": ("lat", lat, {"units": "degrees_north"}),
+         "lon": ("lon", lon, {"units": "degrees_east"})},
+    ).to_netcdf(path)  # fmt: skip
+    return path
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    made = tmp_path_factory.mktemp("study")
+    months_file(made / "year.nc")
+    return made
+
+
+def base(folder: Path, **changes) -> Study:
+    data = {
+        "ship": "hopper-dredger", "sea": ["year.nc"], "coast": "none",
+        "voyage": {"start": [0.0, 0.0], "goal": [0.0, 2.0], "offing_nm": 0.0},
+        "axes": {"depart": {"from": "2026-02-05", "to": "2026-12-15", "step_h": 1460}},
+    }  # fmt: skip
+    data |= changes
+    return Study.from_dict(data, folder)
+
+
+def test_rows_are_all_combinations_with_identities_that_stay():
+    study = Study.from_dict(
+        {
+            "voyage": {"start": "A", "goal": "B"},
+            "axes": {"depart": {"from": "2026-01-01", "to": "2026-01-02", "step_h": 12},
+                     "speed_kn": {"from": 10, "to": 12},
+                     "way": [{"name": "north", "via": [[1.0, 2.0]]}, {"name": "south", "via": []}]},
+        }
+    )  # fmt: skip
+    rows = list(study.rows())
+    assert study.size == len(rows) == 3 * 3 * 2 == len({row.id for row in rows})
+    assert rows[0].labels == {"depart": "2026-01-01T00:00:00Z", "speed_kn": 10, "way": "north"}
+    assert rows[0].request["voyage"]["via"] == [[1.0, 2.0]]
+    again = list(Study.from_dict(json.loads(json.dumps(study.to_dict()))).rows())
+    assert [row.id for row in again] == [row.id for row in rows]
+
+
+def test_a_draw_of_one_entry_does_not_depend_on_the_others():
+    sample = {"count": 50, "seed": 3, "speed_kn": {"normal": [12.0, 0.5]}}
+    data = {"voyage": {"start": "A", "goal": "B"}, "sample": sample}
+    alone = [row.labels["speed_kn"] for row in Study.from_dict(data).rows()]
+    sample["depart"] = {"uniform": ["2026-01-01", "2026-02-01"]}
+    rows = list(Study.from_dict(data).rows())
+    assert [row.labels["speed_kn"] for row in rows] == alone
+    assert abs(np.mean(alone) - 12.0) < 0.25
+    assert all("2026-01" <= row.labels["depart"] <= "2026-02-01T00:00:00Z" for row in rows)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"axis": {}}, "entry of a study"),
+        ({"axes": {"spede_kn": [1]}}, "speed_kn"),
+        ({"axes": {"speed_kn": []}}, "no values"),
+        ({"axes": {"depart": {"from": "2026-02-01", "to": "2026-01-01", "step_h": 1}}}, "range"),
+        ({"sample": {"count": 0}}, "whole number"),
+        ({"sample": {"speed_kn": {"poisson": [1]}}}, "uniform"),
+        ({"compare": ["luck"]}, "comparison"),
+        ({"axes": {"speed_kn": {"from": 0, "to": 1e9}}}, "At most"),
+    ],
+)
+def test_wrong_studies(changes, words):
+    with pytest.raises(InputError, match=words):
+        Study.from_dict({"voyage": {"start": "A", "goal": "B"}} | changes)
+
+
+@pytest.mark.slow
+def test_a_made_year_gives_its_best_month(folder, tmp_path):
+    study = base(folder, compare=["weather_blind"])
+    run_study(study, tmp_path / "out", chunk=5)
+    summary = summarise_study(tmp_path / "out")
+    assert summary.best["month"].tolist() == [6]
+    rows = study_rows(tmp_path / "out")
+    assert len(rows) == study.size and rows["refusal"].isna().all()
+    june = rows[rows["depart"].str.startswith("2026-06")].iloc[0]
+    other = rows[rows["depart"].str.startswith("2026-02")].iloc[0]
+    length = june["distance_nm"] * 1852.0
+    speed = length / (june["time_h"] * 3600.0) - 1.0
+    assert length / (other["time_h"] * 3600.0) == pytest.approx(speed - 1.0, rel=1e-4)
+    assert (rows["saved_time_h"] >= -0.01).all()
+    files = summary.write(tmp_path / "tables")
+    assert {path.name for path in files} == {"summary.csv", "refusals.csv", "months.png"}
+
+
+@pytest.mark.slow
+def test_a_study_goes_on_and_grows(folder, tmp_path):
+    small = base(folder, axes={"depart": ["2026-03-01T00:00Z", "2026-03-02T00:00Z"]})
+    assert run_study(small, tmp_path / "out").new == 2
+    assert run_study(small, tmp_path / "out").new == 0
+    departs = ["2026-03-01T00:00Z", "2026-03-02T00:00Z", "2026-03-03T00:00Z"]
+    larger = base(folder, axes={"depart": departs})
+    state = run_study(larger, tmp_path / "out")
+    assert (state.new, state.done, state.total) == (1, 3, 3)
+    assert len(study_rows(tmp_path / "out")) == 3
+
+
+@pytest.mark.slow
+def test_refusals_are_rows(folder, tmp_path):
+    study = base(
+        folder, axes={"depart": ["2026-03-01T00:00Z", "2031-01-01T00:00Z"], "member": [None, 4]}
+    )
+    state = run_study(study, tmp_path / "out")
+    rows = read_parts(tmp_path / "out")
+    assert state.refused == 3 and len(rows) == 4
+    assert sorted(rows["refusal"].dropna()) == ["InputError", "InputError", "OutsidePeriodError"]
+    summary = summarise_study(tmp_path / "out")
+    assert summary.refusals["voyages"].sum() == 3
+
+
+def comparable(frame: pd.DataFrame) -> list:
+    frame = frame.drop(columns=["seconds"]).sort_values("id")
+    return frame[sorted(frame.columns)].astype(object).where(frame.notna(), None).values.tolist()
+
+
+@pytest.mark.slow
+def test_processes_give_the_same_bits_and_a_killed_one_loses_nothing(folder, tmp_path):
+    study = base(folder, axes={"depart": DAYS})
+    run_study(study, tmp_path / "serial", chunk=3)
+    killed = []
+
+    def kill_one(state) -> None:
+        if not killed:
+            import multiprocessing
+
+            victim = multiprocessing.active_children()[0]
+            os.kill(victim.pid, signal.SIGKILL)
+            killed.append(victim.pid)
+
+    run_study(study, tmp_path / "parallel", workers=2, chunk=1, progress=kill_one)
+    assert killed
+    serial, parallel = (read_parts(tmp_path / name) for name in ("serial", "parallel"))
+    assert comparable(serial) == comparable(parallel)
+
+
+@pytest.mark.slow
+def test_a_killed_driver_is_followed_by_one_that_finishes(folder, tmp_path):
+    study = base(folder, axes={"depart": DAYS})
+    path = folder / "study.yaml"
+    path.write_text(yaml.safe_dump(study.to_dict()))
+    words = ["study", "run", str(path), "--out", str(tmp_path / "out"), "--quiet"]
+    command = [sys.executable, "-m", "thalweg.cli.main", *words]
+    code = (
+        "import thalweg.studies.study_run as r; r.CHUNK = 1; r.run_study.__kwdefaults__['chunk']=1;"
+    )
+    code += f"from thalweg.cli.main import main; main({words!r})"
+    driver = subprocess.Popen([sys.executable, "-c", code])
+    parts = tmp_path / "out" / "parts"
+    until = time.monotonic() + 60.0
+    while len(list(parts.glob("part-*"))) < 2 and time.monotonic() < until:
+        time.sleep(0.02)
+    driver.kill()
+    driver.wait()
+    done = len(read_parts(tmp_path / "out"))
+    assert done >= 2
+    assert subprocess.run(command, capture_output=True).returncode == 0
+    rows = read_parts(tmp_path / "out")
+    assert sorted(rows["id"]) == sorted(row.id for row in study.rows())
+
+
+@pytest.mark.slow
+def test_a_cluster_gives_the_same_rows(folder, tmp_path):
+    distributed = pytest.importorskip("distributed", reason="the extra 'cluster' is not installed")
+    study = base(folder, axes={"depart": ["2026-03-01T00:00Z", "2026-03-02T00:00Z"]})
+    run_study(study, tmp_path / "serial")
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, dashboard_address=None, processes=False
+    ) as cluster:
+        run_study(study, tmp_path / "cluster", scheduler=cluster.scheduler_address, chunk=1)
+    serial, parallel = (read_parts(tmp_path / name) for name in ("serial", "cluster"))
+    assert comparable(serial) == comparable(parallel)
+
+
+def test_a_row_with_a_fault_of_its_own_is_a_row(folder):
+    study = base(folder, axes={"depart": ["2026-03-01T00:00Z"], "resolution_nm": ["wide"]})
+    result = run_row(next(study.rows()), str(folder))
+    assert result["refusal"] == "InternalError" and "wide" in result["reason"]
+
+
+def test_the_interval_of_a_median_covers():
+    generator = np.random.default_rng(5)
+    hits = 0
+    for _ in range(400):
+        low, high = median_interval(generator.exponential(size=41))
+        hits += low <= np.log(2.0) <= high
+    assert 0.88 <= hits / 400 <= 0.97
+    assert np.isnan(median_interval(np.arange(3.0))).all()
+
+
+@pytest.mark.slow
+def test_the_command_line(folder, tmp_path, capsys):
+    path = folder / "small.yaml"
+    study = base(folder, axes={"depart": ["2026-03-01T00:00Z", "2026-06-02T00:00Z"]})
+    path.write_text(yaml.safe_dump(study.to_dict()))
+    assert main(["study", "run", str(path), "--out", str(tmp_path / "o"), "--count"]) == 0
+    assert capsys.readouterr().out == "2 voyages\n"
+    assert main(["study", "run", str(path), "--out", str(tmp_path / "o")]) == 0
+    assert "2 of 2 voyages" in capsys.readouterr().out
+    assert main(["study", "summary", str(tmp_path / "o"), "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert [group["month"] for group in answer["groups"]] == [3, 6]
+    assert answer["best"][0]["month"] == 6
+    assert main(["study", "summary", str(tmp_path / "nothing")]) == 2
+    assert "has no study" in capsys.readouterr().err
+
+
+def test_times_of_a_sample_are_within_it():
+    first, last = parse_time("2026-01-01"), parse_time("2026-01-03")
+    sample = {"count": 20, "depart": {"uniform": ["2026-01-01", "2026-01-03"]}}
+    data = {"voyage": {"start": "A", "goal": "B"}, "sample": sample}
+    for row in Study.from_dict(data).rows():
+        assert first <= parse_time(row.labels["depart"]) <= last
