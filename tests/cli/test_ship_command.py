@@ -9,9 +9,9 @@ import sys
 import pytest
 from matplotlib.figure import Figure
 
-from thalweg.cli.ship_command import add_command, parse_speeds
-from thalweg.cli.ship_plots import _resistance
-from thalweg.cli.ship_sheet_table import merged_notes
+from thalweg.cli.ship.ship_command import add_command, parse_speeds
+from thalweg.cli.ship.ship_plots import _resistance
+from thalweg.cli.ship.ship_sheet_table import merged_notes
 from thalweg.core.errors import InputError, ModelRangeError
 
 KEYS = {

@@ -20,7 +20,6 @@ from thalweg.cli import (
     inspect_command,
     plan_command,
     project_command,
-    ship_command,
     study_command,
     tracks_command,
     waiting_command,
@@ -29,6 +28,7 @@ from thalweg.cli.exit_codes import INTERRUPTED, SUCCESS, exit_code, print_error
 from thalweg.cli.options import accept_negative_positions, add_quiet_option
 from thalweg.cli.progress import ProgressMessages
 from thalweg.cli.serve import serve_command
+from thalweg.cli.ship import ship_command
 from thalweg.cli.tides import tides_command
 from thalweg.core.errors import InputError, ThalwegError, ThalwegWarning
 

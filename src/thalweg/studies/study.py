@@ -113,7 +113,12 @@ class Study:
         return int(self.sample.get("count", 1))
 
     def rows(self) -> Iterator[StudyRow]:
-        """Yield the rows: all combinations of the axes, each with all draws of the sample."""
+        """Yield the rows: all combinations of the axes, each with all draws of the sample.
+
+        Yields
+        ------
+        StudyRow
+        """
         draws = _draws(self.sample)
         for values in itertools.product(*self.axes.values()):
             for draw in draws:
@@ -145,7 +150,12 @@ class Study:
         return chunks
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the study as plain data; `Study.from_dict` reads it."""
+        """Return the study as plain data; `Study.from_dict` reads it.
+
+        Returns
+        -------
+        dict
+        """
         return {
             "name": self.name,
             **self.base,

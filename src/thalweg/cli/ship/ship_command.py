@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from thalweg.cli import options
-from thalweg.cli.ship_sheet_table import print_sheet
+from thalweg.cli.ship.ship_sheet_table import print_sheet
 from thalweg.cli.tables import print_written
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import make_folder, write_text
@@ -186,7 +186,7 @@ def _check_ranges(sheet: dict[str, Any], strict: bool) -> None:
 
 
 def _write(ship: Any, sheet: dict[str, Any], weather: dict[str, float], out: str) -> list[Path]:
-    from thalweg.cli.ship_plots import draw_ship
+    from thalweg.cli.ship.ship_plots import draw_ship
 
     folder = make_folder(out)
     write_text(folder / "ship.json", json.dumps(sheet, indent=2, allow_nan=False) + "\n")

@@ -1,0 +1,1 @@
+"""``thalweg ship``: the ships of the library and their sheets."""
