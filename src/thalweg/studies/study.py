@@ -6,7 +6,7 @@ import hashlib
 import itertools
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -112,18 +112,19 @@ class Study:
     def _draws(self) -> int:
         return int(self.sample.get("count", 1))
 
-    def rows(self) -> Iterator[StudyRow]:
-        """Yield the rows: all combinations of the axes, each with all draws of the sample.
+    def rows(self) -> list[StudyRow]:
+        """Return the rows: all combinations of the axes, each with all draws of the sample.
 
-        Yields
-        ------
-        StudyRow
+        Returns
+        -------
+        list of StudyRow
         """
         draws = _draws(self.sample)
-        for values in itertools.product(*self.axes.values()):
-            for draw in draws:
-                chosen = dict(zip(self.axes, values)) | draw
-                yield _row(self.base, chosen, self.compare)
+        return [
+            _row(self.base, dict(zip(self.axes, values)) | draw, self.compare)
+            for values in itertools.product(*self.axes.values())
+            for draw in draws
+        ]
 
     def chunks(self, rows: Sequence[StudyRow], length: int) -> list[list[StudyRow]]:
         """Return rows in chunks that share ship, sea and places, in order of departure.
