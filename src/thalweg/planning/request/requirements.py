@@ -70,7 +70,7 @@ def derive_requirements(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -
     OutsidePeriodError
         If the departure is outside the period of the data.
     """
-    needed = needed_variables(voyage, ship)
+    needed = variables_of_request(voyage, ship)
     check_variables(ship, sea, needed)
     notes = [*sea.assumptions, *stated_assumptions(ship)]
     channels = {_CHANNEL_OF[name] for name in needed if name in _CHANNEL_OF}
@@ -91,7 +91,7 @@ def derive_requirements(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -
     return Requirements(tuple(sorted(channels)), limits, tuple(notes), data_end)
 
 
-def needed_variables(voyage: Voyage, ship: Ship) -> frozenset[str]:
+def variables_of_request(voyage: Voyage, ship: Ship) -> frozenset[str]:
     """Return the variables of the sea that a ship and the objective of a voyage need.
 
     Parameters
