@@ -100,10 +100,11 @@ def _add_objective_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--objective",
         default="time",
-        metavar="time|distance|fuel|energy|cost|co2|front",
+        metavar="time|distance|fuel|energy|cost|co2|comfort|front",
         help="quantity to minimise (default: time). energy: propulsion and hotel load. cost: fuel, "
         "time and dues; where fuel has no price, time and cubed speed at the costs of the ship "
-        "file. front: all trade-offs of time against fuel or cost (the Pareto front)",
+        "file. comfort: motion sickness at the first place of the ship file. front: all trade-offs "
+        "of time against fuel or cost (the Pareto front)",
     )
     parser.add_argument(
         "--method",

@@ -13,12 +13,13 @@ from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
 
 #: The key figures of a route that an objective can price.
-ObjectiveName: TypeAlias = Literal["time", "distance", "fuel", "energy", "cost", "co2"]
+ObjectiveName: TypeAlias = Literal["time", "distance", "fuel", "energy", "cost", "co2", "comfort"]
 #: Those that a search at one speed setting minimises; the others need a choice of speed.
 SingleSettingObjective: TypeAlias = Literal["time", "distance"]
 #: What a ship consumes along a leg: fuel [kg], energy of brake and hotel load [J], or the cube of
-#: the ordered speed times time [m3/s2], where that stands for fuel.
-Consumption: TypeAlias = Literal["fuel", "energy", "cubed_speed"]
+#: the ordered speed times time [m3/s2], where that stands for fuel; or, for comfort, the squared
+#: motion sickness dose [m2/s3].
+Consumption: TypeAlias = Literal["fuel", "energy", "cubed_speed", "squared_dose"]
 
 OBJECTIVE_NAMES: Final[tuple[ObjectiveName, ...]] = get_args(ObjectiveName)
 
@@ -45,6 +46,7 @@ KEY_FIGURES: Final[dict[str, KeyFigure]] = {
     "energy": KeyFigure("energy_mwh", "MWh"),
     "cost": KeyFigure("cost", ""),
     "co2": KeyFigure("co2_t", "t"),
+    "comfort": KeyFigure("comfort", "m2/s3"),
 }
 
 
@@ -72,6 +74,8 @@ class Objective:
         canal dues at the ship's prices (`thalweg.ship.fuel_prices.FuelTerms`).
     co2 : float
         Price of a tonne of CO2 emitted [1/t].
+    comfort : float
+        Price of the squared motion sickness dose at the first place of the ship file [s3/m2].
     currency : str
         Unit of the cost.
 
@@ -87,6 +91,7 @@ class Objective:
     energy: float = 0.0
     cost: float = 0.0
     co2: float = 0.0
+    comfort: float = 0.0
     currency: str = "USD"
 
     def __post_init__(self) -> None:
@@ -112,7 +117,7 @@ class Objective:
 
         Parameters
         ----------
-        name : {"time", "distance", "fuel", "energy", "cost", "co2"}
+        name : {"time", "distance", "fuel", "energy", "cost", "co2", "comfort"}
         price : float, optional
             Price of one published unit of it.
         currency : str, optional
@@ -192,8 +197,8 @@ class LegPrices:
         Price of the consumption in a second of waiting [1/s], in addition to ``time``.
     dues : float
         Price of a unit of canal dues; 0 where dues and price zones do not count.
-    consumption : {"fuel", "energy", "cubed_speed"}
-        What ``inside`` and ``outside`` price: [kg], [J] or [m3/s2].
+    consumption : {"fuel", "energy", "cubed_speed", "squared_dose"}
+        What ``inside`` and ``outside`` price: [kg], [J], [m3/s2] or [m2/s3].
 
     Raises
     ------

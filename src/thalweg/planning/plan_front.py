@@ -48,7 +48,7 @@ class ParetoFront:
 
     Attributes
     ----------
-    criterion : {"fuel", "energy", "cost", "co2"}
+    criterion : {"fuel", "energy", "cost", "co2", "comfort"}
         The key figure.
     unit : str
         Its unit: t, MWh, or a currency.
@@ -119,7 +119,7 @@ class ParetoFront:
     @property
     def column(self) -> str:
         """The key figure with its unit, as in files."""
-        return f"{self.criterion}_{self.unit.lower()}"
+        return f"{self.criterion}_{self.unit.lower().replace('/', '_')}"
 
     def as_dict(self, routes: tuple[Route, ...]) -> dict[str, Any]:
         """Return the front as plain data for JSON."""

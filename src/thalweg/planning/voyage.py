@@ -37,12 +37,13 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
     depart_window : pair of times, optional
         Earliest and latest departure; the departure with the shortest passage is chosen (with via
         points the shortest passage to the first of them).
-    objective : {"time", "distance", "fuel", "energy", "cost", "co2", "front"}
+    objective : {"time", "distance", "fuel", "energy", "cost", "co2", "comfort", "front"}
         The key figure to minimise. Energy is that of propulsion and hotel load, waiting included.
         Cost is that of fuel, time and canal dues; where fuel has no price, that of time and cubed
-        speed (``costs`` in the ship file). ``"front"`` returns the Pareto front of time against
-        fuel, or against cost where a price is given. For all but time and distance the speed is
-        chosen leg by leg.
+        speed (``costs`` in the ship file). Comfort is the squared motion sickness dose at the
+        first of the ``places`` in the ship file; the ship does not wait for it. ``"front"``
+        returns the Pareto front of time against fuel, or against cost where a price is given. For
+        all but time and distance the speed is chosen leg by leg.
     via : sequence of places
         Places to pass, in this order.
     arrive_by : time, optional

@@ -19,10 +19,12 @@ Place: TypeAlias = "Position | str"
 VoyageObjective: TypeAlias = ObjectiveName | Literal["front"]
 
 OBJECTIVES: tuple[VoyageObjective, ...] = (
-    "time", "distance", "fuel", "energy", "cost", "co2", "front",
+    "time", "distance", "fuel", "energy", "cost", "co2", "comfort", "front",
 )  # fmt: skip
 #: Objectives for which the ship's speed is chosen leg by leg.
-TRADE_OFF_OBJECTIVES: tuple[VoyageObjective, ...] = ("fuel", "energy", "cost", "co2", "front")
+TRADE_OFF_OBJECTIVES: tuple[VoyageObjective, ...] = (
+    "fuel", "energy", "cost", "co2", "comfort", "front",
+)  # fmt: skip
 METHODS = ("default", "exact", "nsga2", "spea2", "mpaes")
 RISK_MEASURES = ("mean", "cvar")
 HELD = ("speed", "power", "ground")
@@ -185,7 +187,7 @@ class SearchRequest:
 
     Parameters
     ----------
-    objective : {"time", "distance", "fuel", "energy", "cost", "co2", "front"}
+    objective : {"time", "distance", "fuel", "energy", "cost", "co2", "comfort", "front"}
     method : {"default", "exact", "nsga2", "spea2", "mpaes"}
     ensemble : {"mean", "cvar"}, optional
     seed : int

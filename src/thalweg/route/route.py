@@ -14,6 +14,7 @@ from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
 from thalweg.route.cost_parts import COST_PARTS
+from thalweg.route.indicator_columns import indicator_table, indicator_value
 from thalweg.route.route_tables import none_if_nan, waypoint_frame, waypoint_rows
 from thalweg.route.track import Track
 
@@ -206,6 +207,16 @@ class Route:
         return float(known.min()) if known.size else None
 
     @property
+    def comfort(self) -> float | None:
+        """Squared motion sickness dose at the first place of the ship file [m2/s3], or None."""
+        return none_if_nan(indicator_value(self, "comfort"))
+
+    @property
+    def indicators(self) -> dict[str, Any]:
+        """Comfort, workability, distance from land, depth and traffic; None where unknown."""
+        return indicator_table(self)
+
+    @property
     def feasible(self) -> bool:
         """Whether the route can be sailed to its end within every limit."""
         return not self.violations and bool(np.isfinite(self.arrive))
@@ -282,6 +293,7 @@ class Route:
             "engine_order": self.engine_order,
             "waiting_h": self.waiting_h,
             "min_ukc_m": self.min_ukc_m,
+            "indicators": self.indicators,
             "feasible": self.feasible,
             "tolerance_s": none_if_nan(self.tolerance_s),
             "assumptions": list(self.assumptions),

@@ -55,7 +55,8 @@ def join(routes: Sequence[Route]) -> Route:
         after.depart - before.arrive > _TIME_TOLERANCE
         for before, after in itertools.pairwise(routes)
     ]
-    for name in _QUANTITIES_OF_WAITS & legs.keys():
+    doses = {name for name in legs if name.startswith("squared_dose:")}
+    for name in (_QUANTITIES_OF_WAITS & legs.keys()) | doses:
         legs[name][first[1:-1][waits]] = np.nan
     names = [name for name in routes[0].samples if all(name in r.samples for r in routes)]
     samples = {name: np.concatenate([route.samples[name] for route in routes]) for name in names}

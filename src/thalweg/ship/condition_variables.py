@@ -19,6 +19,9 @@ WAVE_PERIOD: Final = "sea_surface_wave_period_at_variance_spectral_density_maxim
 WATER_LEVEL: Final = "sea_surface_height_above_geopotential_datum"
 BED_DEPTH: Final = "sea_floor_depth_below_geoid"
 
+#: Height, period and direction of the waves
+WAVES: Final = frozenset({WAVE_HEIGHT, WAVE_EAST, WAVE_NORTH, WAVE_PERIOD})
+
 #: conditions that are axes of performance tables, with the axis id the kernels know them by
 AXIS_OF_CONDITION: Final[dict[str, int]] = {
     "wind_speed": codes.AXIS_WIND_SPEED,

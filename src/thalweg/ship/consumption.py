@@ -32,7 +32,7 @@ _CALM_CONDITIONS = {
     "current_east": 0.0,
     "current_north": 0.0,
 }
-_PRICED_CONSUMPTIONS = ("fuel", "energy", "cost", "co2")
+_PRICED_CONSUMPTIONS = ("fuel", "energy", "cost", "co2", "comfort")
 
 
 def leg_prices(objective: Objective, ship: Ship, terms: FuelTerms | None = None) -> LegPrices:
@@ -41,7 +41,7 @@ def leg_prices(objective: Objective, ship: Ship, terms: FuelTerms | None = None)
     Parameters
     ----------
     objective : Objective
-        With a price for one of fuel, energy, cost and CO2, and perhaps one for time.
+        With a price for one of fuel, energy, cost, CO2 and comfort, and perhaps one for time.
     ship : Ship
     terms : FuelTerms, optional
         Fuels and prices; by default those of the ship file.
@@ -74,6 +74,8 @@ def leg_prices(objective: Objective, ship: Ship, terms: FuelTerms | None = None)
         joule = price / MEGAWATT_HOUR
         waiting = ship.hotel_power * joule
         return LegPrices(joule, joule, hourly, waiting, consumption="energy")
+    if name == "comfort":
+        return LegPrices(price, price, hourly, consumption="squared_dose")
     if name == "cost" and terms.by_speed:
         cubed = price * terms.cubed_speed_price
         second = price * terms.time_price + hourly
@@ -114,12 +116,13 @@ def consumption_table(ship: Ship, consumption: Consumption) -> PerformanceTable:
     Parameters
     ----------
     ship : Ship
-    consumption : {"fuel", "energy", "cubed_speed"}
+    consumption : {"fuel", "energy", "cubed_speed", "squared_dose"}
 
     Returns
     -------
     PerformanceTable
-        Fuel rate [kg/s], power of brake and hotel load [W], or cubed ordered speed [m3/s3].
+        Fuel rate [kg/s], power of brake and hotel load [W], cubed ordered speed [m3/s3], or
+        squared weighted acceleration [m2/s4].
 
     Raises
     ------
@@ -128,6 +131,10 @@ def consumption_table(ship: Ship, consumption: Consumption) -> PerformanceTable:
     """
     if consumption == "cubed_speed":
         return tabulate_cubed_speed(ship.speeds)
+    if consumption == "squared_dose":
+        from thalweg.ship.comfort.dose_table import squared_dose_table  # reads motions
+
+        return squared_dose_table(ship)
     return ship.tabulate_power() if consumption == "energy" else ship.tabulate_fuel()
 
 
@@ -137,7 +144,7 @@ def calm_water_consumption(ship: Ship, consumption: Consumption) -> FloatArray:
     Parameters
     ----------
     ship : Ship
-    consumption : {"fuel", "energy", "cubed_speed"}
+    consumption : {"fuel", "energy", "cubed_speed", "squared_dose"}
 
     Returns
     -------
@@ -146,6 +153,8 @@ def calm_water_consumption(ship: Ship, consumption: Consumption) -> FloatArray:
     """
     if consumption == "cubed_speed":
         return np.asarray(ship.speeds, float) ** 3
+    if consumption == "squared_dose":
+        return np.zeros(len(ship.speeds))
     conditions = Conditions({name: v for name, v in _CALM_CONDITIONS.items() if name in ship.reads})
     settings = np.arange(len(ship.speeds))
     found = ship.power_and_fuel(conditions, settings)

@@ -264,7 +264,7 @@ def build_safety_limits(given: LimitsSection, hull: Hull, loading: Loading) -> S
     limits = _acceleration_limits(given)
     if not dangers and not limits:
         return None
-    size = _motion_hull(hull, loading)
+    size = make_motion_hull(hull, loading)
     middle = [
         AccelerationLimit(limit.greatest, 0.5 * size.length * math.copysign(1, limit.forward))
         if math.isinf(limit.forward)
@@ -346,8 +346,25 @@ def _acceleration_limits(given: LimitsSection) -> tuple[AccelerationLimit, ...]:
     return tuple(found)
 
 
-def _motion_hull(hull: Hull, loading: Loading) -> MotionHull:
-    """The hull as the closed forms of its motions need it, at the loading of the ship file."""
+def make_motion_hull(hull: Hull, loading: Loading) -> MotionHull:
+    """Return a hull as the closed forms of its motions need it, at a loading.
+
+    Parameters
+    ----------
+    hull : Hull
+        Particulars; a breadth or block coefficient that is missing is estimated.
+    loading : Loading
+        Gives the draught.
+
+    Returns
+    -------
+    MotionHull
+
+    Raises
+    ------
+    InputError
+        If the particulars do not suffice.
+    """
     wanted: tuple[str, ...] = ("breadth_m", "block_coefficient")
     length = hull.number("length_waterline_m") or hull.number("length_between_perpendiculars_m")
     if length is None:

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 _LADDER = (5, 11, 23, 47, 95)
 _LADDER_FAN = 7
 #: Half widths of the rhombus that are tried, as shares of the length of the section: courses then
-#: differ by up to 17 and 39 degrees from that of the section.
-_HALF_WIDTHS = (0.15, 0.4)
+#: differ by up to 39 and 17 degrees from that of the section.
+_HALF_WIDTHS = (0.4, 0.15)
 _STRAIT_DISTANCE = 0.5 * NAUTICAL_MILE  #: of a node from a place that paths must pass
 _KEYS = ("layers", "fan", "offset_nm")
 

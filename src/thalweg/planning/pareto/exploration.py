@@ -119,7 +119,7 @@ def network_pareto_front(
         settings=trade_off.settings,
         prices=prices,
         eca_fraction=eca_fractions(network, context.chart) if differs else None,
-        wait=context.voyage.wait,
+        wait=context.voyage.wait and prices.consumption != "squared_dose",
     )
     bin_s = (latest - depart) / _TIME_BINS
     return pareto_front(ship, query, bin_s=bin_s, lower=lower, progress=progress)

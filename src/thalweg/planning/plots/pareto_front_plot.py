@@ -13,7 +13,13 @@ from thalweg.planning.plan_front import knee
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData
 
-_CRITERION_LABELS = {"fuel": "fuel", "energy": "energy", "cost": "cost", "co2": "CO2"}
+_CRITERION_LABELS = {
+    "fuel": "fuel",
+    "energy": "energy",
+    "cost": "cost",
+    "co2": "CO2",
+    "comfort": "squared motion sickness dose",
+}
 _COLOURS = ("#c2185b", "#1565c0", "#2e7d32", "#ef6c00", "#6a1b9a", "#00838f")
 _INK = "#22303c"
 

@@ -15,6 +15,7 @@ from thalweg.planning.voyage import Voyage
 from thalweg.sea import Sea, standard_names
 from thalweg.sea.fill_policies import fill_hint
 from thalweg.ship import Ship
+from thalweg.ship.condition_variables import WAVES
 from thalweg.ship.ship_assumptions import stated_assumptions
 
 _CHANNEL_OF = {name: channel for channel, name in standard_names.CHANNEL_VARIABLES.items()}
@@ -69,9 +70,10 @@ def derive_requirements(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -
     OutsidePeriodError
         If the departure is outside the period of the data.
     """
-    check_variables(ship, sea)
+    needed = variables_of_request(voyage, ship)
+    check_variables(ship, sea, needed)
     notes = [*sea.assumptions, *stated_assumptions(ship)]
-    channels = {_CHANNEL_OF[name] for name in ship.needs if name in _CHANNEL_OF}
+    channels = {_CHANNEL_OF[name] for name in needed if name in _CHANNEL_OF}
     if all(name in sea.variables for name in standard_names.CURRENT.pair):
         channels |= {codes.CURRENT_EAST, codes.CURRENT_NORTH}
     else:
@@ -89,9 +91,34 @@ def derive_requirements(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -
     return Requirements(tuple(sorted(channels)), limits, tuple(notes), data_end)
 
 
-def check_variables(ship: Ship, sea: Sea) -> None:
-    """Raise `MissingVariableError` if a ship needs variables that a sea does not have."""
-    missing = sorted(name for name in ship.needs if name not in sea.variables)
+def variables_of_request(voyage: Voyage, ship: Ship) -> frozenset[str]:
+    """Return the variables of the sea that a ship and the objective of a voyage need.
+
+    Parameters
+    ----------
+    voyage : Voyage
+    ship : Ship
+
+    Returns
+    -------
+    frozenset of str
+        CF standard names; for comfort those of the waves as well.
+    """
+    return ship.needs | (WAVES if voyage.objective == "comfort" else frozenset())
+
+
+def check_variables(ship: Ship, sea: Sea, needed: frozenset[str] | None = None) -> None:
+    """Raise `MissingVariableError` if variables are needed that a sea does not have.
+
+    Parameters
+    ----------
+    ship : Ship
+    sea : Sea
+    needed : frozenset of str, optional
+        By default what the ship needs.
+    """
+    needed = ship.needs if needed is None else needed
+    missing = sorted(name for name in needed if name not in sea.variables)
     if missing:
         raise MissingVariableError(
             f"The ship {ship.name!r} needs {', '.join(missing)}, which the sea does not provide.",

@@ -16,6 +16,7 @@ from thalweg.route.referee.limit_checks import (
     seaway_violations,
     stoppage_violations,
 )
+from thalweg.route.referee.onboard_indicators import indicator_columns
 from thalweg.route.referee.pricing import ConsumptionRates, cost_breakdown
 from thalweg.route.referee.sailing import SailedTrack, data_spacings, sailing_state_along
 from thalweg.route.referee.sailing_physics import (
@@ -76,10 +77,13 @@ def assemble_route(
     if np.any(pieces.track.wait) and world.has_depth:
         tolerance += float(np.max(np.diff(moments), initial=0.0, where=np.diff(near.leg) == 0))
     samples = _samples(sailed, points, time, motion=motion, rates=(power, rate))
+    columns, at_samples, notes = indicator_columns(sailed, points, time, motion)
+    samples |= at_samples
     assumptions = (*world.assumptions, *spent.notes, *_range_notes(world, points, time, motion))
+    assumptions = (*assumptions, *notes)
     return Route(
         pieces.track,
-        {**legs, **spent.legs},
+        {**legs, **spent.legs, **columns},
         samples,
         tuple(violations),
         tolerance,

@@ -26,6 +26,7 @@ from thalweg.ship.schema.value_types import (
     Number,
     OneOrMore,
     Percent,
+    PlaceName,
     Position,
     Power,
     SmallArea,
@@ -200,6 +201,15 @@ class LimitsSection(Section):
     motion_sickness_at_m: Position = 0.0
 
 
+class TaskSection(Section):
+    """A task on board, and the root mean squares of motions up to which it can be done."""
+
+    place: Text
+    max_vertical_acceleration_m_s2: Annotated[Number, Field(gt=0.0, le=20.0)] | None = None
+    max_vertical_velocity_m_s: Annotated[Number, Field(gt=0.0, le=20.0)] | None = None
+    max_pitch_deg: Annotated[Number, Field(gt=0.0, le=45.0)] | None = None
+
+
 class CostsSection(Section):
     """Prices of time, and of speed where fuel has no price."""
 
@@ -303,6 +313,8 @@ class ShipFile(Section):
     water: WaterSection = Field(default_factory=WaterSection)
     table: TableSection | None = None
     models: ModelsSection = Field(default_factory=ModelsSection)
+    places: dict[PlaceName, Position] = Field(default_factory=dict)
+    tasks: dict[PlaceName, TaskSection] = Field(default_factory=dict)
 
     @classmethod
     def of(cls, data: Any, source: str = "ship") -> Self:

@@ -102,6 +102,8 @@ SternShape = Annotated[str | float, BeforeValidator(as_stern_shape)]
 Length = Annotated[Number, Field(gt=0.0, le=500.0)]  #: [m]
 Draught = Annotated[Number, Field(ge=0.0, le=40.0)]  #: [m]
 SuperstructureHeight = Annotated[Number, Field(gt=0.0, le=100.0)]  #: [m]
+#: Name of a place or a task on board
+PlaceName = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9 _-]{0,39}$")]
 Position = Annotated[Number, Field(ge=-300.0, le=300.0)]  #: ahead of midship [m]
 SmallArea = Annotated[Number, Field(ge=0.0, le=500.0)]  #: [m2]
 LateralArea = Annotated[Number, Field(gt=0.0, le=2e4)]  #: [m2]

@@ -1,0 +1,263 @@
+"""Key performance indicators of a route from the columns of its legs and samples.
+
+Columns of legs, per place NAME of the ship file, in SI and NaN where unknown:
+``squared_dose:NAME`` [m2/s3] (of sailing the leg and of waiting before it), the greatest root mean
+squares ``weighted_acceleration:NAME``, ``acceleration:NAME`` [m/s2], ``velocity:NAME`` [m/s] and
+``displacement:NAME`` [m]; ``heave`` [m] and ``pitch`` [rad] (greatest root mean squares);
+``workable_time:TASK`` [s]; ``inshore_length`` [m] and ``inshore_time`` [s] (land nearer than
+`INSHORE_DISTANCE`); ``land_distance`` [m] (least, at most `LAND_DISTANCE_CAP`); ``shallow_time``
+[s] (water less than twice as deep as the draught); ``encounters`` (expected number).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, Final, Protocol
+
+import numpy as np
+
+from thalweg.core.errors import unknown_name_error
+from thalweg.core.types import FloatArray
+from thalweg.core.units import GRAVITY, HOUR, NAUTICAL_MILE
+
+INSHORE_DISTANCE: Final = 3.0 * NAUTICAL_MILE  #: nearer to land than this is inshore [m]
+LAND_DISTANCE_CAP: Final = 12.0 * NAUTICAL_MILE  #: larger distances to land count as this [m]
+#: Per cent of people sick per dose (ISO 2631-1, annex D: mixed adults not used to the sea).
+PERCENT_PER_DOSE: Final = 1.0 / 3.0
+#: Root mean square of vertical acceleration for passengers in transit [m/s2]: 0.05 g (Nordforsk
+#: 1987; from the secondary literature, not seen in print).
+PASSENGER_ACCELERATION: Final = 0.05 * GRAVITY
+
+#: Indicators that can be an objective, a limit or part of a weighted sum: unit, and whether they
+#: add up over legs.
+INDICATORS: Final[dict[str, tuple[str, bool]]] = {
+    "time": ("h", True),
+    "distance": ("nm", True),
+    "fuel": ("t", True),
+    "energy": ("MWh", True),
+    "co2": ("t", True),
+    "cost": ("", True),
+    "comfort": ("m2/s3", True),
+    "sick_percent": ("%", False),
+    "worst_hour_percent": ("%", False),
+    "max_acceleration": ("m/s2", False),
+    "uncomfortable_percent": ("%", False),
+    "inshore_nm": ("nm", True),
+    "inshore_percent": ("%", False),
+    "land_distance_nm": ("nm", False),
+    "inshore_h": ("h", True),
+    "shallow_h": ("h", True),
+    "min_ukc": ("m", False),
+    "workable_percent": ("%", False),
+    "encounters": ("", True),
+}
+#: Those of which more is better.
+LARGER_IS_BETTER: Final = frozenset({"land_distance_nm", "min_ukc", "workable_percent"})
+_ATTRIBUTES: Final = {
+    "time": "time_h", "distance": "distance_nm", "fuel": "fuel_t", "energy": "energy_mwh",
+    "co2": "co2_t", "cost": "cost", "min_ukc": "min_ukc_m",
+}  # fmt: skip
+
+
+class RefereedRoute(Protocol):
+    """What indicators are computed from; see `thalweg.route.Route`."""
+
+    @property
+    def legs(self) -> Mapping[str, FloatArray]:
+        """Results per leg."""
+
+    @property
+    def samples(self) -> Mapping[str, FloatArray]:
+        """Results at the fine samples."""
+
+    @property
+    def time_h(self) -> float:
+        """Time from departure to arrival [h]."""
+
+
+def named_columns(legs: Mapping[str, Any], kind: str) -> dict[str, Any]:
+    """Return the columns ``kind:NAME`` by name.
+
+    Parameters
+    ----------
+    legs : mapping of str to array
+        Columns.
+    kind : str
+        Such as ``squared_dose``.
+
+    Returns
+    -------
+    dict of str to array
+    """
+    return {
+        key.partition(":")[2]: values for key, values in legs.items() if key.startswith(kind + ":")
+    }
+
+
+def first_place(route: RefereedRoute) -> str | None:
+    """Return the place that the objective comfort counts: the first of the ship file."""
+    return next(iter(named_columns(route.legs, "squared_dose")), None)
+
+
+def indicator_value(route: RefereedRoute, name: str, at: str | None = None) -> float:
+    """Return one indicator of a route; NaN where it is not known.
+
+    Parameters
+    ----------
+    route : Route
+        Scored by the referee.
+    name : str
+        Among `INDICATORS`; ``comfort`` is the squared dose [m2/s3].
+    at : str, optional
+        Place or task, for those that have one; by default the first of the ship file.
+
+    Returns
+    -------
+    float
+        In the unit of `INDICATORS`.
+
+    Raises
+    ------
+    InputError
+        If there is no such indicator, place or task.
+    """
+    if name not in INDICATORS:
+        raise unknown_name_error("indicator", name, INDICATORS)
+    if name in _ATTRIBUTES:
+        value = getattr(route, _ATTRIBUTES[name])
+        return math.nan if value is None else float(value)
+    if name in ("inshore_nm", "inshore_percent", "land_distance_nm", "inshore_h", "shallow_h",
+                "encounters"):  # fmt: skip
+        return _water_indicator(route, name)
+    if name == "workable_percent":
+        times = named_columns(route.legs, "workable_time")
+        task = _chosen("task", at, times)
+        return math.nan if task is None else 100.0 * _total(times[task]) / _time_in_legs(route)
+    doses = named_columns(route.legs, "squared_dose")
+    place = _chosen("place", at, doses)
+    if place is None:
+        return math.nan
+    return _place_indicator(route, name, place, _total(doses[place]))
+
+
+def _place_indicator(route: RefereedRoute, name: str, place: str, squared: float) -> float:
+    if name == "comfort":
+        return squared
+    if name == "sick_percent":
+        return min(PERCENT_PER_DOSE * math.sqrt(squared), 100.0) if squared >= 0 else math.nan
+    if name == "max_acceleration":
+        return _largest(route.legs[f"acceleration:{place}"])
+    weighted = route.samples.get(f"weighted_acceleration:{place}")
+    time, leg = route.samples["time"], route.samples["leg"]
+    if weighted is None or not np.isfinite(weighted[np.isfinite(time)]).all():
+        return math.nan
+    if name == "worst_hour_percent":
+        return PERCENT_PER_DOSE * math.sqrt(_greatest_in_an_hour(weighted**2, time))
+    return _share_of_time(route, place, leg, time)
+
+
+def _share_of_time(route: RefereedRoute, place: str, leg: FloatArray, time: FloatArray) -> float:
+    rough = route.samples.get(f"acceleration:{place}")
+    if rough is None:
+        return math.nan
+    step = np.where(np.diff(leg) == 0, np.diff(time), 0.0)
+    step = np.where(np.isfinite(step), step, 0.0)
+    above = (rough > PASSENGER_ACCELERATION).astype(float)
+    total = float(step.sum())
+    return 100.0 * float((step * 0.5 * (above[1:] + above[:-1])).sum()) / total if total else 0.0
+
+
+def _greatest_in_an_hour(rate: FloatArray, time: FloatArray) -> float:
+    """Return the greatest integral of a rate over an hour (over all, where that is less)."""
+    known = np.isfinite(time)
+    t, r = time[known], rate[known]
+    total = np.concatenate([[0.0], np.cumsum(0.5 * (r[1:] + r[:-1]) * np.diff(t))])
+    starts = np.concatenate([t, t - HOUR])
+    starts = np.clip(starts, t[0], max(t[-1] - HOUR, t[0]))
+    ends = np.minimum(starts + HOUR, t[-1])
+    return float(np.max(np.interp(ends, t, total) - np.interp(starts, t, total)))
+
+
+def _water_indicator(route: RefereedRoute, name: str) -> float:
+    legs = route.legs
+    column = {
+        "inshore_nm": "inshore_length", "inshore_percent": "inshore_length",
+        "land_distance_nm": "land_distance", "inshore_h": "inshore_time",
+        "shallow_h": "shallow_time", "encounters": "encounters",
+    }[name]  # fmt: skip
+    if column not in legs:
+        return math.nan
+    if name == "land_distance_nm":
+        return float(np.min(legs[column])) / NAUTICAL_MILE
+    total = _total(legs[column])
+    if name == "inshore_percent":
+        return 100.0 * total / float(legs["length"].sum())
+    unit = {"inshore_nm": NAUTICAL_MILE, "encounters": 1.0}.get(name, HOUR)
+    return total / unit
+
+
+def _chosen(kind: str, at: str | None, known: Mapping[str, Any]) -> str | None:
+    if at is None or not known:
+        return next(iter(known), None)
+    if at not in known:
+        raise unknown_name_error(kind, at, known)
+    return at
+
+
+def _total(values: FloatArray) -> float:
+    return math.fsum(values.tolist()) if np.isfinite(values).all() else math.nan
+
+
+def _largest(values: FloatArray) -> float:
+    return float(np.max(values))
+
+
+def _time_in_legs(route: RefereedRoute) -> float:
+    return float((route.legs["arrive"] - route.legs["depart"]).sum())
+
+
+def indicator_table(route: RefereedRoute) -> dict[str, Any]:
+    """Return all indicators of motions, land, depth and traffic as plain data, for JSON.
+
+    Parameters
+    ----------
+    route : Route
+        Scored by the referee.
+
+    Returns
+    -------
+    dict
+        ``places`` and ``tasks`` by name; None where a value is not known.
+    """
+
+    def plain(name: str, at: str | None = None) -> float | None:
+        value = indicator_value(route, name, at)
+        return value if math.isfinite(value) else None
+
+    legs = route.legs
+    places = {}
+    for name, doses in named_columns(legs, "squared_dose").items():
+        squared = _total(doses)
+        row = {"dose_m_s1_5": math.sqrt(squared) if math.isfinite(squared) else None}
+        row |= {key: plain(key, name) for key in (
+            "sick_percent", "worst_hour_percent", "uncomfortable_percent")}  # fmt: skip
+        for key, unit in (("weighted_acceleration", "m_s2"), ("acceleration", "m_s2"),
+                          ("velocity", "m_s"), ("displacement", "m")):  # fmt: skip
+            value = _largest(legs[f"{key}:{name}"])
+            row[f"max_{key}_rms_{unit}"] = value if math.isfinite(value) else None
+        places[name] = row
+    tasks = {
+        name: {"workable_percent": plain("workable_percent", name)}
+        for name in named_columns(legs, "workable_time")
+    }
+    ship = {}
+    if "heave" in legs:
+        heave, pitch = _largest(legs["heave"]), math.degrees(_largest(legs["pitch"]))
+        ship = {
+            "max_heave_rms_m": heave if math.isfinite(heave) else None,
+            "max_pitch_rms_deg": pitch if math.isfinite(pitch) else None,
+        }
+    names = ("inshore_nm", "inshore_percent", "inshore_h", "land_distance_nm", "shallow_h",
+             "encounters")  # fmt: skip
+    return {**{name: plain(name) for name in names}, **ship, "places": places, "tasks": tasks}
