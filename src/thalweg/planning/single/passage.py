@@ -21,6 +21,11 @@ from thalweg.planning.network_selection.network_builder import build_network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.single.certified_bound import certified_bound
+from thalweg.planning.single.exceeded_limits import (
+    MAX_ROUNDS,
+    exceeded_limits_on_route,
+    without_exceeding_edges,
+)
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.single.weather_gaps import (
     MAX_GAPS,
@@ -98,6 +103,7 @@ def plan_passage(
     passage: PassageResult | None = None
     refusal: NoRouteError | None = None
     gaps: tuple[Violation, ...] = ()
+    rounds = 0
     attempts = deque(_ATTEMPTS)
     while attempts:
         finer, step = attempts.popleft()
@@ -131,6 +137,12 @@ def plan_passage(
             context.report_progress("planning round water without data")
             networks[finer] = without_unknown_edges(context, networks[finer], gaps[len(seen) :])
             attempts.appendleft((finer, step))
+        elif step and rounds < MAX_ROUNDS:  # stricter limits did not help
+            places = exceeded_limits_on_route(tried.route)
+            left = without_exceeding_edges(context, networks[finer], places)
+            if left is not networks[finer]:
+                rounds, networks[finer] = rounds + 1, left
+                attempts.appendleft((finer, step))
     assert passage is not None  # raised above otherwise
     if not passage.route.feasible:
         check_times_known(passage.route, start, goal)
