@@ -1,4 +1,4 @@
-"""Banks and waves narrower than the network's spacing: planned round, not answered with a breach."""
+"""Banks narrower than the network's spacing: planned round, not answered with a breach."""
 
 import numpy as np
 import pytest
