@@ -45,6 +45,7 @@ from thalweg.search import (
     earliest_arrival,
     lower_bound,
 )
+from thalweg.search.lower_bounds import Penalties
 
 #: Periods for which the sea is frozen, in multiples of the time along the geodesic.
 _HORIZONS = (2.5, 8.0, 30.0)
@@ -406,12 +407,19 @@ def _bound(
     *,
     any_departure: bool = False,
 ) -> LowerBound:
+    known, penalties = None, None
+    if route.feasible:
+        known = _objective_value(context, route)
+        if zones := context.chart.zones.penalty:
+            added = comparison_key(route, context.voyage.objective, context.chart)[1] - known
+            penalties = Penalties(added, tuple(factor for _, factor in zones))
     return lower_bound(
         _ship_on_network(context, network, frozen, context.needs.limits),
         start=network.meta.start,
         goal=network.meta.goal,
         depart=float(result.path_arrive[0]),
         objective="distance" if context.voyage.objective == "distance" else "time",
-        known=_objective_value(context, route) if route.feasible else None,
+        known=known,
+        penalties=penalties,
         any_departure=any_departure,
     )
