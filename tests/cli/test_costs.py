@@ -1,5 +1,6 @@
 """The same route costs the same by plan, by evaluate from the shell and by the library."""
 
+import argparse
 import json
 
 import numpy as np
@@ -8,6 +9,9 @@ import xarray as xr
 
 from thalweg import Chart, Sea, Ship, evaluate
 from thalweg.cli.main import main
+from thalweg.cli.option_values import with_given_prices
+from thalweg.cli.options import add_price_options
+from thalweg.core.errors import InputError
 
 START, GOAL = (55.0, 4.0), (55.0, 5.0)  # in the North Sea, inside a control area
 BULKER = Ship.load("handysize-bulker")
@@ -95,6 +99,29 @@ def test_charges_of_the_european_union_are_a_part_of_the_cost(capsys, track):
     assert scored["cost_parts"]["EU charges"] == pytest.approx(expected, rel=1e-9)
     code, refusal = run_json(capsys, "evaluate", track, *SHIP, *DEPART, "--ets-price", "80")
     assert code == 2 and "share of the voyage" in json.dumps(refusal)
+
+
+@pytest.mark.parametrize(
+    ("ends", "share"),
+    [
+        (("Rotterdam", "Hamburg"), 1.0),
+        (("Rotterdam", "Felixstowe"), 0.5),
+        (("NLRTM", "NOBGO"), 1.0),
+    ],
+)
+def test_the_european_share_follows_from_the_ports(ends, share):
+    parser = argparse.ArgumentParser()
+    add_price_options(parser)
+    chosen = parser.parse_args(["--ets-price", "80"])
+    chosen.start, chosen.goal = ends
+    charges = with_given_prices(BULKER, chosen).fuel_terms.charges
+    assert charges.voyage_share == share
+    assert ends[0] != "Rotterdam" or charges.share_source.startswith("Rotterdam, NL to ")
+    chosen.eu_share = 0
+    assert with_given_prices(BULKER, chosen).fuel_terms.charges.voyage_share == 0.0
+    chosen.eu_share, chosen.goal = None, "55N 5E"
+    with pytest.raises(InputError, match="share of the voyage"):
+        with_given_prices(BULKER, chosen)
 
 
 def test_a_held_speed_is_named_and_needs_a_speed(capsys, track):

@@ -36,6 +36,32 @@ def test_a_file_is_replaced_and_nothing_else_remains(target):
     assert [path.name for path in target.parent.iterdir()] == ["plan.json"]
 
 
+def test_what_a_killed_process_left_is_removed_and_open_files_are_not(target):
+    """Kill -9 while writing once left a temporary file for ever."""
+    code = (
+        "import os, signal, sys\n"
+        "from thalweg.core.file_writing import replacing_file\n"
+        "with replacing_file(sys.argv[1]) as file:\n"
+        "    file.write(b'half')\n"
+        "    file.flush()\n"
+        "    os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    subprocess.run([sys.executable, "-c", code, str(target)], check=False)
+    (left,) = target.parent.glob(".*.part")
+    write_text(target, "new\n")
+    assert left.exists()  # less than a minute old
+    os.utime(left, (0.0, 0.0))
+    with replacing_file(target) as file:
+        (other,) = set(target.parent.glob(".*.part")) - {left}
+        os.utime(other, (0.0, 0.0))
+        write_text(target.with_name("beside.json"), "{}")
+        assert not left.exists()
+        assert other.exists()
+        file.write(b"long\n")
+    assert target.read_text() == "long\n"
+    assert not list(target.parent.glob(".*.part"))
+
+
 def test_an_error_in_the_middle_leaves_the_earlier_file(target):
     with pytest.raises(RuntimeError), replacing_file(target) as file:
         file.write(b"half")

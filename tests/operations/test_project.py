@@ -3,6 +3,7 @@
 import csv
 import itertools
 import json
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -36,6 +37,7 @@ from thalweg.operations.dredging.verified_legs import (
     _essential_nodes,
     track_from_passage,
 )
+from thalweg.operations.dredging.work_windows import WorkWindows
 from thalweg.operations.examples.estuary import bed_depth
 from thalweg.operations.plots import draw_routes
 from thalweg.operations.result_files import write_project_files
@@ -492,6 +494,40 @@ def test_the_clearance_of_the_ship_file_is_respected(tmp_path):
     assert {cycle.load_factor for cycle in result.optimised.cycles} == {0.5}  # 15 m less 5 m
     assert "Load factors above 0.5 have no route at any tide." in result.optimised.notes
     assert {c.load_factor for c in sail(**asked, min_ukc_m=1.0).optimised.cycles} == {1.0}
+
+
+def test_loading_and_unloading_keep_the_wave_limit(tmp_path):
+    """Waves of 2.5 m from 1 h to 4 h: a limit of 2.0 m once held for sailing alone."""
+    asked = deep_sea(tmp_path / "bed.nc", bed=True)
+    with xr.open_dataset(tmp_path / "bed.nc") as given:
+        flow = given.load()
+    hours = np.arange(49)
+    height = np.where((hours >= 1) & (hours <= 4), 2.5, 1.0)[:, None, None] + 0.0 * flow["u"]
+    named = {"standard_name": "sea_surface_wave_significant_height", "units": "m"}
+    flow.assign(hs=height.assign_attrs(named)).to_netcdf(tmp_path / "waves.nc")
+    limits = {"limits": {"max_significant_wave_height_m": 2.0}}
+    ship = dict(Ship.load("hopper-dredger").data) | limits
+    given = {"load_factors": [1.0], "min_ukc_m": None, "ship": ship, "volume_m3": 4000}
+    cycle = sail(**asked | given | {"sea": str(tmp_path / "waves.nc")}).optimised.cycles[0]
+    free = sail(**asked | given | {"ship": "hopper-dredger"}).optimised.cycles[0]
+    assert free.pauses < 1e-3
+    assert cycle.loading == free.loading
+    # work stops at 1 h less the wave height's rise to 2 m, and goes on after its fall
+    stop, go = (1.0 - 1.0 / 3.0) * 3600.0, (4.0 + 1.0 / 3.0) * 3600.0
+    assert cycle.loading > stop
+    assert cycle.loading_pause == pytest.approx(go - stop, abs=600.0)
+    assert cycle.out.depart == pytest.approx(cycle.start + cycle.loading + cycle.loading_pause)
+
+
+def test_work_windows_end_after_the_last_pause():
+    times, worked = np.array([0.0, 100.0, 200.0, 300.0]), np.array([0.0, 100.0, 100.0, 200.0])
+    site = WorkWindows(times, worked)
+    assert site.end(0.0, 50.0) == 50.0
+    assert site.end(50.0, 100.0) == pytest.approx(250.0)
+    assert site.end(150.0, 100.0) == pytest.approx(300.0)
+    assert math.isinf(site.end(150.0, 101.0))
+    assert site.end(0.0, 100.0) == pytest.approx(100.0)
+    assert WorkWindows(np.empty(0), np.empty(0)).end(5.0, 7.0) == 12.0
 
 
 def test_sites_separated_by_unknown_water_are_reported(tmp_path):

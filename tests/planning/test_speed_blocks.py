@@ -1,5 +1,6 @@
 """Speeds in blocks that a bridge can order."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -76,6 +77,10 @@ def test_a_short_block_goes_and_its_cost_is_stated():
     assert after[0].route.fuel_t == pytest.approx(routes[1].fuel_t, rel=1e-6)
     (note,) = trade_off.notes
     assert note.startswith("Speeds are ordered in blocks of at least 6 h") and "0.0% fuel" in note
+    context.voyage = replace(context.voyage, method="exact")
+    assert in_speed_blocks(trade_off, before) == before
+    context.voyage = replace(context.voyage, speed_block_h=6.0)  # once without effect
+    assert len(in_speed_blocks(trade_off, before)[0].route.track) == 2
     context.latest_arrival = routes[0].arrive  # in time only with the short block
     kept = in_speed_blocks(trade_off, before[:1])
     assert kept[0] is before[0]

@@ -46,3 +46,22 @@ def test_a_penalty_zone_is_avoided_when_that_costs_less():
     best = plan(voyage, ship=SHIP, sea=Sea.calm(), chart=chart).best
     inside = (best.samples["lon"] > 2.91) & (best.samples["lon"] < 3.29)
     assert best.samples["lat"][inside].min() > 52.39
+
+
+@pytest.mark.parametrize("objective", ["time", "distance"])
+def test_the_bound_counts_a_penalty_zone(objective):
+    """A square of factor 2 that the best route passes: its gap was once that of the detour."""
+    square = [[2.9, 51.7], [3.3, 51.7], [3.3, 52.12], [2.9, 52.12], [2.9, 51.7]]
+    zone = {
+        "type": "Feature",
+        "properties": {"kind": "penalty", "factor": 2.0, "name": "slow water"},
+        "geometry": {"type": "Polygon", "coordinates": [square]},
+    }
+    water = Chart.open_water(51.5, 52.5, 2.0, 4.2)
+    voyage = Voyage(start=(52.0, 2.5), goal=(52.0, 3.7), depart="2026-01-01", objective=objective)
+    given = {"ship": SHIP, "sea": Sea.calm(), "resolution": 4000.0}
+    found = plan(voyage, chart=water.with_zones(zone), **given)
+    free = plan(voyage, chart=water, **given)
+    assert found.objective_value > 1.025 * free.objective_value
+    assert found.lower_bound <= found.objective_value * (1 + 1e-9)
+    assert found.gap < 0.02

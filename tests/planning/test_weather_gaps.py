@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -107,4 +109,34 @@ def test_a_gap_that_the_referee_alone_sees_is_named():
     text = str(caught.value)
     assert "eastward_sea_water_velocity" in text
     assert "2.0" in text
+    assert "--fill currents" in caught.value.remedy
+
+
+FUEL_SHIP = Ship.simple(speed_kn=10.0, speeds_kn=[7.0, 10.0], draught_m=5.0, fuel_t_per_day=20.0)
+
+
+def test_a_front_is_planned_round_a_gap():
+    """The disc of the test above: the fastest and the cheapest route once ended in it."""
+
+    def inside(lat, lon):
+        return np.hypot(lat - 50.5035, (lon - 2.013) * 0.636) < 0.01
+
+    voyage = dataclasses.replace(VOYAGE, objective="front", method="exact")
+    given = {"ship": FUEL_SHIP, "chart": WATER, "resolution": 20_000.0}
+    found = plan(voyage, sea=current_unknown_where(inside), **given)
+    assert len(found.routes) > 3 and all(route.feasible for route in found.routes)
+    for route in found.routes:
+        along = route.samples
+        assert not inside(np.asarray(along["lat"]), np.asarray(along["lon"])).any()
+    clear = plan(voyage, sea=current_unknown_where(lambda y, x: y > 90.0), **given)
+    assert found.routes[0].time_h < 1.01 * clear.routes[0].time_h
+    assert found.front.values[-1] < 1.05 * clear.front.values[-1]
+
+
+def test_a_gap_across_a_front_is_named():
+    sea = current_unknown_where(lambda lat, lon: np.abs(lon - 2.013) < 0.008)
+    voyage = dataclasses.replace(VOYAGE, objective="fuel", method="exact")
+    with pytest.raises(NoRouteError) as caught:
+        plan(voyage, ship=FUEL_SHIP, sea=sea, chart=WATER, resolution=10_000.0)
+    assert "eastward_sea_water_velocity" in str(caught.value)
     assert "--fill currents" in caught.value.remedy

@@ -11,6 +11,7 @@ from thalweg.ship.methods.engine.european_charges import (
     ets_phase_in,
     fueleu_penalty,
     fueleu_target,
+    voyage_share_between,
 )
 
 BULKER = Ship.load("handysize-bulker")
@@ -56,3 +57,12 @@ def test_charges_need_a_price_of_fuel_and_a_share_of_the_rules():
         Ship.simple(8.0, 5.0).with_charges(EuropeanCharges(1.0, 80.0))
     with pytest.raises(InputError, match=r"voyage share of 0\.3"):
         EuropeanCharges(0.3, 80.0)
+
+
+@pytest.mark.parametrize(
+    ("departure", "destination", "share"),
+    [("NL", "DE", 1.0), ("NO", "IS", 1.0), ("NL", "GB", 0.5), ("US", "FR", 0.5), ("RE", "FR", 1.0),
+     ("GL", "DK", 0.5), ("GB", "US", 0.0), ("FO", "GI", 0.0)],
+)  # fmt: skip
+def test_the_share_by_the_countries_of_the_ports(departure, destination, share):
+    assert voyage_share_between(departure, destination) == share

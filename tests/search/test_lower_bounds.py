@@ -8,6 +8,7 @@ import pytest
 from tests.search.small import grid, limits, make_fields, steady
 from thalweg.core.geodesy import distance
 from thalweg.search import direction_factor, earliest_arrival, lower_bound
+from thalweg.search.earliest_arrival import ArrivalQuery
 from thalweg.search.lower_bounds import free_space_bound, network_bound
 from thalweg.search.search_problem import ShipOnNetwork, make_search_problem
 
@@ -111,7 +112,7 @@ def test_without_a_valid_factor_the_free_bound_remains():
     given = make_search_problem(
         ShipOnNetwork(network, fields, steady(5.0), setting=0, limits=limits(), top_speed=5.0)
     )
-    assert network_bound(network, given, start=0, goal=20, depart=0.0).value == 0.0
+    assert network_bound(network, given, ArrivalQuery(0, 20, 0.0, "time")).value == 0.0
     bound = lower_bound(
         ShipOnNetwork(network, fields, steady(5.0), **GIVEN), start=0, goal=20, depart=0.0
     )

@@ -248,14 +248,32 @@ def _european_charges(arguments: argparse.Namespace) -> EuropeanCharges | None:
     share, allowance, euro = arguments.eu_share, arguments.ets_price, arguments.eur_rate
     if allowance is None and euro is None:
         return None
-    if share is None:
+    prices = allowance or 0.0, euro or 0.0, arguments.eu_year
+    if share is not None:
+        return EuropeanCharges(share / 100.0, *prices)
+    found, source = _share_of_ports(arguments)
+    return EuropeanCharges(found, *prices, source)
+
+
+def _share_of_ports(arguments: argparse.Namespace) -> tuple[float, str]:
+    """Return the share of a voyage between named ports in scope of the charges, and its source."""
+    from thalweg.chart.ports import PORTS
+    from thalweg.core.geodesy import parse_position
+    from thalweg.ship.methods.engine.european_charges import voyage_share_between
+
+    ends = [getattr(arguments, name, None) for name in ("start", "goal")]
+    if any(end is None or parse_position(end) is not None for end in ends):
         raise InputError(
             "--ets-price or --eur-rate is given without the share of the voyage.",
-            "It is 100 between two ports of the Union, 50 to or from one, else 0.",
+            "It is 100 between two ports of the Union, 50 to or from one, else 0; it is found "
+            "where both ends of a plan are ports given by name.",
             "Add --eu-share.",
             field="eu_share",
         )
-    return EuropeanCharges(share / 100.0, allowance or 0.0, euro or 0.0, arguments.eu_year)
+    start, goal = (PORTS.lookup(str(end)) for end in ends)
+    share = voyage_share_between(start.country_code, goal.country_code)
+    rule = "Directive 2003/87/EC, article 3ga"
+    return share, f"{start.label} to {goal.label}: {100.0 * share:.0f} % ({rule})"
 
 
 def position_from_text(text: str) -> Position:

@@ -83,10 +83,9 @@ def _add_time_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--speed-block",
         type=float,
-        default=6.0,
         metavar="H",
         help="least time that a speed is held where speeds are chosen leg by leg [h], or a quarter "
-        "of the passage where that is less; 0: none (default: 6)",
+        "of the passage where that is less; 0: none (default: 6; 0 with --method exact)",
     )
     parser.add_argument(
         "--wait",

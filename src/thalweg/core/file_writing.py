@@ -1,7 +1,8 @@
 """Writing files completely or not at all.
 
 The content goes to a temporary file in the same folder, which then takes the place of the old
-file. A full disk or a stopped process leaves the old file as it was.
+file. A full disk or a stopped process leaves the old file as it was. A temporary file that a killed
+process left is removed when a file is written beside it a minute later or more.
 """
 
 from __future__ import annotations
@@ -10,14 +11,25 @@ import contextlib
 import csv
 import io
 import os
+import re
 import secrets
 import stat
+import time
 from collections.abc import Iterable, Iterator
 from os import PathLike
 from pathlib import Path
 from typing import IO, Any
 
 from thalweg.core.errors import InputError
+from thalweg.core.units import DAY, MINUTE
+
+try:
+    import fcntl
+except ImportError:  # not on Windows
+    fcntl = None  # type: ignore[assignment]
+
+_LEAST_AGE = MINUTE  # of a temporary file that is removed [s]
+_PART = re.compile(r"\.[0-9a-f]{16}\.part")  # names of the temporary files
 
 
 @contextlib.contextmanager
@@ -50,19 +62,59 @@ def replacing_file(path: str | PathLike[str]) -> Iterator[IO[bytes]]:
         raise IsADirectoryError(21, "it is a folder", str(target))
     if mode is not None and not os.access(target, os.W_OK):
         raise PermissionError(13, "Permission denied", str(target))
+    _remove_stale_parts(target.parent)
     draft = target.with_name(f".{secrets.token_hex(8)}.part")
     try:
-        with draft.open("xb") as file:
+        with draft.open("xb") as file, _locked(draft):
             yield file
             file.flush()
             os.fsync(file.fileno())
-        if mode is not None:
-            draft.chmod(stat.S_IMODE(mode))
-        os.replace(draft, target)
+            if mode is not None:
+                draft.chmod(stat.S_IMODE(mode))
+            file.close()
+            os.replace(draft, target)
     except BaseException:
         with contextlib.suppress(OSError):
             draft.unlink(missing_ok=True)
         raise
+
+
+@contextlib.contextmanager
+def _locked(draft: Path) -> Iterator[None]:
+    """Hold a lock on a temporary file, which ends with its process."""
+    if fcntl is None:
+        yield
+        return
+    descriptor = os.open(draft, os.O_RDWR)
+    try:
+        with contextlib.suppress(OSError):  # file systems without locks
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    finally:
+        os.close(descriptor)
+
+
+def _remove_stale_parts(folder: Path) -> None:
+    """Remove the temporary files of processes that were stopped while they wrote in a folder."""
+    with contextlib.suppress(OSError):
+        for entry in os.scandir(folder):
+            if _PART.fullmatch(entry.name):
+                with contextlib.suppress(OSError):
+                    age = time.time() - entry.stat().st_mtime
+                    if age > _LEAST_AGE and _is_abandoned(entry.path, age):
+                        Path(entry.path).unlink()
+
+
+def _is_abandoned(path: str, age: float) -> bool:
+    """Return whether no process holds the lock of a temporary file of an age [s]."""
+    if fcntl is None:
+        return age > DAY
+    descriptor = os.open(path, os.O_RDWR)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    finally:
+        os.close(descriptor)
+    return True
 
 
 def _existing_mode(path: Path) -> int | None:

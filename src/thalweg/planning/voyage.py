@@ -92,10 +92,10 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
     ensemble : {"mean", "cvar"}, optional
         With a forecast of several members: choose the route with the least mean, or the least mean
         of the worst tenth (conditional value at risk).
-    speed_block_h : float
+    speed_block_h : float, optional
         Where speeds are chosen leg by leg: least time that a speed is held [h], or a quarter of the
-        passage where that is less; 0 lets the speed change at will. Not with the method
-        ``"exact"``.
+        passage where that is less; 0 lets the speed change at will. By default 6, and 0 with the
+        method ``"exact"``.
 
     Raises
     ------
@@ -165,7 +165,7 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
             value = getattr(self, name)
             if value is None or (name in ("via", "forbid", "open", "avoid") and not value):
                 continue
-            if (name, value) in (("method", "default"), ("speed_block_h", 6.0)):
+            if (name, value) == ("method", "default"):
                 continue
             data[name] = _plain_value(name, value)
         return data

@@ -196,7 +196,7 @@ class SearchRequest:
     hold : {"speed", "power", "ground"}, optional
     min_ukc_m : float, optional
         [m].
-    speed_block_h : float
+    speed_block_h : float, optional
         [h].
     offing_nm : float, optional
         [nm].
@@ -211,9 +211,16 @@ class SearchRequest:
     speed_kn: float | None = None
     hold: str | None = None
     min_ukc_m: float | None = None
-    speed_block_h: float = 6.0
+    speed_block_h: float | None = None
     offing_nm: float | None = None
     layered: LayeredRequest | None = None
+
+    @property
+    def least_speed_block_h(self) -> float:
+        """Least time that a speed is held [h]: 6 where none is given, 0 for the method "exact"."""
+        if self.speed_block_h is not None:
+            return float(self.speed_block_h)
+        return 0.0 if self.method == "exact" else 6.0
 
     @property
     def chooses_speeds(self) -> bool:

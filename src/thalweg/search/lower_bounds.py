@@ -124,6 +124,30 @@ def _mixed(
     return np.asarray(ratio)
 
 
+@dataclass(frozen=True)
+class Penalties:
+    """Penalty zones of a chart, and their effect on a known route.
+
+    Attributes
+    ----------
+    added : float
+        Added to the time [s] or distance [m] of the known route.
+    factors : tuple of float
+        Factors of the zones.
+    """
+
+    added: float
+    factors: tuple[float, ...]
+
+
+def _least_factors(factor: NDArray[np.float32], penalties: Penalties | None) -> NDArray[np.float32]:
+    """Return the factors of edges that are wholly inside a penalty zone, and 1 for all others."""
+    least = np.ones_like(factor)
+    for value in sorted(penalties.factors if penalties is not None else ()):
+        least[np.abs(factor - value) <= 1e-4 * value] = value
+    return least
+
+
 def lower_bound(
     ship_on_network: ShipOnNetwork,
     *,
@@ -132,6 +156,7 @@ def lower_bound(
     depart: float,
     objective: SingleSettingObjective = "time",
     known: float | None = None,
+    penalties: Penalties | None = None,
     any_departure: bool = False,
 ) -> LowerBound:
     """Bound the time (or distance) of every route between two nodes from below.
@@ -144,6 +169,9 @@ def lower_bound(
         Time or distance of a route that exists, in open water rather than on the network. A
         network bound above it is disproved by it (edges that pass a bank at a distance) and is
         not used.
+    penalties : Penalties, optional
+        The penalty zones, with what they add to the known route. The network bound is then that of
+        the sum with the penalties of every route, less what they add to this one.
     any_departure : bool
         Bound every departure inside the fields, not ``depart`` alone: free space only.
 
@@ -156,7 +184,10 @@ def lower_bound(
     free = free_space_bound(network, given, start=start, goal=goal, objective=objective)
     if any_departure:
         return free
-    net = network_bound(network, given, start=start, goal=goal, depart=depart, objective=objective)
+    query = ArrivalQuery(start, goal, depart, objective)
+    net = network_bound(network, given, query, penalties=penalties)
+    if penalties is not None:
+        net = replace(net, value=net.value - penalties.added)
     disproved = known is not None and net.value > known
     return net if net.value > free.value and not disproved else replace(free, path=net.path)
 
@@ -184,11 +215,9 @@ def free_space_bound(
 def network_bound(
     network: Network,
     given: SearchProblem,
+    query: ArrivalQuery,
     *,
-    start: int,
-    goal: int,
-    depart: float,
-    objective: SingleSettingObjective = "time",
+    penalties: Penalties | None = None,
 ) -> LowerBound:
     """Bound by the same search with every length shortened by `direction_factor`.
 
@@ -199,13 +228,22 @@ def network_bound(
     that argument: there the bound is indicative, not certain. The ratio of current to speed is
     taken with the largest current in the data and the ship's top speed.
 
+    Parameters
+    ----------
+    network : Network
+    given : SearchProblem
+    query : ArrivalQuery
+        Ends, departure and objective.
+    penalties : Penalties, optional
+        Zones that the bound counts; edges that are partly inside one count as outside.
+
     Returns
     -------
     LowerBound
         Value 0 when the network shows no path or no factor holds.
     """
     gap = float(network.meta.gap_rad)
-    rho = 0.0 if objective == "distance" else given.top_current / given.top_speed
+    rho = 0.0 if query.objective == "distance" else given.top_current / given.top_speed
     kappa = direction_factor(gap, rho)
     kind = _NETWORK_BOUND_NOTE.format(kappa=kappa)
     if kappa <= 0.0:
@@ -213,11 +251,10 @@ def network_bound(
     arrays = given.network
     shorter = arrays._replace(
         length=np.where(np.isnan(arrays.fixed_time), kappa, 1.0) * arrays.length,
-        factor=np.ones_like(arrays.factor),
+        factor=_least_factors(arrays.factor, penalties),
         can_wait=np.ones_like(arrays.can_wait),
     )
     ship = given.ship._replace(limits=Limits(*given.ship.limits).relaxed(_LIMIT_RELAXATION).array)
     relaxed = given._replace(network=shorter, ship=ship)
-    query = ArrivalQuery(start, goal, depart, objective)
     result = solve_earliest_arrival(network, relaxed, query, shortened=kappa)
     return LowerBound(result.cost if result.found else 0.0, kind, kappa, result.path)

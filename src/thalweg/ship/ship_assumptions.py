@@ -26,7 +26,10 @@ def stated_assumptions(ship: Ship) -> list[str]:
         Sentences; empty for most ships.
     """
     idle = [f"{text[0].upper()}{text[1:]}." for text in load_factor_without_effect(ship)]
-    return [*method_assumptions(ship.estimated), *idle]
+    charges = ship.fuel_terms.charges
+    found = charges is not None and charges.share_source != "given"
+    european = [f"Charges of the European Union: {charges.share_source}."] if found else []  # type: ignore[union-attr]
+    return [*method_assumptions(ship.estimated), *idle, *european]
 
 
 def load_factor_without_effect(ship: Ship) -> list[str]:

@@ -87,8 +87,10 @@ class DredgingCycle:
     volume : float
         Volume moved [m3].
     loading, unloading : float
-        [s].
+        Time of work [s].
     out, back : SailedLeg
+    loading_pause, unloading_pause : float
+        Pauses of that work in waves or wind over the limits [s].
     """
 
     number: int
@@ -99,6 +101,13 @@ class DredgingCycle:
     unloading: float
     out: SailedLeg
     back: SailedLeg
+    loading_pause: float = 0.0
+    unloading_pause: float = 0.0
+
+    @property
+    def pauses(self) -> float:
+        """Time at the sites without work [s]."""
+        return self.loading_pause + self.unloading_pause
 
     @property
     def end(self) -> float:
@@ -134,6 +143,7 @@ CYCLE_COLUMNS = (
     *("full_waiting_h", "full_distance_km", "full_least_clearance_m", "unloading_h", "sail_empty"),
     *("empty_h", "empty_waiting_h", "empty_distance_km", "empty_least_clearance_m", "end"),
     *("production_m3_h", "mean_speed_kn", "fuel_t", "energy_gj"),
+    *("loading_pause_h", "unloading_pause_h"),
 )
 
 
@@ -146,6 +156,8 @@ def cycle_record(cycle: DredgingCycle) -> dict[str, Any]:
         "volume_m3": round(cycle.volume, 3),
         "loading_h": round(cycle.loading / HOUR, 4),
         "unloading_h": round(cycle.unloading / HOUR, 4),
+        "loading_pause_h": round(cycle.loading_pause / HOUR, 4),
+        "unloading_pause_h": round(cycle.unloading_pause / HOUR, 4),
         "end": format_time(cycle.end),
         "production_m3_h": round(cycle.production * HOUR, 2),
     }

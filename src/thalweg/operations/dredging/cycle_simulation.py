@@ -19,6 +19,7 @@ from thalweg.operations.dredging.project_environment import (
     SiteNetwork,
 )
 from thalweg.operations.dredging.verified_legs import SiteLegPlanner
+from thalweg.operations.dredging.work_windows import WorkWindows
 from thalweg.sea import standard_names as nm
 from thalweg.sea.inspection import data_gaps
 from thalweg.search import NetworkPassage, ProfileSearch
@@ -97,6 +98,11 @@ class Simulator:
             for x in sorted(set(chosen))
             if x > 0.0
         ]
+        sites, period = world.sites, world.period
+        self.at_load, self.at_unload = (
+            WorkWindows.at_site(place, period, ship=world.ship, sea=world.sea)
+            for place in (sites.load, sites.unload)
+        )
         self.workers = max(1, min(os.cpu_count() or 1, len(self.both)))
 
     @property
@@ -162,12 +168,17 @@ class Simulator:
         work, both = self.project.work, option.both
         longest = option.volume / least if least > 0.0 else math.inf
         unloading = work.unloading.time(option.share)
-        depart = time + work.loading.time(option.share)
+        depart = self.at_load.end(time, work.loading.time(option.share))
+        if math.isinf(depart):
+            return None
         by = time + longest - unloading - both.empty.shortest
         full = both.sail("full", depart, by)
         if not full.found:
             return None
-        empty = both.sail("empty", full.arrive + unloading, time + longest)
+        unloaded = self.at_unload.end(full.arrive, unloading)
+        if math.isinf(unloaded):
+            return None
+        empty = both.sail("empty", unloaded, time + longest)
         if not empty.found:
             return None
         return LoadChoice(option.volume / (empty.arrive - time), option, full)
@@ -178,10 +189,14 @@ class Simulator:
         loading, unloading = work.loading.time(option.share), work.unloading.time(option.share)
         load_factor = option.both.load_factor
         leg_planner = self.leg_planner
-        out = leg_planner.sail(load_factor, time + loading, outward=True, passage=choice.full)
+        loaded = self.at_load.end(time, loading)
+        out = leg_planner.sail(load_factor, loaded, outward=True, passage=choice.full)
         if out is None:
             return None
-        back = leg_planner.sail(0.0, out.arrive + unloading, outward=False)
+        unloaded = self.at_unload.end(out.arrive, unloading)
+        if math.isinf(unloaded):
+            return None
+        back = leg_planner.sail(0.0, unloaded, outward=False)
         if back is None:
             return None
         return DredgingCycle(
@@ -193,6 +208,8 @@ class Simulator:
             unloading=unloading,
             out=out,
             back=back,
+            loading_pause=max(0.0, loaded - time - loading),
+            unloading_pause=max(0.0, unloaded - out.arrive - unloading),
         )
 
     def _too_short(self, moved: float, time: float) -> OutsidePeriodError:

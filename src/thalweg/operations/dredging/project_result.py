@@ -192,7 +192,7 @@ def summarise_run(
         "unloading_share": sum(c.unloading for c in cycles),
         "sailing_full_share": sum(c.out.duration for c in cycles),
         "sailing_empty_share": sum(c.back.duration for c in cycles),
-        "waiting_share": sum(leg.waiting for leg in legs),
+        "waiting_share": sum(leg.waiting for leg in legs) + sum(c.pauses for c in cycles),
     }
     totals: dict[str, Any] = {
         "production_m3_week": volume / duration * WEEK,
@@ -218,7 +218,8 @@ def _energy_and_fuel(cycles: list[DredgingCycle], project: Project, ship: Ship) 
     pumps = sum(c.loading * work.loading.power + c.unloading * work.unloading.power for c in cycles)
     propulsion = sum(leg.energy for c in cycles for leg in c.legs)
     sfoc = _PRIME_MOVER_SFOC / 3.6e9 if math.isnan(own) else own  # kg/J
-    at_work = sum(c.loading + c.unloading for c in cycles) * ship.waiting_fuel_rate + pumps * sfoc
+    at_sites = sum(c.loading + c.unloading + c.pauses for c in cycles)
+    at_work = at_sites * ship.waiting_fuel_rate + pumps * sfoc
     fuel = at_work + sum(leg.fuel for c in cycles for leg in c.legs)
     co2 = at_work * ship.fuel_terms.carbon_outside + sum(leg.co2 for c in cycles for leg in c.legs)
     volume = sum(c.volume for c in cycles)

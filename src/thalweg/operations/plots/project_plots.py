@@ -59,7 +59,7 @@ def draw_project(result: ProjectResult, path: str | Path | None = None) -> Any:
 def _draw_volume(result: ProjectResult, axes: Any) -> None:
     start = result.project.start
     for run in result.runs:
-        moment = [0.0] + [(c.out.arrive + c.unloading - start) / DAY for c in run.cycles]
+        moment = [0.0] + [(c.back.depart - start) / DAY for c in run.cycles]
         moved = np.cumsum([0.0] + [c.volume for c in run.cycles]) / 1000.0
         days = run.totals["duration_days"]
         axes.step(
@@ -98,8 +98,8 @@ def _activity_periods(run: ProjectRun) -> dict[str, list[tuple[float, float]]]:
     """Return start and end of each activity; waits on a route at the time they take place."""
     spans: dict[str, list[tuple[float, float]]] = {name: [] for name in _ACTIVITIES}
     for cycle in run.cycles:
-        spans["loading"].append((cycle.start, cycle.start + cycle.loading))
-        spans["unloading"].append((cycle.out.arrive, cycle.out.arrive + cycle.unloading))
+        spans["loading"].append((cycle.start, cycle.out.depart))
+        spans["unloading"].append((cycle.out.arrive, cycle.back.depart))
         for name, leg in (("sailing full", cycle.out), ("sailing empty", cycle.back)):
             spans[name].append((leg.depart, leg.arrive))
             track, arrive = leg.route.track, leg.route.legs["arrive"]

@@ -3,18 +3,30 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from thalweg.core.errors import NoRouteError
 from thalweg.core.interrupt import SearchInterrupted
 from thalweg.kernels import codes
 from thalweg.network import Network, eca_fractions
 from thalweg.planning.frozen_sea import FrozenSea
 from thalweg.planning.network_selection.route_alternatives import RouteAlternative
-from thalweg.planning.pareto.search_horizon import extend_horizon
+from thalweg.planning.pareto.search_horizon import SearchHorizon, extend_horizon
 from thalweg.planning.pareto.trade_off_context import ExploredAlternative, TradeOffContext
+from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.single.passage import isochrones, refine_track, track_from_result
+from thalweg.planning.single.weather_gaps import (
+    MAX_GAPS,
+    check_times_known,
+    data_gaps_on_route,
+    without_unknown_edges,
+)
+from thalweg.route import Route
+from thalweg.route.route import Violation
 from thalweg.sea import StationFields
 from thalweg.search import (
     FrontQuery,
@@ -33,32 +45,27 @@ def explore_alternative(
 ) -> ExploredAlternative:
     """Search the fastest route and the exact front of one route alternative.
 
+    Where the referee meets water without data on the fastest route, the edges that cross it are
+    left out and the fastest route is searched again.
+
     Raises
     ------
     NoRouteError
         If no route arrives in time; with the earliest arrival if there is a route.
     """
     context = trade_off.context
-    depart = context.voyage.earliest_departure
-    context.report_progress(f"freezing the sea: {alternative.name}")
-    horizon = extend_horizon(trade_off, alternative.network)
+    horizon, fastest = _fastest_route(trade_off, alternative)
+    new = gaps = data_gaps_on_route(fastest)
+    while new and len(gaps) <= MAX_GAPS:
+        alternative = without_unknown_water(context, alternative, new)
+        try:
+            horizon, fastest = _fastest_route(trade_off, alternative)
+        except NoRouteError:
+            check_times_known(fastest, trade_off.ends[0], trade_off.ends[-1])
+            raise
+        new = data_gaps_on_route(fastest)
+        gaps += new
     frozen, first, latest = horizon.frozen, horizon.first, horizon.latest
-    context.report_progress(f"searching: {alternative.name}")
-    if not first.found:
-        raise no_route_error(
-            alternative.network,
-            first,
-            (trade_off.ends[0], trade_off.ends[-1]),
-            depart=depart,
-            last=context.data_end,
-            fields=frozen.stations,
-            required=trade_off.limits.required_depth,
-        )
-    if first.arrive > context.latest_arrival:
-        raise late_arrival_error(context.latest_arrival, first.arrive)
-    fastest = refine_track(
-        context, track_from_result(alternative.network, first, horizon.setting), trade_off.limits
-    )
     trade_off.interrupt_guard.begin()
     context.report_progress(f"searching the front: {alternative.name}")
     try:
@@ -66,6 +73,7 @@ def explore_alternative(
     except SearchInterrupted:
         exact = None
     until = first.arrive + 0.5 * first.duration
+    depart = context.voyage.earliest_departure
     arrival = isochrones(context, alternative.network, frozen, depart, until)
     return ExploredAlternative(
         alternative,
@@ -76,6 +84,48 @@ def explore_alternative(
         arrival,
         _largest_direction_factor(trade_off, alternative, frozen),
     )
+
+
+def without_unknown_water(
+    context: PlanningContext, alternative: RouteAlternative, gaps: Sequence[Violation]
+) -> RouteAlternative:
+    """Return a route alternative without the edges that cross water without data.
+
+    Parameters
+    ----------
+    context : PlanningContext
+    alternative : RouteAlternative
+    gaps : sequence of Violation
+        Where and when the referee found data missing.
+    """
+    context.report_progress(f"planning round water without data: {alternative.name}")
+    network = without_unknown_edges(context, alternative.network, gaps)
+    return replace(alternative, network=network)
+
+
+def _fastest_route(
+    trade_off: TradeOffContext, alternative: RouteAlternative
+) -> tuple[SearchHorizon, Route]:
+    """Return the period of the front and the fastest route, refined and scored."""
+    context = trade_off.context
+    context.report_progress(f"freezing the sea: {alternative.name}")
+    horizon = extend_horizon(trade_off, alternative.network)
+    first = horizon.first
+    context.report_progress(f"searching: {alternative.name}")
+    if not first.found:
+        raise no_route_error(
+            alternative.network,
+            first,
+            (trade_off.ends[0], trade_off.ends[-1]),
+            depart=context.voyage.earliest_departure,
+            last=context.data_end,
+            fields=horizon.frozen.stations,
+            required=trade_off.limits.required_depth,
+        )
+    if first.arrive > context.latest_arrival:
+        raise late_arrival_error(context.latest_arrival, first.arrive)
+    track = track_from_result(alternative.network, first, horizon.setting)
+    return horizon, refine_track(context, track, trade_off.limits)
 
 
 def network_pareto_front(

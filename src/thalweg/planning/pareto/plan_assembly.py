@@ -46,6 +46,7 @@ from thalweg.planning.report.provenance import (
     route_warnings,
 )
 from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.single.weather_gaps import check_times_known
 from thalweg.route import Route
 
 #: Routes that end within this time of the end of the data are taken as limited by it [s].
@@ -70,6 +71,8 @@ def assemble_trade_off_plan(
     constant = _constant_speed_candidates(trade_off, scored, blind)
     ordered = _in_order(trade_off, _including_constant_speeds(scored, constant))
     if not ordered:
+        for one in explored:
+            check_times_known(one.fastest, ends[0], ends[-1])
         raise _no_feasible_route_error(trade_off, explored)
     sailed = [item.route for item in constant if item.route not in blind]
     front, corrections = _pareto_front(trade_off, explored, ordered, (blind, sailed))

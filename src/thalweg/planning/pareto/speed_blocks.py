@@ -25,7 +25,7 @@ def in_speed_blocks(
     Parameters
     ----------
     trade_off : TradeOffContext
-        Its voyage asks for the least duration of a block (`Voyage.speed_block_h`).
+        Its voyage asks for the least duration of a block (`Voyage.least_speed_block_h`).
     scored : list of RefereedCandidate
 
     Returns
@@ -35,8 +35,8 @@ def in_speed_blocks(
         latest arrival. The notes of the trade-off state what the blocks cost.
     """
     context = trade_off.context
-    block_duration = context.voyage.speed_block_h * HOUR
-    if block_duration <= 0.0 or context.voyage.method == "exact" or len(trade_off.settings) < 2:
+    block_duration = context.voyage.least_speed_block_h * HOUR
+    if block_duration <= 0.0 or len(trade_off.settings) < 2:
         return scored
     found = [_blocked(trade_off, item, block_duration) for item in scored]
     _note_costs(trade_off, scored, found)
@@ -123,7 +123,7 @@ def _note_costs(
     if not changed and not kept:
         return
     extra = [one.value / float(np.interp(one.route.time_h, time, value)) - 1.0 for one in changed]
-    hours = trade_off.context.voyage.speed_block_h
+    hours = trade_off.context.voyage.least_speed_block_h
     note = f"Speeds are ordered in blocks of at least {hours:g} h or a quarter of the passage"
     if extra:
         note += f", at a cost of up to {max(0.0, *extra):.1%} {trade_off.objective.name}"
@@ -135,7 +135,7 @@ def _note_costs(
 def _has_short_blocks(trade_off: TradeOffContext, route: Route) -> bool:
     """Return whether a route holds a setting for less than the asked duration."""
     hours = route.legs["arrive"] - route.legs["depart"]
-    block_duration = trade_off.context.voyage.speed_block_h * HOUR
+    block_duration = trade_off.context.voyage.least_speed_block_h * HOUR
     least = min(block_duration, _SHARE_OF_PASSAGE * float(hours.sum()))
     speeds = np.asarray(trade_off.context.ship.speeds, float)
     setting = merged_settings(route.track.setting, hours, speeds, least, late=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from dataclasses import replace
 
 import numpy as np
@@ -20,7 +21,7 @@ from thalweg.planning.network_selection.route_alternatives import (
     RouteAlternative,
     find_route_alternatives,
 )
-from thalweg.planning.pareto.exploration import explore_alternative
+from thalweg.planning.pareto.exploration import explore_alternative, without_unknown_water
 from thalweg.planning.pareto.front_points import track_from_front_point
 from thalweg.planning.pareto.plan_assembly import assemble_trade_off_plan
 from thalweg.planning.pareto.speed_blocks import in_speed_blocks
@@ -34,6 +35,8 @@ from thalweg.planning.plan import Plan
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import priced_objective
+from thalweg.planning.single.weather_gaps import MAX_GAPS, data_gaps_on_route
+from thalweg.route.route import Violation
 from thalweg.ship.consumption import consumption_table
 
 #: Least and greatest number of routes of a front, and of the steps of their evaluation.
@@ -66,12 +69,22 @@ def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
             interrupt_guard,
         )
         alternatives = find_route_alternatives(context, ends)
-        for step in NETWORK_TIGHTENING:  # while the referee finds no route within the limits
+        steps, seen = deque(NETWORK_TIGHTENING), 0
+        while steps:  # while the referee finds no route within the limits and known water
+            step = steps.popleft()
             limits = context.needs.limits.tightened(step)
             explored = _explore_all(replace(trade_off, limits=limits), alternatives)
-            scored = _refereed(trade_off, _candidates(replace(trade_off, limits=limits), explored))
+            scored, gaps = _refereed(
+                trade_off, _candidates(replace(trade_off, limits=limits), explored)
+            )
             if interrupt_guard.stopped() or any(item.route.feasible for item in scored):
                 break
+            seen += len(gaps)
+            if gaps and seen <= MAX_GAPS:
+                alternatives = [
+                    without_unknown_water(context, one.alternative, gaps) for one in explored
+                ]
+                steps.appendleft(step)
         if not interrupt_guard.stopped() and any(item.route.feasible for item in scored):
             scored = _not_dominated(in_speed_blocks(trade_off, scored))
         return assemble_trade_off_plan(trade_off, ends, explored, scored)
@@ -162,8 +175,11 @@ def _times_and_values(found: list[TrackCandidate]) -> tuple[np.ndarray, np.ndarr
 
 def _refereed(
     trade_off: TradeOffContext, candidates: list[TrackCandidate]
-) -> list[RefereedCandidate]:
-    """Evaluate candidates; without those that exceed limits or are dominated."""
+) -> tuple[list[RefereedCandidate], tuple[Violation, ...]]:
+    """Evaluate candidates; without those that exceed limits or are dominated.
+
+    Where none is left, the gaps in the data that they meet are returned as well.
+    """
     context = trade_off.context
     context.report_progress(f"evaluating {len(candidates)} routes")
     scored = []
@@ -176,9 +192,12 @@ def _refereed(
         for item in scored
         if item.route.feasible and math.isfinite(item.value) and item.route.arrive <= latest + 1.0
     ]
-    if not usable:
-        return [item for item in scored if math.isfinite(item.route.arrive)]
-    return _not_dominated(usable)
+    if usable:
+        return _not_dominated(usable), ()
+    gaps = [gap for item in scored for gap in data_gaps_on_route(item.route)]
+    different = {(gap.reason, gap.lat, gap.lon, gap.time): gap for gap in gaps}
+    sailed = [item for item in scored if math.isfinite(item.route.arrive)]
+    return sailed, tuple(different.values())[:MAX_GAPS]
 
 
 def _not_dominated(scored: list[RefereedCandidate]) -> list[RefereedCandidate]:

@@ -21,6 +21,11 @@ from thalweg.planning.network_selection.network_builder import build_network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.single.certified_bound import certified_bound
+from thalweg.planning.single.exceeded_limits import (
+    MAX_ROUNDS,
+    exceeded_limits_on_route,
+    without_exceeding_edges,
+)
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.single.weather_gaps import (
     MAX_GAPS,
@@ -40,6 +45,7 @@ from thalweg.search import (
     earliest_arrival,
     lower_bound,
 )
+from thalweg.search.lower_bounds import Penalties
 
 #: Periods for which the sea is frozen, in multiples of the time along the geodesic.
 _HORIZONS = (2.5, 8.0, 30.0)
@@ -98,6 +104,7 @@ def plan_passage(
     passage: PassageResult | None = None
     refusal: NoRouteError | None = None
     gaps: tuple[Violation, ...] = ()
+    rounds = 0
     attempts = deque(_ATTEMPTS)
     while attempts:
         finer, step = attempts.popleft()
@@ -131,6 +138,12 @@ def plan_passage(
             context.report_progress("planning round water without data")
             networks[finer] = without_unknown_edges(context, networks[finer], gaps[len(seen) :])
             attempts.appendleft((finer, step))
+        elif step and rounds < MAX_ROUNDS:  # stricter limits did not help
+            places = exceeded_limits_on_route(tried.route)
+            left = without_exceeding_edges(context, networks[finer], places)
+            if left is not networks[finer]:
+                rounds, networks[finer] = rounds + 1, left
+                attempts.appendleft((finer, step))
     assert passage is not None  # raised above otherwise
     if not passage.route.feasible:
         check_times_known(passage.route, start, goal)
@@ -394,12 +407,19 @@ def _bound(
     *,
     any_departure: bool = False,
 ) -> LowerBound:
+    known, penalties = None, None
+    if route.feasible:
+        known = _objective_value(context, route)
+        if zones := context.chart.zones.penalty:
+            added = comparison_key(route, context.voyage.objective, context.chart)[1] - known
+            penalties = Penalties(added, tuple(factor for _, factor in zones))
     return lower_bound(
         _ship_on_network(context, network, frozen, context.needs.limits),
         start=network.meta.start,
         goal=network.meta.goal,
         depart=float(result.path_arrive[0]),
         objective="distance" if context.voyage.objective == "distance" else "time",
-        known=_objective_value(context, route) if route.feasible else None,
+        known=known,
+        penalties=penalties,
         any_departure=any_departure,
     )

@@ -8,8 +8,8 @@ are left out, sampled as closely as the data, and the passage is searched again.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import Final
+from collections.abc import Callable, Sequence
+from typing import Any, Final
 
 import numpy as np
 
@@ -27,8 +27,8 @@ from thalweg.sea import Sea
 from thalweg.sea.standard_names import inseparable_variables
 
 MAX_GAPS: Final = 12  #: gaps that are planned round before finer networks are tried
-_PER_CELL: Final = 12.0  # samples of an edge per cell of the data
-_SHORTEST_STEP: Final = 100.0  # least distance of samples [m]
+SAMPLES_PER_CELL: Final = 12.0  # samples of an edge per cell of the data
+SHORTEST_STEP: Final = 100.0  # least distance of samples [m]
 _NEAR: Final = 2_000.0  # detour by a gap up to which an edge counts as near it [m]
 _POINTS_AT_ONCE: Final = 200_000
 
@@ -66,18 +66,28 @@ def without_unknown_edges(
         (inseparable_variables(_variable(gap))[0], gap.time, gap.lat, gap.lon): gap for gap in gaps
     }
     for (name, *_), gap in wanted.items():
-        step = max(_data_spacing(context.sea, name) / _PER_CELL, _SHORTEST_STEP)
+        step = max(data_spacing(context.sea, name) / SAMPLES_PER_CELL, SHORTEST_STEP)
+
+        def known(lat: np.ndarray, lon: np.ndarray, name: str = name, at: float = gap.time) -> Any:
+            return ~np.isnan(context.sea.sample([name], at, lat, lon)[name])
+
         rows = np.flatnonzero(keep & sailed)
-        keep[rows] = _known_along(network, rows, context.sea, (name, gap.time, step))
-        rows = np.flatnonzero(keep & sailed & _near(network, gap))
-        fine = (name, gap.time, _SHORTEST_STEP)  # an edge may clip the corner of a cell
-        keep[rows] = _known_along(network, rows, context.sea, fine)
+        keep[rows] = edges_where_all(network, rows, known, step)
+        rows = np.flatnonzero(keep & sailed & near_edges(network, gap))
+        # an edge may clip the corner of a cell
+        keep[rows] = edges_where_all(network, rows, known, SHORTEST_STEP)
     return network if keep.all() else network.with_some_edges(keep)
 
 
-def _near(network: Network, gap: Violation) -> np.ndarray:
-    """Return which edges may pass through a place: it is nearer than their length."""
-    apart = distance(network.lat, network.lon, gap.lat, gap.lon)
+def near_edges(network: Network, place: Violation) -> np.ndarray:
+    """Return which edges may pass through a place: it is nearer than their length.
+
+    Parameters
+    ----------
+    network : Network
+    place : Violation
+    """
+    apart = distance(network.lat, network.lon, place.lat, place.lon)
     tails, target = network.tails(), network.graph.target
     return np.asarray(apart[tails] + apart[target] <= 1.001 * network.edges.length + _NEAR)
 
@@ -118,18 +128,36 @@ def _variable(gap: Violation) -> str:
     return gap.reason.partition(": ")[2].partition(" (")[0]
 
 
-def _known_along(
-    network: Network, rows: np.ndarray, sea: Sea, sampled: tuple[str, float, float]
+def edges_where_all(
+    network: Network,
+    rows: np.ndarray,
+    suits: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    step: float,
 ) -> np.ndarray:
-    """Return which edges have known values all along; ``sampled``: variable, time, step [m]."""
-    name, time, step = sampled
+    """Return which edges suit all along.
+
+    Parameters
+    ----------
+    network : Network
+    rows : ndarray of int
+        The edges to test.
+    suits : callable
+        Returns which positions (lat, lon [deg]) suit.
+    step : float
+        Distance of the samples [m].
+
+    Returns
+    -------
+    bool ndarray
+        One value for each of `rows`.
+    """
     tails, target = network.tails(), network.graph.target
     low, high = np.minimum(tails, target)[rows], np.maximum(tails, target)[rows]
     _, one, both = np.unique(
         low.astype(np.int64) * network.n_nodes + high, return_index=True, return_inverse=True
     )
     rows = rows[one]  # there and back is the same water
-    known = np.ones(len(rows), bool)
+    good = np.ones(len(rows), bool)
     count = np.ceil(network.edges.length[rows] / step).astype(np.int64) + 1
     cuts = np.searchsorted(np.cumsum(count), np.arange(0, count.sum(), _POINTS_AT_ONCE))
     for first, last in zip(cuts, [*cuts[1:], len(rows)]):
@@ -142,10 +170,9 @@ def _known_along(
         lat, lon = network.stations.lat, network.stations.lon
         a, b = tails[edge][part], target[edge][part]
         y, x = _between(lat[a], lon[a], lat[b], lon[b], share)
-        values = sea.sample([name], time, y, x)[name]
-        unknown = np.bincount(part[np.isnan(values)], minlength=edge.size)
-        known[first:last] = unknown == 0
-    return known[both]
+        bad = np.bincount(part[~suits(y, x)], minlength=edge.size)
+        good[first:last] = bad == 0
+    return good[both]
 
 
 def _between(
@@ -156,8 +183,14 @@ def _between(
     return direct(lat1, lon1, course, share * length)
 
 
-def _data_spacing(sea: Sea, name: str) -> float:
-    """Return the least spacing [m] of the data of a variable; 10 km where it has none."""
+def data_spacing(sea: Sea, name: str) -> float:
+    """Return the least spacing [m] of the data of a variable; 10 km where it has none.
+
+    Parameters
+    ----------
+    sea : Sea
+    name : str
+    """
     rows = [row.spacing_deg for row in sea.coverage() if row.variable == name]
     spacings = [spacing for spacing in rows if spacing]
     return METRES_PER_DEGREE * min(spacings) if spacings else 10_000.0

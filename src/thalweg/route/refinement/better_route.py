@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -264,8 +265,8 @@ def _with_wait(track: Track, index: int, change: float) -> Track:
     return track.replaced(wait=wait)
 
 
-def comparison_key(route: Route, objective: str, chart: Chart | None) -> tuple[bool, float, float]:
-    """Return the key by which routes are compared: feasibility, then the objective, then time.
+def comparison_key(route: Route, objective: str, chart: Chart | None) -> tuple[int, float, float]:
+    """Return the key by which routes are compared: violations, then the objective, then time.
 
     Parameters
     ----------
@@ -277,21 +278,22 @@ def comparison_key(route: Route, objective: str, chart: Chart | None) -> tuple[b
 
     Returns
     -------
-    infeasible : bool
+    violations : int
+        Number of exceeded limits; 0 for feasible routes.
     objective : float
         [m] or [s], with the additions of penalty zones.
     arrive : float
         [s since 1970-01-01T00:00Z].
     """
     if not math.isfinite(route.arrive):
-        return True, math.inf, math.inf
+        return sys.maxsize, math.inf, math.inf
     sailed = route.legs["arrive"] - route.legs["depart"]
     spent = route.legs["length"] if objective == "distance" else sailed
     factor = penalty_factors(chart, route.track.lat, route.track.lon)
     cost = float(np.sum(spent if factor is None else factor * spent))
     if objective != "distance":
         cost += float(route.track.wait.sum())
-    return not route.feasible, cost, route.arrive
+    return len(route.violations), cost, route.arrive
 
 
 def _usual(route: Route, ship: Ship) -> float:

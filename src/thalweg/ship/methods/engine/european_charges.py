@@ -21,6 +21,18 @@ from thalweg.core.types import FloatArray
 from thalweg.core.units import TONNE
 
 VOYAGE_SHARES: Final = (0.0, 0.5, 1.0)  #: outside, to or from, and within the Union
+#: ISO 3166 codes of countries whose ports are in scope: the member states with a coast, their
+#: outermost regions with a code of their own (Treaty on the Functioning of the European Union,
+#: article 349), and of the European Economic Area Iceland and Norway (Council Decision (EU)
+#: 2023/2754), without Svalbard. Overseas territories such as Greenland, the Faroes, Aruba or
+#: French Polynesia are not in scope. The lists are from memory; the decision was seen in part.
+PORTS_IN_SCOPE: Final = frozenset(
+    (
+        *("BE", "BG", "CY", "DE", "DK", "EE", "ES", "FI", "FR", "GR", "HR", "IE", "IT", "LT"),
+        *("LV", "MT", "NL", "PL", "PT", "RO", "SE", "SI"),
+        *("GF", "GP", "MF", "MQ", "RE", "YT", "IS", "NO"),
+    )
+)
 REFERENCE_INTENSITY: Final = 91.16  #: Regulation (EU) 2023/1805, article 4(2) [gCO2eq/MJ]
 _PENALTY_EUR_PER_T: Final = 2400.0  # annex IV, part B, per tonne of VLSFO
 _VLSFO_HEAT: Final = 41_000.0  # annex IV, part B [MJ/t]
@@ -47,6 +59,19 @@ WELL_TO_WAKE: Final[Mapping[str, WellToWake]] = MappingProxyType(
         "mgo": WellToWake(14.4 + (3.206 + 25 * 5e-5 + 298 * 1.8e-4) / 0.0427, 42.7),
     }
 )
+
+
+def voyage_share_between(departure: str, destination: str) -> float:
+    """Return the share of a voyage in scope: 1 within the Union, 0.5 to or from it, else 0.
+
+    Directive 2003/87/EC, article 3ga, and Regulation (EU) 2023/1805, article 2.
+
+    Parameters
+    ----------
+    departure, destination : str
+        ISO 3166 codes of the countries of the two ports.
+    """
+    return 0.5 * sum(code.upper() in PORTS_IN_SCOPE for code in (departure, destination))
 
 
 def ets_phase_in(year: int) -> float:
@@ -104,6 +129,8 @@ class EuropeanCharges:
         Of a euro in that currency, for the FuelEU penalty; 0: not counted.
     year : int
         Of the emissions.
+    share_source : str
+        Where the share comes from.
 
     Raises
     ------
@@ -115,6 +142,7 @@ class EuropeanCharges:
     allowance_price: float = 0.0
     euro_price: float = 0.0
     year: int = 2026
+    share_source: str = "given"
 
     def __post_init__(self) -> None:
         prices = (self.allowance_price, self.euro_price)

@@ -1,0 +1,108 @@
+"""Edges on which the referee finds a limit exceeded between the stations of the network.
+
+The search checks depth, waves and wind at stations, so that a bank or a squall that is narrower
+than their distance is seen by the referee alone. Stricter limits do not help there: the edges that
+cross it are left out, and the passage is searched again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from thalweg.kernels import codes
+from thalweg.network import Network
+from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.single.weather_gaps import (
+    SAMPLES_PER_CELL,
+    SHORTEST_STEP,
+    data_spacing,
+    edges_where_all,
+    near_edges,
+)
+from thalweg.route import Route
+from thalweg.route.route import Violation
+from thalweg.sea import standard_names
+from thalweg.ship.condition_variables import EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGHT
+
+MAX_ROUNDS: Final = 8  #: of leaving out edges
+_MOST_PLACES: Final = 6  # of one route
+_DEPTH, _WAVES, _WIND = (
+    codes.REASONS[code] for code in (codes.DEPTH, codes.WAVE_HEIGHT, codes.WIND_SPEED)
+)
+
+
+def exceeded_limits_on_route(route: Route) -> tuple[Violation, ...]:
+    """Return where a route exceeds a limit of depth, wave height or wind speed.
+
+    Parameters
+    ----------
+    route : Route
+        Scored by the referee.
+    """
+    found = [v for v in route.violations if v.reason in (_DEPTH, _WAVES, _WIND)]
+    return tuple(found[:_MOST_PLACES])
+
+
+def without_exceeding_edges(
+    context: PlanningContext, network: Network, places: Sequence[Violation]
+) -> Network:
+    """Return a network without the edges that exceed a limit at the time of a violation.
+
+    Of edges over a bank of the sea data all are left out, of those in waves or wind the ones that
+    may pass through its place.
+
+    Parameters
+    ----------
+    context : PlanningContext
+        Request and data of the plan.
+    network : Network
+        The network that was searched.
+    places : sequence of Violation
+        As `exceeded_limits_on_route` returns them.
+
+    Returns
+    -------
+    Network
+        The same one where no edge is left out.
+    """
+    keep = np.ones(network.n_edges, bool)
+    sailed = np.isnan(network.edges.fixed_time)
+    for place in places:
+        of_depth = place.reason == _DEPTH
+
+        def kept(lat: np.ndarray, lon: np.ndarray, place: Violation = place) -> np.ndarray:
+            return _keeps_limit(context, place, lat, lon)
+
+        if of_depth and standard_names.BED_DEPTH in context.sea.variables:
+            spacing = data_spacing(context.sea, standard_names.BED_DEPTH)
+            rows = np.flatnonzero(keep & sailed)
+            step = max(spacing / SAMPLES_PER_CELL, SHORTEST_STEP)
+            keep[rows] = edges_where_all(network, rows, kept, step)
+        rows = np.flatnonzero(keep & sailed & near_edges(network, place))
+        keep[rows] = edges_where_all(network, rows, kept, SHORTEST_STEP)
+    return network if keep.all() else network.with_some_edges(keep)
+
+
+def _keeps_limit(
+    context: PlanningContext, place: Violation, lat: np.ndarray, lon: np.ndarray
+) -> np.ndarray:
+    """Return where the limit of a violation is kept at its time; unknown values keep it."""
+    sea, limits = context.sea, context.needs.limits
+    if place.reason == _DEPTH:
+        depth = np.full(lat.shape, np.inf)
+        if context.chart.has_depth:
+            depth = np.asarray(context.chart.depths.at(lat, lon), float)
+        names = [standard_names.BED_DEPTH, standard_names.WATER_LEVEL]
+        values = sea.sample([n for n in names if n in sea.variables], place.time, lat, lon)
+        depth = np.fmin(depth, values.get(standard_names.BED_DEPTH, np.inf))
+        depth = depth + values.get(standard_names.WATER_LEVEL, 0.0)
+        return np.asarray(~(depth < limits.required_depth))
+    if place.reason == _WAVES:
+        height = sea.sample([WAVE_HEIGHT], place.time, lat, lon)[WAVE_HEIGHT]
+        return np.asarray(~(height > limits.wave_height))
+    wind = sea.sample([EASTWARD_WIND, NORTHWARD_WIND], place.time, lat, lon)
+    speed = np.hypot(wind[EASTWARD_WIND], wind[NORTHWARD_WIND])
+    return np.asarray(~(speed > limits.wind_speed))
