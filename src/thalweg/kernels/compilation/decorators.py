@@ -6,8 +6,13 @@ part of its public interface, so it is left out where numba does not know it.
 """
 
 from thalweg.kernels.compilation.jit import jit
+from thalweg.kernels.compilation.kernel_libraries import InnerCompiler
 
-_INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_INNER = {
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+    "pipeline_class": InnerCompiler,
+}
 
 
 def _compile(function, **options):

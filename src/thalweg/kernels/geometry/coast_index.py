@@ -25,7 +25,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from thalweg.kernels.codes import LAND, NO_DATA, NO_GO, OFFING, OK
-from thalweg.kernels.compilation.decorators import allocation_free
+from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
 from thalweg.kernels.geometry.cube_sphere import (
     AXIS_RATIO_SQUARED,
     BULGE,
@@ -71,7 +71,7 @@ class CoastArrays(NamedTuple):
     offing: OffingArrays = NO_OFFING
 
 
-@allocation_free
+@kernel_only
 def _edge_cut(p, q, m, e, n, k, half, tan_half, unsure):
     """Test an edge near the leg in fine pieces: 0 clear, 1 touched, 2 unsure."""
     plat, plon = latitude_longitude(p[0], p[1], p[2])
@@ -100,7 +100,7 @@ def _edge_cut(p, q, m, e, n, k, half, tan_half, unsure):
     return answer
 
 
-@allocation_free
+@kernel_only
 def _edge_touched(p, q, m, e, n, k, tan_half, unsure):
     """Test one edge that is near the leg's plane: 0 clear, 1 touched, 2 unsure."""
     half = atan(tan_half)
@@ -124,7 +124,7 @@ def _edge_touched(p, q, m, e, n, k, tan_half, unsure):
     return _edge_cut(p, q, m, e, n, k, half, tan_half, unsure)
 
 
-@allocation_free
+@kernel_only
 def edges_of_cell_touched(index, row, m, e, n, k, tan_half, near, unsure):
     """Test the edges of one cell: 0 clear, 1 touched, 2 unsure."""
     xyz, first = index.xyz, index.first
@@ -144,7 +144,7 @@ def edges_of_cell_touched(index, row, m, e, n, k, tan_half, near, unsure):
     return answer
 
 
-@allocation_free
+@kernel_only
 def _column_exit(direction, side, column, mu, eu, mw, ew, tau):
     """Return where the leg leaves a column of cells, as the tangent of the angle; or infinity."""
     if direction == 0.0:
@@ -157,7 +157,7 @@ def _column_exit(direction, side, column, mu, eu, mw, ew, tau):
     return out if out > tau else np.inf  # not above tau: it is behind the back of the cube
 
 
-@allocation_free
+@kernel_only
 def cell_exit(m, e, face, i, j, side, tau):
     """Return where an arc leaves cell (i, j) of a face, as the tangent of the angle."""
     mu, mv, mw = face_components(m[0], m[1], m[2], face)
@@ -167,14 +167,14 @@ def cell_exit(m, e, face, i, j, side, tau):
     return min(out_u, out_v)
 
 
-@allocation_free
+@kernel_only
 def arc_frame(m, n, tan_half):
     """Return the geodesic's curvature against the plane n, and how near the plane matters."""
     k = -FLATTENING * n[2]
     return k, abs(k) * tan_half * tan_half * (1.01 * abs(m[2]) + 0.4 * tan_half) + BULGE
 
 
-@allocation_free
+@kernel_only
 def _arc_touched(index, m, e, tan_half, unsure):
     """Walk an arc of at most `LONGEST_ARC`: 0 clear, 1 touched, 2 unsure."""
     side, cell = index.side, index.cell
@@ -205,19 +205,19 @@ def _arc_touched(index, m, e, tan_half, unsure):
     return answer
 
 
-@allocation_free
+@kernel_only
 def _is_whole_globe(area):
     return area[0] <= -90.0 and area[1] >= 90.0 and area[3] >= 360.0
 
 
-@allocation_free
+@kernel_only
 def _position_in_area(area, lat, lon):
     """Return whether a position [deg] is in an area, borders included."""
     east = (lon - area[2]) % 360.0
     return area[0] <= lat <= area[1] and (east <= area[3] or east >= 360.0 - 1e-9)
 
 
-@allocation_free
+@kernel_only
 def leg_in_area(area, lat1, lon1, lat2, lon2):
     """Return whether the geodesic between two positions [deg] stays in an area.
 
@@ -238,7 +238,7 @@ def leg_in_area(area, lat1, lon1, lat2, lon2):
     return top <= area[1] if az + bz > 0.0 else -top >= area[0]
 
 
-@allocation_free
+@kernel_only
 def _vector_code(coast, lat, lon, x, y, z):
     """Return OK, LAND or NO_GO for a position given in degrees and as a vector."""
     if inside(coast.land, x, y, z):
@@ -250,7 +250,7 @@ def _vector_code(coast, lat, lon, x, y, z):
     return OK
 
 
-@allocation_free
+@kernel_only
 def _offing_code(coast, x, y, z):
     """Return OFFING for a direction in water nearer to land than is required, else OK."""
     if coast.offing.distance > 0.0 and not offing_kept_at(coast.land, coast.offing, x, y, z):
@@ -258,7 +258,7 @@ def _offing_code(coast, x, y, z):
     return OK
 
 
-@allocation_free
+@kernel_only
 def point_code(coast, lat, lon):
     """Return OK, LAND, NO_GO (a no-go zone or outside the area) or OFFING for a position [deg]."""
     if not (abs(lat) <= 90.0 and abs(lon) < 1e6):
@@ -268,7 +268,7 @@ def point_code(coast, lat, lon):
     return code if code != OK else _offing_code(coast, x, y, z)
 
 
-@allocation_free
+@kernel_only
 def _arc_between(a, b):
     """Return the middle direction, the direction along and the tangent of half the angle."""
     mx, my, mz = a[0] + b[0], a[1] + b[1], a[2] + b[2]
@@ -277,7 +277,7 @@ def _arc_between(a, b):
     return (mx / lm, my / lm, mz / lm), (ex / le, ey / le, ez / le), le / lm
 
 
-@allocation_free
+@kernel_only
 def _touched(index, a, b, chord, unsure):
     """Walk the leg from a to b in arcs: 0 clear, 1 touched, 2 unsure."""
     if chord < LONGEST_ARC:
@@ -370,7 +370,7 @@ def point_codes(coast, lat, lon, code):
         code[i] = point_code(coast, lat[i], lon[i])
 
 
-@allocation_free
+@kernel_only
 def outline_touched(index, a, b):
     """Return whether a leg between unit vectors may touch an outline; long ones may."""
     x, y, z = b[0] - a[0], b[1] - a[1], b[2] - a[2]

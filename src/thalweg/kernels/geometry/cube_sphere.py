@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from thalweg.kernels.compilation.decorators import allocation_free
+from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
 
 FLATTENING: Final = 1.0 / 298.257223563  # WGS 84
 AXIS_RATIO_SQUARED: Final = (1.0 - FLATTENING) ** 2  # tan(geocentric latitude) / tan(latitude)
@@ -59,7 +59,7 @@ def unit_vector(lat, lon):
     return c * cos(lon * DEGREE), c * sin(lon * DEGREE), s * scale
 
 
-@allocation_free
+@kernel_only
 def face_components(x, y, z, face):
     """Return a vector's components (u, v, w) on a face: w outward, u and v across."""
     if face == 0:
@@ -75,7 +75,7 @@ def face_components(x, y, z, face):
     return x, y, -z
 
 
-@allocation_free
+@kernel_only
 def vector_from_face(u, v, w, face):
     """Return the vector whose components on a face are (u, v, w)."""
     if face == 0:
@@ -91,7 +91,7 @@ def vector_from_face(u, v, w, face):
     return u, v, -w
 
 
-@allocation_free
+@kernel_only
 def face_of(x, y, z):
     """Return the face of the cube that a vector points through."""
     ax, ay, az = abs(x), abs(y), abs(z)
@@ -102,7 +102,7 @@ def face_of(x, y, z):
     return 4 if z > 0.0 else 5
 
 
-@allocation_free
+@kernel_only
 def column_of(u, side):
     """Return which of a face's columns holds u in [-1, 1]."""
     return min(max(int((u + 1.0) * 0.5 * side), 0), side - 1)
@@ -114,7 +114,7 @@ def latitude_longitude(x, y, z):
     return atan2(z, AXIS_RATIO_SQUARED * hypot(x, y)) / DEGREE, atan2(y, x) / DEGREE
 
 
-@allocation_free
+@kernel_only
 def _side_of_edge(px, py, pz, qx, qy, qz, x, y, z):
     """Return on which side of the edge p, q, straight in lon and lat, a near point is."""
     plat, plon = latitude_longitude(px, py, pz)
@@ -125,7 +125,7 @@ def _side_of_edge(px, py, pz, qx, qy, qz, x, y, z):
     return east * (lat - plat) - here * (qlat - plat)
 
 
-@allocation_free
+@kernel_only
 def winding_from(index, row, ax, ay, az, bx, by, bz, winding, exact):
     """Return the winding number at a, given that at b; both are in the row's cell."""
     nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from thalweg.kernels.compilation.decorators import allocation_free
+from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
 from thalweg.kernels.geometry.cube_sphere import latitude_longitude, unit_vector
 
 
@@ -35,7 +35,7 @@ class DepthArrays(NamedTuple):
     values: np.ndarray
 
 
-@allocation_free
+@kernel_only
 def _layer_depth(depths, layer, lat, lon, least):
     """Return one layer's depth at a position: bilinear, or the least of the soundings round it."""
     rows, columns = depths.shape[layer, 0], depths.shape[layer, 1]
@@ -64,7 +64,7 @@ def _layer_depth(depths, layer, lat, lon, least):
     return value
 
 
-@allocation_free
+@kernel_only
 def depth_at_point(depths, lat, lon, least):
     """Return the depth [m] at a position [deg] from the first layer that knows it, else NaN."""
     for layer in range(len(depths.offset)):
@@ -74,7 +74,7 @@ def depth_at_point(depths, lat, lon, least):
     return np.nan
 
 
-@allocation_free
+@kernel_only
 def _finest_step(depths, lat):
     """Return the shortest grid step [rad] of all layers near a latitude."""
     finest = 1.0
@@ -84,7 +84,7 @@ def _finest_step(depths, lat):
     return finest * pi / 180.0
 
 
-@allocation_free
+@kernel_only
 def _across_a_corner(depths, lat1, lon1, lat2, lon2):
     """Return whether a step shorter than a cell changes row and column of any layer."""
     for layer in range(len(depths.offset)):

@@ -5,18 +5,18 @@
 
 from math import atan2, cos, sin, sqrt, tan
 
-from thalweg.kernels.compilation.decorators import allocation_free
+from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.geometry.cube_sphere import FLATTENING
 
 
-@allocation_free
+@kernel_only
 def plane_offset(k, mz, ez, half, tan_half, t):
     """Return the offset of the geodesic from the plane at the angle t from its middle."""
     s, c = sin(t), cos(t)
     return k * (mz * (t * s - half * tan_half * c) + ez * (half * s / tan_half - t * c))
 
 
-@allocation_free
+@kernel_only
 def geodesic_point(a, b, share):
     """Return the unit vector at a share of the leg's angle, on the geodesic to first order."""
     mx, my, mz = a[0] + b[0], a[1] + b[1], a[2] + b[2]

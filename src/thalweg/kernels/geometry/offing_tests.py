@@ -16,7 +16,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from thalweg.kernels.compilation.decorators import allocation_free
+from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
 from thalweg.kernels.geometry.cube_sphere import RADIUS
 from thalweg.kernels.geometry.geodesic_arc import geodesic_point
 from thalweg.kernels.geometry.shore_distance import cell_clearance, nearest_edge
@@ -68,13 +68,13 @@ NO_OFFING: Final = OffingArrays(
 )
 
 
-@allocation_free
+@kernel_only
 def _metres_apart(x, y, z, p):
     ax, ay, az = x - p[0], y - p[1], z - p[2]
     return RADIUS * sqrt(ax * ax + ay * ay + az * az)
 
 
-@allocation_free
+@kernel_only
 def _metres_to_segment(x, y, z, s):
     """Return the distance [m] to a segment between the vectors s[0:3] and s[3:6]."""
     ex, ey, ez = s[3] - s[0], s[4] - s[1], s[5] - s[2]
@@ -106,7 +106,7 @@ def required_distance(offing, x, y, z):
     return least
 
 
-@allocation_free
+@kernel_only
 def _shore_clearance(land, x, y, z, reach):
     """Return a lower bound of the distance to land [m] at a direction in water."""
     clear = cell_clearance(land, x, y, z)
@@ -115,14 +115,14 @@ def _shore_clearance(land, x, y, z, reach):
     return clear
 
 
-@allocation_free
+@kernel_only
 def offing_kept_at(land, offing, x, y, z):
     """Return whether a direction in open water is as far from land as is required."""
     clear = _shore_clearance(land, x, y, z, offing.distance)
     return clear >= offing.distance or clear >= required_distance(offing, x, y, z)
 
 
-@allocation_free
+@kernel_only
 def offing_along(land, offing, a, b, chord):
     """Follow a leg between two unit vectors: `TOO_NEAR`, `RELAXED` or `KEPT`.
 
@@ -160,7 +160,7 @@ def offing_along(land, offing, a, b, chord):
         p = b if at == length else geodesic_point(a, b, at / length)
 
 
-@allocation_free
+@kernel_only
 def gate_crossed(offing, a, b):
     """Return whether the arc between two unit vectors crosses a gate."""
     nx, ny, nz = a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]

@@ -3,7 +3,7 @@
 from math import atan2, cos, sin, sqrt
 from typing import Final
 
-from thalweg.kernels.compilation.decorators import allocation_free
+from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
 from thalweg.kernels.geometry.coast_index import SHORTEST_ARC, outline_touched
 from thalweg.kernels.geometry.cube_sphere import FLATTENING, inside, unit_vector
 from thalweg.kernels.geometry.geodesic_arc import geodesic_point
@@ -12,7 +12,7 @@ MAX_TESTS: Final = 2048  # of one leg, before crossings are found less finely
 _ECCENTRICITY_SQUARED: Final = FLATTENING * (2.0 - FLATTENING)  # eccentricity squared
 
 
-@allocation_free
+@kernel_only
 def middle_inside(index, lat1, lon1, lat2, lon2):
     """Return whether the middle of a leg [deg] is inside the polygons of an index.
 
@@ -35,7 +35,7 @@ def middles_inside(index, lat1, lon1, lat2, lon2, within):
         within[i] = middle_inside(index, lat1[i], lon1[i], lat2[i], lon2[i])
 
 
-@allocation_free
+@kernel_only
 def _metres_per_radian(a, b, arc, share):
     """Return metres per radian [in polar radii] on the great ellipse at a share of its angle."""
     t = arc * share
@@ -47,7 +47,7 @@ def _metres_per_radian(a, b, arc, share):
     return sqrt(w * (1.0 + slope * slope))
 
 
-@allocation_free
+@kernel_only
 def _fraction_inside(index, outlines, a, b, finest):
     """Return (share of the length of a leg inside, tests made); see `fractions_by_bisection`."""
     dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

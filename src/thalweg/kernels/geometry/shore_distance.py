@@ -4,7 +4,7 @@ from math import asin, sqrt
 
 import numpy as np
 
-from thalweg.kernels.compilation.decorators import allocation_free
+from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
 from thalweg.kernels.geometry.cube_sphere import (
     FIRST_ROW,
     RADIUS,
@@ -16,7 +16,7 @@ from thalweg.kernels.geometry.cube_sphere import (
 )
 
 
-@allocation_free
+@kernel_only
 def _squared_distance(x, y, z, p, q):
     """Return the squared chord from a point to an edge between two vertices."""
     ex, ey, ez = q[0] - p[0], q[1] - p[1], q[2] - p[2]
@@ -28,7 +28,7 @@ def _squared_distance(x, y, z, p, q):
     return ax * ax + ay * ay + az * az
 
 
-@allocation_free
+@kernel_only
 def _nearest_in_row(index, row, x, y, z, best):
     for k in range(index.start[row], index.start[row + 1]):
         if index.first[k] == 0:
@@ -36,7 +36,7 @@ def _nearest_in_row(index, row, x, y, z, best):
     return best
 
 
-@allocation_free
+@kernel_only
 def _nearest_within(index, x, y, z, radius):
     """Return the squared chord to the nearest edge in cells touched by a disc [rad]."""
     best = np.inf
@@ -57,7 +57,7 @@ def _nearest_within(index, x, y, z, radius):
     return best
 
 
-@allocation_free
+@kernel_only
 def cell_clearance(index, x, y, z):
     """Return a lower bound [m] of the distance to the edges from the cell of a direction alone."""
     side = index.side
@@ -68,7 +68,7 @@ def cell_clearance(index, x, y, z):
     return value * RADIUS * 0.9943
 
 
-@allocation_free
+@kernel_only
 def nearest_edge(index, x, y, z, radius):
     """Return the distance [m] to the nearest edge within a radius [m], else the radius."""
     square = _nearest_within(index, x, y, z, radius / RADIUS * 1.006)

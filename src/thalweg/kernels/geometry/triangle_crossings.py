@@ -2,6 +2,7 @@
 
 import math
 
+from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit
 
 MAX_SIDES = 256  # crossed by one line
@@ -55,13 +56,13 @@ def crossed_sides(x, y, triangles, neighbours, around_ptr, around, first, second
     ptr[first.shape[0]] = count
 
 
-@jit
+@kernel_only
 def _side_of(x, y, a, b, c):
     """Return twice the area of a, b, c: positive if c is to the left of a to b."""
     return (x[b] - x[a]) * (y[c] - y[a]) - (y[b] - y[a]) * (x[c] - x[a])
 
 
-@jit
+@kernel_only
 def _exit_side(x, y, triangles, around_ptr, around, a, b):
     """Return (triangle, left, right): the side of a triangle at a through which a line leaves.
 
@@ -98,7 +99,7 @@ def _crossing(x, y, a, b, left, right):
     return ((px - x[a]) * dx + (py - y[a]) * dy) / (dx * dx + dy * dy), w
 
 
-@jit
+@kernel_only
 def _next_side(x, y, triangles, neighbours, triangle, left, right, a, b):
     """Return the next (triangle, left, right) beyond a side; -1 when there is none."""
     far = -1

@@ -4,7 +4,7 @@ from math import asin, ceil, sqrt
 
 import numpy as np
 
-from thalweg.kernels.compilation.decorators import allocation_free
+from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
 from thalweg.kernels.compilation.jit import jit
 from thalweg.kernels.geometry.coast_index import (
     LONGEST_ARC,
@@ -24,7 +24,7 @@ from thalweg.kernels.geometry.geodesic_arc import geodesic_point
 _MAX_HALVINGS = 64  # more halvings of an edge than any grid has
 
 
-@allocation_free
+@kernel_only
 def _arc_crosses(index, m, e, tan_half):
     """Return whether an arc of at most `LONGEST_ARC` touches an outline, inland or at sea."""
     side, cell = index.side, index.cell
@@ -75,7 +75,7 @@ def outlines_crossed(index, lat1, lon1, lat2, lon2, crossed):
             p = q
 
 
-@jit
+@kernel_only
 def find_midpoint(keys, middles, a, b):
     """Return the vertex in the middle of edge a-b, or -1 where it is not halved.
 
@@ -94,7 +94,7 @@ def find_midpoint(keys, middles, a, b):
     return -1
 
 
-@jit
+@kernel_only
 def _walk_boundary(keys, middles, faces, f, ring, sides, stack):
     """Fill the boundary of a leaf face, hanging vertices included; return its length.
 

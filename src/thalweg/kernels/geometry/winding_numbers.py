@@ -1,12 +1,12 @@
 """Winding numbers of the cells of a coast index, propagated from cell to cell."""
 
-from thalweg.kernels.compilation.decorators import allocation_free
+from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
 from thalweg.kernels.geometry.cube_sphere import ALL_LAND, FIRST_ROW, cell_middle, winding_from
 
 SEA = 1.0e-9  # a cell value: outside the polygons, distance to them not known yet
 
 
-@allocation_free
+@kernel_only
 def _carry(index, face, i, j, from_i, from_j, to_i, to_j, winding):
     """Propagate a winding number between two points of one cell (halves are its borders)."""
     value = index.cell[(face * index.side + j) * index.side + i]

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit
 
 _A = 6378137.0
@@ -136,7 +137,7 @@ def fill_lengths_and_courses(lat, lon, first, second, length, course):
         length[e], course[e] = _vincenty(su[p], cu[p], su[q], cu[q], math.radians(delta))
 
 
-@jit
+@kernel_only
 def _vincenty(su1, cu1, su2, cu2, delta):
     lam = delta
     settled = False
@@ -291,7 +292,7 @@ def static_dijkstra(indptr, target, weight, start, goal, distance, parent):
                 _sift_up(heap, place, distance, other)
 
 
-@jit
+@kernel_only
 def _sift_up(heap, place, distance, node):
     at = place[node]
     while at > 0:
@@ -305,7 +306,7 @@ def _sift_up(heap, place, distance, node):
     place[node] = at
 
 
-@jit
+@kernel_only
 def _sift_down(heap, place, distance, size, node):
     at = 0
     while True:
