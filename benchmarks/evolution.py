@@ -47,7 +47,7 @@ from thalweg.evolution import (
 )
 from thalweg.evolution.indicators import hypervolume
 from thalweg.kernels import codes
-from thalweg.kernels.leg import population_sailing
+from thalweg.kernels.leg import great_circle_sailing, population_sailing
 from thalweg.sea.frozen_fields import GridFields
 
 EVALUATIONS = 21_000
@@ -97,7 +97,7 @@ def pieces_of(route: Genome) -> int:
     """Return how many pieces the legs of a route are cut into, as the kernel cuts them."""
     lengths = rough_lengths(route.lat[None], route.lon[None])
     cut = np.ceil(lengths / OCEAN.world.terms[population_sailing.PIECE_SPACING])
-    return int(np.maximum(cut, population_sailing.MIN_PIECES).sum())
+    return int(np.maximum(cut, great_circle_sailing.MIN_PIECES).sum())
 
 
 def timed(label: str, target: float, work, *, runs: int = 3) -> None:

@@ -7,9 +7,12 @@ import numpy as np
 
 from thalweg.kernels.codes import CURRENT, DEPTH, OK, WAVE_HEIGHT, WIND_SPEED
 from thalweg.kernels.compilation.decorators import allocation_free, inlined
-from thalweg.kernels.leg.great_circle import great_circle, great_circle_point
-from thalweg.kernels.leg.point_speed import point_speed_with_axes
-from thalweg.kernels.leg.raster_sampling import interpolate_raster
+from thalweg.kernels.leg.great_circle_sailing import (
+    LENGTH,
+    SLOWNESS,
+    GreatCircleLeg,
+    sail_great_circle_leg,
+)
 from thalweg.kernels.leg.table_lookup import axes_needed
 
 
@@ -65,102 +68,58 @@ class PolylineResults(NamedTuple):
 
 
 @inlined
-def _sail_leg(lines, point, stop, t, raster, table, limits, needs, sample, state):
-    """Sail at most ``stop`` pieces of the leg that starts at a point; return (arrival, status).
-
-    ``state`` carries (time step of the raster, slowness found last, length sailed).
-    """
-    start, tangent, arc = great_circle(
-        lines.lat[point], lines.lon[point], lines.lat[point + 1], lines.lon[point + 1]
-    )
-    if arc == 0.0:
-        return t, OK
-    count = lines.pieces[point]
-    step = arc / count
-    turn_sine, turn_cosine = math.sin(step), math.cos(step)
-    s, c = math.sin(0.5 * step), math.cos(0.5 * step)
-    for _ in range(min(count, stop)):
-        lat, lon, east, north, scale = great_circle_point(start, tangent, s, c)
-        s, c = s * turn_cosine + c * turn_sine, c * turn_cosine - s * turn_sine
-        length = scale * step
-        at = t + 0.5 * length * state[1]
-        status, found = interpolate_raster(raster, at, lat, lon, int(state[0]), sample)
-        state[0] = found
-        if status != OK:
-            return math.inf, status
-        speed, status = point_speed_with_axes(
-            sample,
-            raster.channel_index,
-            east,
-            north,
-            table,
-            lines.setting[point],
-            lines.charted[point],
-            limits,
-            needs,
-        )
-        if status != OK:
-            return math.inf, status
-        state[1] = 1.0 / speed
-        state[2] += length
-        t += length / speed
-    return t, OK
-
-
-@inlined
 def _waiting_may_help(status):
     """Return whether waiting could help."""
     return status in (DEPTH, WAVE_HEIGHT, WIND_SPEED, CURRENT)
 
 
 @allocation_free
-def sail_polylines(lines, raster, table, limits, waiting_parameters, out, sample, state):
+def sail_polylines(lines, world, waiting_parameters, out, scratch):
     """Sail many polylines through a frozen sea.
 
     Parameters
     ----------
     lines : PolylineArrays
-    raster : RasterArrays
-    table : TableArrays
-        Speed through water.
-    limits : float64[LIMITS]
-        See `thalweg.kernels.leg.point_speed.point_speed`.
+    world : ShipOnRaster
     waiting_parameters : float64[3]
         Longest wait at a point for the next leg to open, time between two trials, and tolerance of
         the time of opening [s]. Zeros: the ship does not wait unless ``lines.leave`` says so.
     out : PolylineResults
         Filled.
-    sample : float64[CHANNELS]
-    state : float64[3]
+    scratch : float64[SCRATCH_SIZE]
         Work space, zeros.
 
     Notes
     -----
-    Legs are great circles, see `thalweg.kernels.leg.great_circle`. Time is integrated by the
-    midpoint rule; the middle of a piece is reached with the slowness of the piece before (order 2).
+    Legs are sailed by `sail_great_circle_leg`.
     """
-    needs = axes_needed(table)
+    needs = (axes_needed(world.table), 0)
     for line in range(lines.first.shape[0] - 1):
         start, end = lines.first[line], lines.first[line + 1]
         t = lines.depart[line]
-        state[1], sailed = 0.0, 0.0
+        scratch[SLOWNESS], sailed = 0.0, 0.0
         out.status[line] = OK
         out.arrive[start] = t
         for point in range(start, end - 1):
             t = max(t, lines.leave[point])
-            pieces = lines.pieces[point]
+            leg = GreatCircleLeg(
+                (lines.lat[point], lines.lon[point]),
+                (lines.lat[point + 1], lines.lon[point + 1]),
+                lines.setting[point],
+                lines.pieces[point],
+                math.inf,
+                lines.charted[point],
+                False,
+            )
             low, high, tried = t, -math.inf, t
             after, length, status = math.inf, sailed, OK
             while True:  # sail; if the leg is closed wait for it to open, then find the moment
-                reached = math.inf
-                for stop in (1, pieces):  # a first piece is tried, for a first slowness
-                    if stop == pieces or state[1] == 0.0:
-                        state[2] = sailed
-                        reached, status = _sail_leg(
-                            lines, point, stop, tried, raster, table, limits, needs, sample, state
-                        )
+                scratch[LENGTH] = sailed
+                reached, status = sail_great_circle_leg(
+                    world, None, needs, leg, None, tried, scratch
+                )
                 if status == OK:
-                    high, after, length = tried, reached, state[2]
+                    high, after, length = tried, reached, scratch[LENGTH]
                 else:
                     low = tried
                 if high - low <= waiting_parameters[2] and high >= t:

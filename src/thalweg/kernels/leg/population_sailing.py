@@ -4,16 +4,23 @@ A track is a row of points, and each point carries the leg that starts there (`L
 columns). Tracks are independent of one another, so results do not depend on the number of threads.
 """
 
-import math
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from thalweg.kernels.codes import CHANNEL_COUNT, NO_DATA, OK
 from thalweg.kernels.compilation.decorators import allocation_free, inlined
-from thalweg.kernels.leg.great_circle import MAJOR_AXIS, great_circle, great_circle_point
-from thalweg.kernels.leg.point_speed import fuel_rate_at_speed, point_speed_from_guess
-from thalweg.kernels.leg.raster_sampling import RasterArrays, interpolate_raster
+from thalweg.kernels.leg.great_circle_sailing import (
+    COST_SO_FAR,
+    INFEASIBLE_LENGTH,
+    LENGTH,
+    PENALTY_TIME,
+    SCRATCH_SIZE,
+    SLOWNESS,
+    GreatCircleLeg,
+    LegPrice,
+    sail_great_circle_leg,
+)
+from thalweg.kernels.leg.raster_sampling import RasterArrays
 from thalweg.kernels.leg.table_lookup import TableArrays, axes_needed
 
 # Columns of genes: of a point ...
@@ -45,18 +52,6 @@ COST: Final = 1
 VIOLATION: Final = 2
 SCORE_COUNT: Final = 3
 
-# Work space, after the sample of the sea.
-_TIME_STEP: Final = CHANNEL_COUNT  # time step of the raster found last
-_SLOWNESS: Final = CHANNEL_COUNT + 1  # of the last piece [s/m]
-_INFEASIBLE_LENGTH: Final = CHANNEL_COUNT + 2  # length that cannot be sailed [m]
-_LENGTH: Final = CHANNEL_COUNT + 3  # [m]
-_COST_SO_FAR: Final = CHANNEL_COUNT + 4  # cost
-_PENALTY_TIME: Final = CHANNEL_COUNT + 5  # what penalties add to the time [s]
-SCRATCH_SIZE: Final = CHANNEL_COUNT + 6
-
-MIN_PIECES: Final = 2
-_DEFAULT_SLOWNESS = 0.2  # slowness assumed where no piece has been sailed yet [s/m]
-
 
 class FitnessArrays(NamedTuple):
     """The sea, the ship, its limits and the prices, for a population of tracks.
@@ -78,71 +73,19 @@ class FitnessArrays(NamedTuple):
 
 
 @inlined
-def _piece_performance(world, needs, gene, t, place, course, scratch):
-    """Return (slowness [s/m], fuel rate [kg/s], status) at the middle of a piece."""
-    status, step = interpolate_raster(
-        world.raster, t, place[0], place[1], int(scratch[_TIME_STEP]), scratch
-    )
-    scratch[_TIME_STEP] = step
-    if status != OK:
-        return 0.0, 0.0, status
-    index, setting, charted = world.raster.channel_index, int(gene[SETTING]), gene[CHARTED_DEPTH]
-    over_ground, status, through = point_speed_from_guess(
-        scratch,
-        index,
-        course[0],
-        course[1],
-        world.table,
-        setting,
-        charted,
-        world.limits,
-        needs[0],
-        math.inf,
-    )
-    if status != OK:
-        return 0.0, 0.0, status
-    rate, ok = fuel_rate_at_speed(
-        scratch, index, course, world.fuel, setting, charted, world.limits, needs[1], through
-    )
-    return 1.0 / over_ground, rate, OK if ok else NO_DATA
-
-
-@inlined
 def _sail_gene_leg(world, needs, gene, after, t, scratch):
     """Sail the leg of a gene to the next point; return the arrival."""
-    start, tangent, arc = great_circle(gene[LAT], gene[LON], after[LAT], after[LON])
-    if arc == 0.0:
-        return t
-    count = int(gene[PIECES])
-    if count == 0:
-        count = max(MIN_PIECES, math.ceil(MAJOR_AXIS * arc / world.terms[PIECE_SPACING]))
-    step = arc / count
-    turn_sine, turn_cosine = math.sin(step), math.cos(step)
-    s, c = math.sin(0.5 * step), math.cos(0.5 * step)
-    for _ in range(count):
-        lat, lon, east, north, scale = great_circle_point(start, tangent, s, c)
-        s, c = s * turn_cosine + c * turn_sine, c * turn_cosine - s * turn_sine
-        length = scale * step
-        place, course = (lat, lon), (east, north)
-        if scratch[_SLOWNESS] == 0.0:  # a first slowness, at the start
-            slowness, _, status = _piece_performance(world, needs, gene, t, place, course, scratch)
-            scratch[_SLOWNESS] = slowness
-        at = t + 0.5 * length * scratch[_SLOWNESS]
-        slowness, rate, status = _piece_performance(world, needs, gene, at, place, course, scratch)
-        scratch[_LENGTH] += length
-        if status != OK:
-            scratch[_INFEASIBLE_LENGTH] += length
-            slowness = scratch[_SLOWNESS] if scratch[_SLOWNESS] > 0.0 else _DEFAULT_SLOWNESS
-        else:
-            scratch[_SLOWNESS] = slowness
-            if gene[IS_BLOCKED] != 0.0:
-                scratch[_INFEASIBLE_LENGTH] += length
-        spent = length * slowness
-        t += spent
-        scratch[_COST_SO_FAR] += (
-            spent * (rate * gene[FUEL_PRICE] + world.terms[TIME_PRICE]) * gene[PENALTY_FACTOR]
-        )
-        scratch[_PENALTY_TIME] += spent * (gene[PENALTY_FACTOR] - 1.0)
+    leg = GreatCircleLeg(
+        (gene[LAT], gene[LON]),
+        (after[LAT], after[LON]),
+        int(gene[SETTING]),
+        int(gene[PIECES]),
+        world.terms[PIECE_SPACING],
+        gene[CHARTED_DEPTH],
+        gene[IS_BLOCKED] != 0.0,
+    )
+    price = LegPrice(gene[FUEL_PRICE], world.terms[TIME_PRICE], gene[PENALTY_FACTOR])
+    t, _ = sail_great_circle_leg(world, world.fuel, needs, leg, price, t, scratch)
     return t
 
 
@@ -158,21 +101,21 @@ def _sail_track(world, needs, count, genes, depart, score, arrive, scratch):
         wait = genes[p, WAITING_TIME]
         if wait > 0.0:
             t += wait
-            scratch[_COST_SO_FAR] += wait * (terms[WAITING_PRICE] + terms[TIME_PRICE])
-            scratch[_SLOWNESS] = 0.0
+            scratch[COST_SO_FAR] += wait * (terms[WAITING_PRICE] + terms[TIME_PRICE])
+            scratch[SLOWNESS] = 0.0
         fixed = genes[p, FIXED_TIME]
         if fixed == fixed:
             t += fixed
-            scratch[_COST_SO_FAR] += genes[p, FIXED_COST] + fixed * terms[TIME_PRICE]
-            scratch[_SLOWNESS] = 0.0
+            scratch[COST_SO_FAR] += genes[p, FIXED_COST] + fixed * terms[TIME_PRICE]
+            scratch[SLOWNESS] = 0.0
         else:
             t = _sail_gene_leg(world, needs, genes[p], genes[p + 1], t, scratch)
         arrive[p + 1] = t
-    score[TIME] = t - depart + scratch[_PENALTY_TIME]
-    score[COST] = scratch[_COST_SO_FAR]
+    score[TIME] = t - depart + scratch[PENALTY_TIME]
+    score[COST] = scratch[COST_SO_FAR]
     broken = 0.0
-    if scratch[_INFEASIBLE_LENGTH] > 0.0:
-        broken = scratch[_INFEASIBLE_LENGTH] / scratch[_LENGTH]
+    if scratch[INFEASIBLE_LENGTH] > 0.0:
+        broken = scratch[INFEASIBLE_LENGTH] / scratch[LENGTH]
     if not t <= terms[LATEST_ARRIVAL]:
         broken += (t - terms[LATEST_ARRIVAL]) / max(terms[LATEST_ARRIVAL] - depart, 1.0)
     score[VIOLATION] = broken
@@ -202,10 +145,9 @@ def sail_population(count, genes, depart, world, score, arrive, scratch):
 
     Notes
     -----
-    Legs are great circles, see `thalweg.kernels.leg.great_circle`; time is integrated by the
-    midpoint rule. Fuel is priced per piece at the fuel price of the leg. A piece that cannot be
-    sailed takes the speed of the piece before, so that tracks with larger violations compare as
-    worse.
+    Legs are sailed by `sail_great_circle_leg`. Fuel is priced per piece at the fuel price of the
+    leg. A piece that cannot be sailed takes the speed of the piece before, so that tracks with
+    larger violations compare as worse.
     """
     needs = (axes_needed(world.table), axes_needed(world.fuel))
     for i in range(count.shape[0]):

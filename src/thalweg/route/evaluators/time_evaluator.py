@@ -14,6 +14,7 @@ from thalweg.core.geodesy import METRES_PER_DEGREE, direct, inverse, rough_lengt
 from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels import codes
+from thalweg.kernels.leg.great_circle_sailing import SCRATCH_SIZE, ShipOnRaster
 from thalweg.kernels.leg.polyline_sailing import (
     PolylineArrays,
     PolylineResults,
@@ -149,10 +150,8 @@ class TimeEvaluator:
             np.empty(count),
             np.empty(count, dtype=np.int64),
         )
-        work = np.zeros(codes.CHANNEL_COUNT), np.zeros(3)
-        sail_polylines(
-            lines, self.raster, self.table, self.limits, self.waiting_parameters, out, *work
-        )
+        world = ShipOnRaster(self.raster, self.table, self.limits)
+        sail_polylines(lines, world, self.waiting_parameters, out, np.zeros(SCRATCH_SIZE))
         arrive = out.arrive.reshape(count, size)
         cost = out.length.copy() if self.by_length else arrive[:, -1].copy()
         cost[out.status != codes.OK] = math.inf

@@ -14,6 +14,7 @@ from thalweg.core.geodesy import rough_lengths, wrap_longitude
 from thalweg.core.pareto_fronts import non_dominated_indices
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.leg import population_sailing as columns
+from thalweg.kernels.leg.great_circle_sailing import MIN_PIECES
 from thalweg.kernels.leg.population_sailing import LAT, LON
 from thalweg.route.evaluators.population import Population
 from thalweg.route.evaluators.population_evaluator import Evaluator
@@ -250,7 +251,7 @@ def fix_piece_counts(evaluator: Evaluator, pairs: FloatArray) -> None:
     """Fix the number of pieces of legs, so that their values can be differenced."""
     spacing = evaluator.world.terms[columns.PIECE_SPACING]
     length = rough_lengths(pairs[:, :, LAT], pairs[:, :, LON])[:, 0]
-    pairs[:, 0, columns.PIECES] = np.maximum(columns.MIN_PIECES, np.ceil(length / spacing))
+    pairs[:, 0, columns.PIECES] = np.maximum(MIN_PIECES, np.ceil(length / spacing))
 
 
 def sail_legs_alone(
