@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core import geodesy
+from thalweg.core.cheapest_chain import cheapest_chain
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.assembly import measured_pairs
@@ -177,24 +178,15 @@ def _cheapest_subset(rules: _LegRules, line: PolylineCoordinates) -> IntArray:
         own = rules.sides(lat[a], lon[a], lat[b], lon[b])
         free &= (own == past[b] - past[a]).all(axis=1)
     price[shortcut[~free]] = np.inf
-    return _cheapest_chain(count, first, second, price)
-
-
-def _cheapest_chain(count: int, first: IntArray, second: IntArray, price: FloatArray) -> IntArray:
-    """Return the cheapest chain of ascending indices from the first to the last."""
-    best, predecessor = np.full(count, np.inf), np.zeros(count, np.int64)
-    best[0] = 0.0
     rows = np.searchsorted(first, np.arange(count + 1))
-    for here in range(count - 1):
+    price *= 1.0 + 1e-12  # of equal paths, prefer fewer waypoints
+
+    def steps(here: int, _: int) -> tuple[IntArray, FloatArray]:
         row = slice(rows[here], rows[here + 1])
-        reach = best[here] + price[row] * (1.0 + 1e-12)  # of equal paths, prefer fewer waypoints
-        better = reach < best[second[row]]
-        best[second[row][better]] = reach[better]
-        predecessor[second[row][better]] = here
-    chain = [count - 1]
-    while chain[-1] > 0:
-        chain.append(int(predecessor[chain[-1]]))
-    return np.array(chain[::-1], np.int64)
+        return second[row], price[row]
+
+    chain = cheapest_chain(count, steps)
+    return np.arange(count) if chain is None else chain
 
 
 def _cut_corners(rules: _LegRules, line: PolylineCoordinates) -> PolylineCoordinates:

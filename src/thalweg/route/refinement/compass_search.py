@@ -7,186 +7,137 @@ Direct search by patterns (Kolda, Lewis & Torczon 2003, "Optimization by direct 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from typing import Protocol, Self, TypeVar
 
 import numpy as np
 
-from thalweg.core.geodesy import METRES_PER_DEGREE, rough_lengths, wrap_longitude
-from thalweg.core.types import FloatArray, IntArray
-from thalweg.kernels.leg import population_sailing as columns
-from thalweg.kernels.leg.population_sailing import LAT, LON
-from thalweg.route.evaluators.polyline import Polyline, PolylineEvaluator
-from thalweg.route.evaluators.population import concatenated_populations
-from thalweg.route.evaluators.time_evaluator import (
-    TrackBatch,
-)
-from thalweg.route.refinement.point_edits import isolated_maxima, trial_subsets
-from thalweg.route.refinement.scored_tracks import (
-    ScoredTracks,
-    delay_effects,
-    legs_as_tracks,
-    sail_legs_alone,
-)
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.route.refinement.track_geometry import displaced_positions
 
 _DIRECTIONS = 8
-_INITIAL_STEP_SHARE = 0.3  # first step, as a share of the shorter adjacent leg
-_GOLDEN_ANGLE = math.pi * (3.0 - math.sqrt(5.0))  # by which the directions turn every round
+_MIN_GAIN = 1e-10  # least gain that counts, as a share of the value of the legs beside a point
 
 
-def compass_search(
-    line: Polyline,
-    evaluator: PolylineEvaluator,
-    *,
-    rounds: int = 30,
-    smallest: float = 1.0,
-) -> Polyline:
-    """Return a line with waypoints moved where that lowers the cost.
+@dataclass(frozen=True)
+class CompassSchedule:
+    """The steps of a compass search.
 
-    Parameters
+    Attributes
     ----------
-    line : Polyline
-        One that can be sailed; any other is returned unchanged.
-    evaluator : TimeEvaluator or CostEvaluator
+    shares : tuple of float
+        First step of each round as a share of `CompassProblem.point_spacing`; one number: steps
+        grow and shrink with the success of each point instead.
     rounds : int
-        Rounds over all waypoints at most.
+        Rounds over all points at most.
+    growth, shrinkage : float
+        Factors of the step of a point after a gain and without one.
+    turn : float
+        By which the directions turn every round [rad].
     smallest : float
         The search ends when all steps are shorter than this [m].
-
-    Notes
-    -----
-    Every second waypoint moves at a time, each compared on its two adjacent legs alone: an earlier
-    arrival at the next waypoint is never worse at the goal. Steps grow by 1.3 after a gain and
-    halve otherwise.
+    groups : int
+        With 2 every second point moves at a time, with 1 all of them.
     """
-    if len(line) < 3 or not math.isfinite(evaluator.sail(line.batch())[1][0]):
-        return line
-    lengths = rough_lengths(line.lat, line.lon)
-    step = np.zeros(len(line))
-    step[1:-1] = _INITIAL_STEP_SHARE * np.minimum(lengths[:-1], lengths[1:])
-    step[line.required_points(evaluator)] = 0.0
-    for number in range(rounds):
-        for colour in (1, 2):
-            moving = np.arange(colour, len(line) - 1, 2)
-            moving = moving[step[moving] >= max(smallest, 1e-9)]
-            if moving.size:
-                line, moved = _try_steps(line, evaluator, moving, step, number)
-                step[moving] *= np.where(moved, 1.3, 0.5)
-        if step.max() < smallest:
-            break
-    return line
+
+    shares: tuple[float, ...]
+    rounds: int
+    growth: float = 1.0
+    shrinkage: float = 1.0
+    turn: float = 0.0
+    smallest: float = 0.0
+    groups: int = 1
 
 
-def _try_steps(
-    line: Polyline,
-    evaluator: PolylineEvaluator,
-    moving: np.ndarray,
-    step: FloatArray,
-    number: int,
-) -> tuple[Polyline, np.ndarray]:
-    """Move each of some waypoints to the best of its trial positions; return also which moved."""
-    angle = number * _GOLDEN_ANGLE + np.arange(_DIRECTIONS) * (2.0 * math.pi / _DIRECTIONS)
-    east = np.concatenate([[0.0], np.sin(angle)])
-    north = np.concatenate([[0.0], np.cos(angle)])
-    trials = len(east)
-    arrive, _ = evaluator.sail(line.batch())
-    lat = np.repeat(_adjacent_triples(line.lat, moving), trials, axis=0)
-    lon = np.repeat(_adjacent_triples(line.lon, moving), trials, axis=0)
-    size = np.repeat(step[moving], trials)
-    lat[:, 1] += size * np.tile(north, len(moving)) / METRES_PER_DEGREE
-    scale = METRES_PER_DEGREE * np.cos(np.radians(lat[:, 0]))
-    lon[:, 1] += size * np.tile(east, len(moving)) / scale
-    batch = TrackBatch(
-        lat,
-        lon,
-        np.repeat(_adjacent_triples(line.leave, moving), trials, axis=0),
-        np.repeat(np.stack([line.setting[moving - 1], line.setting[moving]], 1), trials, axis=0),
-        np.repeat(arrive[0, moving - 1], trials),
-    )
-    _, cost = evaluator.sail(batch)
-    cost = cost.reshape(len(moving), trials)
-    pick = np.argmin(cost, axis=1)
-    row = np.arange(len(moving))
-    with np.errstate(invalid="ignore"):  # a line that cannot be sailed never arrives
-        spent = cost[:, 0] - (0.0 if evaluator.by_length else arrive[0, moving - 1])
-    slack = 1e-10 * np.where(np.isfinite(spent), np.abs(spent), 0.0)
-    moved = cost[row, pick] + slack < cost[:, 0]
-    chosen = (row * trials + pick)[moved]
-    new_lat, new_lon = line.lat.copy(), line.lon.copy()
-    new_lat[moving[moved]], new_lon[moving[moved]] = lat[chosen, 1], lon[chosen, 1]
-    return line.moved(new_lat, new_lon), moved
+class CompassProblem(Protocol):
+    """A batch of R tracks of at most M points whose legs can be valued alone."""
+
+    @property
+    def free(self) -> BoolArray:
+        """Which points (R, M) may move."""
+
+    @property
+    def positions(self) -> tuple[FloatArray, FloatArray]:
+        """Latitudes and longitudes (R, M) [deg] of the points."""
+
+    def point_spacing(self) -> FloatArray:
+        """Return the length (R, M) [m] that steps of points are shares of."""
+
+    def values_beside(
+        self, row: IntArray, place: IntArray, lat: FloatArray, lon: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the value of the two legs beside points (P,) at trial positions (P, D), and now.
+
+        With the effects of a delay until the goal; +inf where a leg cannot be sailed.
+        """
+
+    def with_points_moved(
+        self, gain: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> tuple[Self, BoolArray]:
+        """Return the tracks with points (R, M) at other positions [deg], and which of them moved.
+
+        Points without a gain stay. The tracks are not worse than before.
+        """
 
 
-def _adjacent_triples(values: FloatArray, moving: np.ndarray) -> FloatArray:
-    return np.stack([values[moving - 1], values[moving], values[moving + 1]], axis=1)
+AnyCompassProblem = TypeVar("AnyCompassProblem", bound=CompassProblem)
 
 
-def compass_search_of_tracks(lines: ScoredTracks, *, radius: float) -> ScoredTracks:
-    """Return tracks after a trial step of each of their points in eight directions.
+def compass_search(tracks: AnyCompassProblem, schedule: CompassSchedule) -> AnyCompassProblem:
+    """Return tracks with points moved where that lowers the value.
 
     Parameters
     ----------
-    lines : ScoredTracks
-    radius : float
-        Step as a share of the mean length of the two adjacent legs.
+    tracks : CompassProblem
+        A batch of tracks, such as `ScoredTracks` or `SailedPolyline`.
+    schedule : CompassSchedule
 
     Returns
     -------
-    ScoredTracks
+    CompassProblem
         With costs that are not higher than before.
+
+    Notes
+    -----
+    Each point is compared on its two adjacent legs alone, at eight positions around it; the best
+    with a gain is taken.
     """
-    row, place = np.nonzero(lines.free)
-    if not len(row):
-        return lines
-    lengths = lines.lengths()
-    reach = radius * 0.5 * (lengths[row, place - 1] + lengths[row, place])
-    angle = 2.0 * math.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
-    point = lines.population.genes[row, place][:, None, :]
-    lat, lon = displaced_positions(
-        point[..., LAT],
-        point[..., LON],
-        reach[:, None] * np.sin(angle),
-        reach[:, None] * np.cos(angle),
+    step = np.empty((0, 0))
+    for number in range(schedule.rounds):
+        if number < len(schedule.shares):
+            step = np.where(tracks.free, schedule.shares[number] * tracks.point_spacing(), 0.0)
+        angle = number * schedule.turn + 2.0 * math.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
+        for group in range(schedule.groups):
+            moving = (step > 0.0) & (step >= schedule.smallest)
+            moving &= np.arange(step.shape[1]) % schedule.groups == (group + 1) % schedule.groups
+            if moving.any():
+                tracks, moved = _best_steps(tracks, moving, step, angle)
+                step[moving] *= np.where(moved[moving], schedule.growth, schedule.shrinkage)
+        if step.max(initial=0.0) < schedule.smallest:
+            break
+    return tracks
+
+
+def _best_steps(
+    tracks: AnyCompassProblem, moving: BoolArray, step: FloatArray, angle: FloatArray
+) -> tuple[AnyCompassProblem, BoolArray]:
+    """Move points (R, M) to the best of their trial positions; return also which moved."""
+    row, place = np.nonzero(moving)
+    lat, lon = tracks.positions
+    size = step[row, place][:, None]
+    trials = displaced_positions(
+        lat[row, place][:, None],
+        lon[row, place][:, None],
+        size * np.sin(angle),
+        size * np.cos(angle),
     )
-    lat, lon = np.clip(lat, -90.0, 90.0), wrap_longitude(lon)
-    value, base = _moved_values(lines, row, place, lat, lon)
+    value, now = tracks.values_beside(row, place, *trials)
     best = np.argmin(value, axis=1)
     every = np.arange(len(row))
-    gain = np.zeros(lengths.shape)
-    gain[row, place] = np.where(np.isfinite(base), base, 0.0) - value[every, best]
-    gain[~np.isfinite(gain)] = 0.0
-    target = np.zeros((*lengths.shape, 2))
-    target[row, place] = np.stack([lat[every, best], lon[every, best]], axis=1)
-    trials, rows = [], []
-    for chosen, index in trial_subsets(isolated_maxima(gain)):
-        copy = lines.population.take(index)
-        copy.genes[:, :, LAT][chosen] = target[index, :, 0][chosen]
-        copy.genes[:, :, LON][chosen] = target[index, :, 1][chosen]
-        touched = chosen.copy()
-        touched[:, :-1] |= chosen[:, 1:]
-        copy.genes[:, :, columns.IS_LOOKED_UP][touched] = 0.0
-        trials.append(copy)
-        rows.append(index)
-    return (
-        lines.chosen(concatenated_populations(*trials), np.concatenate(rows)) if trials else lines
-    )
-
-
-@np.errstate(invalid="ignore")  # infinite where a leg cannot be sailed
-def _moved_values(
-    lines: ScoredTracks, row: IntArray, place: IntArray, lat: FloatArray, lon: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return the value of the legs beside points (P,) at trial positions (P, D), and unmoved."""
-    late = delay_effects(lines).priced(lines.price)
-    times = lat.shape[1]
-    total, base = np.zeros(lat.shape), np.zeros(len(row))
-    for first, end in ((place - 1, 1), (place, 0)):
-        pairs, depart = legs_as_tracks(lines, row, first)
-        still = sail_legs_alone(lines.evaluator, pairs, depart)
-        base += still[1] + late[row, first + 1] * still[0]
-        every = np.repeat(pairs, times, axis=0)
-        every[:, end, LAT], every[:, end, LON] = lat.ravel(), lon.ravel()
-        every[:, 0, columns.IS_LOOKED_UP] = 0.0
-        time, cost = sail_legs_alone(lines.evaluator, every, np.repeat(depart, times))
-        value = cost + np.repeat(late[row, first + 1], times) * time
-        total += value.reshape(lat.shape)
-    return total, base
+    with np.errstate(invalid="ignore"):
+        better = now - value[every, best]
+        better[~(np.isfinite(better) & (better > _MIN_GAIN * np.abs(now)))] = 0.0
+    gain, new_lat, new_lon = np.zeros(step.shape), lat.copy(), lon.copy()
+    gain[row, place] = better
+    new_lat[row, place], new_lon[row, place] = (trial[every, best] for trial in trials)
+    return tracks.with_points_moved(gain, new_lat, new_lon)

@@ -1,4 +1,4 @@
-"""A single line as a batch of one track, for Newton's method on lateral offsets."""
+"""A single line as a batch of one track, for Newton's method and compass search."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.route.evaluators.cost_evaluator import CostEvaluator
 from thalweg.route.evaluators.polyline import Polyline, PolylineEvaluator
 from thalweg.route.evaluators.time_evaluator import TrackBatch
+from thalweg.route.refinement.compass_search import CompassSchedule, compass_search
 from thalweg.route.refinement.delay_effects import accumulated_delay_effects
 from thalweg.route.refinement.newton_offsets import (
     DIFFERENCE_STEP,
@@ -19,9 +20,21 @@ from thalweg.route.refinement.newton_offsets import (
     StepSchedule,
     optimise_lateral_offsets,
 )
-from thalweg.route.refinement.track_geometry import displaced_positions, starboard_vectors
+from thalweg.route.refinement.track_geometry import (
+    displaced_positions,
+    shorter_adjacent_legs,
+    starboard_vectors,
+)
 
 _STEP_SCHEDULE = StepSchedule(damping=(0.0, 0.03, 1.0), factors=(1.0, 0.4, 0.12, 0.02))
+_COMPASS_SCHEDULE = CompassSchedule(
+    shares=(0.3,),
+    rounds=30,
+    growth=1.3,
+    shrinkage=0.5,
+    turn=math.pi * (3.0 - math.sqrt(5.0)),  # the golden angle
+    groups=2,
+)
 _ABSORBED_DELAY = 1e-3  # share of the time saved before a wait that counts
 
 
@@ -55,6 +68,30 @@ def optimise_line_offsets(
     return optimise_lateral_offsets(tracks, rounds=rounds, tolerance=tolerance).line
 
 
+def search_line_positions(
+    line: Polyline, evaluator: PolylineEvaluator, *, smallest: float = 1.0
+) -> Polyline:
+    """Return a line with waypoints moved by `compass_search` where that lowers the cost.
+
+    Parameters
+    ----------
+    line : Polyline
+        One that can be sailed; any other is returned unchanged.
+    evaluator : TimeEvaluator or CostEvaluator
+    smallest : float
+        The search ends when all steps are shorter than this [m].
+
+    Returns
+    -------
+    Polyline
+        With a cost that is not higher.
+    """
+    tracks = SailedPolyline.of(line, evaluator)
+    if not np.isfinite(tracks.value).all() or len(line) < 3:
+        return line
+    return compass_search(tracks, replace(_COMPASS_SCHEDULE, smallest=max(smallest, 1e-9))).line
+
+
 @dataclass(frozen=True)
 class SailedPolyline:
     """A line with its cost: a batch of one track (`LateralProblem`, R = 1, M = n).
@@ -65,16 +102,20 @@ class SailedPolyline:
     evaluator : TimeEvaluator or CostEvaluator
     cost : float
         As the evaluator compares; +inf where the line cannot be sailed.
+    arrive : float64 array (n,)
+        Arrival at every point [s after the origin].
     """
 
     line: Polyline
     evaluator: PolylineEvaluator
     cost: float
+    arrive: FloatArray
 
     @classmethod
     def of(cls, line: Polyline, evaluator: PolylineEvaluator) -> SailedPolyline:
         """Return a line with its cost and times, as evaluated."""
-        return cls(line, evaluator, float(evaluator.sail(line.batch())[1][0]))
+        arrive, cost = evaluator.sail(line.batch())
+        return cls(line, evaluator, float(cost[0]), arrive[0])
 
     @property
     def step_schedule(self) -> StepSchedule:
@@ -104,8 +145,7 @@ class SailedPolyline:
 
     def perturbed_leg_values(self, row: IntArray, place: IntArray, step: FloatArray) -> FloatArray:
         """Return the value of every leg (7, n - 1) under `PERTURBATIONS`; NaN where not sailed."""
-        line, evaluator = self.line, self.evaluator
-        arrive = evaluator.sail(line.batch(), check=False)[0][0]
+        line, evaluator, arrive = self.line, self.evaluator, self.arrive
         leave = np.maximum(arrive, line.leave)
         late = np.maximum(DIFFERENCE_STEP * np.diff(arrive), 1e-3)
         spent, took = self._perturbed_legs(step[0], leave, late)
@@ -166,9 +206,59 @@ class SailedPolyline:
         pick = int(np.argmin(cost))
         if cost[pick] < self.cost:
             line = self.line.moved(lat[pick], lon[pick])
-            return replace(self, line=line, cost=float(cost[pick])), np.zeros_like(self.free)
+            better = replace(self, line=line, cost=float(cost[pick]), arrive=arrive[pick])
+            return better, np.zeros_like(self.free)
         legs = self.evaluator.infeasible_legs(batch, arrive).any(axis=0)
         return self, (np.append(legs, False) | np.append(False, legs))[None]
+
+    @property
+    def positions(self) -> tuple[FloatArray, FloatArray]:
+        """Latitudes and longitudes (1, n) [deg] of the points."""
+        return self.line.lat[None], self.line.lon[None]
+
+    def point_spacing(self) -> FloatArray:
+        """Return the length (1, n) [m] of the shorter leg beside each point."""
+        return shorter_adjacent_legs(self.lengths())
+
+    def values_beside(
+        self, row: IntArray, place: IntArray, lat: FloatArray, lon: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the value of the two legs beside points (P,) at trial positions (P, D), and now.
+
+        For time that is exact: an earlier arrival at the next point is never worse at the goal.
+        """
+        line, trials = self.line, lat.shape[1] + 1
+
+        def triples(values: FloatArray) -> FloatArray:
+            three = np.stack([values[place - 1], values[place], values[place + 1]], axis=1)
+            return np.repeat(three, trials, axis=0)
+
+        lats, lons = triples(line.lat), triples(line.lon)
+        lats[:, 1] = np.column_stack([lats[::trials, 1], lat]).ravel()
+        lons[:, 1] = np.column_stack([lons[::trials, 1], lon]).ravel()
+        setting = np.stack([line.setting[place - 1], line.setting[place]], axis=1)
+        batch = TrackBatch(
+            lats,
+            lons,
+            triples(line.leave),
+            np.repeat(setting, trials, axis=0),
+            np.repeat(self.arrive[place - 1], trials),
+        )
+        value = self.evaluator.sail(batch)[1] - (0.0 if self.evaluator.by_length else batch.depart)
+        value = value.reshape(-1, trials)
+        return value[:, 1:], value[:, 0]
+
+    def with_points_moved(
+        self, gain: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> tuple[SailedPolyline, BoolArray]:
+        """Return the line with points (1, n) at other positions where that gains, and which."""
+        moved = gain > 0.0
+        if not moved.any():
+            return self, moved
+        line = self.line.moved(
+            np.where(moved[0], lat[0], self.line.lat), np.where(moved[0], lon[0], self.line.lon)
+        )
+        return SailedPolyline.of(line, self.evaluator), moved
 
     def _shifted(self, offset: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return positions (..., n) of the points moved to starboard [m]."""

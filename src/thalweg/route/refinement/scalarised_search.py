@@ -6,10 +6,7 @@ convex hull of the front.
 
 from __future__ import annotations
 
-import itertools
-import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,19 +16,21 @@ from thalweg.kernels.leg import population_sailing
 from thalweg.route.evaluators.calm_water_rates import calm_water_values
 from thalweg.route.evaluators.population import Population, concatenated_populations
 from thalweg.route.evaluators.population_evaluator import Evaluator
-from thalweg.route.refinement.compass_search import compass_search_of_tracks
+from thalweg.route.refinement.compass_search import CompassSchedule, compass_search
 from thalweg.route.refinement.newton_offsets import optimise_lateral_offsets
 from thalweg.route.refinement.point_edits import points_between, remove_points, split_long_legs
 from thalweg.route.refinement.scored_tracks import ScoredTracks, delay_effects, feasible_front
 from thalweg.route.refinement.speed_profile import (
+    SpeedSteps,
     choose_speeds_of_tracks,
+    hull_settings,
     leg_times_and_costs_by_setting,
 )
 
 REFINEMENT_LEVELS = (12, 24, 40)  #: least number of legs of a track, level by level
 _REMOVAL_PASSES = 8  # passes at most that remove points at first
 _REMOVAL_LOSS = 2e-4  # share of the value that may be lost with a removed point
-_SEARCH_RADII = (0.3, 0.08, 0.02)  # steps of compass searches, as shares of the adjacent legs
+_COMPASS_SCHEDULE = CompassSchedule(shares=(0.3, 0.08, 0.02), rounds=3)
 _PRICE_RANGE_FACTOR = 4.0  # by which prices of time exceed those of calm water, on both sides
 
 
@@ -72,8 +71,7 @@ def scalarised_local_search(
             return lines
         lines = split_long_legs(lines, legs=level)
         lines = choose_speeds_of_tracks(optimise_lateral_offsets(lines, rounds=4), rounds=2)
-        for radius in _SEARCH_RADII:
-            lines = compass_search_of_tracks(lines, radius=radius)
+        lines = compass_search(lines, _COMPASS_SCHEDULE)
         lines = choose_speeds_of_tracks(optimise_lateral_offsets(lines, rounds=3), rounds=2)
     return lines
 
@@ -154,23 +152,6 @@ def _own_prices(scores: FloatArray, prices: FloatArray) -> FloatArray:
     return out
 
 
-@dataclass(frozen=True)
-class SpeedExchanges:
-    """Changes of settings of a track along the hulls of its legs, in the order to take them.
-
-    Attributes
-    ----------
-    place, setting : int64 array (n,)
-    time, cost : float64 array (n,)
-        Changes of time and cost at the goal.
-    """
-
-    place: IntArray
-    setting: IntArray
-    time: FloatArray
-    cost: FloatArray
-
-
 def fill_front(lines: ScoredTracks, size: int) -> Population:
     """Return about ``size`` tracks evenly along a front, each made of its nearest track.
 
@@ -209,67 +190,48 @@ def fill_front(lines: ScoredTracks, size: int) -> Population:
     return concatenated_populations(*made)
 
 
-def _speed_exchanges(lines: ScoredTracks) -> list[tuple[SpeedExchanges, SpeedExchanges]]:
-    """Return the changes of settings that make every track (faster, slower)."""
+def _speed_exchanges(lines: ScoredTracks) -> list[tuple[SpeedSteps, SpeedSteps]]:
+    """Return the steps between settings that make every track (faster, slower), in their order."""
     row, place = lines.legs
     time, cost = leg_times_and_costs_by_setting(lines, row, place)
     delays = delay_effects(lines)
     time_factor, cost_rate = delays.time[row, place + 1], delays.cost[row, place + 1]
     with np.errstate(invalid="ignore"):
         at_goal, cost_at_goal = time_factor[:, None] * time, cost + cost_rate[:, None] * time
-    now = lines.population.genes[row, place, population_sailing.SETTING].astype(np.int64)
+    setting = lines.population.genes[row, place, population_sailing.SETTING].astype(np.int64)
     out = []
     for k in range(len(lines)):
-        legs = np.flatnonzero(row == k)
-        steps = [
-            _speed_steps(at_goal[i], cost_at_goal[i], int(now[i]), int(place[i])) for i in legs
+        legs = row == k
+        sides = [
+            _hull_from_setting(*leg)
+            for leg in zip(at_goal[legs], cost_at_goal[legs], setting[legs])
         ]
-        faster = _sorted_exchanges([s for a, _ in steps for s in a], cheapest=True)
-        slower = _sorted_exchanges([s for _, b in steps for s in b], cheapest=False)
-        out.append((faster, slower))
+        faster, slower = (
+            SpeedSteps.along(at_goal[legs], cost_at_goal[legs], chains) for chains in zip(*sides)
+        )
+        faster = faster.take(np.argsort(faster.price, kind="stable"))
+        out.append((faster, slower.take(np.argsort(-slower.price, kind="stable"))))
     return out
 
 
-SpeedStep = tuple[float, int, int, float, float]
-
-
-def _speed_steps(
-    time: FloatArray, cost: FloatArray, now: int, place: int
-) -> tuple[list[SpeedStep], list[SpeedStep]]:
-    """Return one leg's steps along its hull to faster and slower settings: (price, ...)."""
-    finite = np.flatnonzero(np.isfinite(time) & np.isfinite(cost))
-    if now not in finite:
-        return [], []
-    hull = finite[lower_hull(time[finite], cost[finite])]
-    if now not in hull:
-        return [], []
-    at = int(np.flatnonzero(hull == now)[0])
-    found: tuple[list[SpeedStep], list[SpeedStep]] = ([], [])
-    for side, chain in ((0, hull[at::-1]), (1, hull[at:])):
-        for a, b in itertools.pairwise(chain):
-            dt, dc = float(time[b] - time[a]), float(cost[b] - cost[a])
-            found[side].append((-dc / dt if dt else math.inf, place, int(b), dt, dc))
-    return found
-
-
-def _sorted_exchanges(steps: list[SpeedStep], *, cheapest: bool) -> SpeedExchanges:
-    """Return steps in the order to take them: by ascending price, or by descending price."""
-    steps = sorted(steps, key=lambda step: step[0] if cheapest else -step[0])
-    table = np.array(steps, dtype=float).reshape(-1, 5)
-    return SpeedExchanges(
-        table[:, 1].astype(np.int64), table[:, 2].astype(np.int64), table[:, 3], table[:, 4]
-    )
+def _hull_from_setting(time: FloatArray, cost: FloatArray, now: int) -> tuple[IntArray, IntArray]:
+    """Return the settings on the hull of a leg from its own to the fastest, and to the slowest."""
+    hull = hull_settings(time, cost)
+    at = np.flatnonzero(hull == now)
+    if not len(at):
+        return hull[:0], hull[:0]
+    return hull[at[0] :: -1], hull[at[0] :]
 
 
 def _with_changed_time(
-    lines: ScoredTracks, k: int, exchange: tuple[SpeedExchanges, SpeedExchanges], change: float
+    lines: ScoredTracks, k: int, exchange: tuple[SpeedSteps, SpeedSteps], change: float
 ) -> Population:
     """Return one track made longer or shorter by ``change`` seconds."""
     steps = exchange[0] if change < 0.0 else exchange[1]
     one = lines.population.take([k])
     total = np.cumsum(np.abs(steps.time))
     full = int(np.searchsorted(total, abs(change)))
-    for place, setting in zip(steps.place[:full], steps.setting[:full]):
+    for place, setting in zip(steps.leg[:full], steps.after[:full]):
         one.genes[0, place, population_sailing.SETTING] = setting
     if full >= len(total):
         return one
@@ -277,8 +239,7 @@ def _with_changed_time(
     share = (abs(change) - before) / (total[full] - before)
     if not 0.05 < share < 0.95:
         return one
-    place = int(steps.place[full])
-    return _split_leg_by_speed(one, place, share, int(steps.setting[full]))
+    return _split_leg_by_speed(one, int(steps.leg[full]), share, int(steps.after[full]))
 
 
 def _split_leg_by_speed(one: Population, place: int, share: float, setting: int) -> Population:

@@ -16,11 +16,12 @@ from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.leg import population_sailing as columns
 from thalweg.kernels.leg.great_circle_sailing import MIN_PIECES
 from thalweg.kernels.leg.population_sailing import LAT, LON
-from thalweg.route.evaluators.population import Population
+from thalweg.route.evaluators.population import Population, concatenated_populations
 from thalweg.route.evaluators.population_evaluator import Evaluator
 from thalweg.route.refinement.delay_effects import accumulated_delay_effects
 from thalweg.route.refinement.newton_offsets import PERTURBATIONS, StepSchedule
 from thalweg.route.refinement.track_geometry import displaced_positions, starboard_vectors
+from thalweg.route.refinement.trial_edits import isolated_maxima, trial_subsets
 
 _STEP_SCHEDULE = StepSchedule(damping=(0.0, 0.05, 1.0), factors=(1.0, 0.35, 0.1))
 _DELAY_SHARE = 0.02  # delay of differences, as a share of the time of a leg
@@ -140,6 +141,58 @@ class ScoredTracks:
         touched[:, :-1] |= changed[:, 1:]
         trials.genes[:, :, columns.IS_LOOKED_UP][touched] = 0.0
         return self.chosen(trials, whose), self._ends_of_blocked_legs(trials, whose)
+
+    @property
+    def positions(self) -> tuple[FloatArray, FloatArray]:
+        """Latitudes and longitudes (R, M) [deg] of the points."""
+        return self.population.genes[:, :, LAT], self.population.genes[:, :, LON]
+
+    def point_spacing(self) -> FloatArray:
+        """Return the mean length (R, M) [m] of the two legs beside each point."""
+        lengths = self.lengths()
+        spacing = np.zeros_like(lengths)
+        spacing[:, 1:] = 0.5 * (lengths[:, :-1] + lengths[:, 1:])
+        return spacing
+
+    @np.errstate(invalid="ignore")  # infinite where a leg cannot be sailed
+    def values_beside(
+        self, row: IntArray, place: IntArray, lat: FloatArray, lon: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the value of the legs beside points (P,) at trial positions (P, D), and now."""
+        lat, lon = np.clip(lat, -90.0, 90.0), wrap_longitude(lon)
+        late = delay_effects(self).priced(self.price)
+        times = lat.shape[1]
+        total, now = np.zeros(lat.shape), np.zeros(len(row))
+        for first, end in ((place - 1, 1), (place, 0)):
+            pairs, depart = legs_as_tracks(self, row, first)
+            still = sail_legs_alone(self.evaluator, pairs, depart)
+            now += still[1] + late[row, first + 1] * still[0]
+            every = np.repeat(pairs, times, axis=0)
+            every[:, end, LAT], every[:, end, LON] = lat.ravel(), lon.ravel()
+            every[:, 0, columns.IS_LOOKED_UP] = 0.0
+            time, cost = sail_legs_alone(self.evaluator, every, np.repeat(depart, times))
+            total += (cost + np.repeat(late[row, first + 1], times) * time).reshape(lat.shape)
+        return total, now
+
+    def with_points_moved(
+        self, gain: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> tuple[ScoredTracks, BoolArray]:
+        """Return the tracks with the best of some moves of points (R, M), and which moved."""
+        trials, rows = [], []
+        for chosen, index in trial_subsets(isolated_maxima(gain)):
+            copy = self.population.take(index)
+            copy.genes[:, :, LAT][chosen] = np.clip(lat[index][chosen], -90.0, 90.0)
+            copy.genes[:, :, LON][chosen] = wrap_longitude(lon[index][chosen])
+            touched = chosen.copy()
+            touched[:, :-1] |= chosen[:, 1:]
+            copy.genes[:, :, columns.IS_LOOKED_UP][touched] = 0.0
+            trials.append(copy)
+            rows.append(index)
+        after = self
+        if trials:
+            after = self.chosen(concatenated_populations(*trials), np.concatenate(rows))
+        old, new = (tracks.population.genes[:, :, [LAT, LON]] for tracks in (self, after))
+        return after, (old != new).any(axis=2)
 
     def _ends_of_blocked_legs(self, trials: Population, whose: IntArray) -> BoolArray:
         """Return the points (R, M) at the ends of legs that touch land in any trial."""

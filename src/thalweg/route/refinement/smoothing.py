@@ -25,9 +25,8 @@ from thalweg.route.evaluators.polyline import (
 from thalweg.route.evaluators.time_evaluator import (
     make_time_evaluator,
 )
-from thalweg.route.refinement.compass_search import compass_search
 from thalweg.route.refinement.corner_cutting import cut_corners, merge_short_legs
-from thalweg.route.refinement.sailed_polyline import optimise_line_offsets
+from thalweg.route.refinement.sailed_polyline import optimise_line_offsets, search_line_positions
 from thalweg.route.refinement.string_pulling import string_pull
 from thalweg.route.track import Track
 
@@ -128,7 +127,7 @@ def smooth(
         line = cut_corners(line, evaluator)
     line = _shortened_waits(line, evaluator)
     if evaluator.by_length:  # sideways moves cannot shorten it
-        best = _simplified(compass_search(line, evaluator), evaluator)
+        best = _simplified(search_line_positions(line, evaluator), evaluator)
     else:
         lines = [
             _refine_by_levels(start, evaluator, finest)
@@ -252,7 +251,7 @@ def _refined(line: Polyline, evaluator: PolylineEvaluator, bound: bool) -> Polyl
         return moved
     smallest = max(1.0, 1e-6 * float(rough_lengths(line.lat, line.lon).sum()))
     return optimise_line_offsets(
-        compass_search(moved, evaluator, smallest=smallest), evaluator, rounds=3
+        search_line_positions(moved, evaluator, smallest=smallest), evaluator, rounds=3
     )
 
 

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import itertools
 import math
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from itertools import pairwise
 
 import numpy as np
 
 from thalweg.core.geodesy import direct, inverse, unwrap_longitude
-from thalweg.core.pareto_fronts import lower_hull, non_dominated_indices
+from thalweg.core.pareto_fronts import lower_hull
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.leg import population_sailing as columns
 from thalweg.route.evaluators.cost_evaluator import CostEvaluator
 from thalweg.route.evaluators.polyline import Polyline
 from thalweg.route.evaluators.population import concatenated_populations
 from thalweg.route.evaluators.time_evaluator import TrackBatch
-from thalweg.route.refinement.point_edits import trial_subsets
 from thalweg.route.refinement.scored_tracks import (
     DelayEffects,
     ScoredTracks,
@@ -25,6 +25,7 @@ from thalweg.route.refinement.scored_tracks import (
     legs_as_tracks,
     sail_legs_alone,
 )
+from thalweg.route.refinement.trial_edits import trial_subsets
 
 _MAX_ROUNDS = 4  # choices, each at the times of passage of the one before
 _SLOPE_TOLERANCE = (
@@ -118,41 +119,102 @@ def _knapsack(
     times: FloatArray, costs: FloatArray, available: float
 ) -> tuple[IntArray, float, tuple[int, int, float] | None]:
     """Return (setting of every leg, slope, (leg, slower setting, share of the leg) or None)."""
-    legs = len(times)
-    setting = np.zeros(legs, dtype=np.int64)
-    steps: list[tuple[float, int, int, int, float]] = []  # slope, leg, from, to, seconds
-    for leg in range(legs):
-        hull = _efficient_settings(times[leg], costs[leg])
-        setting[leg] = hull[0] if hull else int(np.argmin(times[leg]))
-        for a, b in itertools.pairwise(hull):
-            seconds = float(times[leg, b] - times[leg, a])
-            steps.append(((costs[leg, a] - costs[leg, b]) / seconds, leg, a, b, seconds))
-    available -= float(times[np.arange(legs), setting].sum())
+    hulls = [_efficient_settings(*leg) for leg in zip(times, costs)]
+    setting = np.array(
+        [hull[0] if len(hull) else np.argmin(time) for hull, time in zip(hulls, times)], np.int64
+    )
+    steps = SpeedSteps.along(times, costs, hulls)
+    steps = steps.take(np.lexsort((steps.leg, -_rounded_slopes(steps.price))))
+    available -= float(times[np.arange(len(times)), setting].sum())
     if not available > 0.0:
-        return setting, (steps and max(steps)[0]) or 0.0, None
-    steps.sort(key=lambda step: (-_rounded_slope(step[0]), step[1]))
-    for slope, leg, before, after, seconds in steps:
+        return setting, float(steps.price.max(initial=0.0)), None
+    for leg, before, after, seconds, slope in zip(
+        steps.leg, steps.before, steps.after, steps.time, steps.price
+    ):
         if setting[leg] != before:
             continue
         if seconds > available:
-            return setting, slope, (leg, after, available / seconds)
+            return setting, float(slope), (int(leg), int(after), float(available / seconds))
         setting[leg], available = after, available - seconds
     return setting, 0.0, None
 
 
-def _rounded_slope(slope: float) -> float:
-    """Return a slope rounded on a logarithmic scale, so that similar ones are equal."""
-    return (
-        math.exp(round(math.log(slope) / _SLOPE_TOLERANCE) * _SLOPE_TOLERANCE)
-        if slope > 0.0
-        else 0.0
-    )
+def _rounded_slopes(slope: FloatArray) -> FloatArray:
+    """Return slopes rounded on a logarithmic scale, so that similar ones are equal."""
+    positive = slope > 0.0
+    level = np.round(np.log(np.where(positive, slope, 1.0)) / _SLOPE_TOLERANCE)
+    return np.where(positive, np.exp(level * _SLOPE_TOLERANCE), 0.0)
 
 
-def _efficient_settings(time: FloatArray, cost: FloatArray) -> list[int]:
-    """Return the settings on the lower convex hull of cost over time, fastest first."""
-    front = non_dominated_indices(time, cost)
-    return front[lower_hull(time[front], cost[front])].tolist()
+def _efficient_settings(time: FloatArray, cost: FloatArray) -> IntArray:
+    """Return the settings on the lower convex hull of cost over time, fastest to cheapest."""
+    hull = hull_settings(time, cost)
+    return hull[: int(np.argmin(cost[hull])) + 1] if len(hull) else hull
+
+
+def hull_settings(time: FloatArray, cost: FloatArray) -> IntArray:
+    """Return the settings of a leg on the lower convex hull of cost over time, fastest first.
+
+    Parameters
+    ----------
+    time, cost : float64 array (settings,)
+        Not finite where the leg cannot be sailed.
+
+    Returns
+    -------
+    int64 array
+    """
+    finite = np.flatnonzero(np.isfinite(time) & np.isfinite(cost))
+    return finite[lower_hull(time[finite], cost[finite])]
+
+
+@dataclass(frozen=True)
+class SpeedSteps:
+    """Steps between neighbouring settings on the hulls of legs.
+
+    Attributes
+    ----------
+    leg, before, after : int64 array (n,)
+        Leg, and its setting before and after the step.
+    time, cost : float64 array (n,)
+        Changes of time [s] and cost.
+    """
+
+    leg: IntArray
+    before: IntArray
+    after: IntArray
+    time: FloatArray
+    cost: FloatArray
+
+    @classmethod
+    def along(cls, times: FloatArray, costs: FloatArray, chains: Sequence[IntArray]) -> SpeedSteps:
+        """Return the steps along a chain of settings for each leg.
+
+        Parameters
+        ----------
+        times, costs : float64 array (legs, settings)
+        chains : sequence of int64 array
+            For each leg.
+        """
+        pairs = [(k, a, b) for k, chain in enumerate(chains) for a, b in pairwise(chain)]
+        leg, before, after = np.array(pairs, np.int64).reshape(-1, 3).T
+        return cls(
+            leg,
+            before,
+            after,
+            times[leg, after] - times[leg, before],
+            costs[leg, after] - costs[leg, before],
+        )
+
+    @property
+    def price(self) -> FloatArray:
+        """Cost of a second saved, or saved by a second more; +inf where no time changes."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(self.time == 0.0, np.inf, -self.cost / self.time)
+
+    def take(self, order: IntArray) -> SpeedSteps:
+        """Return some of the steps, in an order."""
+        return SpeedSteps(*(getattr(self, field.name)[order] for field in fields(self)))
 
 
 def _with_slower_part(line: Polyline, part: tuple[int, int, float] | None) -> Polyline:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thalweg.core.cheapest_chain import cheapest_chain
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.evaluators.polyline import Polyline, PolylineEvaluator
 from thalweg.route.evaluators.time_evaluator import TrackBatch
 
-_MAX_HOP = 48  # waypoints a single hop may skip
+_MAX_SKIPPED = 48  # waypoints that a leg may skip
 _PASSES = 4
 
 
@@ -33,7 +34,7 @@ def string_pull(line: Polyline, evaluator: PolylineEvaluator, *, penalty: float 
 
     Notes
     -----
-    An exact search for the earliest arrival (or least length) on the directed graph of all hops
+    An exact search for the earliest arrival (or least length) on the directed graph of all legs
     from a waypoint to a later one. For time this is exact because a ship that may slow down never
     loses by an earlier arrival. Unlike the removal of one waypoint after the other it finds
     shortcuts past many.
@@ -43,44 +44,29 @@ def string_pull(line: Polyline, evaluator: PolylineEvaluator, *, penalty: float 
         if index is None or len(index) == len(line):
             return line
         before, line = len(line), line.kept(index)
-        if before <= _MAX_HOP:
+        if before <= _MAX_SKIPPED:
             return line
     return line
 
 
-def _best_subset(
-    line: Polyline, evaluator: PolylineEvaluator, penalty: float
-) -> NDArray[np.int64] | None:
+def _best_subset(line: Polyline, evaluator: PolylineEvaluator, penalty: float) -> IntArray | None:
     count = len(line)
-    arrive, label = np.full(count, math.inf), np.full(count, math.inf)
-    came_from = np.full(count, -1, dtype=np.int64)
-    arrive[0], label[0] = line.depart, 0.0
-    held = np.flatnonzero(line.required_points(evaluator))
-    for here in range(count - 1):
-        if not math.isfinite(label[here]):
-            continue
-        there = np.arange(here + 1, min(count, here + 1 + _MAX_HOP))
-        leave = max(arrive[here], line.leave[here])
-        there = there[: int(np.searchsorted(there, held[held > here][0], side="right"))]
-        ends, cost = evaluator.sail(_shortcut_batch(line, here, there, leave))
-        spent = cost if evaluator.by_length else cost - arrive[here]
-        total = label[here] + spent + penalty
-        slack = 1e-9 * np.where(np.isfinite(total), np.abs(total), 0.0)
-        better = total + slack < label[there]
-        label[there[better]] = total[better]
-        arrive[there[better]] = ends[better, -1]
-        came_from[there[better]] = here
-    if not math.isfinite(label[-1]):
-        return None
-    chain = [count - 1]
-    while chain[-1] > 0:
-        chain.append(int(came_from[chain[-1]]))
-    return np.array(chain[::-1], dtype=np.int64)
+    fixed = np.flatnonzero(line.required_points(evaluator))
+    arrive: dict[int, FloatArray] = {}  # at the points after each one
+
+    def steps(here: int, previous: int) -> tuple[IntArray, FloatArray]:
+        reached = float(arrive[previous][here - previous - 1]) if here else line.depart
+        there = np.arange(here + 1, min(count, here + 1 + _MAX_SKIPPED))
+        there = there[: int(np.searchsorted(there, fixed[fixed > here][0], side="right"))]
+        batch = _shortcut_batch(line, here, there, max(reached, line.leave[here]))
+        ends, cost = evaluator.sail(batch)
+        arrive[here] = ends[:, -1]
+        return there, (cost if evaluator.by_length else cost - reached) + penalty
+
+    return cheapest_chain(count, steps, tolerance=1e-9)
 
 
-def _shortcut_batch(
-    line: Polyline, here: int, there: NDArray[np.int64], leave: float
-) -> TrackBatch:
+def _shortcut_batch(line: Polyline, here: int, there: IntArray, leave: float) -> TrackBatch:
     shape = (len(there), 2)
     lat, lon = np.empty(shape), np.empty(shape)
     lat[:, 0], lon[:, 0] = line.lat[here], line.lon[here]
