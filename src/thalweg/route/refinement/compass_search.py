@@ -13,7 +13,6 @@ from typing import Protocol, Self, TypeVar
 import numpy as np
 
 from thalweg.core.types import BoolArray, FloatArray, IntArray
-from thalweg.route.refinement.track_geometry import displaced_positions
 
 _DIRECTIONS = 8
 _MIN_GAIN = 1e-10  # least gain that counts, as a share of the value of the legs beside a point
@@ -56,12 +55,13 @@ class CompassProblem(Protocol):
     def free(self) -> BoolArray:
         """Which points (R, M) may move."""
 
-    @property
-    def positions(self) -> tuple[FloatArray, FloatArray]:
-        """Latitudes and longitudes (R, M) [deg] of the points."""
-
     def point_spacing(self) -> FloatArray:
         """Return the length (R, M) [m] that steps of points are shares of."""
+
+    def displaced(
+        self, row: IntArray, place: IntArray, east: FloatArray, north: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the positions (P, D) [deg] of points (P,) displaced east and north [m]."""
 
     def values_beside(
         self, row: IntArray, place: IntArray, lat: FloatArray, lon: FloatArray
@@ -123,21 +123,15 @@ def _best_steps(
 ) -> tuple[AnyCompassProblem, BoolArray]:
     """Move points (R, M) to the best of their trial positions; return also which moved."""
     row, place = np.nonzero(moving)
-    lat, lon = tracks.positions
     size = step[row, place][:, None]
-    trials = displaced_positions(
-        lat[row, place][:, None],
-        lon[row, place][:, None],
-        size * np.sin(angle),
-        size * np.cos(angle),
-    )
+    trials = tracks.displaced(row, place, size * np.sin(angle), size * np.cos(angle))
     value, now = tracks.values_beside(row, place, *trials)
     best = np.argmin(value, axis=1)
     every = np.arange(len(row))
     with np.errstate(invalid="ignore"):
         better = now - value[every, best]
         better[~(np.isfinite(better) & (better > _MIN_GAIN * np.abs(now)))] = 0.0
-    gain, new_lat, new_lon = np.zeros(step.shape), lat.copy(), lon.copy()
+    gain, lat, lon = (np.zeros(step.shape) for _ in range(3))
     gain[row, place] = better
-    new_lat[row, place], new_lon[row, place] = (trial[every, best] for trial in trials)
-    return tracks.with_points_moved(gain, new_lat, new_lon)
+    lat[row, place], lon[row, place] = (trial[every, best] for trial in trials)
+    return tracks.with_points_moved(gain, lat, lon)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thalweg.core.geodesy import rough_lengths
+from thalweg.core.geodesy import METRES_PER_DEGREE, rough_lengths
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.route.evaluators.cost_evaluator import CostEvaluator
 from thalweg.route.evaluators.polyline import Polyline, PolylineEvaluator
@@ -211,14 +211,20 @@ class SailedPolyline:
         legs = self.evaluator.infeasible_legs(batch, arrive).any(axis=0)
         return self, (np.append(legs, False) | np.append(False, legs))[None]
 
-    @property
-    def positions(self) -> tuple[FloatArray, FloatArray]:
-        """Latitudes and longitudes (1, n) [deg] of the points."""
-        return self.line.lat[None], self.line.lon[None]
-
     def point_spacing(self) -> FloatArray:
         """Return the length (1, n) [m] of the shorter leg beside each point."""
         return shorter_adjacent_legs(self.lengths())
+
+    def displaced(
+        self, row: IntArray, place: IntArray, east: FloatArray, north: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the positions (P, D) [deg] of points (P,) displaced east and north [m].
+
+        With the length of a degree of longitude at the point before.
+        """
+        scale = METRES_PER_DEGREE * np.cos(np.radians(self.line.lat[place - 1]))[:, None]
+        lat, lon = self.line.lat[place][:, None], self.line.lon[place][:, None]
+        return lat + north / METRES_PER_DEGREE, lon + east / scale
 
     def values_beside(
         self, row: IntArray, place: IntArray, lat: FloatArray, lon: FloatArray

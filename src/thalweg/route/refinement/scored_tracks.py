@@ -142,11 +142,6 @@ class ScoredTracks:
         trials.genes[:, :, columns.IS_LOOKED_UP][touched] = 0.0
         return self.chosen(trials, whose), self._ends_of_blocked_legs(trials, whose)
 
-    @property
-    def positions(self) -> tuple[FloatArray, FloatArray]:
-        """Latitudes and longitudes (R, M) [deg] of the points."""
-        return self.population.genes[:, :, LAT], self.population.genes[:, :, LON]
-
     def point_spacing(self) -> FloatArray:
         """Return the mean length (R, M) [m] of the two legs beside each point."""
         lengths = self.lengths()
@@ -154,12 +149,19 @@ class ScoredTracks:
         spacing[:, 1:] = 0.5 * (lengths[:, :-1] + lengths[:, 1:])
         return spacing
 
+    def displaced(
+        self, row: IntArray, place: IntArray, east: FloatArray, north: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the positions (P, D) [deg] of points (P,) displaced east and north [m]."""
+        point = self.population.genes[row, place][:, None]
+        lat, lon = displaced_positions(point[..., LAT], point[..., LON], east, north)
+        return np.clip(lat, -90.0, 90.0), wrap_longitude(lon)
+
     @np.errstate(invalid="ignore")  # infinite where a leg cannot be sailed
     def values_beside(
         self, row: IntArray, place: IntArray, lat: FloatArray, lon: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Return the value of the legs beside points (P,) at trial positions (P, D), and now."""
-        lat, lon = np.clip(lat, -90.0, 90.0), wrap_longitude(lon)
         late = delay_effects(self).priced(self.price)
         times = lat.shape[1]
         total, now = np.zeros(lat.shape), np.zeros(len(row))
@@ -181,8 +183,8 @@ class ScoredTracks:
         trials, rows = [], []
         for chosen, index in trial_subsets(isolated_maxima(gain)):
             copy = self.population.take(index)
-            copy.genes[:, :, LAT][chosen] = np.clip(lat[index][chosen], -90.0, 90.0)
-            copy.genes[:, :, LON][chosen] = wrap_longitude(lon[index][chosen])
+            copy.genes[:, :, LAT][chosen] = lat[index][chosen]
+            copy.genes[:, :, LON][chosen] = lon[index][chosen]
             touched = chosen.copy()
             touched[:, :-1] |= chosen[:, 1:]
             copy.genes[:, :, columns.IS_LOOKED_UP][touched] = 0.0
