@@ -34,7 +34,19 @@ class SearchWork:
 
     @classmethod
     def of(cls, counts: NDArray[np.int64], refused: NDArray[np.int64]) -> SearchWork:
-        """Return the work by the counts of a kernel, and its counts of refusals by status."""
+        """Return the work by the counts of a kernel.
+
+        Parameters
+        ----------
+        counts : int64 array (3,)
+            Nodes settled, edges relaxed, edges sailed.
+        refused : int64 array (STATUS_COUNT,)
+            How many edges were refused, by status.
+
+        Returns
+        -------
+        SearchWork
+        """
         return cls(
             int(counts[SETTLED]),
             int(counts[RELAXED]),
@@ -44,7 +56,18 @@ class SearchWork:
 
 
 def counts_by_reason(refused: NDArray[np.int64]) -> dict[str, int]:
-    """Return how many edges were refused by reason, of counts by status."""
+    """Return how many edges were refused by reason.
+
+    Parameters
+    ----------
+    refused : int64 array (STATUS_COUNT,)
+        How many, by status.
+
+    Returns
+    -------
+    dict of str to int
+        Without the reasons that do not occur.
+    """
     return {REASONS[code]: int(n) for code, n in enumerate(refused) if n > 0 and code > 0}
 
 
