@@ -168,6 +168,29 @@ def write_csv_rows(path: str | PathLike[str], rows: Iterable[Iterable[Any]]) -> 
     write_text(path, text.getvalue())
 
 
+def new_figure(width: float, height: float, **options: Any) -> Any:
+    """Return an empty matplotlib figure that is drawn without a window.
+
+    Parameters
+    ----------
+    width, height : float
+        [inch].
+    **options
+        For ``Figure``; by default 130 dots per inch and the constrained layout.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    options = {"dpi": 130, "layout": "constrained", **options}
+    figure = Figure(figsize=(width, height), **options)
+    FigureCanvasAgg(figure)
+    return figure
+
+
 def save_figure(figure: Any, path: str | PathLike[str] | IO[bytes], **options: Any) -> None:
     """Write a matplotlib figure, completely or not at all.
 

@@ -14,8 +14,6 @@ from thalweg.core.types import FloatArray, Int32Array, IntArray
 from thalweg.network.network import Network
 
 _LENGTH_TOLERANCE = 1e-6  # of lengths against the geodesic
-_COURSE_TOLERANCE = 1e-3  # of courses against the geodesic at mid-edge [rad]
-_SAMPLE_TOLERANCE = 0.03  # of the positions of samples, as a fraction of their edge's length
 
 
 def check_network(network: Network, *, symmetric: bool = False, sample: int = 200_000) -> None:

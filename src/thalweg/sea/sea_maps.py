@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError
-from thalweg.core.file_writing import save_figure
+from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
@@ -105,9 +105,6 @@ def draw_maps(
     InputError
         If the sea is an ensemble, or holds no quantity that can be drawn.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     check_not_ensemble(layers)
     panels = [p for p in MAP_PANELS if stack_provides(layers, p.values)]
     if not panels:
@@ -125,10 +122,7 @@ def draw_maps(
     shape = _aspect_ratio(box)
     width = 5.2 * columns
     height = (4.2 * shape + 0.75) * rows + 0.45
-    figure = Figure(
-        figsize=(width, height), dpi=130, facecolor=BACKGROUND_COLOUR, layout="constrained"
-    )
-    FigureCanvasAgg(figure)
+    figure = new_figure(width, height, facecolor=BACKGROUND_COLOUR)
     axes = figure.subplots(rows, columns, squeeze=False).ravel()
     for axis, panel in zip(axes, panels):
         _draw_panel(figure, axis, layers, panel, (when, lat, lon), box)

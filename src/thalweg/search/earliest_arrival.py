@@ -11,11 +11,7 @@ from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.objective import SingleSettingObjective
-from thalweg.kernels.codes import REASONS
 from thalweg.kernels.search.label_setting import (
-    RELAXED,
-    SAILED,
-    SETTLED,
     NodeLabels,
     SearchQuery,
     SearchWorkspace,
@@ -220,13 +216,7 @@ def _result(
     leave = np.append(labels.departed[path[1:]], arrive[-1:])
     node_arrival = np.full(network.n_nodes, math.inf)
     np.minimum.at(node_arrival, station[labels.settled], labels.time[labels.settled])
-    counts = memory.counts
-    work = SearchWork(
-        settled=int(counts[SETTLED]),
-        relaxed=int(counts[RELAXED]),
-        sailed=int(counts[SAILED]),
-        refused={REASONS[c]: int(n) for c, n in enumerate(memory.refused) if n > 0 and c > 0},
-    )
+    work = SearchWork.of(memory.counts, memory.refused)
     return SearchResult(
         path=station[path].astype(np.int64),
         path_arrive=arrive,

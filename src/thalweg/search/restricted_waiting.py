@@ -18,12 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.types import FloatArray
-from thalweg.kernels.codes import LIMIT_REQUIRED_DEPTH, REASONS
+from thalweg.kernels.codes import LIMIT_REQUIRED_DEPTH
 from thalweg.kernels.leg.edge_sailing import NetworkArrays
 from thalweg.kernels.search.label_setting import (
-    RELAXED,
-    SAILED,
-    SETTLED,
     NodeLabels,
     SearchQuery,
     label_setting,
@@ -309,13 +306,7 @@ def _assemble_result(
         arrive = [wait.arrive, *times[1:].tolist(), *arrive[1:]]
         leave = [sent.time, *times[1:-1].tolist(), *(leave or [float(times[-1])])]
         to, round_index = path[0], wait.round_index
-    counts = sweep.counts
-    work = SearchWork(
-        settled=int(counts[SETTLED]),
-        relaxed=int(counts[RELAXED]),
-        sailed=int(counts[SAILED]),
-        refused={REASONS[c]: int(n) for c, n in enumerate(sweep.refused) if n > 0 and c > 0},
-    )
+    work = SearchWork.of(sweep.counts, sweep.refused)
     lat, lon = sweep.network.lat, sweep.network.lon
     known = np.flatnonzero(np.isfinite(reached))
     goal = sweep.goal

@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.kernels.codes import REASONS
+from thalweg.kernels.search.label_setting import RELAXED, SAILED, SETTLED
+
 
 @dataclass(frozen=True)
 class SearchWork:
@@ -28,6 +31,44 @@ class SearchWork:
     relaxed: int
     sailed: int
     refused: dict[str, int] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, counts: NDArray[np.int64], refused: NDArray[np.int64]) -> SearchWork:
+        """Return the work by the counts of a kernel.
+
+        Parameters
+        ----------
+        counts : int64 array (3,)
+            Nodes settled, edges relaxed, edges sailed.
+        refused : int64 array (STATUS_COUNT,)
+            How many edges were refused, by status.
+
+        Returns
+        -------
+        SearchWork
+        """
+        return cls(
+            int(counts[SETTLED]),
+            int(counts[RELAXED]),
+            int(counts[SAILED]),
+            counts_by_reason(refused),
+        )
+
+
+def counts_by_reason(refused: NDArray[np.int64]) -> dict[str, int]:
+    """Return how many edges were refused by reason.
+
+    Parameters
+    ----------
+    refused : int64 array (STATUS_COUNT,)
+        How many, by status.
+
+    Returns
+    -------
+    dict of str to int
+        Without the reasons that do not occur.
+    """
+    return {REASONS[code]: int(n) for code, n in enumerate(refused) if n > 0 and code > 0}
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from thalweg.core.file_writing import save_figure
+from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.core.units import KNOT
 from thalweg.ship import Conditions, Ship
 from thalweg.ship.performance_sheet_weather import assumed_peak_period
@@ -65,11 +65,7 @@ def draw_ship(
 
 
 def _save(path: Path, draw: Callable[[Any], bool], **subplot: Any) -> bool:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.2, 4.8), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(7.2, 4.8, dpi=None)
     axes = figure.add_subplot(**subplot)
     if not draw(axes):
         return False

@@ -6,11 +6,11 @@ import numpy as np
 
 from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit
+from thalweg.kernels.leg.great_circle import MAJOR_AXIS
 
-_A = 6378137.0
 _F = 1.0 / 298.257223563
-_B = _A * (1.0 - _F)
-_EP2 = (_A * _A - _B * _B) / (_B * _B)
+_B = MAJOR_AXIS * (1.0 - _F)
+_EP2 = (MAJOR_AXIS * MAJOR_AXIS - _B * _B) / (_B * _B)
 
 
 @jit(inline="always")

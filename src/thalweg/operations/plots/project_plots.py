@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thalweg.core.file_writing import save_figure
+from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.core.time import format_time
 from thalweg.core.units import DAY, HOUR
 
@@ -40,11 +40,7 @@ def draw_project(result: ProjectResult, path: str | Path | None = None) -> Any:
     -------
     matplotlib.figure.Figure
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(11, 8.5), dpi=120, layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(11, 8.5, dpi=120)
     grid = figure.add_gridspec(3, 2, height_ratios=(1.1, 1.0, 0.9))
     _draw_volume(result, figure.add_subplot(grid[0, :]))
     _draw_first_days(result, figure.add_subplot(grid[1, :]))
@@ -170,12 +166,8 @@ def draw_routes(
     -------
     matplotlib.figure.Figure
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     count = len(result.runs)
-    figure = Figure(figsize=(1.0 + 6.5 * count, 6.0), dpi=120, layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(1.0 + 6.5 * count, 6.0, dpi=120)
     frames = np.atleast_1d(figure.subplots(1, count, sharex=True, sharey=True))
     last = max(run.totals["duration_days"] or 0.0 for run in result.runs)
     bundle = None

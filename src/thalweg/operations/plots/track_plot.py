@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from thalweg.core.file_writing import save_figure
+from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.core.units import HOUR, KNOT
 from thalweg.operations.tracks.activities import (
     AWAY,
@@ -46,11 +46,7 @@ def draw_tracks(analysis: TrackAnalysis, path: str | Path | None = None) -> Any:
         the order they were sailed; and modelled against measured speeds of the legs for the best
         model.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(11, 8.2), dpi=130, layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(11, 8.2)
     axes = figure.subplots(2, 2)
     _draw_map(analysis, axes[0, 0])
     _draw_durations(analysis, axes[0, 1])

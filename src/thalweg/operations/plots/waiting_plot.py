@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from thalweg.core.file_writing import save_figure
+from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR
 from thalweg.operations.waiting.waiting_optimisation import WaitingPlan
@@ -34,11 +34,7 @@ def draw_waiting(study: WaitingStudy, path: str | Path | None = None, *, title: 
         dashed, best for the next trip dotted, optimum solid); energy by start; position against
         time for each rule at the longest wait; and energy of one trip against its departure.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(11, 7.6), dpi=130, layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(11, 7.6)
     axes = figure.subplots(2, 2)
     _draw_savings(study, axes[0, 0])
     _draw_energy(study, axes[0, 1])

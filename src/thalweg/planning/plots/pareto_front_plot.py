@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thalweg.core.file_writing import save_figure
+from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.planning.plan_front import knee
 
 if TYPE_CHECKING:
@@ -44,14 +44,10 @@ def draw_pareto_front(plan: PlanData, path: str | Path | None = None) -> Any:
     ValueError
         If the plan has no front.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     front = plan.front
     if front is None:
         raise ValueError(f"a plan with the objective {plan.voyage.objective!r} has no front")
-    figure = Figure(figsize=(8.4, 5.4), dpi=130, layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(8.4, 5.4)
     axes = figure.add_subplot()
     _draw_lower_bound(axes, plan)
     _draw_weather_blind(axes, plan)

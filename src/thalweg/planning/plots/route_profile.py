@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from thalweg.core.file_writing import save_figure
+from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.plots.map_labels import marked_times, time_label
@@ -32,14 +32,10 @@ def draw_profile(route: Route, path: str | Path | None = None) -> Any:
         One panel each for speeds, weather and depth, as far as they are known; the clearance
         panel states if no depth is known.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     panels = [panel for panel in (_speeds, _weather, _waves, _depths) if panel(route, None)]
     known = bool(np.isfinite(route.samples["under_keel_clearance"]).any())
     heights = [0.25 if panel is _depths and not known else 1.0 for panel in panels]
-    figure = Figure(figsize=(10, 1.2 + 1.9 * sum(heights)), dpi=130)
-    FigureCanvasAgg(figure)
+    figure = new_figure(10, 1.2 + 1.9 * sum(heights), layout=None)
     ratios = {"height_ratios": heights}
     rows = np.atleast_1d(figure.subplots(len(panels), 1, sharex=True, gridspec_kw=ratios))
     for axes, panel in zip(rows, panels):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thalweg.core.errors import InputError
-from thalweg.core.file_writing import save_figure
+from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.planning.plan_data import PlanData
@@ -136,11 +136,7 @@ def _draw(
     min_ukc: float,
     path: str | Path | None,
 ) -> Any:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9.0, 5.6), dpi=130, layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(9.0, 5.6)
     axes = figure.subplots()
     hours = (closures.times - route.depart) / HOUR
     miles = closures.distance / NAUTICAL_MILE

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thalweg.core.file_writing import save_figure
+from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.core.geodesy import unwrap_longitude, wrap_longitude
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT
@@ -57,16 +57,12 @@ def draw_map(plan: PlanData, path: str | Path | None = None, *, beside: Route | 
     matplotlib.figure.Figure
         The figure.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     beside = beside or _weather_blind(plan)
     box = _map_extent(plan, beside)
     shape = box.height / (box.east - box.west)
     width = min(10.0, 9.0 / shape + 1.6)
     height = max(3.6, (width - 1.6) * shape + 0.9)
-    figure = Figure(figsize=(width, height), dpi=130, layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(width, height)
     axes = figure.add_subplot()
     axes.set_facecolor(_SEA)
     box.set_up(axes)

@@ -26,10 +26,10 @@ from thalweg.sea.layer import Layer, Samples
 from thalweg.sea.layer_stack import (
     sample_stack,
     series_of_stack,
-    stack_period,
     stack_times,
     stack_variables,
 )
+from thalweg.sea.models.derived_layer import DerivedLayer, finite_period, inside_layers_with
 from thalweg.sea.triangle_mesh import Mesh
 
 if TYPE_CHECKING:
@@ -40,8 +40,7 @@ COAST_CELLS: Final = 2  #: cells from an unknown one up to which known ones are 
 SHORTEST_PERIOD: Final = 1.0  #: [s]
 
 
-@dataclass(frozen=True, eq=False)
-class HeadSeasLayer:
+class HeadSeasLayer(DerivedLayer):
     """Waves of known height without direction or period, taken from ahead on every course.
 
     The direction is the vector of length zero, which counts as head seas for every heading. The
@@ -54,57 +53,15 @@ class HeadSeasLayer:
         The layers with the height, in order of priority.
     """
 
-    layers: tuple[Layer, ...]
+    needed = (nm.WAVE_HEIGHT,)
+    derived = frozenset({*nm.WAVES.pair, nm.WAVE_PERIOD})
+    source_text = "head seas with the height of"
 
-    @property
-    def variables(self) -> frozenset[str]:
-        """Direction and peak period of the waves."""
-        return frozenset({*nm.WAVES.pair, nm.WAVE_PERIOD})
-
-    @property
-    def area(self) -> BoundingBox:
-        """The world; the height limits where waves are known."""
-        return WORLD
-
-    @property
-    def period(self) -> tuple[float, float] | None:
-        """The period of the height."""
-        return _finite_period(self.layers, (nm.WAVE_HEIGHT,))
-
-    def sample(
-        self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
-    ) -> Samples:
-        """Return values at points; NaN where the height is unknown."""
-        height = sample_stack(self.layers, [nm.WAVE_HEIGHT], time, lat, lon)[nm.WAVE_HEIGHT]
-        return _head_seas(names, height)
-
-    def series(
-        self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
-    ) -> Samples:
-        """Return values (S, T) at stations for all times."""
-        height = series_of_stack(self.layers, [nm.WAVE_HEIGHT], times, lat, lon)[nm.WAVE_HEIGHT]
-        return _head_seas(names, height)
-
-    def times(self, start: float, end: float) -> FloatArray:
-        """Return the times of the height."""
-        return stack_times(self.layers, start, end, names=[nm.WAVE_HEIGHT])
-
-    def inside(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
-        """Return whether the height may be known at positions."""
-        return _inside_holders(self.layers, {nm.WAVE_HEIGHT}, lat, lon)
-
-    def coverage(self) -> list[Coverage]:
-        """Return the rows of the height, for direction and period."""
-        rows = [r for x in self.layers for r in x.coverage() if r.variable == nm.WAVE_HEIGHT]
-        return [
-            replace(row, variable=name, source=f"head seas with the height of {row.source}")
-            for row in rows
-            for name in sorted(self.variables)
-        ]
-
-    def mesh(self) -> Mesh | None:
-        """Return None: the layer has no mesh."""
-        return None
+    def _values(self, needed: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+        height = needed[nm.WAVE_HEIGHT]
+        still = np.where(np.isnan(height), np.nan, 0.0)
+        period = np.maximum(PERIOD_OF_ROOT_HEIGHT * np.sqrt(height), SHORTEST_PERIOD)
+        return {nm.WAVE_TO_EAST: still, nm.WAVE_TO_NORTH: still.copy(), nm.WAVE_PERIOD: period}
 
     def provenance(self) -> Mapping[str, Any]:
         """Return what is assumed."""
@@ -144,7 +101,7 @@ class NearestLayer:
     @property
     def period(self) -> tuple[float, float] | None:
         """The period of the layers."""
-        return _finite_period(self.layers, tuple(self.variables))
+        return finite_period(self.layers, tuple(self.variables))
 
     @cached_property
     def _grids(self) -> list[tuple[frozenset[str], FloatArray, FloatArray, cKDTree]]:
@@ -195,7 +152,7 @@ class NearestLayer:
         here = geocentric_unit_vectors(lat, lon)
         for held, y, x, tree in self._grids:
             own = [n for n in names if n in held]
-            rows = np.flatnonzero(_inside_holders(self.layers, held, lat, lon))
+            rows = np.flatnonzero(inside_layers_with(self.layers, held, lat, lon))
             if not (own and rows.size):
                 continue
             far, nearest = tree.query(here[rows], distance_upper_bound=limit)
@@ -214,7 +171,7 @@ class NearestLayer:
 
     def inside(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
         """Return whether positions are in the area of a layer that is filled."""
-        return _inside_holders(self.layers, self.variables, lat, lon)
+        return inside_layers_with(self.layers, self.variables, lat, lon)
 
     def coverage(self) -> list[Coverage]:
         """Return the rows of the layers that are filled."""
@@ -288,28 +245,6 @@ def nearest_layer(layers: Sequence[Layer], names: Sequence[str], distance: float
             "Add a file with them, or fill with a value.",
         )
     return NearestLayer(tuple(layers), wanted, distance)
-
-
-def _head_seas(names: Sequence[str], height: FloatArray) -> Samples:
-    still = np.where(np.isnan(height), np.nan, 0.0)
-    period = np.maximum(PERIOD_OF_ROOT_HEIGHT * np.sqrt(height), SHORTEST_PERIOD)
-    made = {nm.WAVE_TO_EAST: still, nm.WAVE_TO_NORTH: still, nm.WAVE_PERIOD: period}
-    return {name: made[name].copy() for name in names if name in made}
-
-
-def _finite_period(layers: Sequence[Layer], names: Sequence[str]) -> tuple[float, float] | None:
-    start, end = stack_period(layers, names)
-    return (start, end) if np.isfinite([start, end]).all() else None
-
-
-def _inside_holders(
-    layers: Sequence[Layer], names: set[str] | frozenset[str], lat: FloatArray, lon: FloatArray
-) -> BoolArray:
-    inside = np.zeros(lat.shape, bool)
-    for layer in layers:
-        if names & layer.variables:
-            inside |= np.asarray(layer.inside(lat, lon), bool)
-    return inside
 
 
 def _known_near_unknown(layer: GridLayer, names: frozenset[str]) -> tuple[FloatArray, FloatArray]:

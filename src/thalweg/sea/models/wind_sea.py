@@ -3,30 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.errors import InputError
-from thalweg.core.types import BoolArray, FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
-from thalweg.sea.coverage import Coverage
-from thalweg.sea.layer import Layer, Samples
-from thalweg.sea.layer_stack import (
-    sample_stack,
-    series_of_stack,
-    stack_period,
-    stack_times,
-    stack_variables,
-)
-from thalweg.sea.triangle_mesh import Mesh
+from thalweg.sea.layer import Layer
+from thalweg.sea.layer_stack import stack_variables
+from thalweg.sea.models.derived_layer import DerivedLayer
 
 DEFAULT_FETCH = 500_000.0  #: [m] assumed fetch of the wind
 DEFAULT_DURATION = 24.0 * 3600.0  #: [s] assumed duration of the wind
-_VARIABLES = frozenset({nm.WAVE_HEIGHT, *nm.WAVES.pair, nm.WAVE_PERIOD})
 
 
 def carter_1982(
@@ -87,8 +77,7 @@ def carter_1982(
     return np.minimum(height, 0.0248 * wind**2), np.minimum(period, 0.729 * wind)
 
 
-@dataclass(frozen=True, eq=False)
-class WindSeaLayer:
+class WindSeaLayer(DerivedLayer):
     """Waves that the wind of other layers raises; they travel with the wind.
 
     Attributes
@@ -97,59 +86,21 @@ class WindSeaLayer:
         Layers that hold the wind, in order of priority; waves are unknown where the wind is.
     """
 
-    layers: tuple[Layer, ...]
+    needed = nm.WIND.pair
+    derived = frozenset({nm.WAVE_HEIGHT, *nm.WAVES.pair, nm.WAVE_PERIOD})
+    source_text = "from the wind of"
 
-    @property
-    def variables(self) -> frozenset[str]:
-        """Height, direction and peak period of the waves."""
-        return _VARIABLES
-
-    @property
-    def area(self) -> BoundingBox:
-        """The world; the wind limits where waves are known."""
-        return WORLD
-
-    @property
-    def period(self) -> tuple[float, float] | None:
-        """The period of the wind."""
-        start, end = stack_period(self.layers, nm.WIND.pair)
-        return (start, end) if np.isfinite([start, end]).all() else None
-
-    def sample(
-        self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
-    ) -> Samples:
-        """Return values at points; NaN where the wind is unknown."""
-        wind = sample_stack(self.layers, list(nm.WIND.pair), time, lat, lon)
-        return _waves_from_wind(names, wind)
-
-    def series(
-        self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
-    ) -> Samples:
-        """Return values (S, T) at stations for all times."""
-        wind = series_of_stack(self.layers, list(nm.WIND.pair), times, lat, lon)
-        return _waves_from_wind(names, wind)
-
-    def times(self, start: float, end: float) -> FloatArray:
-        """Return the times of the wind."""
-        return stack_times(self.layers, start, end, names=nm.WIND.pair)
-
-    def inside(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
-        """Return whether the wind may be known at positions."""
-        windy = [x for x in self.layers if set(nm.WIND.pair) & x.variables]
-        return np.any([x.inside(lat, lon) for x in windy], axis=0)
-
-    def coverage(self) -> list[Coverage]:
-        """Return the rows of the wind, for waves."""
-        rows = [r for x in self.layers for r in x.coverage() if r.variable == nm.EASTWARD_WIND]
-        return [
-            replace(row, variable=name, source=f"from the wind of {row.source}")
-            for row in rows
-            for name in sorted(_VARIABLES)
-        ]
-
-    def mesh(self) -> Mesh | None:
-        """Return None: the layer has no mesh."""
-        return None
+    def _values(self, needed: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+        east, north = (np.asarray(needed[name], float) for name in nm.WIND.pair)
+        speed = np.hypot(east, north)
+        height, period = carter_1982(speed)
+        nonzero = np.where(speed > 0.0, speed, 1.0)
+        return {
+            nm.WAVE_HEIGHT: height,
+            nm.WAVE_PERIOD: np.maximum(period, 1.0),
+            nm.WAVE_TO_EAST: east / nonzero,
+            nm.WAVE_TO_NORTH: np.where(speed == 0.0, 1.0, north / nonzero),
+        }
 
     def provenance(self) -> Mapping[str, Any]:
         """Return the method and its assumed fetch [m] and duration [s]."""
@@ -178,17 +129,3 @@ def wind_sea_layer(layers: Sequence[Layer]) -> WindSeaLayer:
             "Add wind, or fill waves with a height.",
         )
     return WindSeaLayer(tuple(layers))
-
-
-def _waves_from_wind(names: Sequence[str], wind: Mapping[str, FloatArray]) -> Samples:
-    east, north = (np.asarray(wind[name], float) for name in nm.WIND.pair)
-    speed = np.hypot(east, north)
-    height, period = carter_1982(speed)
-    nonzero = np.where(speed > 0.0, speed, 1.0)
-    made = {
-        nm.WAVE_HEIGHT: height,
-        nm.WAVE_PERIOD: np.maximum(period, 1.0),
-        nm.WAVE_TO_EAST: east / nonzero,
-        nm.WAVE_TO_NORTH: np.where(speed == 0.0, 1.0, north / nonzero),
-    }
-    return {name: made[name] for name in names if name in made}

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from thalweg.core.geodesy import direct, distance
+from thalweg.core.geodesy import METRES_PER_DEGREE, direct, distance
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
 from thalweg.kernels.leg.raster_sampling import RasterArrays
@@ -180,7 +180,7 @@ class _Domain:
     @property
     def cell_height(self) -> float:
         """Height of a cell of the raster [m]."""
-        return float(self.raster.corner[1]) * 111_132.0
+        return float(self.raster.corner[1]) * METRES_PER_DEGREE
 
 
 @dataclass(eq=False)

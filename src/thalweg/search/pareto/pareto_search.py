@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.kernels.codes import REASONS
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.pareto.edge_tables import EdgeTables
 from thalweg.kernels.pareto.label_arrays import PRUNED, RELAXED, VISITED, WAITED, LabelSearch
@@ -52,6 +51,7 @@ from thalweg.search.restricted_waiting import (
     waiting_is_restricted,
 )
 from thalweg.search.search_problem import distance_bounds
+from thalweg.search.search_result import counts_by_reason
 
 if TYPE_CHECKING:
     from thalweg.network.network import Network
@@ -196,7 +196,7 @@ def _search(
         dropped=dropped,
         memory=plan.memory,
     )
-    refused = {REASONS[c]: int(n) for c, n in enumerate(blocks.refused) if n > 0 and c > 0}
+    refused = counts_by_reason(blocks.refused)
     return NetworkFront(points, below.time, below.cost, plan.clock.width, work, refused)
 
 
@@ -293,7 +293,7 @@ def _fastest_path(
 
 def _no_route(network: Network, front_problem: FrontProblem, request: FrontRequest) -> NoRouteError:
     arrivals = earliest_arrivals(front_problem, request, everywhere=False)
-    reasons = {REASONS[c]: int(n) for c, n in enumerate(arrivals.refused) if n > 0 and c > 0}
+    reasons = counts_by_reason(arrivals.refused)
     reached = front_problem.world.network.station[np.isfinite(arrivals.time)]
     lat, lon = network.lat, network.lon
     to = float(lat[request.goal]), float(lon[request.goal])

@@ -14,8 +14,6 @@ from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
 from thalweg.ship.methods.array_conversion import as_float_array
 
-_INF = float("inf")
-
 
 @dataclass(frozen=True)
 class ReferenceBand:
