@@ -22,6 +22,7 @@ SHARED_FUNCTIONS = {
     "equilibrium_arguments",
     "nodal_corrections",
 }
+MAX_LINES = 400  # of a module
 MAX_ARGUMENTS = 8  # of a function outside the kernels, without self and cls
 #: Functions with more arguments, by module below thalweg, and why they keep them.
 MANY_ARGUMENTS = {
@@ -90,6 +91,11 @@ def test_no_folder_has_too_many_modules():
     for path in MODULES.values():
         counts[path.parent.relative_to(ROOT).as_posix()] += 1
     assert {folder: n for folder, n in counts.items() if n > MAX_MODULES} == {}
+
+
+def test_no_module_is_too_long():
+    counts = {name: path.read_text("utf-8").count("\n") for name, path in MODULES.items()}
+    assert {name: n for name, n in counts.items() if n > MAX_LINES} == {}
 
 
 def functions(tree: ast.AST, prefix: str) -> Iterable[tuple[str, ast.FunctionDef]]:

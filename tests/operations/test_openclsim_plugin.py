@@ -14,8 +14,8 @@ from shapely.geometry import Point
 
 from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.time import parse_time
-from thalweg.operations.dredging.project import SiteNetworkOptions
 from thalweg.operations.dredging.project_inputs import open_project, open_project_inputs
+from thalweg.operations.dredging.project_parts import SiteNetworkOptions
 from thalweg.operations.examples.estuary import synthetic_estuary
 from thalweg.operations.openclsim.leg_planner import LegPlanner
 from thalweg.operations.openclsim.plugin import PlannedRouteMovable

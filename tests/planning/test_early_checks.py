@@ -13,7 +13,7 @@ from thalweg.cli import option_values
 from thalweg.cli.main import main
 from thalweg.core.errors import InputError
 from thalweg.network import lattice
-from thalweg.network.regional_lattice import lattice_builder
+from thalweg.network.regional_lattice import lattice_builder, lattice_size
 
 
 @pytest.fixture
@@ -60,7 +60,8 @@ def test_cheap_faults_are_found_first(tmp_path, capsys, no_chart, options, words
 
 
 def test_a_lattice_that_does_not_fit_in_memory_is_refused_before_it_is_built(monkeypatch):
-    monkeypatch.setattr(lattice_builder, "_MAX_NODE_BUDGET", 100_000)
+    for module in (lattice_builder, lattice_size):
+        monkeypatch.setattr(module, "MAX_NODE_BUDGET", 100_000)
     water = Chart.open_water(40.0, 60.0, -20.0, 10.0)
     tracemalloc.start()
     with pytest.raises(InputError, match=r"would have over [\d,]+ nodes and take .* GB") as caught:

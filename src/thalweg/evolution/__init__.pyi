@@ -7,13 +7,9 @@ from thalweg.evolution.evolve import (
 )
 from thalweg.evolution.memetic import FrontRefinementSettings, refine_front
 from thalweg.evolution.variation import OperatorWeights, VariationSettings
+from thalweg.route.evaluators.evaluator_inputs import EvaluationResolution, TabulatedShip
 from thalweg.route.evaluators.population import Genome, Population
-from thalweg.route.evaluators.population_evaluator import (
-    EvaluationResolution,
-    Evaluator,
-    TabulatedShip,
-    make_evaluator,
-)
+from thalweg.route.evaluators.population_evaluator import Evaluator, make_evaluator
 
 __all__ = [
     "EvaluationResolution",

@@ -14,8 +14,9 @@ from thalweg.kernels.evolution import mutation, random_numbers
 from thalweg.kernels.evolution.crossover import make_offspring
 from thalweg.kernels.geometry.coast_index import CoastArrays
 from thalweg.kernels.leg.population_sailing import GENE_COLUMNS
+from thalweg.route.evaluators.evaluation_threads import run_in_threads
 from thalweg.route.evaluators.population import Population
-from thalweg.route.evaluators.population_evaluator import Evaluator, run_in_threads
+from thalweg.route.evaluators.population_evaluator import Evaluator
 
 INSERTION_SHAPES = {
     "rhombus": random_numbers.RHOMBUS,

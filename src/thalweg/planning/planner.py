@@ -46,7 +46,8 @@ from thalweg.planning.request.voyage_endpoints import (
     without_approach,
 )
 from thalweg.planning.request.voyage_objective import with_voyage_prices
-from thalweg.planning.single.passage import PassageResult, plan_passage
+from thalweg.planning.single.passage import plan_passage
+from thalweg.planning.single.passage_result import PassageResult
 from thalweg.planning.voyage import Voyage
 from thalweg.route import join as join_routes
 from thalweg.route import with_wind_speed

@@ -19,11 +19,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.limits import Limits
-from thalweg.core.types import FloatArray, IntArray
+from thalweg.core.types import FloatArray
 from thalweg.kernels.leg.edge_sailing import NetworkArrays, ShipArrays
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.search import repeated_search as kernel
 from thalweg.kernels.search.tidal_intervals import TidalStates
+from thalweg.search.network_passage import (
+    NetworkPassage,
+    Profile,
+    arrive_together,
+    passage_not_found,
+    with_earlier_departure,
+)
 from thalweg.search.prepared_network import PreparedNetwork
 from thalweg.search.restricted_waiting import (
     earliest_arrival_with_restricted_waiting,
@@ -44,67 +51,6 @@ _ARRIVAL_SLACK = 1e-3  # an arrival this much above a known one is still conside
 _HEURISTIC_WEIGHT = 1.5  # weight of the time to go in a weighted A* search ...
 _MAX_SETTLED_WEIGHTED = 2000  # ... which settles at most so many nodes
 _FIRST_SLACK = 3600.0  # beyond the bound, when nothing is known yet [s]
-_SAME_ARRIVAL = 0.25  # arrivals closer than this are one tide's opening (found to 0.1 s) [s]
-
-
-@dataclass(frozen=True, eq=False)
-class NetworkPassage:
-    """One departure and the path it sails.
-
-    Attributes
-    ----------
-    depart, arrive : float
-        [s]; ``arrive`` is inf when the goal is not reached.
-    nodes : int64[P]
-        From start to goal; empty when not reached.
-    node_arrive, node_depart : float64[P]
-        Arrival at and departure from each node [s]; a later departure is waiting.
-    settled : int
-        Nodes settled to find it.
-    """
-
-    depart: float
-    arrive: float
-    nodes: IntArray
-    node_arrive: FloatArray
-    node_depart: FloatArray
-    settled: int = 0
-
-    @property
-    def found(self) -> bool:
-        """Whether the goal is reached."""
-        return len(self.nodes) > 0
-
-    @property
-    def waiting(self) -> float:
-        """Waiting time [s]."""
-        return float(np.sum(self.node_depart - self.node_arrive))
-
-
-@dataclass(frozen=True, eq=False)
-class Profile:
-    """The passages of many departures.
-
-    Attributes
-    ----------
-    passages : tuple of NetworkPassage
-        By departure, ascending.
-    searched : int
-        How many of them were searched; the others wait for the next one of these and sail with it.
-    """
-
-    passages: tuple[NetworkPassage, ...]
-    searched: int
-
-    @property
-    def departures(self) -> FloatArray:
-        """Departures [s]."""
-        return np.array([p.depart for p in self.passages])
-
-    @property
-    def arrivals(self) -> FloatArray:
-        """Earliest arrivals [s]; inf where there is none."""
-        return np.array([p.arrive for p in self.passages])
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +124,7 @@ class ProfileSearch:
         latest = min(float(arrive_by), float(self.prepared.sea.times[-1]))
         longest = (latest - depart) * self._largest_penalty
         if not (math.isfinite(depart) and self.shortest <= longest):
-            return _passage_not_found(depart)
+            return passage_not_found(depart)
         limit = (
             (known - depart) * self._largest_penalty + _ARRIVAL_SLACK if known < math.inf else 0.0
         )
@@ -232,7 +178,7 @@ class ProfileSearch:
         settled = int(marks.counts[kernel.SETTLED])
         if cost == math.inf:
             kernel.reset_workspace(marks)
-            return replace(_passage_not_found(depart), settled=settled)
+            return replace(passage_not_found(depart), settled=settled)
         nodes, arrive, leave = self._path_arrays
         count = kernel.trace_departure(self.states, marks, trip, nodes, arrive, leave)
         kernel.reset_workspace(marks)
@@ -304,7 +250,7 @@ class ProfileSearch:
             if k in found:
                 following = k
             else:
-                found[k] = _with_earlier_departure(found[following], float(times[k]))
+                found[k] = with_earlier_departure(found[following], float(times[k]))
         return Profile(tuple(found[k] for k in range(len(times))), searched)
 
     def _halve(self, times: FloatArray, found: dict[int, NetworkPassage], arrive_by: float) -> None:
@@ -314,7 +260,7 @@ class ProfileSearch:
         open_ranges = [(0, last)] if last > 0 else []
         while open_ranges:
             low, high = open_ranges.pop()
-            if high - low < 2 or _arrive_together(found[low], found[high]):
+            if high - low < 2 or arrive_together(found[low], found[high]):
                 continue
             middle = (low + high) // 2
             later = found[high]
@@ -386,24 +332,3 @@ def prepare_profile_search(
 def _longest_useful_passage(passages: ProfileSearch) -> float:
     """Return how long a passage may take for its arrival to bound an earlier one [s]."""
     return 3.0 * passages.shortest + _FIRST_SLACK
-
-
-def _arrive_together(first: NetworkPassage, second: NetworkPassage) -> bool:
-    """Whether two departures arrive at one moment, or the first not at all."""
-    if not first.found:
-        return True  # a later departure does not arrive either
-    return second.found and abs(second.arrive - first.arrive) <= _SAME_ARRIVAL
-
-
-def _with_earlier_departure(passage: NetworkPassage, depart: float) -> NetworkPassage:
-    """Return a passage whose ship waits at the start since an earlier moment."""
-    if not passage.found:
-        return replace(passage, depart=depart, settled=0)
-    arrive = passage.node_arrive.copy()
-    arrive[0] = depart
-    return replace(passage, depart=depart, node_arrive=arrive, settled=0)
-
-
-def _passage_not_found(depart: float) -> NetworkPassage:
-    none = np.empty(0)
-    return NetworkPassage(depart, math.inf, np.empty(0, np.int64), none, none)

@@ -4,31 +4,34 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, TypeAlias
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoPathError, NoRouteError
 from thalweg.core.geodesy import Position
-from thalweg.core.memory import machine_memory
-from thalweg.core.types import FloatArray, IntArray
+from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.conformal_projection import (
-    ConformalProjection,
     conformal_unit_vectors,
-    great_circle_projection,
     mercator_projection,
 )
 from thalweg.network.endpoints import check_endpoints
 from thalweg.network.network import Network, NetworkMeta
 from thalweg.network.regional_lattice.directions import largest_angle_gap, unique_offsets
-from thalweg.network.regional_lattice.refinement_levels import LatticeSpecification, TooManyPoints
-from thalweg.network.regional_lattice.region import LARGEST_LATITUDE, Box, Corridor, Region
+from thalweg.network.regional_lattice.lattice_size import (
+    MAX_NODE_BUDGET,
+    NODE_BUDGET,
+    LatticeAttempt,
+    LatticeRequest,
+    Offsets,
+    grow_within_budget,
+)
+from thalweg.network.regional_lattice.region import LARGEST_LATITUDE, Box, Corridor
 from thalweg.network.regional_lattice.unassembled_lattice import (
     UnassembledLattice,
-    grow_lattice,
     nearest_reached,
     reached_sides,
 )
@@ -38,41 +41,9 @@ if TYPE_CHECKING:
 
 _FINEST_COAST_SPACING = 1.5 * NAUTICAL_MILE
 _OFFING_SPACING = 1.5  # in offings: least default spacing at coasts
-_NODE_BUDGET = 60_000  # default limit of nodes at sea, and the same of nodes at coasts
-_BYTES_PER_NODE = 4_400  # measured while building, 32 directions
-_MAX_NODE_BUDGET = min(6_000_000, int(0.5 * machine_memory() / _BYTES_PER_NODE))
 _SLACK_GROWTH = 1.8
 _MAX_EXTRA_LEVELS = 2
 _NEAREST_NODE = 2.0  # spacings within which start and goal are joined to a node
-_GLOBAL_SPACING = 80.0 * NAUTICAL_MILE
-
-_Offsets: TypeAlias = tuple[IntArray, IntArray]
-
-
-@dataclass(frozen=True)
-class _LatticeAttempt:
-    """A lattice, notes on its coarsening, and the count of points that exceeded the budget."""
-
-    ground: LatticeSpecification
-    draft: UnassembledLattice
-    notes: tuple[str, ...]
-    refused: int
-
-
-@dataclass(frozen=True)
-class _LatticeRequest:
-    """The request of the caller; spacing and coast levels may be coarsened when not given."""
-
-    chart: Chart
-    start: Position
-    goal: Position
-    spacing: float
-    coast_levels: int
-    orientation: str
-    area: Box | None
-    budget: int
-    coast_budget: int
-    corridor: Corridor | None = None
 
 
 def lattice(
@@ -234,26 +205,26 @@ def _check_latitudes(start: Position, goal: Position) -> None:
 def _make_request(
     chart: Chart, start: Position, goal: Position, distance: float, spacing: float | None,
     coast_levels: int | None, orientation: str, area: Box | None,
-) -> _LatticeRequest:  # fmt: skip
-    budget = _NODE_BUDGET if spacing is None else _MAX_NODE_BUDGET
-    coast_budget = _NODE_BUDGET if coast_levels is None else _MAX_NODE_BUDGET
+) -> LatticeRequest:  # fmt: skip
+    budget = NODE_BUDGET if spacing is None else MAX_NODE_BUDGET
+    coast_budget = NODE_BUDGET if coast_levels is None else MAX_NODE_BUDGET
     own = default_spacing(distance) if spacing is None else min(spacing, distance)
     if coast_levels is None:
         finest = min(max(own / 8.0, 250.0), _FINEST_COAST_SPACING)
         finest = max(finest, _OFFING_SPACING * chart.offing.distance)  # no narrow water is left
         coast_levels = min(max(round(math.log2(own / finest)), 0), 6)
-    return _LatticeRequest(
+    return LatticeRequest(
         chart, start, goal, own, coast_levels, orientation, area, budget, coast_budget
     )
 
 
 def _grow_until_connected(
-    request: _LatticeRequest, offsets: _Offsets, distance: float, slack: float, detour: float
-) -> _LatticeAttempt:
+    request: LatticeRequest, offsets: Offsets, distance: float, slack: float, detour: float
+) -> LatticeAttempt:
     """Grow and refine until start and goal connect and the slack fits; return the last lattice."""
     factor, extra = 1.01 * (1.0 + slack), 0
     while True:
-        attempt = _grow_within_budget(request, offsets, factor * distance, extra)
+        attempt = grow_within_budget(request, offsets, factor * distance, extra)
         ground, draft = attempt.ground, attempt.draft
         to_start = draft.distances(draft.start)
         length = to_start[draft.goal]
@@ -284,7 +255,7 @@ def _grow_until_connected(
             raise _no_route(request, draft, to_start)
 
 
-def _ends_are_near(attempt: _LatticeAttempt) -> bool:
+def _ends_are_near(attempt: LatticeAttempt) -> bool:
     """Return whether start and goal are joined to nodes as near as the lattice has them."""
     ground, draft = attempt.ground, attempt.draft
     coarse, fine = (ground.frame.largest_unit * ground.step(k) for k in (0, ground.coast_levels))
@@ -321,13 +292,13 @@ def _corridor_around(lat: FloatArray, lon: FloatArray, width: float) -> Corridor
 
 
 def _lattice_in_corridor(
-    request: _LatticeRequest, offsets: _Offsets, lat: FloatArray, lon: FloatArray
-) -> _LatticeAttempt:
+    request: LatticeRequest, offsets: Offsets, lat: FloatArray, lon: FloatArray
+) -> LatticeAttempt:
     """Draw the lattice of a corridor, finer at coasts until it connects."""
     out = geodesy.distance(*request.start, lat, lon) + geodesy.distance(lat, lon, *request.goal)
     limit = 1.1 * float(out.max()) + 10.0 * request.spacing
     for extra in range(_MAX_EXTRA_LEVELS + 1):
-        attempt = _grow_within_budget(request, offsets, limit, extra, request.corridor)
+        attempt = grow_within_budget(request, offsets, limit, extra, request.corridor)
         to_start = attempt.draft.distances(attempt.draft.start)
         if math.isfinite(to_start[attempt.draft.goal]):
             return _pruned(attempt, math.inf, to_start)
@@ -335,8 +306,8 @@ def _lattice_in_corridor(
 
 
 def _refine_along_paths(
-    request: _LatticeRequest, offsets: _Offsets, coarse: _LatticeAttempt, slack: float, extra: int
-) -> _LatticeAttempt:
+    request: LatticeRequest, offsets: Offsets, coarse: LatticeAttempt, slack: float, extra: int
+) -> LatticeAttempt:
     """Build a finer lattice along the paths found on one that had to be coarse."""
     ground, stations = coarse.ground, coarse.draft.stations
     spacing = ground.frame.largest_unit * ground.step(0)
@@ -346,101 +317,14 @@ def _refine_along_paths(
     corridor = Corridor.around(
         ground.frame, ground.step(0), conformal_unit_vectors(stations.lat, stations.lon)
     )
-    finer = _grow_within_budget(request, offsets, ground.region.limit, extra, corridor)
+    finer = grow_within_budget(request, offsets, ground.region.limit, extra, corridor)
     to_start = finer.draft.distances(finer.draft.start)
     if not math.isfinite(to_start[finer.draft.goal]):
         return coarse
     return _pruned(finer, slack, to_start)
 
 
-def _grow_within_budget(
-    request: _LatticeRequest,
-    offsets: _Offsets,
-    limit: float,
-    extra: int,
-    corridor: Corridor | None = None,
-) -> _LatticeAttempt:
-    """Draw the lattice for a region, coarsening it while it is over its budget."""
-    region = Region(
-        request.start, request.goal, limit, request.area, _chart_box(request.chart), corridor
-    )
-    spacing, coast, ends = request.spacing, request.coast_levels + max(extra - 1, 0), 2 * extra
-    notes: tuple[str, ...] = ()
-    refused = 0
-    if region.unbounded and corridor is None:  # only to find the paths to refine
-        spacing, coast = max(spacing, _GLOBAL_SPACING), min(max(coast, 2), 3)
-        request = replace(request, budget=_NODE_BUDGET, coast_budget=_NODE_BUDGET)
-        notes = _coarsening_note(spacing, coast)
-    most = min(request.coast_budget * (1 + 2 * extra), _MAX_NODE_BUDGET)
-    may_stop = request.coast_budget < _MAX_NODE_BUDGET
-    while True:
-        frame = _projection(request, region, spacing).refined(coast + ends)
-        ground = LatticeSpecification(
-            request.chart, frame, region, coast, ends, request.budget, most, may_stop
-        )
-        try:
-            draft = grow_lattice(ground, *offsets, request.start, request.goal)
-            if draft.refused:
-                notes, refused = _coarsening_note(spacing, len(draft.parts) - 1), draft.refused
-            return _LatticeAttempt(ground, draft, notes, refused)
-        except TooManyPoints as refusal:
-            spacing, coast, ends = _coarser(request, region, refusal, (spacing, coast, ends))
-            notes, refused = _coarsening_note(spacing, coast), refusal.count
-
-
-def _coarsening_note(spacing: float, coast: int) -> tuple[str, ...]:
-    sizes = f"{spacing / NAUTICAL_MILE:.3g} nm and {coast} coast levels"
-    return (f"coarsened to {sizes} to keep the number of nodes in bounds",)
-
-
-def _coarser(
-    request: _LatticeRequest, region: Region, refusal: TooManyPoints, sizes: tuple[float, int, int]
-) -> tuple[float, int, int]:
-    """Return a larger spacing or fewer levels than those (spacing, coast, ends) refused.
-
-    Raises
-    ------
-    InputError
-        If the requested spacing or number of levels is too fine.
-    """
-    spacing, coast, ends = sizes
-    level = refusal.level
-    if request.coast_budget < _MAX_NODE_BUDGET and 1 < level <= coast:
-        return spacing, level - 1, ends
-    if level > coast and ends > 0:
-        return spacing, coast, ends - 1
-    if request.budget < _MAX_NODE_BUDGET:
-        return spacing * (2.0 if level == 0 and region.unbounded else 1.4), max(coast, 1), ends
-    if request.coast_budget < _MAX_NODE_BUDGET and level > 0:
-        return spacing, level - 1, ends
-    raise InputError(
-        f"A lattice {request.spacing:.0f} m apart would have over {refusal.count:,} nodes and take "
-        f"{refusal.count * _BYTES_PER_NODE / 1e9:.1f} GB.",
-        f"At most {_MAX_NODE_BUDGET:,} nodes are built, in half of the memory of this machine "
-        f"({machine_memory() / 1e9:.1f} GB).",
-        "Give a larger spacing, fewer coast levels or a smaller area.",
-    )
-
-
-def _chart_box(chart: Chart) -> Box | None:
-    """Return the chart's area as a box, None when it goes right round the world."""
-    area = chart.area
-    if area.width >= 360.0:
-        return None
-    return area.south, area.north, area.west, area.west + area.width
-
-
-def _projection(request: _LatticeRequest, region: Region, spacing: float) -> ConformalProjection:
-    if request.orientation == "great_circle" and not region.covers_globe:
-        return great_circle_projection(request.start, request.goal, spacing)
-    middle = 0.5 * (request.start[0] + request.goal[0])
-    closed = region.unbounded
-    return mercator_projection(
-        request.start, spacing, latitude=0.0 if closed else middle, closed=closed
-    )
-
-
-def _pruned(attempt: _LatticeAttempt, slack: float, to_start: FloatArray) -> _LatticeAttempt:
+def _pruned(attempt: LatticeAttempt, slack: float, to_start: FloatArray) -> LatticeAttempt:
     """Drop the nodes that no path within the slack passes; scale the count of a finer level."""
     ground, draft = attempt.ground, attempt.draft
     total, limit = to_start, math.inf
@@ -454,7 +338,7 @@ def _pruned(attempt: _LatticeAttempt, slack: float, to_start: FloatArray) -> _La
 
 
 def _no_route(
-    request: _LatticeRequest, draft: UnassembledLattice, to_start: FloatArray
+    request: LatticeRequest, draft: UnassembledLattice, to_start: FloatArray
 ) -> NoRouteError:
     nearest = nearest_reached(draft, to_start)
     separation = float(geodesy.distance(*nearest, *request.goal)) / NAUTICAL_MILE

@@ -1,13 +1,7 @@
 """Dredging projects: load, sail full, unload, sail empty, until a volume is moved."""
 
 from thalweg.operations.dredging.loading_curves import LoadingCurve
-from thalweg.operations.dredging.project import (
-    BaseCase,
-    Project,
-    SiteNetworkOptions,
-    Sites,
-    WorkScope,
-)
+from thalweg.operations.dredging.project import Project
 from thalweg.operations.dredging.project_environment import (
     ProjectEnvironment,
     freeze_site_network,
@@ -18,6 +12,7 @@ from thalweg.operations.dredging.project_inputs import (
     open_project,
     open_project_inputs,
 )
+from thalweg.operations.dredging.project_parts import BaseCase, SiteNetworkOptions, Sites, WorkScope
 from thalweg.operations.dredging.project_result import ProjectResult, ProjectRun
 from thalweg.operations.dredging.run_project import run_project
 

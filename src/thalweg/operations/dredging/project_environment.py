@@ -20,7 +20,7 @@ from thalweg.kernels import codes
 from thalweg.network import Network, NetworkMeta, Samples, Stations, lattice, mesh
 from thalweg.network.assembly import assemble, measured_pairs
 from thalweg.network.triangular_mesh.edge_sampling import sampled_on_triangle_sides
-from thalweg.operations.dredging.project import Sites
+from thalweg.operations.dredging.project_parts import Sites
 from thalweg.planning.frozen_sea import MEMORY_LIMIT
 from thalweg.planning.planning_context import performance_table_of
 from thalweg.planning.request.requirements import (

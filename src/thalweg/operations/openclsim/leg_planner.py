@@ -19,12 +19,12 @@ from thalweg.core.geodesy import Position, check_position, distance, format_posi
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.units import DAY
 from thalweg.operations.dredging.cycle_records import SailedLeg
-from thalweg.operations.dredging.project import SiteNetworkOptions, Sites
 from thalweg.operations.dredging.project_environment import (
     ProjectEnvironment,
     freeze_site_network,
     project_network,
 )
+from thalweg.operations.dredging.project_parts import SiteNetworkOptions, Sites
 from thalweg.operations.dredging.project_validation import MAX_DAYS, check_clearance
 from thalweg.operations.dredging.verified_legs import SiteLegPlanner
 from thalweg.planning.request.coverage_check import check_argument_types

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from thalweg.planning.single.exceeded_limits import (
     without_exceeding_edges,
 )
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
+from thalweg.planning.single.passage_result import PassageResult
 from thalweg.planning.single.weather_gaps import (
     MAX_GAPS,
     check_times_known,
@@ -57,37 +58,6 @@ _TWO_TIDES = 25 * HOUR
 #: Attempts while the referee finds a limit exceeded between the stations: how many times finer the
 #: network is, and the step of `NETWORK_TIGHTENING`.
 _ATTEMPTS = ((1, 0), (1, 1), (2, 0), (2, 2), (4, 0), (4, 3))
-
-
-@dataclass(frozen=True)
-class PassageResult:
-    """Result of one passage.
-
-    Attributes
-    ----------
-    route : Route
-        The best route, scored by the referee.
-    result : SearchResult
-        Result of the search on the network.
-    bound : LowerBound
-        Lower bound from the network, in SI.
-    floor : LowerBound
-        Lower bound that holds for every route: a certificate, or that of the geodesic; in SI.
-    network : Network
-        The network searched.
-    isochrones : ndarray
-        Earliest arrival at every node [s since 1970], for the map; inf where not reached.
-    notes : tuple of str
-        Notes for the user.
-    """
-
-    route: Route
-    result: SearchResult
-    bound: LowerBound
-    floor: LowerBound
-    network: Network
-    isochrones: np.ndarray
-    notes: tuple[str, ...]
 
 
 def plan_passage(

@@ -15,13 +15,9 @@ from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.leg import population_sailing as columns
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_legs, canal_rates, canal_setting
+from thalweg.route.evaluators.evaluator_inputs import EvaluationResolution, TabulatedShip
 from thalweg.route.evaluators.population import Population
-from thalweg.route.evaluators.population_evaluator import (
-    EvaluationResolution,
-    Evaluator,
-    TabulatedShip,
-    make_evaluator,
-)
+from thalweg.route.evaluators.population_evaluator import Evaluator, make_evaluator
 from thalweg.route.evaluators.time_evaluator import TrackBatch
 
 if TYPE_CHECKING:

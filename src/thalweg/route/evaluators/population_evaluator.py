@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from thalweg.core.errors import InputError
-from thalweg.core.limits import Limits
 from thalweg.core.objective import FUEL_MASS, LegPrices
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
@@ -22,16 +18,14 @@ from thalweg.kernels.leg import population_sailing as columns
 from thalweg.kernels.leg.population_sailing import FitnessArrays, sail_population
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.evaluators.calm_water_rates import calm_water_value, calm_water_values
+from thalweg.route.evaluators.evaluation_threads import run_in_threads
+from thalweg.route.evaluators.evaluator_inputs import EvaluationResolution, TabulatedShip
 from thalweg.route.evaluators.population import Genome, Population
 from thalweg.route.evaluators.time_evaluator import TimeEvaluator, make_time_evaluator, unique_legs
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.sea import GridFields
-    from thalweg.ship import PerformanceTable
-
-_MIN_TRACKS_PER_THREAD = 16
-_ZONE_RESOLUTION = 25.0  # to which crossings of the borders of control areas are found [m]
 
 
 @dataclass(frozen=True)
@@ -292,43 +286,6 @@ class Evaluator:
         return replace(self, world=self.world._replace(terms=terms))
 
 
-@dataclass(frozen=True, eq=False)
-class TabulatedShip:
-    """Tables of a ship and the limits along its route.
-
-    Attributes
-    ----------
-    table, fuel : PerformanceTable or TableArrays
-        Speed through water [m/s] and fuel rate [kg/s].
-    limits : Limits
-        Limits along the route (`thalweg.core.limits.Limits`).
-    """
-
-    table: PerformanceTable | TableArrays
-    fuel: PerformanceTable | TableArrays
-    limits: Limits
-
-
-@dataclass(frozen=True)
-class EvaluationResolution:
-    """How finely an evaluator divides tracks.
-
-    Attributes
-    ----------
-    spacing : float, optional
-        Longest piece that legs are cut into [m]; by default half a cell of the raster, at least a
-        400th of ``total`` and at most 100 km.
-    total : float
-        Rough length of the tracks [m].
-    zone_resolution : float
-        To which crossings of the borders of control areas are found [m].
-    """
-
-    spacing: float | None = None
-    total: float = 0.0
-    zone_resolution: float = _ZONE_RESOLUTION
-
-
 _DEFAULT_RESOLUTION = EvaluationResolution()
 
 
@@ -429,19 +386,3 @@ def _check_latest_arrival(depart: float, latest: float) -> None:
             f"The departure is {format_time(depart)}.",
             "Give a later arrival.",
         )
-
-
-def run_in_threads(work, count: int) -> None:  # type: ignore[no-untyped-def]
-    """Call ``work(slice)`` for parts of ``range(count)`` on all cores."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    parts = min(max(1, count // _MIN_TRACKS_PER_THREAD), 4 * (cores or 1))
-    if parts == 1 or cores == 1:
-        work(slice(0, count))
-        return
-    edges = np.linspace(0, count, parts + 1).astype(int)
-    list(_threads(cores or 1).map(work, map(slice, edges[:-1], edges[1:])))
-
-
-@cache
-def _threads(cores: int) -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(cores, thread_name_prefix="thalweg-evolution")

@@ -1,0 +1,45 @@
+"""The result of planning one passage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from thalweg.network import Network
+from thalweg.route import Route
+from thalweg.search import (
+    LowerBound,
+    SearchResult,
+)
+
+
+@dataclass(frozen=True)
+class PassageResult:
+    """Result of one passage.
+
+    Attributes
+    ----------
+    route : Route
+        The best route, scored by the referee.
+    result : SearchResult
+        Result of the search on the network.
+    bound : LowerBound
+        Lower bound from the network, in SI.
+    floor : LowerBound
+        Lower bound that holds for every route: a certificate, or that of the geodesic; in SI.
+    network : Network
+        The network searched.
+    isochrones : ndarray
+        Earliest arrival at every node [s since 1970], for the map; inf where not reached.
+    notes : tuple of str
+        Notes for the user.
+    """
+
+    route: Route
+    result: SearchResult
+    bound: LowerBound
+    floor: LowerBound
+    network: Network
+    isochrones: np.ndarray
+    notes: tuple[str, ...]
