@@ -3,7 +3,7 @@
 Needs ``pip install searoute`` (1.6.0), which is not a dependency. searoute finds the shortest way
 on a network of shipping lanes (marnet), from the vertex nearest to each port; the straight lines
 from the ports to those vertices are added here. Panama and Suez are open in both, the Northwest
-and Northeast Passages closed, and so are the canals of Kiel and Corinth, which it does not have.
+and Northeast Passages closed, and so are the canals of Kiel, Corinth and Cape Cod: it lacks them.
 
 The lanes bend. To tell bends from another choice of water, the line of searoute is also pulled taut
 on our chart (legs 2 nm off land, as ours): what is left of the difference is ours to explain. The
@@ -67,7 +67,7 @@ def compare(start: str, goal: str, seas: Seaways) -> dict[str, object]:
 
     first, last = PORTS.lookup(start), PORTS.lookup(goal)
     begin = time.perf_counter()
-    ours = sea_distance(start, goal, avoid=("kiel", "corinth"))
+    ours = sea_distance(start, goal, avoid=("kiel", "corinth", "cape-cod"))
     spent = time.perf_counter() - begin
     route = searoute.searoute(
         [first.lon, first.lat],
