@@ -3,8 +3,10 @@
 Run ``python tests/campaigns/offing_campaign.py --count 100 --seed 1``. The check uses shapely on
 the rings of the coastline and none of the package's tests of legs: land within reach of every leg
 is projected (azimuthal equidistant, about the middle of a piece of it) and its distance is
-measured. Pieces in the corridors of passages, in the discs of the ends and on approaches or canals
-are not held against a route. The exit code is the number of routes with breaches, at most 100.
+measured. ``--ports --network globe`` takes pairs of ports only and one network for all of them;
+``--minutes`` is the limit of processor time. Pieces in the corridors of passages, in the discs of
+the ends and on approaches or canals are not held against a route. The exit code is the number of
+routes with breaches, at most 100.
 """
 
 from __future__ import annotations
@@ -18,6 +20,8 @@ import numpy as np
 import shapely
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.chart.approaches import PORT_APPROACHES
+from thalweg.chart.ports import PORTS
 from thalweg.core.errors import ThalwegError
 from thalweg.core.geodesy import densify, distance
 
@@ -140,25 +144,45 @@ def random_place(rng, chart, codes):
             return round(lat, 3), round(lon, 3)
 
 
+def random_pairs(rng, chart, codes, given):
+    """Yield pairs of places at a great-circle distance between the limits given."""
+    found = 0
+    while found < given.count:
+        if given.ports:
+            pair = tuple(str(code) for code in rng.choice(codes, 2, replace=False))
+            berths = [PORT_APPROACHES.of(PORTS.lookup(code)).sea_end for code in pair]
+        else:
+            pair = random_place(rng, chart, codes), random_place(rng, chart, codes)
+            berths = [
+                PORT_APPROACHES.of(PORTS.lookup(end)).sea_end if isinstance(end, str) else end
+                for end in pair
+            ]
+        if given.shortest * NM <= float(distance(*berths[0], *berths[1])) <= given.longest * NM:
+            found += 1
+            yield pair
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--minutes", type=float, default=1e9)
+    parser.add_argument("--ports", action="store_true", help="from port to port only")
+    parser.add_argument("--network", default="auto", help="globe: one network for all voyages")
+    parser.add_argument("--shortest", type=float, default=0.0, help="skip nearer pairs [nm]")
+    parser.add_argument("--longest", type=float, default=1e9, help="skip pairs farther apart [nm]")
     given = parser.parse_args()
     chart = Chart.gshhg("i")
     tree, rng = land_tree(chart), np.random.default_rng(given.seed)
     codes = sorted({a.port.locode for a in chart.approaches.all if a.port.locode})
     ship = Ship.simple(speed_kn=14.0, draught_m=9.0, length_m=180.0)
     wrong = done = relaxed = 0
-    begin = time.time()
-    for number in range(given.count):
-        if time.time() - begin > 60.0 * given.minutes:
+    for number, (start, goal) in enumerate(random_pairs(rng, chart, codes, given)):
+        if time.process_time() > 60.0 * given.minutes:
             break
-        start, goal = random_place(rng, chart, codes), random_place(rng, chart, codes)
         try:
             voyage = Voyage(start=start, goal=goal, depart="2026-01-01", objective="distance")
-            found = plan(voyage, ship=ship, sea=Sea.calm(), chart=chart)
+            found = plan(voyage, ship=ship, sea=Sea.calm(), chart=chart, network=given.network)
         except ThalwegError as error:
             print(
                 f"{number} {start} {goal}: {type(error).__name__}: {str(error)[:100]}", flush=True
@@ -174,6 +198,7 @@ def main():
         state += " BOUND ABOVE" if late else ""
         state += "" if found.best.feasible else f" NOT FEASIBLE {found.best.violations[0]}"
         print(f"{number} {start} {goal}: {found.best.distance_nm:.0f} nm {state}", flush=True)
+    print(f"{time.process_time() / 60.0:.1f} minutes of processor time")
     print(f"{done} planned, {relaxed} at a smaller offing, {wrong} with faults")
     return min(wrong, 100)
 

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from thalweg.chart import Chart
+from thalweg.chart.offing import closing_line
+from thalweg.chart.passage_crossings import passages_crossed
+from thalweg.chart.passages import PASSAGES, find_passages
 from thalweg.chart.ports import PORTS
 
 HALVES = (
@@ -137,3 +142,23 @@ def test_land_for_drawing_is_cut_to_the_box_and_crosses_the_antimeridian(world):
     lines = world.coastline.lines(50.0, 52.0, 0.0, 2.0)
     assert lines
     assert all((lat >= 50.0).all() and (lon <= 2.0).all() for lat, lon in lines)
+
+
+def test_lines_across_passages_end_on_land_and_cross_the_passage():
+    """Lines to open sea, beside reefs and shoals that the coastline does not have, are few."""
+    coastline = Chart.gshhg("i").coastline
+    ends = np.array([passage.closing_line for passage in PASSAGES])
+    off_land = coastline.shore_distance(ends[..., 0], ends[..., 1]) > 200.0
+    assert off_land.any(axis=1).mean() < 0.15
+    for passage in PASSAGES:
+        crossed = [p.name for _, p in passages_crossed(coastline, [passage], *passage.positions)]
+        assert crossed == [passage.name]
+
+
+def test_a_line_across_is_found_for_a_passage_without_one():
+    coastline = Chart.gshhg("i").coastline
+    for name in ("Dover", "Karmsund", "Cabot"):
+        (passage,) = find_passages([name])
+        found = closing_line(coastline, replace(passage, closing_line=()))
+        assert np.array(found) == pytest.approx(np.array(passage.closing_line), abs=1e-3)
+        assert coastline.shore_distance(*np.array(found).T).max() < 200.0

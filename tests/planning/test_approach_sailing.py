@@ -46,6 +46,12 @@ def approach_of(name):
     return PORT_APPROACHES.of(PORTS.lookup(name))
 
 
+def test_the_chart_of_the_plots_keeps_its_offing_and_its_approaches():
+    kept = planned().plot_context.chart
+    assert kept.offing.distance == pytest.approx(2.0 * NAUTICAL_MILE)
+    assert kept.approaches is PORT_APPROACHES
+
+
 def test_totals_are_those_of_the_sea_and_the_two_approaches():
     route = planned().best
     start, goal = approach_of("Amsterdam"), approach_of("Rotterdam")

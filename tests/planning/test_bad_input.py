@@ -12,6 +12,7 @@ from thalweg.core.errors import (
     OutsidePeriodError,
     ThalwegError,
 )
+from thalweg.planning.request.voyage_endpoints import resolve_endpoint
 from thalweg.ship import ShipLimits
 
 DEPART = "2026-01-01T00:00Z"
@@ -163,6 +164,13 @@ def test_a_speed_between_the_settings_is_sailed_by_the_law_of_the_ship():
     fuel = np.interp(12.0, [10.8, 14.1], [20.1, 28.9]) / 24.0  # t/h
     assert best.fuel_t == pytest.approx(fuel * best.time_h, rel=1e-6)
     assert best.engine_order == "constant power"
+
+
+def test_a_place_on_land_near_water_names_the_water_and_the_nearest_port():
+    with pytest.raises(InputError, match="nearest port is Durban, ZA, 14") as caught:
+        resolve_endpoint((-29.8, 30.8), Chart.gshhg("i"), "start")
+    assert "open sea at 29.8" in str(caught.value)
+    assert "swapped" not in str(caught.value)
 
 
 def test_swapped_latitude_and_longitude():

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.chart.offing import OffingDisc
+from thalweg.chart.passages import Passage
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import densify, distance
 from thalweg.network.global_grid.grid import GridResolution, globe_grid
+from thalweg.planning.report.land_report import saved_length
 from thalweg.planning.request.offing_choice import default_offing, restrict_passages
-from thalweg.planning.request.voyage_endpoints import Endpoint
 
 NM = 1852.0
 DEPART = "2026-01-01T00:00Z"
@@ -85,8 +88,7 @@ def test_a_voyage_keeps_its_offing_in_its_file(tmp_path):
 def restricted(world, offing=2.0 * NM, **request):
     ship = Ship.load("handysize-bulker")
     voyage = Voyage(start=(50, 1), goal=(51, 2), depart=DEPART, **request)
-    ends = [Endpoint("a", 50.0, 1.0, 0.0), Endpoint("b", 51.0, 2.0, 0.0)]
-    return restrict_passages(world, voyage, ship, ends, offing)[0]
+    return restrict_passages(world, voyage, ship, offing)
 
 
 def test_passages_are_closed_by_limits_and_opened_or_avoided_by_name(world):
@@ -182,6 +184,23 @@ def test_a_route_through_narrows_lists_them(world, ship):
     assert "air draught 58 m" in text
     assert found.best.feasible
     assert found.best.distance_nm == pytest.approx(229.0, abs=5.0)  # by the lines of the table 232
+
+
+def test_only_closed_passages_that_would_shorten_the_route_are_mentioned():
+    """Round a cape: 60 nm to it and 60 back; by a passage near its root 75 nm in all."""
+
+    def route(*places):
+        lat, lon = np.array(places, float).T
+        return SimpleNamespace(track=SimpleNamespace(lat=lat, lon=lon))
+
+    round_cape = route((0.0, 0.0), (1.0, 0.25), (0.0, 0.5))
+    root = Passage("Root", "trade", ((0.1, 0.1), (0.1, 0.4)))
+    by_cape = 2.0 * distance(0.0, 0.0, 1.0, 0.25)
+    short = 2.0 * distance(0.0, 0.0, 0.1, 0.1) + root.length
+    assert saved_length(round_cape, root) == pytest.approx(by_cape - short, rel=0.02)
+    assert saved_length(route((0.0, 0.5), (1.0, 0.25), (0.0, 0.0)), root) > 60.0 * NM
+    away = Passage("Away", "trade", ((5.0, 0.1), (5.0, 0.4)))
+    assert saved_length(round_cape, away) < 0.0
 
 
 # The old network left Recife by one leg of 118 nm to a node beyond it and came back.

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.chart.canals import Canal
 from thalweg.core.geodesy import format_position_minutes, parse_position
 from thalweg.planning.report.plan_summary import (
     MAX_LINES,
@@ -130,3 +131,16 @@ def test_times_and_positions_as_they_are_spoken():
     text = format_position_minutes(-33.99999, 151.20833)
     assert text == "34 00.0S 151 12.5E"
     assert parse_position(text) == pytest.approx((-34.0, 151.2083), abs=1e-3)
+
+
+def test_canals_and_their_dues_are_in_the_lines_of_distance_and_cost(answer):
+    """The route of the fixture with a canal in its chart from its first to its last waypoint."""
+    track = answer.best.track
+    ends = ((track.lat[0], track.lon[0]), (track.lat[1], track.lon[1]))
+    canal = Canal("ditch", "Great Ditch", ends, transit_time=3600.0, fee=12_345.0)
+    chart = replace(answer.plot_context.chart, canals=(canal,))
+    passed = replace(answer, plot_context=replace(answer.plot_context, chart=chart))
+    lines = str(passed).splitlines()
+    assert lines[3].endswith(", by Great Ditch")
+    assert "canal dues 12,345 USD" in lines[5]
+    assert len(lines) <= MAX_LINES

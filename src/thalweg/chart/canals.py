@@ -123,7 +123,7 @@ def _read_canals() -> tuple[Canal, ...]:
             transit_time=row["transit_time_h"] * HOUR,
             fee=row["fee_usd"],
             max_draught=row["max_draught_m"],
-            max_beam=row["max_beam_m"],
+            max_beam=np.inf if row["max_beam_m"] is None else row["max_beam_m"],
             source=row["source"],
         )
         for row in json.loads(text)
@@ -131,7 +131,7 @@ def _read_canals() -> tuple[Canal, ...]:
 
 
 CANALS: Final = _read_canals()  #: the canals of `thalweg/chart/data/canals.json`
-SUEZ, PANAMA, KIEL, CORINTH = CANALS
+SUEZ, PANAMA, KIEL, CORINTH, CAPE_COD = CANALS
 
 
 def exclude_canals(canals: Sequence[Canal], names: Sequence[str]) -> tuple[Canal, ...]:
@@ -143,15 +143,17 @@ def exclude_canals(canals: Sequence[Canal], names: Sequence[str]) -> tuple[Canal
         If a name is unknown; the message lists similar names.
     """
     known = {canal.name for canal in canals} | {canal.name for canal in CANALS}
-    plain = [_normalised_canal_name(name) for name in names]
+    plain = [normalised_canal_name(name) for name in names]
     for written, name in zip(names, plain):
         if name not in known | {"all"}:
             raise unknown_name_error("canal", str(written), sorted(known | {"all"}))
     return () if "all" in plain else tuple(c for c in canals if c.name not in plain)
 
 
-def _normalised_canal_name(name: str) -> str:
-    return str(name).strip().casefold().removesuffix("canal").strip(" -_")
+def normalised_canal_name(name: str) -> str:
+    """Return the name of a canal as `Canal.name` is written: "Cape Cod Canal" is "cape-cod"."""
+    plain = str(name).strip().casefold().removesuffix("canal").strip(" -_")
+    return plain.replace(" ", "-")
 
 
 def canal_index_of_legs(

@@ -41,6 +41,7 @@ _SAMPLE: Final = 0.05 * NAUTICAL_MILE  # distances to land are measured so often
 _INLAND: Final = 0.7 * NAUTICAL_MILE  # smaller islands do not end a line across a passage
 _LONGEST_ARM: Final = 150.0 * NAUTICAL_MILE
 _WIDE_LINE: Final = 4.0  # of the distance to land: a line across that is longer misses land
+_PLACES: Final = 6  # along a passage where a line across is tried
 _TURNS: Final = tuple(np.radians([-60.0, -45.0, -30.0, -15.0, 15.0, 30.0, 45.0, 60.0]))
 
 
@@ -268,20 +269,36 @@ def closing_line(coastline: Coastline, passage: Passage) -> tuple[Position, Posi
 
     The ends are on land.
     """
+    if passage.closing_line:
+        return passage.closing_line[0], passage.closing_line[-1]
     lat, lon, _ = densify(*passage.positions, 4.0 * _SAMPLE)
     shore = coastline.shore_distance(lat, lon, cap=20.0 * NAUTICAL_MILE)
-    inner = slice(len(lat) // 20, len(lat) - len(lat) // 20)
-    at = inner.start + int(np.argmin(shore[inner]))
-    before, after = max(at - 3, 0), min(at + 3, len(lat) - 1)
-    _, course, _ = inverse(lat[before], lon[before], lat[after], lon[after])
-    place = float(lat[at]), float(lon[at])
-    best, least = _line_through(coastline, place, float(course) + np.pi / 2)
-    if least > _WIDE_LINE * float(shore[at]):  # it misses the nearest land: try other courses
-        for turn in _TURNS:
+    inner = np.arange(len(lat) // 20, len(lat) - len(lat) // 20)
+    best, least = None, math.inf
+    places = inner[np.argsort(shore[inner], kind="stable")]
+    for at in _spread(places, len(lat) // _PLACES):
+        before, after = max(at - 3, 0), min(at + 3, len(lat) - 1)
+        _, course, _ = inverse(lat[before], lon[before], lat[after], lon[after])
+        place = float(lat[at]), float(lon[at])
+        for turn in (0.0, *_TURNS):
             line, length = _line_through(coastline, place, float(course) + np.pi / 2 + turn)
             if length < least:
                 best, least = line, length
+            if least <= _WIDE_LINE * float(shore[at]):
+                break  # it reaches the nearest land on both sides
+        if least <= _WIDE_LINE * float(shore[at]):
+            break
+    assert best is not None  # a line has positions
     return best
+
+
+def _spread(places: np.ndarray, apart: int) -> list[int]:
+    """Return the first of some indices, and those after it that are so far from all before."""
+    found: list[int] = []
+    for place in places.tolist():
+        if all(abs(place - other) >= max(apart, 1) for other in found):
+            found.append(place)
+    return found[:_PLACES]
 
 
 def _line_through(

@@ -3,7 +3,9 @@
 The table is ``data/passages.csv``, one row a passage. Its lines follow the water that is farthest
 from land on both sides in the intermediate and the high resolution of GSHHG; they are not tracks to
 sail by. Limits and notes whose source says "unchecked" are from general knowledge and were not
-compared with a publication. A passage with the use "never" is closed in the chart to all ships (see
+compared with a publication. The lines across passages are those that
+`thalweg.chart.offing.closing_line` finds at the intermediate resolution; that of the Sound is by
+hand, as islands divide it. A passage with the use "never" is closed in the chart to all ships (see
 `thalweg.chart.coast.gshhg.CLOSED_NARROWS`).
 """
 
@@ -19,7 +21,7 @@ from typing import Final
 
 import numpy as np
 
-from thalweg.chart.canals import CANALS
+from thalweg.chart.canals import CANALS, normalised_canal_name
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import Position, distance
 from thalweg.core.types import FloatArray
@@ -56,6 +58,9 @@ class Passage:
         Bridges, services, restrictions.
     source : str
         Sources of the line and of the limits.
+    closing_line : tuple of (lat, lon), optional
+        Line across from land to land [deg], where islands divide the passage; by default it is
+        found at the narrowest place (`thalweg.chart.offing.closing_line`).
 
     Raises
     ------
@@ -76,6 +81,7 @@ class Passage:
     pilotage: str = ""
     note: str = ""
     source: str = ""
+    closing_line: tuple[Position, ...] = ()
 
     def __post_init__(self) -> None:
         if self.use not in USES or len(self.line) < 2:
@@ -181,7 +187,7 @@ def split_avoided(names: Sequence[str]) -> tuple[list[str], list[Passage]]:
     canals, passages = [], []
     known = {canal.name for canal in CANALS}
     for name in names:
-        plain = name.casefold().removesuffix("canal").strip(" -_")
+        plain = normalised_canal_name(name)
         if plain in known:
             canals.append(plain)
             continue
@@ -221,11 +227,10 @@ def _passage_of_row(row: dict[str, str]) -> Passage:
     def number(column: str, absent: float) -> float:
         return float(row[column]) if row[column] else absent
 
-    points = [point.split(",") for point in row["line"].split()]
     return Passage(
         row["name"],
         row["use"],
-        tuple((float(lat), float(lon)) for lat, lon in points),
+        _read_line(row["line"]),
         half_width=number("half_width_nm", math.nan) * NAUTICAL_MILE,
         controlling_depth=number("controlling_depth_m", math.nan),
         max_draught=number("max_draught_m", math.inf),
@@ -236,7 +241,13 @@ def _passage_of_row(row: dict[str, str]) -> Passage:
         pilotage=row["pilotage"],
         note=row["note"],
         source=row["source"],
+        closing_line=_read_line(row["closing_line"] or ""),
     )
+
+
+def _read_line(text: str) -> tuple[Position, ...]:
+    points = [point.split(",") for point in text.split()]
+    return tuple((float(lat), float(lon)) for lat, lon in points)
 
 
 PASSAGES: Final = _read_passages()  #: the passages of `thalweg/chart/data/passages.csv`

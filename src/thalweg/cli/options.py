@@ -34,8 +34,8 @@ def add_ship_and_chart_options(parser: argparse.ArgumentParser, *, default_ukc: 
         action="append",
         default=[],
         metavar="FILE",
-        help="zones (GeoJSON with the property kind: no-go, penalty, price, eca, anchorage, "
-        "no-waiting); may be repeated",
+        help="zones (GeoJSON with the property kind: no-go, penalty, price, eca, lane, "
+        "anchorage, no-waiting); may be repeated",
     )
     chart.add_argument(
         "--coast",

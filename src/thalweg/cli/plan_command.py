@@ -224,6 +224,9 @@ def run(arguments: argparse.Namespace) -> int:
     except KeyboardInterrupt:
         print("stopped before a plan was found: there is no result", file=sys.stderr)
         return INTERRUPTED
+    if arguments.verbose or arguments.json:
+        arguments.progress("finding other ways")
+        found = found.with_alternatives()
     if arguments.out:
         arguments.progress("writing the files and drawing the plots")
     files = found.write(arguments.out, files_as) if arguments.out else []

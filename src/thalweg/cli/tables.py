@@ -96,6 +96,7 @@ def _print_details(plan: Plan) -> None:
     )
     if plan.front is not None:
         print_front(console, plan)
+    _print_alternatives(console, plan)
     print_notes(console, plan.notes)
     refused = ", ".join(f"{reason}: {count}" for reason, count in plan.rejections.items())
     console.print(f"Legs rejected: {refused or 'none'}.", soft_wrap=True)
@@ -105,6 +106,21 @@ def _print_details(plan: Plan) -> None:
     for name in ("ship", "sea"):
         digest = plan.provenance[name].get("fingerprint")
         console.print(f"Fingerprint of the {name}: {digest}", soft_wrap=True)
+
+
+def _print_alternatives(console: Any, plan: Plan) -> None:
+    """Print the ways round the canals and passages of a plan."""
+    if len(plan.passage_alternatives) < 2:
+        return
+    columns = ("without", "nm", "h", "canal dues USD", "by")
+    title = "Other ways, by distance in calm water at the speed of the plan"
+    table = new_table(title, columns, left=("without", "by"), wrap="by")
+    for row in plan.passage_alternatives:
+        table.add_row(
+            ", ".join(row["without"]) or "-", f"{row['distance_nm']:,.0f}", f"{row['time_h']:,.1f}",
+            f"{row['canal_dues_usd']:,.0f}", ", ".join(row["passes"]),
+        )  # fmt: skip
+    console.print(table)
 
 
 def print_front(console: Any, plan: Plan) -> None:

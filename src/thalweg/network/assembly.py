@@ -212,6 +212,11 @@ def assemble(
     course[directed.reversed] += np.float32(np.pi)
     course[course >= 2 * np.pi] -= np.float32(2 * np.pi)
     edges = _pair_properties(chart, stations, pairs).take(directed.pair)
+    if chart.zones.lanes:  # the factors of pairs are those from the first node to the second
+        back = np.flatnonzero(directed.reversed & np.isnan(edges.fixed_time))
+        pair = directed.pair[back]
+        ends = _ends(stations, pairs.second[pair], pairs.first[pair])
+        edges.penalty_factor[back] = chart.zones.factors(*ends)[0]
     return Network(
         stations,
         directed.graph,

@@ -98,8 +98,9 @@ class ApproachSailing:
         context : PlanningContext
             With a chart that has the approaches.
         """
+        plots = plan.plot_context and _with_approach_lines(plan.plot_context, context)
         if self.outward is None and self.inward is None:
-            return plan
+            return replace(plan, plot_context=plots)
         routes = tuple(self._joined(route, context) for route in plan.routes)
         added = _difference(routes[0], plan.best, voyage, context)
         proof = Proof(
@@ -116,7 +117,7 @@ class ApproachSailing:
             proof=proof,
             front=front,
             notes=(*self.notes(context), *plan.notes),
-            plot_context=plan.plot_context and _with_approach_lines(plan.plot_context, context),
+            plot_context=plots,
         )
 
     def notes(self, context: PlanningContext) -> tuple[str, ...]:

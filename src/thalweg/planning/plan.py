@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +30,21 @@ class Plan(PlanData):
     def _repr_html_(self) -> str:
         """Return the summary as a table for notebooks."""
         return summary_html(self)
+
+    def with_alternatives(self) -> Plan:
+        """Return this plan with the ways round the canals and passages it uses.
+
+        Returns
+        -------
+        Plan
+            With `passage_alternatives`: for each way, the shortest first, what is closed
+            (``without``), what it passes, its distance, its time at the mean speed of the plan, and
+            its canal dues. It takes some seconds; weather, depth and zones are not considered.
+        """
+        from thalweg.planning.passage_alternatives import passage_alternatives
+
+        rows = tuple(way.to_dict() for way in passage_alternatives(self))
+        return replace(self, passage_alternatives=rows)
 
     def plot(self, path: str | Path | None = None, *, beside: Route | None = None) -> Any:
         """Draw the map of the plan.

@@ -92,6 +92,8 @@ class PlanData:
         With an ensemble forecast: the distribution of each route over the members.
     cancelled : bool
         Whether Ctrl-C ended planning: the routes are the best so far, as the notes state.
+    passage_alternatives : tuple of mappings
+        Other ways by distance, where they were asked for (`thalweg.planning.plan.Plan`).
     """
 
     voyage: Voyage
@@ -104,6 +106,7 @@ class PlanData:
     front: ParetoFront | None = None
     ensemble: tuple[Mapping[str, Any], ...] = ()
     cancelled: bool = False
+    passage_alternatives: tuple[Mapping[str, Any], ...] = ()
 
     @property
     def best(self) -> Route:
@@ -149,6 +152,8 @@ class PlanData:
     def to_dict(self) -> dict[str, Any]:
         """Return the plan as plain data, ready for JSON (unknown numbers are None)."""
         more: dict[str, Any] = {"cancelled": True} if self.cancelled else {}
+        if self.passage_alternatives:
+            more["passage_alternatives"] = [dict(row) for row in self.passage_alternatives]
         if self.ensemble:
             more["ensemble"] = [dict(row) for row in self.ensemble]
         if self.front is not None:

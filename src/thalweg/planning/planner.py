@@ -195,8 +195,7 @@ def _context(
     check_request(voyage, ship, sea)
     ends = _endpoints(voyage, chart)
     chart, notes = exclude_closed_canals(chart, voyage, ship, ends)
-    chart, closed = restrict_passages(chart, voyage, ship, ends, chosen_offing(voyage, ship))
-    notes += closed
+    chart = restrict_passages(chart, voyage, ship, chosen_offing(voyage, ship))
     chart, more = add_emission_control_areas(exclude_ice_latitudes(chart, ends), voyage, ship)
     needs = derive_requirements(voyage, ship=ship, sea=sea, chart=chart)
     ends = endpoints_within_coverage(

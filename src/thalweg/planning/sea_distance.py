@@ -169,7 +169,7 @@ def sea_distance(
     traffic rules and weather are not considered. The graph is made once (10 to 20 s) and kept in
     the cache.
     """
-    chart = _world_chart() if chart is None else chart
+    chart = world_chart() if chart is None else chart
     check_offing(offing_nm)
     closed = (avoid,) if isinstance(avoid, str) else tuple(avoid)
     places = [("start", start), *((f"via point {k + 1}", p) for k, p in enumerate(via))]
@@ -202,6 +202,6 @@ def sea_distance(
 
 
 @lru_cache(maxsize=1)
-def _world_chart() -> Chart:
+def world_chart() -> Chart:
     """Return the chart of the world's coasts, once for all questions of a process."""
     return Chart.gshhg("i")

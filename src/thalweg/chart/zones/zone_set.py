@@ -3,7 +3,8 @@
 A GeoJSON feature has the properties ``kind`` ("no-go", "penalty", "price" or "eca") and, for
 penalty and price, ``factor``. Where zones of one kind overlap, the largest factor counts. An "eca"
 zone without a factor is an emission control area: the ship file states what fuel costs there;
-with one it is a price zone. Where there are zones of the kind "anchorage" a ship may wait in these
+with one it is a price zone. A "lane" has a ``direction_deg`` (`thalweg.chart.zones.traffic_lanes`).
+Where there are zones of the kind "anchorage" a ship may wait in these
 only, and never in zones of the kind "no-waiting".
 """
 
@@ -28,6 +29,7 @@ from thalweg.chart.zones.leg_fractions import (
     outlines_only,
     points_inside,
 )
+from thalweg.chart.zones.traffic_lanes import LaneGroup, TrafficLane
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import direct, inverse, wrap_longitude
@@ -48,6 +50,8 @@ ZONE_KINDS: Final = {
     "eca": "eca",
     "emissioncontrol": "eca",
     "seca": "eca",
+    "lane": "lane",
+    "trafficlane": "lane",
     "anchorage": "anchorage",
     "nowaiting": "no-waiting",
     "noanchoring": "no-waiting",
@@ -116,6 +120,8 @@ class Zones:
         Emission control areas; they may overlap.
     anchorages, no_waiting : tuple of shapely polygons
         Where alone a ship may wait (anywhere if there are none), and where it may not.
+    lanes : tuple of TrafficLane
+        Where ships sail in one direction only.
     """
 
     no_go: tuple[Any, ...] = ()
@@ -124,6 +130,7 @@ class Zones:
     eca: tuple[EcaZone, ...] = ()
     anchorages: tuple[Any, ...] = ()
     no_waiting: tuple[Any, ...] = ()
+    lanes: tuple[TrafficLane, ...] = ()
 
     @classmethod
     def read(cls, source: geojson_polygons.GeoJsonSource) -> Zones:
@@ -139,6 +146,7 @@ class Zones:
             kind: [] for kind in (*KINDS_WITHOUT_FACTOR, "penalty", "price")
         }
         eca: list[EcaZone] = []
+        lanes: list[TrafficLane] = []
         for geometry, properties in geojson_polygons.read_features(source, "zones"):
             kind = _zone_kind(properties)
             shapes = geojson_polygons.parse_polygons(geometry, "zones", repair=False)
@@ -150,13 +158,16 @@ class Zones:
                     )
                 )
                 continue
+            if kind == "lane":
+                lanes += [TrafficLane.of_feature(shape, properties) for shape in shapes]
+                continue
             factor = 1.0 if kind in KINDS_WITHOUT_FACTOR else _zone_factor(kind, properties)
             found[kind] += [(shape, factor) for shape in shapes]
         no_go, anchorages, barred = (
             tuple(shape for shape, _ in found[kind]) for kind in KINDS_WITHOUT_FACTOR
         )
         factors = _without_overlaps(found["penalty"]), _without_overlaps(found["price"])
-        return cls(no_go, *factors, tuple(eca), anchorages, barred)
+        return cls(no_go, *factors, tuple(eca), anchorages, barred, tuple(lanes))
 
     def joined(self, other: Zones) -> Zones:
         """Return these zones and another chart's."""
@@ -167,7 +178,18 @@ class Zones:
             self.eca + tuple(zone for zone in other.eca if zone not in self.eca),
             self.anchorages + other.anchorages,
             self.no_waiting + other.no_waiting,
+            self.lanes + other.lanes,
         )
+
+    @property
+    def has_penalty(self) -> bool:
+        """Whether a mile counts more somewhere: in penalty zones or against traffic lanes."""
+        return bool(self.penalty or self.lanes)
+
+    @cached_property
+    def lane_group(self) -> LaneGroup:
+        """The traffic lanes ready for legs."""
+        return LaneGroup.of(self.lanes)
 
     @cached_property
     def index(self) -> IndexArrays:
@@ -243,11 +265,11 @@ class Zones:
     ) -> tuple[FloatArray, FloatArray]:
         """Return the penalty and the price factor of legs [deg], weighted by length.
 
-        NaN where a position is not a number.
+        Sailing against traffic lanes counts as a penalty. NaN where a position is not a number.
         """
         ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
         shape = ends[0].shape
-        if not (self.penalty or self.price):
+        if not (self.has_penalty or self.price):
             one = np.where(np.isfinite(sum(ends)), 1.0, np.nan)
             return one, one.copy()
         legs = np.stack([x.ravel() for x in ends])
@@ -255,6 +277,8 @@ class Zones:
         penalty, price = np.full((2, known.size), np.nan)
         whole = list(np.ascontiguousarray(legs[:, known]))
         penalty[known], price[known] = (self._weighted(whole, group) for group in self._groups)
+        if self.lanes:
+            penalty[known] += self.lane_group.excess(*whole)
         return penalty.reshape(shape), price.reshape(shape)
 
     def _weighted(self, legs: list[FloatArray], group: ZoneGroup) -> FloatArray:
@@ -282,6 +306,10 @@ class Zones:
             + [f"eca {zone.name} {zone.rings.fingerprint()}" for zone in self.eca]
             + [f"anchorage {shape.wkb_hex}" for shape in self.anchorages]
             + [f"no waiting {shape.wkb_hex}" for shape in self.no_waiting]
+            + [
+                f"lane {lane.shape.wkb_hex} {lane.direction} {lane.tolerance} {lane.factor}"
+                for lane in self.lanes
+            ]
         )
 
 
@@ -296,7 +324,7 @@ def _zone_kind(properties: Mapping[str, Any]) -> str:
         named = f" {str(properties['name'])[:60]!r}" if properties.get("name") else ""
         raise InputError(
             f"A zone{named} has " + (f"the kind {written!r}." if written else "no kind."),
-            "Kinds are 'no-go', 'penalty', 'price', 'eca', 'anchorage' and 'no-waiting'.",
+            "Kinds are 'no-go', 'penalty', 'price', 'eca', 'lane', 'anchorage' and 'no-waiting'.",
             "Give every feature the property kind.",
             value=written,
         )

@@ -94,6 +94,7 @@ def draw_zones(axes: Any, chart: Chart, box: MapExtent) -> list[tuple[str, float
     for shapes, colour, hatch in (
         (chart.zones.no_go, _NO_GO, "xxx"),
         ([shape for shape, _ in chart.zones.penalty], _PENALTY, "..."),
+        ([lane.shape for lane in chart.zones.lanes], _PENALTY, ""),
         ([shape for shape, _ in chart.zones.price], _CONTROL, ""),
     ):
         for shape in shapes:

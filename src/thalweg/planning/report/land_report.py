@@ -8,13 +8,16 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.chart.passage_crossings import passages_crossed
-from thalweg.chart.passages import Passage
-from thalweg.core.geodesy import format_position
+from thalweg.chart.passages import Passage, split_avoided
+from thalweg.core.geodesy import densify, distance, format_position
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.request.offing_choice import size_restriction
 from thalweg.route import Route
 from thalweg.route.referee.land_clearance import least_land_clearance
 
+_PIECE: Final = 20.0 * NAUTICAL_MILE  # routes are split so to find where a passage would leave them
+_LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE  # closed passages that save less are not mentioned
 _NEAR: Final = 30.0 * NAUTICAL_MILE  # land farther from the route is not mentioned
 
 
@@ -42,7 +45,44 @@ def land_notes(context: PlanningContext, route: Route) -> list[str]:
             *(["unchecked"] if "unchecked" in passage.source else []),
         ]
         notes.append(f"Passes {passage.name} ({'; '.join(facts)}).")
+    return notes + closed_passage_notes(context, route)
+
+
+def closed_passage_notes(context: PlanningContext, route: Route) -> list[str]:
+    """Return a note on each passage that would shorten a route but is closed to the ship's size."""
+    avoided = split_avoided(context.voyage.avoid)[1]
+    notes = []
+    for passage in context.chart.closed_passages:
+        why = "" if passage in avoided else size_restriction(passage, context.ship)
+        if why and saved_length(route, passage) >= _LEAST_SAVED:
+            notes.append(f"Passage closed: {why} (open it with open = {passage.name!r}).")
     return notes
+
+
+def saved_length(route: Route, passage: Passage) -> float:
+    """Return by how much a route would be shorter through a passage, at most [m].
+
+    The ship would leave the route at one of its positions, sail straight to the passage and back
+    to the route at a later one; land is not considered.
+
+    Parameters
+    ----------
+    route : Route
+    passage : Passage
+
+    Returns
+    -------
+    float
+        Negative if the passage is out of the way.
+    """
+    lat, lon, _leg = densify(np.asarray(route.track.lat), np.asarray(route.track.lon), _PIECE)
+    sailed = np.append(0.0, np.cumsum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
+    ends = passage.line[0], passage.line[-1]
+    most = -np.inf
+    for first, last in (ends, ends[::-1]):
+        left = np.maximum.accumulate(-sailed - distance(lat, lon, *first))
+        most = max(most, float(np.max(sailed - distance(lat, lon, *last) + left)))
+    return most - passage.length
 
 
 def passages_used(chart: Chart, route: Route) -> list[Passage]:

@@ -15,6 +15,7 @@ from thalweg.kernels.codes import OUTSIDE_PERIOD, REASONS
 from thalweg.planning.plan_front import knee
 
 if TYPE_CHECKING:
+    from thalweg.chart.canals import Canal
     from thalweg.planning.plan_data import PlanData
     from thalweg.route import Route
 
@@ -59,7 +60,7 @@ def summary_items(plan: PlanData) -> list[tuple[str, str]]:
     """Return the lines of the summary as pairs of a word and a text."""
     best = plan.best
     items = [("Depart", utc_text(best.depart)), ("Arrive", _arrival(best))]
-    items += [("Distance", _distance(best)), ("Fuel", _fuel(best)), ("Cost", _cost(best))]
+    items += [("Distance", _distance(plan)), ("Fuel", _fuel(best)), ("Cost", _cost(plan))]
     if plan.voyage.objective == "energy" and best.energy_mwh is not None:
         items.append(("Energy", f"{best.energy_mwh:,.2f} MWh"))
     if plan.front is not None and len(plan.routes) > 1:
@@ -227,10 +228,22 @@ def _arrival(route: Route) -> str:
     return f"{utc_text(route.arrive)}, after {duration_text(route.arrive - route.depart)}{waits}"
 
 
-def _distance(route: Route) -> str:
+def _distance(plan: PlanData) -> str:
+    route = plan.best
     sailing = route.time_h - route.waiting_h
     mean = f", mean speed {route.distance_nm / sailing:.1f} kn" if sailing > 0.0 else ""
-    return f"{route.distance_nm:,.1f} nm{mean}"
+    canals = [canal.title for canal in canals_passed(plan)]
+    return f"{route.distance_nm:,.1f} nm{mean}" + (f", by {' and '.join(canals)}" if canals else "")
+
+
+def canals_passed(plan: PlanData) -> list[Canal]:
+    """Return the canals that the best route passes, in order."""
+    if plan.plot_context is None:
+        return []
+    chart, track = plan.plot_context.chart, plan.best.track
+    lat, lon = np.asarray(track.lat), np.asarray(track.lon)
+    number = np.asarray(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:]))
+    return [chart.canals[k] for k in number[number >= 0].tolist()]
 
 
 def _fuel(route: Route) -> str:
@@ -241,10 +254,14 @@ def _fuel(route: Route) -> str:
     return f"{route.fuel_t:,.1f} t{areas}"
 
 
-def _cost(route: Route) -> str:
+def _cost(plan: PlanData) -> str:
+    route, dues = plan.best, sum(canal.fee for canal in canals_passed(plan))
     if route.cost is None:
-        return "not known: no price of fuel or time"
-    return f"{route.cost:,.0f} {route.currency}"
+        paid = f"; canal dues {dues:,.0f} USD" if dues else ""
+        return f"not known: no price of fuel or time{paid}"
+    counted = route.currency == "USD"
+    paid = f", {'of it ' if counted else 'without '}canal dues {dues:,.0f} USD" if dues else ""
+    return f"{route.cost:,.0f} {route.currency}{paid}"
 
 
 def _choice(plan: PlanData) -> str:

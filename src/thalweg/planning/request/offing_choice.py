@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -15,7 +14,6 @@ from thalweg.chart.coast.snapping import joined_positions
 from thalweg.chart.offing import OffingDisc, disc_at
 from thalweg.chart.passages import Passage, find_passages, split_avoided
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import distance
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.voyage import Voyage
@@ -29,7 +27,6 @@ _LOOK_BEYOND: Final = 12.0 * NAUTICAL_MILE
 _ENOUGH_POSITIONS: Final = 30  # positions of a grid as far from land as the offing: open water
 _RIVER_OFFING: Final = 300.0  # off the banks before a canal [m]
 _NEAR_ENOUGH: Final = 0.9  # an end at this share of the offing leaves it without a test
-_PASSAGE_DETOUR: Final = 1.03  # passages closed to a ship are mentioned where so near the geodesic
 
 
 def default_offing(ship: Ship) -> float:
@@ -54,10 +51,8 @@ def chosen_offing(voyage: Voyage, ship: Ship) -> float:
     return default_offing(ship)
 
 
-def restrict_passages(
-    chart: Chart, voyage: Voyage, ship: Ship, ends: Sequence[Endpoint], offing: float
-) -> tuple[Chart, list[str]]:
-    """Return the chart without the passages that are avoided or closed to the ship, and notes.
+def restrict_passages(chart: Chart, voyage: Voyage, ship: Ship, offing: float) -> Chart:
+    """Return the chart without the passages that are avoided or closed to the ship.
 
     A voyage that keeps no offing closes only those it avoids.
 
@@ -78,33 +73,20 @@ def restrict_passages(
             )
     if canals:
         chart = chart.without_canals(*canals)
-    closed, notes = list(avoided), []
+    closed = list(avoided)
     for passage in chart.passages if offing > 0.0 else ():
-        why = "" if passage in opened or passage in closed else _restriction(passage, ship)
-        if why:
+        if passage not in opened and passage not in closed and size_restriction(passage, ship):
             closed.append(passage)
-            if any(_near_geodesic(passage, a, b) for a, b in itertools.pairwise(ends)):
-                notes.append(f"Passage closed: {why} (open it with open = {passage.name!r}).")
     if closed:
         chart = chart.without_passages(*(passage.name for passage in closed))
-    return chart, notes
+    return chart
 
 
-def _restriction(passage: Passage, ship: Ship) -> str:
+def size_restriction(passage: Passage, ship: Ship) -> str:
+    """Return why a passage is closed to a ship of this size, as text; empty if it is open."""
     return passage.ship_restriction(
         draught=float(ship.draught) or None, beam=ship.breadth, length=ship.length
     )
-
-
-def _near_geodesic(passage: Passage, start: Endpoint, goal: Endpoint) -> bool:
-    """Return whether the route through a passage is not much longer than the geodesic."""
-    one, other = passage.line[0], passage.line[-1]
-    straight = float(distance(start.lat, start.lon, goal.lat, goal.lon))
-    lengths = (
-        distance(start.lat, start.lon, *a) + passage.length + distance(*b, goal.lat, goal.lon)
-        for a, b in ((one, other), (other, one))
-    )
-    return float(min(lengths)) < _PASSAGE_DETOUR * straight
 
 
 def chart_off_land(chart: Chart, ends: Sequence[Endpoint], offing: float) -> Chart:

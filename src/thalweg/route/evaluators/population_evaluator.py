@@ -73,7 +73,7 @@ class Evaluator:
             return False
         zones = chart.zones
         priced = self.prices.differs_in_control_areas and len(getattr(zones, "eca", ()))
-        return bool(chart.has_depth or zones.penalty or zones.price or priced)
+        return bool(chart.has_depth or zones.has_penalty or zones.price or priced)
 
     def __call__(
         self, genomes: Sequence[Genome] | Population
@@ -236,7 +236,7 @@ class Evaluator:
         zones: Any = chart.zones
         if prices.differs_in_control_areas and len(getattr(zones, "eca", ())):
             inside = self._eca_fractions(ends)
-        if chart.zones.penalty or chart.zones.price:
+        if chart.zones.has_penalty or chart.zones.price:
             penalty, zone_factor = (np.asarray(factor) for factor in chart.zones.factors(*ends))
         return blocked, charted, prices.of_legs(inside, zone_factor), penalty
 

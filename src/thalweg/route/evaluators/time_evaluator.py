@@ -315,7 +315,7 @@ def penalty_factors(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> Fl
     -------
     float64 array (..., n - 1) or None
     """
-    if chart is None or not chart.zones.penalty:
+    if chart is None or not chart.zones.has_penalty:
         return None
     ends = lat[..., :-1], lon[..., :-1], lat[..., 1:], lon[..., 1:]
     shape = ends[0].shape

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from thalweg.chart import Chart
 from thalweg.core.errors import CoverageError, OutsideAreaError, OutsidePeriodError
-from thalweg.core.geodesy import format_position, positions_along
+from thalweg.core.geodesy import distance, format_position, positions_along
 from thalweg.core.time import format_time
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.kernels import codes
@@ -28,6 +28,7 @@ from thalweg.ship.condition_variables import (
 )
 from thalweg.ship.conditions import Conditions
 
+_LANE_TOLERANCE = 20.0  # legs may run against a traffic lane so far, at its corners [m]
 _LIMIT_TOLERANCE = 1e-9  # for rounding, on every limit, in its own unit
 
 
@@ -113,6 +114,29 @@ def _offing_violations(
         for place, limit in offing_breaches(chart, track)
         if checked[place.leg]
     ]
+
+
+def lane_violations(
+    world: SailingEnvironment, pieces: TrackPieces, times: FloatArray
+) -> list[Violation]:
+    """Return the legs that run against a traffic lane where that is forbidden, at their middle."""
+    if world.chart is None or not world.chart.zones.lanes:
+        return []
+    track, group = pieces.track, world.chart.zones.lane_group
+    lat, lon = np.asarray(track.lat, float), np.asarray(track.lon, float)
+    length = np.asarray(distance(lat[:-1], lon[:-1], lat[1:], lon[1:]))
+    against: dict[tuple[int, int], float] = {}
+    for leg, lane, share in zip(*group.shares_against(lat[:-1], lon[:-1], lat[1:], lon[1:])):
+        if np.isinf(group.lanes[lane].factor) and pieces.canals.number[leg] < 0:
+            key = int(leg), int(lane)
+            against[key] = against.get(key, 0.0) + float(share * length[leg])
+    found = []
+    for (leg, lane), sailed in sorted(against.items()):
+        if sailed > _LANE_TOLERANCE:
+            y, x = positions_along(lat[leg], lon[leg], lat[leg + 1], lon[leg + 1], 0.5)
+            reason = f"against the traffic lane {group.lanes[lane].name}: leg {leg + 1}"
+            found.append(Violation(reason, float(times[leg]), float(y), float(x)))
+    return found
 
 
 def canal_violations(

@@ -12,6 +12,7 @@ from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints
 from thalweg.route.referee.limit_checks import (
     canal_violations,
     land_violations,
+    lane_violations,
     limit_violations,
     seaway_violations,
     stoppage_violations,
@@ -113,6 +114,7 @@ def _check_limits(
     found += _wait_depth_violations(track, waits, min_ukc)
     found += waiting_violations(world.chart, track, sailed.leg_times()[1])
     found += canal_violations(world, sailed.pieces, sailed.leg_times()[0])
+    found += lane_violations(world, sailed.pieces, sailed.leg_times()[0])
     found += land_violations(world, sailed.pieces, sailed.leg_times()[0])
     clearance = _finite(depth - world.ship.draught)
     least = _least_by_leg(near.leg, clearance, moments, len(track) - 1)

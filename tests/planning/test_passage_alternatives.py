@@ -1,0 +1,63 @@
+"""Other ways of a plan by and round canals and passages: figures, order, where there are none."""
+
+from dataclasses import replace
+
+import pytest
+
+from thalweg import Chart, Sea, Ship, Track, Voyage, evaluate, plan
+from thalweg.chart.canals import KIEL
+from thalweg.core.units import KNOT, NAUTICAL_MILE
+from thalweg.planning.passage_alternatives import MAX_DETOUR, passage_alternatives
+
+DEPART = "2026-01-01T00:00Z"
+
+
+@pytest.fixture(scope="module")
+def small():
+    """A plan in open water."""
+    voyage = Voyage(start=(50.0, 1.0), goal=(50.5, 2.0), depart=DEPART)
+    water = Chart.open_water(49.0, 52.0, 0.0, 4.0)
+    ship = Ship.simple(speed_kn=12.0, draught_m=6.0)
+    return plan(voyage, ship=ship, sea=Sea.calm(), chart=water)
+
+
+@pytest.fixture(scope="module")
+def planned(small):
+    """A plan whose route runs by the Kiel Canal from the German Bight to the Baltic."""
+    world = Chart.gshhg("i")
+    west, east = KIEL.ends
+    start, goal = (54.0, 8.0), (54.5, 13.5)
+    lat, lon = zip(start, west, east, goal)
+    context = small.plot_context
+    route = evaluate(Track(lat, lon, DEPART), ship=context.ship, sea=context.sea, chart=world)
+    return replace(
+        small,
+        voyage=Voyage(start=start, goal=goal, depart=DEPART),
+        routes=(route,),
+        plot_context=replace(context, chart=world.with_offing(2.0 * NAUTICAL_MILE)),
+    )
+
+
+def test_ways_by_and_round_the_kiel_canal(planned):
+    first, *others = passage_alternatives(planned)
+    assert first.without == () and first.passes[0] == "kiel"
+    assert first.distance / NAUTICAL_MILE == pytest.approx(planned.best.distance_nm, rel=0.15)
+    assert first.canal_dues_usd == 8000.0
+    assert [way.distance for way in others] == sorted(way.distance for way in others)
+    round_it = next(way for way in others if way.without == ("kiel",))
+    assert round_it.canal_dues_usd == 0.0
+    assert "Skagerrak-Kattegat (Skaw)" in round_it.passes
+    assert first.distance < round_it.distance < MAX_DETOUR * first.distance
+    assert round_it.time == pytest.approx(round_it.distance / (12.0 * KNOT), rel=0.01)
+
+
+def test_they_are_in_the_data_of_the_plan_when_asked_for(planned):
+    assert "passage_alternatives" not in planned.to_dict()
+    rows = planned.with_alternatives().to_dict()["passage_alternatives"]
+    assert rows[0]["without"] == [] and rows[0]["passes"][0] == "kiel"
+    assert set(rows[0]) == {"without", "passes", "distance_nm", "time_h", "canal_dues_usd"}
+
+
+def test_open_water_has_none(small):
+    assert passage_alternatives(small) == ()
+    assert passage_alternatives(replace(small, plot_context=None)) == ()
