@@ -101,7 +101,7 @@ class Application {
   }
 
   #placesOnChart() {
-    if (this.view === "plan" && !this.result && !this.progress) this.chart.routes.showEnds(this.form.ends);
+    if (this.view === "plan" && !this.result) this.chart.routes.showEnds(this.form.ends);
   }
 
   // The time of the weather while the form is shown: the departure.
@@ -285,7 +285,7 @@ class Application {
     if (this.view !== "compare") return;
     const source = this.chart.routes.others.getSource();
     this.chart.routes.clear();
-    const features = routes.map((points, i) => { const feature = new Feature(line(points)); feature.setStyle(() => [stroke(colour("casing"), 5), stroke(colour(PAINTS[i]), 2.6, DASHES[i] || undefined)]); return feature; });
+    const features = routes.map((points, i) => { const feature = new Feature(line(points)); feature.setStyle(() => [...(i ? [] : [stroke(colour("casing"), 6.5)]), stroke(colour(PAINTS[i]), i ? 2.4 : 4, DASHES[i] || undefined)]); return feature; });
     source.addFeatures(features);
     if (routes.length) this.chart.fit(routes.flat());
     const drawer = document.getElementById("drawer");

@@ -34,8 +34,8 @@ function colourAt(stops, share) {
 
 export function bandColours(kind) {
   const { step, top, stops } = KINDS[kind];
-  const count = Math.round(top / step);
-  return Array.from({ length: count + 1 }, (_, i) => colourAt(stops, i / count));
+  const count = Math.round(top / step), dim = Number(colour("weather-dim"));
+  return Array.from({ length: count + 1 }, (_, i) => colourAt(stops, i / count).map((value) => Math.round(value * dim)));
 }
 
 class Frame {
