@@ -49,7 +49,7 @@ class Visit:
             viewport={"width": 1280, "height": 720}, accept_downloads=True
         )
         self.page = self.context.new_page()
-        self.page.set_default_timeout(20_000)
+        self.page.set_default_timeout(120_000)
         self.outside: list[str] = []
         self.errors: list[str] = []
         self.page.on("request", self._note)
@@ -65,7 +65,7 @@ class Visit:
         self.page.wait_for_selector("#panel h1")
         return self.page
 
-    def fill_short(self, start: str = "47.0N 20.0W", goal: str = "47.6N 18.0W") -> None:
+    def fill_short(self, start: str = "47.0N 20.0W", goal: str = "47.2N 19.5W") -> None:
         """Fill in a short voyage through the storm of the package."""
         page = self.page
         page.wait_for_selector("#ship option", state="attached")
@@ -76,7 +76,7 @@ class Visit:
     def plan(self) -> None:
         """Press the button and wait for the result."""
         self.page.get_by_role("button", name="Plan the voyage").click()
-        self.page.wait_for_selector(".proof", timeout=120_000)
+        self.page.wait_for_selector(".proof", timeout=400_000)
 
     def figure(self, name: str) -> str:
         """Return a figure of the cards."""

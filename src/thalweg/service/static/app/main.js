@@ -6,7 +6,7 @@ import { CompareView, DASHES, PAINTS } from "./compare_view.js";
 import { Drawer, indexAt, placeAt } from "./diagrams.js";
 import { announce, colour, errorBox, fill, h } from "./elements.js";
 import { duration, known, number, plainPosition, seconds, time } from "./format.js";
-import { DEMO, PlanForm } from "./plan_form.js";
+import { DEMO, PlanForm, typedTime } from "./plan_form.js";
 import { ProgressView } from "./progress_view.js";
 import { loadResult, profileOf, ResultView } from "./result_view.js";
 import { Feature, line, speedColours, stroke } from "./route_layers.js";
@@ -106,7 +106,7 @@ class Application {
 
   // The time of the weather while the form is shown: the departure.
   #fieldTime() {
-    const t = this.form.depart.value ? Date.parse(`${this.form.depart.value.slice(0, 16)}Z`) / 1000 : null;
+    const t = typedTime(this.form.depart);
     const seas = this.form.chosenSeas;
     const kind = this.chart.weather.kind;
     this.chart.weather.set({ seas, time: t });

@@ -6,7 +6,7 @@ import { colour } from "./elements.js";
 
 const HALF = 20037508.342789244;
 const KNOT = 1852 / 3600;
-const NX = 128, NY = 96, UNKNOWN = -32768, COLUMN = 3; // pixels of the screen for each computed one
+const NX = 160, NY = 112, UNKNOWN = -32768, COLUMN = 3; // pixels of the screen for each computed one
 const MOST_FRAMES = 48;
 
 // Bands from calm to rough; never yellow, which is the land.
