@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.browser.conftest import playwright_api
 from tests.service.conftest import ended
 
 pytestmark = pytest.mark.slow
@@ -16,7 +17,7 @@ pytestmark = pytest.mark.slow
 
 def job_of(page) -> str:
     """Return the job of the address of a page."""
-    page.wait_for_function("location.hash.includes('plan=')")
+    page.wait_for_url(re.compile("plan="))
     return re.search(r"plan=([0-9a-f]{16})", page.url)[1]
 
 
@@ -30,6 +31,7 @@ def test_a_voyage_is_planned_by_clicking_on_the_chart(visit):
     for share, choice in ((0.50, "From here"), (0.53, "To here")):
         chart.click(position={"x": share * box["width"], "y": 0.55 * box["height"]})
         page.get_by_role("menuitem", name=choice).click()
+        page.wait_for_timeout(400)  # two clicks at once are a double click
     assert "W" in page.locator(".field.start input").input_value()
     page.locator("#depart").fill("1998-08-31T12:00")
     visit.plan()
@@ -47,7 +49,7 @@ def test_the_address_restores_the_result_after_a_reload(visit):
     page = visit.open()
     visit.fill_short()
     visit.plan()
-    page.wait_for_function("location.hash.includes('route=1')")
+    page.wait_for_url(re.compile("route=1"))
     before = visit.figure("Time"), page.url
     page.reload()
     page.wait_for_selector(".proof")
@@ -154,7 +156,7 @@ def test_progress_cancel_and_a_point_of_the_front(visit):
     visit.fill_short("47.0N 20.0W", "47.0N 12.0W")
     page.locator("#objective").select_option("front")
     page.get_by_role("button", name="Plan the voyage").click()
-    page.get_by_text("Planning the fastest route first").wait_for()
+    page.get_by_text("Planning the fastest route first", exact=True).wait_for()
     page.get_by_text("First route: the fastest").wait_for(timeout=400_000)
     visit.picture("progress")
     page.get_by_role("button", name="Stop, keep the best").click()
@@ -172,7 +174,7 @@ def test_choosing_a_route_of_a_front_changes_cards_and_profile(visit):
     first = visit.figure("Fuel"), page.locator(".player output").inner_text()
     page.locator(".front circle[aria-pressed=true]").focus()
     page.keyboard.press("ArrowRight")
-    page.wait_for_function("location.hash.includes('route=2')")
+    page.wait_for_url(re.compile("route=2"))
     visit.picture("front")
     assert visit.figure("Fuel") != first[0]
     assert (
@@ -182,9 +184,7 @@ def test_choosing_a_route_of_a_front_changes_cards_and_profile(visit):
     )
     page.locator("#tab-profile").click()
     page.get_by_role("button", name="Play (space)").click()
-    page.wait_for_function(
-        "t => document.querySelector('.player output').textContent !== t", arg=first[1]
-    )
+    playwright_api.expect(page.locator(".player output")).not_to_have_text(first[1])
     page.get_by_role("button", name="Pause (space)").click()
 
 
