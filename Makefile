@@ -5,7 +5,7 @@ BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 OUT    ?= demo
 
-.PHONY: demo test check format docs bench install clean
+.PHONY: demo serve test check format docs bench install clean
 
 install: $(STAMP)
 
@@ -20,6 +20,10 @@ $(STAMP): pyproject.toml
 demo: $(STAMP)
 	@echo "Planning the example voyage; results go to $(OUT) ..."
 	$(BIN)/python -m thalweg.cli.main demo --out $(OUT)
+	@echo "Next: make serve opens the web application with this voyage filled in."
+
+serve: $(STAMP)
+	$(BIN)/python -m thalweg.cli.main serve --demo --open
 
 test: $(STAMP)
 	$(BIN)/python -m pytest -n auto --dist worksteal

@@ -113,9 +113,10 @@ export class Drawer {
     if (!known(t)) return;
     this.output.textContent = time(t);
     if (document.activeElement !== this.slider || this.timer) this.slider.value = String(Math.round(((t - this.from) / Math.max(1, this.to - this.from)) * 1000));
+    this.slider.style.setProperty("--share", `${(100 * (t - this.from)) / Math.max(1, this.to - this.from)}%`);
     this.slider.setAttribute("aria-valuetext", `${time(t)} UTC`);
     const profile = this.result?.profile;
-    if (this.plot && profile && !this.inPlot) this.plot.setCursor({ left: this.plot.valToPos(t, "x"), top: 10 }, false);
+    if (this.plot?.status === 1 && profile && !this.inPlot) this.plot.setCursor({ left: this.plot.valToPos(t, "x"), top: 10 }, false);
     if (profile) this.#values(indexAt(profile.time, t));
     if (this.tab === "legs") this.#currentLeg(t);
   }
@@ -160,7 +161,7 @@ export class Drawer {
       ],
       series: [{}, ...there.map(([name, text, , scale, paint]) => ({ label: text, scale, stroke: getComputedStyle(document.documentElement).getPropertyValue(paint), width: 1.8, spanGaps: false }))],
       legend: { show: false },
-      hooks: { setCursor: [(u) => { if (this.inPlot && u.cursor.idx !== null && u.cursor.left >= 0) selection.at(profile.time[u.cursor.idx]); }] },
+      hooks: { ready: [() => this.#moved()], setCursor: [(u) => { if (this.inPlot && u.cursor.idx !== null && u.cursor.left >= 0) selection.at(profile.time[u.cursor.idx]); }] },
     }, [profile.time, ...there.map(([name]) => profile[name])], this.holder);
     this.plot.over.addEventListener("pointerenter", () => { this.inPlot = true; });
     this.plot.over.addEventListener("pointerleave", () => { this.inPlot = false; this.#moved(); });

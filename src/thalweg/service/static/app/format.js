@@ -60,7 +60,7 @@ export function plainPosition(lat, lon) {
 export const bearing = (degrees) => (known(degrees) ? `${String(Math.round(degrees) % 360).padStart(3, "0")}°` : "unknown");
 
 export function inputTime(s) {
-  return new Date(s * 1000).toISOString().slice(0, 16);
+  return new Date(s * 1000).toISOString().slice(0, 16).replace("T", " ");
 }
 
 export function unwrapped(lons) {

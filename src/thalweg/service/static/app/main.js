@@ -6,7 +6,7 @@ import { CompareView, DASHES, PAINTS } from "./compare_view.js";
 import { Drawer, indexAt, placeAt } from "./diagrams.js";
 import { announce, colour, errorBox, fill, h } from "./elements.js";
 import { duration, known, number, plainPosition, seconds, time } from "./format.js";
-import { DEMO, PlanForm } from "./plan_form.js";
+import { DEMO, PlanForm, typedTime } from "./plan_form.js";
 import { ProgressView } from "./progress_view.js";
 import { loadResult, profileOf, ResultView } from "./result_view.js";
 import { Feature, line, speedColours, stroke } from "./route_layers.js";
@@ -101,12 +101,12 @@ class Application {
   }
 
   #placesOnChart() {
-    if (this.view === "plan" && !this.result && !this.progress) this.chart.routes.showEnds(this.form.ends);
+    if (this.view === "plan" && !this.result) this.chart.routes.showEnds(this.form.ends);
   }
 
   // The time of the weather while the form is shown: the departure.
   #fieldTime() {
-    const t = this.form.depart.value ? Date.parse(`${this.form.depart.value.slice(0, 16)}Z`) / 1000 : null;
+    const t = typedTime(this.form.depart);
     const seas = this.form.chosenSeas;
     const kind = this.chart.weather.kind;
     this.chart.weather.set({ seas, time: t });
@@ -285,7 +285,7 @@ class Application {
     if (this.view !== "compare") return;
     const source = this.chart.routes.others.getSource();
     this.chart.routes.clear();
-    const features = routes.map((points, i) => { const feature = new Feature(line(points)); feature.setStyle(() => [stroke(colour("casing"), 5), stroke(colour(PAINTS[i]), 2.6, DASHES[i] || undefined)]); return feature; });
+    const features = routes.map((points, i) => { const feature = new Feature(line(points)); feature.setStyle(() => [...(i ? [] : [stroke(colour("casing"), 6.5)]), stroke(colour(PAINTS[i]), i ? 2.4 : 4, DASHES[i] || undefined)]); return feature; });
     source.addFeatures(features);
     if (routes.length) this.chart.fit(routes.flat());
     const drawer = document.getElementById("drawer");

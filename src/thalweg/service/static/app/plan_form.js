@@ -2,7 +2,7 @@
 
 import { get, post, uploadForm, uploadSea } from "./api.js";
 import { announce, errorBox, fill, h } from "./elements.js";
-import { duration, inputTime, known, number, seconds, time } from "./format.js";
+import { inputTime, known, number, seconds, time } from "./format.js";
 import { PlaceField } from "./places.js";
 
 const OBJECTIVES = [
@@ -46,9 +46,9 @@ export class PlanForm extends EventTarget {
       ondragleave: () => this.drop.classList.remove("over"),
       ondrop: (event) => { event.preventDefault(); this.drop.classList.remove("over"); this.#uploadSeas([...event.dataTransfer.files]); },
     }, "Drop a GRIB or NetCDF file here, or ", h("button.link", { type: "button", onclick: () => this.seaFile.click() }, "choose a file"), ".");
-    this.depart = h("input", { type: "datetime-local", id: "depart", step: 60 });
-    this.latest = h("input", { type: "datetime-local", id: "latest", step: 60 });
-    this.arriveBy = h("input", { type: "datetime-local", id: "arrive-by", step: 60 });
+    this.depart = h("input", { type: "text", id: "depart", autocomplete: "off", placeholder: "2026-01-31 12:00" });
+    this.latest = h("input", { type: "text", id: "latest", autocomplete: "off", placeholder: "2026-01-31 12:00" });
+    this.arriveBy = h("input", { type: "text", id: "arrive-by", autocomplete: "off", placeholder: "2026-01-31 12:00" });
     this.departFacts = h("p.facts");
     this.objective = h("select", { id: "objective" }, OBJECTIVES.map(([value, text]) => h("option", { value }, text)));
     this.objective.value = "time";
@@ -355,7 +355,10 @@ export class PlanForm extends EventTarget {
     if (!this.goal.value) return this.#missing("goal", "The voyage has no destination.", "Type a port or a position, or click it on the chart.");
     if (!this.chosenSeas.length) return this.#missing("seas", "No sea is chosen; calm weather is never assumed.", "Choose the storm of 1998, a calm sea, or a file.");
     if (!this.depart.value) return this.#missing("depart", "The voyage has no departure.", "Give a date and a time in UTC.");
-    const utc = (input) => (input.value ? `${input.value.slice(0, 16)}Z` : null);
+    for (const [name, input] of [["depart", this.depart], ["depart_window", this.latest], ["arrive_by", this.arriveBy]]) {
+      if (input.value.trim() && typedTime(input) === null) return this.#missing(name, `${input.value} is not a time.`, "Give year, month, day, hour and minute in UTC, such as 2026-01-31 12:00.");
+    }
+    const utc = (input) => { const t = typedTime(input); return t === null ? null : `${inputTime(t).replace(" ", "T")}Z`; };
     const voyage = {
       start: this.start.value, goal: this.goal.value, objective: this.objective.value,
       via: this.vias.map((field) => field.value).filter(Boolean), arrive_by: utc(this.arriveBy),
@@ -428,4 +431,11 @@ export class PlanForm extends EventTarget {
   }
 }
 
-export { duration };
+// A time as it is typed, in UTC [s since 1970]; null where it is none.
+export function typedTime(input) {
+  const found = /^\s*(\d{4})-(\d\d?)-(\d\d?)(?:[T ]+(\d\d?):(\d\d))?\s*Z?\s*$/.exec(input.value);
+  if (!found) return null;
+  const [year, month, day, hour = 0, minute = 0] = found.slice(1).map((part) => Number(part ?? 0));
+  const t = Date.UTC(year, month - 1, day, hour, minute);
+  return new Date(t).getUTCDate() === day && hour < 24 && minute < 60 ? t / 1000 : null;
+}

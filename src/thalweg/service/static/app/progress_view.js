@@ -12,7 +12,7 @@ export class ProgressView {
     this.best = h("div");
     this.state = h("p.lead", { role: "status" }, "Waiting for its turn.");
     this.problem = h("div");
-    this.cancel = h("button.quiet", { type: "button", onclick: () => this.stop() }, "Stop and keep the best so far");
+    this.cancel = h("button.quiet", { type: "button", onclick: () => this.stop() }, "Stop, keep the best");
     this.element = [h("div.scroll", {}, h("h1", {}, job.title || "Plan"), this.state, this.steps, this.best, this.problem), h("div.foot", {}, this.cancel, h("button.quiet", { type: "button", onclick: handlers.leave }, "Leave it running"))];
     this.close = follow(job.id, { state: (data) => this.#state(data), stage: (data) => this.#stage(data), route: (data) => this.#route(data), waiting: () => { this.state.textContent = "The service does not answer; the job goes on when it runs again."; }, open: () => this.#say() });
   }

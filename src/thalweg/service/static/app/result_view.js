@@ -72,7 +72,7 @@ export class ResultView {
     const complete = beside && beside.feasible !== undefined && known(beside.time_h);
     return h("dl.cards", {},
       card("Time", duration(route.time_h), null, complete ? than(route.time_h, beside.time_h, signedDuration) : null),
-      card("Arrival", time(seconds(route.arrive)), "UTC", known(route.waiting_h) && route.waiting_h > 0 ? `waits ${duration(route.waiting_h)}` : null),
+      card("Arrival, UTC", time(seconds(route.arrive)), null, known(route.waiting_h) && route.waiting_h > 0 ? `waits ${duration(route.waiting_h)}` : null),
       card("Fuel", number(route.fuel_t, 1), "t", complete ? than(route.fuel_t, beside.fuel_t, (d) => `${signed(d)} t`) : null),
       card("Cost", number(cost), route.currency, complete ? than(cost, other, (d) => `${signed(d, 0)}`) : null),
       card("Distance", number(route.distance_nm, 1), "nm", known(route.time_h) ? `mean ${number(route.distance_nm / route.time_h, 1)} kn` : null),

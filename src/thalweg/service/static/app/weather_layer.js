@@ -6,7 +6,7 @@ import { colour } from "./elements.js";
 
 const HALF = 20037508.342789244;
 const KNOT = 1852 / 3600;
-const NX = 128, NY = 96, UNKNOWN = -32768, COLUMN = 3; // pixels of the screen for each computed one
+const NX = 160, NY = 112, UNKNOWN = -32768, COLUMN = 3; // pixels of the screen for each computed one
 const MOST_FRAMES = 48;
 
 // Bands from calm to rough; never yellow, which is the land.
@@ -34,8 +34,8 @@ function colourAt(stops, share) {
 
 export function bandColours(kind) {
   const { step, top, stops } = KINDS[kind];
-  const count = Math.round(top / step);
-  return Array.from({ length: count + 1 }, (_, i) => colourAt(stops, i / count));
+  const count = Math.round(top / step), dim = Number(colour("weather-dim"));
+  return Array.from({ length: count + 1 }, (_, i) => colourAt(stops, i / count).map((value) => Math.round(value * dim)));
 }
 
 class Frame {

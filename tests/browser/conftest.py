@@ -1,0 +1,99 @@
+"""A browser on a service of its own; any request to outside the loopback fails the test."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.service.conftest import TOKEN, ServerProcess
+
+playwright_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+#: Screenshots of the tests are kept here where it is set.
+PICTURES = os.environ.get("THALWEG_SCREENSHOTS")
+
+
+def chromium_path() -> str | None:
+    given = os.environ.get("THALWEG_CHROMIUM")
+    return given or shutil.which("chromium") or shutil.which("chromium-browser")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    path = chromium_path()
+    if path is None:
+        pytest.skip("there is no chromium (apt-get install chromium, or set THALWEG_CHROMIUM)")
+    with playwright_api.sync_playwright() as playwright:
+        found = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        yield found
+        found.close()
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ServerProcess]:
+    found = ServerProcess(tmp_path_factory.mktemp("browser")).start()
+    yield found
+    found.stop()
+
+
+class Visit:
+    """A page of the application, with what it asked for and what went wrong in it."""
+
+    def __init__(self, browser: Any, service: ServerProcess) -> None:
+        self.service = service
+        self.context = browser.new_context(
+            viewport={"width": 1280, "height": 720}, accept_downloads=True
+        )
+        self.page = self.context.new_page()
+        self.page.set_default_timeout(120_000)
+        self.outside: list[str] = []
+        self.errors: list[str] = []
+        self.page.on("request", self._note)
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+
+    def _note(self, request: Any) -> None:
+        if not request.url.startswith((self.service.address, "data:", "blob:")):
+            self.outside.append(request.url)
+
+    def open(self, fragment: str = "") -> Any:
+        """Open the page and wait for its form or result."""
+        self.page.goto(f"{self.service.address}/?token={TOKEN}{fragment}")
+        self.page.wait_for_selector("#panel h1")
+        return self.page
+
+    def fill_short(self, start: str = "47.0N 20.0W", goal: str = "47.2N 19.5W") -> None:
+        """Fill in a short voyage through the storm of the package."""
+        page = self.page
+        page.wait_for_selector("#ship option", state="attached")
+        page.locator(".field.start input").fill(start)
+        page.locator(".field.goal input").fill(goal)
+        page.locator("#depart").fill("1998-08-31T12:00")
+
+    def plan(self) -> None:
+        """Press the button and wait for the result."""
+        self.page.get_by_role("button", name="Plan the voyage").click()
+        self.page.wait_for_selector(".proof", timeout=400_000)
+
+    def figure(self, name: str) -> str:
+        """Return a figure of the cards."""
+        card = self.page.locator(".card", has=self.page.get_by_text(name, exact=True))
+        return str(card.locator("dd").inner_text())
+
+    def picture(self, name: str) -> None:
+        """Keep a screenshot where the environment asks for it."""
+        if PICTURES:
+            Path(PICTURES).mkdir(parents=True, exist_ok=True)
+            self.page.screenshot(path=str(Path(PICTURES) / f"{name}.png"))
+
+
+@pytest.fixture
+def visit(browser: Any, service: ServerProcess) -> Iterator[Visit]:
+    found = Visit(browser, service)
+    yield found
+    found.context.close()
+    assert found.outside == [], "requests to outside the loopback"
+    assert found.errors == [], "errors of scripts"

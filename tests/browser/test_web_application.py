@@ -1,0 +1,239 @@
+"""The web application in a real browser: plan, watch, choose, export, errors, areas, kills."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.browser.conftest import playwright_api
+from tests.service.conftest import ended
+
+pytestmark = pytest.mark.slow
+
+
+def job_of(page) -> str:
+    """Return the job of the address of a page."""
+    page.wait_for_url(re.compile("plan="))
+    return re.search(r"plan=([0-9a-f]{16})", page.url)[1]
+
+
+def test_a_voyage_is_planned_by_clicking_on_the_chart(visit):
+    page = visit.open()
+    page.wait_for_selector("#chart[data-idle]")
+    page.wait_for_selector("#ship option", state="attached")
+    visit.picture("form")
+    chart = page.locator("#chart")
+    box = chart.bounding_box()
+    for share, choice in ((0.50, "From here"), (0.53, "To here")):
+        chart.click(position={"x": share * box["width"], "y": 0.55 * box["height"]})
+        page.get_by_role("menuitem", name=choice).click()
+        page.wait_for_timeout(400)  # two clicks at once are a double click
+    assert "W" in page.locator(".field.start input").input_value()
+    page.locator("#depart").fill("1998-08-31T12:00")
+    visit.plan()
+    visit.picture("result")
+    assert "h" in visit.figure("Time")
+    assert "unknown" not in visit.figure("Distance")
+    assert "best possible" in page.locator(".proof").inner_text()
+    with page.expect_download() as download:
+        page.get_by_role("link", name="RTZ").click()
+    text = Path(download.value.path()).read_text("utf-8")
+    assert "<waypoint" in text and 'version="1.2"' in text
+
+
+def test_the_address_restores_the_result_after_a_reload(visit):
+    page = visit.open()
+    visit.fill_short()
+    visit.plan()
+    page.wait_for_url(re.compile("route=1"))
+    before = visit.figure("Time"), page.url
+    page.reload()
+    page.wait_for_selector(".proof")
+    assert (visit.figure("Time"), page.url) == before
+
+
+def test_a_place_that_is_not_understood_is_an_error_at_its_field(visit):
+    page = visit.open()
+    visit.fill_short(start="Rotterdamm")
+    page.locator(".field.goal input").press("Tab")
+    error = page.locator(".field.start .error")
+    error.wait_for()
+    assert "Rotterdam" in error.inner_text()
+    page.get_by_role("button", name="Plan the voyage").click()
+    assert page.locator(".field.start input").get_attribute("aria-invalid") == "true"
+    visit.picture("error")
+
+
+def test_what_is_missing_is_said_at_its_field(visit):
+    page = visit.open()
+    page.wait_for_selector("#ship option", state="attached")
+    page.get_by_role("button", name="Plan the voyage").click()
+    assert "no start" in page.locator(".field.start .error").inner_text()
+    visit.fill_short()
+    page.get_by_label("Storm of 1998").uncheck()
+    page.get_by_role("button", name="Plan the voyage").click()
+    assert "never assumed" in page.locator("[data-field=seas] .error").inner_text()
+
+
+def test_a_broken_upload_is_an_error_at_the_sea(visit, tmp_path):
+    page = visit.open()
+    page.wait_for_selector("#ship option", state="attached")
+    broken = tmp_path / "waves.nc"
+    broken.write_bytes(b"CDF\x01 but no more")
+    page.locator("#sea-file").set_input_files(str(broken))
+    error = page.locator("[data-field=seas] .error")
+    error.wait_for()
+    assert "waves.nc" in error.inner_text()
+
+
+def test_keyboard_only(visit):
+    page = visit.open()
+    page.wait_for_selector("#ship option", state="attached")
+    page.locator(".field.start input").focus()
+    page.keyboard.type("halif")
+    page.wait_for_selector(".field.start .options li")
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    assert page.locator(".field.start input").input_value() == "CAHAL"
+    assert "Halifax, CA" in page.locator(".field.start .understood").inner_text()
+    page.locator(".field.start input").fill("47.0N 20.0W")
+    page.keyboard.press("Tab")
+    page.keyboard.type("47.6N 18.0W")
+    page.locator("#depart").fill("1998-08-31T12:00")
+    page.locator(".field.goal input").focus()
+    page.keyboard.press("Enter")
+    page.wait_for_selector(".proof", timeout=400_000)
+    page.locator("#panel h1").click()
+    before = page.locator(".player output").inner_text()
+    page.keyboard.press(".")
+    assert page.locator(".player output").inner_text() != before
+    page.keyboard.press("?")
+    assert page.locator("dialog").is_visible()
+    page.keyboard.press("Escape")
+    page.keyboard.press("n")
+    page.keyboard.press("n")
+    assert page.locator("html").get_attribute("data-palette") == "night"
+    visit.picture("night")
+
+
+def test_an_area_is_drawn_and_the_route_avoids_it(visit):
+    page = visit.open()
+    visit.fill_short("47.0N 19.5W", "47.0N 17.5W")
+    page.get_by_text("Areas to avoid").click()
+    page.get_by_role("button", name="Draw no-go").click()
+    place = "([lon, lat]) => { const m = window.thalweg.chart.map; return m.getPixelFromCoordinate"
+    place += "([lon * 111319.49, Math.log(Math.tan(Math.PI/4 + lat*Math.PI/360)) * 6378137]); }"
+    page.evaluate("window.thalweg.chart.fit([[-21, 45], [-16, 49]])")
+    page.wait_for_timeout(300)
+    chart = page.locator("#chart")
+    corners = [(-18.8, 46.6), (-18.2, 46.6), (-18.2, 47.6), (-18.8, 47.6)]
+    for corner in corners:
+        x, y = page.evaluate(place, list(corner))
+        chart.click(position={"x": x, "y": y}, delay=30)
+        page.wait_for_timeout(350)
+    x, y = page.evaluate(place, list(corners[0]))
+    chart.click(position={"x": x, "y": y})
+    page.wait_for_selector("#area-0")
+    visit.picture("area")
+    visit.plan()
+    base = f"/api/v1/plans/{job_of(page)}"
+    profile = visit.service.http.get(f"{base}/profiles/1").json()
+    inside = [
+        lat
+        for lat, lon in zip(profile["lat"], profile["lon"])
+        if -18.75 < lon < -18.25 and 46.65 < lat < 47.55
+    ]
+    assert inside == []
+    assert min(profile["lat"]) < 46.65 or max(profile["lat"]) > 47.55
+
+
+def test_progress_cancel_and_a_point_of_the_front(visit):
+    page = visit.open()
+    visit.fill_short("47.0N 20.0W", "47.0N 12.0W")
+    page.locator("#objective").select_option("front")
+    page.get_by_role("button", name="Plan the voyage").click()
+    page.get_by_text("Planning the fastest route first", exact=True).wait_for()
+    page.get_by_text("First route: the fastest").wait_for(timeout=400_000)
+    visit.picture("progress")
+    page.get_by_role("button", name="Stop, keep the best").click()
+    page.wait_for_selector(".proof", timeout=200_000)
+    assert "Stopped" in page.locator(".note").first.inner_text()
+
+
+def test_choosing_a_route_of_a_front_changes_cards_and_profile(visit):
+    page = visit.open()
+    visit.fill_short("47.0N 20.0W", "47.0N 19.0W")
+    page.locator("#objective").select_option("front")
+    visit.plan()
+    assert page.locator(".routes button").count() >= 2
+    page.locator("#tab-front").click()
+    first = visit.figure("Fuel"), page.locator(".player output").inner_text()
+    page.locator(".front circle[aria-pressed=true]").focus()
+    page.keyboard.press("ArrowRight")
+    page.wait_for_url(re.compile("route=2"))
+    visit.picture("front")
+    assert visit.figure("Fuel") != first[0]
+    assert (
+        page.locator(".routes button[aria-pressed=true]")
+        .inner_text()
+        .startswith(visit.figure("Time"))
+    )
+    page.locator("#tab-profile").click()
+    page.get_by_role("button", name="Play (space)").click()
+    playwright_api.expect(page.locator(".player output")).not_to_have_text(first[1])
+    page.get_by_role("button", name="Pause (space)").click()
+
+
+def test_an_exported_route_is_scored_beside_its_plan(visit, tmp_path):
+    page = visit.open()
+    visit.fill_short()
+    page.locator("#title").fill("the plan")
+    visit.plan()
+    rtz = visit.service.http.get(f"/api/v1/plans/{job_of(page)}/routes/1.rtz").content
+    (tmp_path / "mine.rtz").write_bytes(rtz)
+    page.get_by_role("button", name="Compare").last.click()
+    page.wait_for_selector("#route-file", state="attached")
+    page.locator(".jobrow input:checked").first.wait_for()
+    page.locator("#route-file").set_input_files(str(tmp_path / "mine.rtz"))
+    page.locator(".compare-table tbody tr").nth(1).wait_for(timeout=400_000)
+    rows = page.locator(".compare-table tbody tr")
+    assert rows.nth(1).inner_text().startswith("mine.rtz")
+    visit.picture("compare")
+
+
+def test_a_reload_in_the_middle_of_a_job_and_a_killed_service(visit):
+    page = visit.open()
+    visit.fill_short("47.0N 22.0W", "47.0N 12.0W")
+    page.locator("#objective").select_option("front")
+    page.get_by_role("button", name="Plan the voyage").click()
+    page.locator(".steps li.now").wait_for()
+    job = job_of(page)
+    page.reload()
+    page.locator(".steps li.now").wait_for()
+    visit.service.kill()
+    page.get_by_text("The service does not answer").wait_for()
+    visit.service.start()
+    page.get_by_text("Started again").or_(page.locator(".steps li.now")).first.wait_for()
+    page.get_by_text("First route: the fastest").wait_for(timeout=400_000)
+    page.get_by_role("button", name="Stop, keep the best").click()
+    page.wait_for_selector(".proof", timeout=200_000)
+    assert ended(visit.service.http.get, job)["attempt"] >= 2
+
+
+def test_nothing_that_axe_finds(visit):
+    script = os.environ.get("THALWEG_AXE")
+    if not script:
+        pytest.skip("set THALWEG_AXE to axe.min.js of axe-core")
+    page = visit.open()
+    visit.fill_short()
+    found = {}
+    for palette in ("day", "dusk", "night"):
+        page.evaluate("p => { document.documentElement.dataset.palette = p }", palette)
+        page.evaluate(Path(script).read_text("utf-8"))
+        answer = page.evaluate("axe.run(document, {resultTypes: ['violations']})")
+        found[palette] = {one["id"]: len(one["nodes"]) for one in answer["violations"]}
+    assert found == {"day": {}, "dusk": {}, "night": {}}, json.dumps(found)
