@@ -139,8 +139,8 @@ def segment_means(log: TrackLog, segments: MeasuredSegments, name: str) -> Float
     known = np.isfinite(values)
     sums = np.append(0.0, np.cumsum(np.where(known, values, 0.0)))
     counts = np.append(0, np.cumsum(known))
-    first = np.searchsorted(log.time, segments.time - 0.5 * segments.took - 1e-6)
-    last = np.searchsorted(log.time, segments.time + 0.5 * segments.took + 1e-6)
+    first = np.searchsorted(log.time, segments.time - 0.5 * segments.duration - 1e-6)
+    last = np.searchsorted(log.time, segments.time + 0.5 * segments.duration + 1e-6)
     count = counts[last] - counts[first]
     return np.where(count > 0, (sums[last] - sums[first]) / np.maximum(count, 1), np.nan)
 

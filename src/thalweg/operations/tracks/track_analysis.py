@@ -141,9 +141,9 @@ class TrackAnalysis:
             row = {
                 "trip": trip,
                 "activity": SAILING_KINDS[int(part.kind[0])],
-                "start": to_datetime64(part.time[0] - 0.5 * part.took[0]),
-                "hours": part.took.sum() / HOUR,
-                "distance_nm": float(part.speed @ part.took) / NAUTICAL_MILE,
+                "start": to_datetime64(part.time[0] - 0.5 * part.duration[0]),
+                "hours": part.duration.sum() / HOUR,
+                "distance_nm": float(part.speed @ part.duration) / NAUTICAL_MILE,
                 "speed_kn": float(leg_speeds(part, part.speed)[0]) / KNOT,
             }
             for name, model in self.models.items():

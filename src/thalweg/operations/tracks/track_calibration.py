@@ -135,7 +135,7 @@ def calibrate(segments: MeasuredSegments) -> Calibration | None:
         return None
     used = np.unique(segments.kind)
     groups = (segments.kind[:, None] == used).astype(np.float64)
-    weight = segments.took / segments.took.mean()
+    weight = segments.duration / segments.duration.mean()
     factor = 1.0
     for _ in range(_MAX_ITERATIONS):
         water = segments.ground - factor * segments.current
@@ -179,14 +179,12 @@ def mean_speeds(segments: MeasuredSegments, factor: float) -> FloatArray:
     """Return the mean speed through water of the activity of every segment [m/s]."""
     speed = speeds_through_water(segments, factor)
     known = np.isfinite(speed)
-    took = np.where(known, segments.took, 0.0)
-    length = np.bincount(
-        segments.kind, np.where(known, speed, 0.0) * took, minlength=len(SAILING_KINDS)
-    )
+    duration = np.where(known, segments.duration, 0.0)
+    kinds = len(SAILING_KINDS)
+    length = np.bincount(segments.kind, np.where(known, speed, 0.0) * duration, minlength=kinds)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(
-            (length / np.bincount(segments.kind, took, minlength=len(SAILING_KINDS)))[segments.kind]
-        )
+        mean = length / np.bincount(segments.kind, duration, minlength=kinds)
+    return np.asarray(mean[segments.kind])
 
 
 def speeds_over_ground(segments: MeasuredSegments, water: ArrayLike, factor: float) -> FloatArray:
@@ -203,7 +201,7 @@ def speeds_over_ground(segments: MeasuredSegments, water: ArrayLike, factor: flo
 
 def leg_speeds(segments: MeasuredSegments, speed: ArrayLike) -> FloatArray:
     """Return the speed over each leg [m/s]: its length over its duration at given speeds."""
-    lengths = segments.speed * segments.took
+    lengths = segments.speed * segments.duration
     _, length = segments.sum_by_leg(lengths)
     _, time = segments.sum_by_leg(lengths / np.asarray(speed, dtype=np.float64))
     return np.asarray(length / time)

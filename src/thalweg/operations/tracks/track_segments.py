@@ -34,7 +34,7 @@ class MeasuredSegments:
         Number of the trip of each segment.
     kind : int64 array (p,)
         Index into ``SAILING_KINDS`` (sailing full, sailing empty).
-    time, took : float64 array (p,)
+    time, duration : float64 array (p,)
         Middle [s since 1970-01-01T00:00Z] and length [s].
     lat, lon : float64 array (p,)
         Middle [deg].
@@ -47,7 +47,7 @@ class MeasuredSegments:
     leg: NDArray[np.int64]
     kind: NDArray[np.int64]
     time: FloatArray
-    took: FloatArray
+    duration: FloatArray
     lat: FloatArray
     lon: FloatArray
     ground: NDArray[np.complex128]
@@ -68,7 +68,7 @@ class MeasuredSegments:
 
     def part(self, keep: NDArray[np.bool_]) -> MeasuredSegments:
         """Return some of the segments."""
-        names = ("leg", "kind", "time", "took", "lat", "lon", "ground", "current")
+        names = ("leg", "kind", "time", "duration", "lat", "lon", "ground", "current")
         return MeasuredSegments(**{name: getattr(self, name)[keep] for name in names})
 
     def sum_by_leg(self, values: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
@@ -119,15 +119,15 @@ def cut_segments(
     moved = distance > 0.0
     leg, kind, first, last = table[moved].T
     distance, course = distance[moved], course[moved]
-    took = log.time[last] - log.time[first]
+    duration = log.time[last] - log.time[first]
     middle = 0.5 * (log.time[first] + log.time[last])
     lat, lon = _midpoints(log, first, last)
-    ground = distance / took * (np.sin(course) + 1j * np.cos(course))
+    ground = distance / duration * (np.sin(course) + 1j * np.cos(course))
     current = np.full(len(leg), complex(np.nan, np.nan))
     if sea is not None and len(leg):
         sampled = sea.sample([EASTWARD_CURRENT, NORTHWARD_CURRENT], middle, lat, lon)
         current = sampled[EASTWARD_CURRENT] + 1j * sampled[NORTHWARD_CURRENT]
-    return MeasuredSegments(leg, kind, middle, took, lat, lon, ground, current)
+    return MeasuredSegments(leg, kind, middle, duration, lat, lon, ground, current)
 
 
 def _segment_ends(

@@ -204,28 +204,30 @@ class _TrackSimulation:
     def _sail(self, departs: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return (time [s], energy [J]) of some departures, by fixed-point iteration."""
         shape = (len(self.pieces), len(departs))
-        took = np.broadcast_to(self._guess(), shape).copy()
+        piece_time = np.broadcast_to(self._guess(), shape).copy()
         power, unknown = np.zeros(shape), np.zeros(shape, dtype=bool)
         active = np.arange(len(departs))
         for _ in range(_MAX_ITERATIONS):
-            spent = np.where(took[:, active] < _IMPASSABLE_TIME, took[:, active], self._guess())
+            spent = np.where(
+                piece_time[:, active] < _IMPASSABLE_TIME, piece_time[:, active], self._guess()
+            )
             time = departs[active] + np.cumsum(spent, axis=0) - 0.5 * spent
             found = self._segment_times(np.arange(shape[0]), time)
-            settled = np.abs(found[0] - took[:, active]).max(axis=0) < _TIME_TOLERANCE
-            took[:, active], power[:, active], unknown[:, active] = found
+            settled = np.abs(found[0] - piece_time[:, active]).max(axis=0) < _TIME_TOLERANCE
+            piece_time[:, active], power[:, active], unknown[:, active] = found
             active = active[~settled]
             if not active.size:
                 break
         else:  # not converged (a limit holds or not within seconds): one piece after another
-            self._sail_sequentially(departs, active, (took, power, unknown))
-        passes = took < _IMPASSABLE_TIME
+            self._sail_sequentially(departs, active, (piece_time, power, unknown))
+        passes = piece_time < _IMPASSABLE_TIME
         under_way = np.vstack([np.ones((1, shape[1]), bool), np.cumprod(passes, axis=0)[:-1] > 0])
         bad = np.argwhere((unknown & under_way).T)
         if bad.size:
             which, piece = bad[0]
             raise _missing_data_error(self.middles, int(piece), float(departs[which]))
         arrives = passes.all(axis=0)
-        energy, duration = (power * took).sum(axis=0), took.sum(axis=0)
+        energy, duration = (power * piece_time).sum(axis=0), piece_time.sum(axis=0)
         return np.where(arrives, duration, math.inf), np.where(arrives, energy, math.inf)
 
     def _guess(self) -> FloatArray:
@@ -239,8 +241,10 @@ class _TrackSimulation:
         look = self._speed_and_power(here, time.reshape(-1))
         ground = look.speed_over_ground.reshape(time.shape)
         with np.errstate(divide="ignore"):
-            took = np.where(ground > 0.0, self.pieces.step[pieces, None] / ground, _IMPASSABLE_TIME)
-        return took, look.power.reshape(time.shape), look.unknown.reshape(time.shape)
+            piece_time = np.where(
+                ground > 0.0, self.pieces.step[pieces, None] / ground, _IMPASSABLE_TIME
+            )
+        return piece_time, look.power.reshape(time.shape), look.unknown.reshape(time.shape)
 
     def _sail_sequentially(
         self, departs: FloatArray, which: NDArray[np.int64], into: tuple[Any, ...]

@@ -148,9 +148,9 @@ class SailedPolyline:
         line, evaluator, arrive = self.line, self.evaluator, self.arrive
         leave = np.maximum(arrive, line.leave)
         late = np.maximum(DIFFERENCE_STEP * np.diff(arrive), 1e-3)
-        spent, took = self._perturbed_legs(step[0], leave, late)
+        spent, durations = self._perturbed_legs(step[0], leave, late)
         with np.errstate(invalid="ignore"):
-            growth = np.nan_to_num(1.0 + (took[-1] - took[0]) / late, nan=1.0)
+            growth = np.nan_to_num(1.0 + (durations[-1] - durations[0]) / late, nan=1.0)
         waits = (leave > arrive + 1e-9)[None]
         if isinstance(evaluator, CostEvaluator):
             with np.errstate(invalid="ignore"):
@@ -158,13 +158,13 @@ class SailedPolyline:
             delays = accumulated_delay_effects(
                 growth[None], dearer[None], evaluator.per_second, absorbed=waits
             )
-            return (spent + took * delays[0, 1:])[:-1]
+            return (spent + durations * delays[0, 1:])[:-1]
         if evaluator.by_length:
             return spent[:-1]
         delays = accumulated_delay_effects(
             growth[None], 0.0, 1.0, absorbed=waits, remaining=_ABSORBED_DELAY
         )
-        return (took * delays[0, 1:])[:-1]
+        return (durations * delays[0, 1:])[:-1]
 
     def _perturbed_legs(
         self, step: FloatArray, leave: FloatArray, late: FloatArray
@@ -193,8 +193,8 @@ class SailedPolyline:
             arrive, cost = self.evaluator.sail(batch, pieces=pieces, check=False)
         known = np.isfinite(cost)
         spent = np.where(known, cost, math.nan).reshape(count, legs)
-        took = np.where(known, arrive[:, -1] - batch.depart, math.nan).reshape(count, legs)
-        return spent, took
+        durations = np.where(known, arrive[:, -1] - batch.depart, math.nan).reshape(count, legs)
+        return spent, durations
 
     def best_of_offsets(
         self, offsets: FloatArray, rows: IntArray
