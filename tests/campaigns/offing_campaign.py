@@ -104,12 +104,15 @@ def breaches(found, tree, wanted):
         return []
     legs = np.stack([track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:]])
     fixed = np.asarray(chart.canal_of_legs(*legs)) >= 0
+    fixed |= np.asarray(found.best.legs["leg_kind"]) != 0  # canals and approaches
     lat, lon, leg = densify(track.lat, track.lon, PIECE)
     ends = [(track.lat[0], track.lon[0]), (track.lat[-1], track.lon[-1]), *wanted]
     spared = np.zeros(len(lat), bool)
-    radius = max([0.0, *(float(n) for n in re.findall(r"within (\d+) nm of it", notes(found)))])
-    for place in ends[:2]:
-        spared |= distance(lat, lon, *place) < radius * NM + NEAR_END * offing + PIECE
+    for disc in (*chart.offing.discs, *chart.offing.canal_discs):
+        reach = (
+            disc.radius + 2.0 * (offing - disc.least) + PIECE
+        )  # it grows by half a metre a metre
+        spared |= distance(lat, lon, disc.lat, disc.lon) < reach
     for canal in chart.canals:
         ends += list(canal.ends)
     for place in ends:

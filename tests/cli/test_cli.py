@@ -224,6 +224,11 @@ def test_southern_positions_are_not_options(capsys, ship):
     assert found["routes"][0]["waypoints"][0]["lat"] == pytest.approx(-33.5)
 
 
+def test_a_southern_position_with_a_letter_and_a_sign_says_what_to_type(capsys):
+    assert main(["distance", "-29.8S,31.5E", "Durban", "--quiet"]) == 2
+    assert "Write it as -33.9,18.2 or 33.9S 18.2E" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("content", [b"not a file of any kind", b"CDF\x01" + b"\0" * 20, b""])
 def test_corrupt_files(capsys, tmp_path, ship, content):
     path = tmp_path / "bad.nc"

@@ -88,6 +88,14 @@ def test_a_name_is_not_a_position(text):
     assert geodesy.parse_position(text) is None
 
 
+@pytest.mark.parametrize(
+    "text", ["-33 54S 18.2", "-29.8S 31.5E", "33.9S,-18.2", "52.0N 4.1", "-1 2 3"]
+)
+def test_a_position_that_is_written_in_another_way_says_how_to_write_it(text):
+    with pytest.raises(InputError, match=r"33\.9S 18\.2E"):
+        geodesy.parse_position(text)
+
+
 def test_swapped_latitude_gets_a_hint():
     with pytest.raises(InputError, match="swapped"):
         geodesy.check_position(151.2, -33.9)

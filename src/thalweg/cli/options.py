@@ -238,4 +238,4 @@ def add_mapping_option(parser: Any) -> None:
 
 def accept_negative_positions(parser: argparse.ArgumentParser) -> None:
     """Let the parser read a position such as -33.9,151.2 as an argument, not as an option."""
-    parser._negative_number_matcher = re.compile(r"^-\d[\d.]*([,;\s].*)?$")
+    parser._negative_number_matcher = re.compile(r"^-\d[\d.]*([,;\sNSns°].*)?$")

@@ -308,6 +308,10 @@ _DMS = rf"{_NUMBER}(?:[°\s:-]+{_NUMBER}['′]?)?(?:[\s:-]*{_NUMBER}[\"″]?)?\s
 _HEMISPHERES = re.compile(rf"^\s*{_DMS}([NSns])[\s,]+{_DMS}([EWew])\s*$")
 _BEFORE = re.compile(rf"^\s*([NSns])\s*{_DMS}[\s,]*([EWew])\s*{_DMS}$")
 _PAIR = re.compile(r"^\s*([+-]?\d+(?:\.\d+)?)\s*[,;\s]\s*([+-]?\d+(?:\.\d+)?)\s*$")
+#: Two numbers or more, with signs and letters of positions only.
+_LIKE_A_POSITION = re.compile(
+    r"^(?=.*\d[^\d.]+\d)(?=.*(?:[NSEWnsew]|^\s*[+-]))[-\s\d.,;:+°'\"NSEWnsew]+$"
+)
 
 
 def parse_position(text: str) -> Position | None:
@@ -319,7 +323,7 @@ def parse_position(text: str) -> Position | None:
     Raises
     ------
     InputError
-        If it reads as a position that cannot exist.
+        If it reads as a position that cannot exist, or is written in another way.
     """
     pair = _PAIR.match(text)
     if pair:
@@ -329,6 +333,13 @@ def parse_position(text: str) -> Position | None:
         d1, m1, s1, ns, d2, m2, s2, ew = match.groups()
     elif before:
         ns, d1, m1, s1, ew, d2, m2, s2 = before.groups()
+    elif _LIKE_A_POSITION.match(text):
+        raise InputError(
+            f"The position {text!r} is not understood.",
+            "South and west are negative numbers without a letter, or letters without a sign.",
+            "Write it as -33.9,18.2 or 33.9S 18.2E or 33 54S 018 12E.",
+            value=text,
+        )
     else:
         return None
     if any(float(part or 0.0) >= 60.0 for part in (m1, s1, m2, s2)):
