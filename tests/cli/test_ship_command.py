@@ -359,3 +359,24 @@ def test_beyond_the_range_of_the_speed_loss_no_speed_is_given(capsys):
     top = json.loads(text)["conditions"][-1]
     assert top["speed_kn"] is None and top["fuel_kg_per_nm"] is None
     assert any("no speed is given" in text for text in top["warnings"])
+
+
+def test_motions_and_sickness_by_place_and_heading(capsys, tmp_path):
+    """Check values of the ship of Prestegardshus (2020): 2 m, 8 s, 4.83 m/s."""
+    words = ("gunnerus-2019", "--hs", 2, "--tp", 8, "--speed", 4.83 / 0.514444)
+    sheet = json.loads(_run(capsys, *words, "--json", "--out", tmp_path))["motions"]
+    mess = sheet["places"]["mess"]
+    head, beam = (sheet["headings_deg"].index(angle) for angle in (0, 90))
+    assert mess["acceleration_rms_m_s2"][head] == pytest.approx(0.660, abs=1e-3)
+    assert mess["sick_percent"][head] == pytest.approx(25.5, abs=0.1)
+    assert mess["sick_percent"][beam] == pytest.approx(19.4, abs=0.1)
+    assert 2.0 * sheet["heave_rms_m"][head] == pytest.approx(0.950, abs=1e-3)
+    assert sheet["tasks"]["laboratory work"][head] is False
+    assert (tmp_path / "motions.png").stat().st_size > 10_000
+    text = _run(capsys, *words)
+    assert "bridge" in text and "laboratory work is possible" in text
+
+
+def test_no_motions_without_waves_or_places(capsys):
+    assert "motions" not in json.loads(_run(capsys, "gunnerus-2019", "--json"))
+    assert "motions" not in json.loads(_run(capsys, "handysize-bulker", "--hs", 2, "--json"))

@@ -77,7 +77,7 @@ def test_a_limit_that_is_exceeded_decides(gunnerus):
 
 
 def test_a_ship_without_places_has_no_comfort():
-    ship = Ship.load("gunnerus")
+    ship = Ship.load("handysize-bulker")
     assert onboard_motions(ship) is None
     with pytest.raises(InputError, match="no named places"):
         required_motions(ship)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from thalweg.cli import options
+from thalweg.cli.coast.motion_table import draw_motions, print_motions
 from thalweg.cli.ship.ship_sheet_table import print_sheet
 from thalweg.cli.tables import print_written
 from thalweg.core.errors import InputError
@@ -21,7 +22,8 @@ def add_command(commands: Any) -> None:
         "ship",
         help="resistance, power and fuel of a ship at each speed",
         description="Compute resistance by component, power, fuel, CO2 and carbon intensity (CII) "
-        "of a ship at several speeds in given weather.",
+        "of a ship at several speeds in given weather; in waves also motions and motion sickness "
+        "at the places of the ship file, at the highest speed.",
         epilog="Example: thalweg ship handysize-bulker --speed 8:16 --hs 3 --wind 12 --out results",
     )
     parser.add_argument(
@@ -80,11 +82,16 @@ def run(arguments: argparse.Namespace) -> int:
     weather = _weather(arguments)
     sheet = performance_sheet(ship, weather, speeds_kn=speeds)
     _check_ranges(sheet, arguments.strict)
+    motions = _motions(ship, weather, speeds)
+    if motions is not None:
+        sheet["motions"] = motions
     files = _write(ship, sheet, weather, arguments.out) if arguments.out else []
     if arguments.json:
         print(json.dumps(sheet, indent=2, allow_nan=False))
         return 0
     print_sheet(sheet)
+    if motions is not None:
+        print_motions(motions)
     print_written(files)
     return 0
 
@@ -190,4 +197,20 @@ def _write(ship: Any, sheet: dict[str, Any], weather: dict[str, float], out: str
 
     folder = make_folder(out)
     write_text(folder / "ship.json", json.dumps(sheet, indent=2, allow_nan=False) + "\n")
-    return [folder / "ship.json", *draw_ship(ship, sheet, weather, folder)]
+    files = [folder / "ship.json", *draw_ship(ship, sheet, weather, folder)]
+    if "motions" in sheet:
+        files.append(draw_motions(sheet["motions"], folder / "motions.png"))
+    return files
+
+
+def _motions(ship: Any, weather: dict[str, float], speeds: list[float]) -> dict[str, Any] | None:
+    """Return motions by place and heading, in waves and where the ship file has places."""
+    from thalweg.ship.comfort.motion_sheet import motion_sheet
+    from thalweg.ship.performance_sheet_weather import assumed_peak_period
+
+    height = weather.get("wave_height", 0.0)
+    if not height > 0.0:
+        return None
+    period = weather.get("wave_period") or float(assumed_peak_period(height))
+    speed = max(speeds) if speeds else None
+    return motion_sheet(ship, wave_height=height, wave_period=period, speed_kn=speed)
