@@ -96,7 +96,7 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
     sea = layers[0] if len(layers) == 1 else Sea.layered(*layers)
     sea = _check_ensemble_choice(sea, arguments)
     for one_of_each in _in_turns(policies):
-        sea = sea.filled(**one_of_each)
+        sea = sea.filled(**_with_fetch(one_of_each, arguments))
     return sea
 
 
@@ -142,19 +142,33 @@ def _check_ensemble_choice(sea: Sea, arguments: argparse.Namespace) -> Sea:
     return sea
 
 
+def _with_fetch(policies: dict[str, Any], arguments: argparse.Namespace) -> dict[str, Any]:
+    """Return fill values with the fetch to the coast of the options in place of its name."""
+    if policies.get("waves") != "fetch_limited":
+        return policies
+    from thalweg.chart import Chart
+    from thalweg.chart.coast.coastal_fetch import CoastalFetch
+
+    coast = getattr(arguments, "coast", "i")
+    chart = Chart.open_water() if coast == "none" else Chart.gshhg(coast)
+    return {**policies, "waves": CoastalFetch(chart)}
+
+
 def _parse_fill_policy(text: str) -> tuple[str, float | str]:
     name, _, value = text.partition("=")
     try:
         if name not in FILLABLE:
             raise ValueError
-        of_waves = name == "waves" and value in ("wind", "head_seas")
+        of_waves = name == "waves" and (
+            value in ("wind", "head_seas", "fetch_limited") or value.startswith("coastal_shelter")
+        )
         is_text = of_waves or value.startswith("nearest:")
         return name, value if is_text else float(value)
     except ValueError:
         raise InputError(
             f"--fill {text} is not understood.",
             f"It is one of {', '.join(f'{n}=0' for n in FILLABLE)}, waves=wind, waves=head_seas, "
-            "or NAME=nearest:NM.",
+            "waves=coastal_shelter, waves=fetch_limited, or NAME=nearest:NM.",
             "Give the value in this form.",
         ) from None
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Final
+from functools import partial
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
@@ -15,10 +16,17 @@ from thalweg.sea.layer import Layer
 from thalweg.sea.layer_stack import stack_variables
 from thalweg.sea.models.coast_fills import head_seas_layer, nearest_layer
 from thalweg.sea.models.function_layer import constant_layer
-from thalweg.sea.models.wind_sea import wind_sea_layer
+from thalweg.sea.models.wind_sea import FetchFunction, wind_sea_layer
 from thalweg.sea.plausible_values import PLAUSIBLE_RANGES
 
+#: A number, a vector, a named policy, or a function of the fetch.
+FillValue: TypeAlias = "float | tuple[float, float] | str | FetchFunction"
+
 NEAREST: Final = "nearest"  #: begins the policy of the nearest known position
+SHELTER: Final = "coastal_shelter"  #: begins that of waves in the shelter of a coast
+SHELTER_DISTANCE: Final = 25.0  #: [nm] of that policy where none is given
+SHELTER_FACTOR: Final = 0.8  #: of the wave height there, as in Prestegardshus (2020), eq. 3.4
+FETCH_LIMITED: Final = "fetch_limited"  #: waves of the local wind over the true fetch
 MAX_NEAREST: Final = 100.0  #: [nm] greatest distance of that policy
 CALM_PERIOD = 8.0  #: [s] placeholder peak period of waves of height zero
 CALM_VALUES = {
@@ -43,7 +51,7 @@ FILLABLE_VARIABLES: dict[str, tuple[str, ...]] = {
 
 
 def layers_filled(
-    layers: Sequence[Layer], policies: Mapping[str, float | tuple[float, float] | str]
+    layers: Sequence[Layer], policies: Mapping[str, FillValue]
 ) -> tuple[tuple[Layer, ...], tuple[str, ...]]:
     """Return layers with one more for the fill values, and a sentence for each policy.
 
@@ -68,21 +76,25 @@ def layers_filled(
             _check_name(policy)
             models.append((policy, value.strip()))
             continue
-        values.update(fill_values(policy, value))
+        if callable(value):
+            models.append((policy, _checked_fetch(policy, value)))
+            continue
+        values.update(fill_values(policy, value))  # type: ignore[arg-type]
         assumptions.append(f"where unknown, {policy.replace('_', ' ')} = {value}")
     for vector in (nm.WIND, nm.CURRENT):
         if vector.east in values and vector.speed in known and vector.east not in known:
             assumptions.append(f"the data's {vector.speed}, without direction, is not used")
     filled = [*layers]
     for policy, value in models:
-        if value.startswith(NEAREST):
-            layer, text = _nearest(filled, policy, value)
+        if isinstance(value, str) and value.startswith((NEAREST, SHELTER)):
+            fill = _nearest if value.startswith(NEAREST) else _shelter
+            layer, text = fill(filled, policy, value)
             filled.append(layer)
             assumptions.append(text)
     if values:
         filled.append(constant_layer(values, "filled"))
     for _, value in models:
-        if value.startswith(NEAREST):
+        if isinstance(value, str) and value.startswith((NEAREST, SHELTER)):
             continue
         make, text = _wave_model(value)
         filled.append(make(filled))
@@ -109,7 +121,54 @@ def _nearest(layers: Sequence[Layer], policy: str, value: str) -> tuple[Layer, s
     return layer, f"where unknown next to land, {policy.replace('_', ' ')} = {text}"
 
 
-def _wave_model(value: str) -> tuple[Callable[[Sequence[Layer]], Layer], str]:
+def _shelter(layers: Sequence[Layer], policy: str, value: str) -> tuple[Layer, str]:
+    """Return the layer of the nearest known waves, with their height times a factor."""
+    parts = value.split(":")[1:]
+    try:
+        numbers = [float(part) for part in parts]
+    except ValueError:
+        numbers = [math.nan]
+    miles, factor = [*numbers, *(SHELTER_DISTANCE, SHELTER_FACTOR)[len(numbers) :]][:2]
+    if len(numbers) > 2 or not (0.0 < miles <= MAX_NEAREST and 0.0 <= factor <= 1.0):
+        raise InputError(
+            f"{policy} cannot be filled with {value!r}.",
+            f"It is {SHELTER}, {SHELTER}:NM or {SHELTER}:NM:FACTOR, with a distance up to "
+            f"{MAX_NEAREST:g} nm and a factor of the wave height from 0 to 1.",
+            f"For example {policy}={SHELTER}:25:0.8.",
+        )
+    names, distance = FILLABLE_VARIABLES[policy], miles * NAUTICAL_MILE
+    text = (
+        f"where unknown next to land, waves = those of the nearest known position within "
+        f"{miles:g} nm with {factor:g} of their height (coastal shelter)"
+    )
+    return nearest_layer(layers, names, distance, height_factor=factor), text
+
+
+def _checked_fetch(policy: str, fetch: Any) -> FetchFunction:
+    """Return a function of the fetch, for waves only."""
+    if policy == "waves" and hasattr(fetch, "name"):
+        return fetch  # type: ignore[no-any-return]
+    raise InputError(
+        f"{policy} cannot be filled with a function.",
+        "Waves are filled with those of the local wind by a CoastalFetch of the chart.",
+        "Give waves=CoastalFetch(chart).",
+    )
+
+
+def _wave_model(
+    value: str | FetchFunction,
+) -> tuple[Callable[[Sequence[Layer]], Layer], str]:
+    if not isinstance(value, str):
+        return partial(wind_sea_layer, fetch=value), (
+            "where unknown, waves are those that the local wind raises over its fetch to the "
+            f"coast of {value.name} (Carter 1982, 24 h, at most 500 km)"
+        )
+    if value == FETCH_LIMITED:
+        raise InputError(
+            "The fetch needs a coast, which the sea does not know.",
+            "A CoastalFetch of a chart gives it.",
+            "Give waves=CoastalFetch(chart) in place of the name.",
+        )
     if value == "wind":
         return wind_sea_layer, (
             "where unknown, waves are those that the wind raises (Carter 1982, 500 km of fetch, "
@@ -122,7 +181,8 @@ def _wave_model(value: str) -> tuple[Callable[[Sequence[Layer]], Layer], str]:
         )
     raise InputError(
         f"waves cannot be filled with {value!r}.",
-        f"Give a height [m], 'wind', 'head_seas' or '{NEAREST}:NM'.",
+        f"Give a height [m], 'wind', 'head_seas', '{SHELTER}', '{FETCH_LIMITED}' or "
+        f"'{NEAREST}:NM'.",
         "For example waves=head_seas.",
     )
 

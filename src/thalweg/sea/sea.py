@@ -18,7 +18,7 @@ from thalweg.sea.ensemble_layer import (
     member_count,
     select_member,
 )
-from thalweg.sea.fill_policies import CALM_VALUES, layers_filled
+from thalweg.sea.fill_policies import CALM_VALUES, FillValue, layers_filled
 from thalweg.sea.inspection import inspect_layers
 from thalweg.sea.layer import Layer
 from thalweg.sea.models import cyclone_layer
@@ -320,7 +320,7 @@ class Sea:
     def __add__(self, other: Sea) -> Sea:
         return Sea.layered(self, other) if isinstance(other, Sea) else NotImplemented
 
-    def filled(self, **policies: float | tuple[float, float] | str) -> Sea:
+    def filled(self, **policies: FillValue) -> Sea:
         """Return a sea in which unknown values take a value that the user names.
 
         Parameters
@@ -332,7 +332,11 @@ class Sea:
             ``"head_seas"`` for waves of known height without direction or period
             (`thalweg.sea.models.coast_fills.HeadSeasLayer`); ``water_level`` [m]; ``ice`` [-].
             The value holds where no layer knows one. For any of them ``"nearest:25"``
-            takes the nearest known value within 25 nm, for cells without data next to land.
+            takes the nearest known value within 25 nm, for cells without data next to land; for
+            waves also ``"coastal_shelter"`` (or ``"coastal_shelter:25:0.8"``): the nearest known
+            waves within 25 nm with 0.8 of their height. A
+            `thalweg.chart.coast.coastal_fetch.CoastalFetch` gives the waves that the local wind
+            raises over its fetch to the coast (fetch limited).
 
         Returns
         -------

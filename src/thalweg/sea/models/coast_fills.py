@@ -57,7 +57,9 @@ class HeadSeasLayer(DerivedLayer):
     derived = frozenset({*nm.WAVES.pair, nm.WAVE_PERIOD})
     source_text = "head seas with the height of"
 
-    def _values(self, needed: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    def _values(
+        self, needed: Mapping[str, FloatArray], lat: FloatArray, lon: FloatArray
+    ) -> dict[str, FloatArray]:
         height = needed[nm.WAVE_HEIGHT]
         still = np.where(np.isnan(height), np.nan, 0.0)
         period = np.maximum(PERIOD_OF_ROOT_HEIGHT * np.sqrt(height), SHORTEST_PERIOD)
@@ -82,11 +84,14 @@ class NearestLayer:
         Canonical names of what is filled.
     distance : float
         Greatest distance [m].
+    height_factor : float
+        Wave heights are multiplied by this.
     """
 
     layers: tuple[Layer, ...]
     names: frozenset[str]
     distance: float
+    height_factor: float = 1.0
 
     @property
     def variables(self) -> frozenset[str]:
@@ -160,6 +165,8 @@ class NearestLayer:
             if rows.size == 0:
                 continue
             values = read(own, rows, y[nearest], x[nearest])
+            if nm.WAVE_HEIGHT in values:
+                values = {**values, nm.WAVE_HEIGHT: self.height_factor * values[nm.WAVE_HEIGHT]}
             for name in own:
                 old = samples[name][rows]
                 samples[name][rows] = np.where(np.isnan(old), values[name], old)
@@ -193,6 +200,7 @@ class NearestLayer:
             "kind": "nearest known values",
             "variables": sorted(self.variables),
             "distance_m": self.distance,
+            "wave_height_factor": self.height_factor,
         }
 
 
@@ -219,7 +227,9 @@ def head_seas_layer(layers: Sequence[Layer]) -> HeadSeasLayer:
     return HeadSeasLayer(tuple(layers))
 
 
-def nearest_layer(layers: Sequence[Layer], names: Sequence[str], distance: float) -> NearestLayer:
+def nearest_layer(
+    layers: Sequence[Layer], names: Sequence[str], distance: float, *, height_factor: float = 1.0
+) -> NearestLayer:
     """Return a layer of the nearest known values of some variables.
 
     Parameters
@@ -230,6 +240,8 @@ def nearest_layer(layers: Sequence[Layer], names: Sequence[str], distance: float
         Canonical names.
     distance : float
         Greatest distance [m].
+    height_factor : float, optional
+        Wave heights are multiplied by this.
 
     Raises
     ------
@@ -244,7 +256,7 @@ def nearest_layer(layers: Sequence[Layer], names: Sequence[str], distance: float
             f"The sea holds: {', '.join(sorted(stack_variables(layers))) or 'nothing'}.",
             "Add a file with them, or fill with a value.",
         )
-    return NearestLayer(tuple(layers), wanted, distance)
+    return NearestLayer(tuple(layers), wanted, distance, height_factor)
 
 
 def _known_near_unknown(layer: GridLayer, names: frozenset[str]) -> tuple[FloatArray, FloatArray]:

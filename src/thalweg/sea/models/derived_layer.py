@@ -53,19 +53,25 @@ class DerivedLayer(ABC):
         self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
         """Return values at points; NaN where what is needed is unknown."""
-        values = self._values(sample_stack(self.layers, list(self.needed), time, lat, lon))
+        values = self._values(
+            sample_stack(self.layers, list(self.needed), time, lat, lon), lat, lon
+        )
         return {name: values[name] for name in names if name in values}
 
     def series(
         self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
         """Return values (S, T) at stations for all times."""
-        values = self._values(series_of_stack(self.layers, list(self.needed), times, lat, lon))
+        values = self._values(
+            series_of_stack(self.layers, list(self.needed), times, lat, lon), lat, lon
+        )
         return {name: values[name] for name in names if name in values}
 
     @abstractmethod
-    def _values(self, needed: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-        """Return what is derived, each in an array of its own."""
+    def _values(
+        self, needed: Mapping[str, FloatArray], lat: FloatArray, lon: FloatArray
+    ) -> dict[str, FloatArray]:
+        """Return what is derived at positions [deg], each in an array of its own."""
 
     def times(self, start: float, end: float) -> FloatArray:
         """Return the times of what is needed."""

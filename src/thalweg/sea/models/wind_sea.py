@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,7 +21,7 @@ DEFAULT_DURATION = 24.0 * 3600.0  #: [s] assumed duration of the wind
 
 
 def carter_1982(
-    wind_speed: ArrayLike, *, fetch: float = DEFAULT_FETCH, duration: float = DEFAULT_DURATION
+    wind_speed: ArrayLike, *, fetch: ArrayLike = DEFAULT_FETCH, duration: float = DEFAULT_DURATION
 ) -> tuple[FloatArray, FloatArray]:
     r"""Return significant height and peak period of the waves that a steady wind raises.
 
@@ -38,7 +39,7 @@ def carter_1982(
     ----------
     wind_speed : array_like
         Wind speed at 10 m [m/s], at least 0.
-    fetch : float
+    fetch : array_like
         Length of open water over which the wind has blown [m].
     duration : float
         Time for which it has blown [s].
@@ -64,9 +65,10 @@ def carter_1982(
        using the JONSWAP results. *Ocean Engineering* 9(1), 17-33.
     .. [2] World Meteorological Organization. *Guide to Wave Analysis and Forecasting*, WMO-No. 702.
     """
-    if not (fetch > 0.0 and duration > 0.0):
+    fetch = np.asarray(fetch, float)
+    if np.any(fetch <= 0.0) or not duration > 0.0:
         raise InputError(
-            f"A fetch of {fetch:g} m and a duration of {duration:g} s raise no waves.",
+            f"A fetch of {np.min(fetch):g} m and a duration of {duration:g} s raise no waves.",
             "Both must be above zero.",
             "Correct them.",
         )
@@ -77,6 +79,18 @@ def carter_1982(
     return np.minimum(height, 0.0248 * wind**2), np.minimum(period, 0.729 * wind)
 
 
+class FetchFunction(Protocol):
+    """The length of open water over which the wind blows to a position."""
+
+    @property
+    def name(self) -> str:
+        """Name of the coastline, for records."""
+
+    def __call__(self, lat: FloatArray, lon: FloatArray, origin: FloatArray) -> FloatArray:
+        """Return the fetch [m] at positions [deg] for winds from a direction [rad]."""
+
+
+@dataclass(frozen=True, eq=False)
 class WindSeaLayer(DerivedLayer):
     """Waves that the wind of other layers raises; they travel with the wind.
 
@@ -84,16 +98,26 @@ class WindSeaLayer(DerivedLayer):
     ----------
     layers : tuple of Layer
         Layers that hold the wind, in order of priority; waves are unknown where the wind is.
+    fetch : callable, optional
+        ``f(lat, lon, origin)``: fetch [m] at positions [deg] for winds from a direction [rad], such
+        as `thalweg.chart.coast.coastal_fetch.CoastalFetch`; by default 500 km.
     """
+
+    fetch: FetchFunction | None = None
 
     needed = nm.WIND.pair
     derived = frozenset({nm.WAVE_HEIGHT, *nm.WAVES.pair, nm.WAVE_PERIOD})
     source_text = "from the wind of"
 
-    def _values(self, needed: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    def _values(
+        self, needed: Mapping[str, FloatArray], lat: FloatArray, lon: FloatArray
+    ) -> dict[str, FloatArray]:
         east, north = (np.asarray(needed[name], float) for name in nm.WIND.pair)
         speed = np.hypot(east, north)
-        height, period = carter_1982(speed)
+        fetch: FloatArray | float = DEFAULT_FETCH
+        if self.fetch is not None:
+            fetch = self.fetch(lat, lon, np.arctan2(-east, -north))
+        height, period = carter_1982(speed, fetch=fetch)
         nonzero = np.where(speed > 0.0, speed, 1.0)
         return {
             nm.WAVE_HEIGHT: height,
@@ -104,17 +128,20 @@ class WindSeaLayer(DerivedLayer):
 
     def provenance(self) -> Mapping[str, Any]:
         """Return the method and its assumed fetch [m] and duration [s]."""
-        return {"kind": "waves from wind", "method": "Carter (1982)", "fetch_m": DEFAULT_FETCH,
+        fetch = DEFAULT_FETCH if self.fetch is None else f"to the coast of {self.fetch.name}"
+        return {"kind": "waves from wind", "method": "Carter (1982)", "fetch_m": fetch,
                 "duration_s": DEFAULT_DURATION}  # fmt: skip
 
 
-def wind_sea_layer(layers: Sequence[Layer]) -> WindSeaLayer:
+def wind_sea_layer(layers: Sequence[Layer], fetch: FetchFunction | None = None) -> WindSeaLayer:
     """Return a layer of the waves that the wind of the layers raises.
 
     Parameters
     ----------
     layers : sequence of Layer
         Layers in order of priority.
+    fetch : callable, optional
+        As in `WindSeaLayer`.
 
     Raises
     ------
@@ -128,4 +155,4 @@ def wind_sea_layer(layers: Sequence[Layer]) -> WindSeaLayer:
             f"The sea holds: {', '.join(sorted(variables)) or 'nothing'}.",
             "Add wind, or fill waves with a height.",
         )
-    return WindSeaLayer(tuple(layers))
+    return WindSeaLayer(tuple(layers), fetch)
