@@ -1,11 +1,11 @@
-"""Waves at coasts: nearest known waves with a factor, and those of the local wind over its fetch."""
+"""Waves at coasts: the nearest known ones with a factor, and those of the wind over its fetch."""
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from thalweg.chart import Chart
-from thalweg.chart.coast.coastal_fetch import CoastalFetch
+from thalweg.chart.coastal_fetch import CoastalFetch
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import distance
 from thalweg.sea import Sea

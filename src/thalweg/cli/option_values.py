@@ -147,7 +147,7 @@ def _with_fetch(policies: dict[str, Any], arguments: argparse.Namespace) -> dict
     if policies.get("waves") != "fetch_limited":
         return policies
     from thalweg.chart import Chart
-    from thalweg.chart.coast.coastal_fetch import CoastalFetch
+    from thalweg.chart.coastal_fetch import CoastalFetch
 
     coast = getattr(arguments, "coast", "i")
     chart = Chart.open_water() if coast == "none" else Chart.gshhg(coast)

@@ -332,11 +332,9 @@ class Sea:
             ``"head_seas"`` for waves of known height without direction or period
             (`thalweg.sea.models.coast_fills.HeadSeasLayer`); ``water_level`` [m]; ``ice`` [-].
             The value holds where no layer knows one. For any of them ``"nearest:25"``
-            takes the nearest known value within 25 nm, for cells without data next to land; for
-            waves also ``"coastal_shelter"`` (or ``"coastal_shelter:25:0.8"``): the nearest known
-            waves within 25 nm with 0.8 of their height. A
-            `thalweg.chart.coast.coastal_fetch.CoastalFetch` gives the waves that the local wind
-            raises over its fetch to the coast (fetch limited).
+            takes the nearest known value within 25 nm, for cells without data next to land;
+            for waves ``"coastal_shelter"`` does with 0.8 of their height, and a
+            `thalweg.chart.coastal_fetch.CoastalFetch` gives those of the wind over its fetch.
 
         Returns
         -------

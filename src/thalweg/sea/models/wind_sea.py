@@ -100,7 +100,7 @@ class WindSeaLayer(DerivedLayer):
         Layers that hold the wind, in order of priority; waves are unknown where the wind is.
     fetch : callable, optional
         ``f(lat, lon, origin)``: fetch [m] at positions [deg] for winds from a direction [rad], such
-        as `thalweg.chart.coast.coastal_fetch.CoastalFetch`; by default 500 km.
+        as `thalweg.chart.coastal_fetch.CoastalFetch`; by default 500 km.
     """
 
     fetch: FetchFunction | None = None
