@@ -1,4 +1,4 @@
-"""Key performance indicators of routes: motions, land, depth, traffic."""
+"""Key performance indicators of routes: motions, land, depth."""
 
 import math
 

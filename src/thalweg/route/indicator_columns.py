@@ -6,7 +6,7 @@ squares ``weighted_acceleration:NAME``, ``acceleration:NAME`` [m/s2], ``velocity
 ``displacement:NAME`` [m]; ``heave`` [m] and ``pitch`` [rad] (greatest root mean squares);
 ``workable_time:TASK`` [s]; ``inshore_length`` [m] and ``inshore_time`` [s] (land nearer than
 `INSHORE_DISTANCE`); ``land_distance`` [m] (least, at most `LAND_DISTANCE_CAP`); ``shallow_time``
-[s] (water less than twice as deep as the draught); ``encounters`` (expected number).
+[s] (water less than twice as deep as the draught).
 """
 
 from __future__ import annotations
@@ -29,8 +29,7 @@ PERCENT_PER_DOSE: Final = 1.0 / 3.0
 #: 1987; from the secondary literature, not seen in print).
 PASSENGER_ACCELERATION: Final = 0.05 * GRAVITY
 
-#: Indicators that can be an objective, a limit or part of a weighted sum: unit, and whether they
-#: add up over legs.
+#: Indicators of a route: unit, and whether they add up over legs.
 INDICATORS: Final[dict[str, tuple[str, bool]]] = {
     "time": ("h", True),
     "distance": ("nm", True),
@@ -50,14 +49,16 @@ INDICATORS: Final[dict[str, tuple[str, bool]]] = {
     "shallow_h": ("h", True),
     "min_ukc": ("m", False),
     "workable_percent": ("%", False),
-    "encounters": ("", True),
 }
-#: Those of which more is better.
-LARGER_IS_BETTER: Final = frozenset({"land_distance_nm", "min_ukc", "workable_percent"})
 _ATTRIBUTES: Final = {
-    "time": "time_h", "distance": "distance_nm", "fuel": "fuel_t", "energy": "energy_mwh",
-    "co2": "co2_t", "cost": "cost", "min_ukc": "min_ukc_m",
-}  # fmt: skip
+    "time": "time_h",
+    "distance": "distance_nm",
+    "fuel": "fuel_t",
+    "energy": "energy_mwh",
+    "co2": "co2_t",
+    "cost": "cost",
+    "min_ukc": "min_ukc_m",
+}
 
 
 class RefereedRoute(Protocol):
@@ -127,8 +128,7 @@ def indicator_value(route: RefereedRoute, name: str, at: str | None = None) -> f
     if name in _ATTRIBUTES:
         value = getattr(route, _ATTRIBUTES[name])
         return math.nan if value is None else float(value)
-    if name in ("inshore_nm", "inshore_percent", "land_distance_nm", "inshore_h", "shallow_h",
-                "encounters"):  # fmt: skip
+    if name in ("inshore_nm", "inshore_percent", "land_distance_nm", "inshore_h", "shallow_h"):
         return _water_indicator(route, name)
     if name == "workable_percent":
         times = named_columns(route.legs, "workable_time")
@@ -182,10 +182,12 @@ def _greatest_in_an_hour(rate: FloatArray, time: FloatArray) -> float:
 def _water_indicator(route: RefereedRoute, name: str) -> float:
     legs = route.legs
     column = {
-        "inshore_nm": "inshore_length", "inshore_percent": "inshore_length",
-        "land_distance_nm": "land_distance", "inshore_h": "inshore_time",
-        "shallow_h": "shallow_time", "encounters": "encounters",
-    }[name]  # fmt: skip
+        "inshore_nm": "inshore_length",
+        "inshore_percent": "inshore_length",
+        "land_distance_nm": "land_distance",
+        "inshore_h": "inshore_time",
+        "shallow_h": "shallow_time",
+    }[name]
     if column not in legs:
         return math.nan
     if name == "land_distance_nm":
@@ -193,8 +195,7 @@ def _water_indicator(route: RefereedRoute, name: str) -> float:
     total = _total(legs[column])
     if name == "inshore_percent":
         return 100.0 * total / float(legs["length"].sum())
-    unit = {"inshore_nm": NAUTICAL_MILE, "encounters": 1.0}.get(name, HOUR)
-    return total / unit
+    return total / (NAUTICAL_MILE if name == "inshore_nm" else HOUR)
 
 
 def _chosen(kind: str, at: str | None, known: Mapping[str, Any]) -> str | None:
@@ -218,7 +219,7 @@ def _time_in_legs(route: RefereedRoute) -> float:
 
 
 def indicator_table(route: RefereedRoute) -> dict[str, Any]:
-    """Return all indicators of motions, land, depth and traffic as plain data, for JSON.
+    """Return all indicators of motions, land and depth as plain data, for JSON.
 
     Parameters
     ----------
@@ -240,10 +241,16 @@ def indicator_table(route: RefereedRoute) -> dict[str, Any]:
     for name, doses in named_columns(legs, "squared_dose").items():
         squared = _total(doses)
         row = {"dose_m_s1_5": math.sqrt(squared) if math.isfinite(squared) else None}
-        row |= {key: plain(key, name) for key in (
-            "sick_percent", "worst_hour_percent", "uncomfortable_percent")}  # fmt: skip
-        for key, unit in (("weighted_acceleration", "m_s2"), ("acceleration", "m_s2"),
-                          ("velocity", "m_s"), ("displacement", "m")):  # fmt: skip
+        row |= {
+            key: plain(key, name)
+            for key in ("sick_percent", "worst_hour_percent", "uncomfortable_percent")
+        }
+        for key, unit in (
+            ("weighted_acceleration", "m_s2"),
+            ("acceleration", "m_s2"),
+            ("velocity", "m_s"),
+            ("displacement", "m"),
+        ):
             value = _largest(legs[f"{key}:{name}"])
             row[f"max_{key}_rms_{unit}"] = value if math.isfinite(value) else None
         places[name] = row
@@ -258,6 +265,5 @@ def indicator_table(route: RefereedRoute) -> dict[str, Any]:
             "max_heave_rms_m": heave if math.isfinite(heave) else None,
             "max_pitch_rms_deg": pitch if math.isfinite(pitch) else None,
         }
-    names = ("inshore_nm", "inshore_percent", "inshore_h", "land_distance_nm", "shallow_h",
-             "encounters")  # fmt: skip
+    names = ("inshore_nm", "inshore_percent", "inshore_h", "land_distance_nm", "shallow_h")
     return {**{name: plain(name) for name in names}, **ship, "places": places, "tasks": tasks}

@@ -213,7 +213,7 @@ class Route:
 
     @property
     def indicators(self) -> dict[str, Any]:
-        """Comfort, workability, distance from land, depth and traffic; None where unknown."""
+        """Comfort, workability, distance from land and depth; None where unknown."""
         return indicator_table(self)
 
     @property

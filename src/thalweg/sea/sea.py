@@ -327,13 +327,11 @@ class Sea:
         ----------
         **policies
             ``currents`` and ``wind``: 0.0 or (east, north) [m/s]; ``waves``: significant height
-            [m] (0.0, or a height with direction north and period 8 s), or ``"wind"`` for the waves
-            that the known wind raises (`thalweg.sea.models.wind_sea.carter_1982`), or
-            ``"head_seas"`` for waves of known height without direction or period
-            (`thalweg.sea.models.coast_fills.HeadSeasLayer`); ``water_level`` [m]; ``ice`` [-].
-            The value holds where no layer knows one. For any of them ``"nearest:25"``
-            takes the nearest known value within 25 nm, for cells without data next to land;
-            for waves ``"coastal_shelter"`` does with 0.8 of their height, and a
+            [m] (0.0, or a height with direction north and period 8 s), ``"wind"`` for those of the
+            known wind (`thalweg.sea.models.wind_sea.carter_1982`), ``"head_seas"`` where direction
+            or period is unknown (`HeadSeasLayer`); ``water_level`` [m]; ``ice`` [-].
+            The value holds where no layer knows one. ``"nearest:25"`` takes the nearest known
+            value within 25 nm; for waves, ``"coastal_shelter"`` does with 0.8 of the height, a
             `thalweg.chart.coastal_fetch.CoastalFetch` gives those of the wind over its fetch.
 
         Returns

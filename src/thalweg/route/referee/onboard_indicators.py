@@ -1,4 +1,4 @@
-"""Motions on board, distance from land and traffic along a sailed track, as columns of its legs."""
+"""Motions on board and distance from land along a sailed track, as columns of its legs."""
 
 from __future__ import annotations
 
@@ -58,7 +58,6 @@ def indicator_columns(
     notes: list[str] = []
     if world.chart is not None and hasattr(world.chart, "coastline"):
         legs |= _land_columns(world.chart, sailed, points, weights)
-        legs |= _encounters(world.chart, points, time, motion, weights, count)
     if world.has_depth:
         shallow = motion.depth < 2.0 * world.ship.draught
         known = np.where(np.isfinite(time), np.where(np.isnan(motion.depth), math.nan, shallow), 0)
@@ -123,23 +122,6 @@ def _land_columns(
         "inshore_length": np.minimum(length, sailed.pieces.length),
         "inshore_time": _sums(leg, weights * near, count),
     }
-
-
-def _encounters(
-    chart: Chart,
-    points: TrackPoints,
-    time: FloatArray,
-    motion: SailingState,
-    weights: FloatArray,
-    count: int,
-) -> dict[str, FloatArray]:
-    traffic = getattr(chart, "traffic", None)
-    if traffic is None:
-        return {}
-    at = np.where(np.isfinite(time), time, 0.0)
-    rate = traffic.encounter_rate(points.lat, points.lon, at, motion.speed_over_ground)
-    rate = np.where(weights > 0.0, rate, 0.0)
-    return {"encounters": _sums(np.asarray(points.leg, np.int64), weights * rate, count)}
 
 
 def _motions_at(
