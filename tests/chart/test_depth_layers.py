@@ -8,7 +8,6 @@ import xarray as xr
 
 from tests.conftest import data_file
 from thalweg.chart import Chart
-from thalweg.chart.depth.depth_layers import coarse_depth
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.kernels.geometry.depth_sampling import least_depth
 
@@ -189,13 +188,6 @@ def test_a_slope_through_999_metres_is_read():
     assert float(
         OPEN.with_depth(grid(slope, LAT, LON, "depth")).depths.at(51.0, 3.0)
     ) == pytest.approx(1000.0)
-
-
-def test_the_embedded_depth_is_coarse_and_not_part_of_charts():
-    assert 4000.0 < coarse_depth(40.0, -55.0) < 6000.0
-    assert 15.0 < coarse_depth(55.0, 3.0) < 45.0  # the North Sea
-    assert coarse_depth(47.0, 8.0) < 0.0
-    assert not OPEN.has_depth
 
 
 def test_real_grids_have_the_depths_of_the_sea():

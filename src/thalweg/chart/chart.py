@@ -107,7 +107,7 @@ class Chart:
             port="thalweg.chart.ports:PORTS.lookup",
             ports="thalweg.chart.ports:PORTS",
             shore_distance="coastline.shore_distance",
-            warning_depth_at="thalweg.chart.depth.depth_layers:coarse_depth",
+            warning_depth_at="thalweg.chart.depth.global_depth:coarse_depth",
             zone_factor="zones.factors",
         )
 

@@ -170,6 +170,12 @@ def _add_passage_options(group: Any) -> None:
         "default: by the size of the ship (0.5, 1 or 2)",
     )
     group.add_argument(
+        "--ignore-shoals",
+        action="store_true",
+        help="count miles in shallow water like others; default: without depth data the ship keeps "
+        "out of water shallower than one and a half draughts where it can",
+    )
+    group.add_argument(
         "--open",
         action="append",
         default=[],
@@ -266,6 +272,7 @@ def _voyage(arguments: argparse.Namespace, sea: Sea, ship: Ship) -> Voyage:
         avoid=tuple(arguments.avoid),
         offing_nm=arguments.offing,
         layered=layered_request(arguments),  # type: ignore[arg-type]
+        ignore_shoals=arguments.ignore_shoals,
         method=arguments.method,
         ensemble=arguments.ensemble,
     )

@@ -39,6 +39,7 @@ from thalweg.planning.request.network_choice import NetworkBuilder, NetworkChoic
 from thalweg.planning.request.offing_choice import chosen_offing, restrict_passages
 from thalweg.planning.request.ordered_speed import ordered_setting, with_order
 from thalweg.planning.request.requirements import derive_requirements
+from thalweg.planning.request.shoal_choice import add_shoals
 from thalweg.planning.request.voyage_endpoints import (
     Endpoint,
     check_distinct,
@@ -196,6 +197,8 @@ def _context(
     ends = _endpoints(voyage, chart)
     chart, notes = exclude_closed_canals(chart, voyage, ship, ends)
     chart = restrict_passages(chart, voyage, ship, chosen_offing(voyage, ship))
+    chart, shoal_notes = add_shoals(chart, voyage, ship, sea, ends)
+    notes += shoal_notes
     chart, more = add_emission_control_areas(exclude_ice_latitudes(chart, ends), voyage, ship)
     needs = derive_requirements(voyage, ship=ship, sea=sea, chart=chart)
     ends = endpoints_within_coverage(

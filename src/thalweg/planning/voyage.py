@@ -18,8 +18,8 @@ from thalweg.planning.voyage_parts import Itinerary, Schedule, SearchRequest, Vo
 _ENTRIES: Final = (
     "start", "goal", "depart", "depart_window", "objective", "via", "arrive_by", "arrive", "wait",
     "speed_kn", "hold", "min_ukc_m", "seed", "fuel_price_usd", "eca_price_factor",
-    "time_price_usd_per_h", "forbid", "open", "avoid", "offing_nm", "method", "ensemble",
-    "speed_block_h", "layered",
+    "time_price_usd_per_h", "forbid", "open", "avoid", "offing_nm", "ignore_shoals", "method",
+    "ensemble", "speed_block_h", "layered",
 )  # fmt: skip
 
 
@@ -86,6 +86,10 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
     layered : mapping, optional
         Search a layered network: ``{layers: S, fan: H, offset_nm: d}``, each one number, or a list
         with one number for every section between via points (`thalweg.network.layered_network`).
+    ignore_shoals : bool
+        Whether miles in shoal water count like others. By default a plan on the world's coasts
+        without depth of its own keeps out of water shallower than one and a half draughts where it
+        can, by the global depth layer (`thalweg.chart.depth.shoals`).
     method : {"default", "exact", "nsga2", "spea2", "mpaes"}
         How a trade-off is searched: the exact front of a network, refined by evolution (default);
         the exact front alone; or an evolutionary method from a few routes, for comparison.
@@ -165,7 +169,7 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
             value = getattr(self, name)
             if value is None or (name in ("via", "forbid", "open", "avoid") and not value):
                 continue
-            if (name, value) == ("method", "default"):
+            if (name, value) in (("method", "default"), ("ignore_shoals", False)):
                 continue
             data[name] = _plain_value(name, value)
         return data

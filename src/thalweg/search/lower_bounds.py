@@ -43,7 +43,7 @@ class LowerBound:
     Attributes
     ----------
     value : float
-        Time from departure to arrival [s], or distance [m], without penalty factors.
+        Time from departure to arrival [s], or distance [m].
     kind : str
         How it was found and what it rests on.
     kappa : float
@@ -134,14 +134,20 @@ class Penalties:
         Added to the time [s] or distance [m] of the known route.
     factors : tuple of float
         Factors of the zones.
+    graded : bool
+        Whether there are shoals, in which the factor follows the depth: then those of all edges
+        count as they are.
     """
 
     added: float
-    factors: tuple[float, ...]
+    factors: tuple[float, ...] = ()
+    graded: bool = False
 
 
 def _least_factors(factor: NDArray[np.float32], penalties: Penalties | None) -> NDArray[np.float32]:
     """Return the factors of edges that are wholly inside a penalty zone, and 1 for all others."""
+    if penalties is not None and penalties.graded:
+        return factor
     least = np.ones_like(factor)
     for value in sorted(penalties.factors if penalties is not None else ()):
         least[np.abs(factor - value) <= 1e-4 * value] = value
@@ -240,7 +246,7 @@ def network_bound(
     Returns
     -------
     LowerBound
-        Value 0 when the network shows no path or no factor holds.
+        Of the cost with penalty factors. Value 0 when the network shows no path or no factor holds.
     """
     gap = float(network.meta.gap_rad)
     rho = 0.0 if query.objective == "distance" else given.top_current / given.top_speed

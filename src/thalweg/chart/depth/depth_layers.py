@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from functools import cache
-from importlib import resources
 from typing import Final
 
 import numpy as np
@@ -223,26 +221,3 @@ def _half_mask(lat: FloatArray, lon: FloatArray, box: Box) -> NDArray[np.bool_]:
     left = np.zeros(len(line), bool)
     left[order[: len(line) // 2]] = True
     return left
-
-
-@cache
-def _global_depth() -> DepthArrays:
-    place = resources.files("thalweg.chart").joinpath("data/etopo1_30min.npz")
-    with place.open("rb") as file, np.load(file, allow_pickle=False) as data:
-        depth = -data["elevation"].astype(np.float32)
-        grid = (float(data["south"]), float(data["spacing"]), float(data["west"]))
-    depth = np.concatenate([depth, depth[:, :1]], 1)
-    return _pack_windows([((grid[0], grid[1], grid[2], grid[1]), depth)])
-
-
-def coarse_depth(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
-    """Return depth [m] from every 30th point of ETOPO1 (NOAA): for warnings only.
-
-    Amante and Eakins (2009), doi:10.7289/V5C8276M; points and not means, so it
-    does not show shoals between them.
-    """
-    a, b = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
-    depth = np.empty(a.size)
-    flat = [np.ascontiguousarray(x).ravel() for x in (a, b)]
-    depths_at_points(_global_depth(), flat[0], flat[1], False, depth)
-    return depth.reshape(a.shape)

@@ -22,6 +22,7 @@ from thalweg.chart import geojson_polygons
 from thalweg.chart.anchorages import waiting_allowed
 from thalweg.chart.coast.coast_cache import load_or_build
 from thalweg.chart.coast.coast_index_builder import build_index, empty_index
+from thalweg.chart.depth.shoals import Shoals
 from thalweg.chart.zones.emission_control_areas import EcaZone
 from thalweg.chart.zones.leg_fractions import (
     CROSSING_TOLERANCE,
@@ -122,6 +123,8 @@ class Zones:
         Where alone a ship may wait (anywhere if there are none), and where it may not.
     lanes : tuple of TrafficLane
         Where ships sail in one direction only.
+    shoals : Shoals, optional
+        Shoal water, in which a mile counts more besides the penalty zones.
     """
 
     no_go: tuple[Any, ...] = ()
@@ -131,6 +134,7 @@ class Zones:
     anchorages: tuple[Any, ...] = ()
     no_waiting: tuple[Any, ...] = ()
     lanes: tuple[TrafficLane, ...] = ()
+    shoals: Shoals | None = None
 
     @classmethod
     def read(cls, source: geojson_polygons.GeoJsonSource) -> Zones:
@@ -179,12 +183,13 @@ class Zones:
             self.anchorages + other.anchorages,
             self.no_waiting + other.no_waiting,
             self.lanes + other.lanes,
+            self.shoals or other.shoals,
         )
 
     @property
     def has_penalty(self) -> bool:
-        """Whether a mile counts more somewhere: in penalty zones or against traffic lanes."""
-        return bool(self.penalty or self.lanes)
+        """Whether a mile counts more somewhere: in penalty zones, shoals or against lanes."""
+        return bool(self.penalty or self.lanes) or self.shoals is not None
 
     @cached_property
     def lane_group(self) -> LaneGroup:
@@ -269,9 +274,10 @@ class Zones:
         """
         ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
         shape = ends[0].shape
-        if not (self.has_penalty or self.price):
+        shoal = 0.0 if self.shoals is None else self.shoals.excess(*ends)
+        if not (self.penalty or self.lanes or self.price):
             one = np.where(np.isfinite(sum(ends)), 1.0, np.nan)
-            return one, one.copy()
+            return one + shoal, one
         legs = np.stack([x.ravel() for x in ends])
         known = np.isfinite(legs).all(axis=0)
         penalty, price = np.full((2, known.size), np.nan)
@@ -279,7 +285,7 @@ class Zones:
         penalty[known], price[known] = (self._weighted(whole, group) for group in self._groups)
         if self.lanes:
             penalty[known] += self.lane_group.excess(*whole)
-        return penalty.reshape(shape), price.reshape(shape)
+        return penalty.reshape(shape) + shoal, price.reshape(shape)
 
     def _weighted(self, legs: list[FloatArray], group: ZoneGroup) -> FloatArray:
         """Return the factors of legs of one group: at once where no outline is touched."""
@@ -310,6 +316,7 @@ class Zones:
                 f"lane {lane.shape.wkb_hex} {lane.direction} {lane.tolerance} {lane.factor}"
                 for lane in self.lanes
             ]
+            + ([self.shoals.text()] if self.shoals is not None else [])
         )
 
 

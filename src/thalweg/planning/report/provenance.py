@@ -8,21 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from thalweg.chart.depth.depth_layers import coarse_depth
 from thalweg.core.geodesy import format_position
 from thalweg.core.time import format_time
 from thalweg.network import Network
 from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.depth_report import depth_notes
 from thalweg.planning.report.land_report import land_notes
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
 from thalweg.route.referee.route_assembly import OUT_OF_RANGE
 from thalweg.sea.inspection import data_gaps
 
-#: The coarse global depth is checked only at this distance off the coast [m] ...
-_MIN_SHORE_DISTANCE = 15_000.0
-#: ... and a warning is given below this under-keel clearance [m].
-_MIN_PLAUSIBLE_CLEARANCE = 10.0
 #: Latitude [deg] beyond which a warning about ice is given.
 _ICE_WARNING_LATITUDE = 72.0
 
@@ -44,27 +40,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     """
     notes = land_notes(context, route) + ice_warnings(route) + data_gap_warnings(context, route)
     notes += [text for text in route.assumptions if text.startswith(OUT_OF_RANGE)]
-    if not context.needs.limits.depth_checked:
-        notes += shallow_water_warnings(context, route)
-    return notes
-
-
-def shallow_water_warnings(context: PlanningContext, route: Route) -> list[str]:
-    """Return a warning where the coarse global depth is shallow, well off the coast."""
-    lat, lon = route.samples["lat"][::4], route.samples["lon"][::4]
-    depth = np.asarray(coarse_depth(lat, lon))
-    offshore = (
-        np.asarray(context.chart.coastline.shore_distance(lat, lon, cap=_MIN_SHORE_DISTANCE))
-        >= _MIN_SHORE_DISTANCE
-    )
-    doubtful = offshore & (depth < float(context.ship.draught) + _MIN_PLAUSIBLE_CLEARANCE)
-    if not doubtful.any():
-        return []
-    worst = int(np.argmin(np.where(doubtful, depth, np.inf)))
-    return [
-        f"The coarse global depth is {max(float(depth[worst]), 0.0):.0f} m near "
-        f"{format_position(float(lat[worst]), float(lon[worst]))}: check the chart there."
-    ]
+    return notes + depth_notes(context, route)
 
 
 def data_gap_warnings(context: PlanningContext, route: Route) -> list[str]:

@@ -35,7 +35,7 @@ from thalweg.planning.single.weather_gaps import (
     without_unknown_edges,
 )
 from thalweg.route import RefinementConditions, Route, Track, better_route
-from thalweg.route.refinement.better_route import comparison_key
+from thalweg.route.refinement.better_route import comparison_key, penalty_excess
 from thalweg.route.route import Violation
 from thalweg.search import (
     DepartureWindow,
@@ -380,9 +380,11 @@ def _bound(
     known, penalties = None, None
     if route.feasible:
         known = _objective_value(context, route)
-        if zones := context.chart.zones.penalty:
-            added = comparison_key(route, context.voyage.objective, context.chart)[1] - known
-            penalties = Penalties(added, tuple(factor for _, factor in zones))
+        zones = context.chart.zones
+        if zones.penalty or zones.shoals is not None:
+            added = penalty_excess(route, context.voyage.objective, context.chart)
+            factors = tuple(factor for _, factor in zones.penalty)
+            penalties = Penalties(added, factors, graded=zones.shoals is not None)
     return lower_bound(
         _ship_on_network(context, network, frozen, context.needs.limits),
         start=network.meta.start,

@@ -166,15 +166,16 @@ class TimeEvaluator:
         self, batch: TrackBatch, arrive: FloatArray, leave: FloatArray, cost: FloatArray
     ) -> FloatArray:
         """Return the additions of penalty zones to the cost of polylines."""
-        factor = penalty_factors(self.chart, batch.lat, batch.lon)
+        added = np.zeros(len(cost))
+        sailed = np.flatnonzero(np.isfinite(cost))
+        lat, lon = batch.lat[sailed], batch.lon[sailed]
+        factor = penalty_factors(self.chart, lat, lon)
         if factor is None:
-            return np.zeros(len(cost))
-        spent = rough_lengths(batch.lat, batch.lon)
+            return added
+        spent = rough_lengths(lat, lon)
         if not self.by_length:
-            with np.errstate(invalid="ignore"):
-                spent = arrive[:, 1:] - leave[:, :-1]
-        spent = np.where(np.isfinite(cost)[:, None], spent, 0.0)
-        added: FloatArray = ((factor - 1.0) * spent).sum(axis=1)
+            spent = arrive[sailed, 1:] - leave[sailed, :-1]
+        added[sailed] = ((factor - 1.0) * spent).sum(axis=1)
         return added
 
     def infeasible_legs(self, batch: TrackBatch, arrive: FloatArray) -> NDArray[np.bool_]:

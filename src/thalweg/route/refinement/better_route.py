@@ -296,6 +296,27 @@ def comparison_key(route: Route, objective: str, chart: Chart | None) -> tuple[i
     return len(route.violations), cost, route.arrive
 
 
+def penalty_excess(route: Route, objective: str, chart: Chart | None) -> float:
+    """Return what penalty zones and shoals add to the objective of a route.
+
+    Parameters
+    ----------
+    route : Route
+    objective : str
+        "distance", or time for all others.
+    chart : Chart or None
+
+    Returns
+    -------
+    float
+        [m] or [s]; 0 for a route that breaks a limit.
+    """
+    if not route.feasible or chart is None or not chart.zones.has_penalty:
+        return 0.0
+    excess = comparison_key(route, objective, chart)[1] - comparison_key(route, objective, None)[1]
+    return max(excess, 0.0)
+
+
 def _usual(route: Route, ship: Ship) -> float:
     speeds = ship.speeds[np.isfinite(ship.speeds)]
     return float(route.legs["length"].sum()) / float(speeds[-1] if speeds.size else 5.0)

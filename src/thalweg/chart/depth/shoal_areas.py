@@ -1,0 +1,65 @@
+"""Named shoal areas whose shallow patches the depth layer of the package misses.
+
+The table is ``data/shoal_areas.csv``, one row an area: name, depth that counts in it, outline,
+source. Outlines whose source says "unchecked" are from general knowledge and were not compared with
+a publication. They are for planning, not for navigation.
+"""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import resources
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.geodesy import Position
+
+
+@dataclass(frozen=True)
+class ShoalArea:
+    """A named shoal area.
+
+    Parameters
+    ----------
+    name : str
+    depth : float
+        Depth that counts where the layer has more [m].
+    outline : tuple of (lat, lon)
+        Corners [deg]; edges are straight in degrees.
+    source : str
+    """
+
+    name: str
+    depth: float
+    outline: tuple[Position, ...]
+    source: str = ""
+
+    @cached_property
+    def polygon(self) -> Any:
+        """The area as a shapely polygon of longitude and latitude."""
+        import shapely
+
+        return shapely.Polygon([(lon, lat) for lat, lon in self.outline])
+
+    def contains(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.bool_]:
+        """Return which positions [deg] lie inside."""
+        import shapely
+
+        return np.asarray(shapely.contains_xy(self.polygon, np.asarray(lon), np.asarray(lat)))
+
+
+def _read_shoal_areas() -> tuple[ShoalArea, ...]:
+    text = resources.files("thalweg.chart").joinpath("data/shoal_areas.csv").read_text("utf-8")
+    areas = []
+    for row in csv.DictReader(text.splitlines()):
+        points = [point.split(",") for point in row["outline"].split()]
+        outline = tuple((float(lat), float(lon)) for lat, lon in points)
+        areas.append(ShoalArea(row["name"], float(row["depth_m"]), outline, row["source"]))
+    return tuple(areas)
+
+
+SHOAL_AREAS: Final = _read_shoal_areas()  #: the areas of `thalweg/chart/data/shoal_areas.csv`

@@ -1,0 +1,94 @@
+"""What a plan states about depth where neither chart nor sea provides it: legs to check."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from thalweg.chart.depth.global_depth import NAME, coarse_depth
+from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
+from thalweg.core.geodesy import densify, distance, format_position_minutes
+from thalweg.core.types import FloatArray
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.land_report import passages_used
+from thalweg.route import Route
+
+_STEP: Final = 1.0 * NAUTICAL_MILE
+_NOT_JUDGED: Final = 3.0 * NAUTICAL_MILE  # from land, half a cell of the layer
+_ENDS: Final = 12.0 * NAUTICAL_MILE  # from the ends, where ports have dredged channels
+_MOST_LEGS: Final = 5
+
+
+def depth_notes(context: PlanningContext, route: Route) -> list[str]:
+    """Return legs that may be too shallow by the depth layer, and named shoals on the route.
+
+    Parameters
+    ----------
+    context : PlanningContext
+        Request, data and ship of the plan.
+    route : Route
+        The evaluated route.
+
+    Returns
+    -------
+    list of str
+        Empty where the chart or the sea provides depth, which is then checked everywhere, for
+        charts that are not of the world, and for ships without a draught.
+    """
+    draught = float(context.ship.draught)
+    of_the_world = bool(context.chart.passages)
+    if context.needs.limits.depth_checked or not of_the_world or not draught > 0.0:
+        return []
+    required = draught + context.min_ukc
+    lat, lon, leg = densify(route.track.lat, route.track.lon, _STEP)
+    leg = np.append(leg, leg[-1:])
+    notes = [
+        f"Crosses {area.name} (charted as shoal area; {area.source})."
+        for area in SHOAL_AREAS
+        if area.contains(lat, lon).any()
+    ]
+    depth = np.asarray(coarse_depth(lat, lon))
+    shallow = (depth < required) & _judged(context, route, lat, lon)
+    if shallow.any():
+        notes.append(_shallow_legs(depth, np.flatnonzero(shallow), (lat, lon, leg), required))
+    return notes
+
+
+def _judged(context: PlanningContext, route: Route, lat: FloatArray, lon: FloatArray) -> np.ndarray:
+    """Return where the layer says something: off land, the ends and narrow passages."""
+    shore = np.asarray(context.chart.coastline.shore_distance(lat, lon, cap=2.0 * _NOT_JUDGED))
+    judged = shore >= _NOT_JUDGED
+    for end in (0, -1):
+        judged &= distance(lat, lon, lat[end], lon[end]) >= _ENDS
+    for passage in passages_used(context.chart, route):
+        if passage.half_width < _NOT_JUDGED:
+            y, x, _ = densify(*passage.positions, 2.0 * _STEP)
+            close = np.flatnonzero(judged & (np.abs(lat - y.mean()) < np.ptp(y) + 0.2))
+            for k in close:
+                judged[k] = distance(lat[k], lon[k], y, x).min() >= 2.0 * _NOT_JUDGED
+    return judged
+
+
+def _shallow_legs(
+    depth: FloatArray,
+    shallow: np.ndarray,
+    line: tuple[FloatArray, FloatArray, np.ndarray],
+    required: float,
+) -> str:
+    """Return the warning about legs with less depth than the ship requires."""
+    lat, lon, leg = line
+    found = []
+    for number in np.unique(leg[shallow]):
+        points = shallow[leg[shallow] == number]
+        worst = points[np.argmin(depth[points])]
+        place = format_position_minutes(float(lat[worst]), float(lon[worst]))
+        found.append((float(depth[worst]), f"leg {number + 1} {depth[worst]:.0f} m near {place}"))
+    named = [text for _, text in sorted(found)[:_MOST_LEGS]]
+    more = f", and {len(found) - _MOST_LEGS} more legs" if len(found) > _MOST_LEGS else ""
+    return (
+        f"Check the depth: {required:.1f} m are required, and the {NAME} has {'; '.join(named)}"
+        f"{more}. It does not show small shoals and channels, and was not read within 12 nm of the "
+        "ends, 3 nm of land and in narrow passages."
+    )

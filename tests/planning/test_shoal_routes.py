@@ -1,0 +1,99 @@
+"""Deep ships keep out of shoals on real coasts."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thalweg.chart import Chart
+from thalweg.chart.depth.global_depth import coarse_depth
+from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
+from thalweg.core.geodesy import densify, distance
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning import Voyage, plan
+from thalweg.planning.request.shoal_choice import add_shoals
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.sea import Sea
+from thalweg.ship import Ship
+
+BULKER = Ship.simple(13.0, 12.0, length_m=190.0, breadth_m=32.0)
+WORLD = Chart.gshhg("i")
+ENDS = [Endpoint("A", 40.4, -73.8, 0.0), Endpoint("B", 42.4, -70.7, 0.0)]
+
+
+def voyage(start, goal, **more):
+    return Voyage(start=start, goal=goal, depart="2026-01-01T00:00Z", **more)
+
+
+def line_of(route):
+    lat, lon, _ = densify(route.track.lat, route.track.lon, 0.5 * NAUTICAL_MILE)
+    return lat, lon
+
+
+def open_part(route, off):
+    """Positions of a route farther from its ends than so many miles."""
+    lat, lon = line_of(route)
+    away = np.minimum(distance(lat, lon, lat[0], lon[0]), distance(lat, lon, lat[-1], lon[-1]))
+    keep = away > off * NAUTICAL_MILE
+    return lat[keep], lon[keep]
+
+
+@pytest.mark.parametrize("goal", ["USBOS", pytest.param("Halifax, CA", marks=pytest.mark.slow)])
+def test_deep_ships_from_new_york_pass_outside_nantucket_shoals(goal):
+    found = plan(voyage("USNYC", goal), ship=BULKER, sea=Sea.calm())
+    lat, lon = line_of(found.best)
+    assert not SHOAL_AREAS[0].contains(lat, lon).any()
+    off_nantucket = np.interp(41.1, lat[np.argsort(lat)], lon[np.argsort(lat)])
+    assert lat[np.abs(lon + 70.1) < 0.05].min() < 40.75  # not through Nantucket Sound
+    assert off_nantucket > -69.4
+    assert np.nanmin(coarse_depth(*open_part(found.best, 20.0))) > 17.0
+    assert any("Keeps out of water shallower than 20 m" in note for note in found.notes)
+    assert not any("Check the depth" in note for note in found.notes)
+
+
+def test_with_shoals_ignored_the_legs_to_check_are_named():
+    request = voyage("USNYC", "USBOS", ignore_shoals=True)
+    found = plan(request, ship=BULKER, sea=Sea.calm())
+    assert found.best.distance_nm < 300.0
+    (note,) = (note for note in found.notes if note.startswith("Check the depth"))
+    assert "12.0 m are required" in note and "leg " in note
+    assert request.to_dict()["ignore_shoals"] is True
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("start", "goal", "least"),
+    [
+        ((53.6, 0.9), (57.0, 8.0), 18.0),  # Dogger Bank
+        ("Miami, US", "San Juan, PR", 12.0),  # Bahama banks
+        ("Colombo, LK", "Chennai, IN", 13.0),  # Palk Strait, Gulf of Mannar
+        ((27.6, -77.0), (25.0, -77.0), 20.0),  # Bight of Abaco
+        ("Townsville, AU", "Honiara, SB", 12.0),  # Great Barrier Reef
+        ("Veracruz, MX", "Miami, US", 12.0),  # Yucatan bank, Florida Keys
+    ],
+)
+def test_deep_ships_stay_in_water_that_is_deep_enough_by_the_layer(start, goal, least):
+    found = plan(voyage(start, goal), ship=BULKER, sea=Sea.calm())
+    assert np.nanmin(coarse_depth(*open_part(found.best, 30.0))) >= least
+
+
+def test_in_the_open_english_channel_no_depth_is_in_doubt():
+    found = plan(voyage((50.1, -2.5), (49.6, -5.0)), ship=BULKER, sea=Sea.calm())
+    assert not any("depth" in note and " 0 m" in note for note in found.notes)
+    assert not any("Check the depth" in note for note in found.notes)
+
+
+def test_plans_with_depth_or_without_offing_or_of_own_charts_are_left_alone():
+    calm = Sea.calm()
+    plain = voyage((40.4, -73.8), (42.4, -70.7))
+    with_shoals, notes = add_shoals(WORLD, plain, BULKER, calm, ENDS)
+    assert with_shoals.zones.shoals.contour == 20.0 and len(notes) == 1
+    deep = WORLD.with_depth(lambda lat, lon: 50.0 + 0.0 * lat)
+    for chart, request in (
+        (deep, plain),
+        (Chart.open_water(), plain),
+        (WORLD, voyage((40.4, -73.8), (42.4, -70.7), offing_nm=0.0)),
+        (WORLD, voyage((40.4, -73.8), (42.4, -70.7), ignore_shoals=True)),
+    ):
+        same, notes = add_shoals(chart, request, BULKER, calm, ENDS)
+        assert same.zones.shoals is None and notes == []
