@@ -167,3 +167,23 @@ def test_names_of_waypoints(tmp_path, ocean):
 def test_impossible_options_are_refused(given):
     with pytest.raises(InputError):
         RouteFileOptions(**given)
+
+
+@pytest.mark.parametrize("suffix", ["csv", "gpx"])
+def test_legs_that_a_file_calls_rhumb_lines_are_sailed_as_such(tmp_path, suffix):
+    """45 N to 45 N over 40 degrees: along the parallel, 30 nm longer than the great circle."""
+    path = tmp_path / f"route.{suffix}"
+    if suffix == "csv":
+        path.write_text("lat,lon,geometry\n45,-50,RL\n45,-10,\n")
+    else:
+        order = '<extensions><t:geometry xmlns:t="urn:thalweg:route:1">RL</t:geometry></extensions>'
+        points = f'<rtept lat="45" lon="-50">{order}</rtept><rtept lat="45" lon="-10"/>'
+        path.write_text(f"<gpx><rte>{points}</rte></gpx>")
+    read = read_track(path, depart=DEPART)
+    assert len(read) > 10
+    assert np.abs(read.lat - 45.0).max() < 1e-6
+    along = float(inverse_rhumb(45.0, -50.0, 45.0, -10.0)[0])
+    assert read.lengths.sum() == pytest.approx(along, rel=1e-5)
+    path.write_text(path.read_text().replace("RL", "spiral"))
+    with pytest.raises(InputError, match="geometry of the leg after waypoint 1"):
+        read_track(path, depart=DEPART)

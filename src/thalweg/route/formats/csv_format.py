@@ -13,9 +13,11 @@ from thalweg.core.file_writing import write_csv_rows
 from thalweg.core.time import parse_time
 from thalweg.route.formats.file_route import file_route
 from thalweg.route.formats.parsed_track import (
+    GEOMETRY,
     SPEEDS,
     WAITS,
     ParsedTrack,
+    is_rhumb_line,
     position_of,
     waypoint_order,
 )
@@ -32,7 +34,8 @@ _NAMES = {
 def parse_csv(text: str) -> ParsedTrack:
     """Read CSV text with columns lat and lon, separated by comma, semicolon or tab.
 
-    Columns time, waiting_h and ordered_speed_kn are taken, too.
+    Columns time, waiting_h and ordered_speed_kn are taken, too, and geometry: RL or GC for the leg
+    after a waypoint, without it GC.
 
     Raises
     ------
@@ -70,7 +73,11 @@ def parse_csv(text: str) -> ParsedTrack:
         waypoint_order({name: _cell_of(row, header.index(name)) for name in given}, number)
         for number, row in enumerate(rows[1:] if given else (), start=1)
     ]
-    return ParsedTrack(positions, parse_time(first) if first else None, orders)
+    rhumb = []
+    if GEOMETRY in header:
+        column = header.index(GEOMETRY)
+        rhumb = [is_rhumb_line(_cell_of(row, column), i) for i, row in enumerate(rows[1:-1], 1)]
+    return ParsedTrack(positions, parse_time(first) if first else None, orders, rhumb)
 
 
 def write_csv(route: Route, path: str | Path, options: RouteFileOptions | None = None) -> None:

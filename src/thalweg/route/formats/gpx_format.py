@@ -15,9 +15,11 @@ from thalweg.core.file_writing import write_bytes
 from thalweg.core.time import parse_time
 from thalweg.route.formats.file_route import file_route
 from thalweg.route.formats.parsed_track import (
+    GEOMETRY,
     SPEEDS,
     WAITS,
     ParsedTrack,
+    is_rhumb_line,
     position_of,
     waypoint_order,
 )
@@ -56,8 +58,10 @@ def parse_gpx(text: str) -> ParsedTrack:
         )
     positions = [position_of(p.get("lat"), p.get("lon"), i) for i, p in enumerate(points, start=1)]
     time = next((e.text for e in points[0] if _local_name(e.tag) == "time" and e.text), None)
-    orders = [waypoint_order(_extensions(point), i) for i, point in enumerate(points, start=1)]
-    return ParsedTrack(positions, parse_time(time) if time else None, orders)
+    given = [_extensions(point) for point in points]
+    orders = [waypoint_order(values, i) for i, values in enumerate(given, start=1)]
+    rhumb = [is_rhumb_line(v.get(GEOMETRY), i) for i, v in enumerate(given[:-1], start=1)]
+    return ParsedTrack(positions, parse_time(time) if time else None, orders, rhumb)
 
 
 def write_gpx(route: Route, path: str | Path, options: RouteFileOptions | None = None) -> None:

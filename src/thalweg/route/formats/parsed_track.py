@@ -54,6 +54,9 @@ class WaypointOrder(NamedTuple):
 #: What files call the wait at a waypoint and the speed ordered from there on, with units in SI.
 WAITS = {"waiting_h": HOUR, "wait_h": HOUR, "waiting_s": 1.0, "wait_s": 1.0}
 SPEEDS = {"ordered_speed_kn": KNOT}
+GEOMETRY = "geometry"  #: what files call the kind of line of the leg after a waypoint
+_RHUMB_WORDS = ("rl", "rhumb", "rhumb line", "rhumbline", "loxodrome")
+_GREAT_CIRCLE_WORDS = ("gc", "great circle", "greatcircle", "orthodrome", "geodesic", "")
 RHUMB_DEVIATION = 20.0  #: rhumb lines are sailed as geodesics this close to them [m]
 LONGEST_WAIT = 366.0 * DAY  #: [s]
 
@@ -89,6 +92,32 @@ def waypoint_order(values: Mapping[str, object], number: int) -> WaypointOrder:
             waypoint=number,
         )
     return WaypointOrder(wait or 0.0, math.nan if speed is None else speed)
+
+
+def is_rhumb_line(text: object, number: int) -> bool:
+    """Return whether the leg that begins at the numbered waypoint (from 1) is a rhumb line.
+
+    Parameters
+    ----------
+    text : object
+        What the file has: RL, rhumb or loxodrome; GC, great circle or orthodrome; blank is that.
+    number : int
+        Number of the waypoint, for messages.
+
+    Raises
+    ------
+    InputError
+        For another text.
+    """
+    word = str(text if text is not None else "").strip().casefold().replace("_", " ")
+    if word in _RHUMB_WORDS or word in _GREAT_CIRCLE_WORDS:
+        return word in _RHUMB_WORDS
+    raise InputError(
+        f"The geometry of the leg after waypoint {number} is {shortened_repr(text)}.",
+        "It is RL (rhumb line) or GC (great circle).",
+        "Correct it, or leave it empty.",
+        waypoint=number,
+    )
 
 
 def _first_value(
