@@ -64,7 +64,7 @@ export class ResultView {
   }
 
   #cards(route, profile, beside) {
-    const card = (name, value, unitText, more) => h("div.card", {}, h("dt", {}, name), h("dd", {}, value, unitText && value !== "unknown" ? unit(unitText) : null), more ? h("small", {}, more) : null);
+    const card = (name, value, unitText, more) => h("div.card", {}, h("dt", {}, name), h("dd", {}, value, unitText && value !== "unknown" ? unit(unitText) : null, more ? h("small", {}, more) : null));
     const than = (mine, other, text) => (known(mine) && known(other) && Math.abs(mine - other) > 1e-6 ? [h(`span.${mine < other ? "less" : "more"}`, {}, text(mine - other)), " against weather ignored"] : null);
     const cost = costOf(route), other = beside ? costOf(beside) : null;
     const waves = worst(profile, "wave_height_m"), wind = worst(profile, "wind_speed_kn");
