@@ -194,6 +194,7 @@ class Application {
       change: () => { this.result = null; this.#link(""); this.#showForm(); },
       compare: () => { this.compare.add(result.job.id, selection.route + 1, `${result.job.title || "Plan"}${result.plan.routes.length > 1 ? `, route ${selection.route + 1}` : ""}`); this.#switch("compare"); },
       link: () => this.#copyLink(),
+      print: () => { this.drawer.open("legs"); print(); },
     });
     fill(panel, result.view.element);
     this.chart.closeMenu();
@@ -324,7 +325,7 @@ class Application {
     fill(panel, box);
     try {
       const { jobs } = await get("/plans?size=100");
-      box.append(h("div.block", {}, jobs.length ? jobs.map((job) => h("div.jobrow", {}, h("button.job", { type: "button", onclick: () => this.openJob(job.id) }, h("b", {}, job.title || "Plan"), " ", job.state === "done" ? null : h(`span.state.${job.state}`, {}, job.state), h("span", {}, this.#facts(job))), ["done", "failed", "cancelled"].includes(job.state) ? h("button.quiet.small", { type: "button", "aria-label": `Remove ${job.title || "plan"}`, onclick: async () => { await remove(`/plans/${job.id}?forget=true`); this.#showVoyages(); } }, "Remove") : null)) : h("p.empty", {}, h("b", {}, "No voyages yet"), "Plan one, or open the example.", h("p", {}, h("button.quiet", { type: "button", onclick: () => { this.form.set(DEMO); this.#switch("plan"); } }, "Fill in the storm of 1998")))));
+      box.append(h("div.block", {}, jobs.length ? jobs.map((job) => h("div.jobrow", {}, h("button.job", { type: "button", onclick: () => this.openJob(job.id) }, h("b", {}, job.title || "Plan"), " ", job.state === "done" ? null : h(`span.state.${job.state}`, {}, job.state), h("span", {}, this.#facts(job))), ["done", "failed", "cancelled"].includes(job.state) ? h("button.quiet.small", { type: "button", "aria-label": `Remove ${job.title || "plan"}`, onclick: async () => { await remove(`/plans/${job.id}?forget=true`); this.#showVoyages(); } }, "Remove") : h("button.quiet.small", { type: "button", "aria-label": `Stop ${job.title || "plan"}`, onclick: async () => { await remove(`/plans/${job.id}`); this.#showVoyages(); } }, "Stop"))) : h("p.empty", {}, h("b", {}, "No voyages yet"), "Plan one, or open the example.", h("p", {}, h("button.quiet", { type: "button", onclick: () => { this.form.set(DEMO); this.#switch("plan"); } }, "Fill in the storm of 1998")))));
     } catch (problem) {
       box.append(errorBox(problem));
     }
@@ -355,6 +356,7 @@ class Application {
 
   #listen() {
     const { chart, form } = this;
+    for (const name of ["beforeprint", "afterprint"]) addEventListener(name, () => { chart.map.updateSize(); chart.map.renderSync(); });
     chart.weather.onState = (state) => chart.showLegend(state);
     document.querySelectorAll(".tab").forEach((tab) => tab.addEventListener("click", () => { if (tab.dataset.view !== "compare") { this.view = tab.dataset.view; this.#restoreDrawer(); } this.#switch(tab.dataset.view); }));
     const button = document.getElementById("layers-button"), layers = document.getElementById("layers");
