@@ -356,7 +356,8 @@ class Application {
 
   #listen() {
     const { chart, form } = this;
-    for (const name of ["beforeprint", "afterprint"]) addEventListener(name, () => { chart.map.updateSize(); chart.map.renderSync(); });
+    addEventListener("beforeprint", () => this.#forPaper(true));
+    addEventListener("afterprint", () => this.#forPaper(false));
     chart.weather.onState = (state) => chart.showLegend(state);
     document.querySelectorAll(".tab").forEach((tab) => tab.addEventListener("click", () => { if (tab.dataset.view !== "compare") { this.view = tab.dataset.view; this.#restoreDrawer(); } this.#switch(tab.dataset.view); }));
     const button = document.getElementById("layers-button"), layers = document.getElementById("layers");
@@ -372,6 +373,17 @@ class Application {
     selection.addEventListener("route", () => { if (this.result) this.showResult(this.result); });
     selection.addEventListener("hover", () => { if (this.result) this.chart.routes.showOthers(this.result.plan.routes.map((route) => route.waypoints.map((w) => [w.lon, w.lat])), selection.route, selection.hovered); });
     selection.addEventListener("time", () => { this.#time(); this.#permalink(); });
+  }
+
+  // On paper the chart has another size: it shows the whole route, then what it showed before.
+  #forPaper(begins) {
+    const view = this.chart.map.getView();
+    if (begins) this.seen = [view.getCenter(), view.getZoom()];
+    this.chart.map.updateSize();
+    const { profile } = this.result || {};
+    if (begins && profile) this.chart.fit(profile.lon.map((lon, i) => [lon, profile.lat[i]]));
+    if (!begins && this.seen) { view.setCenter(this.seen[0]); view.setZoom(this.seen[1]); }
+    this.chart.map.renderSync();
   }
 
   #clicked({ lat, lon, number: number_, port, coordinate }) {
