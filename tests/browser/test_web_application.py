@@ -221,7 +221,9 @@ def test_a_reload_in_the_middle_of_a_job_and_a_killed_service(visit):
     page.get_by_text("First route: the fastest").wait_for(timeout=400_000)
     page.get_by_role("button", name="Stop, keep the best").click()
     page.wait_for_selector(".proof", timeout=200_000)
-    assert ended(visit.service.http.get, job)["attempt"] >= 2
+    assert ended(visit.service.http.get, job)["state"] == "cancelled"
+    events = visit.service.http.get(f"/api/v1/plans/{job}/events").text
+    assert "the service was stopped" in events
 
 
 def test_nothing_that_axe_finds(visit):

@@ -156,6 +156,15 @@ def _events(client, job: str) -> str:
     return "\n\n".join(f"id: {e.n}\nevent: {e.kind}\ndata: {json.dumps(e.data)}" for e in rows)
 
 
+def test_an_empty_key_is_no_key(tmp_path):
+    from thalweg.service.jobs.job_store import JobStore
+
+    store = JobStore(tmp_path / "jobs.sqlite")
+    added = [store.add(name, "plan", {}, key="", queue=9)[1] for name in "ab"]
+    assert added == [True, True]
+    store.close()
+
+
 def test_a_queue_that_is_full_says_so(tmp_path):
     from thalweg.service.jobs.job_store import JobStore
     from thalweg.service.problem_details import ServiceError

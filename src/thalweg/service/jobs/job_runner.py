@@ -45,7 +45,8 @@ class JobRunner:
     """Runs the jobs of a store, each in a child process of its own.
 
     One further child waits with the libraries loaded, so that a job starts at once. A job whose
-    child dies is started again; a job found running at the start of the service as well.
+    child dies is started again, up to a limit; a job found running at the start of the service
+    always is.
 
     Parameters
     ----------
@@ -128,8 +129,8 @@ class JobRunner:
             self._store.finish(job.id, end["state"], summary=end["summary"])
         elif job.cancelling:
             self._store.finish(job.id, "cancelled")
-        else:
-            self._again_or_fail(job, "the service was stopped")
+        else:  # not the fault of the job
+            self._store.requeue(job.id, "the service was stopped", count_attempt=False)
 
     def _again_or_fail(self, job: Job, why: str) -> None:
         if job.attempt < self._limits.attempts:

@@ -154,6 +154,7 @@ class JobStore:
             409 if the key was used for another request, 429 if the queue is full.
         """
         text = json.dumps(request, sort_keys=True, allow_nan=False)
+        key = key or None  # an empty header is none
 
         def work(database: sqlite3.Connection) -> bool:
             found = (

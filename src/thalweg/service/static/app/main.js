@@ -194,6 +194,7 @@ class Application {
       change: () => { this.result = null; this.#link(""); this.#showForm(); },
       compare: () => { this.compare.add(result.job.id, selection.route + 1, `${result.job.title || "Plan"}${result.plan.routes.length > 1 ? `, route ${selection.route + 1}` : ""}`); this.#switch("compare"); },
       link: () => this.#copyLink(),
+      print: () => { this.drawer.open("legs"); print(); },
     });
     fill(panel, result.view.element);
     this.chart.closeMenu();
@@ -324,7 +325,7 @@ class Application {
     fill(panel, box);
     try {
       const { jobs } = await get("/plans?size=100");
-      box.append(h("div.block", {}, jobs.length ? jobs.map((job) => h("div.jobrow", {}, h("button.job", { type: "button", onclick: () => this.openJob(job.id) }, h("b", {}, job.title || "Plan"), " ", job.state === "done" ? null : h(`span.state.${job.state}`, {}, job.state), h("span", {}, this.#facts(job))), ["done", "failed", "cancelled"].includes(job.state) ? h("button.quiet.small", { type: "button", "aria-label": `Remove ${job.title || "plan"}`, onclick: async () => { await remove(`/plans/${job.id}?forget=true`); this.#showVoyages(); } }, "Remove") : null)) : h("p.empty", {}, h("b", {}, "No voyages yet"), "Plan one, or open the example.", h("p", {}, h("button.quiet", { type: "button", onclick: () => { this.form.set(DEMO); this.#switch("plan"); } }, "Fill in the storm of 1998")))));
+      box.append(h("div.block", {}, jobs.length ? jobs.map((job) => h("div.jobrow", {}, h("button.job", { type: "button", onclick: () => this.openJob(job.id) }, h("b", {}, job.title || "Plan"), " ", job.state === "done" ? null : h(`span.state.${job.state}`, {}, job.state), h("span", {}, this.#facts(job))), ["done", "failed", "cancelled"].includes(job.state) ? h("button.quiet.small", { type: "button", "aria-label": `Remove ${job.title || "plan"}`, onclick: async () => { await remove(`/plans/${job.id}?forget=true`); this.#showVoyages(); } }, "Remove") : h("button.quiet.small", { type: "button", "aria-label": `Stop ${job.title || "plan"}`, onclick: async () => { await remove(`/plans/${job.id}`); this.#showVoyages(); } }, "Stop"))) : h("p.empty", {}, h("b", {}, "No voyages yet"), "Plan one, or open the example.", h("p", {}, h("button.quiet", { type: "button", onclick: () => { this.form.set(DEMO); this.#switch("plan"); } }, "Fill in the storm of 1998")))));
     } catch (problem) {
       box.append(errorBox(problem));
     }
@@ -355,6 +356,8 @@ class Application {
 
   #listen() {
     const { chart, form } = this;
+    addEventListener("beforeprint", () => this.#forPaper(true));
+    addEventListener("afterprint", () => this.#forPaper(false));
     chart.weather.onState = (state) => chart.showLegend(state);
     document.querySelectorAll(".tab").forEach((tab) => tab.addEventListener("click", () => { if (tab.dataset.view !== "compare") { this.view = tab.dataset.view; this.#restoreDrawer(); } this.#switch(tab.dataset.view); }));
     const button = document.getElementById("layers-button"), layers = document.getElementById("layers");
@@ -370,6 +373,17 @@ class Application {
     selection.addEventListener("route", () => { if (this.result) this.showResult(this.result); });
     selection.addEventListener("hover", () => { if (this.result) this.chart.routes.showOthers(this.result.plan.routes.map((route) => route.waypoints.map((w) => [w.lon, w.lat])), selection.route, selection.hovered); });
     selection.addEventListener("time", () => { this.#time(); this.#permalink(); });
+  }
+
+  // On paper the chart has another size: it shows the whole route, then what it showed before.
+  #forPaper(begins) {
+    const view = this.chart.map.getView();
+    if (begins) this.seen = [view.getCenter(), view.getZoom()];
+    this.chart.map.updateSize();
+    const { profile } = this.result || {};
+    if (begins && profile) this.chart.fit(profile.lon.map((lon, i) => [lon, profile.lat[i]]));
+    if (!begins && this.seen) { view.setCenter(this.seen[0]); view.setZoom(this.seen[1]); }
+    this.chart.map.renderSync();
   }
 
   #clicked({ lat, lon, number: number_, port, coordinate }) {

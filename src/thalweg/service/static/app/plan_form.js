@@ -38,9 +38,9 @@ export class PlanForm extends EventTarget {
     this.viaBox = h("div");
     this.ship = h("select", { id: "ship", onchange: () => this.#showSheet() });
     this.sheet = h("p.facts", { id: "ship-facts" });
-    this.shipFile = h("input.hidden", { type: "file", id: "ship-file", accept: ".yaml,.yml,.json", tabindex: "-1", onchange: () => this.#uploadShip() });
+    this.shipFile = h("input.hidden", { type: "file", id: "ship-file", "aria-label": "Ship file", accept: ".yaml,.yml,.json", tabindex: "-1", onchange: () => this.#uploadShip() });
     this.seaBox = h("div");
-    this.seaFile = h("input.hidden", { type: "file", id: "sea-file", accept: ".nc,.nc4,.grb,.grb2,.grib,.grib2", multiple: true, tabindex: "-1", onchange: () => this.#uploadSeas([...this.seaFile.files]) });
+    this.seaFile = h("input.hidden", { type: "file", id: "sea-file", "aria-label": "Sea files", accept: ".nc,.nc4,.grb,.grb2,.grib,.grib2", multiple: true, tabindex: "-1", onchange: () => this.#uploadSeas([...this.seaFile.files]) });
     this.drop = h("div.drop", {
       ondragover: (event) => { event.preventDefault(); this.drop.classList.add("over"); },
       ondragleave: () => this.drop.classList.remove("over"),

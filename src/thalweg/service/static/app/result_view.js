@@ -64,7 +64,7 @@ export class ResultView {
   }
 
   #cards(route, profile, beside) {
-    const card = (name, value, unitText, more) => h("div.card", {}, h("dt", {}, name), h("dd", {}, value, unitText && value !== "unknown" ? unit(unitText) : null), more ? h("small", {}, more) : null);
+    const card = (name, value, unitText, more) => h("div.card", {}, h("dt", {}, name), h("dd", {}, value, unitText && value !== "unknown" ? unit(unitText) : null, more ? h("small", {}, more) : null));
     const than = (mine, other, text) => (known(mine) && known(other) && Math.abs(mine - other) > 1e-6 ? [h(`span.${mine < other ? "less" : "more"}`, {}, text(mine - other)), " against weather ignored"] : null);
     const cost = costOf(route), other = beside ? costOf(beside) : null;
     const waves = worst(profile, "wave_height_m"), wind = worst(profile, "wind_speed_kn");
@@ -114,7 +114,7 @@ export class ResultView {
     return h("div.block", {}, h("h2", {}, "Take it along"), h("div.exports", {},
       ["rtz", "gpx", "geojson", "csv"].map((form) => h("a.quiet.small", { href: fileAddress(job.id, number_, form), download: "" }, { rtz: "RTZ", gpx: "GPX", geojson: "GeoJSON", csv: "CSV" }[form])),
       job.kind === "plan" ? h("a.quiet.small", { href: resultAddress(job.id), download: "plan.json" }, "plan.json") : null,
-      h("button.quiet.small", { type: "button", onclick: () => print() }, "Print a brief"),
+      h("button.quiet.small", { type: "button", onclick: this.handlers.print }, "Print a brief"),
       h("button.quiet.small", { type: "button", onclick: this.handlers.link }, "Copy link")),
     h("p.facts", {}, `Route ${number_}. Check it against official charts and notices before use.`));
   }

@@ -116,7 +116,7 @@ export class RouteLayers {
       const feature = new Feature(new Point(fromLonLat([turns[i], profile.lat[i]])));
       feature.setStyle(() => new Style({
         image: new Circle({ radius: 4, fill: new Fill({ color: colour("route") }), stroke: new Stroke({ color: colour("casing"), width: 1.5 }), declutterMode: "none" }),
-        text: new Text({ text: timeText(t), font: FONT, offsetY: -13, fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 3.5 }) }),
+        text: new Text({ text: t % 86400 && every < 43200 && t >= profile.time[0] + every ? timeText(t).split(" ")[2] : timeText(t), font: FONT, offsetY: -13, fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 3.5 }) }),
       }));
       source.addFeature(feature);
     }

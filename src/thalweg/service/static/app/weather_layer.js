@@ -78,7 +78,7 @@ export class WeatherLayer {
     this.map = map;
     this.frames = new Map();
     this.shown = null;
-    this.layer = new ImageLayer({ zIndex: 5, source: new ImageCanvas({ canvasFunction: (...given) => this.#draw(...given), ratio: 1 }) });
+    this.layer = new ImageLayer({ zIndex: 5, source: new ImageCanvas({ canvasFunction: (...given) => this.#draw(...given), ratio: 1.4 }) });
     map.on("moveend", () => this.refresh());
   }
 
