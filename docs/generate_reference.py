@@ -45,6 +45,10 @@ MORE_NAMES: dict[str, tuple[str, ...]] = {
         "methods.shallow_water.squat.shallow_water_speed_limit",
         "methods.engine.european_charges.EuropeanCharges",
     ),
+    "network": (
+        "layered.layered_request.layered_section",
+        "layered.layered_request.suggested_shape",
+    ),
     "planning": (
         "sea_distance.SeaDistance",
         "sea_distance.sea_distance",

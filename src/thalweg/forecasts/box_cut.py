@@ -12,6 +12,7 @@ import numpy as np
 
 from thalweg.core.bounding_box import EDGE_TOLERANCE, BoundingBox
 from thalweg.core.errors import DatasetError
+from thalweg.core.file_writing import replacing_file
 from thalweg.sea.files.grib import open_grib
 
 _BATCH: Final = 64_000_000  #: [bytes] of GRIB decoded at a time
@@ -34,7 +35,7 @@ def read_grib_files(files: list[Path], box: BoundingBox) -> list[Any]:
     with tempfile.TemporaryDirectory(prefix="thalweg-fetch-") as folder:
         joined = Path(folder) / "batch.grib2"
         for batch in _batches(files):
-            with joined.open("wb") as stream:
+            with replacing_file(joined) as stream:
                 for path in batch:
                     with path.open("rb") as part:
                         shutil.copyfileobj(part, stream)

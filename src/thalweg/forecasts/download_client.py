@@ -18,6 +18,7 @@ from urllib.parse import urlsplit
 
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.errors import InputError, ThalwegError
+from thalweg.core.file_writing import replacing_file
 
 ATTEMPTS: Final = 5  #: for one address
 _PAUSES: Final = (1.0, 2.0, 5.0, 10.0)  #: between attempts [s]
@@ -133,13 +134,9 @@ class DownloadClient:
             os.utime(target)
             return target
         self.folder.mkdir(parents=True, exist_ok=True)
-        draft = self.folder / f"{key}.part"
-        with draft.open("wb") as stream:
+        with replacing_file(target) as stream:
             for first, count in part.ranges or ((0, -1),):
                 self._range(part, first, count, stream)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(draft, target)
         return target
 
     def prune(self, size: int = CACHE_SIZE) -> None:

@@ -14,6 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.core.cache_folder import cache_folder
+from thalweg.core.file_writing import write_bytes
 
 #: Side of the cells of each resolution of GSHHG [deg].
 CELL_SIDES: Final = {"c": 90.0, "l": 22.5, "i": 11.25, "h": 5.625}
@@ -60,7 +61,7 @@ def build_cells(level: str) -> Path:
         data = {"land": land, "coast": coast}
         text = json.dumps(data, separators=(",", ":"))
         path = draft / f"{column}_{row}.json.gz"
-        path.write_bytes(gzip.compress(text.encode(), 6, mtime=0))
+        write_bytes(path, gzip.compress(text.encode(), 6, mtime=0))
     try:
         os.rename(draft, folder)
     except OSError:  # another process was first

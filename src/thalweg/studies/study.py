@@ -11,14 +11,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
 import yaml
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.file_reading import read_text_file
-from thalweg.core.time import format_time, parse_time
-from thalweg.core.units import HOUR
 from thalweg.planning.voyage import Voyage
+from thalweg.studies.study_axes import MOST_ROWS, axis_values, plain_data, sample_draws
 
 #: Entries of a row beside those of a voyage.
 SURROUNDINGS: Final = (
@@ -27,7 +25,6 @@ SURROUNDINGS: Final = (
 )  # fmt: skip
 _ENTRIES: Final = ("name", "voyage", "axes", "sample", "compare", *SURROUNDINGS)
 COMPARISONS: Final = ("weather_blind",)
-_MOST_ROWS: Final = 2_000_000
 _DISTRIBUTIONS: Final = {"uniform": 2, "normal": 2, "choice": None}
 
 
@@ -96,10 +93,10 @@ class Study:
         for name in self.compare:
             if name not in COMPARISONS:
                 raise unknown_name_error("comparison", name, COMPARISONS)
-        if self.size > _MOST_ROWS:
+        if self.size > MOST_ROWS:
             raise InputError(
                 f"The study has {self.size:,} voyages.",
-                f"At most {_MOST_ROWS:,} are run in one study.",
+                f"At most {MOST_ROWS:,} are run in one study.",
                 "Use fewer values, or several studies.",
             )
 
@@ -119,7 +116,7 @@ class Study:
         -------
         list of StudyRow
         """
-        draws = _draws(self.sample)
+        draws = sample_draws(self.sample)
         return [
             _row(self.base, dict(zip(self.axes, values)) | draw, self.compare)
             for values in itertools.product(*self.axes.values())
@@ -194,7 +191,7 @@ class Study:
         for key in data:
             if key not in _ENTRIES:
                 raise unknown_name_error("entry of a study", str(key), _ENTRIES)
-        voyage = _plain(data.get("voyage", {}))
+        voyage = plain_data(data.get("voyage", {}))
         if not isinstance(voyage, dict) or (
             not {"start", "goal"} & set(voyage) and "axes" not in data
         ):
@@ -207,7 +204,7 @@ class Study:
         for key in voyage:
             _check_entry(str(key))
         base = {"voyage": voyage}
-        base |= {key: _plain(data[key]) for key in SURROUNDINGS if key in data}
+        base |= {key: plain_data(data[key]) for key in SURROUNDINGS if key in data}
         axes = data.get("axes") or {}
         sample = data.get("sample") or {}
         _check_mappings(axes, sample)
@@ -215,8 +212,8 @@ class Study:
         return cls(
             str(data.get("name", "study")),
             base,
-            {str(name): _values(str(name), values) for name, values in axes.items()},
-            _plain(sample),
+            {str(name): axis_values(str(name), values) for name, values in axes.items()},
+            plain_data(sample),
             (compare,) if isinstance(compare, str) else tuple(compare),
             folder,
         )
@@ -322,92 +319,3 @@ def _is_distribution(value: Any) -> bool:
     if kind not in _DISTRIBUTIONS or not isinstance(numbers, list) or not numbers:
         return False
     return _DISTRIBUTIONS[kind] in (None, len(numbers))
-
-
-def _values(name: str, given: Any) -> list[Any]:
-    """Return the values of an axis: a list, or a range with from, to and step."""
-    if isinstance(given, Mapping) and {"from", "to"} <= set(given):
-        return _range(name, given)
-    values = given if isinstance(given, list) else [given]
-    if not values:
-        raise InputError(
-            f"The axis {name} has no values.",
-            "It is a list, or a range with from, to and step.",
-            "Add values.",
-            field=name,
-        )
-    return [_plain(value) for value in values]
-
-
-def _range(name: str, given: Mapping[str, Any]) -> list[Any]:
-    low, high = given["from"], given["to"]
-    if "step_h" in given:
-        first, last = parse_time(low), parse_time(high)
-        step = float(given["step_h"]) * HOUR
-        if not (step > 0.0 and last >= first):
-            raise _range_error(name, given)
-        count = _count(name, (last - first) / step)
-        return [format_time(first + k * step) for k in range(count)]
-    step = given.get("step", 1)
-    numbers = all(isinstance(value, (int, float)) for value in (low, high, step))
-    if not (numbers and step > 0 and high >= low):
-        raise _range_error(name, given)
-    count = _count(name, (high - low) / step)
-    return [low + k * step for k in range(count)]
-
-
-def _count(name: str, steps: float) -> int:
-    """Return the number of values of a range."""
-    if steps >= _MOST_ROWS:
-        raise InputError(
-            f"The range of {name} has {steps:,.0f} values.",
-            f"At most {_MOST_ROWS:,} voyages are run in one study.",
-            "Use a larger step.",
-            field=name,
-        )
-    return int(steps + 1e-9) + 1
-
-
-def _range_error(name: str, given: Mapping[str, Any]) -> InputError:
-    return InputError(
-        f"The range of {name} is {dict(given)!r}.",
-        "A range of times has from, to and step_h; a range of numbers from, to and step, with to "
-        "not below from.",
-        "Correct it.",
-        field=name,
-    )
-
-
-def _draws(sample: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return the draws of a sample; each entry has its own stream of random numbers."""
-    count = int(sample.get("count", 1))
-    columns: dict[str, list[Any]] = {}
-    for name, distribution in sample.items():
-        if name in ("count", "seed"):
-            continue
-        key = int.from_bytes(hashlib.blake2b(name.encode(), digest_size=8).digest(), "big")
-        generator = np.random.default_rng([int(sample.get("seed", 0)), key])
-        ((kind, numbers),) = distribution.items()
-        if kind == "choice":
-            picked = generator.integers(len(numbers), size=count)
-            columns[name] = [numbers[k] for k in picked]
-            continue
-        times = name in ("depart", "arrive", "arrive_by")
-        if times:
-            numbers = [parse_time(numbers[0]), parse_time(numbers[1])] if kind == "uniform" else [
-                parse_time(numbers[0]), float(numbers[1]) * HOUR
-            ]  # fmt: skip
-        draw = getattr(generator, kind)(*map(float, numbers), size=count)
-        columns[name] = [format_time(round(x)) if times else float(x) for x in draw]
-    return [dict(zip(columns, values)) for values in zip(*columns.values())] or [{}] * count
-
-
-def _plain(value: Any) -> Any:
-    """Return YAML data as JSON data: dates become text."""
-    if isinstance(value, Mapping):
-        return {str(key): _plain(part) for key, part in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(part) for part in value]
-    if value is None or isinstance(value, (str, int, float, bool)):
-        return value
-    return format_time(parse_time(value))

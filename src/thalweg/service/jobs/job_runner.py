@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import IO, Any, Final
 
 from thalweg.core.errors import InputError, ThalwegError
+from thalweg.core.file_writing import write_text
 from thalweg.service.jobs.job_store import Job, JobStore
 from thalweg.service.jobs.job_work import FIRST_FOLDER
 from thalweg.service.problem_details import problem_of
@@ -259,7 +260,7 @@ class JobRunner:
         """Give a complete result its place, then state that the job has ended."""
         shutil.copyfile(child.log, folder / _LOG)
         end = folder / "end.json"
-        end.write_text(json.dumps({"state": state, "summary": summary}), "utf-8")
+        write_text(end, json.dumps({"state": state, "summary": summary}))
         for path in (*folder.iterdir(), folder):
             _synchronise(path)
         place = self._results / job.id

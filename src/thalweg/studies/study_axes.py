@@ -1,0 +1,104 @@
+"""Values of the axes of a study, and draws of its sample."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from typing import Any, Final
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.core.time import format_time, parse_time
+from thalweg.core.units import HOUR
+
+MOST_ROWS: Final = 2_000_000  #: of one study
+
+
+def axis_values(name: str, given: Any) -> list[Any]:
+    """Return the values of an axis: a list, or a range with from, to and step."""
+    if isinstance(given, Mapping) and {"from", "to"} <= set(given):
+        return _range(name, given)
+    values = given if isinstance(given, list) else [given]
+    if not values:
+        raise InputError(
+            f"The axis {name} has no values.",
+            "It is a list, or a range with from, to and step.",
+            "Add values.",
+            field=name,
+        )
+    return [plain_data(value) for value in values]
+
+
+def _range(name: str, given: Mapping[str, Any]) -> list[Any]:
+    low, high = given["from"], given["to"]
+    if "step_h" in given:
+        first, last = parse_time(low), parse_time(high)
+        step = float(given["step_h"]) * HOUR
+        if not (step > 0.0 and last >= first):
+            raise _range_error(name, given)
+        count = _count(name, (last - first) / step)
+        return [format_time(first + k * step) for k in range(count)]
+    step = given.get("step", 1)
+    numbers = all(isinstance(value, (int, float)) for value in (low, high, step))
+    if not (numbers and step > 0 and high >= low):
+        raise _range_error(name, given)
+    count = _count(name, (high - low) / step)
+    return [low + k * step for k in range(count)]
+
+
+def _count(name: str, steps: float) -> int:
+    """Return the number of values of a range."""
+    if steps >= MOST_ROWS:
+        raise InputError(
+            f"The range of {name} has {steps:,.0f} values.",
+            f"At most {MOST_ROWS:,} voyages are run in one study.",
+            "Use a larger step.",
+            field=name,
+        )
+    return int(steps + 1e-9) + 1
+
+
+def _range_error(name: str, given: Mapping[str, Any]) -> InputError:
+    return InputError(
+        f"The range of {name} is {dict(given)!r}.",
+        "A range of times has from, to and step_h; a range of numbers from, to and step, with to "
+        "not below from.",
+        "Correct it.",
+        field=name,
+    )
+
+
+def sample_draws(sample: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return the draws of a sample; each entry has its own stream of random numbers."""
+    count = int(sample.get("count", 1))
+    columns: dict[str, list[Any]] = {}
+    for name, distribution in sample.items():
+        if name in ("count", "seed"):
+            continue
+        key = int.from_bytes(hashlib.blake2b(name.encode(), digest_size=8).digest(), "big")
+        generator = np.random.default_rng([int(sample.get("seed", 0)), key])
+        ((kind, numbers),) = distribution.items()
+        if kind == "choice":
+            picked = generator.integers(len(numbers), size=count)
+            columns[name] = [numbers[k] for k in picked]
+            continue
+        times = name in ("depart", "arrive", "arrive_by")
+        if times:
+            numbers = [parse_time(numbers[0]), parse_time(numbers[1])] if kind == "uniform" else [
+                parse_time(numbers[0]), float(numbers[1]) * HOUR
+            ]  # fmt: skip
+        draw = getattr(generator, kind)(*map(float, numbers), size=count)
+        columns[name] = [format_time(round(x)) if times else float(x) for x in draw]
+    return [dict(zip(columns, values)) for values in zip(*columns.values())] or [{}] * count
+
+
+def plain_data(value: Any) -> Any:
+    """Return YAML data as JSON data: dates become text."""
+    if isinstance(value, Mapping):
+        return {str(key): plain_data(part) for key, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain_data(part) for part in value]
+    if value is None or isinstance(value, (str, int, float, bool)):
+        return value
+    return format_time(parse_time(value))
