@@ -21,6 +21,10 @@ FOLDER = Path(__file__).parent / "reference"
 DECISIONS = Path(__file__).parent / "decisions"
 #: Names described in addition to those that a package exports.
 MORE_NAMES: dict[str, tuple[str, ...]] = {
+    "network": (
+        "layered.layered_request.layered_section",
+        "layered.layered_request.suggested_shape",
+    ),
     "sea": (
         "tides.constituents.Constituents",
         "tides.constituent_files.read_constituents",
@@ -33,6 +37,7 @@ MORE_NAMES: dict[str, tuple[str, ...]] = {
         "passages.Passage",
         "passages.find_passages",
         "offing.Offing",
+        "coastal_fetch.CoastalFetch",
     ),
     "ship": (
         "model_protocol.AdjustableModel",
