@@ -161,13 +161,23 @@ def limits_text(plan: PlanData) -> str:
     met = [r for r, count in sorted(plan.rejections.items(), key=lambda item: -item[1]) if count]
     ignored = _ALWAYS if _has_weather(plan) else (*_ALWAYS, REASONS[OUTSIDE_PERIOD])
     met = [reason for reason in met if reason not in ignored]
+    kept = _kept_text(plan)
     if not met:
-        return (
-            "all kept; nothing but land and zones stood in the way"
-            if plan.rejections
-            else ("all kept")
-        )
-    return f"all kept; other water was closed by: {', '.join(met[:3])}"
+        only = "; nothing but land and zones stood in the way" if plan.rejections else ""
+        return kept + only
+    return f"{kept}; other water was closed by: {', '.join(met[:3])}"
+
+
+def _kept_text(plan: PlanData) -> str:
+    """Return that all limits are kept, or which, where the depth is not known."""
+    if plan.best.min_ukc_m is not None:
+        return "all kept"
+    checked = ["land", "zones"]
+    limits = plan.plot_context.ship.limits if plan.plot_context is not None else None
+    if limits is not None:
+        named = (("waves", limits.wave_height), ("wind", limits.wind_speed))
+        checked += [what for what, limit in named if math.isfinite(limit)]
+    return f"kept: {', '.join(checked)}; NOT checked: depth under the keel"
 
 
 def quality_text(plan: PlanData) -> str:

@@ -289,7 +289,10 @@ def comparison_key(route: Route, objective: str, chart: Chart | None) -> tuple[i
         return sys.maxsize, math.inf, math.inf
     sailed = route.legs["arrive"] - route.legs["depart"]
     spent = route.legs["length"] if objective == "distance" else sailed
-    factor = penalty_factors(chart, route.track.lat, route.track.lon)
+    lat, lon = route.track.lat, route.track.lon
+    factor = penalty_factors(chart, lat, lon)
+    if factor is not None and chart is not None and chart.canals:  # as on the network
+        factor[chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:]) >= 0] = 1.0
     cost = float(np.sum(spent if factor is None else factor * spent))
     if objective != "distance":
         cost += float(route.track.wait.sum())
