@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import itertools
-import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -19,6 +18,7 @@ from thalweg.core.file_reading import read_text_file
 from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import HOUR
 from thalweg.planning.voyage import Voyage
+from thalweg.studies.canonical_form import canonical_json
 
 #: Entries of a row beside those of a voyage.
 SURROUNDINGS: Final = (
@@ -248,20 +248,6 @@ def load_study(path: str | Path) -> Study:
             "Correct the file.",
         ) from error
     return Study.from_dict(data, Path(path).resolve().parent)
-
-
-def canonical_json(value: Any) -> str:
-    """Return JSON that is the same for equal data.
-
-    Parameters
-    ----------
-    value : plain data
-
-    Returns
-    -------
-    str
-    """
-    return json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False)
 
 
 def _row(base: Mapping[str, Any], chosen: Mapping[str, Any], compare: Sequence[str]) -> StudyRow:
