@@ -29,9 +29,9 @@ def test_the_hash_follows_the_text_and_neither_place_nor_time(tmp_path, monkeypa
 @pytest.mark.slow
 def test_two_checkouts_share_compiled_code(tmp_path):
     code = (
-        "from thalweg.kernels.network.graph_building import find_point\n"
+        "from thalweg.kernels.network.lattice_edges import LatticeRows, find_point\n"
         "import numpy as np\n"
-        "one = np.array([0, 1])\nassert find_point(0, 0, 0, one, one, 0) == 0\n"
+        "one = np.array([0, 1])\nassert find_point(0, 0, LatticeRows(0, one, one, 0)) == 0\n"
         "print(sum(find_point.stats.cache_hits.values()))"
     )
     source = Path(compiled_code_cache.PACKAGE).parents[1]

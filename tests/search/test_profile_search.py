@@ -152,7 +152,7 @@ def test_bounds_are_below_every_passage(world, dredger):
         for depart in T0 + 3600.0 * np.array([2.0, 8.0, 14.0]):
             found = passages.sail(depart)
             to_go = found.arrive - found.node_arrive
-            assert np.all(passages.ahead.node[found.nodes] <= to_go + 1e-6)
+            assert np.all(passages.to_goal.node[found.nodes] <= to_go + 1e-6)
 
 
 def test_strongest_currents_bound_every_direction(world):

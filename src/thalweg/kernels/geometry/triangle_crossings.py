@@ -1,6 +1,9 @@
 """Walking straight lines through a triangulation: which sides they cross, and where."""
 
 import math
+from typing import NamedTuple
+
+import numpy as np
 
 from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit
@@ -9,18 +12,34 @@ MAX_SIDES = 256  # crossed by one line
 _MIN_GAP = 1e-5  # crossings closer than this share of the line are one
 
 
-@jit
-def crossed_sides(x, y, triangles, neighbours, around_ptr, around, first, second, out, ptr):
-    """Find the sides that lines between nodes cross; with an empty output only count them.
+class Triangulation(NamedTuple):
+    """Triangles of nodes in a plane.
 
-    Parameters
+    Attributes
     ----------
     x, y : float64[N]
-        Nodes in a plane.
+        Nodes.
     triangles, neighbours : int32[M, 3]
         Nodes of each triangle, and the triangle opposite each node (-1: none).
     around_ptr, around : int64[N + 1], int32[...]
         The triangles around each node.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    triangles: np.ndarray
+    neighbours: np.ndarray
+    around_ptr: np.ndarray
+    around: np.ndarray
+
+
+@jit
+def crossed_sides(mesh, first, second, out, ptr):
+    """Find the sides that lines between nodes cross; with an empty output only count them.
+
+    Parameters
+    ----------
+    mesh : Triangulation
     first, second : int32[L]
         Ends of the lines.
     out : tuple (a int32[V], b int32[V], w float32[V], s float32[V])
@@ -38,21 +57,19 @@ def crossed_sides(x, y, triangles, neighbours, around_ptr, around, first, second
     for e in range(first.shape[0]):
         ptr[e] = count
         a, b = first[e], second[e]
-        triangle, left, right = _exit_side(x, y, triangles, around_ptr, around, a, b)
+        triangle, left, right = _exit_side(mesh, a, b)
         before = 0.0
         for _ in range(MAX_SIDES):
             if triangle < 0:
                 break
-            s, w = _crossing(x, y, a, b, left, right)
+            s, w = _crossing(mesh.x, mesh.y, a, b, left, right)
             if s - before > _MIN_GAP and s < 1.0 - _MIN_GAP:
                 if fill:
                     out[0][count], out[1][count] = left, right
                     out[2][count], out[3][count] = w, s
                 count += 1
                 before = s
-            triangle, left, right = _next_side(
-                x, y, triangles, neighbours, triangle, left, right, a, b
-            )
+            triangle, left, right = _next_side(mesh, triangle, left, right, a, b)
     ptr[first.shape[0]] = count
 
 
@@ -63,11 +80,12 @@ def _side_of(x, y, a, b, c):
 
 
 @kernel_only
-def _exit_side(x, y, triangles, around_ptr, around, a, b):
+def _exit_side(mesh, a, b):
     """Return (triangle, left, right): the side of a triangle at a through which a line leaves.
 
     The triangle is -1 if b is joined to a.
     """
+    x, y, triangles, _, around_ptr, around = mesh
     for k in range(around_ptr[a], around_ptr[a + 1]):
         t = around[k]
         for j in range(3):
@@ -100,8 +118,9 @@ def _crossing(x, y, a, b, left, right):
 
 
 @kernel_only
-def _next_side(x, y, triangles, neighbours, triangle, left, right, a, b):
+def _next_side(mesh, triangle, left, right, a, b):
     """Return the next (triangle, left, right) beyond a side; -1 when there is none."""
+    triangles, neighbours = mesh.triangles, mesh.neighbours
     far = -1
     for j in range(3):
         if triangles[triangle, j] != left and triangles[triangle, j] != right:
@@ -114,6 +133,6 @@ def _next_side(x, y, triangles, neighbours, triangle, left, right, a, b):
             corner = triangles[far, j]
     if corner == b:
         return -1, -1, -1
-    if _side_of(x, y, a, b, corner) > 0.0:
+    if _side_of(mesh.x, mesh.y, a, b, corner) > 0.0:
         return far, corner, right
     return far, left, corner

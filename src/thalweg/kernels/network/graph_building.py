@@ -1,4 +1,4 @@
-"""Kernels that build networks: lattice neighbours, lengths and courses, CSR, static distances."""
+"""Kernels that build networks: lengths and courses, CSR, static distances."""
 
 import math
 
@@ -11,107 +11,6 @@ from thalweg.kernels.leg.great_circle import MAJOR_AXIS
 _F = 1.0 / 298.257223563
 _B = MAJOR_AXIS * (1.0 - _F)
 _EP2 = (MAJOR_AXIS * MAJOR_AXIS - _B * _B) / (_B * _B)
-
-
-@jit(inline="always")
-def find_point(i, j, i0, row_ptr, col, wrap):
-    """Return the index of lattice point (i, j) in rows sorted by column, or -1."""
-    if wrap > 0:
-        i = i0 + (i - i0) % wrap
-    r = i - i0
-    if r < 0 or r >= row_ptr.shape[0] - 1:
-        return -1
-    lo = row_ptr[r]
-    hi = row_ptr[r + 1]
-    if lo == hi:
-        return -1
-    guess = lo + j - col[lo]
-    if guess < lo:
-        return -1
-    if guess < hi and col[guess] == j:
-        return guess
-    hi = min(hi, guess + 1)
-    while lo < hi:
-        middle = (lo + hi) >> 1
-        if col[middle] < j:
-            lo = middle + 1
-        else:
-            hi = middle
-    if lo < row_ptr[r + 1] and col[lo] == j:
-        return lo
-    return -1
-
-
-@jit
-def lattice_pairs(i0, row_ptr, col, wrap, di, dj, first, second, offset):
-    """List the pairs of points one offset apart; with empty outputs only count them.
-
-    Parameters
-    ----------
-    i0, row_ptr, col, wrap
-        Rows of the lattice: row ``i0 + r`` holds columns ``col[row_ptr[r]:row_ptr[r + 1]]``
-        in ascending order; ``wrap`` rows go round the globe (0: no wrapping).
-    di, dj : int64[M]
-        Offsets, one of each opposite pair.
-    first, second : int32[P], offset : int8[P]
-        Filled with the pairs and the number of their offset.
-
-    Returns
-    -------
-    int
-        Number of pairs.
-    """
-    fill = first.shape[0] > 0
-    count = 0
-    for r in range(row_ptr.shape[0] - 1):
-        for p in range(row_ptr[r], row_ptr[r + 1]):
-            for k in range(di.shape[0]):
-                q = find_point(i0 + r + di[k], col[p] + dj[k], i0, row_ptr, col, wrap)
-                if q >= 0 and q != p:
-                    if fill:
-                        first[count] = p
-                        second[count] = q
-                        offset[count] = k
-                    count += 1
-    return count
-
-
-@jit
-def lattice_samples(i0, row_ptr, col, wrap, node, di, dj, row, point, offset, via_ptr, a, b, w, s):
-    """Fill the samples of pairs where they cross lattice lines (``a = -1``: a point is missing).
-
-    A pair with offset (x, y) crosses ``max(|x|, |y|) - 1`` lattice lines between its ends, each
-    between two neighbouring points of the line.
-    """
-    for e in range(point.shape[0]):
-        x = di[offset[e]]
-        y = dj[offset[e]]
-        m = max(abs(x), abs(y))
-        i = row[point[e]]
-        j = col[point[e]]
-        for k in range(1, m):
-            v = via_ptr[e] + k - 1
-            s[v] = k / m
-            if abs(x) >= abs(y):
-                i1 = i + (k if x > 0 else -k)
-                low = (k * y) // m
-                weight = (k * y - low * m) / m
-                p = find_point(i1, j + low, i0, row_ptr, col, wrap)
-                q = find_point(i1, j + low + 1, i0, row_ptr, col, wrap)
-            else:
-                j1 = j + (k if y > 0 else -k)
-                low = (k * x) // m
-                weight = (k * x - low * m) / m
-                p = find_point(i + low, j1, i0, row_ptr, col, wrap)
-                q = find_point(i + low + 1, j1, i0, row_ptr, col, wrap)
-            if p < 0 or q < 0:
-                a[v] = -1
-                b[v] = -1
-                w[v] = 0.0
-            else:
-                a[v] = node[p]
-                b[v] = node[q]
-                w[v] = weight
 
 
 @jit

@@ -14,6 +14,7 @@ import numpy as np
 
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.core.types import BoolArray, FloatArray, Int32Array, IntArray
+from thalweg.kernels.network.lattice_edges import LatticeRows
 from thalweg.network.conformal_projection import (
     ConformalProjection,
     angle_to_point,
@@ -58,11 +59,11 @@ class Level:
     around: int = 0
 
     @property
-    def rows(self) -> tuple[int, IntArray, IntArray, int]:
-        """First row, row pointers, columns and wrap as the lattice kernels take them."""
+    def rows(self) -> LatticeRows:
+        """The points by row, as the kernels take them."""
         first, last = (int(self.i[0]), int(self.i[-1])) if len(self.i) else (0, 0)
         ptr = np.searchsorted(self.i, np.arange(first, last + 2)).astype(np.int64)
-        return first, ptr, self.j, self.around
+        return LatticeRows(first, ptr, self.j, self.around)
 
     def where(self, keep: BoolArray, new_node: IntArray) -> Level:
         """Return the level with only the selected nodes, renumbered."""

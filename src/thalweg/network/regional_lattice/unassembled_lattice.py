@@ -10,7 +10,7 @@ import numpy as np
 
 from thalweg.core.geodesy import MEAN_RADIUS, Position, direct, inverse
 from thalweg.core.types import BoolArray, FloatArray, IntArray
-from thalweg.kernels.network import graph_building
+from thalweg.kernels.network import lattice_edges
 from thalweg.network.assembly import (
     DirectedEdges,
     Pairs,
@@ -210,9 +210,9 @@ def _join_level_points(
     """Return the allowed pairs of a level; refusals are added to the counts."""
     rows = level.rows
     none, no_offset = np.empty(0, np.int32), np.empty(0, np.int8)
-    count = graph_building.lattice_pairs(*rows, di, dj, none, none, no_offset)
+    count = lattice_edges.lattice_pairs(rows, di, dj, none, none, no_offset)
     a, b, k = np.empty(count, np.int32), np.empty(count, np.int32), np.empty(count, np.int8)
-    graph_building.lattice_pairs(*rows, di, dj, a, b, k)
+    lattice_edges.lattice_pairs(rows, di, dj, a, b, k)
     first, second = level.node[a], level.node[b]
     free, refused = allowed_legs(chart, lat, lon, first, second)
     add_counts(rejected, refused)
@@ -248,10 +248,9 @@ def _level_samples(
     total = int(ptr[-1])
     a, b = np.empty(total, np.int32), np.empty(total, np.int32)
     w, s = np.empty(total, np.float32), np.empty(total, np.float32)
-    first, row_ptr, col, wrap = level.rows
-    graph_building.lattice_samples(
-        first, row_ptr, col, wrap, level.node, di, dj, level.i, point, offset, ptr, a, b, w, s
-    )
+    pairs = lattice_edges.LatticePairs(point, offset, di, dj)
+    samples = lattice_edges.LineSamples(a, b, w, s)
+    lattice_edges.lattice_samples(level.rows, level.node, level.i, pairs, ptr, samples)
     bent = _is_bent(frame, part, di, dj)
     a[np.repeat(bent, between[offset])] = -1
     missing = np.flatnonzero(a < 0)

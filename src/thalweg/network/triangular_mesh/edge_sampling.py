@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from thalweg.core.types import FloatArray, IntArray
-from thalweg.kernels.geometry.triangle_crossings import crossed_sides
+from thalweg.kernels.geometry.triangle_crossings import Triangulation, crossed_sides
 from thalweg.network.conformal_projection import mercator_projection
 from thalweg.network.network import Network, Samples, Stations
 
@@ -40,11 +40,11 @@ def sampled_on_triangle_sides(network: Network) -> Network:
     neighbours = np.ascontiguousarray(mesh.neighbors, np.int32)
     around_ptr, around = _triangles_around_nodes(triangles, len(lat))
     lines = network.tails(), np.ascontiguousarray(network.graph.target, np.int32)
-    mesh_arrays = (x, y, triangles, neighbours, around_ptr, around)
+    triangulation = Triangulation(x, y, triangles, neighbours, around_ptr, around)
     ptr = np.zeros(len(network.graph.target) + 1, np.int64)
     out = _output_size(0)
     for _ in range(2):
-        crossed_sides(*mesh_arrays, *lines, out, ptr)
+        crossed_sides(triangulation, *lines, out, ptr)
         if out[0].size or ptr[-1] == 0:
             break
         out = _output_size(int(ptr[-1]))
