@@ -15,7 +15,6 @@ import numpy as np
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 
 _DIRECTIONS = 8
-_MIN_GAIN = 1e-10  # least gain that counts, as a share of the value of the legs beside a point
 
 
 @dataclass(frozen=True)
@@ -35,6 +34,8 @@ class CompassSchedule:
         By which the directions turn every round [rad].
     smallest : float
         The search ends when all steps are shorter than this [m].
+    least_gain : float
+        Gain that does not count yet, as a share of the value of the legs beside a point.
     groups : int
         With 2 every second point moves at a time, with 1 all of them.
     """
@@ -45,6 +46,7 @@ class CompassSchedule:
     shrinkage: float = 1.0
     turn: float = 0.0
     smallest: float = 0.0
+    least_gain: float = 0.0
     groups: int = 1
 
 
@@ -111,7 +113,7 @@ def compass_search(tracks: AnyCompassProblem, schedule: CompassSchedule) -> AnyC
             moving = (step > 0.0) & (step >= schedule.smallest)
             moving &= np.arange(step.shape[1]) % schedule.groups == (group + 1) % schedule.groups
             if moving.any():
-                tracks, moved = _best_steps(tracks, moving, step, angle)
+                tracks, moved = _best_steps(tracks, moving, step, angle, schedule.least_gain)
                 step[moving] *= np.where(moved[moving], schedule.growth, schedule.shrinkage)
         if step.max(initial=0.0) < schedule.smallest:
             break
@@ -119,7 +121,7 @@ def compass_search(tracks: AnyCompassProblem, schedule: CompassSchedule) -> AnyC
 
 
 def _best_steps(
-    tracks: AnyCompassProblem, moving: BoolArray, step: FloatArray, angle: FloatArray
+    tracks: AnyCompassProblem, moving: BoolArray, step: FloatArray, angle: FloatArray, least: float
 ) -> tuple[AnyCompassProblem, BoolArray]:
     """Move points (R, M) to the best of their trial positions; return also which moved."""
     row, place = np.nonzero(moving)
@@ -130,7 +132,7 @@ def _best_steps(
     every = np.arange(len(row))
     with np.errstate(invalid="ignore"):
         better = now - value[every, best]
-        better[~(np.isfinite(better) & (better > _MIN_GAIN * np.abs(now)))] = 0.0
+        better[~(np.isfinite(better) & (better > least * np.abs(now)))] = 0.0
     gain, lat, lon = (np.zeros(step.shape) for _ in range(3))
     gain[row, place] = better
     lat[row, place], lon[row, place] = (trial[every, best] for trial in trials)

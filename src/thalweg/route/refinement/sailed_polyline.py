@@ -33,6 +33,7 @@ _COMPASS_SCHEDULE = CompassSchedule(
     growth=1.3,
     shrinkage=0.5,
     turn=math.pi * (3.0 - math.sqrt(5.0)),  # the golden angle
+    least_gain=1e-10,
     groups=2,
 )
 _ABSORBED_DELAY = 1e-3  # share of the time saved before a wait that counts
