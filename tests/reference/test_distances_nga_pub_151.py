@@ -86,10 +86,10 @@ def test_median_and_spread(errors):
 
 @pytest.mark.slow
 def test_largest_error_and_its_cause(errors):
-    """Recife to Bridgetown and Mumbai to Colombo are quoted 2 % longer than a way 2 nm off land."""
+    """Recife to Bridgetown and Vladivostok to Yokohama are quoted longer than 2 nm off land."""
     assert np.abs(errors).max() < 3.0
     worst = {PUBLISHED[k][:2] for k in np.flatnonzero(np.abs(errors) > 1.9)}
-    assert worst <= {("Recife", "Bridgetown"), ("Mumbai", "Colombo"), ("Vladivostok", "Yokohama")}
+    assert worst <= {("Recife", "Bridgetown"), ("Vladivostok", "Yokohama")}
 
 
 def test_both_ways_round_greece_are_those_published():

@@ -183,9 +183,10 @@ def offing_arrays(
     passages : sequence of Passage
         Open passages.
     closed : sequence of Passage, optional
-        Passages that no leg crosses; those narrower than the offing need no line across.
+        Passages that no leg crosses; those much narrower than the offing need no line across.
     """
-    gate = _gates(coastline, tuple(p for p in closed if p.half_width >= offing.distance))
+    wide = tuple(p for p in closed if _MARGIN * p.half_width >= offing.distance)
+    gate = _gates(coastline, wide)
     if offing.distance <= 0.0:
         return NO_OFFING._replace(gate=gate)
     discs = (*offing.discs, *offing.canal_discs)

@@ -10,12 +10,12 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.chart.canals import exclude_canals
-from thalweg.chart.offing import disc_at
+from thalweg.chart.offing import disc_at, required_offing
 from thalweg.chart.passages import find_passages, split_avoided
-from thalweg.core.geodesy import Position, distance
+from thalweg.core.geodesy import Position, distance, wrap_longitude
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.network.alternatives.path_shortening import string_pull_path
+from thalweg.network.alternatives.path_shortening import LegCost, leg_lengths, string_pull_path
 from thalweg.network.global_grid.sea_graph import (
     ICE_LATITUDES,
     outside_ice,
@@ -27,6 +27,8 @@ from thalweg.planning.request.voyage_endpoints import Endpoint
 _ROUNDS: Final = 4  # passes of string pulling; each may double the waypoints of a corner
 #: A way off land that is longer than the one along the coast by more than this has bends.
 _MOST_LONGER: Final = 1.01
+_NEAR_LAND: Final = 3.0  # what a mile nearer to land than required counts more, beside the graph
+_SHARES: Final = (np.arange(9) + 0.5) / 9.0  # of a leg, where its distance from land is looked up
 _BEND: Final = 6.0 * NAUTICAL_MILE
 
 
@@ -117,20 +119,38 @@ class Seaways:
 def _pulled(chart: Chart, off_land: Chart, path: FloatArray) -> list[Position]:
     """Return a stretch between canals (n, 2) [deg] after string pulling, off land where it can.
 
-    Legs of the graph nearer to land than the offing are pulled along the coast. Where that leaves
-    bends of the graph, the way along the coast is taken.
+    Legs of the graph nearer to land than the offing are moved off it as far as costs fall. Where
+    bends of the graph are left, the way along the coast is taken.
     """
     if len(path) < 3:
         return [(float(lat), float(lon)) for lat, lon in path]
     along = _places(*string_pull_path(chart, *path.T, rounds=_ROUNDS))
     lat, lon = string_pull_path(off_land, *path.T, rounds=_ROUNDS)
     near = np.asarray(off_land.legs_blocked(lat[:-1], lon[:-1], lat[1:], lon[1:]))
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], near.astype(int), [0]])))
-    found = _places(lat, lon)
-    for first, last in reversed(edges.reshape(-1, 2).tolist()):
-        part = slice(first, last + 1)
-        found[part] = _places(*string_pull_path(chart, lat[part], lon[part], rounds=_ROUNDS))
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], near.astype(int), [0]]))).reshape(-1, 2)
+    first = np.maximum(edges[:, 0] - 1, np.append(0, edges[:-1, 1]))  # with the leg before ...
+    last = np.minimum(edges[:, 1] + 1, np.append(first[1:], len(lat) - 1))  # ... and after it
+    found, cost = _places(lat, lon), _cost_off_land(off_land)
+    for begin, end in reversed(list(zip(first.tolist(), last.tolist()))):
+        part = slice(begin, end + 1)
+        y, x = string_pull_path(chart, lat[part], lon[part], leg_cost=cost, rounds=_ROUNDS)
+        found[part] = _places(*string_pull_path(chart, y, x, leg_cost=cost, rounds=0))
     return found if path_length(found) <= _MOST_LONGER * path_length(along) + _BEND else along
+
+
+def _cost_off_land(off_land: Chart) -> LegCost:
+    """Return the cost of legs: their length, more where they are nearer to land than required."""
+    arrays, coastline = off_land.offing_arrays, off_land.coastline
+
+    def cost(lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray) -> FloatArray:
+        lat = lat1[:, None] + _SHARES * (lat2 - lat1)[:, None]
+        lon = wrap_longitude(lon1[:, None] + _SHARES * wrap_longitude(lon2 - lon1)[:, None])
+        shore = coastline.shore_distance(lat, lon, cap=off_land.offing.distance).ravel()
+        near = shore < required_offing(arrays, lat.ravel(), np.asarray(lon).ravel())
+        share = near.reshape(lat.shape).mean(axis=1)
+        return np.asarray(leg_lengths(lat1, lon1, lat2, lon2) * (1.0 + _NEAR_LAND * share))
+
+    return cost
 
 
 def _places(lat: FloatArray, lon: FloatArray) -> list[Position]:
