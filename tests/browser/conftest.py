@@ -81,7 +81,7 @@ class Visit:
     def figure(self, name: str) -> str:
         """Return a figure of the cards."""
         card = self.page.locator(".card", has=self.page.get_by_text(name, exact=True))
-        return str(card.locator("dd").inner_text())
+        return str(card.locator("dd").inner_text()).split("\n")[0]
 
     def picture(self, name: str) -> None:
         """Keep a screenshot where the environment asks for it."""

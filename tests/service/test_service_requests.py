@@ -231,3 +231,19 @@ def test_a_plan_of_a_ship_file_that_was_uploaded(client):
     sheet = client.get(f"/api/v1/ships/{ship['id']}").json()
     assert sheet["limits"]["wave_height_m"] == 8.0
     assert sheet["limits"]["wind_speed_m_s"] is None
+
+
+def test_vendored_scripts_are_those_of_their_checksums():
+    import hashlib
+
+    from thalweg.service.application import STATIC
+
+    vendor = STATIC / "vendor"
+    rows = [line.split() for line in (vendor / "SHA256SUMS").read_text().splitlines()]
+    assert {name for _, name in rows} == {
+        p.name for p in vendor.iterdir() if p.suffix in (".mjs", ".css")
+    }
+    for digest, name in rows:
+        assert hashlib.sha256((vendor / name).read_bytes()).hexdigest() == digest
+    assert {p.stem for p in (vendor / "licences").iterdir()} >= {"ol", "uplot"}
+    assert sum(p.stat().st_size for p in STATIC.rglob("*") if p.is_file()) < 800_000
