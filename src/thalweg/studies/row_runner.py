@@ -18,8 +18,7 @@ from thalweg.planning import Plan, Voyage, plan
 from thalweg.route import Route, Track, evaluate, read_track
 from thalweg.sea import Sea
 from thalweg.ship import Ship
-from thalweg.studies.canonical_form import canonical_json
-from thalweg.studies.study import StudyRow
+from thalweg.studies.study import StudyRow, canonical_json
 
 #: Largest values over a route: column and sampled variables.
 _EXTREMES = {
