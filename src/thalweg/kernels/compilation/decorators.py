@@ -6,12 +6,12 @@ part of its public interface, so it is left out where numba does not know it.
 """
 
 from thalweg.kernels.compilation.jit import jit
-from thalweg.kernels.compilation.kernel_libraries import InnerCompiler
+from thalweg.kernels.compilation.kernel_libraries import inner_compiler
 
 _INNER = {
     "no_cpython_wrapper": True,
     "no_cfunc_wrapper": True,
-    "pipeline_class": InnerCompiler,
+    "pipeline_class": inner_compiler(),
 }
 
 

@@ -6,14 +6,14 @@ import numba
 
 from thalweg.kernels.compilation.checked_code_cache import CheckedFunctionCache
 from thalweg.kernels.compilation.compiled_code_cache import COMPILED_FOLDER
-from thalweg.kernels.compilation.kernel_libraries import EntryCompiler
+from thalweg.kernels.compilation.kernel_libraries import entry_compiler
 
 
 def jit(function=None, **options):
     """Compile with on-disk caching and NumPy's error model (division checks block SIMD)."""
     if function is None:
         return lambda given: jit(given, **options)
-    usual = {"error_model": "numpy", "nogil": True, "pipeline_class": EntryCompiler}
+    usual = {"error_model": "numpy", "nogil": True, "pipeline_class": entry_compiler()}
     kernel = numba.njit(**{**usual, **options})(function)
     before = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(COMPILED_FOLDER)
