@@ -115,7 +115,7 @@ def test_only_changed_legs_are_looked_up():
 
     class Counting:
         has_depth = False
-        zones = SimpleNamespace(has_penalty=False, penalty=(), price=(), eca=())
+        zones = SimpleNamespace(has_penalty=False, penalty=(), price=(), eca=(), lanes=())
 
         def legs_blocked(self, lat1, lon1, lat2, lon2):
             asked.append(len(lat1))
@@ -149,7 +149,7 @@ def test_canal_legs_have_fixed_time_and_fee_in_any_sea():
 
     class WithCanal:
         has_depth = False
-        zones = SimpleNamespace(has_penalty=False, penalty=(), price=(), eca=())
+        zones = SimpleNamespace(has_penalty=False, penalty=(), price=(), eca=(), lanes=())
         canals = (canal,)
 
         def legs_blocked(self, lat1, lon1, lat2, lon2):

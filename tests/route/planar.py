@@ -62,7 +62,7 @@ class Islands:
     """
 
     has_depth = False
-    zones = SimpleNamespace(has_penalty=False, penalty=(), price=(), eca=())
+    zones = SimpleNamespace(has_penalty=False, penalty=(), price=(), eca=(), lanes=())
     canals = ()
 
     def __init__(self, *polygons):
