@@ -7,7 +7,7 @@ import pytest
 
 from thalweg import Chart, NoRouteError, Sea, Ship, Voyage, plan
 from thalweg.core.geodesy import distance
-from thalweg.planning.single import passage
+from thalweg.planning.single import passage, route_candidates
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error
 
 KNOT, HOUR, DEPART = 1852.0 / 3600.0, 3600.0, 1767225600.0
@@ -54,7 +54,8 @@ def test_a_route_that_the_referee_finds_late_is_not_reported_as_in_time(monkeypa
         legs = {**route.legs, "arrive": route.legs["arrive"] + HOUR}
         return dataclasses.replace(route, legs=legs)
 
-    monkeypatch.setattr(passage, "refine_track", slower)
+    for module in (passage, route_candidates):
+        monkeypatch.setattr(module, "refine_track", slower)
     with pytest.raises(NoRouteError, match="No route arrives by") as caught:
         plan(Voyage(**ENDS, arrive_by=latest), **given)
     assert "earliest arrival is 2026-01-01T13:0" in caught.value.possible

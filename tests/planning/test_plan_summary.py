@@ -12,7 +12,6 @@ from thalweg.planning.report.plan_summary import (
     MAX_LINES,
     duration_text,
     limits_text,
-    proven_gap,
     quality_text,
     summary_with_notes,
     utc_text,
@@ -71,27 +70,28 @@ def test_notes_that_do_not_fit_are_counted(answer):
     assert "No depth" not in "".join(lines)
 
 
-def with_bounds(answer, certain, searched):
+def with_bound(answer, certain, kind="certificate"):
     value = answer.objective_value
-    proof = replace(answer.proof, certain=certain * value, lower_bound=searched * value)
-    return replace(answer, proof=proof)
+    return replace(answer, proof=replace(answer.proof, certain=certain * value, kind=kind))
 
 
 @pytest.mark.parametrize(
-    ("certain", "searched", "text"),
+    ("certain", "kind", "text"),
     [
-        (0.963, 0.99, "at most 3.7 % from the best possible"),
-        (1.0, 1.0, "at most 0.1 % from the best possible"),
-        (0.6, 0.99, "about 1.0 % from the best by the search, which is not a proof; proven: at "
-         "most 40.0 %"),
-        (0.6, 1.1, "at most 40.0 % from the best possible"),
-        (1.158, 1.158, "not known: no valid lower bound was found"),
-        (0.0, 0.9, "not known: no valid lower bound was found"),
-        (np.nan, 0.9, "not known: no valid lower bound was found"),
+        (0.963, "certificate", "at most 3.7 % from the best possible"),
+        (1.0, "certificate", "at most 0.1 % from the best possible"),
+        (0.6, "certificate", "at most 40.0 % from the best possible"),
+        (np.nan, "no bound: the route ends at a pole", "no bound: the route ends at a pole"),
+        (0.0, "certificate", "no bound was found"),
     ],
-)  # fmt: skip
-def test_only_valid_and_useful_bounds_are_stated_as_proof(answer, certain, searched, text):
-    assert quality_text(with_bounds(answer, certain, searched)) == text
+)
+def test_the_summary_states_the_certain_bound_or_why_there_is_none(answer, certain, kind, text):
+    assert quality_text(with_bound(answer, certain, kind)) == text
+
+
+def test_a_bound_above_the_route_is_an_error_and_not_hidden(answer):
+    with pytest.raises(AssertionError, match="above the value"):
+        assert with_bound(answer, 1.158).gap < 0.0
 
 
 def test_an_interrupted_plan_and_one_that_breaks_a_limit(answer):
@@ -101,7 +101,6 @@ def test_an_interrupted_plan_and_one_that_breaks_a_limit(answer):
     assert quality_text(broken) == "not stated: the route breaks a limit"
     assert limits_text(broken).startswith("NOT KEPT: wave height above the limit at 51.2")
     assert limits_text(broken).endswith("(4.00, limit 3.00), and 1 more")
-    assert proven_gap(broken, 0.5 * broken.objective_value) == pytest.approx(0.5)
 
 
 def test_only_with_known_depth_all_limits_are_called_kept(answer):

@@ -144,9 +144,8 @@ def _add_network_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--proof",
         type=float,
-        default=0.0,
         metavar="SECONDS",
-        help="time for a proven lower bound of the time or distance, 0 to 3600 s; default: 0",
+        help="time for the proof of the lower bound, 0 to 3600 s; default: as long as the search",
     )
 
 

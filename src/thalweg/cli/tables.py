@@ -90,8 +90,12 @@ def _print_details(plan: Plan) -> None:
     title = f"{plan.provenance['from']} to {plan.provenance['to']}, least {plan.voyage.objective}"
     print_waypoints(console, plan.best.waypoints(), title)
     console.print(
-        f"Lower bound {plan.lower_bound:.2f} {plan.unit}, gap {100 * plan.gap:.1f} % "
-        f"({escape(plan.proof.kind)}); absolute lower bound {plan.proof.certain:.2f} {plan.unit}.",
+        escape(
+            f"Lower bound {plan.lower_bound:.2f} {plan.unit}, gap {100 * plan.gap:.1f} %: "
+            if plan.gap < 1.0
+            else ""
+        )
+        + f"{escape(plan.proof.kind)}.",
         soft_wrap=True,
     )
     if plan.front is not None:

@@ -104,9 +104,8 @@ class ApproachSailing:
         routes = tuple(self._joined(route, context) for route in plan.routes)
         added = _difference(routes[0], plan.best, voyage, context)
         proof = Proof(
-            plan.proof.lower_bound + added[1],
-            plan.proof.kind,
             plan.proof.certain + added[1],
+            f"{plan.proof.kind}; with the approaches of the ports",
             plan.proof.solver_total + added[1],
         )
         front = plan.front and self._front(plan.front, added, context)
@@ -177,9 +176,13 @@ class ApproachSailing:
                 for row, route, value in zip(comparison.rows, routes, values)
             )
             comparison = BaselineComparison(routes, values, rows)
-        lower = np.asarray(front.lower) + np.array(added)[:, None]
+        more = np.array(added)[:, None]
         return replace(
-            front, values=np.asarray(front.values) + added[1], lower=lower, comparison=comparison
+            front,
+            values=np.asarray(front.values) + added[1],
+            lower=np.asarray(front.lower) + more,
+            certain=np.asarray(front.certain) + more,
+            comparison=comparison,
         )
 
 
@@ -256,7 +259,9 @@ def plan_along_approaches(
         total = objective.value(route)
         one = np.array([total])
         lower = np.array([[route.time_h], [total]])
-        front = ParetoFront(objective.name, objective.unit, one, ("exact",), ("approach",), lower)
+        front = ParetoFront(
+            objective.name, objective.unit, one, ("exact",), ("approach",), lower, certain=lower
+        )
         value = route.time_h if voyage.objective == "front" else total
     elif voyage.objective == "distance":
         value = route.distance_nm
@@ -270,7 +275,7 @@ def plan_along_approaches(
     return Plan(
         voyage=voyage,
         routes=(route,),
-        proof=Proof(value, _NO_CHOICE, value, value),
+        proof=Proof(value, _NO_CHOICE, value),
         rejections={},
         notes=tuple(dict.fromkeys(notes)),
         provenance=provenance(context, list(ends), [], [sailing.speed / KNOT]),

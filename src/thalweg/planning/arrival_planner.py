@@ -333,7 +333,7 @@ def _over_ground(request: ArrivalRequest, plan: Plan) -> Plan:
     limits = _lowest_speed(request), float(request.ship.speeds[-1])
     found = at_constant_ground_speed(route, speed, sail, ordered_range=limits)
     kind = "none: the time is given, and the speed over ground follows from it"
-    proof = Proof(math.nan, kind, math.nan, plan.proof.solver_total)
+    proof = Proof(math.nan, kind, plan.proof.solver_total)
     return replace(plan, routes=(found,), proof=proof)
 
 

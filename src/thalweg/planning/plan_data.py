@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,24 +22,21 @@ from thalweg.route import Route
 
 @dataclass(frozen=True)
 class Proof:
-    """Lower bounds of the objective, and the total of the search.
+    """The lower bound of the objective, and the total of the search.
 
     Attributes
     ----------
-    lower_bound : float
-        Lower bound of the objective [its unit].
-    kind : str
-        How the bound was found, and its assumptions.
     certain : float
-        Lower bound in free space, independent of the network: the geodesic at the greatest speed
-        over ground in the data.
+        Lower bound of the objective that holds for every route in open water [its unit]; NaN
+        where there is none.
+    kind : str
+        How the bound was found and what it counts; why there is none.
     solver_total : float
         Total of the search on the network, before refinement and referee.
     """
 
-    lower_bound: float
-    kind: str
     certain: float
+    kind: str
     solver_total: float
 
 
@@ -135,8 +133,8 @@ class PlanData:
 
     @property
     def lower_bound(self) -> float:
-        """Lower bound of the objective, in `unit`."""
-        return self.proof.lower_bound
+        """Lower bound of the objective, in `unit`; NaN where there is none."""
+        return self.proof.certain
 
     @property
     def solver_total(self) -> float:
@@ -145,9 +143,27 @@ class PlanData:
 
     @property
     def gap(self) -> float:
-        """Excess of the best route over the lower bound, as a fraction of its value."""
+        """Excess of the best route over the lower bound, as a fraction of its value.
+
+        NaN without a bound. A bound above the value, beyond the tolerance of the referee, is an
+        error of the program.
+        """
         value = self.objective_value
-        return max(0.0, (value - self.lower_bound) / value) if value > 0 else 0.0
+        if not (math.isfinite(value) and math.isfinite(self.lower_bound)):
+            return math.nan
+        if value <= 0.0:
+            return 0.0
+        gap = (value - self.lower_bound) / value
+        known = self._referee_share
+        assert gap >= -known, f"bound {self.lower_bound} above the value {value} {self.unit}"
+        return max(gap, 0.0)
+
+    @property
+    def _referee_share(self) -> float:
+        """Tolerance of the referee, as a share of the value."""
+        best = self.best
+        share = best.tolerance_s / HOUR / best.time_h if best.time_h > 0.0 else 0.0
+        return 1e-6 + (share if math.isfinite(share) else 0.0)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the plan as plain data, ready for JSON (unknown numbers are None)."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -63,10 +63,12 @@ class ParetoFront:
         Label of each route: its canals, or ``"open sea"``, and the sides of land where these
         differ (`thalweg.planning.pareto.route_names.route_labels`).
     lower : ndarray (2, m)
-        Times [h] and values of the lower front: by the network no route that takes at most such a
-        time has a lower value.
+        Times [h] and values of the lower front of the network: evidence, as what happens between
+        its nodes is neither searched nor bounded.
     comparison : BaselineComparison or None
         The weather-blind route in the same weather.
+    certain : ndarray (2, m)
+        Times [h] and values of a front below every route, to be joined by lines.
     """
 
     criterion: str
@@ -76,6 +78,7 @@ class ParetoFront:
     ways: tuple[str, ...]
     lower: FloatArray
     comparison: BaselineComparison | None = None
+    certain: FloatArray = field(default_factory=lambda: np.empty((2, 0)))
 
     def __post_init__(self) -> None:
         stages = tuple(_RENAMED_STAGES.get(stage, stage) for stage in self.stages)
@@ -86,10 +89,10 @@ class ParetoFront:
         return lower_at(self.lower, time_h)
 
     def gaps(self, routes: tuple[Route, ...]) -> list[float | None]:
-        """Return the gap of each route to the lower front at its time [fraction of its value]."""
+        """Return the gap of each route to the certain front at its time [fraction of its value]."""
         found: list[float | None] = []
         for route, value in zip(routes, self.values):
-            low = self.lower_at(route.time_h)
+            low = certain_at(self.certain, route.time_h)
             known = math.isfinite(low) and value > 0
             found.append(max(0.0, (float(value) - low) / float(value)) if known else None)
         return found
@@ -130,7 +133,15 @@ class ParetoFront:
             "lower": [
                 {"time_h": float(t), self.column: float(v)} for t, v in self.lower.T if t == t
             ],
+            "certain": [{"time_h": float(t), self.column: float(v)} for t, v in self.certain.T],
         }
+
+
+def certain_at(certain: FloatArray, time_h: float) -> float:
+    """Return the value of a certain front (2, m) at a time [h]; NaN without one."""
+    if not certain.size or math.isnan(time_h):
+        return math.nan
+    return float(np.interp(time_h, certain[0], certain[1]))
 
 
 def lower_at(lower: FloatArray, time_h: float) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import time as clock
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
@@ -47,15 +48,18 @@ from thalweg.planning.request.voyage_endpoints import (
     without_approach,
 )
 from thalweg.planning.request.voyage_objective import with_voyage_prices
+from thalweg.planning.single.certified_bound import certified_total
 from thalweg.planning.single.passage import plan_passage
 from thalweg.planning.single.passage_result import PassageResult
 from thalweg.planning.voyage import Voyage
 from thalweg.route import join as join_routes
 from thalweg.route import with_wind_speed
 from thalweg.sea import Sea
+from thalweg.search import LowerBound
 from thalweg.ship import Ship
 
 _LONGEST_PROOF = 3600.0  # [s]
+_LONGEST_DEFAULT_PROOF = 30.0  # [s]
 
 
 def plan(
@@ -66,7 +70,7 @@ def plan(
     chart: Chart | None = None,
     network: str | NetworkBuilder = "auto",
     resolution: float | None = None,
-    proof: float = 0.0,
+    proof: float | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Plan:
     """Plan a voyage: exact search on a network, refinement in open water, check by the referee.
@@ -86,9 +90,9 @@ def plan(
         `thalweg.planning.NetworkChoice`.
     resolution : float, optional
         Spacing of the network [m]; by default it depends on the distance.
-    proof : float
-        Time for the certificate of a lower bound [s], for passages at one speed that depart at a
-        given time; without it ``lower_bound_certain`` is that of the geodesic.
+    proof : float, optional
+        Time for the proof of the lower bound [s], 0 for the bound of the geodesic alone; by
+        default as long as the search. It ends earlier where the gap is below 0.5 %.
     progress : callable, optional
         Called with a short text at each stage.
 
@@ -152,7 +156,7 @@ def plan(
             "Open files with an ensemble dimension, or leave out the risk measure.",
             field="ensemble",
         )
-    if not 0.0 <= proof <= _LONGEST_PROOF:
+    if proof is not None and not 0.0 <= proof <= _LONGEST_PROOF:
         raise InputError(
             f"The time for the proof is {proof:g} s.",
             f"It is between 0 and {_LONGEST_PROOF:g} s.",
@@ -186,7 +190,15 @@ def _plan_at_sea(context: PlanningContext, ends: list[Endpoint]) -> Plan:
         from thalweg.planning.pareto.trade_off_planner import plan_trade_off
 
         return plan_trade_off(context, ends)
-    return _assemble_plan(context, ends, _plan_passages(context, ends))
+    began = clock.perf_counter()
+    passages = _plan_passages(context, ends)
+    seconds = context.proof_seconds
+    if seconds is None:
+        seconds = min(clock.perf_counter() - began, _LONGEST_DEFAULT_PROOF)
+    window = context.voyage.earliest_departure, context.voyage.latest_departure
+    routes = [passage.route for passage in passages]
+    bound = certified_total(context, routes, window, seconds=seconds)
+    return _assemble_plan(context, ends, passages, bound)
 
 
 def _context(
@@ -239,7 +251,10 @@ def _plan_passages(context: PlanningContext, ends: list[Endpoint]) -> list[Passa
 
 
 def _assemble_plan(
-    context: PlanningContext, ends: list[Endpoint], passages: list[PassageResult]
+    context: PlanningContext,
+    ends: list[Endpoint],
+    passages: list[PassageResult],
+    bound: LowerBound,
 ) -> Plan:
     voyage = context.voyage
     routes = [passage.route for passage in passages]
@@ -249,13 +264,9 @@ def _assemble_plan(
         refused.update(passage.network.meta.rejected)
         refused.update(passage.result.refused)
     total = sum(passage.result.cost for passage in passages)
-    bound = sum(passage.bound.value for passage in passages)
     proof = Proof(
-        lower_bound=in_objective_unit(bound, voyage.objective),
-        kind=passages[0].bound.kind,
-        certain=in_objective_unit(
-            sum(passage.floor.value for passage in passages), voyage.objective
-        ),
+        certain=in_objective_unit(bound.value, voyage.objective),
+        kind=bound.kind,
         solver_total=in_objective_unit(total, voyage.objective),
     )
     notes = [end.note for end in ends if end.note] + list(context.needs.notes)

@@ -50,8 +50,8 @@ class PlanningContext:
     choice : NetworkChoice
     report_progress : callable
         Called with a short text at each stage.
-    proof_seconds : float
-        Time for the certificate of a lower bound [s]; 0 for none.
+    proof_seconds : float or None
+        Time for the certificate of a lower bound [s]; None for that of the search.
     """
 
     voyage: Voyage
@@ -62,7 +62,7 @@ class PlanningContext:
     tables: ShipTables
     choice: NetworkChoice
     report_progress: Callable[[str], None] = field(default=lambda text: None)
-    proof_seconds: float = 0.0
+    proof_seconds: float | None = None
 
     @property
     def table(self) -> PerformanceTable:

@@ -4,6 +4,7 @@ This part of the certificate has to be right; how the function was found does no
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,10 +20,30 @@ from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit
 
 _GOLDEN = 0.6180339887498949
+_ABOVE_ROUNDING = 1.0 + 2e-7  # of 32-bit numbers
 _HALF = math.pi / SECTORS
 _SINE, _COSINE = math.sin(_HALF), math.cos(_HALF)
 _HEADINGS_EAST = np.sin(2.0 * _HALF * np.arange(SECTORS))
 _HEADINGS_NORTH = np.cos(2.0 * _HALF * np.arange(SECTORS))
+
+
+class KeptSpeeds(NamedTuple):
+    """Greatest speeds in cells, with the windows of time since departure that they hold for.
+
+    Attributes
+    ----------
+    first, last : float64[Y - 1, X - 1]
+        NaN where nothing is kept [s].
+    speed : float32[Y - 1, X - 1, sectors or 1]
+        By sector of heading, or for all headings [m/s]. Without rows nothing is kept.
+    longer : float
+        By so much windows are longer at both ends [s].
+    """
+
+    first: np.ndarray
+    last: np.ndarray
+    speed: np.ndarray
+    longer: float
 
 
 @kernel_only
@@ -124,7 +145,38 @@ def make_buffers():
 
 
 @kernel_only
-def _check_cell(world, phi, j, i, window, forward, strict, centre_before, buffers):
+def _kept_speeds(world, j, i, first, last, found, buffers, kept):
+    """Return (greatest speed, same for all headings, renewed) of a cell; fill speeds by sector.
+
+    After a renewal the currents in the buffers are those of a longer window.
+
+    Speeds hold for the window they were found for, which is a little longer than the one asked
+    for, so that they are kept while windows change little.
+    """
+    instants, field_high, winds, waves = found
+    if instants < 0 or kept.speed.shape[0] == 0:
+        top, disc = cell_speeds(world, instants, field_high, winds, waves, buffers)
+        return top, disc, False
+    sectors = kept.speed.shape[2]
+    inside = kept.first[j, i] <= first and last <= kept.last[j, i]
+    if inside and last - first >= kept.last[j, i] - kept.first[j, i] - 3.0 * kept.longer:
+        top = 0.0
+        for k in range(SECTORS):
+            buffers.speed[k] = kept.speed[j, i, k if sectors > 1 else 0]
+            top = max(top, buffers.speed[k])
+        return top, sectors == 1, False
+    first, last = first - kept.longer, last + kept.longer
+    instants, is_open, field_high, winds, waves = read_cell(world, j, i, first, last, buffers)
+    top, disc = cell_speeds(world, instants, field_high, winds, waves, buffers)
+    if instants >= 0 and is_open:
+        kept.first[j, i], kept.last[j, i] = first, last
+        for k in range(sectors):
+            kept.speed[j, i, k] = buffers.speed[k] * _ABOVE_ROUNDING
+    return top, disc, True
+
+
+@kernel_only
+def _check_cell(world, phi, j, i, window, forward, strict, centre_before, buffers, kept):
     """Return (excess, centre value): how far the barrier rises faster than time in one cell."""
     a, b, c, d = phi[j, i], phi[j, i + 1], phi[j + 1, i], phi[j + 1, i + 1]
     least, greatest = min(a, b, c, d), max(a, b, c, d)
@@ -135,7 +187,10 @@ def _check_cell(world, phi, j, i, window, forward, strict, centre_before, buffer
     instants, is_open, field_high, winds, waves = read_cell(world, j, i, first, last, buffers)
     if not is_open:
         return -1.0, 0.25 * (a + b + c + d)
-    top, disc = cell_speeds(world, instants, field_high, winds, waves, buffers)
+    found = instants, field_high, winds, waves
+    top, disc, renewed = _kept_speeds(world, j, i, first, last, found, buffers, kept)
+    if renewed:
+        instants = read_cell(world, j, i, first, last, buffers)[0]
     sign = 1.0 if forward else -1.0
     if instants < 0:  # a window of too many instants
         return math.inf, 0.25 * (a + b + c + d)
@@ -181,7 +236,7 @@ def _check_cell(world, phi, j, i, window, forward, strict, centre_before, buffer
 
 @jit
 def check_barrier(
-    world, phi, candidate, window_first, window_last, forward, strict, excess, centre
+    world, phi, candidate, window_first, window_last, forward, strict, excess, centre, kept
 ):
     """Fill for each candidate cell how far the barrier rises faster than time, at most.
 
@@ -202,6 +257,8 @@ def check_barrier(
         Greatest rate less 1; -1 where no ship may be, or where it is not checked.
     centre : float64[Y - 1, X - 1]
         Value of the barrier at the centre of each cell [s].
+    kept : KeptSpeeds
+        Speeds of cells that are kept between calls.
     """
     buffers = make_buffers()
     for j in range(phi.shape[0] - 1):
@@ -214,7 +271,7 @@ def check_barrier(
                 continue
             window = (window_first[j, i], window_last[j, i])
             excess[j, i], centre[j, i] = _check_cell(
-                world, phi, j, i, window, forward, strict, centre[j, i], buffers
+                world, phi, j, i, window, forward, strict, centre[j, i], buffers, kept
             )
 
 

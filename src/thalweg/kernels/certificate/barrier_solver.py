@@ -150,7 +150,7 @@ def solve_barrier(
     phi : float64[Y, X]
         `UNREACHED` but at the nodes where it is given.
     fixed : bool[Y, X]
-        Nodes whose value is given.
+        Nodes whose value is given; it may be lowered.
     f : float64[Y, X]
         Factor on the times at each node.
     solvable : bool[Y, X]
@@ -198,7 +198,7 @@ def solve_barrier(
                 if not active[j, i]:
                     continue
                 active[j, i] = False
-                if fixed[j, i] or not solvable[j, i]:
+                if not solvable[j, i]:
                     continue
                 moment = phi[j, i]
                 if moment >= cap:
@@ -228,7 +228,7 @@ def solve_barrier(
                 aspect = world.metres_east[j] * world.raster.corner[3]
                 aspect /= world.metres_north[j] * world.raster.corner[1]
                 value = _update(phi, f, j, i, ring_times[j, i], aspect)
-                if value < phi[j, i] * (1.0 - 1e-9):
+                if value < phi[j, i] - 1e-9 * max(abs(phi[j, i]), 1.0):
                     phi[j, i] = value
                     changes += 1
                     for k in range(8):

@@ -34,7 +34,7 @@ from thalweg.kernels.leg.table_lookup import TableArrays
 
 SECTORS = 48  # of headings
 MAX_INSTANTS = 128  # of one window; longer windows are treated as unlimited
-_ANGLES = (1 << AXIS_WIND_ANGLE) | (1 << AXIS_WAVE_ANGLE)
+ANGLES = (1 << AXIS_WIND_ANGLE) | (1 << AXIS_WAVE_ANGLE)
 _WIND = (1 << AXIS_WIND_SPEED) | (1 << AXIS_WIND_ANGLE)
 
 
@@ -63,6 +63,9 @@ class BarrierWorld(NamedTuple):
     limits : float64[LIMITS]
     top_speed : float
         Upper bound of the speed through water [m/s].
+    departures : float
+        From the first to the last departure [s]; times count from each departure, those of the
+        raster from the first one.
     """
 
     raster: RasterArrays
@@ -78,6 +81,7 @@ class BarrierWorld(NamedTuple):
     needs: int
     limits: np.ndarray
     top_speed: float
+    departures: float
 
 
 class CellBuffers(NamedTuple):
@@ -200,7 +204,7 @@ def _folded(angle):
 
 @kernel_only
 def read_cell(world, j, i, first, last, buffers):
-    """Collect the conditions in a cell during a window of time.
+    """Collect the conditions in a cell during a window of time since each departure.
 
     Returns (instants, open): 0 instants where nothing is known; ``open`` is False where no ship
     may be in the cell at any moment of the window. Fills the ranges of the conditions, the
@@ -216,6 +220,7 @@ def read_cell(world, j, i, first, last, buffers):
     lowest_wave = math.inf
     winds, waves, known_corners, instants = 0, 0, 0, 0
     unlimited = False
+    last += world.departures
     if world.closed[j, i] or first > times[final] or last < times[0]:
         return 0, False, 0.0, 0, 0
     t = max(first, times[0])
@@ -324,7 +329,7 @@ def cell_speeds(world, instants, field_high, winds, waves, buffers):
     for axis in range(low.shape[0]):
         if not low[axis] <= high[axis]:  # nothing known: anything
             low[axis], high[axis] = -math.inf, math.inf
-    if not needs & _ANGLES:
+    if not needs & ANGLES:
         top = greatest_speed(table, world.setting, low, high, world.top_speed, buffers.place)
         buffers.speed[:] = top
         return top, True

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from thalweg.core.geodesy import distance
-from thalweg.core.pareto_fronts import ROUNDING_TOLERANCE, non_dominated_indices
+from thalweg.core.pareto_fronts import ROUNDING_TOLERANCE, lower_hull, non_dominated_indices
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.planning.pareto.exploration import strongest_current
 from thalweg.planning.pareto.trade_off_context import ExploredAlternative, TradeOffContext
 from thalweg.planning.plan_data import Proof
-from thalweg.planning.plan_front import ParetoFront
+from thalweg.planning.plan_front import certain_at
+from thalweg.planning.single.certified_bound import certified_distance
+from thalweg.route import Route
 from thalweg.search import table_bounds
 
 _KIND = (
-    "the lower front of the network: all conditions as favourable as at any time in each time "
-    "step, lengths as short as in open water"
+    "certificate: the least length of a route round land at mixtures of the speeds, with the "
+    "strongest current at the stations of the network and the least rates and prices"
 )
-_KIND_ABSOLUTE = "the geodesic at the greatest speed over ground in the data"
+_SECONDS = 2.0  # for the bound of the length, by default
 
 
 def open_water_lower_front(
@@ -63,49 +68,79 @@ def correction_factors(lower: np.ndarray, time_h: np.ndarray, values: np.ndarray
 def derive_proof(
     trade_off: TradeOffContext,
     explored: list[ExploredAlternative],
-    front: ParetoFront,
+    certain: FloatArray,
     *,
     whole: bool,
 ) -> Proof:
-    """Return the bounds: of time for a whole front, else of the objective."""
-    certain_time, certain_value = absolute_lower_bound(trade_off, explored)
-    kind = _KIND if front.lower.size else _KIND_ABSOLUTE
+    """Return the bound of a plan: of the least time for a whole front, else of the objective.
+
+    Parameters
+    ----------
+    trade_off : TradeOffContext
+    explored : list of ExploredAlternative
+    certain : float64 array (2, m)
+        As `certain_front` returns it.
+    whole : bool
+        Whether the whole front is wanted.
+    """
     if whole:
         fastest = min(one.first.duration for one in explored) / HOUR
-        lower = front.lower[0].min() if front.lower.size else certain_time
-        return Proof(max(float(lower), certain_time), kind, certain_time, fastest)
+        return Proof(float(certain[0].min()), _KIND, fastest)
     points = [point for one in explored if one.exact for point in one.exact.points]
     solver = min((point.cost for point in points), default=math.nan)
-    value = float(front.values[0])
-    lower = float(front.lower[1].min()) if front.lower.size else certain_value
-    if lower > value:  # the route, which is not on the network, is better
-        lower = certain_value
-    return Proof(max(lower, certain_value), kind, certain_value, solver)
+    context = trade_off.context
+    allowed = (context.latest_arrival - context.voyage.earliest_departure) / HOUR
+    return Proof(certain_at(certain, allowed), _KIND, solver)
 
 
-def absolute_lower_bound(
-    trade_off: TradeOffContext, explored: list[ExploredAlternative]
-) -> tuple[float, float]:
-    """Return lower bounds of time [h] and value that hold for every route.
+def certain_front(
+    trade_off: TradeOffContext, explored: list[ExploredAlternative], length: float
+) -> FloatArray:
+    """Return a lower front that holds for every route: hours and values (2, m), to join by lines.
 
-    For the geodesic at the greatest speed over ground in the data; for the value also with the
-    least consumption rate and price of each setting.
+    Parameters
+    ----------
+    trade_off : TradeOffContext
+    explored : list of ExploredAlternative
+    length : float
+        No route is shorter [m].
+
+    Notes
+    -----
+    At a setting a route covers a metre in no less than ``1 / v`` seconds, with the ship's top speed
+    and the strongest current, for no less than ``rate / v``, with the least rate of consumption
+    and the least price. A route that mixes settings has time and value above a mean of these
+    points: not below their lower convex hull.
     """
     context, prices = trade_off.context, trade_off.objective.prices
-    start, goal = trade_off.ends[0], trade_off.ends[-1]
-    geodesic = float(distance(start.lat, start.lon, goal.lat, goal.lon))
     current = max(strongest_current(one.frozen.stations) for one in explored)
     least = min(prices.inside, prices.outside)
     if prices.dues > 0.0:  # a route off the network may sail in the cheapest zone throughout
         least *= min([1.0, *(float(factor) for _, factor in context.chart.zones.price)])
     rates = np.maximum(table_bounds(trade_off.consumption.kernel_arrays(), np.fmin), 0.0)
-    fastest, value = 0.0, math.inf
-    for setting in trade_off.settings:
-        over_ground = float(context.ship.top_speed(int(setting)) or math.inf) + current
-        fastest = max(fastest, over_ground)
-        per_second = least * float(rates[setting]) + prices.time
-        value = min(value, per_second * geodesic / over_ground)
-    return geodesic / fastest / HOUR, value
+    top = np.array([float(context.ship.top_speed(int(s)) or math.inf) for s in trade_off.settings])
+    seconds = length / (top + current)
+    values = seconds * (least * rates[trade_off.settings] + prices.time)
+    hull = lower_hull(seconds, values)
+    hull = hull[: int(np.argmin(values[hull])) + 1]
+    return np.array([seconds[hull] / HOUR, values[hull]])
+
+
+def certified_length(trade_off: TradeOffContext, routes: Sequence[Route]) -> float:
+    """Return a length [m] that no route is shorter than.
+
+    Round land, with the offing and no-go zones, where there are neither via points nor canals on
+    the way; otherwise that of the geodesics.
+    """
+    context, ends = trade_off.context, trade_off.ends
+    geodesic = sum(float(distance(a.lat, a.lon, b.lat, b.lon)) for a, b in itertools.pairwise(ends))
+    feasible = [route for route in routes if route.feasible]
+    seconds = context.proof_seconds if context.proof_seconds is not None else _SECONDS
+    if len(ends) > 2 or not feasible or trade_off.interrupt_guard.stopped():
+        return geodesic
+    shortest = min(feasible, key=lambda route: float(route.legs["length"].sum()))
+    found = certified_distance(context, shortest, seconds=seconds)
+    return max(geodesic, found.value) if math.isfinite(found.value) else geodesic
 
 
 def correction_notes(share: np.ndarray) -> list[str]:

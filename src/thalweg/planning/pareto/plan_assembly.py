@@ -21,7 +21,8 @@ from thalweg.planning.pareto.baseline import (
     weather_blind_tracks,
 )
 from thalweg.planning.pareto.bounds import (
-    absolute_lower_bound,
+    certain_front,
+    certified_length,
     correction_factors,
     correction_notes,
     derive_proof,
@@ -86,7 +87,9 @@ def assemble_trade_off_plan(
     return Plan(
         voyage=context.voyage,
         routes=tuple(item.route for item in ordered),
-        proof=derive_proof(trade_off, explored, front, whole=context.voyage.objective == "front"),
+        proof=derive_proof(
+            trade_off, explored, front.certain, whole=context.voyage.objective == "front"
+        ),
         rejections=_rejections(explored),
         notes=tuple(dict.fromkeys(notes)),
         provenance=provenance(context, ends, _network_summaries(explored), _speeds_kn(trade_off)),
@@ -117,7 +120,8 @@ def _pareto_front(
     context, objective = trade_off.context, trade_off.objective
     routes = tuple(item.route for item in ordered)
     values = np.array([item.value for item in ordered])
-    lower = open_water_lower_front(explored, absolute_lower_bound(trade_off, explored)[1])
+    certain = certain_front(trade_off, explored, certified_length(trade_off, routes))
+    lower = open_water_lower_front(explored, float(certain[1].min()))
     factors = correction_factors(lower, np.array([route.time_h for route in routes]), values)
     networks = {one.alternative.name: one.alternative.network for one in explored}
     shortest = min(networks, key=lambda name: shortest_path_length(networks[name]))
@@ -134,6 +138,7 @@ def _pareto_front(
         ),
         lower=lower * factors[:, None],
         comparison=compare_with_baseline(context, objective, routes, values, *references),
+        certain=certain,
     )
     return front, correction_notes(factors)
 

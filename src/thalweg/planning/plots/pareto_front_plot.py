@@ -101,7 +101,7 @@ def _draw_lower_bound(axes: Any, plan: PlanData) -> None:
         return
     last = max(route.time_h for route in plan.routes)
     shown = shown[:, shown[0] <= 1.02 * last]
-    axes.step(*shown, where="post", color="#607d8b", lw=1.2, label="lower front (bound)")
+    axes.step(*shown, where="post", color="#607d8b", lw=1.2, label="lower front of the network")
     axes.fill_between(
         shown[0], shown[1], shown[1].min() * 0.98, step="post", color="#607d8b", alpha=0.12
     )

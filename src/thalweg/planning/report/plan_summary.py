@@ -24,7 +24,6 @@ _WAVES = "sea_surface_wave_significant_height"
 _WIND = ("eastward_wind", "northward_wind")
 _CURRENT = ("eastward_sea_water_velocity", "northward_sea_water_velocity")
 _NAMES = (_WAVES, *_WIND, *_CURRENT)
-_CLOSE_GAP = 0.15  # proven gaps above this say little about the route
 #: Notes whose contents the summary states in its own lines.
 _STATED = ("No depth in the data",)
 _ALWAYS = ("land", "no-go zone")  # reasons that every coastal route meets
@@ -181,36 +180,16 @@ def _kept_text(plan: PlanData) -> str:
 
 
 def quality_text(plan: PlanData) -> str:
-    """Return how far the best route can be from the best possible one, where that is known.
-
-    A bound above the value of the route is false and is not used. A proven gap of more than 15 %
-    says little, so that the gap on the searched routes is stated as well.
-    """
-    proven, searched = proven_gap(plan, plan.proof.certain), proven_gap(plan, plan.lower_bound)
+    """Return how far the best route can be from the best possible one, or why that is unknown."""
     early = "stopped early; " if plan.cancelled else ""
     if not plan.best.feasible:
         return f"{early}not stated: the route breaks a limit"
     if plan.voyage.arrive is not None and math.isnan(plan.proof.certain):
         return "not stated: the times are given, and the speed over ground follows from them"
-    if proven is None:
-        return f"{early}not known: no valid lower bound was found"
-    if proven <= _CLOSE_GAP or searched is None or searched >= proven:
-        return f"{early}at most {_percent(proven)} % from the best possible"
-    return (
-        f"{early}about {_percent(searched)} % from the best by the search, which is not a proof; "
-        f"proven: at most {_percent(proven)} %"
-    )
-
-
-def proven_gap(plan: PlanData, bound: float) -> float | None:
-    """Return how far the best route is above a bound [fraction of its value].
-
-    None if the bound is not a positive number or, being false, is above the value.
-    """
-    value = plan.objective_value
-    if not (math.isfinite(value) and math.isfinite(bound)) or bound <= 0.0:
-        return None
-    return None if bound > value * (1.0 + 1e-6) else max(0.0, 1.0 - bound / value)
+    if not plan.gap < 1.0:
+        why = plan.proof.kind if plan.proof.kind.startswith("no bound") else "no bound was found"
+        return f"{early}{why}"
+    return f"{early}at most {_percent(plan.gap)} % from the best possible"
 
 
 def _percent(share: float) -> str:

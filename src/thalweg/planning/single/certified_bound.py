@@ -2,27 +2,57 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
 from thalweg.core.limits import Limits
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
+from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.route import Route
 from thalweg.sea import Sea
 from thalweg.search import LowerBound
+from thalweg.search.certificate.barrier_domain import PassageToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier
-from thalweg.search.certificate.time_certificate import PassageToBound, certify_time
+from thalweg.search.certificate.departure_certificate import certify_departures
+from thalweg.search.certificate.raster_path import fast_path_on_raster
+from thalweg.search.certificate.time_certificate import TimeCertificate, certify_time
 from thalweg.ship import PerformanceTable, TableError, TablePart
 
-_KIND = (
+_BARRIER_KIND = (
     "certificate: no ship gets ahead of an arrival-time function that was checked in every cell "
-    "of a mesh ({cells} cells along the way); it holds for all routes in open water{sampling}"
+    "of a mesh ({cells} cells along the way)"
 )
+_GEODESIC_KIND = "certificate: the geodesic at the greatest speed over ground in the data"
+_HOLDS_FOR = "; it holds for all routes in open water"
 #: Tables of ships whose speed varies have an error; bounds are lowered by this share.
 _TABLE_MARGIN = 1e-3
+#: A bound this share above the value of a route contradicts it.
+_CONTRADICTION = 2e-3
+_NO_REGION = (
+    "no bound: the routes that may be faster reach a pole or span more than 350 degrees of "
+    "longitude"
+)
+_NOT_SAILED = "no bound: the route breaks a limit"
+_CELLS_OF_PATH = 800  # of functions, along the longer side
+_CANAL = "no bound: a canal may shorten the way"
+_CONTRADICTED = (
+    "no bound: in {sampling} the route of the plan would not be possible in its time, so that a "
+    "bound for that sea says nothing"
+)
 
 
-def certified_bound(context: PlanningContext, route: Route, *, seconds: float) -> LowerBound | None:
+def certified_bound(
+    context: PlanningContext,
+    route: Route,
+    *,
+    departures: tuple[float, float],
+    seconds: float,
+) -> LowerBound:
     """Return a lower bound of the time, or the distance, of every route of a passage.
 
     Parameters
@@ -30,38 +60,163 @@ def certified_bound(context: PlanningContext, route: Route, *, seconds: float) -
     context : PlanningContext
     route : Route
         A feasible route of the passage.
+    departures : tuple of float
+        First and last departure that the bound holds for [s since 1970-01-01T00:00Z].
     seconds : float
-        Time that the search for the bound may take [s]; 0 or less for none.
+        Time that the search for the bound may take [s]; 0 for that of the geodesic alone.
 
     Returns
     -------
-    LowerBound or None
-        In seconds or metres; None where no certificate was found, and for ships whose speed is a
-        field of the sea.
+    LowerBound
+        In seconds or metres; NaN where there is none, with the reason.
     """
-    if seconds <= 0.0 or not route.feasible:
-        return None
+    if not route.feasible:
+        return no_bound(_NOT_SAILED)
     context.report_progress("proving a lower bound")
     by_length = context.voyage.objective == "distance"
-    if context.ship.speed_field is not None and not by_length:
-        return None  # its greatest speed is not known beforehand
     passage = _still_water(context, route) if by_length else _passage(context, route)
-    found = certify_time(passage, seconds=seconds)
+    if not by_length:
+        passage = replace(passage, depart=departures[0], latest=departures[1])
+    found = certify_departures(passage, seconds=seconds)
     if found is None:
-        return None
+        return no_bound(_NO_REGION)
     margin = 1.0 if by_length or not context.table.axes else 1.0 - _TABLE_MARGIN
-    sampling = f", in {found.sampling}" if found.sampling else ""
-    value = min(found.value * margin, passage.known)
-    return LowerBound(value, _KIND.format(cells=found.cells, sampling=sampling))
+    if found.reached * margin > passage.known * (1.0 + _CONTRADICTION) + route.tolerance_s:
+        # a theorem for the data themselves cannot be contradicted by a route through them
+        assert found.sampling, f"bound {found.reached} s above the route of {passage.known} s"
+        return no_bound(_CONTRADICTED.format(sampling=found.sampling))
+    return LowerBound(min(found.value * margin, passage.known), _kind(context, found))
+
+
+def path_through_data(
+    context: PlanningContext, route: Route
+) -> tuple[FloatArray, FloatArray] | None:
+    """Return positions (lat, lon) [deg] of a fast way through the data, finer than a network.
+
+    Parameters
+    ----------
+    context : PlanningContext
+    route : Route
+        A feasible route of the passage.
+
+    Returns
+    -------
+    pair of float64 array, or None
+        None without currents, for ships that weather slows down, and for the least distance.
+    """
+    currents = {CURRENT_EAST, CURRENT_NORTH} <= set(context.needs.channels)
+    simple = not context.table.axes and context.ship.speed_field is None
+    if not (currents and simple and route.feasible) or context.voyage.objective == "distance":
+        return None
+    return fast_path_on_raster(_passage(context, route), _CELLS_OF_PATH)
+
+
+def certified_distance(context: PlanningContext, route: Route, *, seconds: float) -> LowerBound:
+    """Return a lower bound of the length [m] of every route between the ends of a route.
+
+    Parameters
+    ----------
+    context : PlanningContext
+    route : Route
+        A feasible route.
+    seconds : float
+        Time that the search for the bound may take [s].
+
+    Returns
+    -------
+    LowerBound
+        NaN where a canal may shorten the way, and near a pole.
+    """
+    passage = _still_water(context, route)
+    if passage.canal_speed(1.0) > 0.0:
+        return no_bound(_CANAL)
+    found = certify_time(passage, seconds=seconds)
+    return no_bound(_NO_REGION) if found is None else LowerBound(found.value, "")
+
+
+def certified_total(
+    context: PlanningContext,
+    routes: Sequence[Route],
+    departures: tuple[float, float],
+    *,
+    seconds: float,
+) -> LowerBound:
+    """Return a lower bound of all routes of a voyage: the sum of those of its stretches.
+
+    Parameters
+    ----------
+    context : PlanningContext
+    routes : sequence of Route
+        Of the stretches between the ends and the via points, in order.
+    departures : tuple of float
+        First and last departure of the voyage [s since 1970-01-01T00:00Z].
+    seconds : float
+        Time that the search for the bounds may take [s].
+
+    Returns
+    -------
+    LowerBound
+        In seconds or metres; NaN where there is none, with the reason.
+
+    Notes
+    -----
+    A better voyage may pass a via point at another time. It leaves it no earlier than the bounds
+    of the stretches before allow, and no later than those of the stretches after leave for an
+    arrival in the time of the voyage that is known. Each stretch is bounded for all departures
+    between these times.
+    """
+    if len(routes) == 1:
+        return certified_bound(context, routes[0], departures=departures, seconds=seconds)
+    first, last = departures
+    end = last + (routes[-1].arrive - routes[0].depart)
+    if not all(route.feasible for route in routes):
+        return no_bound(_NOT_SAILED)
+    least = [certified_bound(context, one, departures=(first, end), seconds=0.0) for one in routes]
+    timed = context.voyage.objective != "distance"
+    whole = sum(route.time_h for route in routes)
+    for number, route in enumerate(routes):
+        before = sum(bound.value for bound in least[:number]) * timed
+        after = sum(bound.value for bound in least[number:]) * timed
+        period = (first + before, end - after) if number else (first, last)
+        share = seconds * route.time_h / whole
+        found = certified_bound(context, route, departures=period, seconds=share)
+        if not found.value <= least[number].value:
+            least[number] = found
+    kind = f"{least[0].kind}; sum of {len(routes)} stretches, each for all departures that may win"
+    return LowerBound(sum(bound.value for bound in least), kind)
+
+
+def no_bound(why: str) -> LowerBound:
+    """Return the bound of a plan that has none, with the reason."""
+    return LowerBound(math.nan, why)
+
+
+def _kind(context: PlanningContext, found: TimeCertificate) -> str:
+    """Return how a bound was found and what it holds for, as text."""
+    text = _BARRIER_KIND.format(cells=found.cells) if found.cells else _GEODESIC_KIND
+    text += _HOLDS_FOR
+    counted = []
+    if found.cells:
+        counted = ["land"]
+        counted += ["the offing"] if context.chart.offing.distance > 0.0 else []
+        counted += ["no-go zones"] if context.chart.zones.no_go else []
+        counted += ["canals"] if found.mesh is not None and found.mesh.links else []
+    text += f" with {', '.join(counted)}" if counted else ""
+    if context.chart.zones.penalty or context.chart.zones.shoals is not None:
+        text += ", without the penalties of zones and shoals"
+    return text + (f", in {found.sampling}" if found.sampling else "")
 
 
 def _passage(context: PlanningContext, route: Route) -> PassageToBound:
-    top = context.ship.top_speed(context.setting)
+    top, field = context.ship.top_speed(context.setting), context.ship.speed_field
+    if field is not None:
+        top = math.nan
     ship = ShipInBarrier(
         context.table.kernel_arrays(),
         context.setting,
         context.needs.limits.array,
         float(context.table.largest(context.setting) if top is None else top),
+        field,
     )
     return PassageToBound(
         context.sea, context.chart, ship, context.needs.channels, *_ends(route),
@@ -75,8 +230,15 @@ def _still_water(context: PlanningContext, route: Route) -> PassageToBound:
     table = PerformanceTable((part,), np.ones(1), "", TableError(0.0, 0.0, 0.0))
     ship = ShipInBarrier(table.kernel_arrays(), 0, Limits().array, 1.0)
     length = float(route.legs["length"].sum())
+    canals = tuple(replace(canal, transit_time=canal.length) for canal in context.chart.canals)
     return PassageToBound(
-        Sea.calm(), context.chart, ship, (), *_ends(route), depart=route.depart, known=length
+        Sea.calm(),
+        replace(context.chart, canals=canals),
+        ship,
+        (),
+        *_ends(route),
+        depart=route.depart,
+        known=length,
     )
 
 

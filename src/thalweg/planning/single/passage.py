@@ -20,7 +20,6 @@ from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
 from thalweg.planning.network_selection.network_builder import build_network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
-from thalweg.planning.single.certified_bound import certified_bound
 from thalweg.planning.single.exceeded_limits import (
     MAX_ROUNDS,
     exceeded_limits_on_route,
@@ -28,14 +27,21 @@ from thalweg.planning.single.exceeded_limits import (
 )
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.single.passage_result import PassageResult
+from thalweg.planning.single.route_candidates import (
+    passage_value,
+    refine_track,
+    refined_bound_path,
+    through_narrow_features,
+    track_from_result,
+)
 from thalweg.planning.single.weather_gaps import (
     MAX_GAPS,
     check_times_known,
     data_gaps_on_route,
     without_unknown_edges,
 )
-from thalweg.route import RefinementConditions, Route, Track, better_route
-from thalweg.route.refinement.better_route import comparison_key, penalty_excess
+from thalweg.route import Route
+from thalweg.route.refinement.better_route import penalty_excess
 from thalweg.route.route import Violation
 from thalweg.search import (
     DepartureWindow,
@@ -50,8 +56,6 @@ from thalweg.search.lower_bounds import Penalties
 
 #: Periods for which the sea is frozen, in multiples of the time along the geodesic.
 _HORIZONS = (2.5, 8.0, 30.0)
-#: Gap to the bound [fraction] above which the path of the bound is refined as well.
-_WIDE_GAP = 0.01
 #: Isochrones are drawn until this multiple of the passage's time.
 _ISOCHRONE_TIME_RATIO = 1.5
 _TWO_TIDES = 25 * HOUR
@@ -165,50 +169,17 @@ def _search_and_refine(
     """Search, refine and bound the passage on one network with one set of limits."""
     frozen, result = _search(context, network, limits, window, ends)
     route = refine_track(context, track_from_result(network, result, context.setting), limits)
-    context.report_progress("computing the lower bound")
-    floor = _bound(context, network, frozen, result, route, any_departure=True)
-    bound = floor
     if context.voyage.depart_window is None:
-        bound = _bound(context, network, frozen, result, route)
-        other = _refined_bound_path(context, network, bound, route, limits)
-        if other is not route:
-            route, bound = other, _bound(context, network, frozen, result, other)
-        proof = certified_bound(context, route, seconds=context.proof_seconds)
-        if proof is not None and proof.value > floor.value:
-            floor = proof
-            bound = proof if proof.value > bound.value else bound
+        context.report_progress("searching as in open water")
+        hint = _bound(context, network, frozen, result, route)
+        route = refined_bound_path(context, network, hint, route, limits)
+        if network.meta.kind != "layered":  # those routes keep to their layers
+            route = through_narrow_features(context, route, limits)
     notes = network.meta.notes if network.meta.kind == "layered" else ()
     notes += tuple(f"The referee finds a limit exceeded: {v}." for v in route.violations[:5])
     until = route.depart + _ISOCHRONE_TIME_RATIO * route.time_h * HOUR if route.feasible else None
     arrival = isochrones(context, network, frozen, route.depart, until)
-    return PassageResult(route, result, bound, floor, network, arrival, notes)
-
-
-def _refined_bound_path(
-    context: PlanningContext, network: Network, bound: LowerBound, route: Route, limits: Limits
-) -> Route:
-    """Where the gap is wide, refine the path of the bound as well and return the better route.
-
-    In weather that passes quickly the best path depends on delays along the network; the path of
-    the bound has the times of a ship in open water.
-    """
-    value = _objective_value(context, route)
-    if len(bound.path) < 2 or not value - bound.value > _WIDE_GAP * value:
-        return route
-    lat, lon = network.stations.lat[bound.path], network.stations.lon[bound.path]
-    settings = np.full(len(lat) - 1, context.setting)
-    other = refine_track(context, Track(lat, lon, route.depart, None, settings), limits)  # type: ignore[arg-type]
-    routes = (route, other)  # with penalty zones, as in the search
-    return min(
-        routes, key=lambda item: comparison_key(item, context.voyage.objective, context.chart)
-    )
-
-
-def _objective_value(context: PlanningContext, route: Route) -> float:
-    """Return the value by which routes are compared: length [m] or time [s]."""
-    if context.voyage.objective == "distance":
-        return float(route.legs["length"].sum())
-    return route.time_h * HOUR
+    return PassageResult(route, result, network, arrival, notes)
 
 
 def isochrones(
@@ -247,35 +218,6 @@ def isochrones(
         arrive_by=until,
     )
     return everywhere.node_arrival
-
-
-def refine_track(context: PlanningContext, track: Track, limits: Limits) -> Route:
-    """Evaluate a track, refine it, and return the better route."""
-    context.report_progress("refining the route")
-    scored = context.evaluate(track)
-    conditions = RefinementConditions(
-        context.ship, context.sea, context.chart, context.table, limits, context.min_ukc
-    )
-    return better_route(
-        scored,
-        conditions,
-        objective="distance" if context.voyage.objective == "distance" else "time",
-        wait=context.voyage.wait,
-    )
-
-
-def track_from_result(network: Network, result: SearchResult, setting: int) -> Track:
-    """Return a path on the network as a track with its waits."""
-    path = result.path
-    wait = np.maximum(0.0, result.path_depart - result.path_arrive)
-    wait[-1] = 0.0
-    return Track(
-        network.stations.lat[path],
-        network.stations.lon[path],
-        float(result.path_arrive[0]),
-        np.where(wait < 1.0, 0.0, wait),
-        np.full(len(path) - 1, setting),
-    )
 
 
 def _search(
@@ -374,12 +316,11 @@ def _bound(
     frozen: FrozenSea,
     result: SearchResult,
     route: Route,
-    *,
-    any_departure: bool = False,
 ) -> LowerBound:
+    """Return the bound of the network, for its path: it is evidence and not proof."""
     known, penalties = None, None
     if route.feasible:
-        known = _objective_value(context, route)
+        known = passage_value(context, route)
         zones = context.chart.zones
         if zones.penalty or zones.shoals is not None:
             added = penalty_excess(route, context.voyage.objective, context.chart)
@@ -393,5 +334,4 @@ def _bound(
         objective="distance" if context.voyage.objective == "distance" else "time",
         known=known,
         penalties=penalties,
-        any_departure=any_departure,
     )

@@ -8,10 +8,7 @@ import numpy as np
 
 from thalweg.network import Network
 from thalweg.route import Route
-from thalweg.search import (
-    LowerBound,
-    SearchResult,
-)
+from thalweg.search import SearchResult
 
 
 @dataclass(frozen=True)
@@ -24,10 +21,6 @@ class PassageResult:
         The best route, scored by the referee.
     result : SearchResult
         Result of the search on the network.
-    bound : LowerBound
-        Lower bound from the network, in SI.
-    floor : LowerBound
-        Lower bound that holds for every route: a certificate, or that of the geodesic; in SI.
     network : Network
         The network searched.
     isochrones : ndarray
@@ -38,8 +31,6 @@ class PassageResult:
 
     route: Route
     result: SearchResult
-    bound: LowerBound
-    floor: LowerBound
     network: Network
     isochrones: np.ndarray
     notes: tuple[str, ...]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,11 +11,18 @@ from scipy import ndimage
 
 from thalweg.core.geodesy import inverse
 from thalweg.core.types import BoolArray, FloatArray
-from thalweg.kernels.certificate.barrier_check import check_barrier, closed_throughout
+from thalweg.kernels.certificate.barrier_check import (
+    KeptSpeeds,
+    check_barrier,
+    closed_throughout,
+)
 from thalweg.kernels.certificate.barrier_solver import COURSES, UNREACHED, solve_barrier
-from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
-from thalweg.search.certificate.barrier_mesh import BarrierMesh
+from thalweg.kernels.certificate.cell_conditions import ANGLES, SECTORS
+from thalweg.kernels.codes import SPEED_FIELD
+from thalweg.search.certificate.barrier_mesh import BarrierMesh, strongest_current_near
 
+_KEPT_SHARE = 0.02  # of the step of the data, for windows in which speeds of cells are kept
+_BESIDE_BAND = 3  # cells that are solved on either side, so that values on its edge are right
 _CAP_RATIO = 1.25  # barriers are cut off at this multiple of the known time
 _ROUNDING = 1e-9
 _LEAST_FACTOR = 0.05
@@ -23,6 +31,7 @@ _CLOSING_ROUNDS, _CLOSING_MARGIN = 12, 4e-4  # rounds that lower only, and below
 _RAISE = 0.4  # of the slack, where the barrier rises more slowly than it may
 _PLANE_CELLS = 6.0  # half the width of the plane at the source
 _NEAR_SOURCE = 3.0  # over-correction beside the source
+_LINK_SLACK = 2e-3  # of the time of a canal, for the values at the centres of cells at its ends
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,30 +114,37 @@ def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
     shape = mesh.shape
     cells = shape[0] - 1, shape[1] - 1
     windows = _windows(task)
-    closed = task.band.copy()
+    around = ndimage.binary_dilation(task.band, np.ones((3, 3), bool), iterations=_BESIDE_BAND)
+    closed = around.copy()
     closed_throughout(mesh.world, *windows, closed)
-    solvable = _nodes_of(task.band & ~closed, shape)
-    node_windows = _node_minimum(windows[0]), -_node_minimum(-windows[1])
+    solvable = _nodes_of(around & ~closed, shape)
+    latest = windows[1] + mesh.world.departures
+    node_windows = _node_minimum(windows[0]), -_node_minimum(-latest)
     given = _plane_at_source(task)
-    fixed = ~np.isnan(given)
     f = np.ones(shape) if task.factor is None else task.factor.copy()
     rings = np.zeros((*shape, COURSES), np.float32), np.full(shape, math.nan)
     excess, centre = np.empty(cells), np.empty(cells)
+    kept = _no_speeds(mesh)
     best, best_f, before, closing = -math.inf, f, -math.inf, 0
-    for number in range(rounds + _CLOSING_ROUNDS):
-        phi = np.where(fixed, given, UNREACHED)
+
+    def solve(values: FloatArray) -> FloatArray:
+        fixed = ~np.isnan(values)
+        phi = np.where(fixed, values, UNREACHED)
         solve_barrier(
             mesh.world, phi, fixed, f, solvable, *node_windows, task.forward,
             _CAP_RATIO * known, *rings,
         )  # fmt: skip
-        np.minimum(phi, _CAP_RATIO * known, out=phi)
+        return np.minimum(phi, _CAP_RATIO * known)
+
+    for number in range(rounds + _CLOSING_ROUNDS):
+        phi = _solve_with_links(mesh, solve, given, (1 + closing) * _LINK_SLACK)
         candidate = task.band & (cell_minimum(phi) / 1.3 + task.other < known)
         check_barrier(
-            mesh.world, phi, candidate, *windows, task.forward, closing > 0, excess, centre
+            mesh.world, phi, candidate, *windows, task.forward, closing > 0, excess, centre, kept
         )
         scale = _least_scale(task, phi, excess)
         if closing and scale == 0.0:
-            return _verified(task, phi, f, windows)
+            return _verified(task, phi, f, windows, kept)
         value = mesh.value_at(phi, centre, *task.target) / (1.0 + scale)
         if value > best:
             best, best_f = value, f.copy()
@@ -144,26 +160,118 @@ def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
     return None
 
 
+def first_arrivals(task: BarrierTask) -> FloatArray:
+    """Return approximate earliest arrivals at the nodes of a mesh [s]: a hint, not a bound.
+
+    Parameters
+    ----------
+    task : BarrierTask
+
+    Returns
+    -------
+    float64 array (Y, X)
+        Since departure; a multiple of the known time where they are later.
+    """
+    mesh, shape = task.mesh, task.mesh.shape
+    solvable = _nodes_of(task.band & ~mesh.world.closed, shape)
+    windows = tuple(np.zeros(shape) for _ in range(2))
+    given = np.full(shape, math.nan)
+    j, i = mesh.cell_of(*task.source)
+    given[j : j + 2, i : i + 2] = mesh.times_to_corners(*task.source)
+    phi = np.where(np.isnan(given), UNREACHED, given)
+    solve_barrier(
+        mesh.world, phi, ~np.isnan(given), np.ones(shape), solvable, *windows, True,
+        _CAP_RATIO * task.known, np.zeros((*shape, COURSES), np.float32), np.full(shape, math.nan),
+    )  # fmt: skip
+    return np.minimum(phi, _CAP_RATIO * task.known)
+
+
+def _no_speeds(mesh: BarrierMesh) -> KeptSpeeds:
+    """Return room for the speeds in the cells of a mesh, for ships that weather slows down."""
+    cells = mesh.shape[0] - 1, mesh.shape[1] - 1
+    world = mesh.world
+    sectors = SECTORS if world.needs & ANGLES else 1
+    if not world.needs or world.raster.channel_index[SPEED_FIELD] >= 0:
+        return KeptSpeeds(np.empty((0, 0)), np.empty((0, 0)), np.empty((0, 0, 1), np.float32), 0.0)
+    longer = max(_KEPT_SHARE * float(world.raster.times[1] - world.raster.times[0]), 30.0)
+    first, last = (np.full(cells, math.nan) for _ in range(2))
+    return KeptSpeeds(first, last, np.empty((*cells, sectors), np.float32), longer)
+
+
+def _solve_with_links(
+    mesh: BarrierMesh,
+    solve: Callable[[FloatArray], FloatArray],
+    given: FloatArray,
+    slack: float,
+) -> FloatArray:
+    """Solve, and again with lower values at the ends of canals while these allow it.
+
+    Past a canal the barrier may be no more than its time higher than before it, less a share of
+    that time for the values at the centres of cells.
+    """
+    phi = solve(given)
+    for _ in range(2 * len(mesh.links)):
+        values, changed = given, False
+        for source, target, seconds in _one_way_links(mesh):
+            most = _least_value(mesh, phi, *source) + (1.0 - slack) * seconds
+            j, i = mesh.cell_of(*target)
+            corners = slice(j, j + 2), slice(i, i + 2)
+            if phi[corners].max() > most + 1.0:
+                values = values.copy() if values is given else values
+                values[corners] = np.fmin(values[corners], np.minimum(phi[corners], most))
+                changed = True
+        if not changed:
+            break
+        given = values
+        phi = solve(given)
+    return phi
+
+
+def _one_way_links(
+    mesh: BarrierMesh,
+) -> Iterator[tuple[tuple[float, float], tuple[float, float], float]]:
+    for link in mesh.links:
+        yield link.one, link.other, link.seconds
+        yield link.other, link.one, link.seconds
+
+
+def _least_value(mesh: BarrierMesh, phi: FloatArray, lat: float, lon: float) -> float:
+    """Return the least value at the corners of the cell of a position."""
+    j, i = mesh.cell_of(lat, lon)
+    return float(phi[j : j + 2, i : i + 2].min())
+
+
+def _links_kept(task: BarrierTask, phi: FloatArray, centre: FloatArray) -> bool:
+    """Return whether the barrier rises along no canal by more than the time it takes."""
+    mesh = task.mesh
+    for source, target, seconds in _one_way_links(mesh):
+        before, after = (mesh.value_at(phi, centre, *place) for place in (source, target))
+        if before < task.known and after - before > seconds:
+            return False
+    return True
+
+
 def _verified(
     task: BarrierTask,
     phi: FloatArray,
     factor: FloatArray,
     windows: tuple[FloatArray, FloatArray],
+    kept: KeptSpeeds,
 ) -> CheckedBarrier | None:
     """Check a barrier for good, in every cell that a faster route may touch; None if it fails."""
     mesh = task.mesh
     cells = phi.shape[0] - 1, phi.shape[1] - 1
     excess, centre = np.empty(cells), np.empty(cells)
     mask = task.band & (cell_minimum(phi) + task.other < task.known)
-    check_barrier(mesh.world, phi, mask, *windows, task.forward, True, excess, centre)
-    if float(excess[mask].max(initial=-1.0)) > -_ROUNDING:
+    check_barrier(mesh.world, phi, mask, *windows, task.forward, True, excess, centre, kept)
+    if float(excess[mask].max(initial=-1.0)) > -_ROUNDING or not _links_kept(task, phi, centre):
         return None
     low = np.minimum(cell_minimum(phi), centre) + task.other < task.known
     if (low & task.band & ~mask).any():
         return None
     edges = mask[0].any() or mask[-1].any() or mask[:, 0].any() or mask[:, -1].any()
     value = mesh.value_at(phi, centre, *task.target)
-    return CheckedBarrier(phi, centre, min(value, task.known), not edges, factor)
+    return CheckedBarrier(phi, centre, value, not edges, factor)
 
 
 def _least_scale(task: BarrierTask, phi: FloatArray, excess: FloatArray) -> float:
@@ -208,30 +316,6 @@ def _plane_at_source(task: BarrierTask) -> FloatArray:
 def _block(middle: int, count: int) -> slice:
     reach = int(2 * _PLANE_CELLS) + 2
     return slice(max(middle - reach, 0), min(middle + reach + 2, count))
-
-
-def strongest_current_near(mesh: BarrierMesh, rows: slice, columns: slice) -> float:
-    """Return the strongest current [m/s] in a block of nodes of a mesh, at any time."""
-    raster, m = mesh.world.raster, mesh.world.refinement
-    east, north = raster.channel_index[CURRENT_EAST], raster.channel_index[CURRENT_NORTH]
-    if east < 0 or north < 0:
-        return 0.0
-    part = raster.values[
-        :, rows.start // m : rows.stop // m + 2, columns.start // m : columns.stop // m + 2
-    ]
-    speed = np.hypot(part[..., east], part[..., north])
-    known = speed[np.isfinite(speed)]
-    return float(known.max(initial=0.0))
-
-
-def slope_direction(mesh: BarrierMesh, phi: FloatArray, lat: float, lon: float) -> float | None:
-    """Return the course [rad from north] in which a barrier falls fastest at a position."""
-    j, i = mesh.cell_of(lat, lon)
-    a, b, c, d = phi[j, i], phi[j, i + 1], phi[j + 1, i], phi[j + 1, i + 1]
-    height = (mesh.lat[1] - mesh.lat[0]) * mesh.world.metres_north[j]
-    width = (mesh.lon[1] - mesh.lon[0]) * mesh.world.metres_east[j]
-    north, east = (c + d - a - b) / height, (b + d - a - c) / width
-    return math.atan2(-east, -north) if math.hypot(east, north) > 0.0 else None
 
 
 def _correct(f: FloatArray, excess: FloatArray, task: BarrierTask, *, raising: bool) -> None:

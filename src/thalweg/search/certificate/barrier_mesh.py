@@ -9,13 +9,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING, distance
-from thalweg.core.types import BoolArray, FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.kernels.certificate.cell_conditions import BarrierWorld
+from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
 from thalweg.kernels.leg.raster_sampling import RasterArrays
 from thalweg.kernels.leg.table_lookup import TableArrays, axes_needed
+from thalweg.search.certificate.closed_water import closed_cells
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.sea.freeze import DerivedChannel
 
 _ECCENTRICITY_SQUARED = FLATTENING * (2.0 - FLATTENING)
 
@@ -32,13 +35,32 @@ class ShipInBarrier:
     limits : float64 array
         As kernels read them (`thalweg.core.limits.Limits.array`).
     top_speed : float
-        Upper bound of the speed through water [m/s].
+        Upper bound of the speed through water [m/s]; NaN where it follows from ``speed_field``.
+    speed_field : callable, optional
+        Speed through water as a field of the sea, for ships without a table.
     """
 
     table: TableArrays
     setting: int
     limits: FloatArray
     top_speed: float
+    speed_field: DerivedChannel | None = None
+
+
+@dataclass(frozen=True)
+class BarrierLink:
+    """A canal: a way between two positions that takes a fixed time, in both directions.
+
+    Attributes
+    ----------
+    one, other : tuple of float
+        (lat, lon) [deg].
+    seconds : float
+    """
+
+    one: tuple[float, float]
+    other: tuple[float, float]
+    seconds: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,11 +73,14 @@ class BarrierMesh:
         Nodes [deg]; longitudes without jumps.
     world : BarrierWorld
         Sea, ship and land.
+    links : tuple of BarrierLink
+        Canals with both ends inside the mesh.
     """
 
     lat: FloatArray
     lon: FloatArray
     world: BarrierWorld
+    links: tuple[BarrierLink, ...] = ()
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -87,6 +112,12 @@ class BarrierMesh:
         away = 2.0 * abs(u)
         return float(m + away * (0.5 * (low + high) - m) + v * (high - low))
 
+    def times_to_corners(self, lat: float, lon: float) -> FloatArray:
+        """Return the times [s] in still water to the corners (2, 2) of the cell of a position."""
+        j, i = self.cell_of(lat, lon)
+        far = distance(self.lat[j : j + 2, None], self.lon[None, i : i + 2], lat, lon)
+        return np.asarray(far, float) / self.world.top_speed
+
     def least_times(self, lat: float, lon: float, speed: float) -> FloatArray:
         """Return for each cell a lower bound of the time [s] to a position at a greatest speed."""
         rows = 0.5 * (self.lat[1:] + self.lat[:-1])
@@ -100,7 +131,12 @@ class BarrierMesh:
 
 
 def build_mesh(
-    raster: RasterArrays, refinement: int, ship: ShipInBarrier, chart: Chart | None
+    raster: RasterArrays,
+    refinement: int,
+    ship: ShipInBarrier,
+    chart: Chart | None,
+    *,
+    departures: float = 0.0,
 ) -> BarrierMesh:
     """Build the mesh that divides each cell of a raster into ``refinement`` squared cells.
 
@@ -112,7 +148,9 @@ def build_mesh(
         1 or more.
     ship : ShipInBarrier
     chart : Chart or None
-        Land; None for open water.
+        Land, offing, zones and canals; None for open water.
+    departures : float
+        From the first to the last departure [s].
 
     Returns
     -------
@@ -137,8 +175,22 @@ def build_mesh(
         int(axes_needed(ship.table)),
         ship.limits,
         ship.top_speed,
+        departures,
     )
-    return BarrierMesh(lat, lon, world)
+    return BarrierMesh(lat, lon, world, _links(chart, lat, lon))
+
+
+def _links(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> tuple[BarrierLink, ...]:
+    """Return the canals of a chart whose ends are inside a box."""
+    found = []
+    for canal in () if chart is None else chart.canals:
+        inside = (
+            lat[0] <= y <= lat[-1] and (x - lon[0]) % 360.0 <= lon[-1] - lon[0]
+            for y, x in canal.ends
+        )
+        if all(inside):
+            found.append(BarrierLink(*canal.ends, canal.transit_time))
+    return tuple(found)
 
 
 def metres_per_degree(lat: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -156,55 +208,25 @@ def metres_per_degree(lat: FloatArray) -> tuple[FloatArray, FloatArray]:
     return np.radians(1.0) * north, np.radians(1.0) * np.maximum(east, 1.0)
 
 
-def closed_cells(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> BoolArray:
-    """Return which cells of a mesh are land all over.
-
-    A cell is closed if its centre is on land and no shore passes through it.
-
-    Parameters
-    ----------
-    chart : Chart or None
-    lat, lon : float64 array (Y,), (X,)
-        Nodes [deg].
-
-    Returns
-    -------
-    bool array (Y - 1, X - 1)
-    """
-    shape = lat.size - 1, lon.size - 1
-    if chart is None:
-        return np.zeros(shape, bool)
-    rows, columns = 0.5 * (lat[1:] + lat[:-1]), 0.5 * (lon[1:] + lon[:-1])
-    grid = np.meshgrid(rows, columns, indexing="ij")
-    distance_to_land = np.asarray(
-        chart.coastline.shore_distance(grid[0].ravel(), grid[1].ravel(), cap=1.0)
-    ).reshape(shape)
-    shores = np.zeros(shape, bool)
-    steps = lat[1] - lat[0], lon[1] - lon[0]
-    for line_lat, line_lon in chart.coastline.lines(lat[0], lat[-1], lon[0], lon[-1]):
-        for turn in (-360.0, 0.0, 360.0):
-            y = (np.asarray(line_lat) - lat[0]) / steps[0]
-            x = (np.asarray(line_lon) + turn - lon[0]) / steps[1]
-            if x.max() >= -1.0 and x.min() <= shape[1] + 1.0:
-                _mark_line(shores, y, x)
-    closed: BoolArray = (distance_to_land <= 0.0) & ~shores
-    return closed
+def strongest_current_near(mesh: BarrierMesh, rows: slice, columns: slice) -> float:
+    """Return the strongest current [m/s] in a block of nodes of a mesh, at any time."""
+    raster, m = mesh.world.raster, mesh.world.refinement
+    east, north = raster.channel_index[CURRENT_EAST], raster.channel_index[CURRENT_NORTH]
+    if east < 0 or north < 0:
+        return 0.0
+    part = raster.values[
+        :, rows.start // m : rows.stop // m + 2, columns.start // m : columns.stop // m + 2
+    ]
+    speed = np.hypot(part[..., east], part[..., north])
+    known = speed[np.isfinite(speed)]
+    return float(known.max(initial=0.0))
 
 
-def _mark_line(cells: BoolArray, y: FloatArray, x: FloatArray) -> None:
-    """Mark the cells that the boxes round short pieces of a line touch."""
-    length = np.maximum(np.abs(np.diff(y)), np.abs(np.diff(x)))
-    parts = np.maximum(np.ceil(2.0 * np.minimum(length, 1e5)).astype(np.int64), 1)
-    piece = np.repeat(np.arange(length.size), parts)
-    first = np.concatenate([[0], np.cumsum(parts)[:-1]])
-    share = (np.arange(piece.size) - first[piece]) / parts[piece]
-    y0 = y[piece] + share * (y[piece + 1] - y[piece])
-    x0 = x[piece] + share * (x[piece + 1] - x[piece])
-    y1 = y0 + (y[piece + 1] - y[piece]) / parts[piece]
-    x1 = x0 + (x[piece + 1] - x[piece]) / parts[piece]
-    margin = 0.02  # the outlines are great circles, drawn here as straight lines
-    for row in (np.minimum(y0, y1) - margin, np.maximum(y0, y1) + margin):
-        for column in (np.minimum(x0, x1) - margin, np.maximum(x0, x1) + margin):
-            j, i = np.floor(row).astype(np.int64), np.floor(column).astype(np.int64)
-            inside = (j >= 0) & (i >= 0) & (j < cells.shape[0]) & (i < cells.shape[1])
-            cells[j[inside], i[inside]] = True
+def slope_direction(mesh: BarrierMesh, phi: FloatArray, lat: float, lon: float) -> float | None:
+    """Return the course [rad from north] in which a barrier falls fastest at a position."""
+    j, i = mesh.cell_of(lat, lon)
+    a, b, c, d = phi[j, i], phi[j, i + 1], phi[j + 1, i], phi[j + 1, i + 1]
+    height = (mesh.lat[1] - mesh.lat[0]) * mesh.world.metres_north[j]
+    width = (mesh.lon[1] - mesh.lon[0]) * mesh.world.metres_east[j]
+    north, east = (c + d - a - b) / height, (b + d - a - c) / width
+    return math.atan2(-east, -north) if math.hypot(east, north) > 0.0 else None

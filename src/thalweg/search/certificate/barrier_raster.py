@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thalweg.core.types import FloatArray
+from thalweg.kernels.codes import SPEED_FIELD
 from thalweg.kernels.leg.raster_sampling import RasterArrays
 from thalweg.route.evaluators.time_evaluator import raster_arrays
 from thalweg.sea.frozen_fields import GridFields
@@ -18,6 +19,7 @@ from thalweg.sea.grids.rectilinear_grid import RectilinearGrid
 
 if TYPE_CHECKING:
     from thalweg.sea import Sea
+    from thalweg.sea.freeze import DerivedChannel
 
 _MOST_VALUES = 60_000_000
 _MOST_CELLS = 400_000
@@ -55,6 +57,8 @@ class RasterRequest:
         [s since 1970-01-01T00:00Z].
     cells : int
         Number of cells wanted along the longer side where the data are no finer.
+    speed_field : callable, optional
+        Speed through water as a field of the sea.
     """
 
     sea: Sea
@@ -62,6 +66,7 @@ class RasterRequest:
     box: tuple[float, float, float, float]
     period: tuple[float, float]
     cells: int
+    speed_field: DerivedChannel | None = None
 
 
 def freeze_barrier_raster(request: RasterRequest) -> BarrierRaster:
@@ -98,9 +103,12 @@ def freeze_barrier_raster(request: RasterRequest) -> BarrierRaster:
         west = first_lon + spacing * math.floor((west - first_lon) / spacing)
         north = south + spacing * math.ceil((north - south) / spacing - 1e-9)
         east = west + spacing * math.ceil((east - west) / spacing - 1e-9)
+    extra = None if request.speed_field is None else {SPEED_FIELD: request.speed_field}
+    if extra is not None:
+        notes.append("with the speed of the ship linear between these places")
     fields = request.sea.freeze_grid(
         south, min(north, 89.9), west, east, *request.period, request.channels,
-        spacing_deg=spacing,
+        spacing_deg=spacing, extra=extra,
     )  # fmt: skip
     if any(layer.period is None and not _is_uniform(layer) for layer in request.sea.layers):
         step = np.diff(fields.times).max() if fields.times.size > 1 else 0.0

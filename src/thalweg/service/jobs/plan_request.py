@@ -82,7 +82,9 @@ class PlanRequest(ShipAndSea):
     )
     network: Literal["auto", "lattice", "mesh", "globe"] = "auto"
     resolution_nm: float | None = Field(None, ge=0.001, le=300)
-    proof_s: float = Field(0.0, ge=0, le=3600, description="time for a proven lower bound [s]")
+    proof_s: float | None = Field(
+        None, ge=0, le=3600, description="time for the proof of the lower bound [s]"
+    )
 
     def checked_voyage(self) -> Voyage:
         """Return the voyage; all checks that need neither chart nor data are made here.

@@ -102,8 +102,8 @@ export class FrontDiagram {
     const { unit: unitText, criterion } = this.plan.front;
     fill(this.facts, h("p", {}, h("b", {}, `Route ${p.i + 1} of ${this.points.length}`)), h("p", {}, `${duration(p.x)}, ${number(p.y, p.y < 1000 ? 1 : 0)} ${unitText}`),
       p === fastest ? h("p", {}, "The fastest of all.") : h("p", {}, `${signedDuration(p.x - fastest.x)} and ${signed(p.y - fastest.y, p.y < 1000 ? 1 : 0)} ${unitText} against the fastest.`),
-      known(p.gap) ? h("p", {}, `At its time no route of the network has a ${criterion} more than ${number(Math.ceil(1000 * p.gap) / 10, 1)} % lower.`) : null,
-      h("p", {}, "Grey: below the lower front. Rings: weather ignored, constant speed."));
+      known(p.gap) ? h("p", {}, `At its time no route has a ${criterion} more than ${number(Math.ceil(1000 * p.gap) / 10, 1)} % lower.`) : null,
+      h("p", {}, "Grey: below the lower front of the network. Rings: weather ignored, constant speed."));
   }
 
   #key(event, order) {

@@ -85,13 +85,12 @@ export class ResultView {
     const point = plan.front?.points[selection.route];
     const gap = plan.front ? point?.gap : plan.gap;
     const quality = this.result.job.summary.quality || "";
-    const said = plan.front ? (known(gap) ? `At most ${number(Math.ceil(1000 * gap) / 10, 1)} % above the lower front at its time` : "No bound is known for this route") : quality ? quality[0].toUpperCase() + quality.slice(1) : "No bound is known";
+    const said = plan.front ? (known(gap) ? `At most ${number(Math.ceil(1000 * gap) / 10, 1)} % from the best possible at its time` : "No bound is known for this route") : quality ? quality[0].toUpperCase() + quality.slice(1) : "No bound is known";
     const bar = h("i");
     bar.style.width = `${known(gap) ? Math.max(2, 100 * (1 - gap)) : 0}%`;
     return h("div.proof", {}, h("b", {}, said), h("div.gauge", { role: "img", "aria-label": said }, bar),
       h("details", {}, h("summary", {}, "How this is known"), h("ul.list", {},
-        known(plan.lower_bound) ? h("li", {}, `Lower bound of the network: ${number(plan.lower_bound, 1)} ${plan.front ? "" : plan.objective_unit}. ${plan.lower_bound_kind}.`) : null,
-        known(plan.lower_bound_certain) && !plan.front ? h("li", {}, `No ship of this speed can do better than ${number(plan.lower_bound_certain, 1)} ${plan.objective_unit}: the direct line at the greatest speed in the data.`) : null,
+        known(plan.lower_bound) ? h("li", {}, `No route is better than ${number(plan.lower_bound, 1)} ${plan.objective_unit}. ${plan.lower_bound_kind}.`) : h("li", {}, `${plan.lower_bound_kind}.`),
         h("li", {}, "Every figure comes from sailing the route again in small steps."),
         Object.entries(plan.rejections).map(([reason, count]) => h("li", {}, `${number(count)} ${REASONS[reason] || reason} were refused.`)))));
   }

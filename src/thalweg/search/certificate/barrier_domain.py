@@ -1,0 +1,198 @@
+"""Where the routes of a passage may lie that are faster than a known one, and the sea there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from thalweg.core.geodesy import direct, distance
+from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH, SPEED_FIELD
+from thalweg.kernels.leg.raster_sampling import RasterArrays
+from thalweg.search.certificate.barrier_mesh import ShipInBarrier
+from thalweg.search.certificate.barrier_raster import RasterRequest, freeze_barrier_raster
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.sea import Sea
+
+_MARGIN: Final = 1.02
+_STEPS_ROUND_ELLIPSE: Final = 73
+
+
+@dataclass(frozen=True, eq=False)
+class PassageToBound:
+    """A passage whose time is bounded from below.
+
+    Attributes
+    ----------
+    sea : Sea
+    chart : Chart or None
+        Land, offing, zones and canals; None for open water.
+    ship : ShipInBarrier
+    channels : sequence of int
+        Channels of the sea that count.
+    start, goal : tuple of float
+        (lat, lon) [deg].
+    depart : float
+        Departure, or the first one of a window [s since 1970-01-01T00:00Z].
+    known : float
+        Time of a route that exists [s].
+    latest : float, optional
+        Last departure of a window [s since 1970-01-01T00:00Z].
+    """
+
+    sea: Sea
+    chart: Chart | None
+    ship: ShipInBarrier
+    channels: Sequence[int]
+    start: tuple[float, float]
+    goal: tuple[float, float]
+    depart: float
+    known: float
+    latest: float | None = None
+
+    @property
+    def length(self) -> float:
+        """Length of the geodesic [m]."""
+        return float(distance(*self.start, *self.goal))
+
+    @property
+    def departures(self) -> float:
+        """From the first to the last departure [s]."""
+        return 0.0 if self.latest is None else max(self.latest - self.depart, 0.0)
+
+    def canal_speed(self, fastest: float) -> float:
+        """Return the greatest speed [m/s] at which a canal joins its ends, as the crow flies.
+
+        Of those that a ship may pass in the known time with a greatest speed elsewhere; 0 without.
+        """
+        speeds = [0.0]
+        for canal in () if self.chart is None else self.chart.canals:
+            for one, other in (canal.ends, canal.ends[::-1]):
+                rest = float(distance(*self.start, *one) + distance(*other, *self.goal))
+                if rest / fastest + canal.transit_time < self.known:
+                    speeds.append(float(distance(*one, *other)) / canal.transit_time)
+        return max(speeds)
+
+
+@dataclass(frozen=True, eq=False)
+class BarrierDomain:
+    """The raster of the sea round the routes that may be faster than the known one.
+
+    Attributes
+    ----------
+    raster : RasterArrays
+        Times since the first departure [s].
+    sampling : str
+        How the sea of the raster differs from the data; "" where it does not.
+    fastest : float
+        Upper bound of the speed over ground [m/s].
+    ship : ShipInBarrier
+        With an upper bound of the speed through water, also where that is a field.
+    """
+
+    raster: RasterArrays
+    sampling: str
+    fastest: float
+    ship: ShipInBarrier
+
+    @classmethod
+    def around(cls, passage: PassageToBound, cells: int) -> BarrierDomain | None:
+        """Return the domain of a passage; None near a pole and across half of the globe.
+
+        Parameters
+        ----------
+        passage : PassageToBound
+        cells : int
+            Cells of the raster along its longer side where the data are no finer.
+        """
+        ship, fastest = passage.ship, passage.ship.top_speed
+        if not math.isfinite(fastest):
+            fastest = passage.length / passage.known
+        fastest = max(fastest, passage.canal_speed(fastest))
+        for _ in range(8):
+            box = _box_of_routes(passage, fastest * _MARGIN)
+            if box is None:
+                return None
+            period = passage.depart, passage.depart + passage.departures + passage.known
+            request = RasterRequest(
+                passage.sea, passage.channels, box, period, cells, ship.speed_field
+            )
+            frozen = freeze_barrier_raster(request)
+            top = ship.top_speed
+            if ship.speed_field is not None:
+                top = _greatest(frozen.arrays, SPEED_FIELD)
+            speed = top + _strongest_current(frozen.arrays)
+            speed = max(speed, passage.canal_speed(speed))
+            if speed <= fastest * _MARGIN:
+                return cls(frozen.arrays, frozen.sampling, speed, replace(ship, top_speed=top))
+            fastest = speed
+        return None
+
+    @property
+    def cell_height(self) -> float:
+        """Height of a cell of the raster [m]."""
+        return float(self.raster.corner[1]) * 111_132.0
+
+    def from_departure(self, later: float) -> BarrierDomain:
+        """Return the domain with times since a departure later than the first by so much [s]."""
+        if later == 0.0:
+            return self
+        return replace(self, raster=self.raster._replace(times=self.raster.times - later))
+
+
+def _greatest(raster: RasterArrays, channel: int) -> float:
+    values = raster.values[..., raster.channel_index[channel]]
+    return float(np.nanmax(values, initial=0.0)) if np.isfinite(values).any() else 0.0
+
+
+def _strongest_current(raster: RasterArrays) -> float:
+    east, north = raster.channel_index[CURRENT_EAST], raster.channel_index[CURRENT_NORTH]
+    if east < 0 or north < 0:
+        return 0.0
+    values = raster.values
+    size = np.hypot(values[..., east], values[..., north])
+    return float(np.nanmax(size, initial=0.0)) if np.isfinite(size).any() else 0.0
+
+
+def _box_of_routes(
+    passage: PassageToBound, speed: float
+) -> tuple[float, float, float, float] | None:
+    """Return a box round all positions from which start and goal are reached in the known time.
+
+    South, north, west and east [deg], not beyond the area of the chart. None where it holds a pole
+    or more than 350 degrees of longitude.
+    """
+    start, goal, total = passage.start, passage.goal, speed * passage.known
+    length = float(distance(*start, *goal))
+    total = max(total, length * (1.0 + 1e-6) + 1.0)
+    if total > 1.8e7:
+        return None
+    # every such position is on a geodesic from the start, no farther than the ellipse that way
+    courses = np.linspace(0.0, 2.0 * math.pi, _STEPS_ROUND_ELLIPSE)
+    near, far = np.zeros(courses.size), np.full(courses.size, total)
+    for _ in range(40):
+        middle = 0.5 * (near + far)
+        lat, lon = direct(start[0], start[1], courses, middle)[:2]
+        inside = middle + np.asarray(distance(lat, lon, *goal)) < total
+        near, far = np.where(inside, middle, near), np.where(inside, far, middle)
+    lat, lon = direct(start[0], start[1], courses, far)[:2]
+    turned = (np.asarray(lon) - start[1] + 180.0) % 360.0 - 180.0
+    toward_goal = (goal[1] - start[1] + 180.0) % 360.0 - 180.0
+    height = max(float(lat.max()), start[0], goal[0]) - min(float(lat.min()), start[0], goal[0])
+    width = max(float(turned.max()), toward_goal, 0.0) - min(float(turned.min()), toward_goal, 0.0)
+    margin = 0.04 * max(height, width) + 1e-3
+    south = min(float(lat.min()), start[0], goal[0]) - margin
+    north = max(float(lat.max()), start[0], goal[0]) + margin
+    west = start[1] + min(float(turned.min()), toward_goal, 0.0) - margin
+    east = start[1] + max(float(turned.max()), toward_goal, 0.0) + margin
+    if passage.chart is not None:  # with some cells beyond, which are closed
+        area, beyond = passage.chart.area, 0.03 * (north - south) + 0.01
+        south, north = max(south, area.south - beyond), min(north, area.north + beyond)
+    if south < -86.0 or north > 86.0 or east - west > 350.0:
+        return None
+    return south, north, west, east

@@ -1,0 +1,112 @@
+"""Which cells of a mesh no ship may enter at any time: land, offing, zones and the chart's area."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from thalweg.chart.offing import required_offing
+from thalweg.core.geodesy import METRES_PER_DEGREE, densify
+from thalweg.core.types import BoolArray, FloatArray
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+_OFFING_SHARE: Final = 0.98  # routes may be nearer to land than required by a small share
+_OUTLINE_PARTS: Final = 0.5  # of a cell: outlines of zones are great circles, split into these
+
+
+def closed_cells(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> BoolArray:
+    """Return which cells of a mesh are closed all over, whatever the time.
+
+    A cell is closed if it is land or no-go zone at its centre and no shore or outline passes
+    through it, if all of it is nearer to land than the chart requires, or if it is outside the
+    chart's area.
+
+    Parameters
+    ----------
+    chart : Chart or None
+    lat, lon : float64 array (Y,), (X,)
+        Nodes [deg].
+
+    Returns
+    -------
+    bool array (Y - 1, X - 1)
+    """
+    shape = lat.size - 1, lon.size - 1
+    if chart is None:
+        return np.zeros(shape, bool)
+    rows, columns = 0.5 * (lat[1:] + lat[:-1]), 0.5 * (lon[1:] + lon[:-1])
+    grid = np.meshgrid(rows, columns, indexing="ij")
+    centres = grid[0].ravel(), grid[1].ravel()
+    kept = chart.offing_arrays.distance
+    shore = np.asarray(chart.coastline.shore_distance(*centres, cap=max(1.0, kept)))
+    lines = chart.coastline.lines(lat[0], lat[-1], lon[0], lon[-1])
+    closed = (shore.reshape(shape) <= 0.0) & ~_touched(lines, lat, lon)
+    closed |= _outside_area(chart, lat, lon)
+    if kept > 0.0:
+        near = np.flatnonzero(shore < kept)
+        half = 0.5 * np.hypot(lat[1] - lat[0], lon[1] - lon[0]) * METRES_PER_DEGREE * 1.01
+        required = np.zeros(shore.size)
+        required[near] = required_offing(chart.offing_arrays, centres[0][near], centres[1][near])
+        # neither distance changes by more than a metre a metre
+        too_near = shore + half < _OFFING_SHARE * (required - half)
+        closed |= too_near.reshape(shape)
+    if chart.zones.no_go:
+        inside = np.asarray(chart.crosses_no_go_zone(*centres, *centres)).reshape(shape)
+        closed |= inside & ~_touched(_zone_outlines(chart, lat[1] - lat[0]), lat, lon)
+    result: BoolArray = closed
+    return result
+
+
+def _outside_area(chart: Chart, lat: FloatArray, lon: FloatArray) -> BoolArray:
+    """Return which cells are wholly north or south of the area of a chart."""
+    area = chart.area
+    rows = (lat[:-1] > area.north) | (lat[1:] < area.south)
+    return np.broadcast_to(rows[:, None], (rows.size, lon.size - 1))
+
+
+def _zone_outlines(chart: Chart, spacing: float) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Yield the outlines of no-go zones as close positions [deg] on great circles."""
+    for shape in chart.zones.no_go:
+        for ring in (shape.exterior, *shape.interiors):
+            lon, lat = np.asarray(ring.coords, float)[:, :2].T
+            step = max(_OUTLINE_PARTS * spacing * METRES_PER_DEGREE, 100.0)
+            close_lat, close_lon, _ = densify(lat, lon, step)
+            yield close_lat, np.degrees(np.unwrap(np.radians(close_lon)))
+
+
+def _touched(
+    lines: Iterable[tuple[FloatArray, FloatArray]], lat: FloatArray, lon: FloatArray
+) -> BoolArray:
+    """Return the cells that lines (lat, lon) [deg] pass through."""
+    cells = np.zeros((lat.size - 1, lon.size - 1), bool)
+    steps = lat[1] - lat[0], lon[1] - lon[0]
+    for line_lat, line_lon in lines:
+        for turn in (-360.0, 0.0, 360.0):
+            y = (np.asarray(line_lat) - lat[0]) / steps[0]
+            x = (np.asarray(line_lon) + turn - lon[0]) / steps[1]
+            if x.max() >= -1.0 and x.min() <= cells.shape[1] + 1.0:
+                _mark_line(cells, y, x)
+    return cells
+
+
+def _mark_line(cells: BoolArray, y: FloatArray, x: FloatArray) -> None:
+    """Mark the cells that the boxes round short pieces of a line touch."""
+    length = np.maximum(np.abs(np.diff(y)), np.abs(np.diff(x)))
+    parts = np.maximum(np.ceil(2.0 * np.minimum(length, 1e5)).astype(np.int64), 1)
+    piece = np.repeat(np.arange(length.size), parts)
+    first = np.concatenate([[0], np.cumsum(parts)[:-1]])
+    share = (np.arange(piece.size) - first[piece]) / parts[piece]
+    y0 = y[piece] + share * (y[piece + 1] - y[piece])
+    x0 = x[piece] + share * (x[piece + 1] - x[piece])
+    y1 = y0 + (y[piece + 1] - y[piece]) / parts[piece]
+    x1 = x0 + (x[piece + 1] - x[piece]) / parts[piece]
+    margin = 0.02  # the outlines are great circles, drawn here as straight lines
+    for row in (np.minimum(y0, y1) - margin, np.maximum(y0, y1) + margin):
+        for column in (np.minimum(x0, x1) - margin, np.maximum(x0, x1) + margin):
+            j, i = np.floor(row).astype(np.int64), np.floor(column).astype(np.int64)
+            inside = (j >= 0) & (i >= 0) & (j < cells.shape[0]) & (i < cells.shape[1])
+            cells[j[inside], i[inside]] = True

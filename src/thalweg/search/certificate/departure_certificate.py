@@ -1,0 +1,110 @@
+"""The certificate of a passage that may depart at any moment of a window."""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+import time as clock
+from dataclasses import dataclass, replace
+from typing import Final
+
+from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
+from thalweg.search.certificate.time_certificate import (
+    BarrierSearch,
+    TimeCertificate,
+    certify_time,
+    first_cells,
+    free_space_time,
+)
+
+_SHORTEST_PIECE: Final = 0.01  # of the known time: pieces of the window are not divided further
+_SPLIT_FIRST: Final = 900.0  # pieces this long or longer [s] are divided before their mesh is
+
+
+def certify_departures(
+    passage: PassageToBound, *, seconds: float, target: float = 0.005
+) -> TimeCertificate | None:
+    """Bound the time of every route of a passage from below, whenever it departs.
+
+    The window is divided where its bound is least: a barrier for a piece of the window rises no
+    faster than the conditions of any departure in that piece allow.
+
+    Parameters
+    ----------
+    passage : PassageToBound
+        With or without a window of departures.
+    seconds : float
+        Time that the search for a bound may take [s]; 0 for that of the geodesic alone.
+    target : float
+        Gap [fraction of the known time] at which the search ends.
+
+    Returns
+    -------
+    TimeCertificate or None
+        The least bound of all pieces of the window. None near a pole and across more than half
+        of the globe.
+    """
+    if passage.departures <= 0.0:
+        return certify_time(passage, seconds=seconds, target=target)
+    began = clock.perf_counter()
+    cells = first_cells(passage, seconds)
+    domain = BarrierDomain.around(passage, cells)
+    if domain is None:
+        return None
+    free = free_space_time(passage, domain)
+    enough = (1.0 - target) * passage.known
+    order = itertools.count()
+    pieces = [(free.value, next(order), _Piece.of(passage, domain, cells, free))]
+    while seconds > 0.0 and pieces[0][0] < enough:
+        piece = pieces[0][2]
+        left = seconds - (clock.perf_counter() - began)
+        parts = piece.halves() if piece.is_divisible else [piece]
+        if sum(part.search.expected_seconds for part in parts) > left:
+            break
+        heapq.heappop(pieces)
+        for part in parts:
+            part.improve()
+            heapq.heappush(pieces, (part.best.value, next(order), part))
+    worst = pieces[0][2].best
+    reached = max(one.best.reached for _, _, one in pieces) if len(pieces) == 1 else worst.reached
+    return replace(worst, reached=reached, seconds=clock.perf_counter() - began)
+
+
+@dataclass(eq=False)
+class _Piece:
+    """A part of the window with the search for its barrier."""
+
+    passage: PassageToBound
+    domain: BarrierDomain
+    cells: int
+    search: BarrierSearch
+    best: TimeCertificate
+
+    @classmethod
+    def of(
+        cls, passage: PassageToBound, domain: BarrierDomain, cells: int, best: TimeCertificate
+    ) -> _Piece:
+        return cls(passage, domain, cells, BarrierSearch(passage, domain, cells), best)
+
+    @property
+    def is_divisible(self) -> bool:
+        span = self.passage.departures
+        if span <= _SHORTEST_PIECE * self.passage.known:
+            return False
+        return span >= _SPLIT_FIRST or self.best.cells > 0
+
+    def halves(self) -> list[_Piece]:
+        first = self.passage.depart
+        middle = first + 0.5 * self.passage.departures
+        early = replace(self.passage, latest=middle)
+        late = replace(self.passage, depart=middle)
+        later = self.domain.from_departure(middle - first)
+        return [
+            _Piece.of(early, self.domain, self.cells, self.best),
+            _Piece.of(late, later, self.cells, self.best),
+        ]
+
+    def improve(self) -> None:
+        found = self.search.refine()
+        if found is not None and found.value > self.best.value:
+            self.best = found

@@ -1,0 +1,131 @@
+"""What certified bounds count besides the sea: offing, zones, canals, speed fields, departures."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.search.test_time_certificate import (
+    CURRENTS,
+    EAST,
+    SPEED,
+    on_meshes,
+    sea_of,
+    ship_of_one_speed,
+)
+from thalweg.chart import Chart
+from thalweg.chart.canals import Canal
+from thalweg.core.geodesy import distance
+from thalweg.kernels import codes
+from thalweg.sea import Sea
+from thalweg.search.certificate.barrier_domain import PassageToBound
+from thalweg.search.certificate.closed_water import closed_cells
+from thalweg.search.certificate.departure_certificate import certify_departures
+from thalweg.search.certificate.time_certificate import certify_time
+
+ENDS = (10.0, 20.0), (10.0, 21.0)
+STRAIGHT = float(distance(*ENDS[0], *ENDS[1])) / SPEED
+
+
+def box(west, south, east, north):
+    ring = [[west, south], [east, south], [east, north], [west, north], [west, south]]
+    return {"type": "Polygon", "coordinates": [ring]}
+
+
+def passage(known, *, chart=None, sea=None, ship=None, channels=()):
+    ship = ship or ship_of_one_speed(SPEED)
+    return PassageToBound(sea or Sea.calm(), chart, ship, channels, *ENDS, depart=1e9, known=known)
+
+
+def test_cells_near_land_are_closed_by_the_offing_and_only_by_it():
+    chart = Chart.from_geojson(box(20.4, 9.9, 20.6, 10.1))
+    lat, lon = np.linspace(9.5, 10.5, 51), np.linspace(20.0, 21.0, 51)
+    land = closed_cells(chart, lat, lon)
+    off = closed_cells(chart.with_offing(8_000.0), lat, lon)
+    y, x = 0.5 * (lat[1:] + lat[:-1]), 0.5 * (lon[1:] + lon[:-1])
+    far = np.asarray(
+        chart.coastline.shore_distance(*(a.ravel() for a in np.meshgrid(y, x, indexing="ij")))
+    ).reshape(land.shape)
+    half = 0.01 * 111_195.0 * math.sqrt(2.0)
+    assert land.sum() < off.sum() and (off | ~land).all()
+    assert far[off].max() < 8_000.0 - half
+    assert off[far < 8_000.0 - 4.0 * half].all()
+
+
+def test_a_no_go_zone_is_closed_inside_and_open_on_its_outline():
+    zone = {
+        "type": "Feature",
+        "properties": {"kind": "no_go"},
+        "geometry": box(20.4, 9.9, 20.6, 10.1),
+    }
+    chart = Chart.open_water(5.0, 15.0, 15.0, 25.0).with_zones(
+        {"type": "FeatureCollection", "features": [zone]}
+    )
+    lat, lon = np.linspace(9.5, 10.5, 41), np.linspace(20.0, 21.0, 41)
+    closed = closed_cells(chart, lat, lon)
+    row, column = np.nonzero(closed)
+    assert closed.sum() > 20
+    assert lat[row].min() >= 9.9 - 1e-6 and lat[row + 1].max() <= 10.1 + 1e-3
+    assert lon[column].min() >= 20.4 - 1e-6 and lon[column + 1].max() <= 20.6 + 1e-6
+
+
+def test_a_canal_through_a_wall_is_a_link_of_the_barrier():
+    chart = Chart.from_geojson(box(20.48, 9.0, 20.52, 11.0))
+    hours = 1800.0
+    canal = Canal("cut", "The cut", ((10.0, 20.46), (10.0, 20.54)), transit_time=hours, fee=0.0)
+    through = float(distance(10.0, 20.0, 10.0, 20.46) + distance(10.0, 20.54, 10.0, 21.0))
+    best = through / SPEED + hours
+    with_canal = on_meshes(passage(1.003 * best, chart=replace(chart, canals=(canal,))), cells=60)
+    assert len(with_canal.mesh.links) == 1
+    assert 0.95 * best < with_canal.value <= best
+    without = on_meshes(passage(1.3 * best, chart=chart), cells=60)
+    assert without.value > 1.1 * best  # round the wall
+
+
+def test_a_ship_whose_speed_is_a_field_is_bounded_by_the_field():
+    """A slow half: V = 5 m/s west of 20.5 E and 2.5 m/s east of it."""
+
+    def field(sampled, t, lat, lon):
+        return np.where(lon < 20.5, 5.0, 2.5) + 0.0 * lat
+
+    ship = replace(ship_of_one_speed(5.0), top_speed=math.nan, speed_field=field)
+    best = 0.5 * STRAIGHT + STRAIGHT
+    found = on_meshes(passage(1.003 * best, ship=ship), cells=60)
+    assert 0.93 * best < found.value <= best
+    assert "linear between" in found.sampling
+
+
+@pytest.mark.slow
+def test_in_a_tide_the_bound_holds_for_the_best_departure_of_a_window():
+    """A uniform current along the way turns once: the best departure has it ahead of slack."""
+    period, strength = 44_712.0, 1.5
+    length = float(distance(*ENDS[0], *ENDS[1]))
+    times = np.arange(0.0, 80_000.0, 20.0)
+
+    def duration(depart):
+        speed = SPEED + strength * np.cos(2 * np.pi * (times + depart) / period)
+        return float(times[np.argmax(np.cumsum(speed) * 20.0 >= length)])
+
+    window = 20_000.0
+    best = min(duration(depart) for depart in np.arange(0.0, window, 200.0))
+    worst = duration(0.5 * window)
+    sea = sea_of(
+        lambda t, y, x: strength * np.cos(2 * np.pi * (t - 1e9) / period) + 0 * x,
+        lambda t, y, x: 0 * x,
+        time_step=1800.0,
+    )
+    asked = passage(1.003 * best, sea=sea, channels=CURRENTS)
+    found = certify_departures(replace(asked, latest=1e9 + window), seconds=60.0, target=0.06)
+    assert best < 0.95 * worst
+    assert 0.9 * best < found.value <= best + 40.0
+
+
+def test_the_bound_of_the_geodesic_takes_the_strongest_current_of_the_data():
+    sea = sea_of(lambda t, y, x: 2.0 * np.exp(-((y - 10.2) ** 2) * 400.0), lambda t, y, x: 0 * x)
+    found = certify_time(passage(STRAIGHT, sea=sea, channels=CURRENTS), seconds=0.0)
+    assert EAST in sea.variables and codes.CURRENT_EAST in CURRENTS
+    assert found.cells == 0 and found.barrier is None
+    assert 0.98 * STRAIGHT * 5.0 / 7.0 < found.value < 1.02 * STRAIGHT * 5.0 / 7.0
