@@ -111,6 +111,7 @@ def _planned(
         sea=sea,
         chart=chart,
         network=request.get("network", "auto"),
+        proof=0.0,  # the certificate depends on the time that it is given
         resolution=None if resolution is None else float(resolution) * NAUTICAL_MILE,
     )
 

@@ -16,13 +16,17 @@ from thalweg.planning.pareto.exploration import strongest_current
 from thalweg.planning.pareto.trade_off_context import ExploredAlternative, TradeOffContext
 from thalweg.planning.plan_data import Proof
 from thalweg.planning.plan_front import certain_at
-from thalweg.planning.single.certified_bound import certified_distance
+from thalweg.planning.single.certified_bound import certified_distance, strongest_current_in_data
 from thalweg.route import Route
 from thalweg.search import table_bounds
 
 _KIND = (
     "certificate: the least length of a route round land at mixtures of the speeds, with the "
-    "strongest current at the stations of the network and the least rates and prices"
+    "strongest current in the data and the least rates and prices"
+)
+_KIND_AT_STATIONS = (
+    "estimate, not a proof: the least length of a route round land at mixtures of the speeds, with "
+    "the strongest current at the stations of the network and the least rates and prices"
 )
 _SECONDS = 2.0  # for the bound of the length, by default
 
@@ -69,6 +73,7 @@ def derive_proof(
     trade_off: TradeOffContext,
     explored: list[ExploredAlternative],
     certain: FloatArray,
+    kind: str,
     *,
     whole: bool,
 ) -> Proof:
@@ -80,30 +85,55 @@ def derive_proof(
     explored : list of ExploredAlternative
     certain : float64 array (2, m)
         As `certain_front` returns it.
+    kind : str
+        As `strongest_current_of_plan` returns it.
     whole : bool
         Whether the whole front is wanted.
     """
     if whole:
         fastest = min(one.first.duration for one in explored) / HOUR
-        return Proof(float(certain[0].min()), _KIND, fastest)
+        return Proof(float(certain[0].min()), kind, fastest)
     points = [point for one in explored if one.exact for point in one.exact.points]
     solver = min((point.cost for point in points), default=math.nan)
     context = trade_off.context
     allowed = (context.latest_arrival - context.voyage.earliest_departure) / HOUR
-    return Proof(certain_at(certain, allowed), _KIND, solver)
+    return Proof(certain_at(certain, allowed), kind, solver)
 
 
-def certain_front(
-    trade_off: TradeOffContext, explored: list[ExploredAlternative], length: float
-) -> FloatArray:
-    """Return a lower front that holds for every route: hours and values (2, m), to join by lines.
+def strongest_current_of_plan(
+    trade_off: TradeOffContext, explored: list[ExploredAlternative], routes: Sequence[Route]
+) -> tuple[float, str]:
+    """Return the strongest current [m/s] for the bound of a front, and the kind of the bound.
 
     Parameters
     ----------
     trade_off : TradeOffContext
     explored : list of ExploredAlternative
+    routes : sequence of Route
+        Of the front.
+    """
+    at_stations = max(strongest_current(one.frozen.stations) for one in explored)
+    feasible = [route for route in routes if route.feasible]
+    if not feasible or trade_off.interrupt_guard.stopped():
+        return at_stations, _KIND_AT_STATIONS
+    slowest = max(feasible, key=lambda route: route.time_h)
+    found = strongest_current_in_data(trade_off.context, slowest)
+    if found is None:
+        return at_stations, _KIND_AT_STATIONS
+    strongest, sampling = found
+    return max(strongest, at_stations), _KIND + (f", in {sampling}" if sampling else "")
+
+
+def certain_front(trade_off: TradeOffContext, length: float, current: float) -> FloatArray:
+    """Return a lower front that holds for every route: hours and values (2, m), to join by lines.
+
+    Parameters
+    ----------
+    trade_off : TradeOffContext
     length : float
         No route is shorter [m].
+    current : float
+        No current is stronger [m/s].
 
     Notes
     -----
@@ -113,7 +143,6 @@ def certain_front(
     points: not below their lower convex hull.
     """
     context, prices = trade_off.context, trade_off.objective.prices
-    current = max(strongest_current(one.frozen.stations) for one in explored)
     least = min(prices.inside, prices.outside)
     if prices.dues > 0.0:  # a route off the network may sail in the cheapest zone throughout
         least *= min([1.0, *(float(factor) for _, factor in context.chart.zones.price)])

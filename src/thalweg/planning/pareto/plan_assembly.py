@@ -11,6 +11,7 @@ import numpy as np
 from thalweg.core.errors import NoRouteError
 from thalweg.core.pareto_fronts import ROUNDING_TOLERANCE, non_dominated_indices
 from thalweg.core.time import format_time
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT
 from thalweg.network import shortest_path
 from thalweg.planning.pareto.baseline import (
@@ -27,6 +28,7 @@ from thalweg.planning.pareto.bounds import (
     correction_notes,
     derive_proof,
     open_water_lower_front,
+    strongest_current_of_plan,
 )
 from thalweg.planning.pareto.route_names import route_labels
 from thalweg.planning.pareto.search_horizon import shortest_path_length
@@ -76,7 +78,10 @@ def assemble_trade_off_plan(
             check_times_known(one.fastest, ends[0], ends[-1])
         raise _no_feasible_route_error(trade_off, explored)
     sailed = [item.route for item in constant if item.route not in blind]
-    front, corrections = _pareto_front(trade_off, explored, ordered, (blind, sailed))
+    routes = [item.route for item in ordered]
+    current, kind = strongest_current_of_plan(trade_off, explored, routes)
+    certain = certain_front(trade_off, certified_length(trade_off, routes), current)
+    front, corrections = _pareto_front(trade_off, explored, ordered, certain, (blind, sailed))
     stopped = trade_off.interrupt_guard.stopped()
     notes = [
         *(_interruption_notes(explored, front) if stopped else ()),
@@ -88,7 +93,7 @@ def assemble_trade_off_plan(
         voyage=context.voyage,
         routes=tuple(item.route for item in ordered),
         proof=derive_proof(
-            trade_off, explored, front.certain, whole=context.voyage.objective == "front"
+            trade_off, explored, certain, kind, whole=context.voyage.objective == "front"
         ),
         rejections=_rejections(explored),
         notes=tuple(dict.fromkeys(notes)),
@@ -114,13 +119,13 @@ def _pareto_front(
     trade_off: TradeOffContext,
     explored: list[ExploredAlternative],
     ordered: list[RefereedCandidate],
+    certain: FloatArray,
     references: tuple[list[Route], list[Route]],
 ) -> tuple[ParetoFront, list[str]]:
     """Return the front, and notes about the correction of its lower front."""
     context, objective = trade_off.context, trade_off.objective
     routes = tuple(item.route for item in ordered)
     values = np.array([item.value for item in ordered])
-    certain = certain_front(trade_off, explored, certified_length(trade_off, routes))
     lower = open_water_lower_front(explored, float(certain[1].min()))
     factors = correction_factors(lower, np.array([route.time_h for route in routes]), values)
     networks = {one.alternative.name: one.alternative.network for one in explored}

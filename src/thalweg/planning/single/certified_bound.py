@@ -16,7 +16,7 @@ from thalweg.planning.planning_context import PlanningContext
 from thalweg.route import Route
 from thalweg.sea import Sea
 from thalweg.search import LowerBound
-from thalweg.search.certificate.barrier_domain import PassageToBound
+from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier
 from thalweg.search.certificate.departure_certificate import certify_departures
 from thalweg.search.certificate.raster_path import fast_path_on_raster
@@ -38,6 +38,7 @@ _NO_REGION = (
     "longitude"
 )
 _NOT_SAILED = "no bound: the route breaks a limit"
+_CELLS_FOR_CURRENT = 100  # where the data are no finer
 _CELLS_OF_PATH = 800  # of functions, along the longer side
 _CANAL = "no bound: a canal may shorten the way"
 _CONTRADICTED = (
@@ -184,6 +185,30 @@ def certified_total(
             least[number] = found
     kind = f"{least[0].kind}; sum of {len(routes)} stretches, each for all departures that may win"
     return LowerBound(sum(bound.value for bound in least), kind)
+
+
+def strongest_current_in_data(context: PlanningContext, route: Route) -> tuple[float, str] | None:
+    """Return the strongest current [m/s] that a ship can meet, and how the sea was sampled.
+
+    Parameters
+    ----------
+    context : PlanningContext
+    route : Route
+        A route that takes as long as any that counts: water farther away than its time at the
+        greatest speed is left out.
+
+    Returns
+    -------
+    tuple of float and str, or None
+        The text is empty where the data themselves were read. None where no box holds the water,
+        as near a pole.
+    """
+    currents = tuple(c for c in context.needs.channels if c in (CURRENT_EAST, CURRENT_NORTH))
+    if len(currents) < 2:
+        return 0.0, ""
+    passage = replace(_passage(context, route), channels=currents)
+    domain = BarrierDomain.around(passage, _CELLS_FOR_CURRENT)
+    return None if domain is None else (domain.strongest_current, domain.sampling)
 
 
 def no_bound(why: str) -> LowerBound:

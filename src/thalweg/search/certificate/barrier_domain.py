@@ -138,6 +138,11 @@ class BarrierDomain:
         """Height of a cell of the raster [m]."""
         return float(self.raster.corner[1]) * 111_132.0
 
+    @property
+    def strongest_current(self) -> float:
+        """The strongest current in the domain [m/s]; 0 without currents."""
+        return _strongest_current(self.raster)
+
     def from_departure(self, later: float) -> BarrierDomain:
         """Return the domain with times since a departure later than the first by so much [s]."""
         if later == 0.0:
