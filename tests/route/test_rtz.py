@@ -194,3 +194,20 @@ def test_samples_of_the_reference_data_are_read():
     assert len(read) >= 20 and len(refused) <= 4
     # 1.2: six waypoints over the Pacific, the Tasman Sea and both capes
     assert read["JPNGO_STLAW_BASIC_RTZ.rtz"].lat[-1] == pytest.approx(44.55386667)
+
+
+@pytest.mark.parametrize("canal", [0, 1, 2])
+def test_a_canal_is_read_as_one_leg(tmp_path, canal):
+    from dataclasses import replace
+
+    from thalweg.chart import Chart
+
+    chosen = Chart.gshhg("c").canals[canal]
+    chart = replace(Chart.open_water(-89.0, 89.0, -180.0, 180.0), canals=(chosen,))
+    (lat1, lon1), (lat2, lon2) = chosen.ends
+    track = Track([lat1, lat1, lat2, lat2], [lon1 - 0.4, lon1, lon2, lon2 + 0.4], 0.0)
+    sailed = evaluate(track, ship=ship(7.0), sea=Sea.calm(), chart=chart)
+    write_rtz(sailed, tmp_path / "canal.rtz", RouteFileOptions(chart=chart))
+    again = evaluate(tmp_path / "canal.rtz", ship=ship(7.0), sea=Sea.calm(), chart=chart)
+    assert again.time_h == pytest.approx(sailed.time_h, rel=1e-4)
+    assert [row["leg_kind"] for row in again.waypoints()].count("canal") == 1

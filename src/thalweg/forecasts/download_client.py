@@ -219,7 +219,7 @@ class DownloadClient:
             except self._requests.RequestException as error:
                 failure = str(error)[:200]
                 if _unreachable(error):
-                    raise _no_network_error(url, failure) from error
+                    raise _no_network_error(url) from error
             if attempt < ATTEMPTS - 1:
                 self._pause(pause)
         raise TransferError(
@@ -269,9 +269,9 @@ def _host(url: str) -> str:
     return urlsplit(url).hostname or url
 
 
-def _no_network_error(url: str, failure: str) -> TransferError:
+def _no_network_error(url: str) -> TransferError:
     return TransferError(
-        f"{_host(url)} cannot be reached: {failure}.",
+        f"{_host(url)} cannot be reached: there is no connection to it.",
         "Without a network, files that were downloaded elsewhere can be used: "
         "thalweg plan ... --sea FILE.",
         "Check the connection, or copy a forecast file to this computer.",

@@ -26,6 +26,9 @@ _CURRENT = ("eastward_sea_water_velocity", "northward_sea_water_velocity")
 _NAMES = (_WAVES, *_WIND, *_CURRENT)
 #: Notes whose contents the summary states in its own lines.
 _STATED = ("No depth in the data",)
+_LEAST = {"comfort": "least motion sickness"}
+#: Notes on the safety of the ship come first.
+_FIRST = ("Check the depth",)
 _ALWAYS = ("land", "no-go zone")  # reasons that every coastal route meets
 
 
@@ -48,6 +51,7 @@ def summary_with_notes(plan: PlanData, lines: int = MAX_LINES) -> list[str]:
     """Return the summary and as many notes as fit into a number of lines."""
     found = plan_summary(plan)
     notes = [note for note in plan.notes if not note.startswith(_STATED)]
+    notes.sort(key=lambda note: not note.startswith(_FIRST))
     room = max(1, lines - len(found))
     shown = notes[:room]
     if len(shown) < len(notes):
@@ -189,7 +193,8 @@ def quality_text(plan: PlanData) -> str:
     if not plan.gap < 1.0:
         why = plan.proof.kind if plan.proof.kind.startswith("no bound") else "no bound was found"
         return f"{early}{why}"
-    return f"{early}at most {_percent(plan.gap)} % from the best possible"
+    excess = plan.gap / (1.0 - plan.gap)  # of the route over the bound
+    return f"{early}at most {_percent(excess)} % from the best possible"
 
 
 def _percent(share: float) -> str:
@@ -203,7 +208,7 @@ def _title(plan: PlanData) -> str:
     what = (
         "time against " + plan.front.criterion
         if (objective == "front" and plan.front is not None)
-        else f"least {objective}"
+        else _LEAST.get(objective, f"least {objective}")
     )
     if plan.voyage.arrive is not None:
         what += f", to arrive at {utc_text(float(plan.voyage.arrive))}"  # type: ignore[arg-type]
@@ -259,7 +264,10 @@ def _choice(plan: PlanData) -> str:
     assert front is not None  # checked by the caller
     time = np.array([route.time_h for route in plan.routes])
     order = np.argsort(time)
-    chosen = {int(order[0]): "fastest", int(order[-1]): f"least {front.criterion}"}
+    chosen = {
+        int(order[0]): "fastest",
+        int(order[-1]): _LEAST.get(front.criterion, f"least {front.criterion}"),
+    }
     chosen.setdefault(int(order[knee(time[order], front.values[order])]), "between")
     digits = 0 if float(front.values.max()) >= 1e4 else 1
     texts = [

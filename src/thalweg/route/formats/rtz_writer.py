@@ -51,8 +51,9 @@ def write_rtz(route: Route, path: str | Path, options: RouteFileOptions | None =
     waypoints = ElementTree.SubElement(root, "waypoints")
     side = max(options.cross_track_nm, written.cross_track_m / NAUTICAL_MILE)
     xtd = _decimal(min(side + 0.0005, _LARGEST_XTD) if side > options.cross_track_nm else side, 3)
-    for number, row in enumerate(written.rows, start=1):
-        _add_waypoint(waypoints, number, row, xtd)
+    rows = written.rows
+    for number, (before, row) in enumerate(zip([{}, *rows], rows), start=1):
+        _add_waypoint(waypoints, number, row, before, xtd)
     if all(row["time"] is not None for row in written.rows):
         _add_schedule(root, written.rows, options.rtz_version)
     ElementTree.indent(root)
@@ -62,14 +63,20 @@ def write_rtz(route: Route, path: str | Path, options: RouteFileOptions | None =
 
 
 def _add_waypoint(
-    waypoints: ElementTree.Element, number: int, row: Mapping[str, Any], xtd: str
+    waypoints: ElementTree.Element,
+    number: int,
+    row: Mapping[str, Any],
+    before: Mapping[str, Any],
+    xtd: str,
 ) -> None:
     names = {"id": str(number), "revision": "0", "name": str(row["name"])}
     waypoint = ElementTree.SubElement(waypoints, "waypoint", names)
     place = {name: _decimal(row[name], 6) for name in ("lat", "lon")}
     ElementTree.SubElement(waypoint, "position", place)
     if number > 1:
-        leg = {"starboardXTD": xtd, "portsideXTD": xtd, "geometryType": "Loxodrome"}
+        # a canal is joined from end to end: its leg must not be cut along a rhumb line
+        line = "Orthodrome" if before.get("leg_kind") == "canal" else "Loxodrome"
+        leg = {"starboardXTD": xtd, "portsideXTD": xtd, "geometryType": line}
         ElementTree.SubElement(waypoint, "leg", leg)
     orders = {name: _decimal(row[name], 6) for name in (*WAITS, *SPEEDS) if row.get(name)}
     if orders:

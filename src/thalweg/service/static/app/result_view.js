@@ -85,7 +85,7 @@ export class ResultView {
     const point = plan.front?.points[selection.route];
     const gap = plan.front ? point?.gap : plan.gap;
     const quality = this.result.job.summary.quality || "";
-    const said = plan.front ? (known(gap) ? `At most ${number(Math.ceil(1000 * gap) / 10, 1)} % from the best possible at its time` : "No bound is known for this route") : quality ? quality[0].toUpperCase() + quality.slice(1) : "No bound is known";
+    const said = plan.front ? (known(gap) ? `At most ${number(Math.ceil(1000 * gap / (1 - gap)) / 10, 1)} % from the best possible at its time` : "No bound is known for this route") : quality ? quality[0].toUpperCase() + quality.slice(1) : "No bound is known";
     const bar = h("i");
     bar.style.width = `${known(gap) ? Math.max(2, 100 * (1 - gap)) : 0}%`;
     return h("div.proof", {}, h("b", {}, said), h("div.gauge", { role: "img", "aria-label": said }, bar),
