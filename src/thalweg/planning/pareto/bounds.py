@@ -28,6 +28,7 @@ _KIND_AT_STATIONS = (
     "estimate, not a proof: the least length of a route round land at mixtures of the speeds, with "
     "the strongest current at the stations of the network and the least rates and prices"
 )
+_NOTHING_LEAST = "no bound: the least that the data allow is zero"
 _SECONDS = 2.0  # for the bound of the length, by default
 
 
@@ -97,7 +98,10 @@ def derive_proof(
     solver = min((point.cost for point in points), default=math.nan)
     context = trade_off.context
     allowed = (context.latest_arrival - context.voyage.earliest_departure) / HOUR
-    return Proof(certain_at(certain, allowed), kind, solver)
+    value = certain_at(certain, allowed)
+    if not value > 0.0:  # as of comfort: a ship may be without motions
+        return Proof(math.nan, _NOTHING_LEAST, solver)
+    return Proof(value, kind, solver)
 
 
 def strongest_current_of_plan(
