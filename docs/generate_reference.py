@@ -21,6 +21,34 @@ FOLDER = Path(__file__).parent / "reference"
 DECISIONS = Path(__file__).parent / "decisions"
 #: Names described in addition to those that a package exports.
 MORE_NAMES: dict[str, tuple[str, ...]] = {
+    "sea": (
+        "tides.constituents.Constituents",
+        "tides.constituent_files.read_constituents",
+        "tides.constituent_files.write_constituents",
+        "periodic_repeat.repeat_in_time",
+        "models.stratified_coast.stratified_coast_current",
+    ),
+    "chart": (
+        "zones.emission_control_areas.emission_control_areas",
+        "passages.Passage",
+        "passages.find_passages",
+        "offing.Offing",
+    ),
+    "ship": (
+        "model_protocol.AdjustableModel",
+        "model_protocol.CrabAngleModel",
+        "model_protocol.DraughtModel",
+        "model_protocol.EstimatingModel",
+        "model_protocol.FuelTableModel",
+        "model_protocol.JointPowerAndFuelModel",
+        "model_protocol.PowerTableModel",
+        "methods.shallow_water.squat.shallow_water_speed_limit",
+        "methods.engine.european_charges.EuropeanCharges",
+    ),
+    "network": (
+        "layered.layered_request.layered_section",
+        "layered.layered_request.suggested_shape",
+    ),
     "planning": (
         "sea_distance.SeaDistance",
         "sea_distance.sea_distance",

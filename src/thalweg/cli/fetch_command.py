@@ -176,7 +176,7 @@ def _list_sources(sources: dict[str, Any], *, as_json: bool) -> int:
         for name, one in sources.items()
     ]  # fmt: skip
     if as_json:
-        print(json.dumps(rows, indent=2))
+        print(json.dumps(rows, indent=2, allow_nan=False))
         return SUCCESS
     for row in rows:
         print(f"{row['source']:12} {row['title']}")

@@ -59,7 +59,7 @@ def build_cells(level: str) -> Path:
     side = CELL_SIDES[level]
     for column, row, land, coast in _cells(level, side):
         data = {"land": land, "coast": coast}
-        text = json.dumps(data, separators=(",", ":"))
+        text = json.dumps(data, separators=(",", ":"), allow_nan=False)
         path = draft / f"{column}_{row}.json.gz"
         write_bytes(path, gzip.compress(text.encode(), 6, mtime=0))
     try:

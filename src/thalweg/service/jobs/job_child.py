@@ -64,9 +64,9 @@ def _ended(order: dict[str, Any], messages: MessageWriter) -> dict[str, Any]:
 
 def _without_paths(problem: dict[str, Any], files: dict[str, str]) -> dict[str, Any]:
     """Return a problem in which no path of this computer stands."""
-    text = json.dumps(problem)
+    text = json.dumps(problem, allow_nan=False)
     for path in files.values():
-        text = text.replace(json.dumps(path)[1:-1], "the uploaded file")
+        text = text.replace(json.dumps(path, allow_nan=False)[1:-1], "the uploaded file")
     found: dict[str, Any] = json.loads(text)
     return found
 

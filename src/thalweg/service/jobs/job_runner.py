@@ -222,7 +222,7 @@ class JobRunner:
         }
         assert child.process.stdin is not None
         with contextlib.suppress(OSError, ValueError):
-            child.process.stdin.write(json.dumps(order).encode() + b"\n")
+            child.process.stdin.write(json.dumps(order, allow_nan=False).encode() + b"\n")
             child.process.stdin.flush()
 
     def _end(
@@ -260,7 +260,7 @@ class JobRunner:
         """Give a complete result its place, then state that the job has ended."""
         shutil.copyfile(child.log, folder / _LOG)
         end = folder / "end.json"
-        write_text(end, json.dumps({"state": state, "summary": summary}))
+        write_text(end, json.dumps({"state": state, "summary": summary}, allow_nan=False))
         for path in (*folder.iterdir(), folder):
             _synchronise(path)
         place = self._results / job.id

@@ -94,7 +94,7 @@ class WorkerClient:
         timer.start()
         try:
             assert process.stdin is not None and process.stdout is not None
-            process.stdin.write(json.dumps(task).encode() + b"\n")
+            process.stdin.write(json.dumps(task, allow_nan=False).encode() + b"\n")
             process.stdin.flush()
             sizes = HEADER.unpack(_read(process.stdout, HEADER.size))
             text, data = (_read(process.stdout, size) for size in sizes)
