@@ -215,5 +215,5 @@ def test_a_route_by_the_strait_of_node_120_exists_where_the_shape_must_contain_i
     inshore = (there[node] + onward[network.meta.goal]) / 1000.0
     offshore = there[network.meta.goal] / 1000.0
     assert 4.0 < inshore - offshore < 8.0
-    with pytest.raises(NoPathError, match="has (a|no) path through"):
+    with pytest.raises(NoPathError, match=r"has (a|no) path through"):
         suggested_shape(chart, *places, contain=[(64.87, 12.5)])

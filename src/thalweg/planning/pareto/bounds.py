@@ -12,6 +12,7 @@ from thalweg.core.geodesy import distance
 from thalweg.core.pareto_fronts import ROUNDING_TOLERANCE, lower_hull, non_dominated_indices
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
+from thalweg.kernels import codes
 from thalweg.planning.pareto.exploration import strongest_current
 from thalweg.planning.pareto.trade_off_context import ExploredAlternative, TradeOffContext
 from thalweg.planning.plan_data import Proof
@@ -24,9 +25,8 @@ _KIND = (
     "certificate: the least length of a route round land at mixtures of the speeds, with the "
     "strongest current in the data and the least rates and prices"
 )
-_KIND_AT_STATIONS = (
-    "estimate, not a proof: the least length of a route round land at mixtures of the speeds, with "
-    "the strongest current at the stations of the network and the least rates and prices"
+_CURRENT_UNKNOWN = (
+    "no bound: the strongest current of the water that the ship can reach was not found"
 )
 _NOTHING_LEAST = "no bound: the least that the data allow is zero"
 _SECONDS = 2.0  # for the bound of the length, by default
@@ -93,15 +93,19 @@ def derive_proof(
     """
     if whole:
         fastest = min(one.first.duration for one in explored) / HOUR
-        return Proof(float(certain[0].min()), kind, fastest)
+        return _proof(float(certain[0].min()), kind, fastest)
     points = [point for one in explored if one.exact for point in one.exact.points]
     solver = min((point.cost for point in points), default=math.nan)
     context = trade_off.context
     allowed = (context.latest_arrival - context.voyage.earliest_departure) / HOUR
-    value = certain_at(certain, allowed)
-    if not value > 0.0:  # as of comfort: a ship may be without motions
-        return Proof(math.nan, _NOTHING_LEAST, solver)
-    return Proof(value, kind, solver)
+    return _proof(certain_at(certain, allowed), kind, solver)
+
+
+def _proof(value: float, kind: str, solver: float) -> Proof:
+    """Return a bound; none where it is zero, as of comfort: a ship may be without motions."""
+    if value > 0.0:
+        return Proof(value, kind, solver)
+    return Proof(math.nan, kind if kind.startswith("no bound") else _NOTHING_LEAST, solver)
 
 
 def strongest_current_of_plan(
@@ -116,16 +120,17 @@ def strongest_current_of_plan(
     routes : sequence of Route
         Of the front.
     """
-    at_stations = max(strongest_current(one.frozen.stations) for one in explored)
+    context = trade_off.context
+    if not {codes.CURRENT_EAST, codes.CURRENT_NORTH} <= set(context.needs.channels):
+        return 0.0, _KIND
     feasible = [route for route in routes if route.feasible]
     if not feasible or trade_off.interrupt_guard.stopped():
-        return at_stations, _KIND_AT_STATIONS
-    slowest = max(feasible, key=lambda route: route.time_h)
-    found = strongest_current_in_data(trade_off.context, slowest)
+        return math.inf, _CURRENT_UNKNOWN
+    found = strongest_current_in_data(context, max(feasible, key=lambda route: route.time_h))
     if found is None:
-        return at_stations, _KIND_AT_STATIONS
-    strongest, sampling = found
-    return max(strongest, at_stations), _KIND + (f", in {sampling}" if sampling else "")
+        return math.inf, _CURRENT_UNKNOWN
+    at_stations = max(strongest_current(one.frozen.stations) for one in explored)
+    return max(found[0], at_stations), _KIND + (f", in {found[1]}" if found[1] else "")
 
 
 def certain_front(trade_off: TradeOffContext, length: float, current: float) -> FloatArray:
@@ -137,7 +142,7 @@ def certain_front(trade_off: TradeOffContext, length: float, current: float) -> 
     length : float
         No route is shorter [m].
     current : float
-        No current is stronger [m/s].
+        No current is stronger [m/s]; inf where none is known to be the strongest.
 
     Notes
     -----
