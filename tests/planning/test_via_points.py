@@ -49,8 +49,8 @@ def test_a_penalty_zone_is_avoided_when_that_costs_less():
 
 
 @pytest.mark.parametrize("objective", ["time", "distance"])
-def test_the_bound_counts_a_penalty_zone(objective):
-    """A square of factor 2 that the best route passes: its gap was once that of the detour."""
+def test_the_bound_states_that_it_leaves_out_a_penalty_zone(objective):
+    """A square of factor 2 that the best route passes: the bound leaves it out and says so."""
     square = [[2.9, 51.7], [3.3, 51.7], [3.3, 52.12], [2.9, 52.12], [2.9, 51.7]]
     zone = {
         "type": "Feature",
@@ -64,4 +64,5 @@ def test_the_bound_counts_a_penalty_zone(objective):
     free = plan(voyage, chart=water, **given)
     assert found.objective_value > 1.025 * free.objective_value
     assert found.lower_bound <= found.objective_value * (1 + 1e-9)
-    assert found.gap < 0.02
+    assert found.gap < 0.08
+    assert "without the penalties" in found.proof.kind
