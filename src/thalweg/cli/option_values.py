@@ -338,7 +338,7 @@ def route_file_options(arguments: argparse.Namespace) -> RouteFileOptions:
     InputError
         If a number is impossible, or an option is given without ``--out``.
     """
-    from thalweg.route import RouteFileOptions
+    from thalweg.route import ROUTE_FORMATS, RouteFileOptions
 
     names = {
         "xtd": "cross_track_nm",
@@ -348,6 +348,9 @@ def route_file_options(arguments: argparse.Namespace) -> RouteFileOptions:
     }
     given = {name: getattr(arguments, option) for option, name in names.items()}
     given = {name: value for name, value in given.items() if value is not None}
+    if arguments.formats is not None:
+        endings = [ending.strip().casefold() for ending in arguments.formats.split(",")]
+        given["formats"] = ROUTE_FORMATS if endings == ["all"] else tuple(endings)
     if given and not arguments.out:
         raise InputError(
             "Options of route files are given without --out.",

@@ -57,8 +57,13 @@ def add_ship_and_chart_options(parser: argparse.ArgumentParser, *, default_ukc: 
 
 def _add_route_file_options(parser: argparse.ArgumentParser) -> None:
     files = parser.add_argument_group(
-        "route files", "Waypoints of route.rtz, .gpx, .geojson and .csv, joined by rhumb lines."
+        "route files", "Formats and waypoints; waypoints are joined by rhumb lines."
     )
+    files.add_argument(
+        "--formats", metavar="LIST",
+        help="formats by ending, separated by commas: rtz, rtzp, gml (S-421), gpx, geojson, kml, "
+        "csv; or all; default: rtz,gpx,geojson,csv",
+    )  # fmt: skip
     files.add_argument(
         "--xtd",
         type=float,

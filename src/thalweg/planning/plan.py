@@ -69,7 +69,7 @@ class Plan(PlanData):
         *,
         beside: Route | None = None,
     ) -> list[Path]:
-        """Write plan.json, route.rtz, .gpx, .geojson and .csv, map.png and profile.png.
+        """Write plan.json, the route files, map.png and profile.png.
 
         Where the tide matters st.png as well. A plan with a front also writes front.csv, front.png,
         comparison.csv and, in ``routes``, each route.
@@ -79,7 +79,8 @@ class Plan(PlanData):
         folder : path
             Made where it does not exist.
         options : RouteFileOptions, optional
-            Cross-track limit, number of waypoints and RTZ version of the route files.
+            Formats, cross-track limit, number of waypoints and RTZ version of the route files; by
+            default route.rtz, .gpx, .geojson and .csv.
         beside : Route, optional
             A route to draw on the map beside that of the plan.
 

@@ -5,12 +5,18 @@ from thalweg.route.ensemble_evaluation import (
     evaluate_members,
 )
 from thalweg.route.formats import (
+    ROUTE_FORMATS,
+    ROUTE_WRITERS,
     RouteFileOptions,
     read_track,
     write_csv,
     write_geojson,
     write_gpx,
+    write_kml,
+    write_route_files,
     write_rtz,
+    write_rtzp,
+    write_s421,
 )
 from thalweg.route.referee.evaluation import evaluate
 from thalweg.route.referee.wind_speed_only import with_wind_speed
@@ -26,6 +32,8 @@ from thalweg.route.route_concatenation import join
 from thalweg.route.track import Track
 
 __all__ = [
+    "ROUTE_FORMATS",
+    "ROUTE_WRITERS",
     "EnsembleResult",
     "MemberStatistics",
     "RefinementConditions",
@@ -46,5 +54,9 @@ __all__ = [
     "write_csv",
     "write_geojson",
     "write_gpx",
+    "write_kml",
+    "write_route_files",
     "write_rtz",
+    "write_rtzp",
+    "write_s421",
 ]

@@ -19,7 +19,7 @@ from thalweg.service.worker.worker_client import WorkerClient
 
 SEA_ENDINGS: Final = (".nc", ".nc4", ".cdf", ".grb", ".grb2", ".grib", ".grib1", ".grib2", ".gri")
 SHIP_ENDINGS: Final = (".yaml", ".yml", ".json")
-ROUTE_ENDINGS: Final = (".rtz", ".rtzp", ".gpx", ".geojson", ".json", ".csv", ".txt")
+ROUTE_ENDINGS: Final = (".rtz", ".rtzp", ".gml", ".gpx", ".geojson", ".json", ".csv", ".txt")
 
 
 class JobChanges:

@@ -20,10 +20,7 @@ from thalweg.route import (
     Route,
     RouteFileOptions,
     evaluate,
-    write_csv,
-    write_geojson,
-    write_gpx,
-    write_rtz,
+    write_route_files,
 )
 from thalweg.route.formats.file_route import file_track
 from thalweg.sea.grids.gridded_layer import GridLayer
@@ -65,7 +62,7 @@ def write_plan(
     options = _of_plan(plan, options or RouteFileOptions())
     plan.to_json(folder / "plan.json")
     best = keeping_limits(plan, plan.best, options)
-    files = [folder / "plan.json", *_write_formats(plan.best, folder, best)]
+    files = [folder / "plan.json", *write_route_files(plan.best, folder, options=best)]
     draw_map(plan, folder / "map.png", beside=beside)
     draw_profile(plan.best, folder / "profile.png")
     files += [folder / "map.png", folder / "profile.png", *write_space_time_diagram(plan, folder)]
@@ -139,7 +136,7 @@ def _write_front(plan: PlanData, folder: Path, options: RouteFileOptions) -> lis
     each = make_folder(folder / "routes")
     for number, route in enumerate(plan.routes, start=1):
         own = keeping_limits(plan, route, options)
-        files += _write_formats(route, each, own, f"route_{number:02d}")
+        files += write_route_files(route, each, f"route_{number:02d}", own)
     return files
 
 
@@ -157,7 +154,7 @@ def write_route(
     folder = make_folder(folder)
     text = json.dumps(route.as_dict(), indent=2, allow_nan=False)
     write_text(folder / "route.json", text + "\n")
-    files = [folder / "route.json", *_write_formats(route, folder, options)]
+    files = [folder / "route.json", *write_route_files(route, folder, options=options)]
     draw_profile(route, folder / "profile.png")
     return [*files, folder / "profile.png"]
 
@@ -200,12 +197,3 @@ def _coastlines(layers: Sequence[Layer]) -> list[tuple[np.ndarray, np.ndarray]]:
         lon, lat = np.asarray(polygon.exterior.coords).T
         outlines.append((lat, lon))
     return outlines
-
-
-def _write_formats(
-    route: Route, folder: Path, options: RouteFileOptions | None, name: str = "route"
-) -> list[Path]:
-    writers = {"rtz": write_rtz, "gpx": write_gpx, "geojson": write_geojson, "csv": write_csv}
-    for suffix, write in writers.items():
-        write(route, folder / f"{name}.{suffix}", options)
-    return [folder / f"{name}.{suffix}" for suffix in writers]

@@ -1,4 +1,4 @@
-"""Route files: reading and writing RTZ, GPX 1.1, GeoJSON (RFC 7946) and CSV.
+"""Route files: reading and writing RTZ, S-421, GPX 1.1, GeoJSON (RFC 7946) and CSV; writing KML.
 
 Files hold few waypoints, joined by rhumb lines within a cross-track limit of the route
 (`RouteFileOptions`).
@@ -6,28 +6,39 @@ Files hold few waypoints, joined by rhumb lines within a cross-track limit of th
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Final
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike
 from thalweg.route.formats.csv_format import parse_csv, write_csv
 from thalweg.route.formats.geojson_format import parse_geojson, write_geojson
 from thalweg.route.formats.gpx_format import parse_gpx, write_gpx
+from thalweg.route.formats.kml_writer import write_kml
 from thalweg.route.formats.parsed_track import ParsedTrack, track_of
-from thalweg.route.formats.route_file_options import RouteFileOptions
+from thalweg.route.formats.route_file_options import ROUTE_FORMATS, RouteFileOptions
 from thalweg.route.formats.rtz_reader import parse_rtz, parse_rtzp
-from thalweg.route.formats.rtz_writer import write_rtz
+from thalweg.route.formats.rtz_writer import write_rtz, write_rtzp
+from thalweg.route.formats.s421_reader import parse_s421
+from thalweg.route.formats.s421_writer import write_s421
+from thalweg.route.route import Route
 from thalweg.route.track import Track
 
 __all__ = [
     "LARGEST_FILE",
+    "ROUTE_FORMATS",
+    "ROUTE_WRITERS",
     "RouteFileOptions",
     "read_track",
     "write_csv",
     "write_geojson",
     "write_gpx",
+    "write_kml",
+    "write_route_files",
     "write_rtz",
+    "write_rtzp",
+    "write_s421",
 ]
 
 LARGEST_FILE = 50_000_000  #: bytes; larger files are refused
@@ -42,7 +53,47 @@ _PARSERS: dict[str, Callable[[str], ParsedTrack]] = {
 _BYTE_PARSERS: dict[str, Callable[[bytes], ParsedTrack]] = {
     ".rtz": parse_rtz,
     ".rtzp": parse_rtzp,
+    ".gml": parse_s421,
 }
+
+#: Writes a route into a file, as some options say.
+RouteWriter = Callable[[Route, str | Path, RouteFileOptions | None], None]
+#: The writers of route files, by the ending of their files.
+ROUTE_WRITERS: Final[Mapping[str, RouteWriter]] = {
+    "rtz": write_rtz,
+    "rtzp": write_rtzp,
+    "gml": write_s421,
+    "gpx": write_gpx,
+    "geojson": write_geojson,
+    "kml": write_kml,
+    "csv": write_csv,
+}
+
+
+def write_route_files(
+    route: Route, folder: str | Path, name: str = "route", options: RouteFileOptions | None = None
+) -> list[Path]:
+    """Write a route in each format of its options.
+
+    Parameters
+    ----------
+    route : Route
+    folder : str or Path
+        It exists.
+    name : str
+        Of the files, without ending.
+    options : RouteFileOptions, optional
+
+    Returns
+    -------
+    list of Path
+        The files written.
+    """
+    options = options or RouteFileOptions()
+    files = [Path(folder) / f"{name}.{ending}" for ending in options.formats]
+    for path, ending in zip(files, options.formats):
+        ROUTE_WRITERS[ending](route, path, options)
+    return files
 
 
 def read_track(path: str | Path, *, depart: TimeLike | None = None) -> Track:
@@ -53,8 +104,9 @@ def read_track(path: str | Path, *, depart: TimeLike | None = None) -> Track:
     path : str or Path
         ``.csv`` or ``.txt`` (columns lat and lon, perhaps time, waiting_h, ordered_speed_kn),
         ``.geojson`` or ``.json`` (LineString, MultiLineString or Points), ``.gpx`` (one route or
-        track), ``.rtz`` and ``.rtzp`` (RTZ 1.0 to 1.2). Legs of RTZ are rhumb lines unless marked
-        ``Orthodrome``; those of the other formats are geodesics.
+        track), ``.rtz`` and ``.rtzp`` (RTZ 1.0 to 1.2), ``.gml`` (S-421, experimental). Legs of
+        RTZ and S-421 are rhumb lines unless marked as orthodromes; those of the other formats are
+        geodesics.
     depart : time, optional
         Departure; by default the first time in the file.
 

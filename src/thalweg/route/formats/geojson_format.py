@@ -99,7 +99,7 @@ def write_geojson(route: Route, path: str | Path, options: RouteFileOptions | No
     written = file_route(route, options)
     totals = {k: v for k, v in route.as_dict().items() if k not in ("waypoints", "violations")}
     totals["cross_track_error_m"] = round(written.cross_track_m, 1)
-    parts = _line_parts(route, options.decimals)
+    parts = line_parts(route, options.decimals)
     line = (
         {"type": "LineString", "coordinates": parts[0]}
         if len(parts) == 1
@@ -169,7 +169,7 @@ def _without_cuts(positions: list[Position]) -> list[Position]:
     return remaining
 
 
-def _line_parts(route: Route, decimals: int) -> list[list[list[float]]]:
+def line_parts(route: Route, decimals: int) -> list[list[list[float]]]:
     """Return the line as lists of [lon, lat], split where it crosses the antimeridian."""
     track = route.track
     lat, lon, _ = densify(track.lat, track.lon, _LINE_SPACING)

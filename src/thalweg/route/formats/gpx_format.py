@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-import numpy as np
-
 from thalweg.core.errors import InputError
-from thalweg.core.file_writing import write_bytes
 from thalweg.core.time import parse_time
 from thalweg.route.formats.file_route import file_route
 from thalweg.route.formats.parsed_track import (
@@ -24,6 +20,7 @@ from thalweg.route.formats.parsed_track import (
     waypoint_order,
 )
 from thalweg.route.formats.route_file_options import RouteFileOptions
+from thalweg.route.formats.xml_elements import decimal, local_name, parse_xml, write_xml
 from thalweg.route.route import Route
 
 _NAMESPACE = "http://www.topografix.com/GPX/1/1"
@@ -38,17 +35,7 @@ def parse_gpx(text: str) -> ParsedTrack:
     InputError
         If it is not XML, declares entities, or holds neither.
     """
-    from defusedxml import DefusedXmlException
-    from defusedxml.ElementTree import fromstring
-
-    try:
-        root = fromstring(text)
-    except (ElementTree.ParseError, DefusedXmlException) as error:
-        raise InputError(
-            f"The GPX cannot be read: {error}.",
-            "The file must be well-formed XML.",
-            "Check that the file is complete.",
-        ) from None
+    root = parse_xml(text, "GPX")
     points = _points(root, "rte", "rtept") or _points(root, "trk", "trkpt")
     if not points:
         raise InputError(
@@ -57,7 +44,7 @@ def parse_gpx(text: str) -> ParsedTrack:
             "Export the route itself, not only waypoints.",
         )
     positions = [position_of(p.get("lat"), p.get("lon"), i) for i, p in enumerate(points, start=1)]
-    time = next((e.text for e in points[0] if _local_name(e.tag) == "time" and e.text), None)
+    time = next((e.text for e in points[0] if local_name(e) == "time" and e.text), None)
     given = [_extensions(point) for point in points]
     orders = [waypoint_order(values, i) for i, values in enumerate(given, start=1)]
     rhumb = [is_rhumb_line(v.get(GEOMETRY), i) for i, v in enumerate(given[:-1], start=1)]
@@ -80,18 +67,14 @@ def write_gpx(route: Route, path: str | Path, options: RouteFileOptions | None =
     ends = f"{options.start} to {options.goal}" if options.start and options.goal else ""
     ElementTree.SubElement(line, "name").text = ends or "Thalweg route"
     for row in file_route(route, options).rows:
-        place = {name: np.format_float_positional(row[name], trim="-") for name in ("lat", "lon")}
+        place = {name: decimal(row[name], 9) for name in ("lat", "lon")}
         point = ElementTree.SubElement(line, "rtept", place)
         if row["time"] is not None:
             ElementTree.SubElement(point, "time").text = row["time"]
         ElementTree.SubElement(point, "name").text = row["name"]
         _extend(point, row)
-    tree = ElementTree.ElementTree(root)
     ElementTree.register_namespace("thalweg", _OWN_NAMESPACE)
-    ElementTree.indent(tree)
-    text = io.BytesIO()
-    tree.write(text, encoding="utf-8", xml_declaration=True)
-    write_bytes(path, text.getvalue())
+    write_xml(root, path)
 
 
 def _extend(point: ElementTree.Element, row: Mapping[str, Any]) -> None:
@@ -106,18 +89,14 @@ def _extend(point: ElementTree.Element, row: Mapping[str, Any]) -> None:
 def _extensions(point: ElementTree.Element) -> dict[str, str]:
     """Return what a point has of our own elements, by name."""
     own = [e for e in point.iter() if str(e.tag).startswith(f"{{{_OWN_NAMESPACE}}}")]
-    return {_local_name(element.tag): (element.text or "").strip() for element in own}
+    return {local_name(element): (element.text or "").strip() for element in own}
 
 
 def _points(root: ElementTree.Element, parent: str, name: str) -> list[ElementTree.Element]:
     """Return the points of the first parent element that has any, of whatever GPX version."""
     for element in root.iter():
-        if _local_name(element.tag) == parent:
-            found = [point for point in element.iter() if _local_name(point.tag) == name]
+        if local_name(element) == parent:
+            found = [point for point in element.iter() if local_name(point) == name]
             if found:
                 return found
     return []
-
-
-def _local_name(tag: object) -> str:
-    return str(tag).rpartition("}")[2]

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 RTZ_VERSIONS = ("1.0", "1.1", "1.2")
+#: Endings of the route files that can be written; ``gml`` is S-421.
+ROUTE_FORMATS = ("rtz", "rtzp", "gml", "gpx", "geojson", "kml", "csv")
 _MAX_CROSS_TRACK = 9.99  #: RTZ allows less than 10 nm [nm]
 
 
@@ -40,6 +42,8 @@ class RouteFileOptions:
         limit], 0 to 1.
     decimals : int
         Decimals of positions [deg], 5 to 9; six are 0.1 m.
+    formats : tuple of str
+        Endings of the files written for a route, of `ROUTE_FORMATS`.
 
     Raises
     ------
@@ -56,6 +60,7 @@ class RouteFileOptions:
     chart: Chart | None = None
     thinning: float = 0.1
     decimals: int = 6
+    formats: tuple[str, ...] = ("rtz", "gpx", "geojson", "csv")
 
     def __post_init__(self) -> None:
         spacing, most = self.spacing_nm, self.max_waypoints
@@ -82,6 +87,12 @@ class RouteFileOptions:
                 f"Thinning by {self.thinning:g} and {self.decimals} decimals were requested.",
                 "Thinning is a share of the limit, 0 to 1; positions have 5 to 9 decimals.",
                 "Correct them, or leave them out.",
+            )
+        if unknown := [ending for ending in self.formats if ending not in ROUTE_FORMATS]:
+            raise InputError(
+                f"Route files are not written as {', '.join(map(repr, unknown))}.",
+                f"Formats are {', '.join(ROUTE_FORMATS)} (gml is S-421).",
+                "Choose among them, separated by commas.",
             )
         if self.rtz_version not in RTZ_VERSIONS:
             raise InputError(

@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 import re
 import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 from xml.etree import ElementTree
 
@@ -23,6 +23,7 @@ from thalweg.route.formats.parsed_track import (
     waypoint_order,
 )
 from thalweg.route.formats.rtz_writer import MANUFACTURER, ORDER, RTZ_NAMESPACE
+from thalweg.route.formats.xml_elements import children, local_name, parse_xml
 
 LARGEST_RTZ = 5_000_000  #: bytes of XML; the standard requires 400 kB
 _DURATION = re.compile(r"^P(?:(\d+)D)?(?:T(?:(\d+)H)?(?:(\d+)M)?(?:(\d+(?:\.\d*)?)S)?)?$")
@@ -38,26 +39,16 @@ def parse_rtz(data: bytes) -> ParsedTrack:
     InputError
         If it is too large, not XML, declares entities, or is no route.
     """
-    from defusedxml import DefusedXmlException
-    from defusedxml.ElementTree import fromstring
-
     if len(data) > LARGEST_RTZ:
         raise InputError(
             f"The RTZ has {len(data) / 1e6:.1f} MB.",
             f"RTZ files up to {LARGEST_RTZ / 1e6:.0f} MB are read.",
             "Remove what is not the route.",
         )
-    try:
-        root = fromstring(data)
-    except (ElementTree.ParseError, DefusedXmlException, ValueError, LookupError) as error:
-        raise InputError(
-            f"The RTZ cannot be read: {error}.",
-            "The file must be well-formed XML without entities.",
-            "Check that the file is complete.",
-        ) from None
+    root = parse_xml(data, "RTZ")
     notes = _version_notes(root)
-    waypoints = [e for group in _children(root, "waypoints") for e in _children(group, "waypoint")]
-    if _local_name(root) != "route" or len(waypoints) < 2:
+    waypoints = [e for group in children(root, "waypoints") for e in children(group, "waypoint")]
+    if local_name(root) != "route" or len(waypoints) < 2:
         raise InputError(
             "The RTZ holds no route.",
             "A route is an element route with two or more waypoints.",
@@ -123,7 +114,7 @@ def _waypoint_notes(root: ElementTree.Element, waypoints: list[ElementTree.Eleme
 
 
 def _position(waypoint: ElementTree.Element, number: int, notes: list[str]) -> Position:
-    place = next(_children(waypoint, "position"), None)
+    place = next(children(waypoint, "position"), None)
     found = {} if place is None else place.attrib
     texts = [str(found.get(name, "")).strip() for name in ("lat", "lon")]
     if any("," in text for text in texts):
@@ -135,9 +126,9 @@ def _position(waypoint: ElementTree.Element, number: int, notes: list[str]) -> P
 def _is_rhumb(root: ElementTree.Element, waypoint: ElementTree.Element, notes: list[str]) -> bool:
     """Return whether the leg that ends at a waypoint is a rhumb line."""
     default = [
-        e for group in _children(root, "waypoints") for e in _children(group, "defaultWaypoint")
+        e for group in children(root, "waypoints") for e in children(group, "defaultWaypoint")
     ]
-    legs = [leg for place in (waypoint, *default) for leg in _children(place, "leg")]
+    legs = [leg for place in (waypoint, *default) for leg in children(place, "leg")]
     kind = next((leg.get("geometryType") for leg in legs if leg.get("geometryType")), "Loxodrome")
     if str(kind) not in ("Loxodrome", "Orthodrome"):
         notes.append(f"a leg has the geometry {kind!r}: a rhumb line is used")
@@ -150,13 +141,13 @@ def _schedule(
     """Return the departure, and the stays at the waypoints [s], of the first schedule with one."""
     stays = [0.0] * len(waypoints)
     number_of = {waypoint.get("id"): n for n, waypoint in reversed(list(enumerate(waypoints)))}
-    schedules = [s for group in _children(root, "schedules") for s in _children(group, "schedule")]
+    schedules = [s for group in children(root, "schedules") for s in children(group, "schedule")]
     if len(schedules) > 1:
         notes.append(f"it has {len(schedules)} schedules: the first with a departure is used")
     for kind in ("manual", "calculated"):
         for schedule in schedules:
-            parts = [e for group in _children(schedule, kind) for e in group]
-            parts = [e for e in parts if _local_name(e) in _SCHEDULE_ELEMENTS]
+            parts = [e for group in children(schedule, kind) for e in group]
+            parts = [e for e in parts if local_name(e) in _SCHEDULE_ELEMENTS]
             if any(e.get("waypointId") not in number_of for e in parts):
                 notes.append("a schedule names waypoints that the route does not have")
             rows = {number_of[n]: e for e in parts if (n := e.get("waypointId")) in number_of}
@@ -192,16 +183,8 @@ def _stay(row: ElementTree.Element) -> float:
 def _order(waypoint: ElementTree.Element, number: int, stay: float) -> WaypointOrder:
     """Return the wait and the ordered speed: those of our own extension, else the stay."""
     own: Mapping[str, Any] = {}
-    for group in _children(waypoint, "extensions"):
-        for extension in _children(group, "extension"):
+    for group in children(waypoint, "extensions"):
+        for extension in children(group, "extension"):
             if (extension.get("manufacturer"), extension.get("name")) == (MANUFACTURER, ORDER):
                 own = extension.attrib
     return waypoint_order({"waiting_s": stay or None} | dict(own), number)
-
-
-def _children(element: ElementTree.Element, name: str) -> Iterator[ElementTree.Element]:
-    return (child for child in element if _local_name(child) == name)
-
-
-def _local_name(element: ElementTree.Element) -> str:
-    return str(element.tag).rpartition("}")[2]

@@ -26,8 +26,11 @@ JobState = Literal["queued", "running", "done", "failed", "cancelled"]
 KEEP_ALIVE_SECONDS: Final = 15.0
 _MEDIA_TYPES: Final = {
     "rtz": "application/xml",
+    "rtzp": "application/zip",
+    "gml": "application/gml+xml",
     "gpx": "application/gpx+xml",
     "geojson": "application/geo+json",
+    "kml": "application/vnd.google-earth.kml+xml",
     "csv": "text/csv",
 }
 
@@ -245,7 +248,7 @@ def job_profile(state: State, job_id: JobId, number: int = Path(ge=1, le=9999)) 
 @jobs_router.get("/plans/{job_id}/routes/{number}.{form}")
 def job_route_file(
     state: State,
-    form: Literal["rtz", "gpx", "geojson", "csv"],
+    form: Literal["rtz", "rtzp", "gml", "gpx", "geojson", "kml", "csv"],
     job_id: JobId,
     number: int = Path(ge=1, le=9999),
 ) -> FileResponse:

@@ -44,7 +44,7 @@ class Comparison(BaseModel):
 
 @routes_router.post("/routes", status_code=201)
 async def add_route(state: State, file: UploadFile) -> dict[str, Any]:
-    """Upload a route as RTZ, RTZP, GPX, GeoJSON or CSV; returns its waypoints [lat, lon]."""
+    """Upload a route as RTZ, RTZP, S-421, GPX, GeoJSON or CSV; returns its waypoints [lat, lon]."""
 
     def facts(path: str) -> dict[str, Any]:
         found, _ = state.file_worker.do("import_route", path=path)

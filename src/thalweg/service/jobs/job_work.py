@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from thalweg.route import Route
 
 #: Formats of route files.
-ROUTE_FORMATS: Final = ("rtz", "gpx", "geojson", "csv")
 FIRST_FOLDER: Final = "first"  #: the result if the job is stopped before its own
 
 
@@ -194,14 +193,14 @@ def write_plan_result(found: Plan, folder: Path, beside: Route | None) -> list[s
     list of str
         ``isochrones`` and ``beside``, where there are such files.
     """
-    from thalweg.route import RouteFileOptions
+    from thalweg.route import ROUTE_FORMATS, RouteFileOptions
 
     found.to_json(folder / "plan.json")
     chart = None if found.plot_context is None else found.plot_context.chart
     start, goal = (str(found.provenance.get(key) or "") for key in ("from", "to"))
-    options = RouteFileOptions(chart=chart, start=start, goal=goal)
+    options = RouteFileOptions(chart=chart, start=start, goal=goal, formats=ROUTE_FORMATS)
     for number, route in enumerate(found.routes, start=1):
-        write_route_files(route, folder, number, options, plan=found)
+        write_route_result(route, folder, number, options, plan=found)
     lines = isochrone_lines(found)
     other = None if beside is None else {**beside.as_dict(), "profile": route_profile(beside)}
     parts = {"isochrones": lines, "beside": other}
@@ -210,18 +209,16 @@ def write_plan_result(found: Plan, folder: Path, beside: Route | None) -> list[s
     return [name for name, data in parts.items() if data is not None]
 
 
-def write_route_files(
+def write_route_result(
     route: Route, folder: Path, number: int, options: Any, *, plan: Plan | None = None
 ) -> None:
     """Write one route in every format, and its profile."""
     from thalweg.planning.report.output_files import keeping_limits
-    from thalweg.route import write_csv, write_geojson, write_gpx, write_rtz
+    from thalweg.route import write_route_files
 
     if plan is not None:
         options = keeping_limits(plan, route, options)
-    writers = {"rtz": write_rtz, "gpx": write_gpx, "geojson": write_geojson, "csv": write_csv}
-    for suffix, write in writers.items():
-        write(route, folder / f"route_{number:02d}.{suffix}", options)
+    write_route_files(route, folder, f"route_{number:02d}", options)
     _write_json(folder / f"profile_{number:02d}.json", route_profile(route))
 
 
@@ -255,7 +252,7 @@ def _totals(route: Route) -> dict[str, Any]:
 
 
 def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
-    from thalweg.route import RouteFileOptions, evaluate
+    from thalweg.route import ROUTE_FORMATS, RouteFileOptions, evaluate
 
     request = EvaluationRequest.model_validate(order.request)
     request.check_embedded()
@@ -274,5 +271,5 @@ def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
     )
     folder = Path(order.folder)
     _write_json(folder / "route.json", route.as_dict())
-    write_route_files(route, folder, 1, RouteFileOptions())
+    write_route_result(route, folder, 1, RouteFileOptions(formats=ROUTE_FORMATS))
     return {"feasible": route.feasible, "seconds": stages.seconds(), "routes": 1, **_totals(route)}

@@ -17,10 +17,10 @@ export class CompareView {
     this.list = h("div");
     this.table = h("div");
     this.problem = h("div");
-    this.file = h("input.hidden", { type: "file", id: "route-file", "aria-label": "Route file", accept: ".rtz,.rtzp,.gpx,.geojson,.json,.csv", tabindex: "-1", onchange: () => this.#score() });
+    this.file = h("input.hidden", { type: "file", id: "route-file", "aria-label": "Route file", accept: ".rtz,.rtzp,.gml,.gpx,.geojson,.json,.csv", tabindex: "-1", onchange: () => this.#score() });
     this.element = [h("div.scroll", {}, h("h1", {}, "Compare routes"), h("p.lead", {}, "Choose two to six. The first is the one that the others are compared with."), this.problem, h("div.block", {}, this.list), h("div.block", {}, h("h2", {}, "Ready studies"), h("p.facts", {}, "Each plans the voyage of the first chosen route again, and adds the results."), h("div.exports", {},
       h("button.quiet.small", { type: "button", onclick: () => this.#study("speeds") }, "Three speeds"), h("button.quiet.small", { type: "button", onclick: () => this.#study("departures") }, "Departures +12, +24 h"), h("button.quiet.small", { type: "button", onclick: () => this.#study("calm") }, "Without weather"), h("button.quiet.small", { type: "button", onclick: () => this.#study("offing") }, "Without offing")),
-    h("div.block", {}, h("h2", {}, "A route of your own"), h("p.facts", {}, "An RTZ, GPX, GeoJSON or CSV file is sailed in the weather and by the ship of the first chosen route."), h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Score a route file …"), this.file)))];
+    h("div.block", {}, h("h2", {}, "A route of your own"), h("p.facts", {}, "An RTZ, S-421, GPX, GeoJSON or CSV file is sailed in the weather and by the ship of the first chosen route."), h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Score a route file …"), this.file)))];
   }
 
   add(job, number_, title) {

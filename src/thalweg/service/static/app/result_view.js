@@ -111,7 +111,7 @@ export class ResultView {
   #exports(job, route) {
     const number_ = selection.route + 1;
     return h("div.block", {}, h("h2", {}, "Take it along"), h("div.exports", {},
-      ["rtz", "gpx", "geojson", "csv"].map((form) => h("a.quiet.small", { href: fileAddress(job.id, number_, form), download: "" }, { rtz: "RTZ", gpx: "GPX", geojson: "GeoJSON", csv: "CSV" }[form])),
+      ["rtz", "rtzp", "gml", "gpx", "geojson", "kml", "csv"].map((form) => h("a.quiet.small", { href: fileAddress(job.id, number_, form), download: "" }, { gml: "S-421", geojson: "GeoJSON" }[form] || form.toUpperCase())),
       job.kind === "plan" ? h("a.quiet.small", { href: resultAddress(job.id), download: "plan.json" }, "plan.json") : null,
       h("button.quiet.small", { type: "button", onclick: this.handlers.print }, "Print a brief"),
       h("button.quiet.small", { type: "button", onclick: this.handlers.link }, "Copy link")),

@@ -1,0 +1,69 @@
+"""XML of route files: read without entities, found by name in any namespace, written at once."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.core.file_writing import write_bytes
+
+
+def parse_xml(data: bytes | str, what: str) -> ElementTree.Element:
+    """Return the root element of an XML text that declares no entities.
+
+    Parameters
+    ----------
+    data : bytes or str
+    what : str
+        The format, for messages.
+
+    Raises
+    ------
+    InputError
+        If it is not XML, or declares entities.
+    """
+    from defusedxml import DefusedXmlException
+    from defusedxml.ElementTree import fromstring
+
+    try:
+        root: ElementTree.Element = fromstring(data)
+    except (ElementTree.ParseError, DefusedXmlException, ValueError, LookupError) as error:
+        raise InputError(
+            f"The {what} cannot be read: {error}.",
+            "The file must be well-formed XML without entities.",
+            "Check that the file is complete.",
+        ) from None
+    return root
+
+
+def local_name(element: ElementTree.Element) -> str:
+    """Return the name of an element without its namespace."""
+    return str(element.tag).rpartition("}")[2]
+
+
+def children(element: ElementTree.Element, name: str) -> Iterator[ElementTree.Element]:
+    """Return the children of an element by name, whatever their namespace."""
+    return (child for child in element if local_name(child) == name)
+
+
+def xml_bytes(root: ElementTree.Element) -> bytes:
+    """Return an element as an indented XML text in UTF-8."""
+    ElementTree.indent(root)
+    text = io.BytesIO()
+    ElementTree.ElementTree(root).write(text, encoding="utf-8", xml_declaration=True)
+    return text.getvalue()
+
+
+def write_xml(root: ElementTree.Element, path: str | Path) -> None:
+    """Write an element as an XML file."""
+    write_bytes(path, xml_bytes(root))
+
+
+def decimal(value: float, digits: int) -> str:
+    """Return a number without exponent and without needless zeros."""
+    return np.format_float_positional(round(float(value), digits), trim="-")
