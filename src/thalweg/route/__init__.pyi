@@ -6,7 +6,6 @@ from thalweg.route.ensemble_evaluation import (
 )
 from thalweg.route.formats import (
     ROUTE_FORMATS,
-    ROUTE_WRITERS,
     RouteFileOptions,
     read_track,
     write_csv,
@@ -32,10 +31,9 @@ from thalweg.route.route_concatenation import join
 from thalweg.route.track import Track
 
 __all__ = [
-    "ROUTE_FORMATS",
-    "ROUTE_WRITERS",
     "EnsembleResult",
     "MemberStatistics",
+    "ROUTE_FORMATS",
     "RefinementConditions",
     "Route",
     "RouteFileOptions",

@@ -28,7 +28,6 @@ from thalweg.route.track import Track
 __all__ = [
     "LARGEST_FILE",
     "ROUTE_FORMATS",
-    "ROUTE_WRITERS",
     "RouteFileOptions",
     "read_track",
     "write_csv",
@@ -57,9 +56,9 @@ _BYTE_PARSERS: dict[str, Callable[[bytes], ParsedTrack]] = {
 }
 
 #: Writes a route into a file, as some options say.
-RouteWriter = Callable[[Route, str | Path, RouteFileOptions | None], None]
+_RouteWriter = Callable[[Route, str | Path, RouteFileOptions | None], None]
 #: The writers of route files, by the ending of their files.
-ROUTE_WRITERS: Final[Mapping[str, RouteWriter]] = {
+_WRITERS: Final[Mapping[str, _RouteWriter]] = {
     "rtz": write_rtz,
     "rtzp": write_rtzp,
     "gml": write_s421,
@@ -92,7 +91,7 @@ def write_route_files(
     options = options or RouteFileOptions()
     files = [Path(folder) / f"{name}.{ending}" for ending in options.formats]
     for path, ending in zip(files, options.formats):
-        ROUTE_WRITERS[ending](route, path, options)
+        _WRITERS[ending](route, path, options)
     return files
 
 
