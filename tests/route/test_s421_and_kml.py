@@ -9,7 +9,6 @@ import pytest
 from tests.route.planar import ship
 from thalweg.core.errors import InputError
 from thalweg.route import (
-    ROUTE_FORMATS,
     RouteFileOptions,
     Track,
     evaluate,
@@ -20,6 +19,7 @@ from thalweg.route import (
     write_rtzp,
     write_s421,
 )
+from thalweg.route.formats import ROUTE_FORMATS
 from thalweg.sea import Sea
 
 DEPART = "2026-03-01T06:00:00Z"

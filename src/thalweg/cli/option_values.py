@@ -338,7 +338,8 @@ def route_file_options(arguments: argparse.Namespace) -> RouteFileOptions:
     InputError
         If a number is impossible, or an option is given without ``--out``.
     """
-    from thalweg.route import ROUTE_FORMATS, RouteFileOptions
+    from thalweg.route import RouteFileOptions
+    from thalweg.route.formats import ROUTE_FORMATS
 
     names = {
         "xtd": "cross_track_nm",

@@ -5,7 +5,6 @@ from thalweg.route.ensemble_evaluation import (
     evaluate_members,
 )
 from thalweg.route.formats import (
-    ROUTE_FORMATS,
     RouteFileOptions,
     read_track,
     write_csv,
@@ -33,7 +32,6 @@ from thalweg.route.track import Track
 __all__ = [
     "EnsembleResult",
     "MemberStatistics",
-    "ROUTE_FORMATS",
     "RefinementConditions",
     "Route",
     "RouteFileOptions",

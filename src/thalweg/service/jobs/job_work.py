@@ -193,7 +193,8 @@ def write_plan_result(found: Plan, folder: Path, beside: Route | None) -> list[s
     list of str
         ``isochrones`` and ``beside``, where there are such files.
     """
-    from thalweg.route import ROUTE_FORMATS, RouteFileOptions
+    from thalweg.route import RouteFileOptions
+    from thalweg.route.formats import ROUTE_FORMATS
 
     found.to_json(folder / "plan.json")
     chart = None if found.plot_context is None else found.plot_context.chart
@@ -252,7 +253,8 @@ def _totals(route: Route) -> dict[str, Any]:
 
 
 def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
-    from thalweg.route import ROUTE_FORMATS, RouteFileOptions, evaluate
+    from thalweg.route import RouteFileOptions, evaluate
+    from thalweg.route.formats import ROUTE_FORMATS
 
     request = EvaluationRequest.model_validate(order.request)
     request.check_embedded()
