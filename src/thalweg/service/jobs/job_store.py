@@ -334,6 +334,15 @@ class JobStore:
 
         self._write(work, job_id)
 
+    def forget(self, job_id: str) -> None:
+        """Remove a finished job and its events."""
+
+        def work(database: sqlite3.Connection) -> None:
+            database.execute("DELETE FROM events WHERE job = ?", (job_id,))
+            database.execute("DELETE FROM jobs WHERE id = ?", (job_id,))
+
+        self._write(work, job_id)
+
 
 def _insert_event(database: sqlite3.Connection, job: str, kind: str, data: dict[str, Any]) -> None:
     database.execute(
