@@ -29,7 +29,6 @@ MANY_ARGUMENTS = {
     "network.regional_lattice.lattice_builder.lattice": "public entry point with keyword options",
     "network.triangular_mesh.mesh_builder.mesh": "public entry point with keyword options",
     "route.referee.evaluation.evaluate": "public entry point with keyword options",
-    "ship.methods.added_resistance.snnm.snnm": "parameters of a published formula",
     "ship.methods.added_resistance.stawave.stawave2": "parameters of a published formula",
     "ship.methods.added_resistance.stawave.stawave2_transfer": "parameters of a published formula",
     "ship.methods.propulsion.propulsion_factors.propulsion": "parameters of a published formula",

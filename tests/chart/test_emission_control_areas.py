@@ -12,8 +12,6 @@ from thalweg.chart.zones.emission_control_areas import (
     emission_control_areas,
     select_emission_control_areas,
 )
-from thalweg.chart.zones.zone_raster import zone_raster
-from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.core.geodesy import direct, distance, positions_along
 from thalweg.kernels.compilation.jit import jit
@@ -273,31 +271,8 @@ def _count_inside(index, lat, lon):
     return count
 
 
-def test_the_raster_and_the_index_for_kernels(seas):
-    raster = zone_raster(seas.zones, BoundingBox(45.0, 64.0, -15.0, 12.0), 0.25)
-    assert raster.cell.shape == (76, 108)
+def test_the_index_for_kernels(seas):
     rng = np.random.default_rng(3)
     lat, lon = rng.uniform(45.0, 64.0, 4000), rng.uniform(-15.0, 12.0, 4000)
-    j = ((lat - raster.lat0) / raster.dlat).astype(int)
-    i = ((lon - raster.lon0) / raster.dlon).astype(int)
-    cell, within = raster.cell[j, i], seas.zones.in_eca(lat, lon)
-    assert within[cell == 1].all()
-    assert not within[cell == 0].any()
-    assert 0.01 < (cell == 2).mean() < 0.15
+    within = seas.zones.in_eca(lat, lon)
     assert _count_inside(seas.zones.eca_index, lat, lon) == within.sum()
-    assert (raster.price == 1.0).all()
-
-
-def test_a_raster_across_the_antimeridian_and_its_errors():
-    chart = OPEN.with_zones([zone(179, -1, -179, 1), zone(0, 0, 1, 1, kind="price", factor=2.0)])
-    raster = zone_raster(chart.zones, BoundingBox(-2.0, 2.0, 178.0, -178.0), 0.3)
-    assert raster.cell[raster.cell.shape[0] // 2, raster.cell.shape[1] // 2] == 1
-    assert raster.cell[0, 0] == 0
-    assert (
-        zone_raster(chart.zones, BoundingBox(0.0, 1.0, 0.0, 1.0), 0.5).price.tolist()
-        == [[2.0, 2.0]] * 2
-    )
-    with pytest.raises(InputError, match="above zero"):
-        zone_raster(chart.zones, BoundingBox(0.0, 1.0, 0.0, 1.0), 0.0)
-    with pytest.raises(InputError, match="million cells"):
-        zone_raster(chart.zones, BoundingBox(-80.0, 80.0, -180.0, 180.0), 0.001)

@@ -6,7 +6,6 @@ import pytest
 from thalweg import Chart
 from thalweg.network import check_network
 from thalweg.network.triangular_mesh.edge_sampling import (
-    least_along_edges,
     sampled_on_triangle_sides,
 )
 from thalweg.network.triangular_mesh.mesh_builder import mesh
@@ -47,17 +46,6 @@ def test_every_crossing_is_of_a_side(network):
         pair in pairs
         for pair in zip(network.samples.station_a.tolist(), network.samples.station_b.tolist())
     )
-
-
-def test_least_along_an_edge_is_found_inside(network):
-    depth = np.full(network.n_nodes, 10.0)
-    depth[7] = 2.0
-    least = least_along_edges(network, depth)
-    tails = network.tails()
-    ends = np.minimum(depth[tails], depth[network.graph.target])
-    assert np.all(least <= ends)
-    touched = (tails != 7) & (network.graph.target != 7) & (least < 9.0)
-    assert touched.any()  # edges that pass near the shoal feel it
 
 
 def test_edges_and_lengths_stay(network):

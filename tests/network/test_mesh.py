@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.spatial import Delaunay
 
 from tests.network.worlds import land_chart, triangular_mesh
 from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError
 from thalweg.network import check_network, mesh, shortest_path, spacing_fraction, with_endpoints
-from thalweg.network.triangular_mesh.node_neighbours import influence, pairs_by_ring
+from thalweg.network.triangular_mesh.node_neighbours import pairs_by_ring
 from thalweg.network.triangular_mesh.thinning import dimensionless_curl, thin_by_spacing
 
 OPEN = Chart.open_water()
@@ -64,13 +63,6 @@ def test_curl_of_a_solid_turn():
     north = omega * lon * math.radians(1.0) * 6371008.8 * np.cos(np.radians(lat))
     curl = dimensionless_curl(lat, lon, triangles, east, north, length=5e3, speed=0.5)
     assert curl == pytest.approx(2 * omega * 5e3 / 0.5, rel=1e-4)
-
-
-def test_nodes_of_influence_of_the_published_grid():
-    grid = np.array([(i, j) for i in range(5) for j in range(5)], float)
-    triangles = Delaunay(grid).simplices
-    assert influence(triangles, 5, 18) == {5, 18, 7, 11, 12, 16, 17}
-    assert influence(triangles, 5, 6) == {5, 6}
 
 
 def test_rings_of_a_regular_mesh():

@@ -9,12 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from thalweg.ship.methods.added_resistance.snnm import (
-    snnm,
-)
 from thalweg.ship.methods.added_resistance.snnm_hull import (
     SnnmHull,
 )
+from thalweg.ship.methods.added_resistance.snnm_table import SnnmTable
 from thalweg.ship.methods.added_resistance.stawave import stawave1, stawave2
 from thalweg.ship.methods.added_resistance.wind_resistance import (
     BLENDERMANN,
@@ -81,7 +79,7 @@ WAVE_SHIP = {
     "draught": 10.0,
     "block_coefficient": 0.73,
 }
-SNNM_HULL = SnnmHull(169.0, 32.0, 10.0, 10.0, 0.73, 45.0, 50.0)
+SNNM = SnnmTable.of(SnnmHull(169.0, 32.0, 10.0, 10.0, 0.73, 45.0, 50.0), shortest=2.0, longest=30.0)
 FUJIWARA = FujiwaraShip(178.0, 32.0, 800.0, 2000.0, 500.0, 28.0, 0.0, 8.0)
 PROPELLER = Propeller(6.0, 0.9, 0.6, 4)
 
@@ -106,7 +104,7 @@ WAVES = {
     "stawave1": lambda v, h, t, a: stawave1(h, a, breadth=32.0, bow_length=30.0),
     "stawave2": lambda v, h, t, a: stawave2(v, h, t, a, **WAVE_SHIP),
     "stawave2_jonswap": lambda v, h, t, a: stawave2(v, h, t, a, spectrum="jonswap", **WAVE_SHIP),
-    "snnm": lambda v, h, t, a: snnm(v, h, t, a, SNNM_HULL),
+    "snnm": SNNM,
 }
 WIND = {
     "fujiwara": lambda a: fujiwara_2006(a, FUJIWARA),
@@ -261,12 +259,11 @@ def test_wave_methods_treat_a_scalar_as_its_place_in_an_array(name):
 def test_wave_methods_take_many_conditions_in_small_memory():
     count = 20_000
     rng = np.random.default_rng(4)
-    got = snnm(
+    got = SNNM(
         rng.uniform(0, 9, count),
         rng.uniform(0, 5, count),
         rng.uniform(4, 15, count),
         rng.uniform(-3, 3, count),
-        SNNM_HULL,
     )
     assert got.shape == (count,)
     assert np.isfinite(got).all()
@@ -275,7 +272,7 @@ def test_wave_methods_take_many_conditions_in_small_memory():
 @quick
 @given(speed=speeds, height=st.floats(0.5, 6.0), period=periods)
 def test_snnm_following_seas_are_milder_than_head_seas(speed, height, period):
-    head, stern = (snnm(speed, height, period, angle, SNNM_HULL) for angle in (0.0, np.pi))
+    head, stern = (SNNM(speed, height, period, angle) for angle in (0.0, np.pi))
     assert stern < head
 
 

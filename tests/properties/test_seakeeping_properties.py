@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from thalweg.ship.methods.seakeeping import (
-    motion_sickness,
     ship_motions,
     stability_msc1_circ1228,
     wave_spectra,
@@ -165,25 +164,13 @@ def test_spectrum_is_never_negative_and_preserves_the_height(height, period):
     density = wave_spectra.jonswap(w, height=height, period=period)
     assert np.all(density >= 0.0)
     m0 = wave_spectra.spectral_moment(density, weights, frequency=w, order=0)
-    assert wave_spectra.significant_height(m0) == pytest.approx(height, rel=3e-3)
+    assert 4.0 * np.sqrt(m0) == pytest.approx(height, rel=3e-3)
 
 
 def test_broadcasting_of_grids():
     got = respond(height=np.full((3, 1), 2.0), speed=np.linspace(0.0, 8.0, 4))
     assert got.heave.m0.shape == (3, 4)
     assert got.acceleration_parts.shape == (3, 4, 48)
-
-
-@given(a=st.floats(0.01, 5.0), f=st.floats(0.08, 0.6), t=st.floats(600.0, 7200.0))
-def test_more_motion_more_sickness(a, f, t):
-    def sick(rms, seconds):
-        return motion_sickness.motion_sickness_percent_mccauley(
-            rms, frequency_hz=f, duration=seconds
-        )
-
-    assert 0.0 <= sick(a, t) <= 100.0
-    assert sick(1.1 * a, t) >= sick(a, t)
-    assert sick(a, 1.1 * t) >= sick(a, t)
 
 
 @given(angle=angles, speed=st.floats(0.0, 20.0), height=heights, period=periods)

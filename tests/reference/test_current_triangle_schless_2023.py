@@ -56,11 +56,6 @@ def test_too_strong_a_current():
     assert np.isnan(got.speed_over_ground).all()
 
 
-def test_distance_through_water():
-    """Against 1 of 6 m/s the way through the water is 6/5 of the way made."""
-    assert cur.distance_through_water(1000.0, speed=6.0, speed_over_ground=5.0) == 1200.0
-
-
 @pytest.mark.parametrize("curve", ["nodes", "quadratic"])
 def test_drag_curve_is_odd_free_and_rising(curve):
     angles = np.radians(np.linspace(0.0, 35.0, 400))

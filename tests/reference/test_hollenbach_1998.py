@@ -19,7 +19,6 @@ from thalweg.ship.methods.resistance.hollenbach import (
     hollenbach_1998,
     hollenbach_validity,
     hollenbach_wetted_surface,
-    maximum_factor,
     residuary_coefficient,
     standard_residuary,
 )
@@ -206,8 +205,3 @@ def test_correlation_option_adds_on_the_wetted_surface():
     added = 0.5 * 1025.0 * 49.0 * 8267.52 * 1e-4
     assert with_allowance.total - plain.total == pytest.approx(added)
     assert with_allowance.correlation == pytest.approx(added)
-
-
-def test_maximum_factor():
-    assert maximum_factor("single_design") == 1.204
-    assert np.isnan(maximum_factor("single_minimum"))

@@ -12,7 +12,6 @@ from thalweg.ship.methods.added_resistance.wind_resistance import (
     blendermann_1994,
     fujiwara_2006,
     ittc_curve,
-    wind_at_height,
     wind_resistance,
     yu_2021_area,
     yu_2021_coefficient,
@@ -160,10 +159,6 @@ def test_relative_wind_from_vectors_agrees():
         heading=heading,
     )
     np.testing.assert_allclose(polar, vectors, rtol=1e-12)
-
-
-def test_wind_at_height_is_a_power_law():
-    np.testing.assert_allclose(wind_at_height(10.0, height=[10.0, 1280.0]), [10.0, 20.0])
 
 
 def test_wind_resistance_and_calm_air():

@@ -10,12 +10,10 @@ from thalweg.core.units import KNOT
 from thalweg.route import evaluate
 from thalweg.sea import Sea
 from thalweg.ship import Conditions, Ship
-from thalweg.ship.methods.added_resistance.snnm import (
-    snnm,
-)
 from thalweg.ship.methods.added_resistance.snnm_hull import (
     SnnmHull,
 )
+from thalweg.ship.methods.added_resistance.snnm_table import SnnmTable
 from thalweg.ship.methods.shallow_water.barrass_squat import barrass_2004_speed, barrass_2004_squat
 from thalweg.ship.methods.shallow_water.squat import shallow_water_speed
 from thalweg.ship.methods.speed_loss import kwon_speed_loss
@@ -162,7 +160,8 @@ def test_the_snnm_formula_jumps_at_the_angle_of_entrance_only():
     hull = SnnmHull(320.0, 58.0, 20.8, 20.8, 0.81, 56.0, 96.0)
     entrance = math.degrees(math.atan(0.495 * 58.0 / 56.0))
     angles = np.arange(20.0, 45.0, 0.1)
-    force = snnm(7.9, 3.0, 8.0, np.radians(angles), hull)
+    table = SnnmTable.of(hull, shortest=7.9, longest=8.1)
+    force = table(7.9, 3.0, 8.0, np.radians(angles))
     step = np.abs(np.diff(force))
     assert np.flatnonzero(step > 20 * np.median(step)).size == 1
     assert abs(angles[np.argmax(step)] - entrance) < 0.1

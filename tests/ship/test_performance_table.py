@@ -171,13 +171,6 @@ def test_kernels_read_parts_of_many_axes_as_numpy_does(count):
         assert value == pytest.approx(float(table.lookup(dict(zip(names, at)), 1)), abs=1e-6)
 
 
-def test_a_table_of_one_setting_gives_the_same_numbers():
-    where = _draws(20)
-    alone = _affine_table().at_setting(1)
-    assert alone.settings.tolist() == [6.0]
-    assert alone.lookup(where, 0) == pytest.approx(_affine_table().lookup(where, 1))
-
-
 def _crossing():
     """Wind requires 2 x (1 + v), waves 3 Hs^2; three settings have a reserve (4, 8, 12) - 4 v."""
     wind, angle, speeds = np.linspace(0, 10, 3), np.linspace(0, np.pi, 3), np.linspace(0, 4, 5)

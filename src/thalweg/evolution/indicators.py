@@ -89,18 +89,6 @@ def hypervolume_ratio(points: ArrayLike, *others: ArrayLike, reference: ArrayLik
     return hypervolume(points, reference) / union_volume
 
 
-def hypervolume_ratio_of_two(points: ArrayLike, other: ArrayLike, reference: ArrayLike) -> float:
-    """Return the hypervolume of a front over that of the union of two."""
-    return hypervolume_ratio(points, other, reference=reference)
-
-
-def hypervolume_ratio_of_three(
-    points: ArrayLike, second: ArrayLike, third: ArrayLike, reference: ArrayLike
-) -> float:
-    """Return the hypervolume of a front over that of the union of three."""
-    return hypervolume_ratio(points, second, third, reference=reference)
-
-
 def c_metric(first: ArrayLike, second: ArrayLike) -> float:
     """Return the share of the second front that the first covers.
 

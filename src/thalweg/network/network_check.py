@@ -13,8 +13,6 @@ from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray, Int32Array, IntArray
 from thalweg.network.network import Network
 
-_LENGTH_TOLERANCE = 1e-6  # of lengths against the geodesic
-
 
 def check_network(network: Network, *, symmetric: bool = False, sample: int = 200_000) -> None:
     """Check what every network guarantees; the networks of all builders pass.

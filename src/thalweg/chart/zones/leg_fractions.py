@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.coast.coast_index_builder import empty_index
-from thalweg.chart.rings import Rings
 from thalweg.core.geodesy import direct, inverse
 from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import LAND
@@ -122,37 +121,3 @@ def _fractions_by_bisection(
     share = np.empty(len(leg))
     fractions_by_bisection(index, outlines, *low, *high, finest / RADIUS, share)
     return np.minimum(np.bincount(leg, share / parts[leg], minlength=len(parts)), 1.0)
-
-
-def boxes_touched(
-    outlines: list[Rings], lat: FloatArray, lon: FloatArray, dlat: float, dlon: float
-) -> NDArray[np.bool_]:
-    """Return which equal boxes (south-west corners, sides [deg]) an outline may run through.
-
-    ``lat`` and ``lon`` are the corners of a full grid of boxes, row by row from its south-west
-    corner. Outlines are walked in steps of a quarter of a box, and every box within a quarter
-    of one of the points counts, so that none that is touched is missed.
-    """
-    south, west = lat[0], lon[0]
-    columns = round(float(lon[-1] - west) / dlon) + 1
-    rows = len(lat) // columns
-    touched = np.zeros((rows, columns), np.bool_)
-    for rings in outlines:
-        y0, y1, x0, x1 = rings.lat[:-1], rings.lat[1:], rings.lon[:-1], rings.lon[1:]
-        keep = np.ones(len(y0), bool)
-        keep[rings.start[1:-1] - 1] = False
-        y0, y1, x0, x1 = (v[keep] for v in (y0, y1, x0, x1))
-        parts = np.maximum(np.abs(y1 - y0) / dlat, np.abs(x1 - x0) / dlon)
-        count = np.ceil(4.0 * parts).astype(np.int64) + 1
-        edge = np.repeat(np.arange(len(count)), count)
-        share = (np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)) / count[edge]
-        y = (y0[edge] + share * (y1 - y0)[edge] - south) / dlat
-        x = x0[edge] + share * (x1 - x0)[edge]
-        for turn in (-360.0, 0.0, 360.0):
-            for near_y in (-0.25, 0.25):
-                for near_x in (-0.25, 0.25):
-                    j = np.floor(y + near_y).astype(np.int64)
-                    i = np.floor((x + turn - west) / dlon + near_x).astype(np.int64)
-                    on = (j >= 0) & (j < rows) & (i >= 0) & (i < columns)
-                    touched[j[on], i[on]] = True
-    return touched.ravel()

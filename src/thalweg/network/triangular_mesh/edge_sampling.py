@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from thalweg.core.types import FloatArray, IntArray
+from thalweg.core.types import IntArray
 from thalweg.kernels.geometry.triangle_crossings import Triangulation, crossed_sides
 from thalweg.network.conformal_projection import mercator_projection
 from thalweg.network.network import Network, Samples, Stations
@@ -68,13 +68,3 @@ def _triangles_around_nodes(triangles: np.ndarray, count: int) -> tuple[IntArray
     order = np.argsort(node, kind="stable")
     ptr = np.concatenate([[0], np.cumsum(np.bincount(node, minlength=count))])
     return ptr.astype(np.int64), (order // 3).astype(np.int32)
-
-
-def least_along_edges(network: Network, values: FloatArray) -> FloatArray:
-    """Return the least value along every edge of a field given at the nodes, at its samples."""
-    least = np.minimum(values[network.tails()], values[network.graph.target])
-    w = network.samples.weight.astype(float)
-    inside = (1.0 - w) * values[network.samples.station_a] + w * values[network.samples.station_b]
-    of = np.repeat(np.arange(network.n_edges), np.diff(network.samples.ptr))
-    np.minimum.at(least, of, inside)
-    return np.asarray(least)

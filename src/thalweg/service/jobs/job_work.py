@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from thalweg.planning import Plan, Voyage
     from thalweg.route import Route
 
-#: Formats of route files.
 FIRST_FOLDER: Final = "first"  #: the result if the job is stopped before its own
 
 

@@ -155,37 +155,6 @@ def current_triangle(
     )
 
 
-def distance_through_water(
-    distance: ArrayLike, *, speed: ArrayLike, speed_over_ground: ArrayLike
-) -> FloatArray:
-    """Return the distance made through the water.
-
-    .. math:: d_w = V d / V_G
-
-    Parameters
-    ----------
-    distance : array_like
-        Distance d over ground [m].
-    speed, speed_over_ground : array_like
-        [m/s].
-
-    Returns
-    -------
-    ndarray
-        Distance through the water [m].
-
-    Notes
-    -----
-    Schless (2023), eqs. 3.56, 3.60 and 3.64, divides by the cosine of the drift angle as well,
-    which counts the current twice.
-
-    References
-    ----------
-    Schless (2023), eqs. 3.56, 3.60 and 3.64, corrected (see the notes).
-    """
-    return as_float_array(speed) * as_float_array(distance) / as_float_array(speed_over_ground)
-
-
 def _monotone_slopes(x: FloatArray, y: FloatArray) -> FloatArray:
     """Return node slopes of the monotone cubic of Fritsch and Butland (1984)."""
     h, d = np.diff(x), np.diff(y) / np.diff(x)

@@ -35,28 +35,6 @@ def interpolate_loading(load_factor: ArrayLike, *, empty: ArrayLike, full: Array
     return (1.0 - r) * as_float_array(empty) + r * as_float_array(full)
 
 
-def load_factor_of(value: ArrayLike, *, empty: ArrayLike, full: ArrayLike) -> FloatArray:
-    """Return the load factor at which `interpolate_loading` gives ``value``:
-    r = (x - x_empty) / (x_full - x_empty).
-
-    Parameters
-    ----------
-    value : array_like
-        Draught, weight or speed.
-    empty, full : array_like
-        The same quantity of the empty and of the full ship; they must differ.
-
-    Returns
-    -------
-    ndarray
-        Load factor [-], NaN where it would be outside 0 to 1.
-    """
-    low = as_float_array(empty)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        r = (as_float_array(value) - low) / (as_float_array(full) - low)
-        return np.where((r >= -1e-12) & (r <= 1.0 + 1e-12), np.clip(r, 0.0, 1.0), np.nan)
-
-
 def displacement_volume(
     length: ArrayLike, breadth: ArrayLike, *, draught: ArrayLike, block_coefficient: ArrayLike
 ) -> FloatArray:
@@ -128,31 +106,3 @@ def block_at_draught(
     """
     ratio = as_float_array(design_draught) / as_float_array(draught)
     return 1.0 - (1.0 - as_float_array(design_block)) * np.cbrt(ratio)
-
-
-def displacement_at_draught(
-    draught: ArrayLike,
-    *,
-    design_draught: ArrayLike,
-    design_displacement: ArrayLike,
-    waterplane_area: ArrayLike,
-) -> FloatArray:
-    """Return the displaced volume near the design draught, wall-sided: V + A_WP (T - T_design).
-
-    Parameters
-    ----------
-    draught, design_draught : array_like
-        Mean draughts [m].
-    design_displacement : array_like
-        Displaced volume at the design draught [m3].
-    waterplane_area : array_like
-        C_WP L B [m2].
-
-    Returns
-    -------
-    ndarray
-        Volume [m3], NaN where it would not be positive.
-    """
-    change = as_float_array(draught) - as_float_array(design_draught)
-    volume = as_float_array(design_displacement) + as_float_array(waterplane_area) * change
-    return np.where(volume > 0.0, volume, np.nan)

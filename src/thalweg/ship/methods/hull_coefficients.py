@@ -54,26 +54,6 @@ def midship_from_block(block_coefficient: ArrayLike) -> FloatArray:
     return 1.0 / (1.0 + (1.0 - as_float_array(block_coefficient)) ** 3.5)
 
 
-def midship_kerlen(block_coefficient: ArrayLike) -> FloatArray:
-    """Return a usual midship section coefficient: 1.006 - 0.0056 C_B^-3.56.
-
-    Parameters
-    ----------
-    block_coefficient : array_like
-        Block coefficient [-].
-
-    Returns
-    -------
-    ndarray
-        Midship section coefficient [-].
-
-    References
-    ----------
-    Kerlen (1970) as given by Schneekluth and Bertram (1998), section 1.6.
-    """
-    return 1.006 - 0.0056 * as_float_array(block_coefficient) ** -3.56
-
-
 def waterplane_from_block(block_coefficient: ArrayLike) -> FloatArray:
     """Return a usual waterplane coefficient of average sections: (1 + 2 C_B) / 3.
 
@@ -92,26 +72,6 @@ def waterplane_from_block(block_coefficient: ArrayLike) -> FloatArray:
     Schneekluth and Bertram (1998), section 1.6.
     """
     return (1.0 + 2.0 * as_float_array(block_coefficient)) / 3.0
-
-
-def waterplane_kristensen(block_coefficient: ArrayLike) -> FloatArray:
-    """Return a usual waterplane coefficient: 0.55 + 0.45 C_B.
-
-    Parameters
-    ----------
-    block_coefficient : array_like
-        Block coefficient on the waterline length [-].
-
-    Returns
-    -------
-    ndarray
-        Waterplane coefficient [-].
-
-    References
-    ----------
-    Kristensen and Lützen (2012).
-    """
-    return 0.55 + 0.45 * as_float_array(block_coefficient)
 
 
 def lcb_from_prismatic(prismatic_coefficient: ArrayLike) -> FloatArray:

@@ -13,7 +13,6 @@ from thalweg.ship.methods.array_conversion import as_float_array
 
 _WATERLINE: Final = {"tanker": 1.02, "container": 1.01, "ro_ro": 1.035}
 _PROPELLER: Final = {"tanker": (0.395, 1.30), "container": (0.623, -0.16), "ro_ro": (0.713, -0.08)}
-_WETTED: Final = {"tanker": (0.99, 2.0), "container": (0.995, 2.4)}
 _T = TypeVar("_T")
 
 
@@ -143,50 +142,6 @@ def propeller_diameter_from_draught(draught: ArrayLike, *, kind: str = "tanker")
     """
     slope, shift = _value_for_ship_type(kind, _PROPELLER)
     return slope * as_float_array(draught) + shift
-
-
-def wetted_surface_kristensen(
-    length: ArrayLike,
-    *,
-    breadth: ArrayLike,
-    draught: ArrayLike,
-    design_draught: ArrayLike,
-    design_displacement: ArrayLike,
-    kind: str = "tanker",
-) -> FloatArray:
-    """Return the wetted surface of tankers or container ships at any draught [m2].
-
-    0.99 (V/T + 1.9 L T) - 2.0 (T - T_now)(L + B) for tankers, bulk carriers and general cargo;
-    0.995 and 2.4 for container ships.
-
-    Parameters
-    ----------
-    length : array_like
-        Waterline length L [m].
-    breadth : array_like
-        [m].
-    draught : array_like
-        Draught T_now [m].
-    design_draught : array_like
-        Draught T of the design [m].
-    design_displacement : array_like
-        Displaced volume V at the design draught [m3].
-    kind : str
-        ``tanker`` or ``container``.
-
-    Returns
-    -------
-    ndarray
-        Wetted surface [m2].
-
-    References
-    ----------
-    Kristensen and Lützen (2012); also H. O. Kristensen, M. Lützen (2013).
-    """
-    factor, rate = _value_for_ship_type(kind, _WETTED)
-    size, full = as_float_array(length), as_float_array(design_draught)
-    surface = factor * (as_float_array(design_displacement) / full + 1.9 * size * full)
-    return surface - rate * (full - as_float_array(draught)) * (size + as_float_array(breadth))
 
 
 def bulb_area_rakke(

@@ -16,6 +16,7 @@ from thalweg.ship.hull.hull import Hull
 from thalweg.ship.hull.hull_estimates import estimate_or_raise
 from thalweg.ship.methods.propulsion.b_series import Propeller, b_series_validity
 from thalweg.ship.methods.propulsion.hull_propeller_interaction import (
+    hull_efficiency,
     relative_rotative_single,
     relative_rotative_twin,
     thrust_deduction_single,
@@ -63,8 +64,9 @@ def _efficiencies(hull: Hull, given: PropulsionSection) -> PropulsionModel:
         known |= {"relative_rotative_efficiency": 1.0, "hull_efficiency": 1.0}
         known["open_water_efficiency"] = known["propulsive_efficiency"]
     if "wake_fraction" in known:
-        own = (1.0 - known["thrust_deduction"]) / (1.0 - known["wake_fraction"])
-        known["hull_efficiency"] = own
+        known["hull_efficiency"] = hull_efficiency(
+            known["wake_fraction"], known["thrust_deduction"]
+        )
     usual = Efficiencies()
     names = {
         "open_water_efficiency": usual.open_water,

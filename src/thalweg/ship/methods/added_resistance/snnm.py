@@ -17,7 +17,6 @@ Angles are zero for waves from ahead and pi for waves from astern, as in the pro
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -25,14 +24,6 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY, SEA_WATER_DENSITY
-from thalweg.ship.methods.added_resistance.mean_wave_force import (
-    LOG_FREQUENCY_STEP,
-    REFLECTION_STEP,
-    Spectrum,
-    in_blocks,
-    log_spaced_nodes,
-    spectral_shape,
-)
 from thalweg.ship.methods.added_resistance.snnm_hull import SnnmHull
 from thalweg.ship.methods.resistance.friction_lines import froude_number, ship_speed
 from thalweg.ship.methods.validity import RangeNote, range_notes
@@ -121,19 +112,6 @@ def ahead_factors(
     ahead = np.maximum(np.cos(angle), 0.0)
     first = (0.87 / block) ** ((1.0 + froude) * ahead) * (1.0 + 2.0 * ahead) / 3.0
     return np.asarray(first / np.log(breadth / draught)), speed_factor(froude)
-
-
-def _factors_by_row(
-    angle: FloatArray, froude: FloatArray, group: FloatArray, hull: tuple[FloatArray, ...]
-) -> FloatArray:
-    """a1 a2 as `_heading_factors`, which costs much, only for the rows with waves from abaft."""
-    first, second = ahead_factors(angle, froude, hull)
-    factors = np.array(np.broadcast_to(first * second, group.shape))
-    abaft = np.broadcast_to(angle > 0.5 * np.pi, (group.shape[0], 1))[:, 0]
-    if abaft.any():
-        rows = [a if a.shape[0] == 1 else a[abaft] for a in (angle, froude, *hull)]
-        factors[abaft] = _heading_factors(rows[0], rows[1], group[abaft], tuple(rows[2:]))
-    return factors
 
 
 def _heading_factors(
@@ -274,93 +252,6 @@ def snnm_transfer(
     stern = -np.expm1(-deep * excess) * (s0 + s1 * omega)
     weight = density * gravity
     return weight * motion, 0.5625 * weight * breadth * (bow - stern)
-
-
-def _spectral_mean(
-    *conditions: FloatArray, spectrum: Spectrum, gamma: float, gravity: float
-) -> FloatArray:
-    """Mean force over rho g Hs^2 for flat arrays: speed, peak frequency, angle, Fn, hull."""
-    speed, peak, angle, fn, *sizes = (condition[:, None] for condition in conditions)
-    ship = tuple(sizes)
-    length, breadth, draught, trim, block, gyration = ship[:6]
-    reduced = log_spaced_nodes(0.3, 4.0, step=LOG_FREQUENCY_STEP[spectrum])
-    omega = reduced / frequency_scale(angle, fn, ship, gravity)
-    energy = spectral_shape(omega / peak, spectrum=spectrum, gamma=gamma)
-    rows = np.broadcast_shapes(*(np.shape(c) for c in (*conditions,)))[0]
-    group = np.broadcast_to(2.0 * speed * omega / gravity, (rows, reduced.size))
-    factors = _factors_by_row(angle, fn, group, ship)
-    motion = np.sum(energy * factors * motion_shape(reduced, ship), axis=1, keepdims=True)
-    size = 3859.2 * breadth / length * block**1.34 * gyration**2 * (1.0 + 28.7 * trim)
-    above = log_spaced_nodes(1.0, 60.0, step=REFLECTION_STEP[spectrum])
-    lowest = 2.0 * np.pi / (LONGEST_REFLECTED_WAVE * length)
-    omega = above * np.sqrt(gravity * lowest)
-    energy = spectral_shape(omega / peak, spectrum=spectrum, gamma=gamma)
-    excess = 2.0 * lowest * (above**2 - 1.0)
-    b0, b1, s0, s1, deep = reflection_terms(speed, angle, fn, ship, gravity)
-    bow = -np.expm1(-draught * excess) * (b0 + b1 * omega)
-    stern = -np.expm1(-deep * excess) * (s0 + s1 * omega)
-    reflection = np.sum(energy * (bow - stern), axis=1, keepdims=True)
-    total = (
-        LOG_FREQUENCY_STEP[spectrum] * size * motion
-        + 0.5625 * REFLECTION_STEP[spectrum] * reflection
-    )
-    return np.asarray(2.0 * breadth * total)[:, 0]
-
-
-def snnm(
-    speed: ArrayLike,
-    wave_height: ArrayLike,
-    wave_period: ArrayLike,
-    wave_angle: ArrayLike,
-    hull: SnnmHull,
-    *,
-    spectrum: Spectrum = "bretschneider",
-    gamma: float = 3.3,
-    density: float = SEA_WATER_DENSITY,
-    gravity: float = GRAVITY,
-) -> FloatArray:
-    r"""Mean added resistance in a long-crested sea from any direction.
-
-    .. math::
-        R_{AW} = 2 \int_0^\infty \frac{R_{AWM}(\omega) + R_{AWR}(\omega)}{\zeta_A^2}
-            E(\omega) \, d\omega
-
-    Parameters
-    ----------
-    speed : array_like
-        Speed through the water [m/s].
-    wave_height, wave_period : array_like
-        Significant height [m] and peak period [s].
-    wave_angle : array_like
-        [rad], 0 from ahead, pi from astern.
-    hull : SnnmHull
-        Particulars.
-    spectrum, gamma
-        See `thalweg.ship.methods.added_resistance.mean_wave_force.spectral_density`.
-    density, gravity : float
-        [kg/m3], [m/s2].
-
-    Returns
-    -------
-    ndarray
-        [N]; may be negative for following waves; zero where the wave height is zero, NaN where
-        something is unknown.
-
-    References
-    ----------
-    S. Liu and A. Papanikolaou, Ocean Engineering 206 (2020) 107357, as adopted by ITTC
-    Recommended Procedure 7.5-04-01-01.1 (2021); unverified: see the text of this module.
-    """
-    particulars = hull.arrays()
-    velocity, angle = ship_speed(speed), fold_angle(wave_angle)
-    period = np.asarray(wave_period, dtype=float)
-    peak = 2.0 * np.pi / np.where(period > 0.0, period, np.nan)
-    fn = froude_number(velocity, length=particulars[0], gravity=gravity)
-    mean = partial(_spectral_mean, spectrum=spectrum, gamma=gamma, gravity=gravity)
-    shape = in_blocks(mean, velocity, peak, angle, fn, *particulars)
-    height = np.asarray(wave_height, dtype=float)
-    force = density * gravity * height**2 * shape
-    return np.where((height == 0.0) & ~np.isnan(fn), 0.0, force)
 
 
 def snnm_validity(speed: ArrayLike, hull: SnnmHull, *, gravity: float = GRAVITY) -> list[RangeNote]:

@@ -1,6 +1,7 @@
 """The SNNM formula for one hull and many conditions, with precomputed sums over the spectrum.
 
-The sums of `thalweg.ship.methods.added_resistance.snnm.snnm` run over about a hundred frequencies.
+The mean of `thalweg.ship.methods.added_resistance.snnm.snnm_transfer` over a spectrum is a sum over
+about a hundred frequencies.
 For one hull most factors of the summands depend on few numbers: the motion on the peak frequency in
 units of the hull's natural frequency and on the speed of the ship relative to the waves; the
 reflection on the peak frequency and the effective draught. Partial sums over these are tabulated
@@ -85,7 +86,13 @@ class LogTable:
 
 @dataclass(frozen=True, eq=False)
 class SnnmTable:
-    """SNNM for one hull in Bretschneider seas; call it as `snnm`, without the hull.
+    r"""SNNM for one hull: mean added resistance in long-crested Bretschneider seas.
+
+    .. math::
+        R_{AW} = 2 \int_0^\infty \frac{R_{AWM}(\omega) + R_{AWR}(\omega)}{\zeta_A^2}
+            E(\omega) \, d\omega
+
+    with the terms of `thalweg.ship.methods.added_resistance.snnm.snnm_transfer`.
 
     Attributes
     ----------
@@ -129,7 +136,23 @@ class SnnmTable:
     def __call__(
         self, speed: ArrayLike, wave_height: ArrayLike, wave_period: ArrayLike, angle: ArrayLike
     ) -> FloatArray:
-        """Mean added resistance [N]; see `thalweg.ship.methods.added_resistance.snnm.snnm`."""
+        """Return the mean added resistance [N].
+
+        Parameters
+        ----------
+        speed : array_like
+            Speed through the water [m/s].
+        wave_height, wave_period : array_like
+            Significant height [m] and peak period [s].
+        angle : array_like
+            [rad], 0 from ahead, pi from astern.
+
+        Returns
+        -------
+        ndarray
+            May be negative for following waves; zero where the wave height is zero, NaN where
+            something is unknown.
+        """
         velocity, turned = ship_speed(speed), fold_angle(angle)
         period = np.asarray(wave_period, dtype=float)
         peak = 2.0 * np.pi / np.where(period > 0.0, period, np.nan)

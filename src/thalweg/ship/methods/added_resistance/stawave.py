@@ -5,7 +5,7 @@ Huisman and Mennen (2013). Wave angles are zero for waves from ahead and pi for 
 
 Both methods are made for waves from within 45 degrees of the bow. Outside that sector they say
 nothing; the functions return zero there, so that no resistance is invented and following seas
-never push. Use `thalweg.ship.methods.added_resistance.snnm` for every heading.
+never push. Use `thalweg.ship.methods.added_resistance.snnm_table` for every heading.
 """
 
 from __future__ import annotations
@@ -22,8 +22,6 @@ from thalweg.ship.methods.added_resistance.mean_wave_force import (
     LOG_FREQUENCY_STEP,
     REFLECTION_STEP,
     Spectrum,
-    bessel_i1_scaled,
-    bessel_k1_scaled,
     in_blocks,
     log_spaced_nodes,
     spectral_shape,
@@ -112,8 +110,10 @@ def stawave1(
 
 def _reflection_shape(wave_draught: ArrayLike) -> FloatArray:
     """pi^2 I1^2 / (pi^2 I1^2 + K1^2) at 1.5 k T, given k T; scaled so that nothing overflows."""
+    from scipy.special import i1e, k1e
+
     x = 1.5 * np.asarray(wave_draught, dtype=float)
-    ratio = bessel_k1_scaled(x) / (np.pi * bessel_i1_scaled(x)) * np.exp(-2.0 * x)
+    ratio = k1e(x) / (np.pi * i1e(x)) * np.exp(-2.0 * x)
     return np.asarray(1.0 / (1.0 + ratio**2))
 
 
@@ -278,7 +278,7 @@ def stawave2(
     draught, block_coefficient, pitch_gyration : array_like
         T [m], C_B, and k_yy as a part of the length.
     spectrum, gamma
-        See `thalweg.ship.methods.added_resistance.mean_wave_force.spectral_density`.
+        See `thalweg.ship.methods.added_resistance.mean_wave_force.spectral_shape`.
     density, gravity : float
         [kg/m3], [m/s2].
 

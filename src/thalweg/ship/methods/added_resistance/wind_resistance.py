@@ -17,36 +17,6 @@ from numpy.typing import ArrayLike
 from thalweg.core.types import FloatArray
 
 AIR_DENSITY: Final = 1.226  #: at 15 degC and 1013 hPa [kg/m3]
-_REFERENCE_HEIGHT: Final = 10.0
-
-
-def wind_at_height(
-    wind_speed: ArrayLike, *, height: ArrayLike, reference_height: float = _REFERENCE_HEIGHT
-) -> FloatArray:
-    """True wind at another height by the 1/7 power law (ISO 15016:2015).
-
-    .. math:: V(z) = V(z_0) (z / z_0)^{1/7}
-
-    Parameters
-    ----------
-    wind_speed : array_like
-        True wind at the reference height [m/s].
-    height : array_like
-        [m], above zero.
-    reference_height : float
-        [m].
-
-    Returns
-    -------
-    ndarray
-        [m/s].
-
-    References
-    ----------
-    ISO 15016:2015, Annex C; ITTC 7.5-04-01-01.1.
-    """
-    ratio = np.asarray(height, dtype=float) / reference_height
-    return np.asarray(np.asarray(wind_speed, dtype=float) * ratio ** (1.0 / 7.0))
 
 
 def wind_resistance(

@@ -196,27 +196,3 @@ def halem_cost(
     """
     t = as_float_array(time)
     return per_second * t + per_cube * t * as_float_array(speed) ** 3
-
-
-def halem_cheapest_speed(
-    *, per_second: float = 700_000.0 / 604_800.0, per_cube: float = 0.008
-) -> float:
-    r"""Return the cheapest speed per distance in still water for `halem_cost` [m/s].
-
-    .. math:: V^* = \left(\frac{\lambda_t}{2 \lambda_f}\right)^{1/3}
-
-    Parameters
-    ----------
-    per_second, per_cube : float
-        As in `halem_cost`.
-
-    Returns
-    -------
-    float
-        (per_second / (2 per_cube))^(1/3), where d/dV of cost per distance is zero.
-
-    References
-    ----------
-    From van Halem (2019), eq. 3.4: the minimum of the cost per distance.
-    """
-    return float((per_second / (2.0 * per_cube)) ** (1.0 / 3.0))

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
-from thalweg.core.units import DAY, KNOT, TONNE
 from thalweg.ship.methods.array_conversion import as_float_array
 
 #: kg/(W s) in one g/kWh.
@@ -289,69 +288,3 @@ def hotel_fuel_rate(power: ArrayLike, *, sfoc_g_kwh: ArrayLike) -> FloatArray:
     Fourth IMO GHG Study 2020, annex B.2, eq. 11: auxiliary power times base consumption.
     """
     return as_float_array(power) * as_float_array(sfoc_g_kwh) * GRAM_PER_KILOWATT_HOUR
-
-
-@dataclass(frozen=True)
-class EngineSettingsTable:
-    """Engine settings of a ship with the speed and the fuel each gives.
-
-    Parameters
-    ----------
-    engines : tuple of int
-        Engines running.
-    load_percent : tuple of float
-        Load of each engine [%].
-    fuel_t_day : tuple of float
-        Fuel of the ship [t/day].
-    speed_kn : tuple of float
-        Calm-water speed [kn].
-    source : str
-        Where the table comes from.
-    """
-
-    engines: tuple[int, ...]
-    load_percent: tuple[float, ...]
-    fuel_t_day: tuple[float, ...]
-    speed_kn: tuple[float, ...]
-    source: str = ""
-
-
-#: Two-engine bulk carrier of Seuren (2020), Table 5.3.
-SEUREN_TABLE_5_3: Final = EngineSettingsTable(
-    engines=(2, 2, 2, 2, 2, 2, 1, 1, 1, 1, 1, 1),
-    load_percent=(100, 95, 90, 85, 80, 75) * 2,
-    fuel_t_day=(39.0, 36.8, 34.4, 32.0, 30.3, 28.9, 20.1, 18.9, 17.6, 16.4, 15.5, 14.3),
-    speed_kn=(15.2, 15.0, 14.8, 14.5, 14.3, 14.1, 10.8, 10.6, 10.3, 9.9, 9.5, 8.8),
-    source="J. J. Seuren, Multi-objective ship weather routing, Erasmus University (2020), 5.3",
-)
-
-
-def table_fuel_rate(speed: ArrayLike, table: EngineSettingsTable) -> tuple[FloatArray, FloatArray]:
-    """Return the least fuel of a table at a calm-water speed, and how many engines run.
-
-    Interpolated linearly between the settings of the same number of engines only; a speed that
-    no number of engines gives (between 10.8 and 14.1 kn in Seuren's table) is NaN.
-
-    Parameters
-    ----------
-    speed : array_like
-        Calm-water speed [m/s].
-    table : EngineTable
-        Settings.
-
-    Returns
-    -------
-    tuple of ndarray
-        Fuel [kg/s] and engines running.
-    """
-    knots = as_float_array(speed) / KNOT
-    engines, speeds = np.array(table.engines), np.array(table.speed_kn)
-    fuel = np.array(table.fuel_t_day) * TONNE / DAY
-    best, running = np.full(knots.shape, np.inf), np.full(knots.shape, np.nan)
-    for n in np.unique(engines):
-        order = np.flatnonzero(engines == n)[np.argsort(speeds[engines == n])]
-        inside = (knots >= speeds[order[0]] - 1e-9) & (knots <= speeds[order[-1]] + 1e-9)
-        burnt = np.interp(knots, speeds[order], fuel[order])
-        better = inside & (burnt < best)
-        best, running = np.where(better, burnt, best), np.where(better, float(n), running)
-    return np.where(np.isnan(running), np.nan, best), running

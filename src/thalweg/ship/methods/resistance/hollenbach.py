@@ -251,11 +251,6 @@ def hollenbach_1998(
     return HollenbachResistance(friction, residuary, correlation, total)
 
 
-def maximum_factor(variant: ResistanceVariant = "single_design") -> float:
-    """Ratio h1 of Hollenbach's maximum to his mean line (unverified: quoted from memory)."""
-    return RESISTANCE_COEFFICIENTS[variant].maximum
-
-
 def correlation_allowance(length_between_perpendiculars: ArrayLike) -> FloatArray:
     r"""C_A = (0.35 - 0.002 L) 1e-3 below L = 175 m, else 0.
 

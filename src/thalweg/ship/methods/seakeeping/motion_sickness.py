@@ -8,25 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.types import FloatArray
-from thalweg.core.units import GRAVITY
 from thalweg.ship.methods.array_conversion import as_float_array
 
 #: Share of people sick per dose, unadapted men and women together (ISO 2631-1, annex D).
 MIXED_ADULT_SUSCEPTIBILITY: Final = 1.0 / 3.0
 
-#: Mean absolute over root mean square of a Gaussian motion.
-MEAN_ABSOLUTE: Final = float(np.sqrt(2.0 / np.pi))
 
 # corner frequencies [Hz] and resonant quality factors of the weighting Wf
 _F1, _F2, _F4, _Q4, _F5, _Q5, _F6, _Q6 = 0.08, 0.63, 0.25, 0.86, 0.0625, 0.80, 0.10, 0.80
-
-
-def _standard_normal_distribution(z: FloatArray) -> FloatArray:
-    """Return the standard normal distribution function."""
-    from scipy.special import ndtr
-
-    value: FloatArray = np.asarray(ndtr(z), dtype=float)
-    return value
 
 
 def wf_weighting(frequency_hz: ArrayLike) -> FloatArray:
@@ -115,33 +104,6 @@ def motion_sickness_dose(weighted_rms: ArrayLike, *, duration: ArrayLike) -> Flo
     return value
 
 
-def combined_dose(weighted_rms: ArrayLike, *, durations: ArrayLike) -> FloatArray:
-    r"""Return the dose of consecutive stretches: the square root of the summed squares.
-
-    .. math:: MSDV_z = \sqrt{\sum_k a_{w,k}^2 t_k}
-
-    Parameters
-    ----------
-    weighted_rms : array_like
-        a_w of each stretch on the last axis [m/s2].
-    durations : array_like
-        Duration of each stretch [s].
-
-    Returns
-    -------
-    ndarray
-        [m/s^1.5].
-
-    References
-    ----------
-    ISO 2631-1:1997, annex D.
-    """
-    value: FloatArray = np.sqrt(
-        np.sum(as_float_array(weighted_rms) ** 2 * as_float_array(durations), axis=-1)
-    )
-    return value
-
-
 def motion_sickness_percent_iso(
     dose: ArrayLike, *, susceptibility: ArrayLike = MIXED_ADULT_SUSCEPTIBILITY
 ) -> FloatArray:
@@ -164,87 +126,3 @@ def motion_sickness_percent_iso(
     ISO 2631-1:1997, annex D.
     """
     return np.minimum(as_float_array(susceptibility) * as_float_array(dose), 100.0)
-
-
-def motion_sickness_percent_mccauley(
-    rms: ArrayLike, *, frequency_hz: ArrayLike, duration: ArrayLike, gravity: float = GRAVITY
-) -> FloatArray:
-    """Return the motion sickness incidence of McCauley et al. (1976).
-
-    100 P(z_a) P(z_t) with P the normal distribution, a the rms acceleration in g, f in Hz and
-    t in minutes: z_a = 2.128 log a - 9.277 log f - 5.809 (log f)^2 - 1.851,
-    z_t = 1.134 z_a + 1.989 log t - 2.904.
-
-    Parameters
-    ----------
-    rms : array_like
-        Root mean square of the vertical acceleration, not weighted [m/s2].
-    frequency_hz : array_like
-        Frequency of the motion [Hz].
-    duration : array_like
-        Exposure [s].
-    gravity : float
-        [m/s2].
-
-    Returns
-    -------
-    ndarray
-        Percent; 0 without motion or exposure. Tried with 0.05 to 0.7 Hz for 5 minutes to 2 hours.
-
-    References
-    ----------
-    M. E. McCauley et al., "Motion sickness incidence", Human Factors Research, TR 1733-2 (1976)
-    (constants from memory of the secondary literature, not seen in print).
-    """
-    a, f, t = (
-        as_float_array(rms) / gravity,
-        as_float_array(frequency_hz),
-        as_float_array(duration) / 60.0,
-    )
-    moving = (a > 0.0) & (t > 0.0) & (f > 0.0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        log_f = np.log10(f)
-        z_a = 2.128 * np.log10(a) - 9.277 * log_f - 5.809 * log_f**2 - 1.851
-        z_t = 1.134 * z_a + 1.989 * np.log10(t) - 2.904
-        percent = 100.0 * _standard_normal_distribution(z_a) * _standard_normal_distribution(z_t)
-    return np.where(moving | np.isnan(a * f * t), percent, 0.0)
-
-
-def motion_sickness_percent_ohanlon(
-    rms: ArrayLike, *, encounter_frequency: ArrayLike, gravity: float = GRAVITY
-) -> FloatArray:
-    """Return the motion sickness incidence after two hours by O'Hanlon and McCauley (1974).
-
-    100 P((log(a/g) - m) / 0.4), m = -0.819 + 2.32 (log w_e)^2, with a the mean absolute
-    acceleration, 0.798 of the rms of a Gaussian motion.
-
-    Parameters
-    ----------
-    rms : array_like
-        Root mean square of the vertical acceleration, not weighted [m/s2].
-    encounter_frequency : array_like
-        Mean frequency of the motion [rad/s].
-    gravity : float
-        [m/s2].
-
-    Returns
-    -------
-    ndarray
-        Percent; 0 without motion. Tried with 0.083 to 0.7 Hz.
-
-    Notes
-    -----
-    The frequency is in rad/s: people are sickest near 1 rad/s, 0.16 Hz. A later edition of that
-    toolbox (2025) puts hertz into the same line, which moves the worst motion to 1 Hz.
-
-    References
-    ----------
-    J. F. O'Hanlon, M. E. McCauley, Aerospace Medicine 45 (1974), as in A. R. J. M. Lloyd,
-    "Seakeeping: ship behaviour in rough weather" (1989); constants checked against the marine
-    systems toolbox of Fossen and Perez.
-    """
-    a, w = MEAN_ABSOLUTE * as_float_array(rms) / gravity, as_float_array(encounter_frequency)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        middle = -0.819 + 2.32 * np.log10(w) ** 2
-        percent = 100.0 * _standard_normal_distribution((np.log10(a) - middle) / 0.4)
-    return np.where((a > 0.0) | np.isnan(a * w), percent, 0.0)

@@ -240,22 +240,6 @@ def spectral_moment(
     return total
 
 
-def significant_height(m0: ArrayLike) -> FloatArray:
-    """Return the significant double amplitude 4 sqrt(m0).
-
-    Parameters
-    ----------
-    m0 : array_like
-        Variance.
-
-    Returns
-    -------
-    ndarray
-        In the unit of the motion; half of it is the significant amplitude.
-    """
-    return 4.0 * np.sqrt(as_float_array(m0))
-
-
 def most_probable_maximum(m0: ArrayLike, m2: ArrayLike, *, duration: ArrayLike) -> FloatArray:
     """Return the most probable largest amplitude in a time: sqrt(2 m0 ln N).
 
@@ -282,20 +266,3 @@ def most_probable_maximum(m0: ArrayLike, m2: ArrayLike, *, duration: ArrayLike) 
         cycles = as_float_array(duration) / (2.0 * np.pi) * np.sqrt(as_float_array(m2) / variance)
         largest = np.sqrt(2.0 * variance * np.log(np.maximum(cycles, 1.0)))
     return np.where(variance == 0.0, 0.0 * as_float_array(m2), largest)
-
-
-def zero_crossing_period(m0: ArrayLike, m2: ArrayLike) -> FloatArray:
-    """Return the mean period between upward zero crossings, 2 pi sqrt(m0 / m2) [s].
-
-    Parameters
-    ----------
-    m0, m2 : array_like
-        Moments.
-
-    Returns
-    -------
-    ndarray
-        [s]; NaN without motion.
-    """
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return 2.0 * np.pi * np.sqrt(as_float_array(m0) / as_float_array(m2))
