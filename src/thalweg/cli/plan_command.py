@@ -175,6 +175,12 @@ def _add_passage_options(group: Any) -> None:
         "out of water shallower than one and a half draughts where it can",
     )
     group.add_argument(
+        "--ignore-lanes",
+        action="store_true",
+        help="do not count the approximate traffic separation schemes of the package; default: a "
+        "mile against their traffic counts three",
+    )
+    group.add_argument(
         "--open",
         action="append",
         default=[],
@@ -272,6 +278,7 @@ def _voyage(arguments: argparse.Namespace, sea: Sea, ship: Ship) -> Voyage:
         offing_nm=arguments.offing,
         layered=layered_request(arguments),  # type: ignore[arg-type]
         ignore_shoals=arguments.ignore_shoals,
+        ignore_lanes=arguments.ignore_lanes,
         method=arguments.method,
         ensemble=arguments.ensemble,
     )

@@ -36,6 +36,7 @@ from thalweg.planning.request.chart_restrictions import (
 )
 from thalweg.planning.request.coverage_check import check_argument_types, endpoints_within_coverage
 from thalweg.planning.request.early_checks import check_request
+from thalweg.planning.request.lane_choice import add_traffic_schemes
 from thalweg.planning.request.network_choice import NetworkBuilder, NetworkChoice
 from thalweg.planning.request.offing_choice import chosen_offing, restrict_passages
 from thalweg.planning.request.ordered_speed import ordered_setting, with_order
@@ -211,6 +212,7 @@ def _context(
     chart = restrict_passages(chart, voyage, ship, chosen_offing(voyage, ship))
     chart, shoal_notes = add_shoals(chart, voyage, ship, sea, ends)
     notes += shoal_notes
+    chart = add_traffic_schemes(chart, voyage, ship, ends)
     chart, more = add_emission_control_areas(exclude_ice_latitudes(chart, ends), voyage, ship)
     needs = derive_requirements(voyage, ship=ship, sea=sea, chart=chart)
     ends = endpoints_within_coverage(

@@ -18,9 +18,11 @@ from thalweg.planning.voyage_parts import Itinerary, Schedule, SearchRequest, Vo
 _ENTRIES: Final = (
     "start", "goal", "depart", "depart_window", "objective", "via", "arrive_by", "arrive", "wait",
     "speed_kn", "hold", "min_ukc_m", "seed", "fuel_price_usd", "eca_price_factor",
-    "time_price_usd_per_h", "forbid", "open", "avoid", "offing_nm", "ignore_shoals", "method",
-    "ensemble", "speed_block_h", "layered",
+    "time_price_usd_per_h", "forbid", "open", "avoid", "offing_nm", "ignore_shoals", "ignore_lanes",
+    "method", "ensemble", "speed_block_h", "layered",
 )  # fmt: skip
+#: Entries that are left out of plain data at these values.
+_LEFT_OUT: Final = (("method", "default"), ("ignore_shoals", False), ("ignore_lanes", False))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,6 +92,10 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
         Whether miles in shoal water count like others. By default a plan on the world's coasts
         without depth of its own keeps out of water shallower than one and a half draughts where it
         can, by the global depth layer (`thalweg.chart.depth.shoals`).
+    ignore_lanes : bool
+        Whether the approximate traffic separation schemes of the package
+        (`thalweg.chart.zones.traffic_schemes`) do not count. By default a mile against their
+        traffic counts three, on the world's coasts without lanes among the zones.
     method : {"default", "exact", "nsga2", "spea2", "mpaes"}
         How a trade-off is searched: the exact front of a network, refined by evolution (default);
         the exact front alone; or an evolutionary method from a few routes, for comparison.
@@ -169,7 +175,7 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
             value = getattr(self, name)
             if value is None or (name in ("via", "forbid", "open", "avoid") and not value):
                 continue
-            if (name, value) in (("method", "default"), ("ignore_shoals", False)):
+            if (name, value) in _LEFT_OUT:
                 continue
             data[name] = _plain_value(name, value)
         return data

@@ -202,7 +202,7 @@ class SearchRequest:
         [nm].
     layered : LayeredRequest or mapping, optional
         Shape of a layered network.
-    ignore_shoals : bool
+    ignore_shoals, ignore_lanes : bool
     """
 
     objective: VoyageObjective = "time"
@@ -215,6 +215,7 @@ class SearchRequest:
     speed_block_h: float | None = None
     offing_nm: float | None = None
     ignore_shoals: bool = False
+    ignore_lanes: bool = False
     layered: LayeredRequest | None = None
 
     @property
@@ -236,13 +237,14 @@ class SearchRequest:
         _check_number("speed_block_h", self.speed_block_h, above=-1e-9, below=1000.0, unit="h")
         _check_number("min_ukc_m", self.min_ukc_m, above=-1e-9, below=100.0, unit="m")
         _check_number("offing_nm", self.offing_nm, above=-1e-9, below=50.0, unit="nm")
-        if not isinstance(self.ignore_shoals, bool):
-            raise InputError(
-                f"ignore_shoals is {self.ignore_shoals!r}.",
-                "It is true or false.",
-                "Correct it, or leave it out.",
-                field="ignore_shoals",
-            )
+        for name in ("ignore_shoals", "ignore_lanes"):
+            if not isinstance(getattr(self, name), bool):
+                raise InputError(
+                    f"{name} is {getattr(self, name)!r}.",
+                    "It is true or false.",
+                    "Correct it, or leave it out.",
+                    field=name,
+                )
         if not isinstance(self.seed, Integral) or self.seed < 0:
             raise InputError(
                 f"The seed is {self.seed!r}.",

@@ -135,8 +135,8 @@ class Penalties:
     factors : tuple of float
         Factors of the zones.
     graded : bool
-        Whether there are shoals, in which the factor follows the depth: then those of all edges
-        count as they are.
+        Whether there are shoals, in which the factor follows the depth, or traffic lanes, in which
+        it follows the course: then those of all edges count as they are.
     """
 
     added: float

@@ -14,6 +14,7 @@ from thalweg.network import Network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.depth_report import depth_notes
 from thalweg.planning.report.land_report import land_notes
+from thalweg.planning.report.lane_report import lane_notes
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
 from thalweg.route.referee.route_assembly import OUT_OF_RANGE
@@ -40,7 +41,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     """
     notes = land_notes(context, route) + ice_warnings(route) + data_gap_warnings(context, route)
     notes += [text for text in route.assumptions if text.startswith(OUT_OF_RANGE)]
-    return notes + depth_notes(context, route)
+    return notes + lane_notes(context, route) + depth_notes(context, route)
 
 
 def data_gap_warnings(context: PlanningContext, route: Route) -> list[str]:

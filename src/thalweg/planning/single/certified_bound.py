@@ -227,8 +227,8 @@ def _kind(context: PlanningContext, found: TimeCertificate) -> str:
         counted += ["no-go zones"] if context.chart.zones.no_go else []
         counted += ["canals"] if found.mesh is not None and found.mesh.links else []
     text += f" with {', '.join(counted)}" if counted else ""
-    if context.chart.zones.penalty or context.chart.zones.shoals is not None:
-        text += ", without the penalties of zones and shoals"
+    if context.chart.zones.has_penalty:
+        text += ", without the penalties of zones, shoals and traffic lanes"
     return text + (f", in {found.sampling}" if found.sampling else "")
 
 

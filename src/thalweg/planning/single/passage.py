@@ -322,10 +322,12 @@ def _bound(
     if route.feasible:
         known = passage_value(context, route)
         zones = context.chart.zones
-        if zones.penalty or zones.shoals is not None:
+        if zones.has_penalty:
             added = penalty_excess(route, context.voyage.objective, context.chart)
             factors = tuple(factor for _, factor in zones.penalty)
-            penalties = Penalties(added, factors, graded=zones.shoals is not None)
+            penalties = Penalties(
+                added, factors, graded=bool(zones.lanes) or zones.shoals is not None
+            )
     return lower_bound(
         _ship_on_network(context, network, frozen, context.needs.limits),
         start=network.meta.start,

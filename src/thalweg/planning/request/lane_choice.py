@@ -1,0 +1,40 @@
+"""Traffic separation schemes of a voyage: on which side of a separation line a mile counts more."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from thalweg.chart import Chart
+from thalweg.chart.zones.traffic_schemes import lanes_of_schemes
+from thalweg.planning.request.offing_choice import chosen_offing
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.voyage import Voyage
+from thalweg.ship import Ship
+
+
+def add_traffic_schemes(
+    chart: Chart, voyage: Voyage, ship: Ship, ends: Sequence[Endpoint]
+) -> Chart:
+    """Return the chart with the lanes of the traffic separation schemes that a voyage may meet.
+
+    Charts of the world's coasts without lanes of their own get them, for voyages that keep an
+    offing.
+
+    Parameters
+    ----------
+    chart : Chart
+    voyage : Voyage
+    ship : Ship
+    ends : sequence of Endpoint
+        Round them the lanes do not count.
+
+    Returns
+    -------
+    Chart
+    """
+    near_land = chosen_offing(voyage, ship) <= 0.0
+    if voyage.ignore_lanes or near_land or chart.approaches is None or chart.zones.lanes:
+        return chart
+    lanes = lanes_of_schemes([(float(end.lat), float(end.lon)) for end in ends])
+    return replace(chart, zones=replace(chart.zones, lanes=lanes)) if lanes else chart

@@ -1,0 +1,107 @@
+"""Traffic separation schemes: on which side of a strait plans pass, and what they state."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+
+from thalweg.chart import Chart
+from thalweg.chart.zones.traffic_schemes import (
+    AGAINST_FACTOR,
+    TRAFFIC_SCHEMES,
+    lanes_of_schemes,
+)
+from thalweg.chart.zones.zone_set import Zones
+from thalweg.core.geodesy import direct, inverse
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning import Voyage, plan
+from thalweg.planning.request.lane_choice import add_traffic_schemes
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.sea import Sea
+from thalweg.ship import Ship
+
+SHIP = Ship.simple(13.0, 9.0, length_m=180.0)
+DOVER = next(scheme for scheme in TRAFFIC_SCHEMES if scheme.name == "Dover Strait")
+ENDS = [Endpoint("A", 50.0, -1.0, 0.0), Endpoint("B", 52.0, 3.0, 0.0)]
+
+
+def voyage(start, goal, **more):
+    return Voyage(start=start, goal=goal, depart="2026-01-01T00:00Z", **more)
+
+
+@pytest.mark.parametrize("scheme", TRAFFIC_SCHEMES, ids=lambda scheme: scheme.name)
+def test_ships_with_the_separation_line_to_port_are_with_the_traffic(scheme):
+    zones = Zones(lanes=scheme.lanes)
+    assert all(lane.shape.is_valid for lane in scheme.lanes)
+    lat, lon = np.array(scheme.line).T
+    course = np.asarray(inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])[1])
+    middle = 0.5 * (lat[:-1] + lat[1:]), 0.5 * (lon[:-1] + lon[1:])
+    for side, off in ((1.0, scheme.starboard), (-1.0, scheme.port)):
+        place = direct(*middle, course + side * np.pi / 2, 0.6 * off)
+        ahead = direct(*place, course, 500.0)
+        along, back = (*place, *ahead), (*ahead, *place)
+        with_traffic, against = (along, back) if side > 0.0 else (back, along)
+        assert np.allclose(zones.factors(*with_traffic)[0], 1.0)
+        assert np.all(zones.factors(*against)[0] > AGAINST_FACTOR - 0.01)
+    across = direct(*middle, course + np.pi / 2, 300.0)
+    assert np.allclose(zones.factors(*middle, *across)[0], 1.0)
+
+
+def test_light_vessels_of_the_dover_strait_lie_in_the_separation_zone():
+    zone = shapely.LineString([(x, y) for y, x in DOVER.line])
+    for lat, lon in ((50.408, 0.0), (51.102, 1.635), (51.397, 2.010)):  # Greenwich, MPC, F3
+        assert zone.distance(shapely.Point(lon, lat)) < 2.0 / 60.0
+
+
+def side_of_dover(route):
+    """Positions where a route passes 50.7, 50.95 and 51.2 N: positive on the French side [deg]."""
+    lat, lon = np.asarray(route.track.lat), np.asarray(route.track.lon)
+    if lat[0] > lat[-1]:
+        lat, lon = lat[::-1], lon[::-1]
+    line = np.array(DOVER.line)
+    return [
+        np.interp(y, lat, lon) - np.interp(y, line[:, 0], line[:, 1]) for y in (50.7, 50.95, 51.2)
+    ]
+
+
+@pytest.mark.slow
+def test_plans_through_the_dover_strait_keep_to_their_side():
+    west, east = (49.9, -0.6), (52.1, 3.2)
+    up = plan(voyage(west, east), ship=SHIP, sea=Sea.calm(), proof=0.0)
+    down = plan(voyage(east, west), ship=SHIP, sea=Sea.calm(), proof=0.0)
+    assert min(side_of_dover(up.best)) > 0.0
+    assert max(side_of_dover(down.best)) < 0.0
+    for found in (up, down):
+        assert found.best.feasible
+        assert any("separation lines of Dover Strait" in note for note in found.notes)
+        assert not any("Runs against" in note for note in found.notes)
+    free = plan(voyage(east, west, ignore_lanes=True), ship=SHIP, sea=Sea.calm(), proof=0.0)
+    assert free.best.distance_nm <= down.best.distance_nm < free.best.distance_nm + 6.0
+    assert not any("separation lines" in note for note in free.notes)
+
+
+def test_own_lanes_no_offing_and_ports_in_a_scheme():
+    chart = Chart.gshhg("l")
+    own = Chart.gshhg("l").with_zones(
+        {"type": "Feature", "properties": {"kind": "lane", "direction_deg": 90},
+         "geometry": {"type": "Polygon",
+                      "coordinates": [[[0, 50], [1, 50], [1, 50.1], [0, 50.1], [0, 50]]]}}
+    )  # fmt: skip
+    ends = ENDS[0], ENDS[1]
+    request = voyage((50.0, -1.0), (52.0, 3.0))
+    found = add_traffic_schemes(chart, request, SHIP, ends)
+    assert {lane.name.partition(",")[0] for lane in found.zones.lanes} >= {"Dover Strait"}
+    assert add_traffic_schemes(own, request, SHIP, ends) is own
+    for more in ({"offing_nm": 0.0}, {"ignore_lanes": True}):
+        request = voyage((50.0, -1.0), (52.0, 3.0), **more)
+        assert add_traffic_schemes(chart, request, SHIP, ends) is chart
+    assert request.to_dict()["ignore_lanes"] is True
+    # in the inshore traffic zone of a port of the voyage no direction counts
+    near = Zones(lanes=lanes_of_schemes([(51.08, 1.33), (52.0, 3.0)]))
+    far = Zones(lanes=lanes_of_schemes([(50.0, -1.0), (52.0, 3.0)]))
+    leg = 51.0, 1.2, 51.05, 1.3
+    assert float(near.factors(*leg)[0]) == 1.0
+    assert float(far.factors(*leg)[0]) == pytest.approx(AGAINST_FACTOR)
+    assert lanes_of_schemes([(40.0, -70.0), (39.0, -70.0)]) == ()
+    assert NAUTICAL_MILE * 11.9 < DOVER.port < NAUTICAL_MILE * 12.1
