@@ -123,6 +123,9 @@ class LaneGroup:
         import shapely
 
         near = np.flatnonzero(self._touched(lat1, lon1, lat2, lon2))
+        if not near.size:
+            none = np.empty(0, np.int64)
+            return none, none, np.empty(0)
         ends = [x[near] for x in (lat1, lon1, lat2, lon2)]
         length, course, _ = inverse(*ends)
         pieces = np.maximum(np.ceil(length / _PIECE), 1.0).astype(np.int64)
