@@ -187,10 +187,19 @@ def coast_cells(task: Mapping[str, Any]) -> TaskResult:
     return {"folder": str(build_cells(task["level"]))}, b""
 
 
+def forecast_size(task: Mapping[str, Any]) -> TaskResult:
+    """Return what a forecast would download, as its server states it now."""
+    from thalweg.service.jobs.batch_requests import FetchOrder
+    from thalweg.service.jobs.fetch_work import download_facts
+
+    return download_facts(FetchOrder.model_validate(task["request"])), b""
+
+
 TASKS: Final[Mapping[str, Callable[[Mapping[str, Any]], TaskResult]]] = {
     "frame": frame,
     "inspect": inspect,
     "import_route": import_route,
     "ship_sheet": ship_sheet,
     "coast_cells": coast_cells,
+    "forecast_size": forecast_size,
 }
