@@ -60,7 +60,7 @@ class ProjectOrder(BaseModel):
 
     model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [PROJECT_EXAMPLE]})
 
-    title: str = Field("", max_length=200, description="a name for people")
+    title: Annotated[str, Field(max_length=200, description="a name for people")] = ""
     project: dict[str, Any] | str = Field(
         description="entries of a project file, or its text; `sea` and `depth` hold ids of /seas "
         "or `synthetic-estuary`, `ship` a ship of /ships or the content of a ship file, `zones` "
@@ -94,7 +94,7 @@ class StudyOrder(BaseModel):
 
     model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [STUDY_EXAMPLE]})
 
-    title: str = Field("", max_length=200, description="a name for people")
+    title: Annotated[str, Field(max_length=200, description="a name for people")] = ""
     study: dict[str, Any] | str = Field(
         description="entries of a study file, or its text; `sea` holds `calm`, `storm` or ids of "
         "/seas, `ship` ships of /ships, `track` ids of /routes"
@@ -132,7 +132,7 @@ class FetchOrder(BaseModel):
 
     model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [FORECAST_EXAMPLE]})
 
-    title: str = Field("", max_length=200, description="a name for people")
+    title: Annotated[str, Field(max_length=200, description="a name for people")] = ""
     source: Literal["gfs", "ecmwf", "open-meteo", "copernicus", "era5"]
     box: Annotated[
         list[float],

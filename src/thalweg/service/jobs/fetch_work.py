@@ -1,4 +1,4 @@
-"""The work of a download of a forecast: estimate, fetch, inspect, keep as a sea."""
+"""The work of a download of a forecast: fetch, inspect, keep as a sea."""
 
 from __future__ import annotations
 
@@ -11,33 +11,6 @@ from thalweg.service.jobs.batch_requests import FetchOrder
 from thalweg.service.jobs.job_order import JobOrder, StageMessages
 from thalweg.service.upload_store import UploadStore, file_identity
 from thalweg.service.worker.worker_tasks import inspect
-
-
-def download_facts(request: FetchOrder) -> dict[str, Any]:
-    """Return what a forecast would download, as its server states it now.
-
-    Parameters
-    ----------
-    request : FetchOrder
-
-    Returns
-    -------
-    dict
-        ``title``, ``run``, ``times``, ``bytes``, ``licence`` and ``notes``.
-    """
-    from thalweg.forecasts.fetching import estimate_forecast, source_named
-
-    source = source_named(request.source)
-    plan = estimate_forecast(request.forecast_request(), source)
-    return {
-        "source": source.name,
-        "title": source.title,
-        "licence": source.licence,
-        "run": None if plan.run is None else format_time(plan.run),
-        "times": len(plan.times),
-        "bytes": plan.bytes,
-        "notes": list(plan.notes),
-    }
 
 
 def fetch_sea(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
