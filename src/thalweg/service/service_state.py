@@ -12,7 +12,7 @@ from fastapi import Depends, Request
 from thalweg.core.errors import InputError
 from thalweg.service.jobs.job_runner import JobRunner
 from thalweg.service.jobs.job_store import JobStore
-from thalweg.service.jobs.plan_request import EMBEDDED_SEAS
+from thalweg.service.jobs.named_uploads import named_uploads
 from thalweg.service.service_settings import ServiceSettings
 from thalweg.service.upload_store import UploadStore
 from thalweg.service.worker.worker_client import WorkerClient
@@ -88,17 +88,17 @@ class ServiceState:
         self.store.listen(self.changes.notify)
         self.map_worker = WorkerClient(limits.worker_seconds)
         self.file_worker = WorkerClient(limits.worker_seconds)
+        self.download_worker = WorkerClient(limits.worker_seconds)
 
     def files_of(self, request: dict[str, Any]) -> dict[str, str]:
         """Return the paths of the uploaded files that a request names, by their ids."""
-        names = [*request.get("seas", ()), *request.get("depths", ())]
-        found = {name: str(self.seas.get(name).path) for name in names if name not in EMBEDDED_SEAS}
-        ship = str(request.get("ship", ""))
-        if ship not in self.library_ships():
-            found[ship] = str(self.ships.get(ship).path)
-        if "route" in request:
-            found[request["route"]] = str(self.routes.get(request["route"]).path)
-        return found
+        named = named_uploads(request)
+        found = {name: str(self.seas.get(name).path) for name in named.seas}
+        library = self.library_ships()
+        for ship in named.ships:
+            if ship not in library:
+                found[ship] = str(self.ships.get(ship).path)
+        return found | {name: str(self.routes.get(name).path) for name in named.routes}
 
     @staticmethod
     def library_ships() -> list[str]:
@@ -112,6 +112,7 @@ class ServiceState:
         self.runner.stop()
         self.map_worker.close()
         self.file_worker.close()
+        self.download_worker.close()
         self.store.close()
         if self._lock is not None:
             os.close(self._lock)

@@ -57,18 +57,27 @@ class UploadStore:
         Endings of names that are taken.
     largest, total : int
         Limits of one file and of all [bytes].
+    clean : bool
+        Remove what unfinished uploads have left; only the server does.
     """
 
     def __init__(
-        self, folder: Path, kind: str, endings: tuple[str, ...], *, largest: int, total: int
+        self,
+        folder: Path,
+        kind: str,
+        endings: tuple[str, ...],
+        *,
+        largest: int,
+        total: int,
+        clean: bool = True,
     ) -> None:
         self.folder = make_folder(folder)
         self.kind = kind
         self.endings = endings
         self.largest = largest
         self.total = total
-        for left in self.folder.glob(".part-*"):
-            left.unlink(missing_ok=True)
+        for left in self.folder.glob(".part-*") if clean else ():
+            _remove(left)
 
     async def receive(self, name: str, chunks: AsyncIterator[bytes]) -> tuple[Path, str, str]:
         """Write an upload to a temporary file while it arrives.
@@ -186,6 +195,19 @@ class UploadStore:
     def used_bytes(self) -> int:
         """Return the size of all files [bytes]."""
         return sum(path.stat().st_size for path in self.folder.glob("[!.]*/file.*"))
+
+
+def file_identity(path: Path) -> str:
+    """Return the id of a file by its content."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()[:_ID_LENGTH]
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        path.unlink(missing_ok=True)
 
 
 def _ending(name: str) -> str:

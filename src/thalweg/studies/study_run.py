@@ -11,7 +11,7 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -44,6 +44,8 @@ class StudyProgress:
         Since the start of this run [s].
     new : int
         Rows done in this run.
+    rows : tuple of mapping
+        Results of the rows just done, as `run_row` returns them.
     """
 
     done: int
@@ -51,6 +53,7 @@ class StudyProgress:
     refused: int
     seconds: float
     new: int
+    rows: tuple[Mapping[str, Any], ...] = ()
 
     @property
     def seconds_left(self) -> float | None:
@@ -114,8 +117,9 @@ def run_study(
         done += len(results)
         refused += sum(result["refusal"] is not None for result in results)
         state = StudyProgress(
-            len(rows) - len(missing) + done, len(rows), refused, time.monotonic() - begin, done
-        )
+            len(rows) - len(missing) + done, len(rows), refused, time.monotonic() - begin, done,
+            tuple(results),
+        )  # fmt: skip
         if progress is not None:
             progress(state)
     return state

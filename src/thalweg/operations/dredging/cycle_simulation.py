@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
@@ -24,6 +24,7 @@ from thalweg.sea import standard_names as nm
 from thalweg.sea.inspection import data_gaps
 from thalweg.search import NetworkPassage, ProfileSearch
 
+CycleCallback = Callable[[str, DredgingCycle], None]
 _MIN_VOLUME_SHARE = 1e-6  # share of a hopper below which the remaining volume is ignored
 
 
@@ -75,6 +76,8 @@ class Simulator:
         Loads to choose from; default: those of the project.
     report : callable, optional
         Called with a short text every ten cycles.
+    on_cycle : callable, optional
+        Called with the name of the run and each cycle.
     name : str, optional
         Name of the run, for errors.
     """
@@ -87,9 +90,11 @@ class Simulator:
         *,
         factors: Sequence[float] | None = None,
         report: MessageCallback = lambda text: None,
+        on_cycle: CycleCallback | None = None,
         name: str = "",
     ) -> None:
         self.project, self.report, self.name = project, report, name
+        self.on_cycle = on_cycle
         self.leg_planner = SiteLegPlanner(world, site_network)
         back = self.leg_planner.passages(0.0, outward=False)
         chosen = project.work.load_factors if factors is None else factors
@@ -130,6 +135,8 @@ class Simulator:
                 if cycle is None:
                     raise self._too_short(work.volume - left, time)
                 cycles.append(cycle)
+                if self.on_cycle is not None:
+                    self.on_cycle(self.name, cycle)
                 time, left = cycle.end, left - cycle.volume
                 if len(cycles) % 10 == 0:
                     self.report(f"{len(cycles)} cycles, {work.volume - left:,.0f} m3 moved")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position, format_position
 from thalweg.core.time import format_time
 from thalweg.kernels import codes
-from thalweg.operations.dredging.cycle_simulation import Simulator
+from thalweg.operations.dredging.cycle_simulation import CycleCallback, Simulator
 from thalweg.operations.dredging.project import BEST_LOAD_FACTOR, Project
 from thalweg.operations.dredging.project_environment import (
     LINE,
@@ -38,6 +38,13 @@ _MAX_BISECTIONS = 24  # of a depth; accurate to a millimetre
 _MAX_DEPTH = 200.0  # [m]
 
 
+class _Watch(NamedTuple):
+    """What is called while a project is simulated."""
+
+    report: MessageCallback
+    on_cycle: CycleCallback | None
+
+
 def run_project(
     project: Project,
     *,
@@ -45,6 +52,7 @@ def run_project(
     sea: Sea,
     chart: Chart,
     progress: Callable[[str], None] | None = None,
+    on_cycle: CycleCallback | None = None,
 ) -> ProjectResult:
     """Simulate a project to its end, in each cycle with the load and routes that produce most.
 
@@ -59,6 +67,8 @@ def run_project(
         Land, zones and depth.
     progress : callable, optional
         Called with a short text at each stage.
+    on_cycle : callable, optional
+        Called with the name of the run and each `DredgingCycle` of it.
 
     Returns
     -------
@@ -94,13 +104,14 @@ def run_project(
     report("building the network")
     site_network = freeze_site_network(world, project_network(world), report)
     factors = project.work.load_factors
-    optimised = _simulate_run(project, world, site_network, factors, name=OPTIMISED, report=report)
+    watch = _Watch(report, on_cycle)
+    optimised = _simulate_run(project, world, site_network, factors, name=OPTIMISED, watch=watch)
     base = None
     if project.base is not None:
         given = project.base.load_factor
         line = freeze_site_network(world, fixed_route_network(chart, project.base.route), report)
         chosen = factors if given == BEST_LOAD_FACTOR else (float(given),)
-        base = _simulate_run(project, world, line, chosen, name=BASE_CASE, report=report)
+        base = _simulate_run(project, world, line, chosen, name=BASE_CASE, watch=watch)
     return ProjectResult(project, world, optimised, base, _provenance(world, site_network))
 
 
@@ -111,10 +122,13 @@ def _simulate_run(
     factors: tuple[float, ...],
     *,
     name: str,
-    report: MessageCallback,
+    watch: _Watch,
 ) -> ProjectRun:
-    report(f"{name}: preparing {len(factors)} loads")
-    simulator = Simulator(project, world, site_network, factors=factors, report=report, name=name)
+    watch.report(f"{name}: preparing {len(factors)} loads")
+    simulator = Simulator(
+        project, world, site_network, factors=factors, report=watch.report,
+        on_cycle=watch.on_cycle, name=name,
+    )  # fmt: skip
     possible = simulator.possible
     if not possible:
         raise no_passage_error(world, site_network, min(x for x in factors if x > 0.0), name)

@@ -10,6 +10,7 @@ import numpy as np
 from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.core.time import format_time
 from thalweg.core.units import DAY, HOUR
+from thalweg.operations.dredging.project_timeline import activity_periods, site_water_level
 
 if TYPE_CHECKING:
     from thalweg.operations.dredging.project_result import ProjectResult, ProjectRun
@@ -73,11 +74,11 @@ def _draw_first_days(result: ProjectResult, axes: Any) -> None:
     start = result.project.start
     end = min(start + _FIRST_DAYS * DAY, max(run.cycles[-1].end for run in result.runs))
     for row, run in enumerate(result.runs):
-        for activity, spans in _activity_periods(run).items():
+        for activity, spans in activity_periods(run).items():
             bars = [((a - start) / HOUR, (b - a) / HOUR) for a, b in spans if a < end]
             axes.broken_barh(bars, (row - 0.35, 0.7), color=_ACTIVITIES[activity], lw=0)
     hours = np.arange(0.0, (end - start) / HOUR, 1.0 / 6.0)
-    level = _water_level(result, start + hours * HOUR)
+    level = site_water_level(result, start + hours * HOUR)
     axes.set_yticks(range(len(result.runs)), [run.name for run in result.runs])
     axes.set(xlim=(0.0, (end - start) / HOUR), ylim=(-0.6, len(result.runs) - 0.4))
     axes.set_xlabel(f"hours since {format_time(start)}")
@@ -88,32 +89,6 @@ def _draw_first_days(result: ProjectResult, axes: Any) -> None:
     handles = [_legend_patch(colour, name) for name, colour in _ACTIVITIES.items()]
     axes.legend(handles=handles, fontsize=7, ncols=5, frameon=False, loc="lower left",
                 bbox_to_anchor=(0.0, 1.0))  # fmt: skip
-
-
-def _activity_periods(run: ProjectRun) -> dict[str, list[tuple[float, float]]]:
-    """Return start and end of each activity; waits on a route at the time they take place."""
-    spans: dict[str, list[tuple[float, float]]] = {name: [] for name in _ACTIVITIES}
-    for cycle in run.cycles:
-        spans["loading"].append((cycle.start, cycle.out.depart))
-        spans["unloading"].append((cycle.out.arrive, cycle.back.depart))
-        for name, leg in (("sailing full", cycle.out), ("sailing empty", cycle.back)):
-            spans[name].append((leg.depart, leg.arrive))
-            track, arrive = leg.route.track, leg.route.legs["arrive"]
-            for k in np.flatnonzero(track.wait):
-                begin = leg.depart if k == 0 else float(arrive[k - 1])
-                spans["waiting"].append((begin, begin + float(track.wait[k])))
-    order = ("loading", "sailing full", "unloading", "sailing empty", "waiting")
-    return {name: spans[name] for name in order}
-
-
-def _water_level(result: ProjectResult, times: np.ndarray) -> np.ndarray:
-    from thalweg.sea import standard_names as nm
-
-    sea, (lat, lon) = result.environment.sea, result.project.sites.unload
-    if nm.WATER_LEVEL not in sea.variables:
-        return np.full(times.shape, np.nan)
-    where = np.full(times.shape, lat), np.full(times.shape, lon)
-    return np.asarray(sea.sample([nm.WATER_LEVEL], times, *where)[nm.WATER_LEVEL])
 
 
 def _legend_patch(colour: str, label: str) -> Any:

@@ -1,4 +1,4 @@
-"""Plans and evaluations as jobs: start, follow, stop, results."""
+"""Plans, evaluations, projects, studies and forecasts as jobs: start, follow, stop, results."""
 
 from __future__ import annotations
 
@@ -14,14 +14,23 @@ from starlette.concurrency import run_in_threadpool
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time
+from thalweg.service.jobs.batch_requests import (
+    FORECAST_EXAMPLE,
+    PROJECT_EXAMPLE,
+    STUDY_EXAMPLE,
+    FetchOrder,
+    ProjectOrder,
+    StudyOrder,
+)
 from thalweg.service.jobs.job_store import FINAL_STATES, Job
+from thalweg.service.jobs.named_uploads import named_uploads
 from thalweg.service.jobs.plan_request import PLAN_EXAMPLE, EvaluationRequest, PlanRequest
 from thalweg.service.problem_details import ServiceError, not_found
 from thalweg.service.service_state import ServiceState, State
 
 jobs_router = APIRouter(tags=["jobs"])
 JobId = Annotated[str, Path(pattern=r"^[0-9a-f]{16}$")]
-Kind = Literal["plan", "evaluation"]
+Kind = Literal["plan", "evaluation", "project", "study", "forecast"]
 JobState = Literal["queued", "running", "done", "failed", "cancelled"]
 KEEP_ALIVE_SECONDS: Final = 15.0
 _MEDIA_TYPES: Final = {
@@ -83,6 +92,66 @@ def start_evaluation(
     return _start("evaluation", request.model_dump(mode="json"), response, idempotency_key, state)
 
 
+@jobs_router.post("/projects", status_code=202)
+def start_project(
+    state: State,
+    response: Response,
+    request: Annotated[ProjectOrder, Body(examples=[PROJECT_EXAMPLE])],
+    idempotency_key: str | None = Header(None, max_length=200),
+) -> dict[str, Any]:
+    """Start the simulation of a dredging project; the answer is a job like that of a plan."""
+    entries, project = request.checked_project()
+    given = {"title": request.title or project.name, "project": entries}
+    return _start("project", given, response, idempotency_key, state)
+
+
+@jobs_router.get("/projects/example")
+def example_project() -> dict[str, Any]:
+    """Return the example project: a nourishment behind a bank that dries, in a made-up estuary."""
+    from thalweg.operations.dredging import example_file
+
+    entries, project = ProjectOrder(project=example_file().read_text("utf-8")).checked_project()
+    return {"title": project.name, "project": entries}
+
+
+@jobs_router.post("/studies", status_code=202)
+def start_study(
+    state: State,
+    response: Response,
+    request: Annotated[StudyOrder, Body(examples=[STUDY_EXAMPLE])],
+    idempotency_key: str | None = Header(None, max_length=200),
+) -> dict[str, Any]:
+    """Start planning many voyages; the answer is a job like that of a plan.
+
+    Voyages that are planned are kept when the job is stopped, or its process dies.
+    """
+    entries, study = request.checked_study()
+    given = {"title": request.title or study.name, "study": entries}
+    return _start("study", given, response, idempotency_key, state)
+
+
+@jobs_router.post("/forecasts", status_code=202)
+def start_forecast(
+    state: State,
+    response: Response,
+    request: Annotated[FetchOrder, Body(examples=[FORECAST_EXAMPLE])],
+    idempotency_key: str | None = Header(None, max_length=200),
+) -> dict[str, Any]:
+    """Start the download of a forecast; when the job is done, its ``seas`` can be planned with."""
+    request.forecast_request()
+    return _start("forecast", request.model_dump(mode="json"), response, idempotency_key, state)
+
+
+@jobs_router.post("/forecasts/estimate")
+def estimate_download(
+    state: State, request: Annotated[FetchOrder, Body(examples=[FORECAST_EXAMPLE])]
+) -> dict[str, Any]:
+    """State the size of a download, and the run that the source has now."""
+    request.forecast_request()
+    facts, _ = state.download_worker.do("forecast_size", request=request.model_dump(mode="json"))
+    return facts
+
+
 def _start(
     kind: str, request: dict[str, Any], response: Response, key: str | None, state: ServiceState
 ) -> dict[str, Any]:
@@ -96,14 +165,17 @@ def _start(
 
 
 def _check_files(request: dict[str, Any], state: ServiceState) -> None:
-    """Raise an error at its field for a ship or sea that does not exist."""
-    if request["ship"] not in state.library_ships():
+    """Raise an error at its field for a ship, sea or route that does not exist."""
+    library = state.library_ships()
+    for ship in named_uploads(request).ships:
+        if ship in library:
+            continue
         try:
-            state.ships.get(request["ship"])
+            state.ships.get(ship)
         except ServiceError:
             raise InputError(
-                f"There is no ship {request['ship']!r}.",
-                f"Known: {', '.join(state.library_ships())}, and uploaded ships.",
+                f"There is no ship {ship[:100]!r}.",
+                f"Known: {', '.join(library)}, and uploaded ships.",
                 "Choose one of these, or upload a ship file.",
                 field="ship",
             ) from None
@@ -165,7 +237,8 @@ def job_events(
     """Progress as server-sent events, from the first, or after ``Last-Event-ID``.
 
     Events: ``state`` (queued, running, done, failed, cancelled), ``stage`` (what is done now),
-    ``route`` (the best route so far). The stream ends with the final state.
+    ``route`` (the best route so far), ``progress`` (a cycle of a project; voyages of a study). The
+    stream ends with the final state.
     """
     state.store.get(job_id)
     if last_event_id is not None and last_event_id.isascii() and last_event_id.isdigit():
@@ -192,15 +265,11 @@ async def _event_stream(job_id: str, after: int, state: ServiceState) -> AsyncIt
                     await asyncio.wait_for(changed.wait(), KEEP_ALIVE_SECONDS)
                 except TimeoutError:
                     yield ": still working\n\n"
-                    if (await run_in_threadpool(_state_of, state, job_id)) in (*FINAL_STATES, ""):
+                    if (await run_in_threadpool(state.store.state_of, job_id)) in (
+                        *FINAL_STATES,
+                        None,
+                    ):
                         return
-
-
-def _state_of(state: ServiceState, job_id: str) -> str:
-    try:
-        return state.store.get(job_id).state
-    except ServiceError:
-        return ""
 
 
 def result_file(job_id: str, name: str, state: ServiceState) -> Any:
@@ -228,13 +297,25 @@ def result_file(job_id: str, name: str, state: ServiceState) -> Any:
 @jobs_router.get("/plans/{job_id}/result")
 def job_result(state: State, job_id: JobId) -> FileResponse:
     """Return the result: of a plan exactly the file ``plan.json``, of an evaluation its route."""
-    name = "plan.json" if state.store.get(job_id).kind == "plan" else "route.json"
+    kind = state.store.get(job_id).kind
+    name = "route.json" if kind == "evaluation" else f"{kind}.json"
     return FileResponse(result_file(job_id, name, state), media_type="application/json")
 
 
+@jobs_router.get("/plans/{job_id}/tables/{name}.csv")
+def job_table(
+    state: State, name: Literal["cycles", "voyages", "summary", "refusals"], job_id: JobId
+) -> FileResponse:
+    """Return a table: the cycles of a project; the voyages, summary or refusals of a study."""
+    path = result_file(job_id, f"{name}.csv", state)
+    return FileResponse(path, media_type="text/csv", filename=f"thalweg_{job_id[:6]}_{name}.csv")
+
+
 @jobs_router.get("/plans/{job_id}/{part}.json")
-def job_part(state: State, part: Literal["isochrones", "beside"], job_id: JobId) -> FileResponse:
-    """Return the isochrones, or the route that ignores the weather with its profile."""
+def job_part(
+    state: State, part: Literal["isochrones", "beside", "diagrams"], job_id: JobId
+) -> FileResponse:
+    """Return the isochrones, the route that ignores the weather, or the diagrams of a project."""
     return FileResponse(result_file(job_id, f"{part}.json", state), media_type="application/json")
 
 

@@ -48,27 +48,21 @@ def _load_libraries(order_read: threading.Event) -> None:
 
 
 def _ended(order: dict[str, Any], messages: MessageWriter) -> dict[str, Any]:
-    from thalweg.service.jobs.job_work import JobOrder, run_order
+    from thalweg.service.jobs.job_order import JobOrder
+    from thalweg.service.jobs.job_work import run_order
 
+    job = JobOrder(**order)
     try:
-        state, summary = run_order(JobOrder(**order), messages)
+        state, summary = run_order(job, messages)
         return {"state": state, "summary": summary}
     except ThalwegError as error:
-        return {"state": "failed", "problem": _without_paths(problem_of(error), order["files"])}
+        problem = json.dumps(problem_of(error), allow_nan=False)
+        return {"state": "failed", "problem": json.loads(job.without_paths(problem))}
     except MemoryError:
         return {"state": "failed", "problem": problem_of(_memory_error())}
     except Exception as error:  # noqa: BLE001 a fault of the program ends one job, not the service
         traceback.print_exc()
         return {"state": "failed", "problem": problem_of(_program_error(error))}
-
-
-def _without_paths(problem: dict[str, Any], files: dict[str, str]) -> dict[str, Any]:
-    """Return a problem in which no path of this computer stands."""
-    text = json.dumps(problem, allow_nan=False)
-    for path in files.values():
-        text = text.replace(json.dumps(path, allow_nan=False)[1:-1], "the uploaded file")
-    found: dict[str, Any] = json.loads(text)
-    return found
 
 
 def _memory_error() -> ThalwegError:

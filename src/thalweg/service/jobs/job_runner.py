@@ -17,8 +17,8 @@ from pathlib import Path
 from typing import IO, Any, Final
 
 from thalweg.core.errors import InputError, ThalwegError
-from thalweg.core.file_writing import write_text
-from thalweg.service.jobs.job_store import Job, JobStore
+from thalweg.core.file_writing import make_folder, write_text
+from thalweg.service.jobs.job_store import FINAL_STATES, Job, JobStore
 from thalweg.service.jobs.job_work import FIRST_FOLDER
 from thalweg.service.problem_details import problem_of
 from thalweg.service.service_settings import ServiceLimits, ServiceSettings
@@ -67,6 +67,8 @@ class JobRunner:
         self._files_of = files_of
         self._results = settings.subfolder("results")
         self._drafts = settings.subfolder("drafts")
+        self._workspaces = settings.subfolder("workspaces")
+        self._seas = settings.subfolder("seas")
         self._limits: ServiceLimits = settings.limits
         self._children: dict[str, RunningChild] = {}
         self._waiting_child: RunningChild | None = None
@@ -79,6 +81,8 @@ class JobRunner:
             self._recover(job)
         for left in self._drafts.iterdir():
             shutil.rmtree(left, ignore_errors=True)
+        for left in self._workspaces.iterdir():
+            self._clear_workspace(left.name)
         for work in (self._dispatch, self._watch):
             threading.Thread(target=work, daemon=True).start()
 
@@ -121,6 +125,11 @@ class JobRunner:
     def discard(self, job_id: str) -> None:
         """Remove the result of a job."""
         shutil.rmtree(self._results / job_id, ignore_errors=True)
+
+    def _clear_workspace(self, job_id: str) -> None:
+        """Remove what the attempts of a job share, when there will be no further attempt."""
+        if self._store.state_of(job_id) in (*FINAL_STATES, None):
+            shutil.rmtree(self._workspaces / job_id, ignore_errors=True)
 
     def _recover(self, job: Job) -> None:
         """Give a job that was running when the service ended its result, or another start."""
@@ -209,6 +218,7 @@ class JobRunner:
                         stream.close()
             child.log.unlink(missing_ok=True)
             shutil.rmtree(folder, ignore_errors=True)
+            self._clear_workspace(job.id)
             with self._changed:
                 self._children.pop(job.id, None)
                 self._changed.notify_all()
@@ -219,6 +229,8 @@ class JobRunner:
             "request": job.request,
             "folder": str(folder),
             "files": self._files_of(job.request),
+            "workspace": str(make_folder(self._workspaces / job.id)),
+            "seas_folder": str(self._seas),
         }
         assert child.process.stdin is not None
         with contextlib.suppress(OSError, ValueError):

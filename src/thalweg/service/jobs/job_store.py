@@ -45,7 +45,7 @@ class Job:
         Order of arrival.
     id : str
     kind : str
-        ``plan`` or ``evaluation``.
+        ``plan``, ``evaluation``, ``project``, ``study`` or ``forecast``.
     state : str
         One of `STATES`.
     request : dict
@@ -153,7 +153,12 @@ class JobStore:
         ServiceError
             409 if the key was used for another request, 429 if the queue is full.
         """
-        text = json.dumps(request, sort_keys=True, allow_nan=False)
+        try:
+            text = json.dumps(request, sort_keys=True, allow_nan=False)
+        except ValueError:
+            raise ServiceError(
+                422, "A number of the request is infinite or no number.", "", "Correct it."
+            ) from None
         key = key or None  # an empty header is none
 
         def work(database: sqlite3.Connection) -> bool:
@@ -198,6 +203,14 @@ class JobStore:
             404 if there is none of this id.
         """
         return self._one("id = ?", job_id)
+
+    def state_of(self, job_id: str) -> str | None:
+        """Return the state of a job; None if there is none of this id."""
+        with self._lock:
+            row = self._database.execute(
+                "SELECT state FROM jobs WHERE id = ?", (job_id,)
+            ).fetchone()
+        return None if row is None else str(row[0])
 
     def _by_key(self, key: str) -> Job:
         return self._one("key = ?", key)

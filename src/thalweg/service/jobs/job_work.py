@@ -1,4 +1,4 @@
-"""The work of one job in its child process: a plan or an evaluation, with all files of its result.
+"""The work of one job in its child process, with all files of its result.
 
 Files are written into a draft folder; the server gives the complete folder its final name.
 """
@@ -6,10 +6,9 @@ Files are written into a draft folder; the server gives the complete folder its 
 from __future__ import annotations
 
 import json
-import time
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -18,6 +17,7 @@ from thalweg.core.file_writing import make_folder, write_text
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.service.jobs.child_messages import MessageWriter
 from thalweg.service.jobs.isochrone_lines import isochrone_lines
+from thalweg.service.jobs.job_order import JobOrder, StageMessages
 from thalweg.service.jobs.plan_request import EvaluationRequest, PlanRequest
 from thalweg.service.jobs.request_objects import WorldOfJob, open_world
 from thalweg.service.jobs.route_profiles import first_look, route_profile
@@ -27,46 +27,6 @@ if TYPE_CHECKING:
     from thalweg.route import Route
 
 FIRST_FOLDER: Final = "first"  #: the result if the job is stopped before its own
-
-
-@dataclass(frozen=True)
-class JobOrder:
-    """What the server sends to a child.
-
-    Attributes
-    ----------
-    kind : str
-        ``plan`` or ``evaluation``.
-    request : dict
-    folder : str
-        Draft folder, which exists.
-    files : dict of str to str
-        Paths of uploaded files by id.
-    """
-
-    kind: str
-    request: dict[str, Any]
-    folder: str
-    files: dict[str, str]
-
-
-class StageMessages:
-    """Sends the stages of the work with the time since the start."""
-
-    def __init__(self, messages: MessageWriter) -> None:
-        self._messages = messages
-        self._start = time.monotonic()
-        self._last = ""
-
-    def __call__(self, text: str) -> None:
-        """State what begins now."""
-        if text != self._last:
-            self._last = text
-            self._messages.send("stage", {"text": text, "after_s": self.seconds()})
-
-    def seconds(self) -> float:
-        """Return the time since the start [s]."""
-        return round(time.monotonic() - self._start, 2)
 
 
 def run_order(order: JobOrder, messages: MessageWriter) -> tuple[str, dict[str, Any]]:
@@ -87,6 +47,18 @@ def run_order(order: JobOrder, messages: MessageWriter) -> tuple[str, dict[str, 
     stages = StageMessages(messages)
     if order.kind == "evaluation":
         return "done", _evaluate(order, stages)
+    if order.kind == "project":
+        from thalweg.service.jobs.project_work import simulate_project
+
+        return "done", simulate_project(order, messages, stages)
+    if order.kind == "study":
+        from thalweg.service.jobs.study_work import plan_study
+
+        return plan_study(order, messages, stages)
+    if order.kind == "forecast":
+        from thalweg.service.jobs.fetch_work import fetch_sea
+
+        return "done", fetch_sea(order, stages)
     return _plan(order, messages, stages)
 
 

@@ -187,10 +187,36 @@ def coast_cells(task: Mapping[str, Any]) -> TaskResult:
     return {"folder": str(build_cells(task["level"]))}, b""
 
 
+def forecast_size(task: Mapping[str, Any]) -> TaskResult:
+    """Return what a forecast would download, as its server states it now.
+
+    Parameters
+    ----------
+    task : mapping
+        ``request``, a `FetchOrder` as plain data.
+    """
+    from thalweg.forecasts.fetching import estimate_forecast, source_named
+    from thalweg.service.jobs.batch_requests import FetchOrder
+
+    request = FetchOrder.model_validate(task["request"])
+    source = source_named(request.source)
+    plan = estimate_forecast(request.forecast_request(), source)
+    return {
+        "source": source.name,
+        "title": source.title,
+        "licence": source.licence,
+        "run": None if plan.run is None else format_time(plan.run),
+        "times": len(plan.times),
+        "bytes": plan.bytes,
+        "notes": list(plan.notes),
+    }, b""
+
+
 TASKS: Final[Mapping[str, Callable[[Mapping[str, Any]], TaskResult]]] = {
     "frame": frame,
     "inspect": inspect,
     "import_route": import_route,
     "ship_sheet": ship_sheet,
     "coast_cells": coast_cells,
+    "forecast_size": forecast_size,
 }

@@ -1,0 +1,84 @@
+"""The order of a job as its child process receives it, and what all kinds of work share."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from thalweg.core.file_writing import write_text
+from thalweg.service.jobs.child_messages import MessageWriter
+
+
+@dataclass(frozen=True)
+class JobOrder:
+    """What the server sends to a child.
+
+    Attributes
+    ----------
+    kind : str
+        ``plan``, ``evaluation``, ``project``, ``study`` or ``forecast``.
+    request : dict
+    folder : str
+        Draft folder of the result, which exists.
+    files : dict of str to str
+        Paths of uploaded files by id.
+    workspace : str
+        Folder that the attempts of the job share; it is removed when the job has ended.
+    seas_folder : str
+        Folder of the uploaded seas.
+    """
+
+    kind: str
+    request: dict[str, Any]
+    folder: str
+    files: dict[str, str]
+    workspace: str = ""
+    seas_folder: str = ""
+
+    @property
+    def path(self) -> Path:
+        """The draft folder."""
+        return Path(self.folder)
+
+    def write_json(self, name: str, data: Mapping[str, Any] | None) -> None:
+        """Write a file of the result, if there are data; ids stand in place of paths."""
+        if data is not None:
+            write_text(self.path / name, self.without_paths(json.dumps(data, allow_nan=False)))
+
+    def with_paths(self, data: Any) -> Any:
+        """Return plain data in which the ids of uploaded files have become their paths."""
+        if isinstance(data, Mapping):
+            return {key: self.with_paths(value) for key, value in data.items()}
+        if isinstance(data, list):
+            return [self.with_paths(value) for value in data]
+        return self.files.get(data, data) if isinstance(data, str) else data
+
+    def without_paths(self, text: str) -> str:
+        """Return a text in which no path of an uploaded file stands."""
+        for name, path in self.files.items():
+            for written in (json.dumps(path)[1:-1], path):
+                text = text.replace(written, name)
+        return text
+
+
+class StageMessages:
+    """Sends the stages of the work with the time since the start."""
+
+    def __init__(self, messages: MessageWriter) -> None:
+        self._messages = messages
+        self._start = time.monotonic()
+        self._last = ""
+
+    def __call__(self, text: str) -> None:
+        """State what begins now."""
+        if text != self._last:
+            self._last = text
+            self._messages.send("stage", {"text": text, "after_s": self.seconds()})
+
+    def seconds(self) -> float:
+        """Return the time since the start [s]."""
+        return round(time.monotonic() - self._start, 2)
