@@ -35,6 +35,9 @@ def add_command(commands: Any) -> None:
     run.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler: tcp://host:8786")
     run.add_argument("--count", action="store_true", help="print the number of voyages and stop")
     run.set_defaults(run=_run)
+    ready = actions.add_parser("ready", help="list the ready studies, or print one to change it")
+    ready.add_argument("name", nargs="?", metavar="NAME", help="print this study file")
+    ready.set_defaults(run=_ready)
     summary = actions.add_parser("summary", help="quantiles by month and axis, and refusals")
     summary.add_argument("folder", metavar="DIR")
     summary.add_argument("--out", metavar="DIR", help="write tables and a plot into this folder")
@@ -65,6 +68,18 @@ def _run(arguments: argparse.Namespace) -> int:
     return SUCCESS
 
 
+def _ready(arguments: argparse.Namespace) -> int:
+    from thalweg.studies import ready_studies, ready_study
+
+    if arguments.name is not None:
+        print(ready_study(arguments.name), end="")
+        return SUCCESS
+    for name, text in ready_studies().items():
+        print(f"{name:18} {text}")
+    print("thalweg study ready NAME > my-study.yaml")
+    return SUCCESS
+
+
 def _words(state: StudyProgress) -> str:
     left = state.seconds_left
     text = f"{state.done} of {state.total} voyages, {state.refused} without a route"
@@ -84,6 +99,8 @@ def _summary(arguments: argparse.Namespace) -> int:
                 ("groups", summary.table),
                 ("refusals", summary.refusals),
                 ("best", summary.best),
+                ("fronts", summary.fronts),
+                ("annual", summary.annual),
             )
         }
         print(json.dumps(parts, indent=2, allow_nan=False))
@@ -93,6 +110,12 @@ def _summary(arguments: argparse.Namespace) -> int:
     if not summary.best.empty:
         for _, row in summary.best.iterrows():
             print(f"least median time: month {int(row['month'])}, {row['time_h_p50']:.2f} h")
+    if not summary.fronts.empty and "method" in summary.fronts:
+        ratios = summary.fronts.groupby("method")["hypervolume_ratio"].median()
+        for method, ratio in ratios.sort_values(ascending=False).items():
+            print(f"median hypervolume ratio of {method}: {ratio:.4f}")
+    if not summary.annual.empty:
+        print(summary.annual.round(2).to_string(index=False, na_rep="-"))
     for _, row in summary.refusals.head(5).iterrows():
         print(f"{row['voyages']} voyages without a route: {row['refusal']}: {row['reason']}")
     return SUCCESS

@@ -237,12 +237,39 @@ def _row(ship: Ship, speed: float, fuel: float) -> dict[str, Any]:
         "fuel_kg_per_h": _number(fuel * HOUR),
         "fuel_kg_per_nm": _number(fuel * 1852.0 / speed if speed > 0 else np.nan),
         "co2_kg_per_h": _number(co2 * HOUR),
-        "cii": _cii(ship, speed, co2),
+        "cii": _cii_of_row(ship, co2 * 1852.0 / speed) if speed > 0 else None,
     }
 
 
-def _cii(ship: Ship, speed: float, co2: float) -> dict[str, Any] | None:
+def _cii_of_row(ship: Ship, co2: float) -> dict[str, Any] | None:
     """Carbon intensity of sailing at this speed all the time, and its rating in 2026."""
+    found = carbon_intensity_of(ship, co2, year=2026)
+    return found and {
+        "attained_g_per_t_nm": found["attained"],
+        "required_2026": found["required"],
+        "rating_2026": found["rating"],
+        "boundaries_2026": found["boundaries"],
+    }
+
+
+def carbon_intensity_of(ship: Ship, co2: float, *, year: int) -> dict[str, Any] | None:
+    """Return the carbon intensity indicator (CII) of a ship and its rating.
+
+    Parameters
+    ----------
+    ship : Ship
+    co2 : float
+        Emission per distance [kg/nm].
+    year : int
+        Of the rating, 2019 to 2030.
+
+    Returns
+    -------
+    dict or None
+        ``attained`` [g/(t nm)], or [g/(GT nm)] where the type of ship is rated by gross tonnage;
+        ``required``, ``boundaries`` and ``rating``, None for types that the regulation does not
+        know. None without a capacity in the ship file.
+    """
     hull = ship.file.hull
     kind = (hull.type or "").casefold().replace(" ", "_").replace("-", "_")
     try:
@@ -251,20 +278,17 @@ def _cii(ship: Ship, speed: float, co2: float) -> dict[str, Any] | None:
     except InputError:
         by_tonnage = known = False
     capacity = hull.gross_tonnage if by_tonnage else hull.deadweight_t
-    if capacity is None or not (speed > 0 and np.isfinite(co2)):
+    if capacity is None or not np.isfinite(co2):
         return None
-    attained = float(attained_cii(co2, capacity=capacity, distance_nm=speed / 1852.0))
+    attained = float(attained_cii(co2, capacity=capacity, distance_nm=1.0))
     found: dict[str, Any] = {
-        "attained_g_per_t_nm": attained,
-        "required_2026": None,
-        "rating_2026": None,
-        "boundaries_2026": None,
-    }
+        "attained": attained, "required": None, "rating": None, "boundaries": None
+    }  # fmt: skip
     if known:
-        here: dict[str, Any] = {"ship_type": kind, "capacity": capacity, "year": 2026}
-        found["required_2026"] = float(required_cii(**here))
-        found["boundaries_2026"] = [float(limit) for limit in rating_boundaries(**here)]
-        found["rating_2026"] = str(cii_rating(attained, **here))
+        here: dict[str, Any] = {"ship_type": kind, "capacity": capacity, "year": year}
+        found["required"] = float(required_cii(**here))
+        found["boundaries"] = [float(limit) for limit in rating_boundaries(**here)]
+        found["rating"] = str(cii_rating(attained, **here))
     return found
 
 

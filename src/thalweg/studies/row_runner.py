@@ -80,7 +80,7 @@ def run_row(row: StudyRow, folder: str) -> dict[str, Any]:
 
 def _figures(request: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return the key figures of the route of a request."""
-    ship = _ship(canonical_json([request.get("ship"), request.get("load_factor")]), str(folder))
+    ship = ship_of_request(request, str(folder))
     sea = _sea(request, folder)
     chart = _chart(str(request.get("coast", "i")))
     voyage = request["voyage"]
@@ -159,7 +159,7 @@ def _calm_track(key: str, folder: str) -> Track:
     import json
 
     voyage, request = json.loads(key)
-    ship = _ship(canonical_json([request.get("ship"), request.get("load_factor")]), folder)
+    ship = ship_of_request(request, folder)
     chart = _chart(str(request.get("coast", "i")))
     answer = _planned({**voyage, "depart": _ANY_DATE}, ship, Sea.calm(), chart, request)
     return answer.best.track
@@ -178,6 +178,23 @@ def _evaluated(
         speed_kn=voyage.get("speed_kn"),
         strict=False,
     )
+
+
+def ship_of_request(request: Mapping[str, Any], folder: str) -> Ship:
+    """Return the ship of a request.
+
+    Parameters
+    ----------
+    request : mapping
+        Of a `StudyRow`.
+    folder : str
+        Files are relative to it.
+
+    Returns
+    -------
+    Ship
+    """
+    return _ship(canonical_json([request.get("ship"), request.get("load_factor")]), folder)
 
 
 @lru_cache(maxsize=8)

@@ -16,6 +16,7 @@ import yaml
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.file_reading import read_text_file
 from thalweg.planning.voyage import Voyage
+from thalweg.studies.annual_figures import checked_annual
 from thalweg.studies.study_axes import MOST_ROWS, axis_values, plain_data, sample_draws
 
 #: Entries of a row beside those of a voyage.
@@ -23,7 +24,7 @@ SURROUNDINGS: Final = (
     "ship", "load_factor", "sea", "map", "fill", "member", "coast", "network", "resolution_nm",
     "track",
 )  # fmt: skip
-_ENTRIES: Final = ("name", "voyage", "axes", "sample", "compare", *SURROUNDINGS)
+_ENTRIES: Final = ("name", "voyage", "axes", "sample", "compare", "annual", *SURROUNDINGS)
 COMPARISONS: Final = ("weather_blind",)
 _DISTRIBUTIONS: Final = {"uniform": 2, "normal": 2, "choice": None}
 
@@ -67,6 +68,8 @@ class Study:
         ``weather_blind``: the route planned in calm weather, sailed in the real weather.
     folder : Path
         Files of the study are relative to it.
+    annual : mapping
+        ``port_h`` and ``year``: what the summary needs for the figures of a year.
 
     Raises
     ------
@@ -80,6 +83,7 @@ class Study:
     sample: Mapping[str, Any] = field(default_factory=dict)
     compare: tuple[str, ...] = ()
     folder: Path = Path()
+    annual: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for entry in (*self.axes, *(key for key in self.sample if key not in ("count", "seed"))):
@@ -160,6 +164,7 @@ class Study:
             "axes": {name: list(values) for name, values in self.axes.items()},
             "sample": dict(self.sample),
             "compare": list(self.compare),
+            **({"annual": dict(self.annual)} if self.annual else {}),
         }
 
     @classmethod
@@ -216,6 +221,7 @@ class Study:
             plain_data(sample),
             (compare,) if isinstance(compare, str) else tuple(compare),
             folder,
+            checked_annual(data["annual"]) if "annual" in data else {},
         )
 
 

@@ -13,6 +13,11 @@ from scipy.stats import binom
 
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import make_folder, save_figure, write_csv_rows
+from thalweg.ship import Ship
+from thalweg.studies.annual_figures import annual_figures
+from thalweg.studies.front_statistics import draw_front_statistics, front_statistics
+from thalweg.studies.row_runner import ship_of_request
+from thalweg.studies.study import Study
 from thalweg.studies.study_parts import read_parts, read_study
 
 FIGURES: Final = ("time_h", "fuel_t", "co2_t", "distance_nm", "waiting_h")
@@ -35,14 +40,22 @@ class StudySummary:
         ``refusal``, ``reason`` and ``voyages``, most frequent first.
     best : pandas.DataFrame
         The month with the least median time of each group of the other axes.
+    fronts : pandas.DataFrame
+        Indicators of fronts of time and fuel (`front_statistics`); empty without.
+    annual : pandas.DataFrame
+        Figures of a year (`annual_figures`); empty if the study has no entry ``annual``.
     """
 
     table: pd.DataFrame
     refusals: pd.DataFrame
     best: pd.DataFrame
+    fronts: pd.DataFrame
+    annual: pd.DataFrame
 
     def write(self, folder: str | Path) -> list[Path]:
-        """Write ``summary.csv``, ``refusals.csv`` and, with months, ``months.png``.
+        """Write ``summary.csv``, ``refusals.csv``, and the other tables and plots there are.
+
+        ``months.png`` with months, ``fronts.csv`` and ``fronts.png`` with fronts, ``annual.csv``.
 
         Parameters
         ----------
@@ -54,13 +67,21 @@ class StudySummary:
         """
         folder = make_folder(folder)
         files = []
-        for name, frame in (("summary", self.table), ("refusals", self.refusals)):
+        tables = {
+            "summary": self.table, "refusals": self.refusals, "fronts": self.fronts,
+            "annual": self.annual,
+        }  # fmt: skip
+        for name, frame in tables.items():
+            if frame.empty and name in ("fronts", "annual"):
+                continue
             path = folder / f"{name}.csv"
             rows = frame.astype(object).where(frame.notna(), None).to_numpy().tolist()
             write_csv_rows(path, [list(frame.columns), *rows])
             files.append(path)
         if "month" in self.table and self.table["routes"].sum():
             files.append(_draw_months(self.table, folder / "months.png"))
+        if not self.fronts.empty:
+            files.append(draw_front_statistics(self.fronts, folder / "fronts.png"))
         return files
 
 
@@ -150,7 +171,25 @@ def summarise_study(folder: str | Path) -> StudySummary:
             row |= _quantiles(name, good[name].astype(float).dropna().to_numpy())
         rows.append(row)
     table = pd.DataFrame(rows)
-    return StudySummary(table, _refusals(frame, usable), _best(table, by))
+    axes = [name for name in study.axes if name in frame]
+    return StudySummary(
+        table,
+        _refusals(frame, usable),
+        _best(table, by),
+        front_statistics(frame[usable], axes),
+        _annual(study, frame[usable], [name for name in axes if name not in times]),
+    )
+
+
+def _annual(study: Study, usable: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+    if not study.annual or usable.empty:
+        return pd.DataFrame()
+    ships: dict[Any, Ship] = {}
+    for row in study.rows():
+        label = row.labels.get("ship")
+        if label not in ships:
+            ships[label] = ship_of_request(row.request, str(study.folder))
+    return annual_figures(usable, by, ships, study.annual)
 
 
 def _quantiles(name: str, values: np.ndarray) -> dict[str, float | None]:

@@ -1,0 +1,92 @@
+"""Ready studies, statistics of fronts with known answers, and figures of a year."""
+
+from __future__ import annotations
+
+import json
+
+import pandas as pd
+import pytest
+import yaml
+
+pytest.importorskip("pyarrow", reason="the extra 'studies' is not installed")
+
+from thalweg.cli.main import main
+from thalweg.core.errors import InputError
+from thalweg.planning import Voyage
+from thalweg.ship import Ship
+from thalweg.studies import Study, front_statistics, ready_studies, ready_study
+from thalweg.studies.annual_figures import annual_figures, checked_annual
+from thalweg.studies.study_summary import StudySummary
+
+
+@pytest.mark.parametrize("name", ready_studies())
+def test_ready_studies_are_understood(name):
+    study = Study.from_dict(yaml.safe_load(ready_study(name)))
+    assert 2 <= study.size <= 50
+    for row in study.rows():
+        Voyage.from_dict(row.request["voyage"])
+        assert Ship.load(row.request["ship"]).name
+        assert "sea" in row.request
+
+
+def test_ready_studies_are_listed_and_printed(capsys):
+    assert main(["study", "ready"]) == 0
+    assert "fleet " in capsys.readouterr().out
+    assert main(["study", "ready", "fleet"]) == 0
+    assert yaml.safe_load(capsys.readouterr().out)["annual"]["port_h"] == 48
+    assert main(["study", "ready", "fleat"]) == 2
+    assert "fleet" in capsys.readouterr().err
+
+
+def fronts() -> pd.DataFrame:
+    """A covers all of B; their union is A, of hypervolume 3 to the point (3, 3)."""
+    a, b = [[1.0, 2.0], [2.0, 1.0]], [[2.0, 2.0], [3.0, 3.0]]
+    rows = [("exact", 1, a), ("nsga2", 1, b), ("nsga2", 2, a)]
+    return pd.DataFrame(
+        [{"id": str(k), "method": m, "seed": s, "front": json.dumps(f)}
+         for k, (m, s, f) in enumerate(rows)]
+    )  # fmt: skip
+
+
+def test_fronts_by_method_have_the_known_indicators():
+    table = front_statistics(fronts(), ["method", "seed"])
+    whole = 2.02 * 1.02 + 1.02 * 1.0  # to the reference point (3.02, 3.02)
+    assert table["hypervolume"].tolist() == pytest.approx([whole, 1.02**2, whole], abs=1e-6)
+    ratios = [1.0, 1.02**2 / whole, 1.0]
+    assert table["hypervolume_ratio"].tolist() == pytest.approx(ratios, abs=1e-6)
+    assert table["covered_by_exact"].iloc[1] == 1.0
+    assert table["covered_by_nsga2"].iloc[0] == 0.5  # by its equal, and by none of the other
+    assert front_statistics(fronts().assign(front=None), ["method"]).empty
+
+
+def test_a_year_of_voyages():
+    rows = pd.DataFrame(
+        {"ship": ["a", "a"], "time_h": [190.0, 210.0], "distance_nm": [2000.0, 2400.0],
+         "fuel_t": [90.0, 110.0], "co2_t": [300.0, 320.0], "cost_usd": [None, None]}
+    )  # fmt: skip
+    ship = Ship.load("kvlcc2")
+    annual = checked_annual({"port_h": 19.0})
+    table = annual_figures(rows, ["ship"], {"a": ship}, annual)
+    row = table.iloc[0]
+    assert row["voyages_per_year"] == pytest.approx(8760.0 / 219.0)  # 40
+    assert (row["distance_nm"], row["fuel_t"], row["co2_t"]) == pytest.approx((88e3, 4e3, 12.4e3))
+    deadweight = ship.file.hull.deadweight_t
+    assert row["cii"] == pytest.approx(12.4e9 / (deadweight * 88e3))
+    assert row["cii_rating"] in "ABCDE"
+
+
+@pytest.mark.parametrize("given", [{"port": 1}, {"port_h": -1}, {"year": 1990}, 3])
+def test_wrong_annual_entries(given):
+    with pytest.raises(InputError, match="annual"):
+        Study.from_dict({"voyage": {"start": "A", "goal": "B"}, "annual": given})
+
+
+def test_tables_and_plots_are_written(tmp_path):
+    nothing = pd.DataFrame()
+    table = front_statistics(fronts(), ["method", "seed"])
+    summary = StudySummary(
+        pd.DataFrame({"voyages": [3]}), nothing, nothing, table, pd.DataFrame({"fuel_t": [1.0]})
+    )
+    names = {path.name for path in summary.write(tmp_path)}
+    assert names == {"summary.csv", "refusals.csv", "fronts.csv", "annual.csv", "fronts.png"}
+    assert len((tmp_path / "fronts.csv").read_text().splitlines()) == 4
