@@ -154,10 +154,8 @@ def warn_renamed(old: str, new: str, *, level: int = 3) -> None:
 
     Parameters
     ----------
-    old, new : str
-        Dotted names.
-    level : int
-        Frames between this call and the caller's code.
+    old, new : Dotted names.
+    level : Frames between this call and the caller's code.
     """
     warnings.warn(
         f"{old} is deprecated and will be removed in version 0.3; use {new}.",
@@ -171,10 +169,8 @@ def renamed(package: str, *, level: int = 3) -> Callable[[str], Any]:
 
     Parameters
     ----------
-    package : str
-        A key of `MOVED`, or a package: that which once had the names.
-    level : int
-        Frames between the warning and the caller's code.
+    package : A key of `MOVED`, or a package: that which once had the names.
+    level : Frames between the warning and the caller's code.
 
     Returns
     -------
@@ -198,8 +194,7 @@ def renamed_arguments(**names: str) -> Callable[[_Function], _Function]:
 
     Parameters
     ----------
-    **names : str
-        Old name = new name.
+    **names : Old name = new name.
 
     Returns
     -------

@@ -31,10 +31,8 @@ def lazy_exports(package: str, folder: str) -> tuple[Callable[[str], Any], list[
 
     Parameters
     ----------
-    package : str
-        Its dotted name.
-    folder : str
-        Its ``__path__[0]``.
+    package : Its dotted name.
+    folder : Its ``__path__[0]``.
 
     Returns
     -------

@@ -44,16 +44,12 @@ class PortApproach:
 
     Attributes
     ----------
-    port : Port
     line : tuple of (lat, lon)
         From the berth to the sea end [deg].
     half_width : float
         Least distance from the charted part of the line to land [m]; NaN if none is charted.
-    quality : str
-        "computed", "by hand" or "checked" (by hand and compared with a source).
-    source : str
-    max_draught, max_length : float
-        Of ships, in the World Port Index [m]; NaN where unknown.
+    quality : "computed", "by hand" or "checked" (by hand and compared with a source).
+    max_draught, max_length : Of ships, in the World Port Index [m]; NaN where unknown.
     """
 
     port: Port
@@ -115,10 +111,8 @@ class PortApproaches:
 
         Parameters
         ----------
-        lat, lon : float
-            Position [deg].
-        within : float
-            Largest distance [m].
+        lat, lon : Position [deg].
+        within : Largest distance [m].
         """
         ports = self._ports_with_approach
         near = np.abs(ports[1] - lat) * METRES_PER_DEGREE <= 1.01 * within
@@ -227,9 +221,7 @@ def line_between(
 
     Parameters
     ----------
-    start, goal : PortApproach
-    legs_blocked : callable
-        Test of legs, as of `thalweg.chart.Chart`.
+    legs_blocked : Test of legs, as of `thalweg.chart.Chart`.
 
     Returns
     -------

@@ -29,10 +29,8 @@ def land_polygons(rings: Rings, south: float, north: float, west: float, east: f
 
     Parameters
     ----------
-    rings : Rings
-        Outlines of land.
-    south, north, west, east : float
-        The box [deg]; east below west means across the antimeridian.
+    rings : Outlines of land.
+    south, north, west, east : The box [deg]; east below west means across the antimeridian.
     """
     import shapely
 

@@ -34,20 +34,14 @@ class Canal:
 
     Parameters
     ----------
-    name : str
-        Short name, by which it is forbidden: "suez".
-    title : str
-        Name in full.
+    name : Short name, by which it is forbidden: "suez".
+    title : Name in full.
     path : tuple of (lat, lon)
         Centre line [deg], from open water at one end to open water at the other.
-    transit_time : float
-        Time from end to end [s], without waiting for a convoy or a lock.
-    fee : float
-        Mean dues of one transit [USD].
-    max_draught, max_beam : float
-        Largest draught and beam allowed [m]; inf where there is no limit.
-    source : str
-        Sources of the figures, with dates.
+    transit_time : Time from end to end [s], without waiting for a convoy or a lock.
+    fee : Mean dues of one transit [USD].
+    max_draught, max_beam : Largest draught and beam allowed [m]; inf where there is no limit.
+    source : Sources of the figures, with dates.
 
     Raises
     ------
@@ -163,7 +157,6 @@ def canal_index_of_legs(
 
     Parameters
     ----------
-    canals : sequence of Canal
     lat1, lon1, lat2, lon2 : array_like
         Ends of legs [deg]; they broadcast.
 

@@ -30,8 +30,7 @@ class CoastalFetch:
 
     Parameters
     ----------
-    chart : Chart
-        Its coastline; zones, offing and canals do not count.
+    chart : Its coastline; zones, offing and canals do not count.
     """
 
     def __init__(self, chart: Chart) -> None:

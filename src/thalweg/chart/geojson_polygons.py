@@ -35,8 +35,7 @@ def read_features(
     ----------
     source : path, str or mapping
         A file, or GeoJSON as plain data.
-    what : str
-        Name of the source, for messages.
+    what : Name of the source, for messages.
 
     Returns
     -------
@@ -114,10 +113,8 @@ def parse_polygons(geometry: Mapping[str, Any], what: str, *, repair: bool = Tru
     ----------
     geometry : mapping
         A GeoJSON geometry.
-    what : str
-        Name of the geometry, for messages.
-    repair : bool, optional
-        Repair invalid outlines, with a warning.
+    what : Name of the geometry, for messages.
+    repair : Repair invalid outlines, with a warning.
 
     Returns
     -------

@@ -51,12 +51,9 @@ class OffingDisc:
 
     Attributes
     ----------
-    lat, lon : float
-        Centre [deg].
-    least : float
-        Least distance from land inside [m].
-    radius : float
-        Radius [m]; outside, the required distance grows by half a metre a metre.
+    lat, lon : Centre [deg].
+    least : Least distance from land inside [m].
+    radius : Radius [m]; outside, the required distance grows by half a metre a metre.
     """
 
     lat: float
@@ -157,11 +154,9 @@ def disc_at(coastline: Coastline, place: Position, *, radius: float = 0.0) -> Of
 
     Parameters
     ----------
-    coastline : Coastline
     place : (lat, lon)
         The end [deg].
-    radius : float, optional
-        Within this distance [m] of the end any distance from land is allowed.
+    radius : Within this distance [m] of the end any distance from land is allowed.
     """
     shore = float(coastline.shore_distance(*place, cap=MAX_OFFING))
     return OffingDisc(*place, 0.0 if radius > 0.0 else _END_SHARE * shore, radius)
@@ -177,13 +172,9 @@ def offing_arrays(
 
     Parameters
     ----------
-    coastline : Coastline
-        Its distances along the passages are those that are required there.
-    offing : Offing
-    passages : sequence of Passage
-        Open passages.
-    closed : sequence of Passage, optional
-        Passages that no leg crosses; those much narrower than the offing need no line across.
+    coastline : Its distances along the passages are those that are required there.
+    passages : Open passages.
+    closed : Passages that no leg crosses; those much narrower than the offing need no line across.
     """
     wide = tuple(p for p in closed if _MARGIN * p.half_width >= offing.distance)
     gate = _gates(coastline, wide)

@@ -30,11 +30,8 @@ def passages_crossed(
 
     Parameters
     ----------
-    coastline : Coastline
-        The lines across passages end on its land.
-    passages : iterable of Passage
-    lat, lon : ndarray
-        Waypoints [deg], joined by geodesics.
+    coastline : The lines across passages end on its land.
+    lat, lon : Waypoints [deg], joined by geodesics.
 
     Returns
     -------

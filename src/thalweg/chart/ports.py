@@ -39,20 +39,13 @@ class Port:
 
     Attributes
     ----------
-    name : str
-        Name in the index.
-    country_code : str
-        ISO 3166 code of the country.
-    locode : str
-        UN/LOCODE, empty if the port has none.
-    lat, lon : float
-        Position [deg].
-    size : str
-        Harbour size of the World Port Index: large, medium, small, very small, or empty.
-    region : str
-        Coast or region of the World Port Index, or empty.
-    country_links : int
-        Countries to which searoute lists a liner connection.
+    name : Name in the index.
+    country_code : ISO 3166 code of the country.
+    locode : UN/LOCODE, empty if the port has none.
+    lat, lon : Position [deg].
+    size : Harbour size of the World Port Index: large, medium, small, very small, or empty.
+    region : Coast or region of the World Port Index, or empty.
+    country_links : Countries to which searoute lists a liner connection.
     """
 
     name: str

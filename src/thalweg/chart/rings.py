@@ -21,8 +21,7 @@ class Rings:
     lat, lon : ndarray of float
         Positions [deg]; the last of each ring repeats its first. Longitudes are continuous along
         a ring and may leave [-180, 180].
-    start : ndarray of int
-        Where each ring begins, one more than there are rings.
+    start : Where each ring begins, one more than there are rings.
     """
 
     lat: FloatArray

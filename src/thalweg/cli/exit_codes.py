@@ -25,9 +25,7 @@ def print_error(error: ThalwegError, *, as_json: bool) -> int:
 
     Parameters
     ----------
-    error : ThalwegError
-    as_json : bool
-        True: one JSON object on stdout. False: text on stderr.
+    as_json : True: one JSON object on stdout. False: text on stderr.
     """
     if as_json:
         print(json.dumps(error.as_dict(), indent=2, allow_nan=False))

@@ -14,10 +14,8 @@ def announce_compilation(*, search: bool = False, quiet: bool = False) -> None:
 
     Parameters
     ----------
-    search : bool
-        Whether the command needs the search, the largest part of the kernels.
-    quiet : bool
-        Whether to print nothing.
+    search : Whether the command needs the search, the largest part of the kernels.
+    quiet : Whether to print nothing.
     """
     if quiet or (COMPILED_FOLDER / _SEARCH_COMPILED).exists():
         return

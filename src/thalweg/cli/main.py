@@ -110,8 +110,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
     Parameters
     ----------
-    argv : sequence of str, optional
-        Arguments; default: those of the process.
+    argv : Arguments; default: those of the process.
 
     Returns
     -------

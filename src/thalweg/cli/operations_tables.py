@@ -37,11 +37,8 @@ def print_waiting_study(
 
     Parameters
     ----------
-    study : WaitingStudy
-    break_even : dict of str to list of float
-        Hotel power [W] for each rule and start, above which waiting saves nothing.
-    notes : list of str
-        Assumptions about the ships.
+    break_even : Hotel power [W] for each rule and start, above which waiting saves nothing.
+    notes : Assumptions about the ships.
     """
     from rich.console import Console
 

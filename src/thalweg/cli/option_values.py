@@ -26,12 +26,9 @@ def parse_pairs(option: str, texts: Sequence[str], form: str, example: str) -> d
 
     Parameters
     ----------
-    option : str
-        Name of the option, for the message.
-    texts : sequence of str
-        What was given.
-    form, example : str
-        How a pair is written, and an example, for the message.
+    option : Name of the option, for the message.
+    texts : What was given.
+    form, example : How a pair is written, and an example, for the message.
 
     Raises
     ------

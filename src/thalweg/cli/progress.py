@@ -21,8 +21,7 @@ class ProgressMessages:
 
     Parameters
     ----------
-    quiet : bool
-        Whether to print nothing.
+    quiet : Whether to print nothing.
     """
 
     def __init__(self, *, quiet: bool = False) -> None:

@@ -20,13 +20,9 @@ def new_table(title: str, columns: Sequence[str], *, left: Sequence[str], wrap: 
 
     Parameters
     ----------
-    title : str
-    columns : sequence of str
-        Heads of the columns.
-    left : sequence of str
-        Columns that are aligned to the left; the others hold numbers.
-    wrap : str, optional
-        The column whose cells may be broken into several lines.
+    columns : Heads of the columns.
+    left : Columns that are aligned to the left; the others hold numbers.
+    wrap : The column whose cells may be broken into several lines.
     """
     from rich import box
     from rich.table import Table
@@ -57,9 +53,7 @@ def print_plan(plan: Plan, files: Sequence[Path] = (), *, verbose: bool = False)
 
     Parameters
     ----------
-    plan : Plan
-    files : sequence of Path, optional
-        The files that were written.
+    files : The files that were written.
     verbose : bool, optional
         Whether the waypoints, the bounds, the front and the provenance follow, with all notes.
     """

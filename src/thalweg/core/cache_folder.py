@@ -20,8 +20,7 @@ def cache_folder(name: str = "") -> Path:
 
     Parameters
     ----------
-    name : str
-        Folder inside the cache; empty: the cache itself.
+    name : Folder inside the cache; empty: the cache itself.
 
     Returns
     -------

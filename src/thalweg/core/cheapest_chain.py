@@ -19,12 +19,9 @@ def cheapest_chain(count: int, steps: Steps, *, tolerance: float = 0.0) -> IntAr
 
     Parameters
     ----------
-    count : int
-        Number of indices.
-    steps : callable
-        Called once for every index that can be reached, in ascending order.
-    tolerance : float
-        Relative gain below which a chain that was found earlier stays.
+    count : Number of indices.
+    steps : Called once for every index that can be reached, in ascending order.
+    tolerance : Relative gain below which a chain that was found earlier stays.
 
     Returns
     -------

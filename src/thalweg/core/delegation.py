@@ -25,10 +25,8 @@ def delegated(
 
     Parameters
     ----------
-    function : callable
-        Takes the object or the part, then the arguments of the method.
-    part : str, optional
-        Attribute that is the first argument, such as ``layers``; by default the object itself.
+    function : Takes the object or the part, then the arguments of the method.
+    part : Attribute that is the first argument, such as ``layers``; by default the object itself.
 
     Returns
     -------
@@ -54,8 +52,7 @@ def without_first_parameter(docstring: str) -> str:
 
     Parameters
     ----------
-    docstring : str
-        The section is left out when it has one entry.
+    docstring : The section is left out when it has one entry.
 
     Returns
     -------

@@ -116,12 +116,9 @@ def close_matches(word: str, known: Iterable[str], count: int = 3) -> list[str]:
 
     Parameters
     ----------
-    word : str
-        The unknown word.
-    known : iterable of str
-        Words to compare with.
-    count : int, optional
-        Largest number of results.
+    word : The unknown word.
+    known : Words to compare with.
+    count : Largest number of results.
 
     Returns
     -------
@@ -138,12 +135,9 @@ def unknown_name_error(kind: str, word: str, known: Iterable[str]) -> InputError
 
     Parameters
     ----------
-    kind : str
-        Kind of the name, for the message, such as ``"method"``.
-    word : str
-        The unknown name.
-    known : iterable of str
-        All known names.
+    kind : Kind of the name, for the message, such as ``"method"``.
+    word : The unknown name.
+    known : All known names.
 
     Returns
     -------

@@ -15,11 +15,8 @@ def read_text_file(path: str | PathLike[str], kind: str, largest: int = 1_000_00
 
     Parameters
     ----------
-    path : str or Path
-    kind : str
-        Kind of the file in errors, such as ``voyage``.
-    largest : int
-        Largest size [bytes].
+    kind : Kind of the file in errors, such as ``voyage``.
+    largest : Largest size [bytes].
 
     Raises
     ------

@@ -128,11 +128,6 @@ def _existing_mode(path: Path) -> int | None:
 def write_bytes(path: str | PathLike[str], data: bytes) -> None:
     """Write a file completely or not at all.
 
-    Parameters
-    ----------
-    path : str or Path
-    data : bytes
-
     Raises
     ------
     InputError
@@ -155,7 +150,6 @@ def write_csv_rows(path: str | PathLike[str], rows: Iterable[Iterable[Any]]) -> 
 
     Parameters
     ----------
-    path : str or Path
     rows : iterable of rows of cells
 
     Raises
@@ -173,14 +167,8 @@ def new_figure(width: float, height: float, **options: Any) -> Any:
 
     Parameters
     ----------
-    width, height : float
-        [inch].
-    **options
-        For ``Figure``; by default 130 dots per inch and the constrained layout.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    width, height : [inch].
+    **options : For ``Figure``; by default 130 dots per inch and the constrained layout.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -196,11 +184,8 @@ def save_figure(figure: Any, path: str | PathLike[str] | IO[bytes], **options: A
 
     Parameters
     ----------
-    figure : matplotlib.figure.Figure
-    path : str, Path or binary file
-        The suffix gives the format; without one, ``.png`` is added.
-    **options
-        For ``savefig``.
+    path : The suffix gives the format; without one, ``.png`` is added.
+    **options : For ``savefig``.
 
     Raises
     ------
@@ -253,9 +238,7 @@ def unwritable_error(kind: str, path: str | PathLike[str], why: Exception | str)
     Parameters
     ----------
     kind : {'file', 'folder'}
-    path : str or Path
-    why : exception or str
-        An `OSError`, or the reason in words.
+    why : An `OSError`, or the reason in words.
     """
     reason = why if isinstance(why, str) else getattr(why, "strerror", None) or str(why)
     possible = {

@@ -36,8 +36,7 @@ def float_array(values: ArrayLike, what: str) -> FloatArray:
     Parameters
     ----------
     values : array_like
-    what : str
-        Name of the values in errors, such as ``latitudes``.
+    what : Name of the values in errors, such as ``latitudes``.
 
     Raises
     ------

@@ -16,12 +16,7 @@ _CONTAINER_LIMITS: Final = (
 
 @cache
 def machine_memory() -> int:
-    """Return the memory of the machine, or the limit of its container where that is less [bytes].
-
-    Returns
-    -------
-    int
-    """
+    """Return the memory of the machine, or of its container where that is less [bytes]."""
     try:
         size = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, ValueError, OSError):

@@ -100,8 +100,7 @@ def evenly_spaced_subset(first: ArrayLike, second: ArrayLike, count: int) -> Int
     ----------
     first, second : array_like of float, shape (n,)
         The two objectives of a front, in any order.
-    count : int
-        Number of points, at least 2.
+    count : Number of points, at least 2.
 
     Returns
     -------

@@ -79,15 +79,8 @@ def dump_yaml(data: Any, *, sort_keys: bool = True) -> str:
 
     Parameters
     ----------
-    data : object
-        Mappings, sequences, text, numbers, booleans and None.
-    sort_keys : bool, optional
-        Sort the keys of mappings.
-
-    Returns
-    -------
-    str
-        YAML text.
+    data : Mappings, sequences, text, numbers, booleans and None.
+    sort_keys : Sort the keys of mappings.
     """
     text: str = yaml.dump(data, Dumper=StrictDumper, sort_keys=sort_keys)
     return text
@@ -98,11 +91,8 @@ def parse_yaml(text: str, kind: str, source: str) -> Any:
 
     Parameters
     ----------
-    text : str
-    kind : str
-        Kind of the file in errors, such as ``voyage``.
-    source : str
-        Name of the file in errors.
+    kind : Kind of the file in errors, such as ``voyage``.
+    source : Name of the file in errors.
 
     Returns
     -------

@@ -27,11 +27,6 @@ def parse_time(value: TimeLike) -> float:
         ISO 8601 text (``2026-01-01T00:00Z``; without a zone it is read as UTC), a datetime
         (naive ones are read as UTC) or seconds since the epoch.
 
-    Returns
-    -------
-    float
-        Seconds since 1970-01-01T00:00Z.
-
     Raises
     ------
     InputError

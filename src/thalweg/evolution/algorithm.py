@@ -22,14 +22,9 @@ class EvolutionaryAlgorithm(ABC):
 
     Parameters
     ----------
-    evaluator : Evaluator
-        Its chart and settings are used; it is not called.
-    first : Population
-        The first population; only its best tracks are used if it is larger than ``size``.
-    size : int
-        Tracks in the population (and the archive), at least 4.
-    variation_settings : VariationSettings
-    rng : numpy.random.Generator
+    evaluator : Its chart and settings are used; it is not called.
+    first : The first population; only its best tracks are used if it is larger than ``size``.
+    size : Tracks in the population (and the archive), at least 4.
 
     Examples
     --------

@@ -290,17 +290,8 @@ def run_algorithm(
 
     Parameters
     ----------
-    strategy : EvolutionaryAlgorithm
-    evaluator : Evaluator
-    limits : StoppingCriteria
-    progress : callable, optional
-        Called with an `EvolutionProgress` after every generation.
-    cancel : callable, optional
-        Called after every generation; true ends the run.
-
-    Returns
-    -------
-    RunSummary
+    progress : Called with an `EvolutionProgress` after every generation.
+    cancel : Called after every generation; true ends the run.
     """
     begun, settling = clock.perf_counter(), ConvergenceTest(limits.settled)
     generation = evaluations = 0
@@ -356,16 +347,8 @@ def verified_at_finer_spacing(
 
     Parameters
     ----------
-    evaluator : Evaluator
-    population : Population
     scores : float64 array (N, 3)
-    origin : sequence of str
-        Of each track.
-
-    Returns
-    -------
-    population, scores, origin
-        Of the tracks that are feasible.
+    origin : Of each track.
     """
     still = np.flatnonzero(scores[:, 2] == 0.0)
     if len(still):

@@ -69,10 +69,6 @@ def hypervolume_ratio(points: ArrayLike, *others: ArrayLike, reference: ArrayLik
     reference : array_like, shape (2,)
         The largest values that count.
 
-    Returns
-    -------
-    float
-
     Raises
     ------
     InputError

@@ -49,16 +49,11 @@ def initial_population(
 
     Parameters
     ----------
-    evaluator : Evaluator
-        Gives the number of settings and the most economical one.
-    seeds : sequence of Genome or Track
-        Tracks that the population contains.
-    size : int
-        Least number of tracks.
-    variation_settings : VariationSettings
-        Settings of the mutations.
-    rng : numpy.random.Generator
-        Source of random numbers.
+    evaluator : Gives the number of settings and the most economical one.
+    seeds : Tracks that the population contains.
+    size : Least number of tracks.
+    variation_settings : Settings of the mutations.
+    rng : Source of random numbers.
 
     Returns
     -------

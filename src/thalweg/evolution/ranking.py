@@ -40,7 +40,6 @@ def select_survivors(scores: FloatArray, size: int) -> tuple[IntArray, IntArray,
     Parameters
     ----------
     scores : float64 array (N, 3)
-    size : int
 
     Returns
     -------
@@ -76,8 +75,7 @@ def least_crowded_front(scores: FloatArray, size: int) -> IntArray:
     Parameters
     ----------
     scores : float64 array (N, 3)
-    size : int
-        Largest number of tracks, at least 2.
+    size : Largest number of tracks, at least 2.
 
     Returns
     -------

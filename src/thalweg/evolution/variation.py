@@ -141,14 +141,10 @@ def reproduce(
 
     Parameters
     ----------
-    population : Population
     pairs : int64 array (K, 2)
         Indices of the parents.
-    evaluator : Evaluator
-        For its chart and number of settings.
-    variation_settings : VariationSettings
-    rng : numpy.random.Generator
-        Gives each pair its own seed, so that results do not depend on threads.
+    evaluator : For its chart and number of settings.
+    rng : Gives each pair its own seed, so that results do not depend on threads.
     """
     n, capacity = len(pairs), population.capacity
     states: NDArray[np.uint64] = rng.integers(0, 2**64, size=(n, 1), dtype=np.uint64)

@@ -21,11 +21,6 @@ _BATCH: Final = 64_000_000  #: [bytes] of GRIB decoded at a time
 def read_grib_files(files: list[Path], box: BoundingBox) -> list[Any]:
     """Return the fields of GRIB files, one dataset per grid.
 
-    Parameters
-    ----------
-    files : list of Path
-    box : BoundingBox
-
     Returns
     -------
     list of xarray.Dataset
@@ -61,9 +56,7 @@ def cut_to_box(dataset: Any, box: BoundingBox) -> Any:
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        With ``latitude`` and ``longitude`` as axes, and ``valid_time`` or ``time``.
-    box : BoundingBox
+    dataset : With ``latitude`` and ``longitude`` as axes, and ``valid_time`` or ``time``.
 
     Returns
     -------
@@ -128,8 +121,7 @@ def join_pieces(pieces: list[Any]) -> list[Any]:
 
     Parameters
     ----------
-    pieces : list of xarray.Dataset
-        Results of `cut_to_box`.
+    pieces : Results of `cut_to_box`.
 
     Returns
     -------

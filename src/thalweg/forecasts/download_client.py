@@ -36,11 +36,9 @@ class DownloadPart:
 
     Attributes
     ----------
-    url : str
     ranges : tuple of (int, int)
         First byte and number of bytes of each range, ascending; empty: the whole file.
-    label : str
-        What it holds, for messages: ``waves at 2026-11-22T06:00Z``.
+    label : What it holds, for messages: ``waves at 2026-11-22T06:00Z``.
     """
 
     url: str
@@ -57,10 +55,8 @@ class DownloadClient:
 
     Parameters
     ----------
-    folder : Path, optional
-        Cache; default: ``forecasts`` in the cache of this user.
-    pause : callable
-        Waits for a number of seconds.
+    folder : Cache; default: ``forecasts`` in the cache of this user.
+    pause : Waits for a number of seconds.
 
     Raises
     ------
@@ -90,9 +86,7 @@ class DownloadClient:
 
         Parameters
         ----------
-        url : str
-        **parameters
-            Of the query.
+        **parameters : Of the query.
 
         Returns
         -------
@@ -113,10 +107,6 @@ class DownloadClient:
 
     def file(self, part: DownloadPart) -> Path:
         """Return the file of a part, downloaded unless it is in the cache.
-
-        Parameters
-        ----------
-        part : DownloadPart
 
         Returns
         -------

@@ -17,16 +17,10 @@ class DownloadPlan:
 
     Attributes
     ----------
-    parts : tuple of DownloadPart
-    bytes : float
-        Size of the download [bytes]; an estimate where the server does not state it.
-    run : float or None
-        Start of the forecast run [s since 1970]; None where the source names none.
-    times : tuple of float
-        Times that the result must have [s since 1970].
-    variables : tuple of str
-        Names of the variables that the result must have.
-    notes : tuple of str
+    bytes : Size of the download [bytes]; an estimate where the server does not state it.
+    run : Start of the forecast run [s since 1970]; None where the source names none.
+    times : Times that the result must have [s since 1970].
+    variables : Names of the variables that the result must have.
     """
 
     parts: tuple[DownloadPart, ...]
@@ -70,14 +64,7 @@ class ForecastSource(Protocol):
 
         Parameters
         ----------
-        request : ForecastRequest
-        client : DownloadClient
-        now : float
-            The present [s since 1970].
-
-        Returns
-        -------
-        DownloadPlan
+        now : The present [s since 1970].
 
         Raises
         ------
@@ -91,10 +78,7 @@ class ForecastSource(Protocol):
 
         Parameters
         ----------
-        request : ForecastRequest
-        plan : DownloadPlan
-        files : list of Path
-            One per part of the plan.
+        files : One per part of the plan.
 
         Returns
         -------

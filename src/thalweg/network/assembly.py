@@ -53,8 +53,7 @@ def allowed_legs(
 
     Parameters
     ----------
-    chart : Chart
-        Land, zones and depth.
+    chart : Land, zones and depth.
     lat, lon : ndarray (N,)
         Positions [deg].
     first, second : int array (P,)
@@ -93,10 +92,8 @@ def add_counts(total: RejectionCounts, more: RejectionCounts) -> None:
 
     Parameters
     ----------
-    total : dict
-        Counts by reason; changed in place.
-    more : dict
-        Counts to add.
+    total : Counts by reason; changed in place.
+    more : Counts to add.
     """
     for reason, count in more.items():
         total[reason] = total.get(reason, 0) + count
@@ -160,8 +157,7 @@ class DirectedEdges:
 
     Attributes
     ----------
-    graph : Graph
-        Which nodes the edges join.
+    graph : Which nodes the edges join.
     pair : int32[E]
         Pair that each edge belongs to.
     reversed : bool[E]
@@ -194,18 +190,12 @@ def assemble(
 
     Parameters
     ----------
-    chart : Chart
-        Gives depth, zones, canals and waiting places; the pairs must have been tested on it.
-    stations : Stations
-        Nodes and sample stations.
-    pairs : Pairs
-        Pairs of nodes to join.
-    samples : Samples
-        Samples of the pairs.
-    meta : NetworkMeta
-        Description of the network.
-    directed : DirectedEdges, optional
-        The directed edges of the pairs, where they are known.
+    chart : Gives depth, zones, canals and waiting places; the pairs must have been tested on it.
+    stations : Nodes and sample stations.
+    pairs : Pairs of nodes to join.
+    samples : Samples of the pairs.
+    meta : Description of the network.
+    directed : The directed edges of the pairs, where they are known.
     """
     directed = directed or directed_edges(stations.n_nodes, pairs)
     course = _with_canal_courses(stations, pairs)[directed.pair]

@@ -85,12 +85,9 @@ class ConformalProjection:
     ----------
     turn : ndarray (3, 3)
         Rows are the axes of the frame: (0, 0), a quarter round the equator, and the pole.
-    unit : float
-        One unit of x or y at the frame's equator [rad].
-    y0 : float
-        Mercator ordinate [rad] of the line y = 0.
-    around : int
-        Units of x right round the globe when the frame is closed, else 0.
+    unit : One unit of x or y at the frame's equator [rad].
+    y0 : Mercator ordinate [rad] of the line y = 0.
+    around : Units of x right round the globe when the frame is closed, else 0.
     """
 
     turn: FloatArray
@@ -149,8 +146,7 @@ def great_circle_projection(start: Position, goal: Position, spacing: float) -> 
     ----------
     start, goal : (lat, lon)
         Positions [deg], not the same.
-    spacing : float
-        Wanted unit [m]; it is adjusted so that it divides the distance.
+    spacing : Wanted unit [m]; it is adjusted so that it divides the distance.
     """
     first, last = conformal_unit_vectors(*start), conformal_unit_vectors(*goal)
     distance = float(angle_to_point(first, last))
@@ -172,12 +168,9 @@ def mercator_projection(
     ----------
     start : (lat, lon)
         Position [deg] of the origin.
-    spacing : float
-        Unit [m] at the given latitude.
-    latitude : float
-        Latitude [deg] where the unit has that length.
-    closed : bool, optional
-        Close the frame round the globe (the unit is adjusted to divide the parallel).
+    spacing : Unit [m] at the given latitude.
+    latitude : Latitude [deg] where the unit has that length.
+    closed : Close the frame round the globe (the unit is adjusted to divide the parallel).
     """
     east = conformal_unit_vectors(0.0, start[1])
     turn = np.stack([east, np.cross([0.0, 0.0, 1.0], east), [0.0, 0.0, 1.0]])

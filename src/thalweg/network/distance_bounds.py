@@ -28,13 +28,7 @@ def distance_bounds(lat: ArrayLike, lon: ArrayLike, to_lat: float, to_lon: float
     ----------
     lat, lon : array_like
         Positions [deg].
-    to_lat, to_lon : float
-        The other position [deg].
-
-    Returns
-    -------
-    ndarray
-        Lower bounds [m].
+    to_lat, to_lon : The other position [deg].
     """
     phi, to_phi = np.radians(np.asarray(lat, float)), np.radians(to_lat)
     half_dlon = 0.5 * np.radians(np.asarray(lon, float) - to_lon)

@@ -47,8 +47,7 @@ def check_endpoints(chart: Chart, start: Position, goal: Position) -> tuple[Posi
 
     Parameters
     ----------
-    chart : Chart
-        Tests that both positions are on navigable water.
+    chart : Tests that both positions are on navigable water.
     start, goal : (lat, lon)
         Positions [deg].
 
@@ -95,16 +94,11 @@ def links_to_nodes(
 
     Parameters
     ----------
-    chart : Chart
-        Tests every link exactly.
-    lat, lon : ndarray
-        Positions [deg]; the nodes are the first ``n_nodes``.
-    point : int
-        Index of the position to link.
-    n_nodes : int
-        Number of nodes that may be linked.
-    reach : float
-        Largest length [m]; doubled up to four times until a link is allowed.
+    chart : Tests every link exactly.
+    lat, lon : Positions [deg]; the nodes are the first ``n_nodes``.
+    point : Index of the position to link.
+    n_nodes : Number of nodes that may be linked.
+    reach : Largest length [m]; doubled up to four times until a link is allowed.
 
     Returns
     -------

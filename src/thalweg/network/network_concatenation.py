@@ -20,12 +20,9 @@ class CanalLink:
 
     Attributes
     ----------
-    length : float
-        [m].
-    transit_time : float
-        Time from one end to the other, the same for all ships [s].
-    fee : float
-        [USD].
+    length : [m].
+    transit_time : Time from one end to the other, the same for all ships [s].
+    fee : [USD].
     """
 
     length: float
@@ -38,8 +35,7 @@ def concatenate_networks(networks: Sequence[Network], links: Sequence[CanalLink 
 
     Parameters
     ----------
-    networks : sequence of Network
-        Each with its start and goal.
+    networks : Each with its start and goal.
     links : sequence of CanalLink or None, one fewer
         Canal from each network to the next; None where the goal of the one is the start of the
         other.

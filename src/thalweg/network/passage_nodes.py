@@ -26,8 +26,7 @@ class PassageNodes(NamedTuple):
 
     Attributes
     ----------
-    lat, lon : float64[n]
-        [deg].
+    lat, lon : float64[n] [deg]
     joined : bool[n]
         Whether each is on the same passage as the one before.
     """

@@ -43,12 +43,10 @@ def shortest_path_tree(graph: Graph, weight: FloatArray, root: int) -> ShortestP
 
     Parameters
     ----------
-    graph : Graph
-        Nodes and directed edges.
+    graph : Nodes and directed edges.
     weight : ndarray (E,)
         Weight of every edge, not negative; edges of infinite weight are not used.
-    root : int
-        Node from which the paths start.
+    root : Node from which the paths start.
     """
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import dijkstra

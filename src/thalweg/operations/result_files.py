@@ -23,9 +23,7 @@ def write_project_files(result: ProjectResult, folder: str | Path) -> list[Path]
 
     Parameters
     ----------
-    result : ProjectResult
-    folder : path
-        Created if it does not exist.
+    folder : Created if it does not exist.
 
     Raises
     ------
@@ -49,11 +47,8 @@ def write_waiting_files(study: WaitingStudy, folder: str | Path, *, title: str =
 
     Parameters
     ----------
-    study : WaitingStudy
-    folder : path
-        Created if it does not exist.
-    title : str
-        Title of the plot.
+    folder : Created if it does not exist.
+    title : Title of the plot.
 
     Raises
     ------
@@ -73,9 +68,7 @@ def write_track_files(analysis: TrackAnalysis, folder: str | Path) -> list[Path]
 
     Parameters
     ----------
-    analysis : TrackAnalysis
-    folder : path
-        Created if it does not exist.
+    folder : Created if it does not exist.
 
     Raises
     ------

@@ -34,12 +34,9 @@ class ApproachSailing:
 
     Attributes
     ----------
-    outward, inward : PortApproach or None
-        Of the port of departure and of arrival.
-    setting : int
-        Speed setting of the track: the slowest that reaches the speed of approaches.
-    speed : float
-        Over ground [m/s].
+    outward, inward : Of the port of departure and of arrival.
+    setting : Speed setting of the track: the slowest that reaches the speed of approaches.
+    speed : Over ground [m/s].
     """
 
     outward: PortApproach | None
@@ -91,12 +88,9 @@ class ApproachSailing:
 
         Parameters
         ----------
-        plan : Plan
-            Of `voyage_at_sea`.
-        voyage : Voyage
-            The request.
-        context : PlanningContext
-            With a chart that has the approaches.
+        plan : Of `voyage_at_sea`.
+        voyage : The request.
+        context : With a chart that has the approaches.
         """
         plots = plan.plot_context and _with_approach_lines(plan.plot_context, context)
         if self.outward is None and self.inward is None:

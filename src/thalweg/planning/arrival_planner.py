@@ -39,13 +39,8 @@ class ArrivalRequest:
 
     Attributes
     ----------
-    voyage : Voyage
-        With `arrive`.
-    ship : Ship
-    sea : Sea
-    chart : Chart
-    plan_one : callable
-        Plans a voyage without `arrive` for a ship.
+    voyage : With `arrive`.
+    plan_one : Plans a voyage without `arrive` for a ship.
     """
 
     voyage: Voyage
@@ -78,10 +73,6 @@ def plan_arrival(request: ArrivalRequest) -> Plan:
     With an objective that chooses the speeds this is the latest arrival. Otherwise one speed or
     power is held: with a departure it is found so that the ship arrives in the minute before the
     time; without one the latest departure is found.
-
-    Parameters
-    ----------
-    request : ArrivalRequest
 
     Returns
     -------

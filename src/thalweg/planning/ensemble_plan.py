@@ -39,19 +39,13 @@ class EnsembleCandidate:
 
     Attributes
     ----------
-    member : int
-        Member of the plan.
-    plan : Plan
-    index : int
-        Place of the route in the plan.
-    route : Route
-    distribution : EnsembleResult
-        The route in all members.
+    member : Member of the plan.
+    index : Place of the route in the plan.
+    distribution : The route in all members.
     time, value : float
         Time [h] and objective over the members in which the route can be sailed, by the measure of
         the voyage; those of the plan if there is no such member.
-    time_risk, value_risk : float
-        The same over all members: inf if one of them is infeasible.
+    time_risk, value_risk : The same over all members: inf if one of them is infeasible.
     """
 
     member: int
@@ -77,12 +71,8 @@ def plan_ensemble(
 
     Parameters
     ----------
-    voyage : Voyage
-    ship : Ship
-    sea : Sea
-        An ensemble.
-    plan_one : callable
-        Function that plans a voyage in one sea.
+    sea : An ensemble.
+    plan_one : Function that plans a voyage in one sea.
 
     Returns
     -------

@@ -23,9 +23,7 @@ class FrozenSea:
 
     Attributes
     ----------
-    stations : StationFields
-    top_speed : float
-        Upper bound of the speed through water [m/s].
+    top_speed : Upper bound of the speed through water [m/s].
     """
 
     stations: StationFields

@@ -28,13 +28,9 @@ def plan_off_land(
 
     Parameters
     ----------
-    context : PlanningContext
-        With a chart without an offing.
-    ends : sequence of Endpoint
-    offing : float
-        [m].
-    run : callable
-        Plans with a context.
+    context : With a chart without an offing.
+    offing : [m].
+    run : Plans with a context.
 
     Raises
     ------

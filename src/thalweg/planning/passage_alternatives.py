@@ -35,16 +35,11 @@ class PassageAlternative:
 
     Attributes
     ----------
-    without : tuple of str
-        Canals and passages that are closed; none for the shortest way.
-    passes : tuple of str
-        Canals, named passages and capes of the way, in order; canals first.
-    distance : float
-        Length of the way with approaches [m].
-    time : float
-        At the mean speed at sea of the plan, with approaches and transits of canals [s].
-    canal_dues_usd : float
-        Dues of its canals [USD].
+    without : Canals and passages that are closed; none for the shortest way.
+    passes : Canals, named passages and capes of the way, in order; canals first.
+    distance : Length of the way with approaches [m].
+    time : At the mean speed at sea of the plan, with approaches and transits of canals [s].
+    canal_dues_usd : Dues of its canals [USD].
     """
 
     without: tuple[str, ...]
@@ -101,8 +96,7 @@ def passage_alternatives(plan: PlanData) -> tuple[PassageAlternative, ...]:
 
     Parameters
     ----------
-    plan : PlanData
-        On a chart of the world's coasts.
+    plan : On a chart of the world's coasts.
 
     Returns
     -------

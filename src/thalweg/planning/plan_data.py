@@ -50,9 +50,6 @@ class PlotContext:
         Nodes of the networks [deg].
     arrival : ndarray (n,)
         Earliest arrival at the nodes [s since 1970]; inf where not reached.
-    chart : Chart
-    sea : Sea
-    ship : Ship
     """
 
     lat: np.ndarray
@@ -69,27 +66,21 @@ class PlanData:
 
     Attributes
     ----------
-    voyage : Voyage
-        The request.
-    routes : tuple of Route
-        The routes found, each scored by the referee; the first is the best.
-    proof : Proof
-        The lower bound and the solver's own total.
+    voyage : The request.
+    routes : The routes found, each scored by the referee; the first is the best.
+    proof : The lower bound and the solver's own total.
     rejections : mapping of str to int
         Number of legs rejected, by reason.
-    notes : tuple of str
-        Assumptions and warnings for the user.
+    notes : Assumptions and warnings for the user.
     provenance : mapping
         What is needed to repeat the plan: version, data fingerprints, ship, network, seed.
-    plot_context : PlotContext, optional
-        For plots; not part of the JSON.
+    plot_context : For plots; not part of the JSON.
     front : ParetoFront, optional
         Time against fuel, energy, cost or CO2, for objectives with a choice of speed. Its points
         are `routes`; with the objective ``"front"`` they are in order of time.
     ensemble : tuple of mappings
         With an ensemble forecast: the distribution of each route over the members.
-    cancelled : bool
-        Whether Ctrl-C ended planning: the routes are the best so far, as the notes state.
+    cancelled : Whether Ctrl-C ended planning: the routes are the best so far, as the notes state.
     passage_alternatives : tuple of mappings
         Other ways by distance, where they were asked for (`thalweg.planning.plan.Plan`).
     """

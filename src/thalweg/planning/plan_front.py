@@ -26,10 +26,8 @@ class BaselineComparison:
 
     Attributes
     ----------
-    routes : tuple of Route
-        Scored by the referee, one per setting that reaches the goal; by ascending time.
-    values : ndarray
-        Their values, in the unit of the front.
+    routes : Scored by the referee, one per setting that reaches the goal; by ascending time.
+    values : Their values, in the unit of the front.
     rows : tuple of dict
         Savings of the front over each: ``saved_h`` at the same value, ``saved`` (and
         ``saved_percent``) at the same time, which is ``saved_by_route`` (knowing the weather, at a
@@ -50,8 +48,7 @@ class ParetoFront:
     ----------
     criterion : {"fuel", "energy", "cost", "co2", "comfort"}
         The key figure.
-    unit : str
-        Its unit: t, MWh, or a currency.
+    unit : Its unit: t, MWh, or a currency.
     values : ndarray (n,)
         Of the routes of the plan, in their order.
     stages : tuple of str (n,)
@@ -65,8 +62,7 @@ class ParetoFront:
     lower : ndarray (2, m)
         Times [h] and values of the lower front of the network: evidence, as what happens between
         its nodes is neither searched nor bounded.
-    comparison : BaselineComparison or None
-        The weather-blind route in the same weather.
+    comparison : The weather-blind route in the same weather.
     certain : ndarray (2, m)
         Times [h] and values of a front below every route, to be joined by lines.
     """
@@ -159,11 +155,6 @@ def knee(time: FloatArray, value: FloatArray) -> int:
         Times of the points, ascending.
     value : ndarray (n,)
         Values of the points, descending.
-
-    Returns
-    -------
-    int
-        Index of the point.
     """
     if len(time) < 3:
         return 0

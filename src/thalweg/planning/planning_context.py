@@ -24,10 +24,8 @@ class ShipTables:
 
     Attributes
     ----------
-    speed : PerformanceTable
-        Speed through water [m/s].
-    setting : int
-        Speed setting of a search at one setting; by default the highest.
+    speed : Speed through water [m/s].
+    setting : Speed setting of a search at one setting; by default the highest.
     """
 
     speed: PerformanceTable
@@ -40,18 +38,9 @@ class PlanningContext:
 
     Attributes
     ----------
-    voyage : Voyage
-    ship : Ship
-    sea : Sea
-    chart : Chart
-    needs : Requirements
-        Channels of the sea, limits and the end of the data.
-    tables : ShipTables
-    choice : NetworkChoice
-    report_progress : callable
-        Called with a short text at each stage.
-    proof_seconds : float or None
-        Time for the certificate of a lower bound [s]; None for that of the search.
+    needs : Channels of the sea, limits and the end of the data.
+    report_progress : Called with a short text at each stage.
+    proof_seconds : Time for the certificate of a lower bound [s]; None for that of the search.
     """
 
     voyage: Voyage

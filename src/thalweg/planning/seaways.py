@@ -38,12 +38,9 @@ class Seaways:
 
     Attributes
     ----------
-    chart : Chart
-        Without the passages for small or local ships.
-    canals : tuple of str
-        Names of canals of the chart that are not used.
-    passages : tuple of str
-        Names of passages of the chart that are not used.
+    chart : Without the passages for small or local ships.
+    canals : Names of canals of the chart that are not used.
+    passages : Names of passages of the chart that are not used.
     """
 
     chart: Chart
@@ -56,11 +53,8 @@ class Seaways:
 
         Parameters
         ----------
-        chart : Chart
-        avoid : sequence of str
-            Names of canals and passages; "all" for all canals.
-        opened : sequence of str, optional
-            Passages for small or local ships that may be used.
+        avoid : Names of canals and passages; "all" for all canals.
+        opened : Passages for small or local ships that may be used.
 
         Raises
         ------
@@ -88,7 +82,6 @@ class Seaways:
 
         Parameters
         ----------
-        start, goal : Endpoint
         offing : float
             Distance from land [m] that is kept outside passages, ends and canals where the
             graph has water so far from land.

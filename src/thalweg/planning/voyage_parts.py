@@ -37,11 +37,8 @@ class Itinerary:
     Parameters
     ----------
     start, goal : (lat, lon) or str
-    via : sequence of places
-    forbid : sequence of str
-        Canals that may not be used.
-    open, avoid : sequence of str
-        Passages that are opened, and passages and canals that may not be used.
+    forbid : Canals that may not be used.
+    open, avoid : Passages that are opened, and passages and canals that may not be used.
     """
 
     start: Place
@@ -74,16 +71,7 @@ class Itinerary:
 
 @dataclass(frozen=True, kw_only=True)
 class Schedule:
-    """When a voyage departs and arrives, and whether it may wait on the way.
-
-    Parameters
-    ----------
-    depart : time, optional
-    depart_window : pair of times, optional
-    arrive_by : time, optional
-    arrive : time, optional
-    wait : bool
-    """
+    """When a voyage departs and arrives, and whether it may wait on the way."""
 
     depart: TimeLike | None = None
     depart_window: tuple[TimeLike, TimeLike] | None = None
@@ -155,11 +143,8 @@ class VoyagePrices:
 
     Parameters
     ----------
-    fuel_price_usd : float, optional
-        [USD/t].
-    eca_price_factor : float, optional
-    time_price_usd_per_h : float, optional
-        [USD/h].
+    fuel_price_usd : [USD/t].
+    time_price_usd_per_h : [USD/h].
     """
 
     fuel_price_usd: float | None = None
@@ -190,19 +175,13 @@ class SearchRequest:
     objective : {"time", "distance", "fuel", "energy", "cost", "co2", "comfort", "front"}
     method : {"default", "exact", "nsga2", "spea2", "mpaes"}
     ensemble : {"mean", "cvar"}, optional
-    seed : int
-    speed_kn : float, optional
-        [kn].
+    speed_kn : [kn].
     hold : {"speed", "power", "ground"}, optional
-    min_ukc_m : float, optional
-        [m].
-    speed_block_h : float, optional
-        [h].
-    offing_nm : float, optional
-        [nm].
+    min_ukc_m : [m].
+    speed_block_h : [h].
+    offing_nm : [nm].
     layered : LayeredRequest or mapping, optional
         Shape of a layered network.
-    ignore_shoals, ignore_lanes : bool
     """
 
     objective: VoyageObjective = "time"

@@ -40,8 +40,7 @@ class CanalLegs:
     ----------
     number : int64 array (legs,)
         Index into ``canals``; -1 for legs at sea.
-    canals : tuple of Canal
-        Those of the chart, then the legs along approaches.
+    canals : Those of the chart, then the legs along approaches.
     backward : bool array (legs,)
         Whether the canal is passed from its last position to its first.
     """
@@ -129,15 +128,9 @@ def canal_legs(track: Track, chart: Chart | None, ship: Ship | None = None) -> C
 
     Parameters
     ----------
-    track : Track
-    chart : Chart or None
     ship : Ship, optional
         With a ship, legs along approaches of the chart are included: they are sailed at
         `thalweg.chart.approaches.MAX_APPROACH_SPEED`, or the ordered speed if that is lower.
-
-    Returns
-    -------
-    CanalLegs
     """
     none = np.full(len(track) - 1, -1, np.int64)
     legs = CanalLegs(none, (), none < -1)
@@ -170,11 +163,6 @@ def _with_approach_legs(legs: CanalLegs, track: Track, chart: Chart, ship: Ship)
 def approach_speed(ship: Ship, setting: int) -> float:
     """Return the speed over ground in approaches [m/s] at a speed setting.
 
-    Parameters
-    ----------
-    ship : Ship
-    setting : int
-
     Returns
     -------
     float
@@ -203,11 +191,6 @@ def _through_canals(track: Track, chart: Chart) -> CanalLegs:
 def sea_stretches(track: Track, chart: Chart | None) -> list[tuple[int, int]]:
     """Return (first waypoint, last waypoint) of the stretches of a track between canals.
 
-    Parameters
-    ----------
-    track : Track
-    chart : Chart or None
-
     Returns
     -------
     list of (int, int)
@@ -224,11 +207,6 @@ def sea_stretches(track: Track, chart: Chart | None) -> list[tuple[int, int]]:
 def canal_ends(track: Track, chart: Chart | None) -> NDArray[np.bool_]:
     """Return which waypoints are ends of canal legs.
 
-    Parameters
-    ----------
-    track : Track
-    chart : Chart or None
-
     Returns
     -------
     bool array (n,)
@@ -239,11 +217,6 @@ def canal_ends(track: Track, chart: Chart | None) -> NDArray[np.bool_]:
 
 def canal_setting(ship: Ship, canal: Canal) -> int:
     """Return the slowest setting that reaches a canal's mean speed; the highest if none does.
-
-    Parameters
-    ----------
-    ship : Ship
-    canal : Canal
 
     Returns
     -------
@@ -260,15 +233,6 @@ def canal_rates(ship: Ship, canal: Canal) -> tuple[float, float]:
 
     Those of calm, deep water at the canal's setting. Ships whose speed is a field take their only
     one. In approaches they are those at the very speed, if the ship can be ordered to sail it.
-
-    Parameters
-    ----------
-    ship : Ship
-    canal : Canal
-
-    Returns
-    -------
-    power, fuel_rate : float
     """
     setting = canal_setting(ship, canal)
     if isinstance(canal, ApproachLeg) and ship.speed_field is None:

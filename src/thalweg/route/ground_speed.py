@@ -37,17 +37,14 @@ def at_constant_ground_speed(
 
     Parameters
     ----------
-    route : Route
-        As sailed at other speeds.
-    speed : float
-        Over ground [m/s].
+    route : As sailed at other speeds.
+    speed : Over ground [m/s].
     evaluate_track : callable
         Scores a track with ordered speeds (the referee with a ship whose speeds can be ordered at
         will, the sea and the chart).
     ordered_range : (float, float)
         Lowest and highest speed that can be ordered [m/s].
-    longest_leg : float
-        Longest time with one ordered speed [s].
+    longest_leg : Longest time with one ordered speed [s].
 
     Returns
     -------

@@ -84,12 +84,7 @@ def named_columns(legs: Mapping[str, Any], kind: str) -> dict[str, Any]:
     ----------
     legs : mapping of str to array
         Columns.
-    kind : str
-        Such as ``squared_dose``.
-
-    Returns
-    -------
-    dict of str to array
+    kind : Such as ``squared_dose``.
     """
     return {
         key.partition(":")[2]: values for key, values in legs.items() if key.startswith(kind + ":")
@@ -106,12 +101,9 @@ def indicator_value(route: RefereedRoute, name: str, at: str | None = None) -> f
 
     Parameters
     ----------
-    route : Route
-        Scored by the referee.
-    name : str
-        Among `INDICATORS`; ``comfort`` is the squared dose [m2/s3].
-    at : str, optional
-        Place or task, for those that have one; by default the first of the ship file.
+    route : Scored by the referee.
+    name : Among `INDICATORS`; ``comfort`` is the squared dose [m2/s3].
+    at : Place or task, for those that have one; by default the first of the ship file.
 
     Returns
     -------
@@ -223,8 +215,7 @@ def indicator_table(route: RefereedRoute) -> dict[str, Any]:
 
     Parameters
     ----------
-    route : Route
-        Scored by the referee.
+    route : Scored by the referee.
 
     Returns
     -------

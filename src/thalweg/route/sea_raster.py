@@ -24,12 +24,9 @@ class RasterSize:
 
     Attributes
     ----------
-    margin : float
-        Margin on all sides, as a fraction of the longer side of the box of the tracks.
-    min_cells, max_cells : int
-        Least and greatest number of cells along the longer side of that box.
-    largest : int
-        Greatest number of values in the raster.
+    margin : Margin on all sides, as a fraction of the longer side of the box of the tracks.
+    min_cells, max_cells : Least and greatest number of cells along the longer side of that box.
+    largest : Greatest number of values in the raster.
     """
 
     margin: float
@@ -52,20 +49,12 @@ def freeze_raster(
 
     Parameters
     ----------
-    sea : Sea
     lat, lon : float64 array
         Positions [deg]; longitudes without jumps.
-    period : tuple of float
-        First and last time [s since 1970-01-01T00:00Z].
-    channels : sequence of int
-        Channels to freeze (see `thalweg.kernels.codes`).
-    size : RasterSize
+    period : First and last time [s since 1970-01-01T00:00Z].
+    channels : Channels to freeze (see `thalweg.kernels.codes`).
     extra : mapping of int to callable, optional
         Further channels, as in `Sea.freeze_grid`.
-
-    Returns
-    -------
-    GridFields
     """
     extent = max(float(np.ptp(lat)), float(np.ptp(lon)), 1e-5)
     margin = size.margin * extent

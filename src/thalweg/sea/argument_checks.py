@@ -17,8 +17,7 @@ def parse_area(area: tuple[float, float, float, float] | BoundingBox | None) -> 
 
     Parameters
     ----------
-    area : tuple of float, BoundingBox or None
-        (south, north, west, east) [deg].
+    area : (south, north, west, east) [deg].
 
     Returns
     -------
@@ -52,8 +51,7 @@ def parse_period(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float
 
     Parameters
     ----------
-    period : tuple of time or None
-        Start and end; None stays None.
+    period : Start and end; None stays None.
 
     Raises
     ------
@@ -82,10 +80,8 @@ def parse_time_step(time_step: float | None, *, least: float = 0.0) -> float | N
 
     Parameters
     ----------
-    time_step : float or None
-        Time step [s]; None stays None.
-    least : float
-        Smallest allowed step [s].
+    time_step : Time step [s]; None stays None.
+    least : Smallest allowed step [s].
 
     Raises
     ------

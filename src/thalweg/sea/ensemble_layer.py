@@ -27,13 +27,7 @@ from thalweg.sea.triangle_mesh import Mesh
 
 @dataclass(frozen=True, eq=False)
 class EnsembleLayer:
-    """Several versions of one layer, on one grid and one time axis.
-
-    Attributes
-    ----------
-    member_layers : tuple of Layer
-        One layer for each member.
-    """
+    """Several versions of one layer, on one grid and one time axis."""
 
     member_layers: tuple[Layer, ...]
 
@@ -142,10 +136,8 @@ def select_member(layers: Sequence[Layer], index: int) -> tuple[Layer, ...]:
 
     Parameters
     ----------
-    layers : sequence of Layer
-        Layers, of which at least one is an ensemble.
-    index : int
-        From 0 to the number of members minus 1.
+    layers : Layers, of which at least one is an ensemble.
+    index : From 0 to the number of members minus 1.
 
     Raises
     ------
@@ -181,8 +173,7 @@ def ensemble_layers(seas: Sequence[Sequence[Layer]]) -> tuple[Layer, ...]:
 
     Parameters
     ----------
-    seas : sequence of sequence of Layer
-        The layers of each member.
+    seas : The layers of each member.
 
     Raises
     ------
@@ -216,8 +207,7 @@ def combine_member_layers(layers: Sequence[Layer]) -> Layer:
 
     Parameters
     ----------
-    layers : sequence of Layer
-        The layer of each member.
+    layers : The layer of each member.
 
     Raises
     ------

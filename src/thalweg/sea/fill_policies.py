@@ -57,8 +57,7 @@ def layers_filled(
 
     Parameters
     ----------
-    layers : sequence of Layer
-        In order of priority.
+    layers : In order of priority.
     policies : mapping
         Values by policy (see `thalweg.sea.Sea.filled`).
 
@@ -197,10 +196,8 @@ def fill_values(policy: str, value: float | tuple[float, float] | str) -> dict[s
 
     Parameters
     ----------
-    policy : str
-        "currents", "wind", "waves", "water_level" or "ice".
-    value : float or tuple of float
-        A value, or (east, north) of a vector [m/s].
+    policy : "currents", "wind", "waves", "water_level" or "ice".
+    value : A value, or (east, north) of a vector [m/s].
 
     Raises
     ------
@@ -246,10 +243,8 @@ def fill_hint(missing: Sequence[str], known: frozenset[str]) -> str:
 
     Parameters
     ----------
-    missing : sequence of str
-        Canonical names that a sea lacks.
-    known : frozenset of str
-        Canonical names that it holds.
+    missing : Canonical names that a sea lacks.
+    known : Canonical names that it holds.
     """
     lacking = set(missing)
     hints = []

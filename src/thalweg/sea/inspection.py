@@ -25,10 +25,8 @@ class DataGap:
 
     Attributes
     ----------
-    source : str
-        File names.
-    after, before : float
-        Last time before and first time after the gap [s since epoch].
+    source : File names.
+    after, before : Last time before and first time after the gap [s since epoch].
     """
 
     source: str
@@ -42,21 +40,17 @@ class Inspection:
 
     Attributes
     ----------
-    recognised : tuple of RecognisedVariable
-        Variables that are used.
+    recognised : Variables that are used.
     ignored : tuple of (file, variable, reason)
         Variables that are not used.
-    coverage : tuple of Coverage
-        Where and when each variable is known.
+    coverage : Where and when each variable is known.
     missing : mapping of str to float
         Fraction of grid points without a value (land, ice, gaps), 0 to 1, by source and variable,
         measured at up to 8 times spread over the period.
     ranges : mapping of str to (float, float)
         Least and greatest value [SI] at these times, by source and variable.
-    gaps : tuple of DataGap
-        Gaps in time axes; values are not interpolated across them.
-    members : int
-        Size of the ensemble, of which the first member is reported; 0 for a single sea.
+    gaps : Gaps in time axes; values are not interpolated across them.
+    members : Size of the ensemble, of which the first member is reported; 0 for a single sea.
     """
 
     recognised: tuple[RecognisedVariable, ...]
@@ -131,8 +125,7 @@ def data_gaps(layers: Sequence[Layer]) -> tuple[DataGap, ...]:
 
     Parameters
     ----------
-    layers : sequence of Layer
-        The layers of a sea.
+    layers : The layers of a sea.
     """
     return tuple(
         DataGap(layer.source, float(layer.axis.times[k]), float(layer.axis.times[k + 1]))

@@ -71,8 +71,7 @@ def nan_pairs(samples: Samples, pairs: Sequence[tuple[str, str]]) -> Samples:
 
     Parameters
     ----------
-    samples : dict of str to ndarray
-        Values by canonical name; changed in place.
+    samples : Values by canonical name; changed in place.
     pairs : sequence of (str, str)
         Names of the components of each vector.
 

@@ -29,8 +29,7 @@ def stack_variables(layers: Sequence[Layer]) -> frozenset[str]:
 
     Parameters
     ----------
-    layers : sequence of Layer
-        Layers in order of priority.
+    layers : Layers in order of priority.
 
     Returns
     -------

@@ -25,12 +25,10 @@ def layers_of_sources(
 
     Parameters
     ----------
-    sources : sequence of path-like or xarray.Dataset
-        Met-ocean files, and files of tidal constituents at three nodes or more.
+    sources : Met-ocean files, and files of tidal constituents at three nodes or more.
     mapping : mapping of str to str or None
         Canonical name to name in the file.
-    draught : float, optional
-        Draught [m] over which currents in layers are averaged.
+    draught : Draught [m] over which currents in layers are averaged.
 
     Raises
     ------

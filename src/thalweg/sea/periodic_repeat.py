@@ -36,10 +36,8 @@ def drift_deg(period_h: float, name: str) -> float:
 
     Parameters
     ----------
-    period_h : float
-        Period [h].
-    name : str
-        Constituent.
+    period_h : Period [h].
+    name : Constituent.
 
     Returns
     -------
@@ -63,10 +61,8 @@ class RepeatedLayer:
 
     Attributes
     ----------
-    layer : Layer
-        The layer that is repeated.
-    start, length : float
-        First time [s since epoch] and period [s].
+    layer : The layer that is repeated.
+    start, length : First time [s since epoch] and period [s].
     """
 
     layer: Layer

@@ -49,14 +49,10 @@ def check_plausible(name: str, value: NDArray[Any], variables: list[str], source
 
     Parameters
     ----------
-    name : str
-        Canonical name.
-    value : array
-        Values [SI], NaN where unknown.
-    variables : list of str
-        Names in the file, for messages.
-    source : str
-        File name for messages.
+    name : Canonical name.
+    value : Values [SI], NaN where unknown.
+    variables : Names in the file, for messages.
+    source : File name for messages.
     """
     if name not in PLAUSIBLE_RANGES or value.size == 0:
         return
@@ -89,10 +85,8 @@ def without_packing_error(name: str, value: NDArray[Any]) -> NDArray[Any]:
 
     Parameters
     ----------
-    name : str
-        Canonical name.
-    value : array
-        Values [SI] that passed `check_plausible`.
+    name : Canonical name.
+    value : Values [SI] that passed `check_plausible`.
     """
     return np.maximum(value, 0.0) if name in NEVER_NEGATIVE else value
 
@@ -105,10 +99,8 @@ def unmarked_fill(value: NDArray[Any], candidates: tuple[float, ...]) -> float |
 
     Parameters
     ----------
-    value : array
-        Values in the unit of the file.
-    candidates : tuple of float
-        Positive numbers.
+    value : Values in the unit of the file.
+    candidates : Positive numbers.
     """
     if not candidates or value.size == 0:
         return None
@@ -159,12 +151,9 @@ def check_direction(value: NDArray[Any], variable: str, source: str) -> None:
 
     Parameters
     ----------
-    value : array
-        Directions [deg]; -360 to 360 is plausible.
-    variable : str
-        Name in the file.
-    source : str
-        File name for messages.
+    value : Directions [deg]; -360 to 360 is plausible.
+    variable : Name in the file.
+    source : File name for messages.
     """
     if value.size == 0:
         return

@@ -11,16 +11,11 @@ class RecognisedVariable:
 
     Attributes
     ----------
-    variable : str
-        Canonical name.
-    file_variables : tuple of str
-        Names in the file.
-    units : str
-        As spelled in the file.
-    how : str
-        How it was recognised and converted.
-    source : str
-        File names.
+    variable : Canonical name.
+    file_variables : Names in the file.
+    units : As spelled in the file.
+    how : How it was recognised and converted.
+    source : File names.
     """
 
     variable: str
@@ -36,8 +31,7 @@ class RecognitionRecord:
 
     Attributes
     ----------
-    recognised : tuple of RecognisedVariable
-        Variables that are used.
+    recognised : Variables that are used.
     ignored : tuple of (file, variable, reason)
         Variables that are not used.
     """

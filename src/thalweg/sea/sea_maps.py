@@ -45,16 +45,11 @@ class MapPanel:
 
     Attributes
     ----------
-    title, unit : str
-        Title of the panel and unit of the colour bar.
-    values : str
-        Canonical name of the quantity that is coloured.
-    arrows : tuple of str
-        Names of the components drawn as arrows; empty for none.
-    colours : str
-        Matplotlib colour map.
-    around_zero : bool
-        Whether colours are centred on zero.
+    title, unit : Title of the panel and unit of the colour bar.
+    values : Canonical name of the quantity that is coloured.
+    arrows : Names of the components drawn as arrows; empty for none.
+    colours : Matplotlib colour map.
+    around_zero : Whether colours are centred on zero.
     """
 
     title: str

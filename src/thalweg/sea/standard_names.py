@@ -34,10 +34,8 @@ class VectorNames:
 
     Attributes
     ----------
-    east, north : str
-        Canonical names of the components, pointing towards.
-    speed : str
-        CF name of its magnitude; empty for a unit vector.
+    east, north : Canonical names of the components, pointing towards.
+    speed : CF name of its magnitude; empty for a unit vector.
     towards, origin : str
         CF names of its direction [deg] given as towards and as from; empty if CF has none.
     """
@@ -120,12 +118,7 @@ def canonical_name(name: str) -> str:
 
     Parameters
     ----------
-    name : str
-        CF standard name.
-
-    Returns
-    -------
-    str
+    name : CF standard name.
 
     Examples
     --------

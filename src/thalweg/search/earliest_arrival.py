@@ -45,12 +45,9 @@ class ArrivalQuery:
 
     Attributes
     ----------
-    start, goal : int
-        Nodes; a goal of None (or -1) settles everything that can be reached.
-    depart, arrive_by : float
-        [s].
+    start, goal : Nodes; a goal of None (or -1) settles everything that can be reached.
+    depart, arrive_by : [s].
     objective : {"time", "distance"}
-    wait : bool
     method : {"astar", "dijkstra"}
     """
 
@@ -148,11 +145,7 @@ def solve_earliest_arrival(
 
     Parameters
     ----------
-    network : Network
-    given : SearchProblem
-    arrival_query : ArrivalQuery
-    shortened : float
-        Least ratio of an edge length to the geodesic between its nodes.
+    shortened : Least ratio of an edge length to the geodesic between its nodes.
     """
     check_query(network.n_nodes, arrival_query)
     goal, by_distance = arrival_query.goal_node, arrival_query.objective == "distance"

@@ -72,10 +72,8 @@ def sampled_arrivals(
 
     Parameters
     ----------
-    ship_on_network : ShipOnNetwork
-        The network, the sea frozen at its stations, and the ship at one setting.
-    departures : array_like (D,)
-        [s].
+    ship_on_network : The network, the sea frozen at its stations, and the ship at one setting.
+    departures : array_like (D,) [s]
     edges : array_like (E,), optional
         Edges (default: all).
 

@@ -130,10 +130,8 @@ class Penalties:
 
     Attributes
     ----------
-    added : float
-        Added to the time [s] or distance [m] of the known route.
-    factors : tuple of float
-        Factors of the zones.
+    added : Added to the time [s] or distance [m] of the known route.
+    factors : Factors of the zones.
     graded : bool
         Whether there are shoals, in which the factor follows the depth, or traffic lanes, in which
         it follows the course: then those of all edges count as they are.
@@ -236,12 +234,8 @@ def network_bound(
 
     Parameters
     ----------
-    network : Network
-    given : SearchProblem
-    query : ArrivalQuery
-        Ends, departure and objective.
-    penalties : Penalties, optional
-        Zones that the bound counts; edges that are partly inside one count as outside.
+    query : Ends, departure and objective.
+    penalties : Zones that the bound counts; edges that are partly inside one count as outside.
 
     Returns
     -------

@@ -107,8 +107,7 @@ class ProfileSearch:
 
         Parameters
         ----------
-        depart : float
-            [s].
+        depart : float [s]
         known : float
             An arrival that is known to be possible, or a guess [s]; it saves work.
         arrive_by : float

@@ -67,14 +67,8 @@ class WaitingSearch:
 
     Attributes
     ----------
-    network : Network
-    given : SearchProblem
-    goal : int
-    depart, horizon : float
-        [s].
-    stays : dict
-        By node, one for each time it is afloat.
-    rounds : list of DepartureRound
+    depart, horizon : [s].
+    stays : By node, one for each time it is afloat.
     counts, refused : int64 array
         Of all searches.
     """
@@ -150,17 +144,11 @@ def earliest_arrival_with_restricted_waiting(
 
     Parameters
     ----------
-    network : Network
-        Its ``can_wait`` states where, of the start too.
-    given : SearchProblem
-        Gathered without times afloat (``ends=None``).
-    start, goal : int
-    depart : float
-        [s].
-    arrive_by : float, optional
-        [s].
-    step : float, optional
-        Longest time between two rounds [s].
+    network : Its ``can_wait`` states where, of the start too.
+    given : Gathered without times afloat (``ends=None``).
+    depart : [s].
+    arrive_by : [s].
+    step : Longest time between two rounds [s].
 
     Returns
     -------

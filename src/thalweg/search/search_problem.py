@@ -71,12 +71,9 @@ class SearchProblem(NamedTuple):
 
     Attributes
     ----------
-    network, sea, ship
-        Arrays for `thalweg.kernels.search.label_setting`.
-    top_speed : float
-        Upper bound of the speed through water [m/s].
-    top_current : float
-        Largest current in the fields [m/s].
+    network, sea, ship : Arrays for `thalweg.kernels.search.label_setting`.
+    top_speed : Upper bound of the speed through water [m/s].
+    top_current : Largest current in the fields [m/s].
     """
 
     network: NetworkArrays
@@ -138,15 +135,8 @@ def sea_arrays(fields: StationFields, *, tides: bool = False) -> SeaArrays:
 
     Parameters
     ----------
-    fields : StationFields
-        The sea, frozen at the stations of a network.
-    tides : bool, optional
-        Add the extremes of the water level.
-
-    Returns
-    -------
-    SeaArrays
-        Arrays for the kernels.
+    fields : The sea, frozen at the stations of a network.
+    tides : Add the extremes of the water level.
 
     Raises
     ------
@@ -189,17 +179,9 @@ def ship_arrays(table: PerformanceTable | TableArrays, setting: int, limits: Lim
 
     Parameters
     ----------
-    table : PerformanceTable or TableArrays
-        Speed through water [m/s].
-    setting : int
-        Setting of the ship.
-    limits : Limits
-        Limits of depth, wave height and wind speed.
-
-    Returns
-    -------
-    ShipArrays
-        Arrays for the kernels.
+    table : Speed through water [m/s].
+    setting : Setting of the ship.
+    limits : Limits of depth, wave height and wind speed.
 
     Raises
     ------
@@ -232,10 +214,8 @@ def top_speed_through_water(sea: SeaArrays, top_speed: float) -> tuple[float, bo
 
     Parameters
     ----------
-    sea : SeaArrays
-        A ``SPEED_FIELD`` channel replaces the ship's own speed.
-    top_speed : float
-        Of the ship [m/s].
+    sea : A ``SPEED_FIELD`` channel replaces the ship's own speed.
+    top_speed : Of the ship [m/s].
 
     Raises
     ------
@@ -262,10 +242,8 @@ def make_search_problem(
 
     Parameters
     ----------
-    ship_on_network : ShipOnNetwork
-        The network, the sea frozen at its stations, and the ship at one setting.
-    ends : tuple of int, optional
-        Start and goal nodes.
+    ship_on_network : The network, the sea frozen at its stations, and the ship at one setting.
+    ends : Start and goal nodes.
 
     Returns
     -------

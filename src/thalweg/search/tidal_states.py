@@ -36,13 +36,9 @@ def tidal_states(
 
     Parameters
     ----------
-    network : NetworkArrays
-        One state per node.
-    sea : SeaArrays
-    required : float
-        Required depth [m]; -inf if none.
-    keep : tuple of int
-        Start and goal, which stay single: a ship is safe there.
+    network : One state per node.
+    required : Required depth [m]; -inf if none.
+    keep : Start and goal, which stay single: a ship is safe there.
 
     Returns
     -------

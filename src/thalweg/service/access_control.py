@@ -35,11 +35,6 @@ class AccessControl:
     A request states the token as ``Authorization: Bearer`` or in the cookie that the first page
     sets. The ``Host`` must be one of the service (against DNS rebinding), and a stated ``Origin``
     the service itself.
-
-    Parameters
-    ----------
-    application : ASGI application
-    settings : ServiceSettings
     """
 
     def __init__(self, application: ASGIApp, settings: ServiceSettings) -> None:

@@ -35,9 +35,7 @@ class BodyLimit:
 
     Parameters
     ----------
-    application : ASGI application
-    largest : int
-        [bytes].
+    largest : [bytes].
     """
 
     def __init__(self, application: ASGIApp, largest: int) -> None:
@@ -77,14 +75,6 @@ class BodyLimit:
 
 def create_application(settings: ServiceSettings) -> FastAPI:
     """Return the application of a service; its processes start with it.
-
-    Parameters
-    ----------
-    settings : ServiceSettings
-
-    Returns
-    -------
-    FastAPI
 
     Raises
     ------

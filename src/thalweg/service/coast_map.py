@@ -44,12 +44,7 @@ def build_cells(level: str) -> Path:
 
     Parameters
     ----------
-    level : str
-        ``c``, ``l``, ``i`` or ``h``.
-
-    Returns
-    -------
-    Path
+    level : ``c``, ``l``, ``i`` or ``h``.
     """
     folder = cells_folder(level)
     if folder.exists():

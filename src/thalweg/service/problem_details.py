@@ -39,10 +39,8 @@ class ServiceError(ThalwegError):
 
     Parameters
     ----------
-    status : int
-        HTTP status.
-    asked, possible, remedy : str
-        As in `ThalwegError`.
+    status : HTTP status.
+    asked, possible, remedy : As in `ThalwegError`.
     """
 
     def __init__(
@@ -62,9 +60,7 @@ def problem_of(error: ThalwegError, status: int = 422) -> dict[str, Any]:
 
     Parameters
     ----------
-    error : ThalwegError
-    status : int
-        HTTP status, if the error states none.
+    status : HTTP status, if the error states none.
 
     Returns
     -------

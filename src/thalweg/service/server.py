@@ -25,13 +25,9 @@ def run_server(
 
     Parameters
     ----------
-    settings : ServiceSettings
-    announce : callable
-        Takes the text with the address, for people.
-    open_page : bool
-        Whether to open the page in the browser of this computer.
-    page : str
-        Fragment of the page to open, such as ``demo``.
+    announce : Takes the text with the address, for people.
+    open_page : Whether to open the page in the browser of this computer.
+    page : Fragment of the page to open, such as ``demo``.
 
     Raises
     ------

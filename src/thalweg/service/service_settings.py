@@ -24,26 +24,16 @@ class ServiceLimits:
 
     Attributes
     ----------
-    workers : int
-        Jobs that run at the same time.
-    queue : int
-        Jobs that may wait.
-    attempts : int
-        How often a job is started whose process ends without a result.
-    job_seconds : float
-        Longest run of a job [s].
-    job_bytes : int
-        Greatest resident memory of a job [bytes].
-    upload_bytes : int
-        Largest uploaded sea or depth file [bytes].
-    store_bytes : int
-        Largest total of all uploads [bytes].
-    small_upload_bytes : int
-        Largest ship or route file, and largest body of a request [bytes].
-    worker_seconds : float
-        Longest time for one task with a file: inspection, import, one frame [s].
-    cancel_seconds : float
-        Time after which a job that is asked to stop is ended [s].
+    workers : Jobs that run at the same time.
+    queue : Jobs that may wait.
+    attempts : How often a job is started whose process ends without a result.
+    job_seconds : Longest run of a job [s].
+    job_bytes : Greatest resident memory of a job [bytes].
+    upload_bytes : Largest uploaded sea or depth file [bytes].
+    store_bytes : Largest total of all uploads [bytes].
+    small_upload_bytes : Largest ship or route file, and largest body of a request [bytes].
+    worker_seconds : Longest time for one task with a file: inspection, import, one frame [s].
+    cancel_seconds : Time after which a job that is asked to stop is ended [s].
     """
 
     workers: int = max(1, (os.cpu_count() or 2) // 2)
@@ -64,15 +54,10 @@ class ServiceSettings:
 
     Attributes
     ----------
-    folder : Path
-        Where jobs, results and uploads are kept.
-    token : str
-        Secret that every request states.
-    host, port : str, int
-        Where it listens.
-    allowed_hosts : tuple of str
-        Names under which browsers may address it, besides those of the loopback.
-    limits : ServiceLimits
+    folder : Where jobs, results and uploads are kept.
+    token : Secret that every request states.
+    host, port : Where it listens.
+    allowed_hosts : Names under which browsers may address it, besides those of the loopback.
     """
 
     folder: Path
@@ -134,14 +119,6 @@ def stored_token(folder: Path) -> str:
     """Return the token of a data folder; on first use one is made.
 
     It is kept in the file ``token``, which only its user can read.
-
-    Parameters
-    ----------
-    folder : Path
-
-    Returns
-    -------
-    str
     """
     path = make_folder(folder) / "token"
     if path.exists():

@@ -60,12 +60,7 @@ class JobChanges:
 
 
 class ServiceState:
-    """The stores and processes of a service.
-
-    Parameters
-    ----------
-    settings : ServiceSettings
-    """
+    """The stores and processes of a service."""
 
     def __init__(self, settings: ServiceSettings) -> None:
         self.settings = settings

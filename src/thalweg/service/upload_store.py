@@ -25,14 +25,10 @@ class StoredFile:
 
     Attributes
     ----------
-    id : str
-        From the SHA-256 of its content.
-    name : str
-        Its name at the client, for people.
-    path : Path
-        Where it is kept.
-    facts : dict
-        What was found in it.
+    id : From the SHA-256 of its content.
+    name : Its name at the client, for people.
+    path : Where it is kept.
+    facts : What was found in it.
     """
 
     id: str
@@ -50,15 +46,10 @@ class UploadStore:
 
     Parameters
     ----------
-    folder : Path
-    kind : str
-        For messages, such as ``sea``.
-    endings : tuple of str
-        Endings of names that are taken.
-    largest, total : int
-        Limits of one file and of all [bytes].
-    clean : bool
-        Remove what unfinished uploads have left; only the server does.
+    kind : For messages, such as ``sea``.
+    endings : Endings of names that are taken.
+    largest, total : Limits of one file and of all [bytes].
+    clean : Remove what unfinished uploads have left; only the server does.
     """
 
     def __init__(
@@ -84,9 +75,7 @@ class UploadStore:
 
         Parameters
         ----------
-        name : str
-            Name of the file at the client.
-        chunks : async iterator of bytes
+        name : Name of the file at the client.
 
         Returns
         -------

@@ -42,9 +42,7 @@ def leg_prices(objective: Objective, ship: Ship, terms: FuelTerms | None = None)
     ----------
     objective : Objective
         With a price for one of fuel, energy, cost, CO2 and comfort, and perhaps one for time.
-    ship : Ship
-    terms : FuelTerms, optional
-        Fuels and prices; by default those of the ship file.
+    terms : Fuels and prices; by default those of the ship file.
 
     Returns
     -------
@@ -115,7 +113,6 @@ def consumption_table(ship: Ship, consumption: Consumption) -> PerformanceTable:
 
     Parameters
     ----------
-    ship : Ship
     consumption : {"fuel", "energy", "cubed_speed", "squared_dose"}
 
     Returns
@@ -143,7 +140,6 @@ def calm_water_consumption(ship: Ship, consumption: Consumption) -> FloatArray:
 
     Parameters
     ----------
-    ship : Ship
     consumption : {"fuel", "energy", "cubed_speed", "squared_dose"}
 
     Returns

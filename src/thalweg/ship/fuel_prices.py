@@ -39,15 +39,10 @@ class FuelTerms:
     ----------
     outside, inside : Fuel or None
         Burnt outside and inside emission control areas; None when the ship file names none.
-    price_outside, price_inside : float
-        Per kilogram, in ``currency``; NaN when unknown.
-    eca_price_factor : float
-        Price inside over price outside; NaN where they are two prices of their own.
-    own_carbon_factor : float or None
-        CO2 per fuel [kg/kg] given for the ship itself, of the fuel burnt outside.
-    currency : str
-    time_price : float
-        Price of time (hire) [currency/s].
+    price_outside, price_inside : Per kilogram, in ``currency``; NaN when unknown.
+    eca_price_factor : Price inside over price outside; NaN where they are two prices of their own.
+    own_carbon_factor : CO2 per fuel [kg/kg] given for the ship itself, of the fuel burnt outside.
+    time_price : Price of time (hire) [currency/s].
     cubed_speed_price : float
         Price of a second of sailing per cubed ordered speed [currency/s per (m/s)^3], lambda_f of
         van Halem (2019); NaN when unknown. It is used where fuel has no price.
@@ -56,8 +51,7 @@ class FuelTerms:
         eq. 3.5; NaN when unknown. It is used where the CO2 of the fuel is unknown.
     sources : mapping of str to str
         Where the prices of ``fuel`` and ``time`` come from: "ship file" or "request".
-    charges : EuropeanCharges, optional
-        Emission allowances and FuelEU penalty, which add to the cost of fuel.
+    charges : Emission allowances and FuelEU penalty, which add to the cost of fuel.
     """
 
     outside: Fuel | None
@@ -140,8 +134,7 @@ class FuelTerms:
         what : {"fuel", "cost", "co2", "charges"}
             Mass burnt [kg], money [``currency``], CO2 [kg], or the part of the money that is
             charges of the European Union.
-        inside : bool
-            Inside an emission control area or outside.
+        inside : Inside an emission control area or outside.
 
         Returns
         -------
@@ -249,10 +242,8 @@ class FuelTerms:
         usd_per_t : float, optional
             Price of the fuel burnt outside [USD/t]; prices are in USD then. Without
             ``eca_price_factor`` the price inside follows with the same ratio.
-        eca_price_factor : float, optional
-            Price inside over price outside.
-        time_usd_per_day : float, optional
-            Price of time [USD/day].
+        eca_price_factor : Price inside over price outside.
+        time_usd_per_day : Price of time [USD/day].
 
         Raises
         ------

@@ -20,10 +20,8 @@ def with_held_speed(ship: Ship, speed_kn: float) -> Ship:
 
     Parameters
     ----------
-    ship : Ship
-        With a resistance, or with known speeds and a law of power or fuel over speed.
-    speed_kn : float
-        [kn].
+    ship : With a resistance, or with known speeds and a law of power or fuel over speed.
+    speed_kn : [kn].
 
     Returns
     -------
@@ -67,9 +65,7 @@ def with_held_power(ship: Ship, speed_kn: float) -> Ship:
 
     Parameters
     ----------
-    ship : Ship
-    speed_kn : float
-        Calm-water speed [kn].
+    speed_kn : Calm-water speed [kn].
 
     Returns
     -------

@@ -47,11 +47,9 @@ def performance_sheet(
 
     Parameters
     ----------
-    ship : Ship
     weather : mapping, optional
         Conditions by name, SI; calm and deep where not given.
-    speeds_kn : sequence of float, optional
-        Speeds through water [kn]; the ship's settings when not given.
+    speeds_kn : Speeds through water [kn]; the ship's settings when not given.
 
     Returns
     -------

@@ -42,10 +42,7 @@ class ShipInSeaway:
 
     Attributes
     ----------
-    ship : Ship
-    hull : Hull
-    conditions : Conditions
-        One of each, SI.
+    conditions : One of each, SI.
     """
 
     ship: Ship

@@ -280,8 +280,7 @@ def model_needs(model: ShipModel) -> frozenset[str]:
 
     Parameters
     ----------
-    model : ShipModel
-        Speed, power and fuel.
+    model : Speed, power and fuel.
 
     Returns
     -------
@@ -296,8 +295,6 @@ def model_with_speeds(ship: ModelledShip, speeds: ArrayLike) -> ShipModel:
 
     Parameters
     ----------
-    ship : ModelledShip
-        The ship.
     speeds : array_like
         Calm-water speeds [m/s] at the load factor, above 0; sorted, each once.
 

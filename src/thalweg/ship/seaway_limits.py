@@ -50,14 +50,10 @@ class DangerousSituationLimits:
 
     Attributes
     ----------
-    dangers : tuple of str
-        Among `DANGEROUS_SITUATIONS`.
-    roll_period : float
-        Natural roll period [s]; NaN when unknown.
-    roll_tolerance : float
-        Relative difference of periods that counts as resonance.
-    harmless_wave_height : float
-        Waves up to this height are not dangerous [m].
+    dangers : Among `DANGEROUS_SITUATIONS`.
+    roll_period : Natural roll period [s]; NaN when unknown.
+    roll_tolerance : Relative difference of periods that counts as resonance.
+    harmless_wave_height : Waves up to this height are not dangerous [m].
     """
 
     dangers: tuple[str, ...]
@@ -72,12 +68,9 @@ class AccelerationLimit:
 
     Attributes
     ----------
-    greatest : float
-        Root mean square [m/s2].
-    forward : float
-        Ahead of midship on the centre line [m].
-    weighted : bool
-        Weighted for motion sickness (W_f of ISO 2631-1).
+    greatest : Root mean square [m/s2].
+    forward : Ahead of midship on the centre line [m].
+    weighted : Weighted for motion sickness (W_f of ISO 2631-1).
     """
 
     greatest: float
@@ -119,12 +112,8 @@ class SafetyLimits:
 
     Attributes
     ----------
-    hull : MotionHull
-        At the loading of the ship file.
-    situation_limits : Circular or None
-    motions : tuple of MotionLimit
-    top_speed : float
-        Speeds beyond are taken as this in the tables of motions [m/s].
+    hull : At the loading of the ship file.
+    top_speed : Speeds beyond are taken as this in the tables of motions [m/s].
     """
 
     hull: MotionHull
@@ -243,12 +232,7 @@ def build_safety_limits(given: LimitsSection, hull: Hull, loading: Loading) -> S
 
     Parameters
     ----------
-    given : LimitsSection
-        Limits of the ship file.
-    hull : Hull
-        Its hull.
-    loading : Loading
-        Its loading.
+    given : Limits of the ship file.
 
     Returns
     -------
@@ -316,15 +300,8 @@ def natural_roll_period(hull: Hull, size: MotionHull) -> float | None:
 
     Parameters
     ----------
-    hull : Hull
-        With the roll period or GM, if known.
-    size : MotionHull
-        Dimensions of the hull [m].
-
-    Returns
-    -------
-    float or None
-        Period [s].
+    hull : With the roll period or GM, if known.
+    size : Dimensions of the hull [m].
     """
     own, gm = hull.number("roll_period_s"), hull.number("metacentric_height_m")
     if own is not None or gm is None:
@@ -351,14 +328,8 @@ def make_motion_hull(hull: Hull, loading: Loading) -> MotionHull:
 
     Parameters
     ----------
-    hull : Hull
-        Particulars; a breadth or block coefficient that is missing is estimated.
-    loading : Loading
-        Gives the draught.
-
-    Returns
-    -------
-    MotionHull
+    hull : Particulars; a breadth or block coefficient that is missing is estimated.
+    loading : Gives the draught.
 
     Raises
     ------

@@ -137,8 +137,7 @@ class Ship(ShipProperties):
         ----------
         speed_kn : float
             Calm-water speed [kn].
-        draught_m : float
-            [m].
+        draught_m : float [m]
         name : str
         speeds_kn : sequence of float, optional
             Several ordered speeds [kn]; ``speed_kn`` is then only the reference of the fuel.

@@ -16,10 +16,6 @@ _KEYS_OF_THE_EMPTY_SHIP = (
 def stated_assumptions(ship: Ship) -> list[str]:
     """Return what results of a ship must state: assumed methods, a load factor without effect.
 
-    Parameters
-    ----------
-    ship : Ship
-
     Returns
     -------
     list of str
@@ -34,10 +30,6 @@ def stated_assumptions(ship: Ship) -> list[str]:
 
 def load_factor_without_effect(ship: Ship) -> list[str]:
     """Report a load factor below 1 that has no effect, since the ship has one loading.
-
-    Parameters
-    ----------
-    ship : Ship
 
     Returns
     -------

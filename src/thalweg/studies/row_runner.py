@@ -36,10 +36,8 @@ def run_rows(rows: Sequence[StudyRow], folder: str) -> list[dict[str, Any]]:
 
     Parameters
     ----------
-    rows : sequence of StudyRow
-        Best those that share ship, sea and places: these are opened once.
-    folder : str
-        Files are relative to it.
+    rows : Best those that share ship, sea and places: these are opened once.
+    folder : Files are relative to it.
 
     Returns
     -------
@@ -54,9 +52,7 @@ def run_row(row: StudyRow, folder: str) -> dict[str, Any]:
 
     Parameters
     ----------
-    row : StudyRow
-    folder : str
-        Files are relative to it.
+    folder : Files are relative to it.
 
     Returns
     -------

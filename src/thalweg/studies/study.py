@@ -35,8 +35,7 @@ class StudyRow:
 
     Attributes
     ----------
-    id : str
-        Hash of the request: the same voyage has the same id in every study.
+    id : Hash of the request: the same voyage has the same id in every study.
     request : mapping
         ``voyage`` (the entries of a `Voyage`) and the entries of `SURROUNDINGS`; plain data.
     labels : mapping
@@ -254,16 +253,7 @@ def load_study(path: str | Path) -> Study:
 
 
 def canonical_json(value: Any) -> str:
-    """Return JSON that is the same for equal data.
-
-    Parameters
-    ----------
-    value : plain data
-
-    Returns
-    -------
-    str
-    """
+    """Return JSON that is the same for equal data."""
     return json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False)
 
 

@@ -33,13 +33,7 @@ def require_parquet() -> None:
 
 
 def write_study(study: Study, folder: Path) -> None:
-    """Write what is studied beside its results.
-
-    Parameters
-    ----------
-    study : Study
-    folder : Path
-    """
+    """Write what is studied beside its results."""
     make_folder(folder)
     data = {"version": thalweg.__version__, "folder": str(study.folder), "study": study.to_dict()}
     write_text(folder / _STUDY, json.dumps(data, indent=2, allow_nan=False) + "\n")
@@ -47,14 +41,6 @@ def write_study(study: Study, folder: Path) -> None:
 
 def read_study(folder: str | Path) -> Study:
     """Return the study of a folder with results.
-
-    Parameters
-    ----------
-    folder : path
-
-    Returns
-    -------
-    Study
 
     Raises
     ------
@@ -78,13 +64,7 @@ def write_part(rows: Sequence[dict[str, Any]], folder: Path) -> Path:
 
     Parameters
     ----------
-    rows : sequence of dict
-    folder : Path
-        Of the study.
-
-    Returns
-    -------
-    Path
+    folder : Of the study.
     """
     require_parquet()
     parts = make_folder(folder / _PARTS)
@@ -107,10 +87,8 @@ def read_parts(folder: str | Path, columns: Sequence[str] | None = None) -> pd.D
 
     Parameters
     ----------
-    folder : path
-        Of the study.
-    columns : sequence of str, optional
-        Only these.
+    folder : Of the study.
+    columns : Only these.
 
     Returns
     -------

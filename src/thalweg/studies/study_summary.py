@@ -206,8 +206,7 @@ def median_interval(values: np.ndarray, confidence: float = _CONFIDENCE) -> tupl
     Parameters
     ----------
     values : float array (n,)
-    confidence : float
-        Least coverage, 0 to 1.
+    confidence : Least coverage, 0 to 1.
 
     Returns
     -------

@@ -39,10 +39,8 @@ def build_index(rings: Rings, side: int) -> IndexArrays:
 
     Parameters
     ----------
-    rings : Rings
-        Polygons; where they overlap, the union counts (non-zero winding).
-    side : int
-        Cells along a side of each of the six faces.
+    rings : Polygons; where they overlap, the union counts (non-zero winding).
+    side : Cells along a side of each of the six faces.
     """
     if not len(rings):
         return empty_index()

@@ -30,12 +30,9 @@ class Coastline:
 
     Attributes
     ----------
-    name : str
-        Source of the polygons.
-    index : IndexArrays
-        Grid of their edges, for kernels.
-    read : callable
-        Reads the rings of the polygons.
+    name : Source of the polygons.
+    index : Grid of their edges, for kernels.
+    read : Reads the rings of the polygons.
     """
 
     name: str
@@ -48,14 +45,8 @@ class Coastline:
 
         Parameters
         ----------
-        resolution : str
-            'c', 'l', 'i', 'h' or 'f'.
-        narrows_closed : bool
-            Whether narrows that no ship should use, and dams, are land.
-
-        Returns
-        -------
-        Coastline
+        resolution : 'c', 'l', 'i', 'h' or 'f'.
+        narrows_closed : Whether narrows that no ship should use, and dams, are land.
         """
         index = gshhg_index(resolution, narrows_closed=narrows_closed)
         name = f"GSHHG {resolution}" + ("" if narrows_closed else ", narrows open")

@@ -96,14 +96,9 @@ def read_land_rings(resolution: str, *, narrows_closed: bool = True) -> Rings:
 
     Parameters
     ----------
-    resolution : str
-        'c', 'l', 'i', 'h' or 'f'.
+    resolution : 'c', 'l', 'i', 'h' or 'f'.
     narrows_closed : bool
         Whether narrows that no ship should use, and dams, are closed as well as canals.
-
-    Returns
-    -------
-    Rings
 
     Raises
     ------

@@ -25,8 +25,7 @@ def leg_status(
 
     Parameters
     ----------
-    coast : CoastArrays
-        Index of a coast.
+    coast : Index of a coast.
     lat1, lon1, lat2, lon2 : array_like
         Ends of the legs [deg].
 

@@ -41,12 +41,9 @@ def nearest_navigable(
 
     Parameters
     ----------
-    lat, lon : float
-        Position [deg].
-    largest : float
-        Largest search radius [m].
-    is_navigable, legs_blocked : callable
-        Tests of positions and of legs, as of `thalweg.chart.Chart`.
+    lat, lon : Position [deg].
+    largest : Largest search radius [m].
+    is_navigable, legs_blocked : Tests of positions and of legs, as of `thalweg.chart.Chart`.
 
     Returns
     -------
@@ -84,12 +81,9 @@ def is_joined_to_sea(
 
     Parameters
     ----------
-    lat, lon : float
-        Position on water [deg].
-    is_navigable, legs_blocked : callable
-        Tests of positions and of legs, as of `thalweg.chart.Chart`.
-    shore_distance : callable
-        Distance [m] of positions from land.
+    lat, lon : Position on water [deg].
+    is_navigable, legs_blocked : Tests of positions and of legs, as of `thalweg.chart.Chart`.
+    shore_distance : Distance [m] of positions from land.
     """
     for sizes in (_GROWING_GRIDS, _FINE_GRIDS):
         reached = None
@@ -153,12 +147,9 @@ def joined_positions(
 
     Parameters
     ----------
-    lat, lon : float
-        The place [deg], on navigable water.
-    half : float
-        Half the side of the grid [m]; it has 180 x 180 steps.
-    is_navigable, legs_blocked : callable
-        Tests of positions and of legs, as of `thalweg.chart.Chart`.
+    lat, lon : The place [deg], on navigable water.
+    half : Half the side of the grid [m]; it has 180 x 180 steps.
+    is_navigable, legs_blocked : Tests of positions and of legs, as of `thalweg.chart.Chart`.
 
     Returns
     -------

@@ -25,12 +25,9 @@ class ShoalArea:
 
     Parameters
     ----------
-    name : str
-    depth : float
-        Depth that counts where the layer has more [m].
+    depth : Depth that counts where the layer has more [m].
     outline : tuple of (lat, lon)
         Corners [deg]; edges are straight in degrees.
-    source : str
     """
 
     name: str

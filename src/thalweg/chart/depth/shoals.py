@@ -43,8 +43,7 @@ def safety_contour(draught: float) -> float:
 
     Parameters
     ----------
-    draught : float
-        [m], above 0.
+    draught : [m], above 0.
 
     Returns
     -------
@@ -62,8 +61,7 @@ class Shoals:
 
     Attributes
     ----------
-    contour : float
-        Water shallower than this is shoal [m].
+    contour : Water shallower than this is shoal [m].
     least : float
         Depth that the ship requires [m], below the contour. A mile at this depth counts 1.5, at
         half of it and less 20; between the contour and these depths the factor is linear.

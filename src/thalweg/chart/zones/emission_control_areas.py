@@ -37,21 +37,17 @@ class EmissionControlArea:
 
     Attributes
     ----------
-    name : str
-        Short name, such as ``"north-sea"``.
-    title : str
-        Its full name.
+    name : Short name, such as ``"north-sea"``.
+    title : Its full name.
     adopted, in_force, sulphur_from : str
         ISO dates: when it was adopted, when the amendment came into force, and from when its
         limit on sulphur (and so the higher fuel price) applies.
-    source : str
-        The regulation or resolution.
+    source : The regulation or resolution.
     limits : {"points", "text", "unknown"}
         ``points``: the published list of points; ``text``: parallels, meridians and capes named
         in the regulation; ``unknown``: none are published, so this area can only be used
         with an outline given by the user. Lines over land are not part of the regulation.
-    note : str
-        Sources of the limits, as text.
+    note : Sources of the limits, as text.
     """
 
     name: str
@@ -170,10 +166,8 @@ def select_emission_control_areas(
 
     Parameters
     ----------
-    names : str or iterable of str, optional
-        By default all that count at ``date``; "north-america" means its three parts.
-    date : time, optional
-        By default `DATA_DATE`. Given with names, those must count then.
+    names : By default all that count at ``date``; "north-america" means its three parts.
+    date : By default `DATA_DATE`. Given with names, those must count then.
 
     Raises
     ------

@@ -31,8 +31,7 @@ def points_inside(index: IndexArrays, lat: FloatArray, lon: FloatArray) -> NDArr
 
     Parameters
     ----------
-    index : IndexArrays
-        Index of polygons.
+    index : Index of polygons.
     lat, lon : ndarray (n,)
         Positions [deg].
 

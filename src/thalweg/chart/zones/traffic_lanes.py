@@ -36,15 +36,11 @@ class TrafficLane:
 
     Attributes
     ----------
-    name : str
     shape : shapely polygon
         x longitude, y latitude [deg].
-    direction : float
-        Direction of the traffic [deg], clockwise from north.
-    tolerance : float
-        Courses that differ from it by more than this are against the lane [deg].
-    factor : float
-        What a mile against the lane counts; inf: forbidden.
+    direction : Direction of the traffic [deg], clockwise from north.
+    tolerance : Courses that differ from it by more than this are against the lane [deg].
+    factor : What a mile against the lane counts; inf: forbidden.
     """
 
     name: str

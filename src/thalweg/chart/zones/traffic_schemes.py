@@ -41,15 +41,12 @@ class TrafficScheme:
 
     Parameters
     ----------
-    name : str
     line : tuple of (lat, lon)
         Middle of the separation zone [deg], in the direction of the traffic on its starboard side.
-    zone : float
-        Half the width of the separation zone [m].
+    zone : Half the width of the separation zone [m].
     starboard, port : float
         Distance from the line within which its direction counts [m], on the side of the traffic
         along the line and on that of the traffic against it: the lane and the inshore traffic zone.
-    source : str
     """
 
     name: str
@@ -102,10 +99,6 @@ def lanes_of_schemes(ends: Sequence[Position]) -> tuple[TrafficLane, ...]:
     ----------
     ends : sequence of (lat, lon)
         Start, via points and goal [deg].
-
-    Returns
-    -------
-    tuple of TrafficLane
     """
     import shapely
 

@@ -117,14 +117,11 @@ class Zones:
     no_go : tuple of shapely polygons
     penalty, price : tuple of (shapely polygon, factor)
         They do not overlap.
-    eca : tuple of EcaZone
-        Emission control areas; they may overlap.
+    eca : Emission control areas; they may overlap.
     anchorages, no_waiting : tuple of shapely polygons
         Where alone a ship may wait (anywhere if there are none), and where it may not.
-    lanes : tuple of TrafficLane
-        Where ships sail in one direction only.
-    shoals : Shoals, optional
-        Shoal water, in which a mile counts more besides the penalty zones.
+    lanes : Where ships sail in one direction only.
+    shoals : Shoal water, in which a mile counts more besides the penalty zones.
     """
 
     no_go: tuple[Any, ...] = ()

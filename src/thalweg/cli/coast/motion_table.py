@@ -66,12 +66,7 @@ def draw_motions(sheet: Mapping[str, Any], path: Path) -> Path:
     ----------
     sheet : mapping
         From `thalweg.ship.comfort.motion_sheet.motion_sheet`.
-    path : Path
-        Picture to write.
-
-    Returns
-    -------
-    Path
+    path : Picture to write.
     """
     from matplotlib.figure import Figure
 

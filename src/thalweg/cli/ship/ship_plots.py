@@ -40,13 +40,11 @@ def draw_ship(
 
     Parameters
     ----------
-    ship : Ship
     sheet : mapping
         From `thalweg.ship.performance_sheet.performance_sheet`.
     weather : mapping
         Conditions by name, SI.
-    folder : Path
-        Exists.
+    folder : Exists.
     """
     rows = sorted(sheet["conditions"], key=lambda row: row["speed_kn"] or 0.0)
     sheet = {**sheet, "conditions": rows}

@@ -66,8 +66,7 @@ class CopernicusMarine:
 
     Parameters
     ----------
-    open_dataset : callable
-        ``copernicusmarine.open_dataset``, or one with its arguments.
+    open_dataset : ``copernicusmarine.open_dataset``, or one with its arguments.
     """
 
     open_dataset: Callable[..., Any] = _open_dataset

@@ -40,8 +40,7 @@ class EcmwfOpenData:
 
     Parameters
     ----------
-    root : str
-        Address of the server.
+    root : Address of the server.
     """
 
     root: str = "https://data.ecmwf.int/forecasts"

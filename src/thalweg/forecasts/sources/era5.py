@@ -63,8 +63,7 @@ class Era5:
 
     Parameters
     ----------
-    open_client : callable
-        Returns a client with ``retrieve(dataset, request, target)``.
+    open_client : Returns a client with ``retrieve(dataset, request, target)``.
     """
 
     open_client: Callable[[], Any] = _cds_client

@@ -63,8 +63,7 @@ class Gfs:
     ----------
     server : {"nomads", "aws"}
         ``nomads`` cuts the box on the server; ``aws`` keeps runs since 2021 and gives whole fields.
-    nomads, aws : str
-        Addresses of the servers.
+    nomads, aws : Addresses of the servers.
     """
 
     server: str = "nomads"
@@ -191,10 +190,8 @@ def byte_ranges(index: str, wanted: list[str]) -> tuple[tuple[int, int], ...]:
 
     Parameters
     ----------
-    index : str
-        Lines ``number:first byte:d=run:NAME:level:lead time:``.
-    wanted : list of str
-        ``NAME:level`` of each field.
+    index : Lines ``number:first byte:d=run:NAME:level:lead time:``.
+    wanted : ``NAME:level`` of each field.
 
     Returns
     -------

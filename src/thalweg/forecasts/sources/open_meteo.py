@@ -58,8 +58,7 @@ class OpenMeteo:
 
     Parameters
     ----------
-    weather, marine : str
-        Addresses of the two services.
+    weather, marine : Addresses of the two services.
     """
 
     weather: str = "https://api.open-meteo.com/v1/forecast"

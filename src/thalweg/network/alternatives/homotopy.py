@@ -63,10 +63,7 @@ def obstacles(network: Network, chart: Chart, island: float) -> Obstacles:
 
     Parameters
     ----------
-    network : Network
-    chart : Chart
-    island : float
-        Land narrower than this [m] (square root of its area) does not count.
+    island : Land narrower than this [m] (square root of its area) does not count.
     """
     points = np.concatenate(
         [[[-90.0, 0.5 * (network.lon[0] + 180.0)]], _large_land(network, chart, island)]

@@ -114,10 +114,8 @@ def without_each_set_of_canals(
 
     Parameters
     ----------
-    canals : sequence
-        Canals that the best alternative uses.
-    find : callable
-        Called with the closed canals; returns an alternative, or None if there is none.
+    canals : Canals that the best alternative uses.
+    find : Called with the closed canals; returns an alternative, or None if there is none.
 
     Yields
     ------

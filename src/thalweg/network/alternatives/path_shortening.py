@@ -70,18 +70,15 @@ def string_pull_path(
 
     Parameters
     ----------
-    chart : Chart
-        Tests the legs; legs through canals are not changed.
-    lat, lon : ndarray
-        Path of allowed legs [deg].
+    chart : Tests the legs; legs through canals are not changed.
+    lat, lon : Path of allowed legs [deg].
     leg_cost : callable, optional
         Cost of legs; by default their length [m]. With a cost, waypoints are also moved sideways,
         because the cost differs from place to place.
     sides : callable, optional
         Meridian crossings of legs, so that islands stay on the same side (see
         `thalweg.network.alternatives.homotopy`).
-    rounds : int
-        Largest number of passes that cut corners; with 0, waypoints are only removed.
+    rounds : Largest number of passes that cut corners; with 0, waypoints are only removed.
 
     Returns
     -------
@@ -111,10 +108,8 @@ def total_cost(line: PolylineCoordinates, leg_cost: LegCost | None = None) -> fl
 
     Parameters
     ----------
-    line : tuple of ndarray
-        Latitudes and longitudes of the waypoints [deg].
-    leg_cost : callable, optional
-        Cost of legs (lat1, lon1, lat2, lon2) [deg].
+    line : Latitudes and longitudes of the waypoints [deg].
+    leg_cost : Cost of legs (lat1, lon1, lat2, lon2) [deg].
 
     Returns
     -------

@@ -45,8 +45,7 @@ class ConnectedWaters:
         Number of the connected water of each node.
     size : int64[N]
         How many nodes that water has.
-    reach : float
-        Positions are joined to nodes within this distance [m].
+    reach : Positions are joined to nodes within this distance [m].
     """
 
     lat: FloatArray
@@ -108,16 +107,12 @@ def attach(
 
     Parameters
     ----------
-    chart : Chart
-        Tests the legs.
-    waters : ConnectedWaters
-        Nodes of the grid.
+    chart : Tests the legs.
+    waters : Nodes of the grid.
     place : (lat, lon)
         Navigable position [deg].
-    what : str
-        Its name in errors.
-    approach : bool, optional
-        Whether an approach may be searched, which takes one or two seconds.
+    what : Its name in errors.
+    approach : Whether an approach may be searched, which takes one or two seconds.
 
     Returns
     -------

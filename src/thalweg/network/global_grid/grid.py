@@ -51,14 +51,10 @@ class GlobeGrid:
     ----------
     lat, lon : float64[N]
         Nodes [deg].
-    pairs : Pairs
-        Legs that touch no land, one for both directions.
-    rejected : int
-        Legs that touch land and were left out.
-    spacing : float
-        Longest leg of the uniform grid [m].
-    gap : float
-        Largest angle between neighbouring directions of a node in open water [rad].
+    pairs : Legs that touch no land, one for both directions.
+    rejected : Legs that touch land and were left out.
+    spacing : Longest leg of the uniform grid [m].
+    gap : Largest angle between neighbouring directions of a node in open water [rad].
     """
 
     lat: FloatArray
@@ -93,10 +89,7 @@ def globe_grid(chart: Chart, fineness: GridResolution) -> GlobeGrid:
 
     Parameters
     ----------
-    chart : Chart
-        Its land and the borders of its zones with prices determine the grid.
-    fineness : GridResolution
-        Resolution of the grid.
+    chart : Its land and the borders of its zones with prices determine the grid.
     """
     zones = type(chart.zones)(
         penalty=chart.zones.penalty, price=chart.zones.price, eca=chart.zones.eca

@@ -41,10 +41,8 @@ class RefinementRule:
 
     Attributes
     ----------
-    crossed : callable
-        Returns which edges (unit vectors of their ends) are crossed.
-    levels : int
-        Number of extra levels of such faces.
+    crossed : Returns which edges (unit vectors of their ends) are crossed.
+    levels : Number of extra levels of such faces.
     """
 
     crossed: CrossingTest
@@ -103,10 +101,8 @@ def icosphere(level: int, *rules: RefinementRule) -> Icosphere:
 
     Parameters
     ----------
-    level : int
-        Halvings of the whole grid.
-    *rules : Rule
-        Where it is halved further.
+    level : Halvings of the whole grid.
+    *rules : Where it is halved further.
     """
     grid = _Subdivision(np.array(_VERTICES) / np.hypot(1.0, _PHI))
     faces = np.array(_FACES, np.int64) - 1

@@ -61,8 +61,7 @@ class SeaGraph:
 
     Attributes
     ----------
-    waters : ConnectedWaters
-        The nodes and their connected waters.
+    waters : The nodes and their connected waters.
     indptr : int32[N + 1]
         Where the edges of each node begin.
     target : int32[E]
@@ -92,14 +91,11 @@ class SeaGraph:
 
         Parameters
         ----------
-        chart : Chart
-            Tests the legs that join the positions to the graph, and those near closed passages.
+        chart : Tests the legs that join the positions to the graph, and those near closed passages.
         start, goal : (lat, lon)
             Positions on navigable water [deg].
-        closed : sequence of int
-            Canals of the chart that may not be used.
-        passages : sequence of Passage
-            Passages that are closed in the chart but not in the graph.
+        closed : Canals of the chart that may not be used.
+        passages : Passages that are closed in the chart but not in the graph.
 
         Raises
         ------
@@ -193,8 +189,7 @@ def sea_graph(chart: Chart) -> SeaGraph:
 
     Parameters
     ----------
-    chart : Chart
-        Zones, depth, the area and the offing of the chart are not used.
+    chart : Zones, depth, the area and the offing of the chart are not used.
     """
     bare = type(chart)(
         chart.coastline,

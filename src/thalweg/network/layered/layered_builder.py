@@ -40,8 +40,7 @@ class LayeredDraft:
 
     Attributes
     ----------
-    shapes : tuple of SectionShape
-        Of every section.
+    shapes : Of every section.
     lat, lon : float64[N]
         Nodes [deg], section by section, layer by layer, port to starboard. The end of a section
         is the start of the next.
@@ -172,8 +171,7 @@ def segments_on_paths(
 
     Parameters
     ----------
-    n_nodes : int
-        Number of nodes.
+    n_nodes : Number of nodes.
     first, second : int32 array (P,)
         The nodes that segments join, in the direction of sailing.
     free : bool array (P,)

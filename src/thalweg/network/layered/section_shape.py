@@ -25,13 +25,11 @@ class SectionShape:
 
     Attributes
     ----------
-    layers : int
-        S, the number of layers between the two waypoints, 1 or more.
+    layers : S, the number of layers between the two waypoints, 1 or more.
     fan : int
         H, the number of segments that leave a node towards the next layer, 2 or more. An odd
         number has a segment straight ahead.
-    offset : float
-        d, by how much a layer is wider than the one before, to either side [m].
+    offset : d, by how much a layer is wider than the one before, to either side [m].
     """
 
     layers: int
@@ -138,14 +136,8 @@ def section_shapes(
 
     Parameters
     ----------
-    sections : int
-        Number of sections R, 1 or more.
-    layers, fan, offset : number or sequence of R numbers
-        S, H and d [m] (`SectionShape`); forms may be mixed.
-
-    Returns
-    -------
-    tuple of SectionShape
+    sections : Number of sections R, 1 or more.
+    layers, fan, offset : S, H and d [m] (`SectionShape`); forms may be mixed.
 
     Raises
     ------

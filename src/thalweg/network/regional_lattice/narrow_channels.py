@@ -68,13 +68,9 @@ def channel_pairs(chart: Chart, stations: Stations, first: int, last: int, near:
 
     Parameters
     ----------
-    chart : Chart
-        Tests them.
-    stations : Stations
-        The nodes before ``first`` are those of the grid.
-    first, last : int
-    near : float
-        Spacing of the grid at coasts [m].
+    chart : Tests them.
+    stations : The nodes before ``first`` are those of the grid.
+    near : Spacing of the grid at coasts [m].
     """
     from scipy.spatial import cKDTree
 

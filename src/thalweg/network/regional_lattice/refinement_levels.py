@@ -42,14 +42,12 @@ class Level:
 
     Parameters
     ----------
-    step : int
-        Finest units between neighbouring points.
+    step : Finest units between neighbouring points.
     i, j : int64 ndarray
         Coordinates in steps.
     node : int32 ndarray
         Node of each point.
-    around : int
-        Steps right round the globe in a closed frame, else 0.
+    around : Steps right round the globe in a closed frame, else 0.
     """
 
     step: int
@@ -78,18 +76,12 @@ class LatticeSpecification:
 
     Parameters
     ----------
-    chart : Chart
-        Land and shore distances.
-    frame : ConformalProjection
-        Its unit is the finest spacing.
-    region : Region
-        Where points may lie.
-    coast_levels, end_levels : int
-        Levels along all coasts, and further levels near start and goal only.
-    budget, coast_budget : int
-        Most points of level 0, and of all finer levels together.
-    may_stop : bool
-        Whether coast levels beyond the budget are left out instead of refused.
+    chart : Land and shore distances.
+    frame : Its unit is the finest spacing.
+    region : Where points may lie.
+    coast_levels, end_levels : Levels along all coasts, and further levels near start and goal only.
+    budget, coast_budget : Most points of level 0, and of all finer levels together.
+    may_stop : Whether coast levels beyond the budget are left out instead of refused.
     """
 
     chart: Chart

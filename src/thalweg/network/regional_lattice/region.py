@@ -28,10 +28,8 @@ class Corridor:
 
     Parameters
     ----------
-    frame : ConformalProjection
-        Frame of the coarse lattice.
-    step : float
-        Its spacing in units of the frame.
+    frame : Frame of the coarse lattice.
+    step : Its spacing in units of the frame.
     cells : bool ndarray (I, J)
         Which cells; the first is centred at ``corner`` steps.
     corner : (int, int)
@@ -80,14 +78,12 @@ class Region:
     ----------
     start, goal : (lat, lon)
         Positions [deg].
-    limit : float
-        Largest sum of distances [m]; inf for no limit.
+    limit : Largest sum of distances [m]; inf for no limit.
     area : (south, north, west, east), optional
         Box [deg] the nodes are confined to; east may be less than west or above 180.
     chart_area : (south, north, west, east), optional
         Box [deg] of the chart; only bounds the search for nodes, the chart itself tests them.
-    corridor : Corridor, optional
-        Confines the region further.
+    corridor : Confines the region further.
     """
 
     start: Position

@@ -21,14 +21,12 @@ def sampled_on_triangle_sides(network: Network) -> Network:
 
     Parameters
     ----------
-    network : Network
-        Its nodes; edges are straight lines between them.
+    network : Its nodes; edges are straight lines between them.
 
     Returns
     -------
     Network
         The same nodes and edges; its stations are its nodes.
-
     """
     from scipy.spatial import Delaunay
 

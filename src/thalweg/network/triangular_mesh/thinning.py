@@ -90,8 +90,7 @@ def dimensionless_curl(
         Nodes of the triangles.
     east, north : ndarray (T, N) or (N,)
         Current [m/s].
-    length, speed : float
-        Reference length [m] and speed [m/s].
+    length, speed : Reference length [m] and speed [m/s].
 
     Returns
     -------

@@ -20,10 +20,8 @@ class SailedLeg:
 
     Attributes
     ----------
-    route : Route
-        As evaluated by the referee.
-    energy : float
-        Brake energy, without hotel load [J]; NaN if the ship's power is unknown.
+    route : As evaluated by the referee.
+    energy : Brake energy, without hotel load [J]; NaN if the ship's power is unknown.
     """
 
     route: Route
@@ -79,18 +77,11 @@ class DredgingCycle:
 
     Attributes
     ----------
-    number : int
-        From 1.
-    start : float
-        Start of loading [s since 1970-01-01T00:00Z].
-    load_factor : float
-    volume : float
-        Volume moved [m3].
-    loading, unloading : float
-        Time of work [s].
-    out, back : SailedLeg
-    loading_pause, unloading_pause : float
-        Pauses of that work in waves or wind over the limits [s].
+    number : From 1.
+    start : Start of loading [s since 1970-01-01T00:00Z].
+    volume : Volume moved [m3].
+    loading, unloading : Time of work [s].
+    loading_pause, unloading_pause : Pauses of that work in waves or wind over the limits [s].
     """
 
     number: int

@@ -69,17 +69,10 @@ class Simulator:
 
     Parameters
     ----------
-    project : Project
-    world : ProjectEnvironment
-    site_network : SiteNetwork
-    factors : sequence of float, optional
-        Loads to choose from; default: those of the project.
-    report : callable, optional
-        Called with a short text every ten cycles.
-    on_cycle : callable, optional
-        Called with the name of the run and each cycle.
-    name : str, optional
-        Name of the run, for errors.
+    factors : Loads to choose from; default: those of the project.
+    report : Called with a short text every ten cycles.
+    on_cycle : Called with the name of the run and each cycle.
+    name : Name of the run, for errors.
     """
 
     def __init__(

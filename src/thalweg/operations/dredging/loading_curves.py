@@ -79,8 +79,7 @@ class LoadingCurve:
         ----------
         data : float or mapping
             ``rate_m3_s``, or ``minutes`` with ``share``; ``power_kw`` and ``fixed_minutes``.
-        hopper : float
-            [m3].
+        hopper : float [m3]
         what : str
             "loading" or "unloading", for errors.
 

@@ -165,9 +165,7 @@ class SiteNetwork:
 
     Attributes
     ----------
-    network : Network
-        ``meta.start`` is the loading site, ``meta.goal`` the unloading site.
-    waters : PreparedNetwork
+    network : ``meta.start`` is the loading site, ``meta.goal`` the unloading site.
     """
 
     network: Network

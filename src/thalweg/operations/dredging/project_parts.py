@@ -59,8 +59,7 @@ class Sites:
 
     Attributes
     ----------
-    load, unload : (lat, lon)
-        [deg].
+    load, unload : (lat, lon) [deg]
     min_ukc : float or None
         Minimum under-keel clearance [m]; None: that of the ship file (0 if it states none). Without
         any depth in the data the clearance is not checked.

@@ -16,10 +16,6 @@ ACTIVITIES: Final = ("loading", "sailing full", "unloading", "sailing empty", "w
 def activity_periods(run: ProjectRun) -> dict[str, list[tuple[float, float]]]:
     """Return start and end of each activity of a run; waits on a route when they take place.
 
-    Parameters
-    ----------
-    run : ProjectRun
-
     Returns
     -------
     dict of str to list of (float, float)
@@ -43,9 +39,7 @@ def site_water_level(result: ProjectResult, times: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    result : ProjectResult
-    times : float array (n,)
-        [s since 1970].
+    times : float array (n,) [s since 1970]
 
     Returns
     -------

@@ -26,13 +26,7 @@ _CROSS_TRACK_TOLERANCE = 0.5  # nodes nearer to the line between waypoints are l
 
 
 class SiteLegPlanner:
-    """Plans legs on one network and evaluates them with the referee.
-
-    Parameters
-    ----------
-    world : ProjectEnvironment
-    site_network : SiteNetwork
-    """
+    """Plans legs on one network and evaluates them with the referee."""
 
     def __init__(self, world: ProjectEnvironment, site_network: SiteNetwork) -> None:
         self.world, self.site_network = world, site_network
@@ -70,13 +64,9 @@ class SiteLegPlanner:
 
         Parameters
         ----------
-        load_factor : float
-        depart : float
-            Time at which the ship is ready [s since 1970-01-01T00:00Z].
-        outward : bool
-            From the loading site to the unloading site, or back.
-        passage : NetworkPassage, optional
-            The result of a search already made.
+        depart : Time at which the ship is ready [s since 1970-01-01T00:00Z].
+        outward : From the loading site to the unloading site, or back.
+        passage : The result of a search already made.
 
         Returns
         -------

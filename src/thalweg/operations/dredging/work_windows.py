@@ -48,8 +48,6 @@ class WorkWindows:
             The site [deg].
         period : (float, float)
             Start and end [s since 1970-01-01T00:00Z].
-        ship : Ship
-        sea : Sea
         """
         limits = ship.limits
         checked = {WAVE_HEIGHT} if math.isfinite(limits.wave_height) else set()
@@ -75,10 +73,8 @@ class WorkWindows:
 
         Parameters
         ----------
-        start : float
-            [s since 1970-01-01T00:00Z].
-        duration : float
-            Time of work without pauses [s].
+        start : [s since 1970-01-01T00:00Z].
+        duration : Time of work without pauses [s].
 
         Returns
         -------

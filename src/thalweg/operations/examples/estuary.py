@@ -44,10 +44,8 @@ class Estuary:
 
     Attributes
     ----------
-    sea : Sea
-        Water level and current, at any date, on a mesh.
-    chart : Chart
-        Depth below datum; no coastline except the edge of the domain.
+    sea : Water level and current, at any date, on a mesh.
+    chart : Depth below datum; no coastline except the edge of the domain.
     load, unload : (lat, lon)
         A dredging area at sea and a place behind the bank [deg].
     gully_waypoints : tuple of (lat, lon)

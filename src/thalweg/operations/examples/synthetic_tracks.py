@@ -87,13 +87,9 @@ class SyntheticTrack:
 
     Attributes
     ----------
-    frame : DataFrame
-        Columns time, lat, lon, speed_kn, course_deg, draught_m, mmsi, as in AIS.
-    truth : DataFrame
-        One row for each activity: kind, start, end.
-    cycle : SyntheticCycle
-    current_factor : float
-        True current divided by that of the sea.
+    frame : Columns time, lat, lon, speed_kn, course_deg, draught_m, mmsi, as in AIS.
+    truth : One row for each activity: kind, start, end.
+    current_factor : True current divided by that of the sea.
     """
 
     frame: pd.DataFrame

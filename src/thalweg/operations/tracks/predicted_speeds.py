@@ -39,10 +39,7 @@ def predicted_speeds_through_water(
 
     Parameters
     ----------
-    segments : MeasuredSegments
-    ship : Ship
-        Full while sailing full (load factor 1), empty while sailing empty (0).
-    sea : Sea
+    ship : Full while sailing full (load factor 1), empty while sailing empty (0).
     speed_kn : float, optional
         Ordered speed; by default, for each activity, the setting of the ship whose calm-water speed
         is nearest to the measured speed through water.
@@ -93,13 +90,9 @@ def speeds_at_measured_power(
 
     Parameters
     ----------
-    log : TrackLog
-        With ``power``, the brake power [W]; its ``draught``, where known, sets the load factor.
-    segments : MeasuredSegments
-    ship : Ship
-        A model composed of resistance and propulsion.
-    sea : Sea
-        With what the resistance needs (wind, waves, depth).
+    log : With ``power``, the brake power [W]; its ``draught``, where known, sets the load factor.
+    ship : A model composed of resistance and propulsion.
+    sea : With what the resistance needs (wind, waves, depth).
 
     Returns
     -------

@@ -70,8 +70,7 @@ class TrackLog:
     ----------
     time : float64 array (n,)
         [s since 1970-01-01T00:00Z], strictly ascending.
-    lat, lon : float64 array (n,)
-        [deg].
+    lat, lon : float64 array (n,) [deg]
     values : dict of str to float64 array (n,)
         ``speed`` over ground [m/s], ``course`` [rad], ``draught`` [m], ``power`` [W], as far as
         available; NaN where unknown.
@@ -128,16 +127,8 @@ def clean_track(
 
     Parameters
     ----------
-    raw : RawTrack
-    rules : CleaningRules
-    vessel, source : str
-        For messages.
-    notes : list of str, optional
-        Notes of the reading.
-
-    Returns
-    -------
-    TrackLog
+    vessel, source : For messages.
+    notes : Notes of the reading.
 
     Raises
     ------

@@ -89,12 +89,8 @@ def cut_segments(
 
     Parameters
     ----------
-    log : TrackLog
-    activities : sequence of Activity
-    sea : Sea, optional
-        For the currents.
-    length : float
-        Least length of a segment [s]; the last of a leg takes the rest.
+    sea : For the currents.
+    length : Least length of a segment [s]; the last of a leg takes the rest.
     steady : bool
         Leave out the ends of every leg, where the ship accelerates or slows down: everything before
         the first and after the last position with at least 80 % of the leg's median speed

@@ -136,10 +136,8 @@ def trip_table_of_window(
     Parameters
     ----------
     route : Track, Route, path, or iterable of (lat, lon)
-    start, end, period, step
-        As in `Departures`.
-    **options
-        As in `trip_table`.
+    start, end, period, step : As in `Departures`.
+    **options : As in `trip_table`.
     """
     return trip_table(route, departures=Departures(start, end, period, step), **options)
 

@@ -38,10 +38,8 @@ class WaitingStudy:
     ----------
     trips : tuple of TripTable
         In the order in which they are sailed.
-    hotel_power : float
-        [W].
-    starts : float64 array (s,)
-        [s since 1970-01-01T00:00Z].
+    hotel_power : float [W]
+    starts : float64 array (s,) [s since 1970-01-01T00:00Z]
     max_waits : float64 array (w,)
         Longest wait before each trip [s].
     plans : dict of str to tuple of tuple of WaitingPlan

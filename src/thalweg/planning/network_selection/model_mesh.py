@@ -36,11 +36,8 @@ def pruned_mesh(
 
     Parameters
     ----------
-    chart : Chart
-    sea : Sea
-        With a mesh.
-    start, end : float
-        Period over which the flow is sampled [s since 1970], as far as the data cover it.
+    sea : With a mesh.
+    start, end : Period over which the flow is sampled [s since 1970], as far as the data cover it.
     largest_spacing : float or None
         Spacing of the nodes in still water [m]. With the greatest speed of the flow it makes the
         curl dimensionless: the relative change of the current over one spacing. None uses all
@@ -82,11 +79,8 @@ def model_mesh_network(
 
     Parameters
     ----------
-    chart : Chart
-    sea : Sea
-        With a mesh.
-    period : tuple of float
-        Period of the voyage [s since 1970]; the flow is sampled in its first 25 h.
+    sea : With a mesh.
+    period : Period of the voyage [s since 1970]; the flow is sampled in its first 25 h.
     spacing : float, optional
         Spacing in still water [m], finer where the flow is strong or turns. By default all nodes
         are used, or about `MAX_MESH_NODES` of larger models.

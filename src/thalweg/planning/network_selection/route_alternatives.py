@@ -29,10 +29,8 @@ class RouteAlternative:
 
     Attributes
     ----------
-    name : str
-        Its canals, such as ``"suez"``; ``"open sea"`` without canals.
-    network : Network
-        From start to goal through all via points.
+    name : Its canals, such as ``"suez"``; ``"open sea"`` without canals.
+    network : From start to goal through all via points.
     """
 
     name: str

@@ -71,8 +71,7 @@ def constant_speed_tracks(
 
     Parameters
     ----------
-    tracks : sequence of Track
-        In order of time; up to five of them are taken, the first and the last included.
+    tracks : In order of time; up to five of them are taken, the first and the last included.
     settings : int64 array
         Speed settings to choose from, ascending.
 
@@ -114,11 +113,7 @@ def compare_with_baseline(
 
     Parameters
     ----------
-    context : PlanningContext
-    objective : PricedObjective
-    front : sequence of Route
-    values : ndarray
-        Of the front [unit of the objective].
+    values : Of the front [unit of the objective].
     blind, constant : sequence of Route
         The shortest route, and routes chosen with the weather, each at constant settings.
     """

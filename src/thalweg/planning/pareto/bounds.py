@@ -82,14 +82,10 @@ def derive_proof(
 
     Parameters
     ----------
-    trade_off : TradeOffContext
-    explored : list of ExploredAlternative
     certain : float64 array (2, m)
         As `certain_front` returns it.
-    kind : str
-        As `strongest_current_of_plan` returns it.
-    whole : bool
-        Whether the whole front is wanted.
+    kind : As `strongest_current_of_plan` returns it.
+    whole : Whether the whole front is wanted.
     """
     if whole:
         fastest = min(one.first.duration for one in explored) / HOUR
@@ -115,10 +111,7 @@ def strongest_current_of_plan(
 
     Parameters
     ----------
-    trade_off : TradeOffContext
-    explored : list of ExploredAlternative
-    routes : sequence of Route
-        Of the front.
+    routes : Of the front.
     """
     context = trade_off.context
     if not {codes.CURRENT_EAST, codes.CURRENT_NORTH} <= set(context.needs.channels):
@@ -138,11 +131,8 @@ def certain_front(trade_off: TradeOffContext, length: float, current: float) -> 
 
     Parameters
     ----------
-    trade_off : TradeOffContext
-    length : float
-        No route is shorter [m].
-    current : float
-        No current is stronger [m/s]; inf where none is known to be the strongest.
+    length : No route is shorter [m].
+    current : No current is stronger [m/s]; inf where none is known to be the strongest.
 
     Notes
     -----

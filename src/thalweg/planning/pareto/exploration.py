@@ -94,10 +94,7 @@ def without_unknown_water(
 
     Parameters
     ----------
-    context : PlanningContext
-    alternative : RouteAlternative
-    gaps : sequence of Violation
-        Where and when the referee found data missing.
+    gaps : Where and when the referee found data missing.
     """
     context.report_progress(f"planning round water without data: {alternative.name}")
     network = without_unknown_edges(context, alternative.network, gaps)

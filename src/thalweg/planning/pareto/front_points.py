@@ -20,10 +20,7 @@ def track_from_front_point(network: Network, point: Any) -> Track:
 
     Parameters
     ----------
-    network : Network
-        The network of the front.
-    point : FrontPoint
-        A point of its front.
+    network : The network of the front.
 
     Returns
     -------
@@ -51,12 +48,10 @@ def essential_nodes(lat: FloatArray, lon: FloatArray, setting: Any, wait: FloatA
 
     Parameters
     ----------
-    lat, lon : float64 array (points,)
-        [deg].
+    lat, lon : float64 array (points,) [deg]
     setting : int64 array (points - 1,)
         Of the legs.
-    wait : float64 array (points,)
-        [s].
+    wait : float64 array (points,) [s]
 
     Returns
     -------

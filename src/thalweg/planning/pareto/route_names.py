@@ -51,13 +51,10 @@ def route_labels(
 
     Parameters
     ----------
-    routes : sequence of Route
-    alternatives : sequence of str
-        Name of the route alternative of each route, by its canals.
+    alternatives : Name of the route alternative of each route, by its canals.
     networks : mapping of str to Network
         Network of each alternative from start to goal; land near it counts. The first one is used
         where an alternative has none.
-    chart : Chart
 
     Returns
     -------

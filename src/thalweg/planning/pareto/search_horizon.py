@@ -33,13 +33,9 @@ class SearchHorizon:
 
     Attributes
     ----------
-    frozen : FrozenSea
-    first : SearchResult
-        The fastest path; not found where there is none in the period.
-    setting : int
-        Its setting: the highest with which there is a path.
-    latest : float
-        Latest arrival of the front [s since 1970].
+    first : The fastest path; not found where there is none in the period.
+    setting : Its setting: the highest with which there is a path.
+    latest : Latest arrival of the front [s since 1970].
     """
 
     frozen: FrozenSea
@@ -57,10 +53,8 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
 
     Parameters
     ----------
-    trade_off : TradeOffContext
-        The plan and its prices.
-    network : Network
-        With start and goal.
+    trade_off : The plan and its prices.
+    network : With start and goal.
 
     Returns
     -------

@@ -24,9 +24,7 @@ def in_speed_blocks(
 
     Parameters
     ----------
-    trade_off : TradeOffContext
-        Its voyage asks for the least duration of a block (`Voyage.least_speed_block_h`).
-    scored : list of RefereedCandidate
+    trade_off : Its voyage asks for the least duration of a block (`Voyage.least_speed_block_h`).
 
     Returns
     -------
@@ -55,8 +53,7 @@ def merged_settings(
         Time of sailing of each leg, in any unit.
     speeds : float64 array (settings,)
         Calm-water speeds, ascending.
-    least : float
-        Least time of a run, in the unit of ``hours``.
+    least : Least time of a run, in the unit of ``hours``.
     late : bool
         Whether the passage may become longer; otherwise short runs are given to the faster
         neighbour.

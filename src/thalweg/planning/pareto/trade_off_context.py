@@ -27,20 +27,14 @@ class TradeOffContext:
 
     Attributes
     ----------
-    context : PlanningContext
-    objective : PricedObjective
-        What is traded against time.
+    objective : What is traded against time.
     consumption : PerformanceTable
         Consumption that the objective prices (`thalweg.ship.consumption.consumption_table`).
-    ends : tuple of Endpoint
-        Start, via points and goal.
+    ends : Start, via points and goal.
     settings : int64 array
         Speed settings to choose from, ascending.
-    limits : Limits
-        Limits along the route, perhaps tightened.
-    interrupt_guard : InterruptGuard
-    notes : list of str
-        Notes for the plan; steps add theirs.
+    limits : Limits along the route, perhaps tightened.
+    notes : Notes for the plan; steps add theirs.
     """
 
     context: PlanningContext
@@ -72,18 +66,11 @@ class ExploredAlternative:
 
     Attributes
     ----------
-    alternative : RouteAlternative
-    frozen : FrozenSea
-    fastest : Route
-        The fastest route, refined and scored by the referee.
-    first : SearchResult
-        The fastest path on the network.
-    exact : NetworkFront or None
-        The exact front of the network; None where its search was interrupted.
-    isochrones : ndarray
-        Earliest arrival at every node [s since 1970]; inf where not reached.
-    factor : float
-        Least length of a route in open water over that of the path on the network.
+    fastest : The fastest route, refined and scored by the referee.
+    first : The fastest path on the network.
+    exact : The exact front of the network; None where its search was interrupted.
+    isochrones : Earliest arrival at every node [s since 1970]; inf where not reached.
+    factor : Least length of a route in open water over that of the path on the network.
     """
 
     alternative: RouteAlternative
@@ -101,15 +88,10 @@ class TrackCandidate:
 
     Attributes
     ----------
-    track : Track
-    stage : str
-        Origin, as in `ParetoFront.stages`.
-    alternative : str
-        Name of its route alternative.
-    time : float
-        [s].
-    value : float
-        [unit of the objective].
+    stage : Origin, as in `ParetoFront.stages`.
+    alternative : Name of its route alternative.
+    time : [s].
+    value : [unit of the objective].
     """
 
     track: Track

@@ -40,8 +40,7 @@ class Closures:
     ----------
     distance : float64 array (S,)
         Along the track [m].
-    times : float64 array (T,)
-        [s since 1970-01-01T00:00Z].
+    times : float64 array (T,) [s since 1970-01-01T00:00Z]
     shallow : bool array (S, T)
         Too little water.
     strong : bool array (S, T)

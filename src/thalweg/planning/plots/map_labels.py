@@ -25,7 +25,6 @@ class LabelPlacer:
 
     Attributes
     ----------
-    axes : matplotlib Axes
     lines : ndarray (n, 2)
         Points [display units] that labels should not cover.
     """
@@ -41,13 +40,9 @@ class LabelPlacer:
 
         Parameters
         ----------
-        text : str
-        lon, lat : float
-            Its position, in the coordinates of the axes.
-        needed : bool, optional
-            Whether it is drawn even where it covers another label.
-        **style
-            Of `matplotlib.text.Text`.
+        lon, lat : Its position, in the coordinates of the axes.
+        needed : Whether it is drawn even where it covers another label.
+        **style : Of `matplotlib.text.Text`.
         """
         from matplotlib.patheffects import withStroke
 

@@ -35,9 +35,6 @@ def draw_enclosed_water(
 
     Parameters
     ----------
-    axes : matplotlib Axes
-    world : PlotContext
-    box : MapExtent
     on_water : bool array (rows, columns)
         Where there is water.
     grid : (ndarray, ndarray)

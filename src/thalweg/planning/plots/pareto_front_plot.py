@@ -29,15 +29,8 @@ def draw_pareto_front(plan: PlanData, path: str | Path | None = None) -> Any:
 
     Parameters
     ----------
-    plan : Plan
-        With a front (its objective is neither ``"time"`` nor ``"distance"``).
-    path : path, optional
-        Where to save it (PNG).
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure.
+    plan : With a front (its objective is neither ``"time"`` nor ``"distance"``).
+    path : Where to save it (PNG).
 
     Raises
     ------

@@ -21,10 +21,8 @@ def draw_profile(route: Route, path: str | Path | None = None) -> Any:
 
     Parameters
     ----------
-    route : Route
-        A route scored by the referee.
-    path : path, optional
-        Where to save it (PNG).
+    route : A route scored by the referee.
+    path : Where to save it (PNG).
 
     Returns
     -------

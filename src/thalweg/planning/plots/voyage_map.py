@@ -44,18 +44,11 @@ def draw_map(plan: PlanData, path: str | Path | None = None, *, beside: Route | 
 
     Parameters
     ----------
-    plan : Plan
-        A plan with its plot context (as `thalweg.plan` returns it).
-    path : path, optional
-        Where to save it (PNG).
+    plan : A plan with its plot context (as `thalweg.plan` returns it).
+    path : Where to save it (PNG).
     beside : Route, optional
         A route to draw beside that of the plan, such as one that ignores the weather; by default
         that of the comparison of a front.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure.
     """
     beside = beside or _weather_blind(plan)
     box = _map_extent(plan, beside)

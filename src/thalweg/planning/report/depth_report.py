@@ -26,10 +26,8 @@ def depth_notes(context: PlanningContext, route: Route) -> list[str]:
 
     Parameters
     ----------
-    context : PlanningContext
-        Request, data and ship of the plan.
-    route : Route
-        The evaluated route.
+    context : Request, data and ship of the plan.
+    route : The evaluated route.
 
     Returns
     -------

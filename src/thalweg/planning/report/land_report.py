@@ -65,11 +65,6 @@ def saved_length(route: Route, passage: Passage) -> float:
     The ship would leave the route at one of its positions, sail straight to the passage and back
     to the route at a later one; land is not considered.
 
-    Parameters
-    ----------
-    route : Route
-    passage : Passage
-
     Returns
     -------
     float

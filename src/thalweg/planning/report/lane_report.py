@@ -21,9 +21,7 @@ def lane_notes(context: PlanningContext, route: Route) -> list[str]:
 
     Parameters
     ----------
-    context : PlanningContext
-        Request, data and ship of the plan.
-    route : Route
+    context : Request, data and ship of the plan.
 
     Returns
     -------

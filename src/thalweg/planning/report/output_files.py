@@ -46,12 +46,8 @@ def write_plan(
 
     Parameters
     ----------
-    plan : PlanData
-    folder : path
-    options : RouteFileOptions, optional
-        How the route files are written; places and chart are those of the plan.
-    beside : Route, optional
-        A route to draw on the map beside that of the plan.
+    options : How the route files are written; places and chart are those of the plan.
+    beside : A route to draw on the map beside that of the plan.
 
     Returns
     -------
@@ -82,13 +78,6 @@ def keeping_limits(plan: PlanData, route: Route, options: RouteFileOptions) -> R
     Few waypoints of six decimals may leave a narrow gully by metres. The track of the file is
     therefore scored by the referee; while it breaks a limit, fewer waypoints are left out and more
     decimals written.
-
-    Parameters
-    ----------
-    plan : PlanData
-    route : Route
-        One of its routes.
-    options : RouteFileOptions
 
     Returns
     -------
@@ -164,10 +153,7 @@ def draw_sea(sea: Sea, folder: str | Path, *, time: TimeLike | None = None) -> l
 
     Parameters
     ----------
-    sea : Sea
-    folder : path
-    time : time, optional
-        By default the time when the waves (otherwise the wind, the current) are largest.
+    time : By default the time when the waves (otherwise the wind, the current) are largest.
 
     Returns
     -------

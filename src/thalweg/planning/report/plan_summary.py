@@ -35,10 +35,6 @@ _ALWAYS = ("land", "no-go zone")  # reasons that every coastal route meets
 def plan_summary(plan: PlanData) -> list[str]:
     """Return the plan in at most ten lines, notes not included.
 
-    Parameters
-    ----------
-    plan : PlanData
-
     Returns
     -------
     list of str

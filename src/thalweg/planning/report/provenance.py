@@ -29,10 +29,8 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
 
     Parameters
     ----------
-    context : PlanningContext
-        Request, data and ship of the plan.
-    route : Route
-        The evaluated route.
+    context : Request, data and ship of the plan.
+    route : The evaluated route.
 
     Returns
     -------
@@ -79,14 +77,10 @@ def provenance(
 
     Parameters
     ----------
-    context : PlanningContext
-        Request, data and ship of the plan.
-    ends : list of Endpoint
-        End points and via points, in order.
-    networks : list of dict
-        Description of each network (`network_summary`).
-    speeds_kn : list of float or None
-        Ordered speed of each setting [kn]; None if there is none.
+    context : Request, data and ship of the plan.
+    ends : End points and via points, in order.
+    networks : Description of each network (`network_summary`).
+    speeds_kn : Ordered speed of each setting [kn]; None if there is none.
 
     Returns
     -------
@@ -122,14 +116,10 @@ def network_summary(
 
     Parameters
     ----------
-    network : Network
-        The network that was searched.
-    settled : int
-        Number of nodes that the search settled.
-    depart : float
-        Departure [s since 1970-01-01T00:00Z].
-    way : str, optional
-        Name of the route alternative.
+    network : The network that was searched.
+    settled : Number of nodes that the search settled.
+    depart : Departure [s since 1970-01-01T00:00Z].
+    way : Name of the route alternative.
 
     Returns
     -------

@@ -64,15 +64,6 @@ def endpoints_within_coverage(
 ) -> list[Endpoint]:
     """Return the end points; ports are moved to the nearest water that is covered and deep enough.
 
-    Parameters
-    ----------
-    ends : sequence of Endpoint
-    voyage : Voyage
-    ship : Ship
-    sea : Sea
-    chart : Chart
-    needs : Requirements
-
     Raises
     ------
     OutsideAreaError

@@ -32,12 +32,9 @@ def default_departure(
 
     Parameters
     ----------
-    sea : Sea
     start, goal : (lat, lon)
         Ends of the voyage [deg].
-    ship : Ship
-    speed : float, optional
-        Ordered speed [m/s]; by default the highest of the ship.
+    speed : Ordered speed [m/s]; by default the highest of the ship.
 
     Returns
     -------

@@ -17,10 +17,7 @@ def check_request(voyage: Voyage, ship: Ship, sea: Sea) -> None:
 
     Parameters
     ----------
-    voyage : Voyage
-    ship : Ship
-    sea : Sea
-        A single sea or an ensemble.
+    sea : A single sea or an ensemble.
 
     Raises
     ------

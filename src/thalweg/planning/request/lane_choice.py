@@ -23,15 +23,7 @@ def add_traffic_schemes(
 
     Parameters
     ----------
-    chart : Chart
-    voyage : Voyage
-    ship : Ship
-    ends : sequence of Endpoint
-        Round them the lanes do not count.
-
-    Returns
-    -------
-    Chart
+    ends : Round them the lanes do not count.
     """
     near_land = chosen_offing(voyage, ship) <= 0.0
     if voyage.ignore_lanes or near_land or chart.approaches is None or chart.zones.lanes:

@@ -18,9 +18,7 @@ def with_ordered_speed(ship: Ship, speed_kn: float | None) -> Ship:
 
     Parameters
     ----------
-    ship : Ship
-    speed_kn : float or None
-        Ordered speed through calm water [kn].
+    speed_kn : Ordered speed through calm water [kn].
 
     Returns
     -------
@@ -52,9 +50,7 @@ def with_exact_speed(ship: Ship, speed_kn: float, hold: str | None) -> Ship:
 
     Parameters
     ----------
-    ship : Ship
-    speed_kn : float
-        Speed through calm water [kn].
+    speed_kn : Speed through calm water [kn].
     hold : {"speed", "power", "ground"} or None
         None: as the ship file orders. ``"ground"`` orders as that, too.
 
@@ -80,13 +76,7 @@ def with_order(ship: Ship, voyage: Voyage) -> Ship:
 
     Parameters
     ----------
-    ship : Ship
-    voyage : Voyage
-        Its `speed_kn` and `hold` count.
-
-    Returns
-    -------
-    Ship
+    voyage : Its `speed_kn` and `hold` count.
 
     Raises
     ------

@@ -27,14 +27,10 @@ class Requirements:
 
     Attributes
     ----------
-    channels : tuple of int
-        Channels of the sea to freeze (see `thalweg.kernels.codes`).
-    limits : Limits
-        Limits along the route.
-    notes : tuple of str
-        Assumptions for data that are missing.
-    data_end : float
-        Last time at which the sea covers all channels [s since 1970]; may be infinite.
+    channels : Channels of the sea to freeze (see `thalweg.kernels.codes`).
+    limits : Limits along the route.
+    notes : Assumptions for data that are missing.
+    data_end : Last time at which the sea covers all channels [s since 1970]; may be infinite.
     """
 
     channels: tuple[int, ...]
@@ -48,14 +44,10 @@ def derive_requirements(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -
 
     Parameters
     ----------
-    voyage : Voyage
-        The request.
-    ship : Ship
-        The ship that sails it.
-    sea : Sea
-        Currents, levels, waves and wind.
-    chart : Chart
-        Land, depth and zones.
+    voyage : The request.
+    ship : The ship that sails it.
+    sea : Currents, levels, waves and wind.
+    chart : Land, depth and zones.
 
     Returns
     -------
@@ -94,11 +86,6 @@ def derive_requirements(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -
 def variables_of_request(voyage: Voyage, ship: Ship) -> frozenset[str]:
     """Return the variables of the sea that a ship and the objective of a voyage need.
 
-    Parameters
-    ----------
-    voyage : Voyage
-    ship : Ship
-
     Returns
     -------
     frozenset of str
@@ -112,10 +99,7 @@ def check_variables(ship: Ship, sea: Sea, needed: frozenset[str] | None = None) 
 
     Parameters
     ----------
-    ship : Ship
-    sea : Sea
-    needed : frozenset of str, optional
-        By default what the ship needs.
+    needed : By default what the ship needs.
     """
     needed = ship.needs if needed is None else needed
     missing = sorted(name for name in needed if name not in sea.variables)
@@ -156,10 +140,8 @@ def required_under_keel_clearance(voyage: Voyage, ship: Ship) -> float:
 
     Parameters
     ----------
-    voyage : Voyage
-        The request.
-    ship : Ship
-        The ship, with the clearance of its file.
+    voyage : The request.
+    ship : The ship, with the clearance of its file.
 
     Returns
     -------
@@ -176,9 +158,7 @@ def period_of_data(ship: Ship, sea: Sea) -> tuple[float, float]:
 
     Parameters
     ----------
-    ship : Ship
-    sea : Sea
-        Its currents count as well, where it has them.
+    sea : Its currents count as well, where it has them.
 
     Returns
     -------

@@ -36,13 +36,8 @@ def add_shoals(
 
     Parameters
     ----------
-    chart : Chart
-        With the passages that the ship may use.
-    voyage : Voyage
-    ship : Ship
-    sea : Sea
-    ends : sequence of Endpoint
-        Round them the layer does not count.
+    chart : With the passages that the ship may use.
+    ends : Round them the layer does not count.
 
     Returns
     -------

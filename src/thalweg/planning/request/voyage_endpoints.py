@@ -27,22 +27,15 @@ class Endpoint:
 
     Attributes
     ----------
-    name : str
-        Name and country of the port ("Sydney, AU"), or the position as text.
-    lat, lon : float
-        Position used [deg]; of a port with an approach its sea end.
-    moved_distance_m : float
-        Distance moved to navigable water [m].
+    name : Name and country of the port ("Sydney, AU"), or the position as text.
+    lat, lon : Position used [deg]; of a port with an approach its sea end.
+    moved_distance_m : Distance moved to navigable water [m].
     given_position : (lat, lon), optional
         Requested position [deg], where it was moved.
-    is_port : bool
-        Whether the end point is a port.
-    why : str
-        Reason for moving it.
-    approach : PortApproach, optional
-        The approach from the berth to this position.
-    notice : str
-        A further note for the user, or empty.
+    is_port : Whether the end point is a port.
+    why : Reason for moving it.
+    approach : The approach from the berth to this position.
+    notice : A further note for the user, or empty.
     """
 
     name: str

@@ -19,11 +19,8 @@ class PricedObjective:
 
     Attributes
     ----------
-    objective : Objective
-    terms : FuelTerms
-        Prices and carbon factors, for the referee.
-    prices : LegPrices
-        The objective on legs, for searches and refinement.
+    terms : Prices and carbon factors, for the referee.
+    prices : The objective on legs, for searches and refinement.
     """
 
     objective: Objective
@@ -71,9 +68,7 @@ def priced_objective(voyage: Voyage, ship: Ship) -> PricedObjective:
 
     Parameters
     ----------
-    voyage : Voyage
-        With an objective that needs a choice of speed.
-    ship : Ship
+    voyage : With an objective that needs a choice of speed.
 
     Raises
     ------

@@ -58,13 +58,9 @@ def certified_bound(
 
     Parameters
     ----------
-    context : PlanningContext
-    route : Route
-        A feasible route of the passage.
-    departures : tuple of float
-        First and last departure that the bound holds for [s since 1970-01-01T00:00Z].
-    seconds : float
-        Time that the search for the bound may take [s]; 0 for that of the geodesic alone.
+    route : A feasible route of the passage.
+    departures : First and last departure that the bound holds for [s since 1970-01-01T00:00Z].
+    seconds : Time that the search for the bound may take [s]; 0 for that of the geodesic alone.
 
     Returns
     -------
@@ -96,9 +92,7 @@ def path_through_data(
 
     Parameters
     ----------
-    context : PlanningContext
-    route : Route
-        A feasible route of the passage.
+    route : A feasible route of the passage.
 
     Returns
     -------
@@ -117,11 +111,8 @@ def certified_distance(context: PlanningContext, route: Route, *, seconds: float
 
     Parameters
     ----------
-    context : PlanningContext
-    route : Route
-        A feasible route.
-    seconds : float
-        Time that the search for the bound may take [s].
+    route : A feasible route.
+    seconds : Time that the search for the bound may take [s].
 
     Returns
     -------
@@ -146,13 +137,9 @@ def certified_total(
 
     Parameters
     ----------
-    context : PlanningContext
-    routes : sequence of Route
-        Of the stretches between the ends and the via points, in order.
-    departures : tuple of float
-        First and last departure of the voyage [s since 1970-01-01T00:00Z].
-    seconds : float
-        Time that the search for the bounds may take [s].
+    routes : Of the stretches between the ends and the via points, in order.
+    departures : First and last departure of the voyage [s since 1970-01-01T00:00Z].
+    seconds : Time that the search for the bounds may take [s].
 
     Returns
     -------
@@ -192,7 +179,6 @@ def strongest_current_in_data(context: PlanningContext, route: Route) -> tuple[f
 
     Parameters
     ----------
-    context : PlanningContext
     route : Route
         A route that takes as long as any that counts: water farther away than its time at the
         greatest speed is left out.

@@ -20,12 +20,9 @@ class ControllingDepth(NamedTuple):
 
     Attributes
     ----------
-    depth : float
-        Greatest depth over time [m]; -inf where unknown.
-    lat, lon : float
-        [deg].
-    time : float
-        Time of the highest water there [s since 1970]; NaN if it does not change.
+    depth : Greatest depth over time [m]; -inf where unknown.
+    lat, lon : [deg].
+    time : Time of the highest water there [s since 1970]; NaN if it does not change.
     """
 
     depth: float
@@ -39,10 +36,8 @@ def find_controlling_depth(network: Network, fields: StationFields) -> Controlli
 
     Parameters
     ----------
-    network : Network
-        With start and goal.
-    fields : StationFields
-        The sea at its stations, with depth and level where known.
+    network : With start and goal.
+    fields : The sea at its stations, with depth and level where known.
 
     Returns
     -------

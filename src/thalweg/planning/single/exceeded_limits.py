@@ -39,8 +39,7 @@ def exceeded_limits_on_route(route: Route) -> tuple[Violation, ...]:
 
     Parameters
     ----------
-    route : Route
-        Scored by the referee.
+    route : Scored by the referee.
     """
     found = [v for v in route.violations if v.reason in (_DEPTH, _WAVES, _WIND)]
     return tuple(found[:_MOST_PLACES])
@@ -56,12 +55,9 @@ def without_exceeding_edges(
 
     Parameters
     ----------
-    context : PlanningContext
-        Request and data of the plan.
-    network : Network
-        The network that was searched.
-    places : sequence of Violation
-        As `exceeded_limits_on_route` returns them.
+    context : Request and data of the plan.
+    network : The network that was searched.
+    places : As `exceeded_limits_on_route` returns them.
 
     Returns
     -------

@@ -33,19 +33,13 @@ def no_route_error(
 
     Parameters
     ----------
-    network : Network
-    result : SearchResult
-        Result of the failed search.
-    ends : pair of Endpoint
-    depart : float
-        Earliest departure [s since 1970].
-    last : float
-        End of the data [s since 1970]; may be infinite.
+    result : Result of the failed search.
+    depart : Earliest departure [s since 1970].
+    last : End of the data [s since 1970]; may be infinite.
     fields : StationFields, optional
         The sea that was searched; with it and ``required`` the error states where the water is
         too shallow at any tide, the greatest depth there and its time.
-    required : float, optional
-        Required water depth [m].
+    required : Required water depth [m].
     """
     reasons = {**network.meta.rejected}
     for reason, count in result.refused.items():
@@ -112,12 +106,9 @@ def late_arrival_error(arrive_by: float, earliest: float, *, window: bool = Fals
 
     Parameters
     ----------
-    arrive_by : float
-        Latest arrival of the voyage [s since 1970].
-    earliest : float
-        Earliest possible arrival [s since 1970].
-    window : bool
-        Whether it is that of the shortest passage in a departure window.
+    arrive_by : Latest arrival of the voyage [s since 1970].
+    earliest : Earliest possible arrival [s since 1970].
+    window : Whether it is that of the shortest passage in a departure window.
     """
     if earliest <= arrive_by:  # in time, but not with this objective
         return NoRouteError(
@@ -141,16 +132,11 @@ class DepthDeficit(NamedTuple):
 
     Attributes
     ----------
-    lat, lon : float
-        [deg].
-    depth : float
-        Greatest depth there [m]; infinite if unknown.
-    time : float
-        When it is deepest [s since 1970]; NaN if the depth does not change.
-    required : float
-        Required depth [m].
-    until : float
-        End of the data [s since 1970].
+    lat, lon : [deg].
+    depth : Greatest depth there [m]; infinite if unknown.
+    time : When it is deepest [s since 1970]; NaN if the depth does not change.
+    required : Required depth [m].
+    until : End of the data [s since 1970].
     """
 
     lat: float

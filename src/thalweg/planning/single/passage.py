@@ -193,16 +193,11 @@ def isochrones(
 
     Parameters
     ----------
-    context : PlanningContext
-        Request, data and ship of the plan.
-    network : Network
-        With start and goal.
-    frozen : FrozenSea
-        The sea at the stations of the network.
-    depart : float
-        Departure [s since 1970-01-01T00:00Z].
-    until : float or None
-        Latest arrival that is computed [s since 1970-01-01T00:00Z].
+    context : Request, data and ship of the plan.
+    network : With start and goal.
+    frozen : The sea at the stations of the network.
+    depart : Departure [s since 1970-01-01T00:00Z].
+    until : Latest arrival that is computed [s since 1970-01-01T00:00Z].
 
     Returns
     -------

@@ -17,16 +17,11 @@ class PassageResult:
 
     Attributes
     ----------
-    route : Route
-        The best route, scored by the referee.
-    result : SearchResult
-        Result of the search on the network.
-    network : Network
-        The network searched.
-    isochrones : ndarray
-        Earliest arrival at every node [s since 1970], for the map; inf where not reached.
-    notes : tuple of str
-        Notes for the user.
+    route : The best route, scored by the referee.
+    result : Result of the search on the network.
+    network : The network searched.
+    isochrones : Earliest arrival at every node [s since 1970], for the map; inf where not reached.
+    notes : Notes for the user.
     """
 
     route: Route

@@ -38,8 +38,7 @@ def data_gaps_on_route(route: Route) -> tuple[Violation, ...]:
 
     Parameters
     ----------
-    route : Route
-        Scored by the referee.
+    route : Scored by the referee.
     """
     gaps = [v for v in route.violations if is_data_gap(v) and v.reason.endswith("(gap)")]
     return tuple(gaps[:MAX_GAPS])
@@ -52,12 +51,9 @@ def without_unknown_edges(
 
     Parameters
     ----------
-    context : PlanningContext
-        Request and data of the plan.
-    network : Network
-        The network that was searched.
-    gaps : sequence of Violation
-        Where and when the referee found data missing.
+    context : Request and data of the plan.
+    network : The network that was searched.
+    gaps : Where and when the referee found data missing.
     """
     keep = np.ones(network.n_edges, bool)
     sailed = np.isnan(network.edges.fixed_time)
@@ -80,13 +76,7 @@ def without_unknown_edges(
 
 
 def near_edges(network: Network, place: Violation) -> np.ndarray:
-    """Return which edges may pass through a place: it is nearer than their length.
-
-    Parameters
-    ----------
-    network : Network
-    place : Violation
-    """
+    """Return which edges may pass through a place: it is nearer than their length."""
     apart = distance(network.lat, network.lon, place.lat, place.lon)
     tails, target = network.tails(), network.graph.target
     return np.asarray(apart[tails] + apart[target] <= 1.001 * network.edges.length + _NEAR)
@@ -97,10 +87,8 @@ def check_times_known(route: Route, start: Endpoint, goal: Endpoint) -> None:
 
     Parameters
     ----------
-    route : Route
-        The best route found, which the referee refuses.
-    start, goal : Endpoint
-        Its ends.
+    route : The best route found, which the referee refuses.
+    start, goal : Its ends.
     """
     if math.isfinite(route.time_h):
         return
@@ -138,13 +126,9 @@ def edges_where_all(
 
     Parameters
     ----------
-    network : Network
-    rows : ndarray of int
-        The edges to test.
-    suits : callable
-        Returns which positions (lat, lon [deg]) suit.
-    step : float
-        Distance of the samples [m].
+    rows : The edges to test.
+    suits : Returns which positions (lat, lon [deg]) suit.
+    step : Distance of the samples [m].
 
     Returns
     -------
@@ -184,13 +168,7 @@ def _between(
 
 
 def data_spacing(sea: Sea, name: str) -> float:
-    """Return the least spacing [m] of the data of a variable; 10 km where it has none.
-
-    Parameters
-    ----------
-    sea : Sea
-    name : str
-    """
+    """Return the least spacing [m] of the data of a variable; 10 km where it has none."""
     rows = [row.spacing_deg for row in sea.coverage() if row.variable == name]
     spacings = [spacing for spacing in rows if spacing]
     return METRES_PER_DEGREE * min(spacings) if spacings else 10_000.0

@@ -14,10 +14,8 @@ def calm_water_value(table: TableArrays, setting: int) -> float:
 
     Parameters
     ----------
-    table : TableArrays
-        Speed [m/s] or fuel rate [kg/s].
-    setting : int
-        From 0.
+    table : Speed [m/s] or fuel rate [kg/s].
+    setting : From 0.
 
     Returns
     -------

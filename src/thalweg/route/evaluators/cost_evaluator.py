@@ -36,10 +36,8 @@ class CostEvaluator:
 
     Attributes
     ----------
-    evaluator : Evaluator
-        Its departure is the origin of times.
-    per_second : float
-        Additional price of a second of the passage; compared costs include it.
+    evaluator : Its departure is the origin of times.
+    per_second : Additional price of a second of the passage; compared costs include it.
     """
 
     evaluator: Evaluator
@@ -183,18 +181,12 @@ def make_cost_evaluator(
 
     Parameters
     ----------
-    ship : Ship
-        For the fuel rate in canals.
+    ship : For the fuel rate in canals.
     table, fuel : PerformanceTable or TableArrays
         Speed through water [m/s], and the rate of consumption that is priced, such as fuel [kg/s].
-    fields : GridFields
-        The sea frozen around the track.
-    limits : Limits
-        Limits along the route (`thalweg.core.limits.Limits`).
-    chart : Chart or None
-        Land, zones, canals and charted depth.
-    track : Track
-    prices : LegPrices
+    fields : The sea frozen around the track.
+    limits : Limits along the route (`thalweg.core.limits.Limits`).
+    chart : Land, zones, canals and charted depth.
 
     Raises
     ------

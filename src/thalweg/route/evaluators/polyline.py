@@ -32,8 +32,7 @@ class Polyline:
     leave : float64 array (n,)
         The ship leaves a point no earlier [s after the origin]; -inf where it does not wait.
     setting : int64 array (n - 1,)
-    depart : float
-        [s after the origin].
+    depart : [s after the origin].
     """
 
     lat: FloatArray
@@ -116,13 +115,7 @@ def polyline_of_track(track: Track, evaluator: PolylineEvaluator) -> Polyline:
 
     Parameters
     ----------
-    track : Track
-    evaluator : TimeEvaluator or CostEvaluator
-        Its origin is that of the times.
-
-    Returns
-    -------
-    Polyline
+    evaluator : Its origin is that of the times.
     """
     line = Polyline(
         np.array(track.lat),
@@ -140,17 +133,7 @@ def polyline_of_track(track: Track, evaluator: PolylineEvaluator) -> Polyline:
 
 
 def track_of_polyline(line: Polyline, evaluator: PolylineEvaluator) -> Track:
-    """Return a polyline as a track; its earliest departures become waits.
-
-    Parameters
-    ----------
-    line : Polyline
-    evaluator : TimeEvaluator or CostEvaluator
-
-    Returns
-    -------
-    Track
-    """
+    """Return a polyline as a track; its earliest departures become waits."""
     arrive, leave, _ = evaluator.sail_and_wait(line.batch())
     wait = np.maximum(0.0, leave[0] - arrive[0])
     wait[~np.isfinite(wait)] = 0.0

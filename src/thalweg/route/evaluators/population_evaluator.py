@@ -308,8 +308,7 @@ def make_evaluator(
         Tables of the ship and its limits.
     fields : GridFields
         The sea frozen around the tracks.
-    depart : float
-        [s since 1970-01-01T00:00Z].
+    depart : float [s since 1970-01-01T00:00Z]
     chart : Chart, optional
         Land, zones, emission control areas, canals and charted depth.
     latest : float

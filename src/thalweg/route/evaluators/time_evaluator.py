@@ -47,8 +47,7 @@ class TrackBatch:
     leave : float64 array (L, n)
         The ship leaves a point no earlier [s after the origin]; -inf where it does not wait.
     setting : int64 array (L, n - 1)
-    depart : float64 array (L,)
-        [s after the origin].
+    depart : float64 array (L,) [s after the origin]
     """
 
     lat: FloatArray
@@ -64,17 +63,11 @@ class TimeEvaluator:
 
     Attributes
     ----------
-    raster : RasterArrays
-        Times are seconds after ``origin``.
-    table : TableArrays
-    chart : Chart or None
+    raster : Times are seconds after ``origin``.
     limits : float64 array
-    origin : float
-        [s since 1970-01-01T00:00Z].
-    by_length : bool
-        Whether tracks compare by length instead of time.
-    spacing : float
-        Longest piece [m].
+    origin : [s since 1970-01-01T00:00Z].
+    by_length : Whether tracks compare by length instead of time.
+    spacing : Longest piece [m].
     waiting_parameters : float64 array (3,)
         How the ship waits where a leg is closed, beside the given waits (see
         `thalweg.kernels.leg.polyline_sailing.sail_polylines`); zeros: it does not.
@@ -108,11 +101,9 @@ class TimeEvaluator:
 
         Parameters
         ----------
-        batch : TrackBatch
         pieces : int64 array (L, n - 1), optional
             Pieces of each leg; the same for polylines whose times are to be differenced.
-        check : bool
-            Check land, zones and charted depth too.
+        check : Check land, zones and charted depth too.
 
         Returns
         -------
@@ -246,23 +237,16 @@ def make_time_evaluator(
 
     Parameters
     ----------
-    table : PerformanceTable or TableArrays
-        Speed through water [m/s].
-    chart : Chart or None
-        Land, zones and charted depth; None: not checked.
-    fields : GridFields
-        The sea frozen around the tracks.
-    limits : Limits
-        Limits along the route (`thalweg.core.limits.Limits`).
-    origin : float
-        Where times count from [s since 1970-01-01T00:00Z].
-    by_length : bool
-        Whether tracks compare by length instead of time.
+    table : Speed through water [m/s].
+    chart : Land, zones and charted depth; None: not checked.
+    fields : The sea frozen around the tracks.
+    limits : Limits along the route (`thalweg.core.limits.Limits`).
+    origin : Where times count from [s since 1970-01-01T00:00Z].
+    by_length : Whether tracks compare by length instead of time.
     total : float
         Rough length of the track [m]. Pieces are half a cell of the raster, at least a 400th of
         this and at most 100 km.
-    wait : bool
-        Whether the ship may wait where a leg is closed for some time.
+    wait : Whether the ship may wait where a leg is closed for some time.
     """
     raster = raster_arrays(fields, origin)
     arrays = table if isinstance(table, TableArrays) else table.kernel_arrays()
@@ -281,15 +265,6 @@ def raster_arrays(fields: GridFields, origin: float) -> RasterArrays:
     """Return a frozen raster as kernels take it; times count from ``origin``.
 
     ``origin`` is in seconds since 1970-01-01T00:00Z.
-
-    Parameters
-    ----------
-    fields : GridFields
-    origin : float
-
-    Returns
-    -------
-    RasterArrays
     """
     index = np.asarray(fields.channel_index, np.int64)
     channels = np.zeros(fields.values.shape[3], dtype=np.int64)
@@ -308,9 +283,7 @@ def penalty_factors(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> Fl
 
     Parameters
     ----------
-    chart : Chart or None
-    lat, lon : float64 array (..., n)
-        [deg].
+    lat, lon : float64 array (..., n) [deg]
 
     Returns
     -------

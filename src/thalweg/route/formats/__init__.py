@@ -76,12 +76,8 @@ def write_route_files(
 
     Parameters
     ----------
-    route : Route
-    folder : str or Path
-        It exists.
-    name : str
-        Of the files, without ending.
-    options : RouteFileOptions, optional
+    folder : It exists.
+    name : Of the files, without ending.
 
     Returns
     -------
@@ -106,8 +102,7 @@ def read_track(path: str | Path, *, depart: TimeLike | None = None) -> Track:
         track), ``.rtz`` and ``.rtzp`` (RTZ 1.0 to 1.2), ``.gml`` (S-421, experimental). Legs of
         RTZ and S-421 are rhumb lines unless marked as orthodromes; those of the other formats are
         geodesics.
-    depart : time, optional
-        Departure; by default the first time in the file.
+    depart : Departure; by default the first time in the file.
 
     Returns
     -------

@@ -34,8 +34,7 @@ class FileRoute:
     rows : list of dict
         One per waypoint: ``name`` and the columns of `thalweg.route.route.Route.waypoints`, with
         rhumb-line courses.
-    cross_track_m : float
-        Greatest distance of the route from the rhumb lines between the waypoints [m].
+    cross_track_m : Greatest distance of the route from the rhumb lines between the waypoints [m].
     """
 
     rows: list[dict[str, Any]]
@@ -55,15 +54,6 @@ class _CutRoute:
 
 def file_route(route: Route, options: RouteFileOptions | None = None) -> FileRoute:
     """Return a route at the waypoints of its files.
-
-    Parameters
-    ----------
-    route : Route
-    options : RouteFileOptions, optional
-
-    Returns
-    -------
-    FileRoute
 
     Raises
     ------
@@ -95,15 +85,6 @@ def _cut_at_waypoints(route: Route, options: RouteFileOptions) -> FileRoute:
 
 def file_track(route: Route, options: RouteFileOptions | None = None) -> Track:
     """Return the track that a reader of the files of a route sails.
-
-    Parameters
-    ----------
-    route : Route
-    options : RouteFileOptions, optional
-
-    Returns
-    -------
-    Track
 
     Raises
     ------

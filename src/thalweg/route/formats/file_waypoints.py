@@ -43,8 +43,7 @@ class FileVertices:
         Leg of the route that goes on from the waypoint (the last leg at the last waypoint).
     at : float64 array (n,)
         Distance from the start of the route [m], as the referee sailed it.
-    cross_track : float
-        Greatest distance of the route from the rhumb lines between the waypoints [m].
+    cross_track : Greatest distance of the route from the rhumb lines between the waypoints [m].
     """
 
     lat: FloatArray
@@ -56,15 +55,6 @@ class FileVertices:
 
 def file_vertices(route: Route, options: RouteFileOptions) -> FileVertices:
     """Return the waypoints of a file for a route.
-
-    Parameters
-    ----------
-    route : Route
-    options : RouteFileOptions
-
-    Returns
-    -------
-    FileVertices
 
     Raises
     ------

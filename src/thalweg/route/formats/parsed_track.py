@@ -27,14 +27,10 @@ class ParsedTrack:
     ----------
     positions : list of (lat, lon)
         In order [deg].
-    first_time : float or None
-        [s since 1970-01-01T00:00Z]; None: not given.
-    orders : list of WaypointOrder
-        By position; empty where the file has none.
-    rhumb : list of bool
-        By leg, whether it is a rhumb line; empty: all legs are geodesics.
-    notes : list of str
-        What the file has otherwise than its format, and how it was read.
+    first_time : [s since 1970-01-01T00:00Z]; None: not given.
+    orders : By position; empty where the file has none.
+    rhumb : By leg, whether it is a rhumb line; empty: all legs are geodesics.
+    notes : What the file has otherwise than its format, and how it was read.
     """
 
     positions: list[Position]
@@ -68,8 +64,7 @@ def waypoint_order(values: Mapping[str, object], number: int) -> WaypointOrder:
     ----------
     values : mapping of str to object
         Values of the file at the waypoint, by name.
-    number : int
-        Number of the waypoint, for messages.
+    number : Number of the waypoint, for messages.
 
     Returns
     -------
@@ -99,10 +94,8 @@ def is_rhumb_line(text: object, number: int) -> bool:
 
     Parameters
     ----------
-    text : object
-        What the file has: RL, rhumb or loxodrome; GC, great circle or orthodrome; blank is that.
-    number : int
-        Number of the waypoint, for messages.
+    text : What the file has: RL, rhumb or loxodrome; GC, great circle or orthodrome; blank is that.
+    number : Number of the waypoint, for messages.
 
     Raises
     ------
@@ -148,10 +141,8 @@ def position_of(lat: object, lon: object, number: int) -> Position:
 
     Parameters
     ----------
-    lat, lon : object
-        Numbers or text in degrees.
-    number : int
-        Number of the waypoint, for messages.
+    lat, lon : Numbers or text in degrees.
+    number : Number of the waypoint, for messages.
 
     Returns
     -------
@@ -169,15 +160,8 @@ def track_of(parsed: ParsedTrack, depart: TimeLike | None, name: str) -> Track:
 
     Parameters
     ----------
-    parsed : ParsedTrack
-    depart : time or None
-        Departure; None: that of the file.
-    name : str
-        Name of the file, for messages.
-
-    Returns
-    -------
-    Track
+    depart : Departure; None: that of the file.
+    name : Name of the file, for messages.
 
     Raises
     ------

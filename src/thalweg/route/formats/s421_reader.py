@@ -27,10 +27,6 @@ _LINES = {"1": True, "loxodrome": True, "2": False, "orthodrome": False}
 def parse_s421(data: bytes) -> ParsedTrack:
     """Read the route of an S-421 file.
 
-    Parameters
-    ----------
-    data : bytes
-
     Returns
     -------
     ParsedTrack

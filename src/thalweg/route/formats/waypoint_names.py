@@ -21,8 +21,7 @@ def waypoint_names(
     ----------
     distance : float64 array (n,)
         Distance of the waypoints from the start, along the route [m].
-    start, goal : str, optional
-        Names of the places at both ends; positions are no names.
+    start, goal : Names of the places at both ends; positions are no names.
     speed : float64 array (n - 1,), optional
         Ordered speed of the legs [m/s]. Where it first changes near an end, the approach ends.
 

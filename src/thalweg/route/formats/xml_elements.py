@@ -18,9 +18,7 @@ def parse_xml(data: bytes | str, what: str) -> ElementTree.Element:
 
     Parameters
     ----------
-    data : bytes or str
-    what : str
-        The format, for messages.
+    what : The format, for messages.
 
     Raises
     ------

@@ -145,11 +145,6 @@ def as_track(route: RouteLike, depart: TimeLike | None = None) -> Track:
     Parameters
     ----------
     route : Track, Route, path, or iterable of (lat, lon)
-    depart : time, optional
-
-    Returns
-    -------
-    Track
 
     Raises
     ------
@@ -181,10 +176,7 @@ def resolve_settings(ship: Ship, track: Track, speed_kn: float | None = None) ->
 
     Parameters
     ----------
-    ship : Ship
-    track : Track
-    speed_kn : float, optional
-        Ordered calm-water speed on every leg [kn].
+    speed_kn : Ordered calm-water speed on every leg [kn].
 
     Returns
     -------

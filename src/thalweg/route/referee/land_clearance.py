@@ -33,12 +33,9 @@ class LandClearance:
 
     Attributes
     ----------
-    distance : float
-        Distance to land [m], to 1 %; at least 30 nautical miles if it is above that.
-    lat, lon : float
-        Position on the track [deg].
-    leg : int
-        Its leg, from 0.
+    distance : Distance to land [m], to 1 %; at least 30 nautical miles if it is above that.
+    lat, lon : Position on the track [deg].
+    leg : Its leg, from 0.
     """
 
     distance: float

@@ -73,7 +73,6 @@ class TrackPieces:
 
     Attributes
     ----------
-    track : Track
     length, course : float64 array (legs,)
         Length [m] and course at the start [rad] of each leg.
     leg : int64 array (p,)
@@ -84,8 +83,7 @@ class TrackPieces:
         Its length [m].
     wait : float64 array (p,)
         Wait after it [s]: at the end of a leg, else 0.
-    canals : CanalLegs
-        Which legs are canals; their length is that of the canal.
+    canals : Which legs are canals; their length is that of the canal.
     """
 
     track: Track
@@ -145,15 +143,10 @@ def cut_into_pieces(
 
     Parameters
     ----------
-    track : Track
-    step : float
-        Greatest length of a piece [m].
-    least : int
-        Least number of pieces of a leg.
-    chart : Chart, optional
-        Whose canals legs may run through.
-    ship : Ship, optional
-        With a ship, legs may also run along the port approaches of the chart.
+    step : Greatest length of a piece [m].
+    least : Least number of pieces of a leg.
+    chart : Whose canals legs may run through.
+    ship : With a ship, legs may also run along the port approaches of the chart.
     """
     canals = canal_legs(track, chart, ship)
     length, course, _ = inverse(track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:])

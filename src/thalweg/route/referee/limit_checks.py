@@ -45,17 +45,12 @@ def limit_violations(
 
     Parameters
     ----------
-    world : SailingEnvironment
-    points : TrackPoints
-        In the order of sailing.
-    time : ndarray
-        [s since 1970-01-01T00:00Z]; NaN beyond a point the ship cannot pass.
+    points : In the order of sailing.
+    time : [s since 1970-01-01T00:00Z]; NaN beyond a point the ship cannot pass.
     sampled : mapping of str to ndarray
         The sea at these points and times.
-    depth : ndarray
-        Water depth at these points and times [m].
-    min_ukc : float or None
-        Least under-keel clearance [m]; None: depth is not checked.
+    depth : Water depth at these points and times [m].
+    min_ukc : Least under-keel clearance [m]; None: depth is not checked.
     """
     reached = np.isfinite(time)
     found: list[Violation] = []

@@ -33,13 +33,10 @@ def indicator_columns(
 
     Parameters
     ----------
-    sailed : SailedTrack
-    points : TrackPoints
-        All fine samples, in the order of sailing.
+    points : All fine samples, in the order of sailing.
     time : float64 array
         Their times [s]; NaN where not reached.
-    motion : SailingState
-        What the ship does there.
+    motion : What the ship does there.
 
     Returns
     -------

@@ -71,19 +71,13 @@ def solve_passage_times(
 
     Parameters
     ----------
-    slowness : callable
-        See `SlownessFunction`.
+    slowness : See `SlownessFunction`.
     step, wait : ndarray, shape (p,)
         Length of each piece [m] and the wait after it [s].
-    depart : float
-        Departure from the start of the first piece [s].
+    depart : Departure from the start of the first piece [s].
     guess : ndarray, shape (p, 2)
         First guess of the slowness [s/m], finite and positive; also used after a bad point, so that
         all numbers stay finite.
-
-    Returns
-    -------
-    PassageTimes
 
     Notes
     -----

@@ -33,10 +33,8 @@ class CostBreakdown:
         ``fuel`` (of sailing) and ``waiting_fuel`` (of waiting before it) [kg], ``fuel_in_eca``
         (of both) [kg], ``co2`` [kg], ``cost`` [currency] with its parts (`COST_PARTS`),
         ``energy`` (of sailing) and ``waiting_energy`` [J]; NaN where unknown.
-    zones : dict of str to float
-        Fuel [kg] by emission control area, and ``outside`` them; empty where no areas count.
-    notes : tuple of str
-        Assumptions where data are missing.
+    zones : Fuel [kg] by emission control area, and ``outside`` them; empty where no areas count.
+    notes : Assumptions where data are missing.
     """
 
     legs: dict[str, FloatArray]
@@ -73,12 +71,6 @@ class _FuelByPart:
 
 def cost_breakdown(sailed: SailedTrack, rates: ConsumptionRates, terms: FuelTerms) -> CostBreakdown:
     """Return the fuel, energy, emissions and cost of a track.
-
-    Parameters
-    ----------
-    sailed : SailedTrack
-    rates : ConsumptionRates
-    terms : FuelTerms
 
     Notes
     -----

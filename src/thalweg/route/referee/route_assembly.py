@@ -46,13 +46,9 @@ def assemble_route(
 
     Parameters
     ----------
-    sailed : SailedTrack
-    min_ukc : float or None
-        Least under-keel clearance [m]; None: depth is not checked.
-    tolerance : float
-        Of the time of sailing [s].
-    terms : FuelTerms
-        Prices of fuel and time.
+    min_ukc : Least under-keel clearance [m]; None: depth is not checked.
+    tolerance : Of the time of sailing [s].
+    terms : Prices of fuel and time.
     """
     world, pieces = sailed.world, sailed.pieces
     points, time, order = _all_points(sailed)

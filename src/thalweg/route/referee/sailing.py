@@ -26,14 +26,10 @@ class SailedTrack:
 
     Attributes
     ----------
-    world : SailingEnvironment
-    pieces : TrackPieces
     charted : float64 array (p,)
         Least charted depth along every piece [m below datum]; +inf without a chart of depth.
-    gauss : TrackPoints
-        The two Gauss points of every piece.
-    passage : PassageTimes
-        When they are passed.
+    gauss : The two Gauss points of every piece.
+    passage : When they are passed.
     """
 
     world: SailingEnvironment
@@ -72,18 +68,9 @@ def sail_track(
 
     Parameters
     ----------
-    world : SailingEnvironment
-    track : Track
-    step : float
-        Longest piece [m].
-    least : int
-        Least number of pieces of a leg.
-    coarse : SailedTrack or None
-        A coarser solution.
-
-    Returns
-    -------
-    SailedTrack
+    step : Longest piece [m].
+    least : Least number of pieces of a leg.
+    coarse : A coarser solution.
     """
     pieces = cut_into_pieces(track, step, least, world.chart, world.ship)
     charted = _least_charted_depths(world, pieces)
@@ -120,12 +107,9 @@ def sailing_state_along(
 
     Parameters
     ----------
-    world : SailingEnvironment
-        Ship, sea and chart.
-    canals : CanalLegs
-        Legs of the track in canals.
-    points : TrackPoints
-        Positions and courses.
+    world : Ship, sea and chart.
+    canals : Legs of the track in canals.
+    points : Positions and courses.
     time : ndarray (n,)
         Times [s since 1970-01-01T00:00Z].
     guess : ndarray (n,), optional
@@ -190,10 +174,8 @@ def data_spacings(world: SailingEnvironment, share: float) -> list[float]:
 
     Parameters
     ----------
-    world : SailingEnvironment
-        Ship, sea and chart.
-    share : float
-        Fraction of the spacing of the data [-].
+    world : Ship, sea and chart.
+    share : Fraction of the spacing of the data [-].
 
     Returns
     -------

@@ -43,13 +43,8 @@ class SailingEnvironment:
 
     Attributes
     ----------
-    ship : Ship
-    sea : Sea
-    chart : Chart or None
-    names : tuple of str
-        Variables of the sea to sample.
-    assumptions : tuple of str
-        Assumptions where data are missing.
+    names : Variables of the sea to sample.
+    assumptions : Assumptions where data are missing.
     """
 
     ship: Ship
@@ -87,12 +82,9 @@ class SailingState:
 
     Attributes
     ----------
-    sampled : dict of str to ndarray
-        Variables of the sea by name, SI.
-    depth : ndarray
-        Water depth, level included [m]; +inf where no source of depth exists, NaN unknown.
-    heading : ndarray
-        [rad from north].
+    sampled : Variables of the sea by name, SI.
+    depth : Water depth, level included [m]; +inf where no source of depth exists, NaN unknown.
+    heading : [rad from north].
     through_water, over_ground : ndarray
         Speeds [m/s]; ``speed_over_ground`` is NaN where the ship cannot hold its course or its
         speed is unknown.
@@ -107,16 +99,6 @@ class SailingState:
 
 def make_sailing_environment(ship: Ship, sea: Sea, chart: Chart | None) -> SailingEnvironment:
     """Find the variables that a ship needs, and check that the sea has them.
-
-    Parameters
-    ----------
-    ship : Ship
-    sea : Sea
-    chart : Chart or None
-
-    Returns
-    -------
-    SailingEnvironment
 
     Raises
     ------
@@ -161,10 +143,8 @@ def sample_sea_and_depth(
 
     Parameters
     ----------
-    world : SailingEnvironment
-        Ship, sea and chart.
-    points : TrackPoints
-        Positions and courses.
+    world : Ship, sea and chart.
+    points : Positions and courses.
     time : ndarray (n,)
         Times [s since 1970-01-01T00:00Z].
 
@@ -198,12 +178,8 @@ def solve_sailing_state(
 
     Parameters
     ----------
-    world : SailingEnvironment
-    points : TrackPoints
-    time : ndarray
-        [s since 1970-01-01T00:00Z].
-    guess : ndarray, optional
-        Speed through water [m/s] near the answer, to start the current triangle from.
+    time : [s since 1970-01-01T00:00Z].
+    guess : Speed through water [m/s] near the answer, to start the current triangle from.
 
     Notes
     -----
@@ -236,23 +212,15 @@ def conditions_at(
 
     Parameters
     ----------
-    world : SailingEnvironment
-        Ship, sea and chart.
-    points : TrackPoints
-        Positions and courses.
+    world : Ship, sea and chart.
+    points : Positions and courses.
     time : ndarray (n,)
         Times [s since 1970-01-01T00:00Z].
-    sampled : dict of str to ndarray
-        Sea variables by CF standard name [SI].
+    sampled : Sea variables by CF standard name [SI].
     depth : ndarray (n,)
         Water depth [m].
     heading : ndarray (n,)
         Headings [rad from north].
-
-    Returns
-    -------
-    Conditions
-        For the model of the ship.
     """
     crab = (heading - points.course + math.pi) % (2.0 * math.pi) - math.pi
     more = {"depth": depth, "crab_angle": crab} if world.has_depth else {"crab_angle": crab}

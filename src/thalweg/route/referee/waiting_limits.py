@@ -21,8 +21,6 @@ def waiting_violations(chart: Chart | None, track: Track, arrive: FloatArray) ->
 
     Parameters
     ----------
-    chart : Chart or None
-    track : Track
     arrive : float64 array (legs,)
         When each leg ends [s since 1970]; NaN where the ship does not get.
     """

@@ -175,13 +175,9 @@ def freeze_around_track(
 
     Parameters
     ----------
-    route : Route
-        For the duration of the voyage.
-    track : Track
-    margin : float
-        Margin on all sides, as a share of the longer side of the box around the track.
-    until : float, optional
-        Latest arrival [s since 1970-01-01T00:00Z]; by default that of the route.
+    route : For the duration of the voyage.
+    margin : Margin on all sides, as a share of the longer side of the box around the track.
+    until : Latest arrival [s since 1970-01-01T00:00Z]; by default that of the route.
     """
     start = track.depart
     arrive = route.arrive if math.isfinite(route.arrive) else start + 2.0 * _usual(route, ship)
@@ -270,11 +266,8 @@ def comparison_key(route: Route, objective: str, chart: Chart | None) -> tuple[i
 
     Parameters
     ----------
-    route : Route
-    objective : str
-        "distance", or time for all others.
-    chart : Chart or None
-        Its penalty zones count.
+    objective : "distance", or time for all others.
+    chart : Its penalty zones count.
 
     Returns
     -------
@@ -282,8 +275,7 @@ def comparison_key(route: Route, objective: str, chart: Chart | None) -> tuple[i
         Number of exceeded limits; 0 for feasible routes.
     objective : float
         [m] or [s], with the additions of penalty zones.
-    arrive : float
-        [s since 1970-01-01T00:00Z].
+    arrive : float [s since 1970-01-01T00:00Z]
     """
     if not math.isfinite(route.arrive):
         return sys.maxsize, math.inf, math.inf
@@ -304,10 +296,7 @@ def penalty_excess(route: Route, objective: str, chart: Chart | None) -> float:
 
     Parameters
     ----------
-    route : Route
-    objective : str
-        "distance", or time for all others.
-    chart : Chart or None
+    objective : "distance", or time for all others.
 
     Returns
     -------

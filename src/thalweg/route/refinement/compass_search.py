@@ -26,18 +26,12 @@ class CompassSchedule:
     shares : tuple of float
         First step of each round as a share of `CompassProblem.point_spacing`; one number: steps
         grow and shrink with the success of each point instead.
-    rounds : int
-        Rounds over all points at most.
-    growth, shrinkage : float
-        Factors of the step of a point after a gain and without one.
-    turn : float
-        By which the directions turn every round [rad].
-    smallest : float
-        The search ends when all steps are shorter than this [m].
-    least_gain : float
-        Gain that does not count yet, as a share of the value of the legs beside a point.
-    groups : int
-        With 2 every second point moves at a time, with 1 all of them.
+    rounds : Rounds over all points at most.
+    growth, shrinkage : Factors of the step of a point after a gain and without one.
+    turn : By which the directions turn every round [rad].
+    smallest : The search ends when all steps are shorter than this [m].
+    least_gain : Gain that does not count yet, as a share of the value of the legs beside a point.
+    groups : With 2 every second point moves at a time, with 1 all of them.
     """
 
     shares: tuple[float, ...]
@@ -90,9 +84,7 @@ def compass_search(tracks: AnyCompassProblem, schedule: CompassSchedule) -> AnyC
 
     Parameters
     ----------
-    tracks : CompassProblem
-        A batch of tracks, such as `ScoredTracks` or `SailedPolyline`.
-    schedule : CompassSchedule
+    tracks : A batch of tracks, such as `ScoredTracks` or `SailedPolyline`.
 
     Returns
     -------

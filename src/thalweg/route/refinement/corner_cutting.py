@@ -26,9 +26,7 @@ def cut_corners(line: Polyline, evaluator: PolylineEvaluator) -> Polyline:
 
     Parameters
     ----------
-    line : Polyline
-        One that can be sailed.
-    evaluator : TimeEvaluator or CostEvaluator
+    line : One that can be sailed.
 
     Notes
     -----
@@ -61,10 +59,7 @@ def merge_short_legs(line: Polyline, evaluator: PolylineEvaluator, *, shortest: 
 
     Parameters
     ----------
-    line : Polyline
-    evaluator : TimeEvaluator or CostEvaluator
-    shortest : float
-        Legs below this length [m] are merged.
+    shortest : Legs below this length [m] are merged.
     """
     k = 1
     while k < len(line) - 2:

@@ -29,8 +29,7 @@ def accumulated_delay_effects(
         What a second of delay at the goal counts.
     absorbed : bool array (R, M), optional
         Points where the ship waits: a delay there shortens the wait.
-    remaining : float
-        What a second of delay counts where it is absorbed.
+    remaining : What a second of delay counts where it is absorbed.
 
     Returns
     -------

@@ -23,12 +23,9 @@ def bisect_to_feasible(feasible: Route, better: Track, score: Callable[[Track], 
 
     Parameters
     ----------
-    feasible : Route
-        A route within every limit.
-    better : Track
-        A better track that violates one.
-    score : callable
-        The referee: a track to its route.
+    feasible : A route within every limit.
+    better : A better track that violates one.
+    score : The referee: a track to its route.
     """
     if feasible.track.wait.any() or better.wait.any() or np.ptp(feasible.track.setting):
         return feasible

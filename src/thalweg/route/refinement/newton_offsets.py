@@ -27,10 +27,8 @@ class StepSchedule:
 
     Attributes
     ----------
-    damping : tuple of float
-        Shares of the curvature added to it; from 1 on the matrix is made positive definite.
-    factors : tuple of float
-        Shares of the Newton step that are tried.
+    damping : Shares of the curvature added to it; from 1 on the matrix is made positive definite.
+    factors : Shares of the Newton step that are tried.
     """
 
     damping: tuple[float, ...]
@@ -104,12 +102,9 @@ def optimise_lateral_offsets(
 
     Parameters
     ----------
-    tracks : LateralProblem
-        A batch of tracks, such as `ScoredTracks` or `SailedPolyline`.
-    rounds : int
-        Newton iterations at most.
-    tolerance : float
-        Relative gain below which the iteration ends, when no track gains more.
+    tracks : A batch of tracks, such as `ScoredTracks` or `SailedPolyline`.
+    rounds : Newton iterations at most.
+    tolerance : Relative gain below which the iteration ends, when no track gains more.
 
     Returns
     -------
@@ -189,7 +184,6 @@ def solve_newton_step(
 
     Parameters
     ----------
-    derivatives : LateralDerivatives
     free : bool array (R, M)
         Points that may move; the others get a step of 0.
     damping : float

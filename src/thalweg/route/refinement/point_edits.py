@@ -26,13 +26,7 @@ def remove_points(lines: ScoredTracks, *, allowance: float) -> ScoredTracks:
 
     Parameters
     ----------
-    lines : ScoredTracks
-    allowance : float
-        Share of the value of a track.
-
-    Returns
-    -------
-    ScoredTracks
+    allowance : Share of the value of a track.
     """
     row, place = np.nonzero(lines.free)
     if not len(row):
@@ -104,13 +98,7 @@ def split_long_legs(lines: ScoredTracks, *, legs: int) -> ScoredTracks:
 
     Parameters
     ----------
-    lines : ScoredTracks
-    legs : int
-        Least number of legs of equal length.
-
-    Returns
-    -------
-    ScoredTracks
+    legs : Least number of legs of equal length.
     """
     population = lines.population
     lengths = lines.lengths()

@@ -50,13 +50,9 @@ def optimise_line_offsets(
 
     Parameters
     ----------
-    line : Polyline
-        One that can be sailed; any other is returned unchanged.
-    evaluator : TimeEvaluator or CostEvaluator
-    rounds : int
-        Newton iterations at most.
-    tolerance : float
-        Relative gain below which the iteration ends.
+    line : One that can be sailed; any other is returned unchanged.
+    rounds : Newton iterations at most.
+    tolerance : Relative gain below which the iteration ends.
 
     Returns
     -------
@@ -76,11 +72,8 @@ def search_line_positions(
 
     Parameters
     ----------
-    line : Polyline
-        One that can be sailed; any other is returned unchanged.
-    evaluator : TimeEvaluator or CostEvaluator
-    smallest : float
-        The search ends when all steps are shorter than this [m].
+    line : One that can be sailed; any other is returned unchanged.
+    smallest : The search ends when all steps are shorter than this [m].
 
     Returns
     -------
@@ -99,10 +92,7 @@ class SailedPolyline:
 
     Attributes
     ----------
-    line : Polyline
-    evaluator : TimeEvaluator or CostEvaluator
-    cost : float
-        As the evaluator compares; +inf where the line cannot be sailed.
+    cost : As the evaluator compares; +inf where the line cannot be sailed.
     arrive : float64 array (n,)
         Arrival at every point [s after the origin].
     """

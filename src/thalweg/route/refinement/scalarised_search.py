@@ -44,11 +44,8 @@ def scalarised_local_search(
 
     Parameters
     ----------
-    lines : ScoredTracks
-    stop : callable
-        Called between steps; true ends the search.
-    levels : tuple of int
-        Least number of legs, level by level.
+    stop : Called between steps; true ends the search.
+    levels : Least number of legs, level by level.
 
     Returns
     -------
@@ -84,9 +81,7 @@ def time_prices(evaluator: Evaluator, count: int) -> FloatArray:
 
     Parameters
     ----------
-    evaluator : Evaluator
-    count : int
-        Number of prices.
+    count : Number of prices.
     """
     speeds, prices = calm_water_values(evaluator.world.table), evaluator.prices
     cost = calm_water_values(evaluator.world.fuel) * prices.outside + prices.time
@@ -115,14 +110,7 @@ def seeds_with_time_prices(evaluator: Evaluator, seeds: Population, *, count: in
 
     Parameters
     ----------
-    evaluator : Evaluator
-    seeds : Population
-    count : int
-        Number of prices of time.
-
-    Returns
-    -------
-    ScoredTracks
+    count : Number of prices of time.
     """
     scores = evaluator.score(seeds)
     good = np.flatnonzero(scores[:, 2] == 0.0)
@@ -160,13 +148,7 @@ def fill_front(lines: ScoredTracks, size: int) -> Population:
 
     Parameters
     ----------
-    lines : ScoredTracks
-    size : int
-        Number of tracks, about.
-
-    Returns
-    -------
-    Population
+    size : Number of tracks, about.
     """
     front = feasible_front(lines.scores)
     if len(front) < 2:

@@ -33,9 +33,7 @@ class ScoredTracks:
 
     Attributes
     ----------
-    evaluator : Evaluator
-    population : Population
-        R tracks; all legs known.
+    population : R tracks; all legs known.
     price : float64 array (R,)
         Price of time: cost + price * time is minimised.
     scores : float64 array (R, 3)
@@ -284,7 +282,6 @@ def legs_as_tracks(
 
     Parameters
     ----------
-    lines : ScoredTracks
     row, place : int64 array (L,)
         Track and first point of each leg.
 
@@ -318,12 +315,9 @@ def sail_legs_alone(
 
     Parameters
     ----------
-    evaluator : Evaluator
     pairs : float64 array (L, 2, GENE_COLUMNS)
-    depart : float64 array (L,)
-        [s after the departure of the evaluator].
-    blocked : bool
-        Sail legs that touch land too.
+    depart : float64 array (L,) [s after the departure of the evaluator]
+    blocked : Sail legs that touch land too.
 
     Returns
     -------
@@ -376,8 +370,7 @@ def shift_points(genes: FloatArray, east: FloatArray, north: FloatArray) -> None
     Parameters
     ----------
     genes : float64 array (..., GENE_COLUMNS)
-    east, north : float64 array (...)
-        [m].
+    east, north : float64 array (...) [m]
     """
     lat, lon = displaced_positions(genes[..., LAT], genes[..., LON], east, north)
     genes[..., LAT], genes[..., LON] = np.clip(lat, -90.0, 90.0), wrap_longitude(lon)

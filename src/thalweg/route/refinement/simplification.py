@@ -30,16 +30,11 @@ def simplified_route(
 
     Parameters
     ----------
-    route : Route
-        As evaluated by the referee.
-    score : callable
-        The referee: a track to its route.
-    cost : callable
-        The objective of a route, which is minimised.
-    most : float
-        Largest cost of the simplified route.
-    held : bool array, optional
-        Waypoints that are not removed, such as ends of canals.
+    route : As evaluated by the referee.
+    score : The referee: a track to its route.
+    cost : The objective of a route, which is minimised.
+    most : Largest cost of the simplified route.
+    held : Waypoints that are not removed, such as ends of canals.
 
     Returns
     -------

@@ -207,14 +207,8 @@ def resampled_polyline(line: Polyline, count: int) -> Polyline:
 
     Parameters
     ----------
-    line : Polyline
-        Without waits.
-    count : int
-        Number of points.
-
-    Returns
-    -------
-    Polyline
+    line : Without waits.
+    count : Number of points.
     """
     along = np.concatenate([[0.0], np.cumsum(rough_lengths(line.lat, line.lon))])
     at = np.linspace(0.0, along[-1], count)
@@ -284,8 +278,7 @@ def _shortened_waits(
 
     Parameters
     ----------
-    longer : float
-        Longest extension of a wait [s].
+    longer : Longest extension of a wait [s].
     """
     if isinstance(evaluator, CostEvaluator):
         return line

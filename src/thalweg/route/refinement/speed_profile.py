@@ -41,12 +41,8 @@ def choose_speeds(
 
     Parameters
     ----------
-    line : Polyline
-    evaluator : CostEvaluator
-    latest : float
-        Latest arrival [s after the origin].
-    whole : bool
-        Do not split legs: the waypoints of the line do not change.
+    latest : Latest arrival [s after the origin].
+    whole : Do not split legs: the waypoints of the line do not change.
 
     Returns
     -------
@@ -243,9 +239,7 @@ def choose_speeds_of_tracks(lines: ScoredTracks, *, rounds: int = 3) -> ScoredTr
 
     Parameters
     ----------
-    lines : ScoredTracks
-    rounds : int
-        Choices at most, each at the times of passage of the one before.
+    rounds : Choices at most, each at the times of passage of the one before.
 
     Returns
     -------
@@ -287,8 +281,6 @@ def leg_values_by_setting(
 
     Parameters
     ----------
-    lines : ScoredTracks
-    delays : DelayEffects
     row, place : int64 array (L,)
         Track and first point of each leg.
 
@@ -308,7 +300,6 @@ def leg_times_and_costs_by_setting(
 
     Parameters
     ----------
-    lines : ScoredTracks
     row, place : int64 array (L,)
         Track and first point of each leg.
 

@@ -20,8 +20,6 @@ def string_pull(line: Polyline, evaluator: PolylineEvaluator, *, penalty: float 
 
     Parameters
     ----------
-    line : Polyline
-    evaluator : TimeEvaluator or CostEvaluator
     penalty : float
         Cost of a waypoint [unit of the cost]: a line with fewer waypoints may be worse by this much
         for each that is removed.

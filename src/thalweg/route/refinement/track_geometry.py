@@ -47,15 +47,13 @@ def displaced_positions(
 
     Parameters
     ----------
-    lat, lon : float64 array (...)
-        [deg].
+    lat, lon : float64 array (...) [deg]
     east, north : float64 array (...)
         Displacements [m]; broadcast with the positions.
 
     Returns
     -------
-    lat, lon : float64 array (...)
-        [deg].
+    lat, lon : float64 array (...) [deg]
     """
     scale = np.maximum(np.cos(np.radians(lat)), _SMALLEST_COSINE)
     return lat + north / METRES_PER_DEGREE, lon + east / (METRES_PER_DEGREE * scale)

@@ -61,12 +61,9 @@ def with_checked_direction(combine: Combine, index: int, variable: str, source: 
 
     Parameters
     ----------
-    combine : callable
-        Makes the variables from the arrays.
-    index : int
-        Number of the array that holds directions.
-    variable, source : str
-        Names of the variable and of the file, for messages.
+    combine : Makes the variables from the arrays.
+    index : Number of the array that holds directions.
+    variable, source : Names of the variable and of the file, for messages.
     """
 
     def checked(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
@@ -81,12 +78,9 @@ def make_conversion(combine: Combine, place: GridPlacement, rotate: bool) -> Any
 
     Parameters
     ----------
-    combine : callable
-        Makes the variables from the arrays.
-    place : GridPlacement
-        Their grid; on faces of a mesh, values are also averaged to its nodes.
-    rotate : bool
-        Whether the variables are components along the grid, to be rotated to east and north.
+    combine : Makes the variables from the arrays.
+    place : Their grid; on faces of a mesh, values are also averaged to its nodes.
+    rotate : Whether the variables are components along the grid, to be rotated to east and north.
     """
     angle = place.angle if rotate else None
 

@@ -32,8 +32,7 @@ class VerticalLayers:
 
     Attributes
     ----------
-    dim : str
-        The dimension.
+    dim : The dimension.
     is_sigma : bool
         Whether edges are fractions of the water depth (0 surface, 1 bed), else depths [m below
         datum].
@@ -60,8 +59,7 @@ class VerticalLayers:
 
         Parameters
         ----------
-        draught : float
-            Depth below the surface [m].
+        draught : Depth below the surface [m].
         column : float64 array (T, Y, X)
             Water depth at each time [m] for sigma layers, water level [m above datum] for others.
 
@@ -91,10 +89,8 @@ def draught_averaging(
 
     Parameters
     ----------
-    layers : VerticalLayers
-        The layers of both components.
-    draught : float
-        Draught [m].
+    layers : The layers of both components.
+    draught : Draught [m].
     depth : callable
         ``depth(arrays)`` returns the ``column`` that `VerticalLayers.shares` needs, from all
         arrays, of which the first two are the components (T, L, Y, X).
@@ -128,12 +124,9 @@ def find_vertical_layers(
 
     Parameters
     ----------
-    dataset, array
-        The file and one of its variables.
-    keep : frozenset of str
-        Its dimensions of time and position.
-    source : str
-        File name for messages.
+    dataset, array : The file and one of its variables.
+    keep : Its dimensions of time and position.
+    source : File name for messages.
 
     Raises
     ------

@@ -65,14 +65,9 @@ class EnsembleFile:
 
     Attributes
     ----------
-    file : OpenedFile
-        The whole file.
-    dim : str
-        The dimension.
-    placement_cache : PlacementCache
-        Positions and meshes, which are the same for every member.
-    shared : list of LayerCandidate
-        The candidates of the first member; those that do not vary are used for all.
+    dim : The dimension.
+    placement_cache : Positions and meshes, which are the same for every member.
+    shared : The candidates of the first member; those that do not vary are used for all.
     """
 
     file: OpenedFile
@@ -129,8 +124,7 @@ def combine_members(members: Sequence[Sequence[GridLayer]]) -> list[Layer]:
 
     Parameters
     ----------
-    members : sequence of sequence of GridLayer
-        The layers of each member, in the same order.
+    members : The layers of each member, in the same order.
     """
     layers: list[Layer] = []
     for group in zip(*members):

@@ -52,12 +52,9 @@ def layer_candidates(
 
     Parameters
     ----------
-    file : OpenedFile
-        The file.
     mapping : mapping of str to str
         Given by the user: canonical name to name in the file.
-    placement_cache : PlacementCache, optional
-        Grids of an earlier file with the same positions.
+    placement_cache : Grids of an earlier file with the same positions.
 
     Raises
     ------

@@ -45,12 +45,10 @@ def open_layers(
 
     Parameters
     ----------
-    sources : sequence of path-like or xarray.Dataset
-        Files in order of priority.
+    sources : Files in order of priority.
     mapping : mapping of str to str or None
         Canonical name to name in the file.
-    draught : float, optional
-        Draught [m] over which currents in layers are averaged.
+    draught : Draught [m] over which currents in layers are averaged.
 
     Raises
     ------
@@ -149,12 +147,7 @@ def open_file(source: Any) -> list[OpenedFile]:
 
     Parameters
     ----------
-    source : path-like or xarray.Dataset
-        A file, a Zarr folder or a dataset.
-
-    Returns
-    -------
-    list of OpenedFile
+    source : A file, a Zarr folder or a dataset.
 
     Raises
     ------

@@ -31,8 +31,7 @@ def open_grib(path: Path) -> list[Any]:
 
     Parameters
     ----------
-    path : Path
-        The file.
+    path : The file.
 
     Returns
     -------

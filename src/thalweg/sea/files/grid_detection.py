@@ -26,19 +26,13 @@ class GridPlacement:
 
     Attributes
     ----------
-    key : tuple
-        Equal for variables on the same grid.
-    grid : Grid
-        The grid.
-    dims : tuple of str
-        Dimensions of position, rows first.
+    key : Equal for variables on the same grid.
+    dims : Dimensions of position, rows first.
     angle : float64 array or None
         Angle [rad] from true east to the direction of increasing column number (rows, columns);
         None if that is east.
-    flipped : bool
-        Whether columns must be reversed on reading.
-    mesh : MeshLayout or None
-        For meshes, how values belong to grid points.
+    flipped : Whether columns must be reversed on reading.
+    mesh : For meshes, how values belong to grid points.
     """
 
     key: tuple[str, ...]
@@ -56,14 +50,11 @@ def grid_placement(
 
     Parameters
     ----------
-    dataset, array : xarray.Dataset, xarray.DataArray
-        The file and one of its variables.
+    dataset, array : The file and one of its variables.
     mapping : mapping of str to str
         Given by the user; its key "crs" names the projection.
-    source : str
-        File name for messages.
-    meshes : list of MeshLayout
-        Meshes of the file.
+    source : File name for messages.
+    meshes : Meshes of the file.
 
     Raises
     ------

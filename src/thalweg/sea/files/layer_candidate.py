@@ -21,14 +21,11 @@ class OpenedFile:
 
     Attributes
     ----------
-    dataset : xarray.Dataset
-        Not loaded.
-    source : str
-        Its name, for messages.
+    dataset : Not loaded.
+    source : Its name, for messages.
     facts : mapping
         Name, size and modification time.
-    draught : float or None
-        Draught [m] over which currents in layers are averaged; None for the surface layer.
+    draught : Draught [m] over which currents in layers are averaged; None for the surface layer.
     """
 
     dataset: Any
@@ -43,18 +40,12 @@ class PlacedVariable:
 
     Attributes
     ----------
-    chosen : AssignedVariable
-        The variable and its role.
-    variable : SourceVariable
-        Reads its values.
-    place : GridPlacement
-        Its grid.
+    chosen : The variable and its role.
+    variable : Reads its values.
     times : float64 array (T,)
         Its times [s since epoch]; empty without any.
-    rotated : bool
-        Whether GRIB states that components are along the grid.
-    layers : VerticalLayers or None
-        Layers over which it is averaged.
+    rotated : Whether GRIB states that components are along the grid.
+    layers : Layers over which it is averaged.
     """
 
     chosen: AssignedVariable
@@ -71,16 +62,10 @@ class LayerCandidate:
 
     Attributes
     ----------
-    place : GridPlacement
-        The grid.
     times : float64 array (T,)
         Times [s since epoch]; empty for fields that hold at all times.
-    file : OpenedFile
-        The file.
-    quantities : list of Quantity
-        Quantities found so far.
-    recognised : list of RecognisedVariable
-        How they were recognised.
+    quantities : Quantities found so far.
+    recognised : How they were recognised.
     """
 
     place: GridPlacement
@@ -96,10 +81,8 @@ class PlacementCache:
 
     Attributes
     ----------
-    meshes : list of MeshLayout or None
-        Meshes of the file.
-    places : dict
-        The grid of each variable.
+    meshes : Meshes of the file.
+    places : The grid of each variable.
     """
 
     meshes: list[MeshLayout] | None = None

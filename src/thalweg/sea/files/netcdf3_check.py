@@ -55,8 +55,7 @@ def expected_length(path: Path) -> int:
 
     Parameters
     ----------
-    path : Path
-        A classic NetCDF file.
+    path : A classic NetCDF file.
 
     Raises
     ------

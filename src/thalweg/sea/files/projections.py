@@ -17,12 +17,10 @@ def projection_of(dataset: Any, array: Any, mapping: Mapping[str, str], source: 
 
     Parameters
     ----------
-    dataset, array : xarray.Dataset, xarray.DataArray
-        The file and one of its variables.
+    dataset, array : The file and one of its variables.
     mapping : mapping of str to str
         Its key "crs" has priority over the file.
-    source : str
-        File name for messages.
+    source : File name for messages.
 
     Returns
     -------
@@ -85,8 +83,7 @@ def to_degrees(crs: Any, x: FloatArray, y: FloatArray) -> tuple[FloatArray, Floa
 
     Parameters
     ----------
-    crs : pyproj.CRS or int
-        Projection, or its EPSG code.
+    crs : Projection, or its EPSG code.
     x, y : float64 array
         Projected positions [m], of one shape.
 
@@ -110,8 +107,7 @@ def meridian_angle(crs: Any, x: FloatArray, y: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    crs : pyproj.CRS
-        Projection.
+    crs : Projection.
     x, y : float64 array
         Projected positions [m], of one shape.
 

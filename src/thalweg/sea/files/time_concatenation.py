@@ -24,14 +24,9 @@ def join_in_time(
 
     Parameters
     ----------
-    candidates : sequence of LayerCandidate
-        Candidates of all files, in order of priority.
+    candidates : Candidates of all files, in order of priority.
     ignored : mapping of str to list of IgnoredVariable
         Variables that are not used, by file.
-
-    Returns
-    -------
-    list of GridLayer
     """
     joined: list[list[LayerCandidate]] = []
     for candidate in candidates:

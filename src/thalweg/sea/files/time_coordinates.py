@@ -29,10 +29,8 @@ def read_times(array: Any, source: str) -> FloatArray:
 
     Parameters
     ----------
-    array : xarray.DataArray
-        The time axis, decoded or not.
-    source : str
-        File name for messages.
+    array : The time axis, decoded or not.
+    source : File name for messages.
 
     Returns
     -------
@@ -107,8 +105,7 @@ def time_coordinate(dataset: Any, array: Any) -> Any:
 
     Parameters
     ----------
-    dataset, array : xarray.Dataset, xarray.DataArray
-        The file and one of its variables.
+    dataset, array : The file and one of its variables.
 
     Returns
     -------

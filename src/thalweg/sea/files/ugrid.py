@@ -54,16 +54,11 @@ class MeshLayout:
 
     Attributes
     ----------
-    key : tuple of str
-        Name of the mesh and of the dimension.
-    dim : str
-        Dimension of nodes or of faces.
-    grid : TriangleGrid
-        Grid points and triangles.
+    key : Name of the mesh and of the dimension.
+    dim : Dimension of nodes or of faces.
+    grid : Grid points and triangles.
     angle : float64 array or None
         Angle [rad] of the projection's x axis from east at each value, (1, values).
-    averaging : FaceAveraging or None
-        For faces.
     """
 
     key: tuple[str, ...]
@@ -144,12 +139,10 @@ def mesh_layouts(dataset: Any, mapping: Mapping[str, str], source: str) -> list[
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        The file.
+    dataset : The file.
     mapping : mapping of str to str
         Given by the user; its key "crs" names the projection.
-    source : str
-        File name for messages.
+    source : File name for messages.
 
     Raises
     ------
@@ -256,10 +249,8 @@ def read_faces(table: Any, nodes: int, source: str) -> IntArray:
     table : xarray.DataArray
         Connectivity (M, largest number of nodes); it may hold floats with NaN or an undecoded
         fill value, and count from 0 or 1.
-    nodes : int
-        Number of nodes of the mesh.
-    source : str
-        File name for messages.
+    nodes : Number of nodes of the mesh.
+    source : File name for messages.
 
     Returns
     -------

@@ -66,10 +66,8 @@ def si_factor(text: str, dimension: str) -> float | None:
 
     Parameters
     ----------
-    text : str
-        The unit as spelled in the file.
-    dimension : str
-        "speed", "length", "time", "pressure", "fraction" or "direction".
+    text : The unit as spelled in the file.
+    dimension : "speed", "length", "time", "pressure", "fraction" or "direction".
 
     Returns
     -------
@@ -97,8 +95,7 @@ def valid_limits(array: Any) -> tuple[float, float] | None:
 
     Parameters
     ----------
-    array : xarray.DataArray
-        A variable, decoded.
+    array : A variable, decoded.
 
     Returns
     -------

@@ -37,16 +37,11 @@ class AssignedVariable:
 
     Attributes
     ----------
-    role : str
-        Its role (see `thalweg.sea.files.variable_aliases`).
-    variable : str
-        Its name in the file.
-    factor : float
-        To SI (degrees for directions).
-    units : str
-        As spelled in the file.
-    how : str
-        How it was recognised.
+    role : Its role (see `thalweg.sea.files.variable_aliases`).
+    variable : Its name in the file.
+    factor : To SI (degrees for directions).
+    units : As spelled in the file.
+    how : How it was recognised.
     """
 
     role: str
@@ -62,10 +57,8 @@ class IgnoredVariable:
 
     Attributes
     ----------
-    variable : str
-        Its name.
-    reason : str
-        Why not.
+    variable : Its name.
+    reason : Why not.
     """
 
     variable: str
@@ -78,14 +71,10 @@ class RoleCandidate:
 
     Attributes
     ----------
-    variable : str
-        Its name.
-    rank : int
-        0 by standard name, 1 by a second-choice standard name, 2 by a known name.
-    origin, place : str, int
-        The source that uses its name, and its rank of preference there.
-    how : str
-        How it was recognised.
+    variable : Its name.
+    rank : 0 by standard name, 1 by a second-choice standard name, 2 by a known name.
+    origin, place : The source that uses its name, and its rank of preference there.
+    how : How it was recognised.
     """
 
     variable: str
@@ -102,14 +91,11 @@ def recognise_variables(
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        The file.
+    dataset : The file.
     mapping : mapping of str to str
         Given by the user: canonical name (or role) to name in the file.
-    source : str
-        File name for messages.
-    skip : frozenset of str
-        Coordinates and other variables that carry no field.
+    source : File name for messages.
+    skip : Coordinates and other variables that carry no field.
 
     Raises
     ------
@@ -174,8 +160,7 @@ def check_mapping(mapping: Mapping[str, str], present: frozenset[str]) -> None:
     ----------
     mapping : mapping of str to str
         Canonical name to name in the file.
-    present : frozenset of str
-        Names of the variables in the files.
+    present : Names of the variables in the files.
     """
     for name, variable in mapping.items():
         if name != "crs" and variable not in present:

@@ -30,14 +30,10 @@ def pick_surface(dataset: Any, array: Any, keep: frozenset[str], role: str, sour
 
     Parameters
     ----------
-    dataset, array : xarray.Dataset, xarray.DataArray
-        The file and one of its variables.
-    keep : frozenset of str
-        Its dimensions of time and position.
-    role : str
-        Role of the variable.
-    source : str
-        File name for messages.
+    dataset, array : The file and one of its variables.
+    keep : Its dimensions of time and position.
+    role : Role of the variable.
+    source : File name for messages.
 
     Raises
     ------

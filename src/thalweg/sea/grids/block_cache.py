@@ -27,14 +27,10 @@ class BlockCache:
 
     Attributes
     ----------
-    shape : tuple of int
-        Times, rows and columns of the whole grid.
-    wraps : bool
-        Whether columns wrap around the globe.
-    blocks : dict
-        Block by names of the quantity.
-    misses : dict
-        Number of reads after the first, by names of the quantity.
+    shape : Times, rows and columns of the whole grid.
+    wraps : Whether columns wrap around the globe.
+    blocks : Block by names of the quantity.
+    misses : Number of reads after the first, by names of the quantity.
     """
 
     shape: tuple[int, int, int]

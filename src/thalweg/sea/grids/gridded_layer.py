@@ -30,20 +30,14 @@ class GridLayer:
 
     Attributes
     ----------
-    quantities : tuple of Quantity
-        Quantities of the layer.
-    grid : Grid
-        Grid points of the values.
-    axis : TimeAxis
-        Times of the values.
-    cache : BlockCache
-        Values read so far; it changes no result.
-    source : str
-        File names.
+    quantities : Quantities of the layer.
+    grid : Grid points of the values.
+    axis : Times of the values.
+    cache : Values read so far; it changes no result.
+    source : File names.
     facts : mapping
         Name, size and modification time of the files.
-    record : RecognitionRecord
-        Recognised and ignored variables.
+    record : Recognised and ignored variables.
     """
 
     quantities: tuple[Quantity, ...]

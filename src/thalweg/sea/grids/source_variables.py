@@ -55,14 +55,10 @@ class VariableInFile:
 
     Attributes
     ----------
-    array : xarray.DataArray
-        Dimensions (time, row, column), (row, column), (time, node) or (node,); not loaded.
-    levels : int
-        Number of times.
-    has_time : bool
-        Whether time is its first dimension; else its values belong to one time, or to all.
-    factor : float
-        Conversion of its values to SI; files of one layer may differ in units.
+    array : Dimensions (time, row, column), (row, column), (time, node) or (node,); not loaded.
+    levels : Number of times.
+    has_time : Whether time is its first dimension; else its values belong to one time, or to all.
+    factor : Conversion of its values to SI; files of one layer may differ in units.
     valid : (float, float) or None
         Least and greatest valid value in the file's unit; others are missing.
     """
@@ -80,16 +76,12 @@ class SourceVariable:
 
     Attributes
     ----------
-    name : str
-        Its name in the files.
-    pieces : tuple of VariableInFile
-        One per file.
-    timed : bool
-        Whether it has times; if not, there is one piece, which holds at all times.
+    name : Its name in the files.
+    pieces : One per file.
+    timed : Whether it has times; if not, there is one piece, which holds at all times.
     is_mesh : bool
         Whether positions are along one dimension (always read whole) instead of rows and columns.
-    source : str
-        File names, for messages.
+    source : File names, for messages.
     shift : tuple of int
         Offset (rows, columns) of a staggered variable: (0, 1) for velocities on the east side of
         cells, (1, 0) on the north side; it is averaged to the centre of the cell.
@@ -189,16 +181,11 @@ class Quantity:
 
     Attributes
     ----------
-    names : tuple of str
-        Canonical names.
-    variables : tuple of SourceVariable
-        The file variables they are made from.
-    make : callable
-        ``make(arrays, window) -> arrays``: components, rotation, averaging.
-    source : str
-        File names.
-    layers : int
-        Number of vertical layers that are read for each value.
+    names : Canonical names.
+    variables : The file variables they are made from.
+    make : ``make(arrays, window) -> arrays``: components, rotation, averaging.
+    source : File names.
+    layers : Number of vertical layers that are read for each value.
     """
 
     names: tuple[str, ...]

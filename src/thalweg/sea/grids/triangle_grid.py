@@ -31,10 +31,8 @@ class TriangleGrid:
         Grid points that hold values [deg].
     triangles : int64 array (K, 3)
         Flat indices of grid points.
-    shape : tuple of int
-        Rows and columns of grid points (1 row for a mesh).
-    network : Mesh or None
-        Nodes and triangles from which a network can be built.
+    shape : Rows and columns of grid points (1 row for a mesh).
+    network : Nodes and triangles from which a network can be built.
     """
 
     lat: FloatArray

@@ -78,14 +78,10 @@ class NearestLayer:
 
     Attributes
     ----------
-    layers : tuple of Layer
-        The layers that are filled, in order of priority.
-    names : frozenset of str
-        Canonical names of what is filled.
-    distance : float
-        Greatest distance [m].
-    height_factor : float
-        Wave heights are multiplied by this.
+    layers : The layers that are filled, in order of priority.
+    names : Canonical names of what is filled.
+    distance : Greatest distance [m].
+    height_factor : Wave heights are multiplied by this.
     """
 
     layers: tuple[Layer, ...]
@@ -209,8 +205,7 @@ def head_seas_layer(layers: Sequence[Layer]) -> HeadSeasLayer:
 
     Parameters
     ----------
-    layers : sequence of Layer
-        Layers in order of priority.
+    layers : Layers in order of priority.
 
     Raises
     ------
@@ -234,14 +229,10 @@ def nearest_layer(
 
     Parameters
     ----------
-    layers : sequence of Layer
-        Layers in order of priority.
-    names : sequence of str
-        Canonical names.
-    distance : float
-        Greatest distance [m].
-    height_factor : float, optional
-        Wave heights are multiplied by this.
+    layers : Layers in order of priority.
+    names : Canonical names.
+    distance : Greatest distance [m].
+    height_factor : Wave heights are multiplied by this.
 
     Raises
     ------
@@ -301,8 +292,7 @@ def grid_positions(grid: Any) -> tuple[FloatArray, FloatArray]:
 
     Parameters
     ----------
-    grid : Grid
-        A rectilinear grid or a grid of triangles.
+    grid : A rectilinear grid or a grid of triangles.
 
     Returns
     -------

@@ -37,14 +37,10 @@ class AmbientSea:
 
     Attributes
     ----------
-    wind : tuple of float
-        Wind (east, north) towards [m/s].
-    wave_height : float
-        Significant height [m].
-    wave_to_deg : float
-        Direction the waves travel towards [deg].
-    wave_period : float
-        Peak period [s].
+    wind : Wind (east, north) towards [m/s].
+    wave_height : Significant height [m].
+    wave_to_deg : Direction the waves travel towards [deg].
+    wave_period : Peak period [s].
     """
 
     wind: tuple[float, float] = (5.0, 1.5)
@@ -59,12 +55,9 @@ class StormLayer:
 
     Attributes
     ----------
-    track : BestTrack
-        Positions, winds and pressures.
-    ambient : AmbientSea
-        The surrounding sea.
-    time_step : float
-        Step [s] at which it is frozen.
+    track : Positions, winds and pressures.
+    ambient : The surrounding sea.
+    time_step : Step [s] at which it is frozen.
     """
 
     track: BestTrack
@@ -226,14 +219,10 @@ def storm_layer(
 
     Parameters
     ----------
-    name : str
-        Name of an embedded storm.
-    start : time, optional
-        First time of the track; its true date by default.
-    ambient : AmbientSea, optional
-        The surrounding sea.
-    time_step : float
-        Step of frozen times [s], 1 or more.
+    name : Name of an embedded storm.
+    start : First time of the track; its true date by default.
+    ambient : The surrounding sea.
+    time_step : Step of frozen times [s], 1 or more.
 
     Raises
     ------

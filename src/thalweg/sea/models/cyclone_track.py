@@ -26,8 +26,7 @@ class BestTrack:
 
     Attributes
     ----------
-    name : str
-        Name of the storm.
+    name : Name of the storm.
     time : float64 array
         Times [s since epoch].
     lat, lon : float64 array
@@ -69,8 +68,7 @@ def load_best_track(name: str) -> BestTrack:
 
     Parameters
     ----------
-    name : str
-        Name of an embedded storm.
+    name : Name of an embedded storm.
 
     Raises
     ------

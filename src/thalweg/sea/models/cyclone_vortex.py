@@ -57,8 +57,6 @@ def vortex_state(track: BestTrack, time: FloatArray) -> VortexState:
 
     Parameters
     ----------
-    track : BestTrack
-        The best track.
     time : float64 array (N,)
         Times [s since epoch].
 
@@ -107,8 +105,7 @@ def vortex_wind(
         Distance from the centre [m].
     inward : tuple of float64 array
         Unit vector (east, north) towards the centre.
-    state : VortexState
-        The vortex at the time of each point.
+    state : The vortex at the time of each point.
 
     Returns
     -------

@@ -23,8 +23,7 @@ class DerivedLayer(ABC):
 
     Attributes
     ----------
-    layers : tuple of Layer
-        The layers with what is needed, in order of priority; values are unknown where it is.
+    layers : The layers with what is needed, in order of priority; values are unknown where it is.
     """
 
     layers: tuple[Layer, ...]
@@ -104,9 +103,7 @@ def finite_period(layers: Sequence[Layer], names: Sequence[str]) -> tuple[float,
 
     Parameters
     ----------
-    layers : sequence of Layer
-    names : sequence of str
-        Canonical names.
+    names : Canonical names.
     """
     start, end = stack_period(layers, names)
     return (start, end) if np.isfinite([start, end]).all() else None
@@ -119,9 +116,7 @@ def inside_layers_with(
 
     Parameters
     ----------
-    layers : sequence of Layer
-    names : frozenset of str
-        Canonical names.
+    names : Canonical names.
     lat, lon : float64 array
         Positions [deg].
     """

@@ -34,16 +34,11 @@ class FormulaLayer:
 
     Attributes
     ----------
-    variables : frozenset of str
-        Canonical names.
-    evaluate : callable
-        ``evaluate(names, time, lat, lon) -> {name: array}`` on arrays of one shape.
-    label : str
-        Origin of the values.
-    area : BoundingBox
-        Values are unknown outside.
-    period : tuple of float or None
-        First and last time [s since epoch]; values are unknown outside.
+    variables : Canonical names.
+    evaluate : ``evaluate(names, time, lat, lon) -> {name: array}`` on arrays of one shape.
+    label : Origin of the values.
+    area : Values are unknown outside.
+    period : First and last time [s since epoch]; values are unknown outside.
     time_step : float or None
         Step [s] at which the formula is frozen; 0 for a field that never changes; None to
         choose it by the length of the window (see `automatic_times`).
@@ -136,8 +131,7 @@ def automatic_times(start: float, end: float, time_step: float | None = None) ->
 
     Parameters
     ----------
-    start, end : float
-        Window [s since epoch].
+    start, end : Window [s since epoch].
     time_step : float, optional
         Step [s], reduced so that the last step ends on the window; by default
         ``min(600 s, window / 200)``, increased where there would be more than 2000 steps.
@@ -161,8 +155,7 @@ def constant_layer(values: Mapping[str, float], label: str) -> FormulaLayer:
     ----------
     values : mapping of str to float
         Value [SI] by canonical name.
-    label : str
-        Origin of the values.
+    label : Origin of the values.
     """
 
     def evaluate(
@@ -187,17 +180,9 @@ def layer_of_functions(
     ----------
     functions : mapping of str to callable
         As for `thalweg.sea.Sea.from_functions`.
-    area : tuple of float, optional
-        (south, north, west, east) [deg]; values are unknown outside.
-    period : tuple of time, optional
-        (start, end); values are unknown outside.
-    time_step : float, optional
-        Step [s] of frozen times.
-
-    Returns
-    -------
-    FormulaLayer
-        The layer.
+    area : (south, north, west, east) [deg]; values are unknown outside.
+    period : (start, end); values are unknown outside.
+    time_step : Step [s] of frozen times.
 
     Raises
     ------

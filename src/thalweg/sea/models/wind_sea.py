@@ -41,8 +41,7 @@ def carter_1982(
         Wind speed at 10 m [m/s], at least 0.
     fetch : array_like
         Length of open water over which the wind has blown [m].
-    duration : float
-        Time for which it has blown [s].
+    duration : Time for which it has blown [s].
 
     Returns
     -------
@@ -138,10 +137,8 @@ def wind_sea_layer(layers: Sequence[Layer], fetch: FetchFunction | None = None) 
 
     Parameters
     ----------
-    layers : sequence of Layer
-        Layers in order of priority.
-    fetch : callable, optional
-        As in `WindSeaLayer`.
+    layers : Layers in order of priority.
+    fetch : As in `WindSeaLayer`.
 
     Raises
     ------

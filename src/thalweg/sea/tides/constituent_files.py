@@ -75,8 +75,7 @@ def is_constituent_file(path: str | Path) -> bool:
 
     Parameters
     ----------
-    path : path
-        A file; may be gzipped.
+    path : A file; may be gzipped.
     """
     try:
         head = _read_text(Path(path)).lstrip()
@@ -141,8 +140,7 @@ def from_dict(data: Mapping[str, Any], source: str = "constituents") -> Constitu
     ----------
     data : mapping
         Plain data.
-    source : str
-        File name for messages.
+    source : File name for messages.
 
     Raises
     ------
@@ -185,10 +183,8 @@ def select_station(
     ----------
     stations : sequence of mapping
         Stations as in the neaps tide database.
-    wanted : str or None
-        Id or name; None if there is one station only.
-    source : str
-        File name for messages.
+    wanted : Id or name; None if there is one station only.
+    source : File name for messages.
 
     Raises
     ------

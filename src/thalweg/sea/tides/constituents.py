@@ -305,16 +305,13 @@ def unit_phasors(
 
     Parameters
     ----------
-    names : tuple of str
-        C constituents.
+    names : C constituents.
     times : float64 array (T,)
         Seconds since 1970-01-01T00:00Z.
-    latitude : float
-        Latitude of the nodal corrections [deg].
+    latitude : Latitude of the nodal corrections [deg].
     convention : {"foreman", "schureman", "rws"}
         As `Constituents`.
-    nodal_time : float, optional
-        One time of the nodal corrections [s since epoch].
+    nodal_time : One time of the nodal corrections [s since epoch].
 
     Returns
     -------

@@ -30,8 +30,7 @@ class ConstituentTable:
 
     Attributes
     ----------
-    index : dict of str to int
-        Row of each name.
+    index : Row of each name.
     frequency : float64 array (K,)
         Cycles per hour.
     separation : float64 array (K,)
@@ -127,8 +126,7 @@ def equilibrium_arguments(names: tuple[str, ...], times: FloatArray) -> FloatArr
 
     Parameters
     ----------
-    names : tuple of str
-        C constituents, as UTide spells them.
+    names : C constituents, as UTide spells them.
     times : float64 array (T,)
         Seconds since 1970-01-01T00:00Z.
 
@@ -163,12 +161,10 @@ def nodal_corrections(names: tuple[str, ...], times: FloatArray, latitude: float
 
     Parameters
     ----------
-    names : tuple of str
-        C constituents, as UTide spells them.
+    names : C constituents, as UTide spells them.
     times : float64 array (T,)
         Seconds since 1970-01-01T00:00Z.
-    latitude : float
-        Latitude [deg]; within 5 deg of the equator that of 5 deg is used.
+    latitude : Latitude [deg]; within 5 deg of the equator that of 5 deg is used.
 
     Returns
     -------

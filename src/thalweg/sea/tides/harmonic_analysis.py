@@ -40,14 +40,12 @@ class TideAnalysis:
 
     Attributes
     ----------
-    constituents : Constituents
-        The constants.
+    constituents : The constants.
     tidal_share : mapping of str to float64 array (N,)
         Fraction of the variance of the record that the tide explains, by variable and node.
     variance : mapping of str to float64 array (N,)
         Variance of the record.
-    start, end : float
-        First and last time of the record [s since epoch].
+    start, end : First and last time of the record [s since epoch].
     """
 
     constituents: Constituents
@@ -92,16 +90,9 @@ def analyse(
     constituents : sequence of str, optional
         Names as UTide spells them; by default all that the length and step of the record can
         separate, in the order of priority of Foreman (1977).
-    rayleigh : float
-        Rayleigh criterion: least difference of two constituents [cycles] over the record.
-    least_known : float
-        Nodes with values at a smaller fraction of the times get no tide (NaN).
-    progress : callable, optional
-        Called with the number of nodes done and in total.
-
-    Returns
-    -------
-    TideAnalysis
+    rayleigh : Rayleigh criterion: least difference of two constituents [cycles] over the record.
+    least_known : Nodes with values at a smaller fraction of the times get no tide (NaN).
+    progress : Called with the number of nodes done and in total.
 
     Raises
     ------
@@ -257,10 +248,8 @@ def select_constituents(
     ----------
     times : float64 array (T,)
         Times of the record [s since epoch].
-    wanted : sequence of str or None
-        Constituents to check; None to select them.
-    rayleigh : float
-        Rayleigh criterion [cycles over the record].
+    wanted : Constituents to check; None to select them.
+    rayleigh : Rayleigh criterion [cycles over the record].
 
     Raises
     ------
@@ -311,12 +300,9 @@ def check_rayleigh(names: Sequence[str], length_h: float, rayleigh: float = RAYL
 
     Parameters
     ----------
-    names : sequence of str
-        Constituents.
-    length_h : float
-        Length of the record [h].
-    rayleigh : float
-        Least difference of two constituents [cycles over the record].
+    names : Constituents.
+    length_h : Length of the record [h].
+    rayleigh : Least difference of two constituents [cycles over the record].
 
     Raises
     ------

@@ -49,8 +49,7 @@ def tidal_analysis(
 
     Parameters
     ----------
-    layers : sequence of Layer
-        The layers of a sea.
+    layers : The layers of a sea.
 
     Warns
     -----
@@ -98,12 +97,9 @@ def analyse_layer(
 
     Parameters
     ----------
-    layer : GridLayer
-        A layer with currents or water level over time.
-    constituents, rayleigh, progress
-        As for `thalweg.sea.tides.harmonic_analysis.analyse`.
-    cache : bool
-        Whether the result is read from and written to the cache folder.
+    layer : A layer with currents or water level over time.
+    constituents, rayleigh, progress : As for `thalweg.sea.tides.harmonic_analysis.analyse`.
+    cache : Whether the result is read from and written to the cache folder.
     """
     times = layer.axis.times
     names = harmonic_analysis.select_constituents(times, constituents, rayleigh)

@@ -45,8 +45,7 @@ class WaterLevelSeries(NamedTuple):
         Water level [m above datum].
     position : (float, float) or None
         Latitude and longitude [deg], if the file gives them.
-    description : str
-        Format and location.
+    description : Format and location.
     """
 
     times: FloatArray
@@ -71,14 +70,8 @@ def read_noos(text: str, source: str) -> WaterLevelSeries:
 
     Parameters
     ----------
-    text : str
-        Contents of the file.
-    source : str
-        File name for messages.
-
-    Returns
-    -------
-    WaterLevelSeries
+    text : Contents of the file.
+    source : File name for messages.
 
     Raises
     ------
@@ -146,14 +139,8 @@ def read_dia(text: str, source: str) -> WaterLevelSeries:
 
     Parameters
     ----------
-    text : str
-        Contents of the file.
-    source : str
-        File name for messages.
-
-    Returns
-    -------
-    WaterLevelSeries
+    text : Contents of the file.
+    source : File name for messages.
 
     Raises
     ------

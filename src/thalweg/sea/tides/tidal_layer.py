@@ -37,16 +37,11 @@ class TidalLayer:
 
     Attributes
     ----------
-    constituents : Constituents
-        Constants at the points of the grid.
-    grid : Grid or None
-        Positions of the nodes; None for one node that applies to a whole area.
-    box : BoundingBox
-        The area, if there is no grid.
-    time_step : float
-        Step [s] at which kernels receive the tide.
-    source : str
-        Origin of the constants.
+    constituents : Constants at the points of the grid.
+    grid : Positions of the nodes; None for one node that applies to a whole area.
+    box : The area, if there is no grid.
+    time_step : Step [s] at which kernels receive the tide.
+    source : Origin of the constants.
     facts : mapping
         Further plain facts for the provenance.
     """
@@ -203,12 +198,9 @@ def tidal_layers(
 
     Parameters
     ----------
-    source : sequence of Layer, Constituents or TideAnalysis
-        The layers of a model run, or constants.
-    constituents, rayleigh, progress, cache
-        As for `thalweg.sea.Sea.from_tides`.
-    area : BoundingBox, optional
-        Where a single station applies.
+    source : The layers of a model run, or constants.
+    constituents, rayleigh, progress, cache : As for `thalweg.sea.Sea.from_tides`.
+    area : Where a single station applies.
 
     Raises
     ------

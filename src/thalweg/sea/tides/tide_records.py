@@ -66,8 +66,7 @@ class TideRecord:
         Water level [m above datum] and current [m/s towards] by canonical name, NaN where unknown.
     position : (float, float) or None
         Latitude and longitude [deg], if the file gives them.
-    description : str
-        Format of the file and location, as far as it is stated.
+    description : Format of the file and location, as far as it is stated.
     """
 
     times: FloatArray
@@ -100,8 +99,7 @@ def read_record(
         * two columns of numbers without a header: days and water level.
     unit : {"m", "dm", "cm", "mm"}, optional
         Unit of columns without a header, which do not state it.
-    days_since : time, optional
-        First day of columns without a header, which do not state it either.
+    days_since : First day of columns without a header, which do not state it either.
 
     Raises
     ------

@@ -44,10 +44,8 @@ class CheckedBarrier:
         Values at the nodes [s].
     centre : float64 array (Y - 1, X - 1)
         Values at the centres of the cells [s].
-    value : float
-        At the position to be bounded [s].
-    complete : bool
-        Whether no checked cell touches the edge of the mesh.
+    value : At the position to be bounded [s].
+    complete : Whether no checked cell touches the edge of the mesh.
     factor : float64 array (Y, X)
         Factors on the times with which it was solved: a start for finer meshes.
     """
@@ -65,15 +63,11 @@ class BarrierTask:
 
     Attributes
     ----------
-    mesh : BarrierMesh
-    source, target : tuple of float
-        Where the barrier is zero, and where its value is wanted [deg].
-    known : float
-        Time of a route that exists [s].
+    source, target : Where the barrier is zero, and where its value is wanted [deg].
+    known : Time of a route that exists [s].
     own, other : float64 array (Y - 1, X - 1)
         Lower bounds of the time between the source and each cell, and between it and the target.
-    forward : bool
-        Whether the source is the departure.
+    forward : Whether the source is the departure.
     course : float, optional
         Course [rad from north] on which the barrier should rise at the source; by default that of
         the geodesic to the target.
@@ -99,11 +93,6 @@ class BarrierTask:
 
 def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
     """Return the best barrier found in some rounds of solving, checking and correcting.
-
-    Parameters
-    ----------
-    task : BarrierTask
-    rounds : int
 
     Returns
     -------
@@ -162,10 +151,6 @@ def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
 
 def first_arrivals(task: BarrierTask) -> FloatArray:
     """Return approximate earliest arrivals at the nodes of a mesh [s]: a hint, not a bound.
-
-    Parameters
-    ----------
-    task : BarrierTask
 
     Returns
     -------

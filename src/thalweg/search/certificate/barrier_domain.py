@@ -29,20 +29,12 @@ class PassageToBound:
 
     Attributes
     ----------
-    sea : Sea
-    chart : Chart or None
-        Land, offing, zones and canals; None for open water.
-    ship : ShipInBarrier
-    channels : sequence of int
-        Channels of the sea that count.
-    start, goal : tuple of float
-        (lat, lon) [deg].
-    depart : float
-        Departure, or the first one of a window [s since 1970-01-01T00:00Z].
-    known : float
-        Time of a route that exists [s].
-    latest : float, optional
-        Last departure of a window [s since 1970-01-01T00:00Z].
+    chart : Land, offing, zones and canals; None for open water.
+    channels : Channels of the sea that count.
+    start, goal : (lat, lon) [deg].
+    depart : Departure, or the first one of a window [s since 1970-01-01T00:00Z].
+    known : Time of a route that exists [s].
+    latest : Last departure of a window [s since 1970-01-01T00:00Z].
     """
 
     sea: Sea
@@ -85,14 +77,10 @@ class BarrierDomain:
 
     Attributes
     ----------
-    raster : RasterArrays
-        Times since the first departure [s].
-    sampling : str
-        How the sea of the raster differs from the data; "" where it does not.
-    fastest : float
-        Upper bound of the speed over ground [m/s].
-    ship : ShipInBarrier
-        With an upper bound of the speed through water, also where that is a field.
+    raster : Times since the first departure [s].
+    sampling : How the sea of the raster differs from the data; "" where it does not.
+    fastest : Upper bound of the speed over ground [m/s].
+    ship : With an upper bound of the speed through water, also where that is a field.
     """
 
     raster: RasterArrays
@@ -106,9 +94,7 @@ class BarrierDomain:
 
         Parameters
         ----------
-        passage : PassageToBound
-        cells : int
-            Cells of the raster along its longer side where the data are no finer.
+        cells : Cells of the raster along its longer side where the data are no finer.
         """
         ship, fastest = passage.ship, passage.ship.top_speed
         if not math.isfinite(fastest):

@@ -29,15 +29,12 @@ class ShipInBarrier:
 
     Attributes
     ----------
-    table : TableArrays
-        Speed through water.
-    setting : int
+    table : Speed through water.
     limits : float64 array
         As kernels read them (`thalweg.core.limits.Limits.array`).
     top_speed : float
         Upper bound of the speed through water [m/s]; NaN where it follows from ``speed_field``.
-    speed_field : callable, optional
-        Speed through water as a field of the sea, for ships without a table.
+    speed_field : Speed through water as a field of the sea, for ships without a table.
     """
 
     table: TableArrays
@@ -53,9 +50,7 @@ class BarrierLink:
 
     Attributes
     ----------
-    one, other : tuple of float
-        (lat, lon) [deg].
-    seconds : float
+    one, other : (lat, lon) [deg].
     """
 
     one: tuple[float, float]
@@ -71,10 +66,8 @@ class BarrierMesh:
     ----------
     lat, lon : float64 array (Y,), (X,)
         Nodes [deg]; longitudes without jumps.
-    world : BarrierWorld
-        Sea, ship and land.
-    links : tuple of BarrierLink
-        Canals with both ends inside the mesh.
+    world : Sea, ship and land.
+    links : Canals with both ends inside the mesh.
     """
 
     lat: FloatArray
@@ -142,19 +135,10 @@ def build_mesh(
 
     Parameters
     ----------
-    raster : RasterArrays
-        Times since departure [s].
-    refinement : int
-        1 or more.
-    ship : ShipInBarrier
-    chart : Chart or None
-        Land, offing, zones and canals; None for open water.
-    departures : float
-        From the first to the last departure [s].
-
-    Returns
-    -------
-    BarrierMesh
+    raster : Times since departure [s].
+    refinement : 1 or more.
+    chart : Land, offing, zones and canals; None for open water.
+    departures : From the first to the last departure [s].
     """
     _, rows, columns, _ = raster.values.shape
     lat0, dlat, lon0, dlon = raster.corner

@@ -32,8 +32,7 @@ class BarrierRaster:
 
     Attributes
     ----------
-    arrays : RasterArrays
-        Times since departure [s].
+    arrays : Times since departure [s].
     sampling : str
         "" where the raster has the values and the interpolation of the data; otherwise a note on
         how it differs.
@@ -49,16 +48,10 @@ class RasterRequest:
 
     Attributes
     ----------
-    sea : Sea
-    channels : sequence of int
-    box : tuple of float
-        South, north, west and east [deg]; east above west, without jump.
-    period : tuple of float
-        [s since 1970-01-01T00:00Z].
-    cells : int
-        Number of cells wanted along the longer side where the data are no finer.
-    speed_field : callable, optional
-        Speed through water as a field of the sea.
+    box : South, north, west and east [deg]; east above west, without jump.
+    period : [s since 1970-01-01T00:00Z].
+    cells : Number of cells wanted along the longer side where the data are no finer.
+    speed_field : Speed through water as a field of the sea.
     """
 
     sea: Sea
@@ -70,16 +63,7 @@ class RasterRequest:
 
 
 def freeze_barrier_raster(request: RasterRequest) -> BarrierRaster:
-    """Freeze the sea in a box.
-
-    Parameters
-    ----------
-    request : RasterRequest
-
-    Returns
-    -------
-    BarrierRaster
-    """
+    """Freeze the sea in a box."""
     south, north, west, east = request.box
     width, height = east - west, north - south
     instants = max(len(request.sea.times(*request.period)), 2)

@@ -27,7 +27,6 @@ def closed_cells(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> BoolA
 
     Parameters
     ----------
-    chart : Chart or None
     lat, lon : float64 array (Y,), (X,)
         Nodes [deg].
 

@@ -31,12 +31,9 @@ def certify_departures(
 
     Parameters
     ----------
-    passage : PassageToBound
-        With or without a window of departures.
-    seconds : float
-        Time that the search for a bound may take [s]; 0 for that of the geodesic alone.
-    target : float
-        Gap [fraction of the known time] at which the search ends.
+    passage : With or without a window of departures.
+    seconds : Time that the search for a bound may take [s]; 0 for that of the geodesic alone.
+    target : Gap [fraction of the known time] at which the search ends.
 
     Returns
     -------

@@ -27,10 +27,8 @@ def fast_path_on_raster(
 
     Parameters
     ----------
-    passage : PassageToBound
-        Of a ship whose speed through water does not depend on the weather.
-    cells : int
-        Cells of the raster along its longer side where the data are no finer.
+    passage : Of a ship whose speed through water does not depend on the weather.
+    cells : Cells of the raster along its longer side where the data are no finer.
 
     Returns
     -------

@@ -43,23 +43,17 @@ class TimeCertificate:
 
     Attributes
     ----------
-    value : float
-        No route is faster [s].
-    sampling : str
-        How the sea of the proof differs from the data; "" where it does not.
+    value : No route is faster [s].
+    sampling : How the sea of the proof differs from the data; "" where it does not.
     cells : int
         Cells of the mesh along the geodesic; 0 for the bound of the geodesic at the greatest
         speed over ground, which has no mesh, barrier and task.
-    seconds : float
-        Time used [s].
+    seconds : Time used [s].
     reached : float
         Value of the barrier at the goal [s]. Where it is clearly above the known time the sea of
         the proof is not the one of the known route.
-    mesh : BarrierMesh or None
-    barrier : CheckedBarrier or None
-        The barrier: no ship reaches a position before its value there.
-    task : BarrierTask or None
-        What was checked.
+    barrier : The barrier: no ship reaches a position before its value there.
+    task : What was checked.
     """
 
     value: float
@@ -79,13 +73,11 @@ def certify_time(
 
     Parameters
     ----------
-    passage : PassageToBound
     seconds : float
         Time that the search for a bound may take [s]; 0 for that of the geodesic alone. A mesh is
         completed once begun; the next finer one is left out when it would take longer than what
         is left.
-    target : float
-        Gap [fraction of the known time] at which the search ends.
+    target : Gap [fraction of the known time] at which the search ends.
 
     Returns
     -------
@@ -127,12 +119,8 @@ class BarrierSearch:
 
     Attributes
     ----------
-    passage : PassageToBound
-    domain : BarrierDomain
-    cells : int
-        Cells of the first mesh along the geodesic, at least.
-    expected_seconds : float
-        Estimate of the time that the next mesh takes; infinite when there is none.
+    cells : Cells of the first mesh along the geodesic, at least.
+    expected_seconds : Estimate of the time that the next mesh takes; infinite when there is none.
     """
 
     passage: PassageToBound

@@ -75,14 +75,9 @@ class Discretisation(NamedTuple):
 
     Attributes
     ----------
-    clock : TimeBins
-    windows : BinWindows
-    slices : float64[K]
-        [s after departure].
-    table_error : float
-        95th percentile of the difference to the legs, as a share.
-    memory : int
-        [bytes]
+    slices : float64[K] [s after departure]
+    table_error : 95th percentile of the difference to the legs, as a share.
+    memory : [bytes]
     """
 
     clock: TimeBins
@@ -105,16 +100,12 @@ def choose_discretisation(
 
     Parameters
     ----------
-    front_problem : FrontProblem
-    request : FrontRequest
-    bounds : BoundsToGoal
     earliest : float64[N]
         Earliest arrival at every state [s].
     bin_s : float, optional
         Width of the bins [s]; by default the horizon is divided into at most 2000, into fewer
         where the memory does not allow that or the relaxations would be too many.
-    memory_limit : float
-        [bytes]
+    memory_limit : [bytes]
 
     Raises
     ------

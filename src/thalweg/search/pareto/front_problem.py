@@ -132,11 +132,8 @@ class FrontProblem(NamedTuple):
 
     Attributes
     ----------
-    world : FrontArrays
-    given : SearchProblem
-        For the search of the earliest arrival, at the highest setting.
-    whole : SearchProblem
-        The same with one state for each node.
+    given : For the search of the earliest arrival, at the highest setting.
+    whole : The same with one state for each node.
     origin : int64[E]
         Edge of the network that each edge of the world comes from.
     tails : int64[E]

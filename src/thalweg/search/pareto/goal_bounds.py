@@ -23,14 +23,12 @@ class BoundsToGoal(NamedTuple):
 
     Attributes
     ----------
-    time : float64[N]
-        [s].
+    time : float64[N] [s]
     rates : float64[R]
         Prices of a second, 0 first.
     floor : float64[N, R]
         Least cost plus price times time.
-    to_goal : BackwardSearch
-        For other prices.
+    to_goal : For other prices.
     """
 
     time: FloatArray

@@ -57,16 +57,9 @@ def lower_front(
 
     Parameters
     ----------
-    front_problem : FrontProblem
-    request : FrontRequest
-    bounds : BoundsToGoal
-    plan : Discretisation
-    blocks : EdgeTables
-        Tables of edges, as far as they are filled.
-    points : tuple of FrontPoint
-        Real paths: labels that cannot lead below them are dropped.
-    report : callable
-        Called with the share done, `PROGRESS_CHUNKS` times.
+    blocks : Tables of edges, as far as they are filled.
+    points : Real paths: labels that cannot lead below them are dropped.
+    report : Called with the share done, `PROGRESS_CHUNKS` times.
     """
     front_problem = _waiting_price_capped(front_problem)
     slack = _new_slack(front_problem, bounds, blocks)

@@ -78,14 +78,10 @@ def seed_paths(
 
     Parameters
     ----------
-    front_problem : FrontProblem
-        Network, sea, ship and prices.
-    request : FrontRequest
-        Nodes, times and settings.
-    fastest : PlannedPath
-        The earliest arrival.
-    bounds : BoundsToGoal
-        Lower bounds of time and cost to the goal.
+    front_problem : Network, sea, ship and prices.
+    request : Nodes, times and settings.
+    fastest : The earliest arrival.
+    bounds : Lower bounds of time and cost to the goal.
 
     Returns
     -------
@@ -174,12 +170,9 @@ def tighten_target(target: LabelTarget, clock: TimeBins, point: FrontPoint) -> N
 
     Parameters
     ----------
-    target : LabelTarget
-        Upper bounds of the cost at the goal; changed in place.
-    clock : TimeBins
-        The division of time.
-    point : FrontPoint
-        A sailed path.
+    target : Upper bounds of the cost at the goal; changed in place.
+    clock : The division of time.
+    point : A sailed path.
     """
     b = int(point.time / clock.width) + 1
     np.minimum(target.upper[b:], point.cost, out=target.upper[b:])

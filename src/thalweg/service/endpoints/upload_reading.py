@@ -31,16 +31,8 @@ async def kept_upload(
 
     Parameters
     ----------
-    store : UploadStore
-    name : str
-        Name at the client.
-    chunks : async iterator of bytes
-    facts_of : callable
-        Returns what is in the file at a path, or raises.
-
-    Returns
-    -------
-    StoredFile
+    name : Name at the client.
+    facts_of : Returns what is in the file at a path, or raises.
     """
     part, file_id, name = await store.receive(name, chunks)
     try:

@@ -17,12 +17,7 @@ from typing import IO, Any
 
 
 class MessageWriter:
-    """Writes messages as lines of JSON; from any thread.
-
-    Parameters
-    ----------
-    stream : text file
-    """
+    """Writes messages as lines of JSON; from any thread."""
 
     def __init__(self, stream: IO[str]) -> None:
         self._stream = stream

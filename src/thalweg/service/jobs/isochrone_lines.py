@@ -24,10 +24,6 @@ _MOST_NODES: Final = 30_000
 def isochrone_lines(plan: PlanData) -> dict[str, Any] | None:
     """Return lines of equal earliest arrival around the route, in hours after departure.
 
-    Parameters
-    ----------
-    plan : PlanData
-
     Returns
     -------
     dict or None

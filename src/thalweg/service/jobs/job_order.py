@@ -19,17 +19,11 @@ class JobOrder:
 
     Attributes
     ----------
-    kind : str
-        ``plan``, ``evaluation``, ``project``, ``study`` or ``forecast``.
-    request : dict
-    folder : str
-        Draft folder of the result, which exists.
-    files : dict of str to str
-        Paths of uploaded files by id.
-    workspace : str
-        Folder that the attempts of the job share; it is removed when the job has ended.
-    seas_folder : str
-        Folder of the uploaded seas.
+    kind : ``plan``, ``evaluation``, ``project``, ``study`` or ``forecast``.
+    folder : Draft folder of the result, which exists.
+    files : Paths of uploaded files by id.
+    workspace : Folder that the attempts of the job share; it is removed when the job has ended.
+    seas_folder : Folder of the uploaded seas.
     """
 
     kind: str

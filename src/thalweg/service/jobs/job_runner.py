@@ -51,10 +51,7 @@ class JobRunner:
 
     Parameters
     ----------
-    store : JobStore
-    settings : ServiceSettings
-    files_of : callable
-        Returns the paths of the uploaded files of a request by id.
+    files_of : Returns the paths of the uploaded files of a request by id.
     """
 
     def __init__(

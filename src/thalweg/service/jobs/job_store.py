@@ -41,25 +41,14 @@ class Job:
 
     Attributes
     ----------
-    number : int
-        Order of arrival.
-    id : str
-    kind : str
-        ``plan``, ``evaluation``, ``project``, ``study`` or ``forecast``.
-    state : str
-        One of `STATES`.
-    request : dict
-        What was asked.
-    attempt : int
-        How often it was started.
-    cancelling : bool
-        Whether it was asked to stop.
-    created, started, finished : float or None
-        [s since 1970].
-    problem : dict or None
-        Why it failed, as problem details.
-    summary : dict or None
-        Key figures of its result; None where there is no result.
+    number : Order of arrival.
+    kind : ``plan``, ``evaluation``, ``project``, ``study`` or ``forecast``.
+    request : What was asked.
+    attempt : How often it was started.
+    cancelling : Whether it was asked to stop.
+    created, started, finished : [s since 1970].
+    problem : Why it failed, as problem details.
+    summary : Key figures of its result; None where there is no result.
     """
 
     number: int
@@ -94,8 +83,7 @@ class JobStore:
 
     Parameters
     ----------
-    path : Path
-        The database file.
+    path : The database file.
     """
 
     def __init__(self, path: Path) -> None:
@@ -135,12 +123,8 @@ class JobStore:
 
         Parameters
         ----------
-        job_id, kind : str
-        request : dict
-        key : str, optional
-            Idempotency key: a second request with it returns the first job.
-        queue : int
-            Most jobs that may wait.
+        key : Idempotency key: a second request with it returns the first job.
+        queue : Most jobs that may wait.
 
         Returns
         -------
@@ -231,12 +215,9 @@ class JobStore:
 
         Parameters
         ----------
-        state, kind : str, optional
-            Only these.
-        before : int
-            Only jobs with a smaller number; 0: all.
-        size : int
-            Most jobs to return.
+        state, kind : Only these.
+        before : Only jobs with a smaller number; 0: all.
+        size : Most jobs to return.
         """
         with self._lock:
             rows = self._database.execute(

@@ -32,11 +32,6 @@ FIRST_FOLDER: Final = "first"  #: the result if the job is stopped before its ow
 def run_order(order: JobOrder, messages: MessageWriter) -> tuple[str, dict[str, Any]]:
     """Do the work of a job and write its files.
 
-    Parameters
-    ----------
-    order : JobOrder
-    messages : MessageWriter
-
     Returns
     -------
     state : str
@@ -153,11 +148,8 @@ def write_plan_result(found: Plan, folder: Path, beside: Route | None) -> list[s
 
     Parameters
     ----------
-    found : Plan
-    folder : Path
-        It exists.
-    beside : Route, optional
-        The route that ignores the weather.
+    folder : It exists.
+    beside : The route that ignores the weather.
 
     Returns
     -------

@@ -77,10 +77,6 @@ def _points(route: Route) -> list[list[float]]:
 def project_diagrams(result: ProjectResult) -> dict[str, Any]:
     """Return the table, the activities, the tide, the routes and the diagrams of place and time.
 
-    Parameters
-    ----------
-    result : ProjectResult
-
     Returns
     -------
     dict
@@ -115,11 +111,6 @@ def space_time_facts(result: ProjectResult, run: ProjectRun) -> dict[str, Any]:
     """Return where and when the way out of a run is closed, and the ship's lines on it.
 
     The leg is the one that waits longest, else that with the least clearance.
-
-    Parameters
-    ----------
-    result : ProjectResult
-    run : ProjectRun
 
     Returns
     -------

@@ -29,13 +29,8 @@ def open_world(request: ShipAndSea, files: Mapping[str, str]) -> WorldOfJob:
 
     Parameters
     ----------
-    request : ShipAndSea
     files : mapping of str to str
         Paths of the uploaded files by their id; of a ship file by the name of the ship.
-
-    Returns
-    -------
-    WorldOfJob
     """
     from thalweg.chart import Chart
 

@@ -38,10 +38,6 @@ _COLUMNS: Final[Mapping[str, tuple[str, float, int]]] = {
 def route_profile(route: Route) -> dict[str, Any]:
     """Return a route along time, thinned to at most `MOST_POINTS` points.
 
-    Parameters
-    ----------
-    route : Route
-
     Returns
     -------
     dict

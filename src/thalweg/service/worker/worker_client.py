@@ -36,8 +36,7 @@ class WorkerClient:
 
     Parameters
     ----------
-    seconds : float
-        Longest time of a task [s]; then the process is ended.
+    seconds : Longest time of a task [s]; then the process is ended.
     """
 
     def __init__(self, seconds: float) -> None:
@@ -50,10 +49,8 @@ class WorkerClient:
 
         Parameters
         ----------
-        task : str
-            A name of `thalweg.service.worker.worker_tasks.TASKS`.
-        **given
-            Its values.
+        task : A name of `thalweg.service.worker.worker_tasks.TASKS`.
+        **given : Its values.
 
         Returns
         -------

@@ -38,8 +38,7 @@ def squared_dose_table(ship: Ship) -> PerformanceTable:
 
     Parameters
     ----------
-    ship : Ship
-        With places in her file.
+    ship : With places in her file.
 
     Returns
     -------

@@ -29,9 +29,7 @@ def motion_sheet(
 
     Parameters
     ----------
-    ship : Ship
-    wave_height, wave_period : float
-        Significant height [m] and peak period [s] of long-crested waves.
+    wave_height, wave_period : Significant height [m] and peak period [s] of long-crested waves.
     speed_kn : float, optional
         Speed through water [kn]; by default the highest of the ship in calm water. It is held on
         every heading.

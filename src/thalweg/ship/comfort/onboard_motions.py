@@ -49,10 +49,8 @@ class ShipMotions:
     ----------
     heave : float64 array
         At midship [m].
-    pitch : float64 array
-        [rad].
-    places : dict of str to PlaceMotions
-        By the names of the ship file.
+    pitch : float64 array [rad]
+    places : By the names of the ship file.
     """
 
     heave: FloatArray
@@ -66,7 +64,6 @@ class OnboardMotions:
 
     Attributes
     ----------
-    hull : MotionHull
     places : mapping of str to float
         Distance ahead of midship on the centre line [m], by name; the first is that which the
         objective comfort counts.
@@ -151,10 +148,8 @@ class OnboardMotions:
 
         Parameters
         ----------
-        task : str
-            Name of the ship file.
-        motions : ShipMotions
-            Motions in conditions.
+        task : Name of the ship file.
+        motions : Motions in conditions.
 
         Returns
         -------
@@ -187,14 +182,6 @@ class OnboardMotions:
 
 def onboard_motions(ship: Ship) -> OnboardMotions | None:
     """Return what the motions on board of a ship follow from; None where its file has no places.
-
-    Parameters
-    ----------
-    ship : Ship
-
-    Returns
-    -------
-    OnboardMotions or None
 
     Raises
     ------

@@ -36,9 +36,7 @@ def cubic_law_resistance(hull: Hull, file: ShipFile) -> CalmWaterResistance:
 
     Parameters
     ----------
-    hull : Hull
-    file : ShipFile
-        With one point of power over speed.
+    file : With one point of power over speed.
 
     Raises
     ------

@@ -63,19 +63,7 @@ def with_safety_limits(
 
     Parameters
     ----------
-    limits : ShipLimits
-        Limits of wave height and wind speed.
-    file : ShipFile
-        The ship file.
-    hull : Hull
-        Its hull.
-    loading : Loading
-        Its loading.
-
-    Returns
-    -------
-    ShipLimits
-        With limits of safety and comfort.
+    limits : Limits of wave height and wind speed.
 
     Raises
     ------
@@ -92,13 +80,6 @@ def with_safety_limits(
 
 def build_loading(file: ShipFile, hull: Hull) -> Loading:
     """Return the loading of a ship file.
-
-    Parameters
-    ----------
-    file : ShipFile
-        The ship file.
-    hull : Hull
-        Its hull.
 
     Returns
     -------
@@ -191,22 +172,7 @@ def resistance_methods(file: ShipFile) -> list[str]:
 
 
 def build_speed_loss(file: ShipFile, hull: Hull, loading: Loading) -> KwonSpeedLoss | None:
-    """Return the speed loss chosen under ``models.speed_loss``.
-
-    Parameters
-    ----------
-    file : ShipFile
-        The ship file.
-    hull : Hull
-        Its hull.
-    loading : Loading
-        Its loading.
-
-    Returns
-    -------
-    KwonSpeedLoss or None
-        The speed loss; None for ``none``.
-    """
+    """Return the speed loss chosen under ``models.speed_loss``."""
     models = file.models
     name = models.speed_loss
     if name not in SPEED_LOSSES:
@@ -231,13 +197,6 @@ def build_speed_loss(file: ShipFile, hull: Hull, loading: Loading) -> KwonSpeedL
 
 def hull_for_kwon(hull: Hull, loading: Loading) -> Hull:
     """The hull with what Kwon's method needs, estimated where that is possible.
-
-    Parameters
-    ----------
-    hull : Hull
-        The hull.
-    loading : Loading
-        Its loading.
 
     Returns
     -------

@@ -42,12 +42,6 @@ def build_resistance_model(
 ) -> ResistanceModel | KwonResistanceModel:
     """Return the model of a ship file that chooses a calm-water resistance.
 
-    Parameters
-    ----------
-    file : ShipFile
-    hull : Hull
-    loading : Loading
-
     Raises
     ------
     InputError

@@ -45,8 +45,7 @@ def ship_parts(data: Mapping[str, Any], source: str) -> ShipParts:
     ----------
     data : mapping
         Keys of a ship file.
-    source : str
-        What messages call the data.
+    source : What messages call the data.
 
     Returns
     -------
@@ -77,14 +76,10 @@ def bare_ship_parts(
 
     Parameters
     ----------
-    name : str
-        Name of the ship.
-    model : ShipModel
-        Its speed, power and fuel.
-    draught : float
-        Draught at any load factor [m].
-    limits : ShipLimits, optional
-        Limits of weather; by default none.
+    name : Name of the ship.
+    model : Its speed, power and fuel.
+    draught : Draught at any load factor [m].
+    limits : Limits of weather; by default none.
 
     Returns
     -------
@@ -100,15 +95,9 @@ def plugin_parts(name: str, offered: Any) -> ShipParts:
 
     Parameters
     ----------
-    name : str
-        Name of the ship.
+    name : Name of the ship.
     offered : mapping, ShipModel or callable
         Data of a ship file, a model, or a function of conditions that returns speeds [m/s].
-
-    Returns
-    -------
-    ShipParts
-        The attributes.
 
     Raises
     ------
@@ -137,10 +126,8 @@ def simple_data(
 
     Parameters
     ----------
-    name : str
-        Name of the ship.
-    speeds_kn : list of float
-        Ordered speeds [kn].
+    name : Name of the ship.
+    speeds_kn : Ordered speeds [kn].
     **sections : mapping
         Keys and values of each section, such as ``hull``.
 
@@ -158,20 +145,6 @@ def simple_data(
 
 def build_model(file: ShipFile, hull: Hull, loading: Loading) -> ShipModel:
     """Return the model that a ship file chooses.
-
-    Parameters
-    ----------
-    file : ShipFile
-        The ship file.
-    hull : Hull
-        Its hull.
-    loading : Loading
-        Its loading.
-
-    Returns
-    -------
-    ShipModel
-        The model.
 
     Raises
     ------

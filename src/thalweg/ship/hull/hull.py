@@ -31,8 +31,7 @@ class Hull:
     ----------
     values : mapping of str to float or str
         By key of the ship file.
-    estimated : tuple of Estimate
-        Those that were not given.
+    estimated : Those that were not given.
     """
 
     values: Mapping[str, float | str]
@@ -206,12 +205,9 @@ def volume_at(hull: Hull, volume: float, *, at: float, draught: float) -> float:
 
     Parameters
     ----------
-    hull : Hull
-        With length and breadth; without them its block coefficient is taken to stay the same.
-    volume : float
-        Displaced volume [m3] at the draught ``at`` [m].
-    at, draught : float
-        [m], greater than 0.
+    hull : With length and breadth; without them its block coefficient is taken to stay the same.
+    volume : Displaced volume [m3] at the draught ``at`` [m].
+    at, draught : [m], greater than 0.
 
     Raises
     ------
@@ -241,14 +237,9 @@ def required_particulars(
 
     Parameters
     ----------
-    hull : Hull
-        The hull.
-    keys : tuple of str
-        Keys of a ship file.
-    method : str
-        Name of the method, for the message.
-    instead : str
-        Remedy of the message.
+    keys : Keys of a ship file.
+    method : Name of the method, for the message.
+    instead : Remedy of the message.
 
     Returns
     -------

@@ -37,9 +37,7 @@ def estimate_particulars(hull: Hull, keys: tuple[str, ...]) -> Hull:
 
     Parameters
     ----------
-    hull : Hull
-    keys : tuple of str
-        What is wanted, by key of the ship file. Keys without a usable regression stay missing.
+    keys : What is wanted, by key of the ship file. Keys without a usable regression stay missing.
 
     Returns
     -------
@@ -80,14 +78,9 @@ def estimate_or_raise(hull: Hull, keys: tuple[str, ...], method: str, *, instead
 
     Parameters
     ----------
-    hull : Hull
-        The hull.
-    keys : tuple of str
-        Keys of a ship file.
-    method : str
-        Name of the method, for the message.
-    instead : str
-        Remedy of the message.
+    keys : Keys of a ship file.
+    method : Name of the method, for the message.
+    instead : Remedy of the message.
 
     Returns
     -------
@@ -108,12 +101,9 @@ def hull_at_load_factor(hull: Hull, loading: Loading, load_factor: float) -> Hul
 
     Parameters
     ----------
-    hull : Hull
-        At its full draught, with estimates made.
-    loading : Loading
-        Draughts, and displacements where known.
-    load_factor : float
-        0 to 1.
+    hull : At its full draught, with estimates made.
+    loading : Draughts, and displacements where known.
+    load_factor : 0 to 1.
 
     Returns
     -------

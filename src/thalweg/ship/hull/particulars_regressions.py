@@ -35,12 +35,9 @@ class Estimator:
 
     Parameters
     ----------
-    function : callable
-        Takes the inputs by position, in the order of ``inputs``.
-    inputs : tuple of str
-        Names of the quantities it needs.
-    source : str
-        Where the regression was published.
+    function : Takes the inputs by position, in the order of ``inputs``.
+    inputs : Names of the quantities it needs.
+    source : Where the regression was published.
     typical_error : float
         Relative error to reckon with [-] (absolute, in percent of length, for the centre of
         buoyancy), our judgement.

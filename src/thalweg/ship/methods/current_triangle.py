@@ -233,8 +233,7 @@ def rudder_drag(
         Heading minus course [rad].
     rudder_area : array_like
         Lateral area of the rudder [m2].
-    density : array_like
-        [kg/m3].
+    density : array_like [kg/m3]
     curve : str
         As in `rudder_drag_coefficient`.
 

@@ -69,8 +69,7 @@ def block_coefficient_of(
     ----------
     displacement : array_like
         Displaced volume [m3], not tonnes.
-    length, breadth, draught : array_like
-        [m].
+    length, breadth, draught : array_like [m]
 
     Returns
     -------

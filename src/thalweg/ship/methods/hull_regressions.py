@@ -57,8 +57,7 @@ def waterline_from_perpendiculars(
 
     Parameters
     ----------
-    length_between_perpendiculars : array_like
-        [m].
+    length_between_perpendiculars : array_like [m]
     kind : str
         ``tanker`` (also bulk carriers and general cargo), ``container`` or ``ro_ro`` (also
         passenger ships).
@@ -82,8 +81,7 @@ def perpendiculars_from_waterline(
 
     Parameters
     ----------
-    length_waterline : array_like
-        [m].
+    length_waterline : array_like [m]
     kind : str
         As in `waterline_from_perpendiculars`.
 
@@ -104,8 +102,7 @@ def length_over_surface_no_bulb(length_waterline: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    length_waterline : array_like
-        [m].
+    length_waterline : array_like [m]
 
     Returns
     -------
@@ -151,10 +148,8 @@ def bulb_area_rakke(
 
     Parameters
     ----------
-    midship_coefficient : array_like
-        [-].
-    breadth, draught : array_like
-        [m].
+    midship_coefficient : array_like [-]
+    breadth, draught : array_like [m]
 
     Returns
     -------
@@ -173,8 +168,7 @@ def bulb_height_rakke(draught: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    draught : array_like
-        [m].
+    draught : array_like [m]
 
     Returns
     -------
@@ -195,10 +189,8 @@ def transom_area_rakke(
 
     Parameters
     ----------
-    midship_coefficient : array_like
-        [-].
-    breadth, draught : array_like
-        [m].
+    midship_coefficient : array_like [-]
+    breadth, draught : array_like [m]
 
     Returns
     -------

@@ -57,14 +57,10 @@ class AddedWaveResistance:
 
     Attributes
     ----------
-    method : str
-    hull : Hull
-    force : callable
-        [N] from speed [m/s], significant height [m], peak period [s], angle off the bow [rad].
+    force : [N] from speed [m/s], significant height [m], peak period [s], angle off the bow [rad].
     validity_notes : callable
         Where the method is outside its range, from speeds, wave heights and angles off the bow.
-    reads : frozenset of str
-        The conditions that the forces depend on.
+    reads : The conditions that the forces depend on.
     """
 
     method: str
@@ -80,12 +76,8 @@ class WindResistance:
 
     Attributes
     ----------
-    method : str
-    hull : Hull
-    frontal_area : float
-        [m2].
-    coefficient : callable
-        C_AA from the angle of the relative wind [rad].
+    frontal_area : [m2].
+    coefficient : C_AA from the angle of the relative wind [rad].
     """
 
     method: str
@@ -309,10 +301,7 @@ def build_wave_resistance(models: ModelsSection, hull: Hull) -> AddedWaveResista
 
     Parameters
     ----------
-    models : ModelsSection
-        Methods of the ship file.
-    hull : Hull
-        Its hull.
+    models : Methods of the ship file.
 
     Returns
     -------
@@ -344,10 +333,7 @@ def build_wind_resistance(models: ModelsSection, hull: Hull) -> WindResistance |
 
     Parameters
     ----------
-    models : ModelsSection
-        Methods of the ship file.
-    hull : Hull
-        Its hull.
+    models : Methods of the ship file.
 
     Returns
     -------

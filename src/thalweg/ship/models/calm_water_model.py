@@ -72,17 +72,12 @@ class CalmWaterResistance:
 
     Attributes
     ----------
-    method : str
-    hull : Hull
-        With what the method needed and was estimated.
+    hull : With what the method needed and was estimated.
     deep : callable
         Components [N] from speed [m/s], the speed that makes the waves and a friction coefficient.
-    validity_notes : callable
-        Where the method is outside its range, from speeds.
-    shallow_water, friction : str
-        Names of the shallow-water method and the friction line.
-    viscosity : float
-        Kinematic viscosity of the water [m2/s].
+    validity_notes : Where the method is outside its range, from speeds.
+    shallow_water, friction : Names of the shallow-water method and the friction line.
+    viscosity : Kinematic viscosity of the water [m2/s].
     """
 
     method: str
@@ -351,13 +346,6 @@ CALM_WATER_METHODS: Final[Mapping[str, Callable[[Hull, ShipFile], CalmWaterResis
 
 def build_calm_water(file: ShipFile, hull: Hull) -> CalmWaterResistance:
     """Return the calm-water part chosen in a ship file.
-
-    Parameters
-    ----------
-    file : ShipFile
-        The ship file.
-    hull : Hull
-        Its hull.
 
     Returns
     -------

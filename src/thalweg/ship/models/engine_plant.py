@@ -30,8 +30,7 @@ class EngineOrders:
     ----------
     kind : {"power", "speed"}
         Constant brake power, or a speed that is held up to the largest power of the engines.
-    values : tuple of float
-        Powers [W] or speeds [m/s], ascending.
+    values : Powers [W] or speeds [m/s], ascending.
     """
 
     kind: Literal["power", "speed"]
@@ -44,19 +43,13 @@ class EnginePlant:
 
     Attributes
     ----------
-    rating : float
-        Maximum continuous rating of one engine [W]; infinite when not given.
-    count : int
-    sfoc : float
-        Least specific consumption [g/kWh]; NaN when unknown.
+    rating : Maximum continuous rating of one engine [W]; infinite when not given.
+    sfoc : Least specific consumption [g/kWh]; NaN when unknown.
     curve : tuple of tuple of float
         Loads and specific consumptions [g/kWh] of the engine's own curve; empty for the shape of
         the Fourth IMO GHG Study.
-    hotel_power, hotel_sfoc : float
-        Other power [W] and its consumption [g/kWh].
-    estimated : tuple of Estimate
-    loads : tuple of float
-        Least and largest load of an engine, as shares of its rating.
+    hotel_power, hotel_sfoc : Other power [W] and its consumption [g/kWh].
+    loads : Least and largest load of an engine, as shares of its rating.
     """
 
     rating: float

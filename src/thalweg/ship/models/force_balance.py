@@ -35,10 +35,6 @@ class ForceBalance:
 
     Attributes
     ----------
-    calm : CalmWater
-    propulsion : Propulsion
-    waves : Waves, optional
-    wind : Wind, optional
     rudder_area : float
         For the optional rudder drag [m2]; 0 without. It needs the angle between heading and course
         (``crab_angle``), which depends on the current and on the speed itself: it counts where that

@@ -50,8 +50,7 @@ class RecordingConditions(Conditions):
 
     Parameters
     ----------
-    row : int, optional
-        Give this one of the values as a single number, instead of all as an array.
+    row : Give this one of the values as a single number, instead of all as an array.
     """
 
     __slots__ = ("_read", "_row")
@@ -96,12 +95,9 @@ class FunctionModel:
 
     Attributes
     ----------
-    function : callable
-        ``f(conditions) -> speed through water [m/s]``, vectorised, at least 0.
-    reads : frozenset of str
-        What it was seen to read.
-    top : float or None
-        Greatest speed [m/s], given or measured; None for an unbounded speed field.
+    function : ``f(conditions) -> speed through water [m/s]``, vectorised, at least 0.
+    reads : What it was seen to read.
+    top : Greatest speed [m/s], given or measured; None for an unbounded speed field.
     table : tuple of (TablePart, TableError), or None
         None for a speed field.
     """
@@ -206,10 +202,8 @@ def model_of_function(function: SpeedFunction, *, top_speed: float | None = None
 
     Parameters
     ----------
-    function : callable
-        ``f(conditions) -> speed through water [m/s]``.
-    top_speed : float, optional
-        Greatest speed it ever gives [m/s]; measured over the table when not given.
+    function : ``f(conditions) -> speed through water [m/s]``.
+    top_speed : Greatest speed it ever gives [m/s]; measured over the table when not given.
 
     Raises
     ------

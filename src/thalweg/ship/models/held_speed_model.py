@@ -28,12 +28,10 @@ class HeldSpeedModel:
 
     Attributes
     ----------
-    base : KnownSpeedModel
-        With its own settings; the highest is the limit.
+    base : With its own settings; the highest is the limit.
     ordered : float64 array (settings,)
         Ordered speeds [m/s], ascending, at the load factor.
-    ladder : KnownSpeedModel
-        The base at close settings from the lowest ordered speed to its highest.
+    ladder : The base at close settings from the lowest ordered speed to its highest.
     """
 
     base: KnownSpeedModel

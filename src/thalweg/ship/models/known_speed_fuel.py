@@ -32,10 +32,6 @@ def given_specific_consumption(engine: EngineSection) -> float:
 def fuel_rate_of_power(file: ShipFile) -> Callable[[FloatArray], FloatArray] | None:
     """Return the fuel rate [kg/s] of a brake power [W], hotel load included.
 
-    Parameters
-    ----------
-    file : ShipFile
-
     Returns
     -------
     callable or None

@@ -29,13 +29,9 @@ class KwonSpeedLoss:
 
     Attributes
     ----------
-    length : float
-        Between perpendiculars [m].
-    block_coefficient : float
-    loading : Loading
-        Displacement and condition.
-    sign, ship_type, classes
-        Choices of the method.
+    length : Between perpendiculars [m].
+    loading : Displacement and condition.
+    sign, ship_type, classes : Choices of the method.
     """
 
     length: float
@@ -75,9 +71,7 @@ def speed_loss_notes(model: object, conditions: Conditions) -> list[RangeNote]:
 
     Parameters
     ----------
-    model : ShipModel
-    conditions : Conditions
-        At the ship, with its load factor.
+    conditions : At the ship, with its load factor.
 
     Returns
     -------
@@ -115,16 +109,11 @@ class KnownSpeedModel:
 
     Attributes
     ----------
-    speeds_full, speeds_empty : ndarray
-        Calm-water speed of each setting, full and empty [m/s], ascending.
-    fuel_rates, powers : ndarray
-        Of each setting [kg/s], [W]; NaN when unknown.
-    law : Law
-        How fuel and power follow the speed between and beyond the settings.
-    loss : KwonLoss, optional
-        Involuntary speed loss.
-    squat : Squat, optional
-        Limits the speed in shallow water; power and fuel stay those of the setting.
+    speeds_full, speeds_empty : Calm-water speed of each setting, full and empty [m/s], ascending.
+    fuel_rates, powers : Of each setting [kg/s], [W]; NaN when unknown.
+    law : How fuel and power follow the speed between and beyond the settings.
+    loss : Involuntary speed loss.
+    squat : Limits the speed in shallow water; power and fuel stay those of the setting.
     """
 
     speeds_full: FloatArray
@@ -270,12 +259,9 @@ def cubic_law(speed: ArrayLike, *, reference_speed: float, reference_value: floa
 
     Parameters
     ----------
-    speed : array_like
-        [m/s].
-    reference_speed : float
-        [m/s].
-    reference_value : float
-        Power [W] or fuel rate [kg/s] at the reference speed.
+    speed : array_like [m/s]
+    reference_speed : [m/s].
+    reference_value : Power [W] or fuel rate [kg/s] at the reference speed.
 
     Returns
     -------

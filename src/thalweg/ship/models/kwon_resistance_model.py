@@ -34,9 +34,7 @@ class KwonResistanceModel:
 
     Attributes
     ----------
-    base : ResistanceModel
-        Without waves and wind.
-    loss : KwonLoss
+    base : Without waves and wind.
     """
 
     base: ResistanceModel

@@ -43,12 +43,8 @@ class PropulsionModel:
 
     Attributes
     ----------
-    method : str
-    brake_power : callable
-        [W] from speed [m/s] and resistance [N]; zero where wind or waves push.
-    estimated : tuple of Estimate
-    notes : tuple of RangeNote
-        Where the propeller is outside its series.
+    brake_power : [W] from speed [m/s] and resistance [N]; zero where wind or waves push.
+    notes : Where the propeller is outside its series.
     """
 
     method: str
@@ -105,10 +101,8 @@ def unused_efficiencies(given: PropulsionSection, method: str = "efficiencies") 
 
     Parameters
     ----------
-    given : PropulsionSection
-        Propulsion of the ship file.
-    method : str, optional
-        Method of propulsion of the file.
+    given : Propulsion of the ship file.
+    method : Method of propulsion of the file.
 
     Returns
     -------
@@ -259,13 +253,6 @@ def build_propulsion(file: ShipFile, hull: Hull) -> PropulsionModel:
     """Return the propulsion chosen in a ship file; constant efficiencies when none is named.
 
     ``engine.sea_margin_percent`` raises the power of every speed by that much.
-
-    Parameters
-    ----------
-    file : ShipFile
-        The ship file.
-    hull : Hull
-        Its hull.
 
     Returns
     -------

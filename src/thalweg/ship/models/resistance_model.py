@@ -38,14 +38,10 @@ class ResistanceModel:
 
     Attributes
     ----------
-    balance_at : callable
-        `ForceBalance` at a load factor.
-    plant : Plant
-    orders : Orders
+    balance_at : `ForceBalance` at a load factor.
     facts : mapping
         The ship file's sections that went into it.
-    limits : ShipLimits
-        Tables end there.
+    limits : Tables end there.
     """
 
     balance_at: Callable[[float], ForceBalance]

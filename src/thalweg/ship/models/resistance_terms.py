@@ -34,12 +34,10 @@ class ResistanceTerm:
 
     Attributes
     ----------
-    axes : tuple of Axis
     force : callable
         ``f(speed, *axis values)`` [N], arrays that broadcast; over the square of the wave height
         for waves.
-    squared_height_limit : float
-        See `TablePart`.
+    squared_height_limit : See `TablePart`.
     """
 
     axes: tuple[AxisRange, ...]
@@ -77,15 +75,8 @@ def resistance_terms(balance: ForceBalance, limits: ShipLimits) -> list[Resistan
 
     Parameters
     ----------
-    balance : ForceBalance
-        Forces of the ship at one draught.
-    limits : ShipLimits
-        Greatest wave height and wind speed.
-
-    Returns
-    -------
-    list of ResistanceTerm
-        Terms of wind, waves and depth.
+    balance : Forces of the ship at one draught.
+    limits : Greatest wave height and wind speed.
     """
     axes, found = condition_axes(balance, limits), []
     wind, waves, calm = balance.wind, balance.waves, balance.calm
@@ -129,15 +120,8 @@ def condition_axes(balance: ForceBalance, limits: ShipLimits) -> dict[str, AxisR
 
     Parameters
     ----------
-    balance : ForceBalance
-        Forces of the ship at one draught.
-    limits : ShipLimits
-        Greatest wave height and wind speed.
-
-    Returns
-    -------
-    dict of str to AxisRange
-        Axes by condition.
+    balance : Forces of the ship at one draught.
+    limits : Greatest wave height and wind speed.
     """
     found = {name: axis for name, axis in _INITIAL_AXES.items() if name in balance.reads}
     for name, limit in (("wind_speed", limits.wind_speed), ("wave_height", limits.wave_height)):

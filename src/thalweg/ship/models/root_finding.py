@@ -25,14 +25,10 @@ def bracketed_root(
 
     Parameters
     ----------
-    function : callable
-        ``f(x, index)``: values of the functions ``index`` at ``x``, both 1-D of one length.
-    low, high : ndarray
-        1-D; the brackets.
-    at_low : ndarray, optional
-        Values at ``low`` where they are known, or as good as known.
-    tolerance : float
-        Absolute, in x.
+    function : ``f(x, index)``: values of the functions ``index`` at ``x``, both 1-D of one length.
+    low, high : 1-D; the brackets.
+    at_low : Values at ``low`` where they are known, or as good as known.
+    tolerance : Absolute, in x.
 
     Returns
     -------

@@ -37,15 +37,7 @@ def calm_speeds(file: ShipFile, law: str) -> tuple[FloatArray, FloatArray]:
 
     Parameters
     ----------
-    file : ShipFile
-        The ship file.
-    law : str
-        Law of power over speed: ``"table"``, ``"cubic"`` or another.
-
-    Returns
-    -------
-    full, empty : ndarray
-        Speeds [m/s].
+    law : Law of power over speed: ``"table"``, ``"cubic"`` or another.
 
     Raises
     ------
@@ -166,10 +158,8 @@ def with_settings(model: KnownSpeedModel, file: ShipFile) -> KnownSpeedModel:
 
     Parameters
     ----------
-    model : KnownSpeedModel
-        The model without settings of the file.
-    file : ShipFile
-        With ``powers_kw`` or ``speeds_kn``.
+    model : The model without settings of the file.
+    file : With ``powers_kw`` or ``speeds_kn``.
 
     Returns
     -------

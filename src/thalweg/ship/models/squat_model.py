@@ -33,12 +33,9 @@ class SquatModel:
 
     Attributes
     ----------
-    length, breadth : float
-        Between perpendiculars (or of the waterline), and breadth [m].
-    loading : Loading
-        Draughts [m] and displacements [m3].
-    clearance : float
-        Water that shall remain under the ship under way [m].
+    length, breadth : Between perpendiculars (or of the waterline), and breadth [m].
+    loading : Draughts [m] and displacements [m3].
+    clearance : Water that shall remain under the ship under way [m].
     method : str
         ``van_halem_2019`` sinks as Barrass (1979), ``barrass_2004`` as his later form; both slow
         as van Halem (2019), eq. 2.5, corrected.
@@ -88,22 +85,7 @@ class SquatModel:
 
 
 def squat_model_of(file: ShipFile, hull: Hull, loading: Loading) -> SquatModel | None:
-    """Return a ship's squat, or None when its particulars are too few.
-
-    Parameters
-    ----------
-    file : ShipFile
-        The ship file.
-    hull : Hull
-        Its hull.
-    loading : Loading
-        Its loading.
-
-    Returns
-    -------
-    SquatModel or None
-        The model of squat.
-    """
+    """Return a ship's squat, or None when its particulars are too few."""
     length = hull.number("length_between_perpendiculars_m") or hull.number("length_waterline_m")
     breadth = hull.number("breadth_m")
     if not (length and breadth) or math.isnan(loading.displacement_full):
@@ -116,20 +98,6 @@ def squat_model_of(file: ShipFile, hull: Hull, loading: Loading) -> SquatModel |
 
 def build_squat_model(file: ShipFile, hull: Hull, loading: Loading) -> SquatModel | None:
     """Return the squat that limits a ship's speed, by ``models.squat``; None for ``none``.
-
-    Parameters
-    ----------
-    file : ShipFile
-        The ship file.
-    hull : Hull
-        Its hull.
-    loading : Loading
-        Its loading.
-
-    Returns
-    -------
-    SquatModel or None
-        The model of squat.
 
     Raises
     ------

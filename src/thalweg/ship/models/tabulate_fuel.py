@@ -53,13 +53,9 @@ def fuel_table(
 
     Parameters
     ----------
-    model : ShipModel
-    load_factor : float
-        0 empty to 1 full.
-    tolerance : float
-        Relative error that 99 % of random conditions should meet.
-    ship : str
-        Name of the ship, for errors.
+    load_factor : 0 empty to 1 full.
+    tolerance : Relative error that 99 % of random conditions should meet.
+    ship : Name of the ship, for errors.
 
     Returns
     -------
@@ -156,17 +152,9 @@ def tabulate_fuel_of_balance(
 
     Parameters
     ----------
-    model : TabulatedResistance
-        The model of the ship.
-    load_factor : float
-        Load, 0 (empty) to 1 (full).
-    tolerance : float
-        Largest relative error of the table [-].
-
-    Returns
-    -------
-    TableWithMaxima
-        Fuel rate [kg/s].
+    model : The model of the ship.
+    load_factor : Load, 0 (empty) to 1 (full).
+    tolerance : Largest relative error of the table [-].
     """
     return _tabulate_rate_of_power(model, load_factor, tolerance, model.plant.fuel)
 
@@ -178,17 +166,9 @@ def tabulate_power_of_balance(
 
     Parameters
     ----------
-    model : TabulatedResistance
-        The model of the ship.
-    load_factor : float
-        Load, 0 (empty) to 1 (full).
-    tolerance : float
-        Largest relative error of the table [-].
-
-    Returns
-    -------
-    TableWithMaxima
-        Power [W].
+    model : The model of the ship.
+    load_factor : Load, 0 (empty) to 1 (full).
+    tolerance : Largest relative error of the table [-].
     """
     return _tabulate_rate_of_power(model, load_factor, tolerance, np.asarray)
 
@@ -204,12 +184,8 @@ def _tabulate_rate_of_power(
 
     Parameters
     ----------
-    model : TabulatedResistance
-    load_factor : float
-    tolerance : float
-        See `thalweg.ship.tables.tabulate.table_error`.
-    of_power : callable
-        The rate of a brake power [W].
+    tolerance : See `thalweg.ship.tables.tabulate.table_error`.
+    of_power : The rate of a brake power [W].
 
     Returns
     -------

@@ -48,10 +48,7 @@ def tabulate_balance(
 
     Parameters
     ----------
-    model : TabulatedResistance
-    load_factor : float
-    tolerance : float
-        See `thalweg.ship.tables.tabulate.table_error`.
+    tolerance : See `thalweg.ship.tables.tabulate.table_error`.
 
     Returns
     -------
@@ -106,18 +103,12 @@ def refined_table(
 
     Parameters
     ----------
-    terms : list of Term
-    speeds : ndarray
-        Of the columns [m/s].
-    finish : Finish
-    calm : ndarray
-        Settings of the table [m/s].
-    truth : callable
-        The true values of all settings in conditions by name.
+    speeds : Of the columns [m/s].
+    calm : Settings of the table [m/s].
+    truth : The true values of all settings in conditions by name.
     tolerance : float
         It stops at 0.8 of this at the conditions of the refinement; the error is that at others.
-    scale : ndarray
-        What counts as a large change of each column [N].
+    scale : What counts as a large change of each column [N].
     """
     parts = [term.part(speeds) for term in terms]
     points = random_term_conditions(terms, _REFINEMENT_SAMPLES, 5)
@@ -198,8 +189,7 @@ def calm_resistance(balance: ForceBalance, speeds: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    balance : ForceBalance
-        Forces of the ship at one draught.
+    balance : Forces of the ship at one draught.
     speeds : ndarray (n,)
         Speeds through water [m/s].
 
@@ -218,8 +208,7 @@ def resistance_at_power(
 
     Parameters
     ----------
-    balance : ForceBalance
-        Forces of the ship at one draught.
+    balance : Forces of the ship at one draught.
     speeds : ndarray (n,)
         Speeds through water [m/s].
     powers : ndarray (m,)

@@ -23,13 +23,9 @@ def input_error(
 
     Parameters
     ----------
-    problem : pydantic.ValidationError
-    schema : type
-        The class of the whole file.
-    data : object
-        As read from the file.
-    source : str
-        Name of the data in the error.
+    schema : The class of the whole file.
+    data : As read from the file.
+    source : Name of the data in the error.
 
     Returns
     -------

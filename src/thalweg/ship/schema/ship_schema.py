@@ -324,12 +324,7 @@ class ShipFile(Section):
         ----------
         data : mapping
             As read from YAML.
-        source : str
-            Name of the data in errors.
-
-        Returns
-        -------
-        ShipFile
+        source : Name of the data in errors.
 
         Raises
         ------

@@ -45,12 +45,9 @@ class OutputCurve:
     start, step : ndarray
         For each setting the first point of its curve and the step, in units of the sum; for a
         crossing in speed [m/s], `CURVE_REFINEMENT` steps to a column.
-    points : ndarray
-        The curves, shape ``(settings, points)``.
-    top : ndarray
-        The greatest speed of each setting [m/s]; for a crossing.
-    guess : ndarray
-        Columns next to the calm-water speeds, where a search begins; for a crossing.
+    points : The curves, shape ``(settings, points)``.
+    top : The greatest speed of each setting [m/s]; for a crossing.
+    guess : Columns next to the calm-water speeds, where a search begins; for a crossing.
     """
 
     kind: Literal["curve", "crossing"]

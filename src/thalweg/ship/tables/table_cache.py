@@ -31,10 +31,8 @@ def cached_table(facts: Any, build: Callable[[], TableWithMaxima]) -> TableWithM
 
     Parameters
     ----------
-    facts : plain data
-        All that the table depends on, except the code of this package.
-    build : callable
-        Makes the table.
+    facts : All that the table depends on, except the code of this package.
+    build : Makes the table.
 
     Returns
     -------

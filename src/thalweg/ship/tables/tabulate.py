@@ -34,14 +34,10 @@ class AxisRange:
 
     Attributes
     ----------
-    axis : int
-        Axis id.
-    start, stop : float
-        SI.
-    size : int
-        Grid points.
-    fixed : bool
-        The grid is exact already and is never refined.
+    axis : Axis id.
+    start, stop : SI.
+    size : Grid points.
+    fixed : The grid is exact already and is never refined.
     """
 
     axis: int
@@ -91,16 +87,11 @@ def tabulate_dense(
     ----------
     function : callable
         Takes conditions by name, arrays that broadcast; returns shape ``(*shape, settings)``.
-    axes : sequence of Axis
-        Where to begin; at least one.
-    tolerance : float
-        Relative error that 99 % of random conditions must meet; see `TableError`.
-    largest : int
-        Bytes the table may take. Refinement stops there; the error says what was reached.
-    base : ndarray
-        What the function is a correction to, per setting; errors are relative to the sum.
-    check : callable, optional
-        Measures the error of a part in its own way.
+    axes : Where to begin; at least one.
+    tolerance : Relative error that 99 % of random conditions must meet; see `TableError`.
+    largest : Bytes the table may take. Refinement stops there; the error says what was reached.
+    base : What the function is a correction to, per setting; errors are relative to the sum.
+    check : Measures the error of a part in its own way.
 
     Returns
     -------
@@ -143,12 +134,9 @@ def random_conditions(axes: Sequence[AxisRange], count: int, seed: int) -> dict[
 
     Parameters
     ----------
-    axes : sequence of AxisRange
-        Axes and their ranges.
-    count : int
-        Number of conditions.
-    seed : int
-        Seed of the random numbers.
+    axes : Axes and their ranges.
+    count : Number of conditions.
+    seed : Seed of the random numbers.
 
     Returns
     -------

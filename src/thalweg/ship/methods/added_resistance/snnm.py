@@ -214,8 +214,7 @@ def snnm_transfer(
     ----------
     frequency : array_like
         Wave frequency [rad/s], above zero.
-    speed : array_like
-        [m/s].
+    speed : array_like [m/s]
     wave_angle : array_like
         [rad], 0 from ahead.
     hull : SnnmHull

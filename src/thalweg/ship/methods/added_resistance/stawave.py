@@ -82,8 +82,7 @@ def stawave1(
         Significant wave height Hs [m].
     wave_angle : array_like
         [rad], 0 from ahead; zero resistance outside the sector of 45 degrees.
-    breadth : array_like
-        [m].
+    breadth : array_like [m]
     bow_length : array_like
         L_BWL [m], on the waterline from the bow to 95 % of the largest breadth.
     density, gravity : float
@@ -175,12 +174,9 @@ def stawave2_transfer(
     ----------
     frequency : array_like
         Wave frequency [rad/s].
-    speed : array_like
-        [m/s].
-    length_between_perpendiculars, breadth : float
-        [m].
-    draught : array_like
-        [m].
+    speed : array_like [m/s]
+    length_between_perpendiculars, breadth : float [m]
+    draught : array_like [m]
     block_coefficient : array_like
         C_B.
     pitch_gyration : array_like
@@ -273,8 +269,7 @@ def stawave2(
         Peak period [s].
     wave_angle : array_like
         [rad], 0 from ahead; zero resistance outside the sector of 45 degrees.
-    length_between_perpendiculars, breadth : float
-        [m].
+    length_between_perpendiculars, breadth : float [m]
     draught, block_coefficient, pitch_gyration : array_like
         T [m], C_B, and k_yy as a part of the length.
     spectrum, gamma

@@ -52,8 +52,7 @@ def wind_resistance(
 
     Returns
     -------
-    ndarray
-        [N].
+    ndarray [N]
 
     References
     ----------

@@ -175,8 +175,7 @@ def halem_cost(
 
     Parameters
     ----------
-    time : array_like
-        [s].
+    time : array_like [s]
     speed : array_like
         Speed the ship would make through deep water [m/s].
     per_second : float

@@ -311,8 +311,7 @@ def operating_point(
         V_A = V (1 - w) [m/s].
     propeller : Propeller
         See `Propeller`.
-    density : float
-        [kg/m3].
+    density : float [kg/m3]
     reynolds : float, optional
         See `b_series_polynomials`.
 

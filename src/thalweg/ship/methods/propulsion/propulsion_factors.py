@@ -76,10 +76,8 @@ def constant_efficiency_power(
 
     Parameters
     ----------
-    speed : array_like
-        [m/s].
-    resistance : array_like
-        [N].
+    speed : array_like [m/s]
+    resistance : array_like [N]
     efficiencies : Efficiencies, optional
         `Efficiencies` as it comes by default.
     """
@@ -120,8 +118,7 @@ def propulsion(
         Of the shaft line and of the gear (1 without one).
     propellers : int
         How many share the thrust.
-    density : float
-        [kg/m3].
+    density : float [kg/m3]
     reynolds : float, optional
         See `thalweg.ship.methods.propulsion.b_series.b_series_polynomials`.
 

@@ -21,12 +21,10 @@ class Water:
 
     Attributes
     ----------
-    density : float
-        [kg/m3].
+    density : float [kg/m3]
     viscosity : float
         Kinematic viscosity [m2/s].
-    gravity : float
-        [m/s2].
+    gravity : float [m/s2]
     """
 
     density: float = SEA_WATER_DENSITY
@@ -49,8 +47,7 @@ def froude_number(speed: ArrayLike, *, length: ArrayLike, gravity: float = GRAVI
         Speed through the water [m/s].
     length : array_like
         Length [m]; the water depth gives the depth Froude number.
-    gravity : float
-        [m/s2].
+    gravity : float [m/s2]
 
     Returns
     -------
@@ -69,10 +66,8 @@ def reynolds_number(
 
     Parameters
     ----------
-    speed : array_like
-        [m/s].
-    length : array_like
-        [m].
+    speed : array_like [m/s]
+    length : array_like [m]
     viscosity : array_like
         Kinematic viscosity [m2/s].
 

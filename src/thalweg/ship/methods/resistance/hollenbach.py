@@ -349,14 +349,12 @@ def hollenbach_validity(
 
     Parameters
     ----------
-    speed : array_like
-        [m/s].
+    speed : array_like [m/s]
     hull : HollenbachHull
         Of scalars.
     variant : str
         Key of `RESISTANCE_COEFFICIENTS`.
-    gravity : float
-        [m/s2].
+    gravity : float [m/s2]
 
     Returns
     -------

@@ -337,16 +337,14 @@ def holtrop_validity(
 
     Parameters
     ----------
-    speed : array_like
-        [m/s].
+    speed : array_like [m/s]
     hull : HullForm
         Main particulars.
     year : {1982, 1984}
         Which method.
     draught_fore, bulb_centre_height : array_like, optional
         T_F and h_B [m], for the limit h_B <= 0.6 T_F.
-    gravity : float
-        [m/s2].
+    gravity : float [m/s2]
 
     Returns
     -------

@@ -179,8 +179,7 @@ def wave_resistance(
 
     Parameters
     ----------
-    speed : array_like
-        [m/s].
+    speed : array_like [m/s]
     hull : HullForm
         Main particulars.
     entrance_angle_deg : array_like
@@ -195,8 +194,7 @@ def wave_resistance(
 
     Returns
     -------
-    ndarray
-        [N].
+    ndarray [N]
 
     References
     ----------

@@ -93,8 +93,7 @@ def motion_sickness_dose(weighted_rms: ArrayLike, *, duration: ArrayLike) -> Flo
 
     Returns
     -------
-    ndarray
-        [m/s^1.5].
+    ndarray [m/s^1.5]
 
     References
     ----------

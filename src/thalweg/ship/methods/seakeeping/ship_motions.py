@@ -83,8 +83,7 @@ def encounter_ratio(
     wave_angle : array_like
         Angle between bow and where the waves come from [rad], 0 head to pi following; either
         side.
-    gravity : float
-        [m/s2].
+    gravity : float [m/s2]
 
     Returns
     -------
@@ -130,8 +129,7 @@ def jensen_motions(
     decay : str
         ``published``: exp(-k_e T) as in the paper. ``strip``: exp(-k T), the same in head and
         following seas; see the notes.
-    gravity : float
-        [m/s2].
+    gravity : float [m/s2]
 
     Returns
     -------
@@ -232,8 +230,7 @@ class ShipResponse:
     ----------
     heave : SeaResponse
         At midship [m].
-    pitch : SeaResponse
-        [rad].
+    pitch : SeaResponse [rad]
     motion : SeaResponse
         Vertical motion at the requested point [m].
     acceleration : SeaResponse
@@ -285,8 +282,7 @@ def ship_response(
     decay : str
         As in `jensen_motions`. ``strip`` by default, since with ``published`` the
         accelerations in beam seas depend on where the spectrum is truncated.
-    gravity : float
-        [m/s2].
+    gravity : float [m/s2]
 
     Returns
     -------
@@ -342,12 +338,10 @@ def motions_validity(
 
     Parameters
     ----------
-    speed : array_like
-        [m/s].
+    speed : array_like [m/s]
     hull : MotionHull
         Hull.
-    gravity : float
-        [m/s2].
+    gravity : float [m/s2]
 
     Returns
     -------

@@ -99,8 +99,7 @@ def roll_period(
 
     Parameters
     ----------
-    breadth, draught, length_waterline : array_like
-        [m].
+    breadth, draught, length_waterline : array_like [m]
     metacentric_height : array_like
         GM corrected for free surfaces [m].
 
@@ -130,8 +129,7 @@ def encounter_period(
 
     Parameters
     ----------
-    wave_period : array_like
-        [s].
+    wave_period : array_like [s]
     speed : array_like
         Through the water [m/s].
     wave_angle : array_like

@@ -162,8 +162,7 @@ def pierson_moskowitz_period(height: ArrayLike, *, gravity: float = GRAVITY) -> 
     ----------
     height : array_like
         Significant height [m].
-    gravity : float
-        [m/s2].
+    gravity : float [m/s2]
 
     Returns
     -------
@@ -188,8 +187,7 @@ def pierson_moskowitz_wind(height: ArrayLike, *, gravity: float = GRAVITY) -> Fl
     ----------
     height : array_like
         Significant height [m].
-    gravity : float
-        [m/s2].
+    gravity : float [m/s2]
 
     Returns
     -------
@@ -249,8 +247,7 @@ def most_probable_maximum(m0: ArrayLike, m2: ArrayLike, *, duration: ArrayLike) 
     ----------
     m0, m2 : array_like
         Moments of the response over encounter frequency.
-    duration : array_like
-        [s].
+    duration : array_like [s]
 
     Returns
     -------

@@ -266,10 +266,8 @@ def squat_validity(
 
     Parameters
     ----------
-    depth, draught : array_like
-        [m].
-    block_coefficient : array_like
-        [-].
+    depth, draught : array_like [m]
+    block_coefficient : array_like [-]
 
     Returns
     -------

@@ -211,14 +211,11 @@ def karpov_speed(
 
     Parameters
     ----------
-    speed : array_like
-        [m/s].
-    depth, draught : array_like
-        [m].
+    speed : array_like [m/s]
+    depth, draught : array_like [m]
     raw_bands : bool
         See `karpov`.
-    gravity : float
-        [m/s2].
+    gravity : float [m/s2]
 
     Returns
     -------
@@ -284,8 +281,7 @@ def lackenby_1963_speed_loss(
         h [m].
     midship_area : array_like
         A_M below the water [m2].
-    gravity : float
-        [m/s2].
+    gravity : float [m/s2]
 
     Returns
     -------
