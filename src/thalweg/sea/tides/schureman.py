@@ -16,6 +16,7 @@ import itertools
 import re
 from dataclasses import dataclass
 from functools import lru_cache
+from importlib import resources
 from typing import Final
 
 import numpy as np
@@ -31,54 +32,20 @@ RWS_NODAL_FRACTIONS: Final[dict[str, float]] = {
     "MS4": 0.0, "M6": 0.75, "2MS6": 0.2, "M8": 0.7, "3MS8": 0.6,
 }  # fmt: skip
 
-# name: multiples of T s h p p1, phase [deg] (T counted from midnight), nodal family
-_BASIC_CONSTITUENTS: Final[dict[str, tuple[int, int, int, int, int, float, str]]] = {
-    "SA": (0, 0, 1, 0, 0, 0.0, ""),
-    "SSA": (0, 0, 2, 0, 0, 0.0, ""),
-    "MSM": (0, 1, -2, 1, 0, 0.0, "MM"),
-    "MM": (0, 1, 0, -1, 0, 0.0, "MM"),
-    "MSF": (0, 2, -2, 0, 0, 0.0, "MM"),
-    "MF": (0, 2, 0, 0, 0, 0.0, "MF"),
-    "MTM": (0, 3, 0, -1, 0, 0.0, "MF"),
-    "MSQM": (0, 4, -2, 0, 0, 0.0, "MF"),
-    "2Q1": (1, -4, 1, 2, 0, -90.0, "O1"),
-    "SIGMA1": (1, -4, 3, 0, 0, -90.0, "O1"),
-    "Q1": (1, -3, 1, 1, 0, -90.0, "O1"),
-    "RHO1": (1, -3, 3, -1, 0, -90.0, "O1"),
-    "O1": (1, -2, 1, 0, 0, -90.0, "O1"),
-    "TAU1": (1, -2, 3, 0, 0, 90.0, "J1"),
-    "M1": (1, -1, 1, 1, 0, 90.0, "M1"),
-    "M1C": (1, -1, 1, 0, 0, 180.0, "M1C"),
-    "CHI1": (1, -1, 3, -1, 0, 90.0, "J1"),
-    "PI1": (1, 0, -2, 0, 1, -90.0, ""),
-    "P1": (1, 0, -1, 0, 0, -90.0, ""),
-    "S1": (1, 0, 0, 0, 0, 180.0, ""),
-    "K1": (1, 0, 1, 0, 0, 90.0, "K1"),
-    "PSI1": (1, 0, 2, 0, -1, 90.0, ""),
-    "PHI1": (1, 0, 3, 0, 0, 90.0, ""),
-    "THETA1": (1, 1, -1, 1, 0, 90.0, "J1"),
-    "J1": (1, 1, 1, -1, 0, 90.0, "J1"),
-    "OO1": (1, 2, 1, 0, 0, 90.0, "OO1"),
-    "EPS2": (2, -5, 4, 1, 0, 0.0, "M2"),
-    "2N2": (2, -4, 2, 2, 0, 0.0, "M2"),
-    "MU2": (2, -4, 4, 0, 0, 0.0, "M2"),
-    "N2": (2, -3, 2, 1, 0, 0.0, "M2"),
-    "NU2": (2, -3, 4, -1, 0, 0.0, "M2"),
-    "GAMMA2": (2, -2, 0, 2, 0, 180.0, "M2"),
-    "ALPHA2": (2, -2, 1, 0, 1, 180.0, "M2"),
-    "MA2": (2, -2, 1, 0, 0, 0.0, "M2"),
-    "M2": (2, -2, 2, 0, 0, 0.0, "M2"),
-    "MB2": (2, -2, 3, 0, 0, 0.0, "M2"),
-    "LAMBDA2": (2, -1, 0, 1, 0, 180.0, "M2"),
-    "L2": (2, -1, 2, -1, 0, 180.0, "L2"),
-    "T2": (2, 0, -1, 0, 1, 0.0, ""),
-    "S2": (2, 0, 0, 0, 0, 0.0, ""),
-    "R2": (2, 0, 1, 0, -1, 180.0, ""),
-    "K2": (2, 0, 2, 0, 0, 0.0, "K2"),
-    "ETA2": (2, 1, 2, -1, 0, 0.0, "KJ"),
-    "S3": (3, 0, 0, 0, 0, 180.0, ""),
-    "M3": (3, -3, 3, 0, 0, 180.0, "M3"),
-}
+_Argument = tuple[int, int, int, int, int, float, str]
+
+
+def _basic_constituents() -> dict[str, _Argument]:
+    text = resources.files("thalweg.sea").joinpath("data/basic_constituents.csv").read_text("utf-8")
+    rows = (line.split(",") for line in text.splitlines()[1:])
+    return {
+        name: (int(t), int(s), int(h), int(p), int(p1), float(phase), family)
+        for name, t, s, h, p, p1, phase, family in rows
+    }
+
+
+#: By name: multiples of T s h p p1, phase [deg] (T counted from midnight), nodal family.
+_BASIC_CONSTITUENTS: Final = _basic_constituents()
 
 _ALIASES: Final[dict[str, str]] = {
     "SIG1": "SIGMA1", "RO1": "RHO1", "RHO": "RHO1", "FI1": "PHI1", "THE1": "THETA1", "E2": "EPS2",

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib import resources
 from types import MappingProxyType
 from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from pydantic import TypeAdapter
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
@@ -70,91 +72,24 @@ SOURCES: Final[Mapping[str, str]] = MappingProxyType(
     }
 )
 
-_LNG_NOTE = (
-    "MEPC.353(78) is transcribed with 14779E10 below 65 000 t and 14479E10 above; MEPC.337(76) "
-    "with 14479E10 in both, so the first may be a slip of the pen (2 % higher line)"
-)
 
-
-def _single_band_ship_type(
-    capacity: str, a: float, c: float, d: tuple[float, float, float, float]
-) -> CiiShipType:
-    return CiiShipType(capacity, (ReferenceBand(0.0, a, c),), ((0.0, d),))
+def _ship_types() -> Mapping[str, CiiShipType]:
+    file = resources.files("thalweg.ship.methods").joinpath("data", "cii_ship_types.json")
+    return TypeAdapter(dict[str, CiiShipType]).validate_json(file.read_bytes())
 
 
 #: Ship type -> its lines.
-SHIP_TYPES: Final[Mapping[str, CiiShipType]] = MappingProxyType(
-    {
-        "bulk_carrier": CiiShipType(
-            "dwt",
-            (ReferenceBand(279_000.0, 4745.0, 0.622, 279_000.0), ReferenceBand(0.0, 4745.0, 0.622)),
-            ((0.0, (0.86, 0.94, 1.06, 1.18)),),
-        ),
-        "gas_carrier": CiiShipType(
-            "dwt",
-            (ReferenceBand(65_000.0, 14405e7, 2.071), ReferenceBand(0.0, 8104.0, 0.639)),
-            ((65_000.0, (0.81, 0.91, 1.12, 1.44)), (0.0, (0.85, 0.95, 1.06, 1.25))),
-        ),
-        "tanker": _single_band_ship_type("dwt", 5247.0, 0.610, (0.82, 0.93, 1.08, 1.28)),
-        "container_ship": _single_band_ship_type("dwt", 1984.0, 0.489, (0.83, 0.94, 1.07, 1.19)),
-        "general_cargo_ship": CiiShipType(
-            "dwt",
-            (ReferenceBand(20_000.0, 31948.0, 0.792), ReferenceBand(0.0, 588.0, 0.3885)),
-            ((0.0, (0.83, 0.94, 1.06, 1.19)),),
-        ),
-        "refrigerated_cargo_carrier": _single_band_ship_type(
-            "dwt", 4600.0, 0.557, (0.78, 0.91, 1.07, 1.20)
-        ),
-        "combination_carrier": _single_band_ship_type(
-            "dwt", 5119.0, 0.622, (0.87, 0.96, 1.06, 1.14)
-        ),
-        "lng_carrier": CiiShipType(
-            "dwt",
-            (
-                ReferenceBand(100_000.0, 9.827, 0.0),
-                ReferenceBand(65_000.0, 14479e10, 2.673),
-                ReferenceBand(0.0, 14779e10, 2.673, 65_000.0, verified=False, note=_LNG_NOTE),
-            ),
-            ((100_000.0, (0.89, 0.98, 1.06, 1.13)), (0.0, (0.78, 0.92, 1.10, 1.37))),
-        ),
-        "vehicle_carrier": CiiShipType(
-            "gt",
-            (
-                ReferenceBand(57_700.0, 3627.0, 0.590, 57_700.0),
-                ReferenceBand(30_000.0, 3627.0, 0.590),
-                ReferenceBand(0.0, 330.0, 0.329),
-            ),
-            ((0.0, (0.86, 0.94, 1.06, 1.16)),),
-        ),
-        "ro_ro_cargo_ship": _single_band_ship_type("gt", 1967.0, 0.485, (0.76, 0.89, 1.08, 1.27)),
-        "ro_ro_passenger_ship": _single_band_ship_type(
-            "gt", 2023.0, 0.460, (0.76, 0.92, 1.14, 1.30)
-        ),
-        "high_speed_ro_ro_passenger_craft": _single_band_ship_type(
-            "gt", 4196.0, 0.460, (0.76, 0.92, 1.14, 1.30)
-        ),
-        "cruise_passenger_ship": _single_band_ship_type(
-            "gt", 930.0, 0.383, (0.87, 0.95, 1.06, 1.16)
-        ),
-    }
-)
+SHIP_TYPES: Final[Mapping[str, CiiShipType]] = MappingProxyType(_ship_types())
 
 #: Reduction Z [%] of the required CII below the 2019 reference line by year.
 REDUCTION_PERCENT: Final[Mapping[int, float]] = MappingProxyType(
-    {
-        2019: 0.0,
-        2020: 1.0,
-        2021: 2.0,
-        2022: 3.0,
-        2023: 5.0,
-        2024: 7.0,
-        2025: 9.0,
-        2026: 11.0,
-        2027: 13.625,
-        2028: 16.25,
-        2029: 18.875,
-        2030: 21.5,
-    }
+    dict(
+        zip(
+            range(2019, 2031),
+            (0.0, 1.0, 2.0, 3.0, 5.0, 7.0, 9.0, 11.0, 13.625, 16.25, 18.875, 21.5),
+            strict=True,
+        )
+    )
 )
 
 

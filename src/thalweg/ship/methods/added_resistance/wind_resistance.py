@@ -7,7 +7,10 @@ area above the water and are positive where the wind resists.
 
 from __future__ import annotations
 
+import csv
+from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib import resources
 from types import MappingProxyType
 from typing import Final
 
@@ -249,52 +252,20 @@ def blendermann_1994(
     return np.asarray(drag * np.cos(angle) / (1.0 - slack * np.sin(2.0 * angle) ** 2))
 
 
-_EVERY_10_DEGREES: Final = tuple(range(0, 181, 10))
-_EVERY_15_DEGREES: Final = tuple(range(0, 181, 15))
+def _ittc_curves() -> Mapping[str, tuple[FloatArray, FloatArray]]:
+    file = resources.files("thalweg.ship.methods").joinpath("data", "ittc_wind_curves.csv")
+    curves: dict[str, list[tuple[float, float]]] = {}
+    for row in csv.DictReader(file.read_text("utf-8").splitlines()):
+        point = float(row["angle_deg"]), float(row["coefficient"])
+        curves.setdefault(row["curve"], []).append(point)
+    return {name: (*np.array(points).T,) for name, points in curves.items()}
+
 
 #: Angles [deg] and C_AA of the data sets of ISO 15016:2015 and ITTC 7.5-04-01-01.1. The curves
 #: ``tanker_laden``, ``general_cargo`` and ``container_laden_no_boxes`` agree within 0.04 between
 #: two independent transcriptions; ``tanker_ballast`` and ``container_laden`` are one reading of
 #: the printed charts and unverified; the other curves of the standard were not found.
-ITTC_CURVES: Final = MappingProxyType(
-    {
-        "tanker_laden": (
-            _EVERY_10_DEGREES,
-            (
-                *(0.96, 0.93, 0.85, 0.73, 0.62, 0.47, 0.34, 0.17, 0.06, -0.05),
-                *(-0.14, -0.22, -0.29, -0.40, -0.53, -0.66, -0.75, -0.79, -0.77),
-            ),
-        ),
-        "tanker_ballast": (
-            _EVERY_10_DEGREES,
-            (
-                *(0.87, 0.77, 0.63, 0.46, 0.35, 0.22, 0.16, 0.09, 0.09, 0.03),
-                *(-0.03, -0.13, -0.23, -0.30, -0.39, -0.47, -0.51, -0.55, -0.52),
-            ),
-        ),
-        "general_cargo": (
-            (*range(0, 121, 10), *range(140, 181, 10)),
-            (
-                *(0.60, 0.87, 1.00, 1.00, 0.88, 0.85, 0.65, 0.42, 0.27, 0.09),
-                *(-0.09, -0.49, -0.84, -1.39, -1.47, -1.34, -0.92, -0.82),
-            ),
-        ),
-        "container_laden": (
-            _EVERY_15_DEGREES,
-            (
-                *(0.68, 0.77, 0.67, 0.41, 0.26, 0.22, 0.27),
-                *(0.07, -0.35, -0.67, -0.88, -0.83, -0.65),
-            ),
-        ),
-        "container_laden_no_boxes": (
-            _EVERY_15_DEGREES,
-            (
-                *(1.01, 1.11, 1.11, 0.95, 0.74, 0.46, 0.13),
-                *(-0.28, -0.77, -1.09, -1.18, -1.19, -0.94),
-            ),
-        ),
-    }
-)
+ITTC_CURVES: Final = MappingProxyType(_ittc_curves())
 
 
 def ittc_curve(wind_angle: ArrayLike, *, curve: str = "tanker_laden") -> FloatArray:
