@@ -97,8 +97,6 @@ def chart_canal_of_legs(
 
     Parameters
     ----------
-    chart : ChartParts
-        The chart.
     lat1, lon1 : array_like
         Starts of legs [deg].
     lat2, lon2 : array_like
@@ -117,8 +115,6 @@ def chart_is_navigable(chart: ChartParts, lat: ArrayLike, lon: ArrayLike) -> NDA
 
     Parameters
     ----------
-    chart : ChartParts
-        The chart.
     lat, lon : array_like
         Positions [deg]; broadcast together.
 
@@ -140,8 +136,6 @@ def chart_leg_status(
 
     Parameters
     ----------
-    chart : ChartParts
-        The chart.
     lat1, lon1 : array_like
         Starts of legs [deg].
     lat2, lon2 : array_like
@@ -168,8 +162,6 @@ def chart_legs_blocked(
 
     Parameters
     ----------
-    chart : ChartParts
-        The chart.
     lat1, lon1 : array_like
         Starts of legs [deg].
     lat2, lon2 : array_like
@@ -190,8 +182,6 @@ def chart_crosses_no_go_zone(
 
     Parameters
     ----------
-    chart : ChartParts
-        The chart.
     lat1, lon1 : array_like
         Starts of legs [deg].
     lat2, lon2 : array_like
@@ -213,8 +203,6 @@ def chart_is_joined_to_sea(chart: ChartParts, lat: float, lon: float) -> bool:
 
     Parameters
     ----------
-    chart : ChartParts
-        The chart.
     lat, lon : float
         Position on water [deg].
 
@@ -241,8 +229,6 @@ def chart_sea_room(chart: ChartParts, lat: ArrayLike, lon: ArrayLike, *, cap: fl
 
     Parameters
     ----------
-    chart : ChartParts
-        The chart.
     lat, lon : array_like
         Positions [deg]; broadcast together.
     cap : float
@@ -264,8 +250,6 @@ def chart_may_wait(chart: ChartParts, lat: ArrayLike, lon: ArrayLike) -> NDArray
 
     Parameters
     ----------
-    chart : ChartParts
-        The chart.
     lat, lon : array_like
         Positions [deg]; broadcast together.
 
@@ -284,8 +268,6 @@ def chart_nearest_navigable(
 
     Parameters
     ----------
-    chart : ChartParts
-        The chart.
     lat, lon : float
         Position [deg].
     largest : float
@@ -309,11 +291,6 @@ def chart_nearest_navigable(
 
 def chart_fingerprint(chart: ChartParts) -> str:
     """Return a short digest of everything on the chart.
-
-    Parameters
-    ----------
-    chart : ChartParts
-        The chart.
 
     Returns
     -------

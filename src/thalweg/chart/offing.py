@@ -88,8 +88,6 @@ def chart_with_offing(
 
     Parameters
     ----------
-    chart : Chart
-        The chart.
     distance : float
         Least distance from charted land [m], 0 to 50 nautical miles. In the corridors of the
         chart's `passages` nine tenths of the distance of their line from land are enough.
@@ -128,8 +126,6 @@ def chart_without_passages(chart: ChartType, *names: str) -> ChartType:
 
     Parameters
     ----------
-    chart : Chart
-        The chart.
     *names : str
         Names of `thalweg.chart.passages.PASSAGES`.
 

@@ -105,11 +105,6 @@ def member_count(layers: Sequence[Layer]) -> int:
 def check_not_ensemble(layers: Sequence[Layer]) -> None:
     """Do nothing for a single sea; raise `InputError` for an ensemble.
 
-    Parameters
-    ----------
-    layers : sequence of Layer
-        Layers in order of priority.
-
     Raises
     ------
     InputError

@@ -70,8 +70,6 @@ def freeze_station_fields(
 
     Parameters
     ----------
-    layers : sequence of Layer
-        Layers in order of priority.
     lat, lon : array_like (S,)
         Stations [deg].
     start, end : float
@@ -138,8 +136,6 @@ def freeze_grid_fields(
 
     Parameters
     ----------
-    layers : sequence of Layer
-        Layers in order of priority.
     area : BoundingBox
         Box of the grid; ``east < west`` spans the antimeridian. Four numbers, south, north, west
         and east [deg], are accepted in its place.

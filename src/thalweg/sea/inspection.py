@@ -88,11 +88,6 @@ def inspect_layers(layers: Sequence[Layer]) -> Inspection:
 
     A few times of every file are read. Of an ensemble, the first member is reported.
 
-    Parameters
-    ----------
-    layers : sequence of Layer
-        Layers in order of priority.
-
     Returns
     -------
     Inspection

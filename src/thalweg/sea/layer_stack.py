@@ -44,8 +44,6 @@ def stack_provides(layers: Sequence[Layer], name: str) -> bool:
 
     Parameters
     ----------
-    layers : sequence of Layer
-        Layers in order of priority.
     name : str
         Canonical name, or the CF name of a vector's speed or direction.
 
@@ -65,8 +63,6 @@ def sample_stack(
 
     Parameters
     ----------
-    layers : sequence of Layer
-        Layers in order of priority.
     names : sequence of str
         Canonical names, or CF names of a vector's speed and direction [deg].
     time : array_like
@@ -110,8 +106,6 @@ def series_of_stack(
 
     Parameters
     ----------
-    layers : sequence of Layer
-        Layers in order of priority.
     names : sequence of str
         Canonical names, or CF names of a vector's speed and direction.
     times : float64 array (T,)
@@ -146,8 +140,6 @@ def stack_times(
 
     Parameters
     ----------
-    layers : sequence of Layer
-        Layers in order of priority.
     start, end : float
         Window [s since epoch].
     names : sequence of str, optional
@@ -176,8 +168,6 @@ def stack_period(layers: Sequence[Layer], names: Sequence[str]) -> tuple[float, 
 
     Parameters
     ----------
-    layers : sequence of Layer
-        Layers in order of priority.
     names : sequence of str
         Canonical names.
 
@@ -196,11 +186,6 @@ def stack_period(layers: Sequence[Layer], names: Sequence[str]) -> tuple[float, 
 def first_mesh(layers: Sequence[Layer]) -> Mesh | None:
     """Return nodes and triangles of the first layer that has a mesh.
 
-    Parameters
-    ----------
-    layers : sequence of Layer
-        Layers in order of priority.
-
     Returns
     -------
     Mesh or None
@@ -211,11 +196,6 @@ def first_mesh(layers: Sequence[Layer]) -> Mesh | None:
 
 def coverage_of_layers(layers: Sequence[Layer]) -> list[Coverage]:
     """Return where and when each variable of each layer is known.
-
-    Parameters
-    ----------
-    layers : sequence of Layer
-        Layers in order of priority.
 
     Returns
     -------
@@ -230,8 +210,6 @@ def missing_reason(layers: Sequence[Layer], name: str, time: float, lat: float, 
 
     Parameters
     ----------
-    layers : sequence of Layer
-        Layers in order of priority.
     name : str
         Canonical name.
     time : float

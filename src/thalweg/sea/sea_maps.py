@@ -84,8 +84,6 @@ def draw_maps(
 
     Parameters
     ----------
-    layers : sequence of Layer
-        Layers in order of priority.
     path : path-like
         File to write.
     time : time, optional

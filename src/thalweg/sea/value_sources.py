@@ -26,11 +26,6 @@ class HasSources(Protocol):
 def sea_provenance(sea: HasSources) -> dict[str, Any]:
     """Return plain facts about every layer and assumption, for JSON.
 
-    Parameters
-    ----------
-    sea : HasSources
-        The sea.
-
     Returns
     -------
     dict
@@ -45,11 +40,6 @@ def sea_provenance(sea: HasSources) -> dict[str, Any]:
 
 def sea_fingerprint(sea: HasSources) -> str:
     """Return a hash that changes when a file, its variables or an assumption changes.
-
-    Parameters
-    ----------
-    sea : HasSources
-        The sea.
 
     Returns
     -------

@@ -62,8 +62,6 @@ def ship_speed_through_water(
 
     Parameters
     ----------
-    ship : ModelledShip
-        The ship.
     conditions : Conditions
         Conditions at the ship, arrays that broadcast; see `reads`.
     setting : array_like of int
@@ -87,8 +85,6 @@ def ship_power(ship: ModelledShip, conditions: Conditions, setting: ArrayLike = 
 
     Parameters
     ----------
-    ship : ModelledShip
-        The ship.
     conditions : Conditions
         Conditions at the ship, arrays that broadcast; see `reads`.
     setting : array_like of int
@@ -114,8 +110,6 @@ def ship_fuel_rate(
 
     Parameters
     ----------
-    ship : ModelledShip
-        The ship.
     conditions : Conditions
         Conditions at the ship, arrays that broadcast; see `reads`.
     setting : array_like of int
@@ -141,8 +135,6 @@ def ship_power_and_fuel(
 
     Parameters
     ----------
-    ship : ModelledShip
-        The ship.
     conditions : Conditions
         Conditions at the ship, arrays that broadcast; see `reads`.
     setting : array_like of int
@@ -168,8 +160,6 @@ def ship_power_at_speed(ship: ModelledShip, conditions: Conditions, speed: Array
 
     Parameters
     ----------
-    ship : ModelledShip
-        The ship.
     conditions : Conditions
         Conditions at the ship, arrays that broadcast; see `reads`.
     speed : array_like
@@ -195,8 +185,6 @@ def ship_resistance(
 
     Parameters
     ----------
-    ship : ModelledShip
-        The ship.
     conditions : Conditions
         Conditions at the ship, arrays that broadcast; see `reads`.
     speed : array_like
@@ -224,8 +212,6 @@ def ship_range_notes(
 
     Parameters
     ----------
-    ship : ModelledShip
-        The ship.
     conditions : Conditions
         Conditions at the ship, arrays that broadcast; see `reads`.
     setting : array_like of int
@@ -261,8 +247,6 @@ def ship_top_speed(ship: ModelledShip, setting: int = 0) -> float | None:
 
     Parameters
     ----------
-    ship : ModelledShip
-        The ship.
     setting : int
         Index into `speeds`.
 

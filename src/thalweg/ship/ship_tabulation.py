@@ -16,8 +16,6 @@ def ship_speed_table(ship: ModelledShip, *, tolerance: float = 0.01) -> Performa
 
     Parameters
     ----------
-    ship : ModelledShip
-        The ship.
     tolerance : float
         Relative error that 99 % of random conditions should meet, above 0.
 
@@ -43,8 +41,6 @@ def ship_fuel_table(ship: ModelledShip, *, tolerance: float = 0.01) -> Performan
 
     Parameters
     ----------
-    ship : ModelledShip
-        The ship.
     tolerance : float
         Relative error that 99 % of random conditions should meet, above 0.
 
@@ -69,8 +65,6 @@ def ship_power_table(ship: ModelledShip, *, tolerance: float = 0.01) -> Performa
 
     Parameters
     ----------
-    ship : ModelledShip
-        The ship.
     tolerance : float
         Relative error that 99 % of random conditions should meet, above 0.
 
@@ -98,11 +92,6 @@ def ship_power_table(ship: ModelledShip, *, tolerance: float = 0.01) -> Performa
 
 def ship_fingerprint(ship: ModelledShip) -> str:
     """Return a text that is equal for two ships only if they have the same performance.
-
-    Parameters
-    ----------
-    ship : ModelledShip
-        The ship.
 
     Returns
     -------

@@ -1,8 +1,9 @@
 """Coefficients of Hollenbach (1998), one record for each variant.
 
 Source (data file ``hollenbach_coefficients.json``): U. Hollenbach, "Estimating resistance and
-propulsion for single-screw and twin-screw ships", Schiffstechnik 45(2), 1998; reprinted in Schneekluth and Bertram, "Ship Design for
-Efficiency and Economy" (2nd ed., 1998) and Birk, "Fundamentals of Ship Hydrodynamics" (2019).
+propulsion for single-screw and twin-screw ships", Schiffstechnik 45(2), 1998; reprinted in
+Schneekluth and Bertram, "Ship Design for Efficiency and Economy" (2nd ed., 1998) and Birk,
+"Fundamentals of Ship Hydrodynamics" (2019).
 
 How sure the numbers are: the single-screw design coefficients reproduce a published table of 11
 speeds within 0.05 %. The other mean curves and the single-screw minimum agree between at least
