@@ -68,7 +68,7 @@ export function uploadSea(file, onProgress) {
 // Follow a job until its final state; the browser reconnects with Last-Event-ID by itself.
 export function follow(id, handlers) {
   const source = new EventSource(`${BASE}/plans/${id}/events`);
-  for (const kind of ["state", "stage", "route"]) {
+  for (const kind of ["state", "stage", "route", "progress"]) {
     source.addEventListener(kind, (event) => {
       const data = JSON.parse(event.data);
       const last = kind === "state" && ["done", "failed", "cancelled"].includes(data.state);
@@ -82,4 +82,5 @@ export function follow(id, handlers) {
 }
 
 export const fileAddress = (id, number, form) => `${BASE}/plans/${id}/routes/${number}.${form}`;
+export const tableAddress = (id, name) => `${BASE}/plans/${id}/tables/${name}.csv`;
 export const resultAddress = (id) => `${BASE}/plans/${id}/result`;

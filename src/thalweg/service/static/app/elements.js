@@ -7,6 +7,7 @@ export function h(kind, attributes = {}, ...children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (value === null || value === undefined || value === false) continue;
     if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    else if (name === "style") element.style.cssText = value; // an attribute would need another policy
     else if (name === "value") element.value = value;
     else if (name === "checked" || name === "selected" || name === "hidden") element[name] = Boolean(value);
     else element.setAttribute(name, value === true ? "" : value);

@@ -3,23 +3,7 @@
 import { fill, h } from "./elements.js";
 import { duration, known, number, signed, signedDuration } from "./format.js";
 import { selection } from "./selection.js";
-
-const SVG = "http://www.w3.org/2000/svg";
-
-function s(name, attributes = {}, text = null) {
-  const element = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) if (value !== null) element.setAttribute(key, value);
-  if (text !== null) element.textContent = text;
-  return element;
-}
-
-function ticks(low, high, count) {
-  const raw = (high - low) / count, size = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map((m) => m * size).find((value) => value >= raw);
-  const found = [];
-  for (let v = Math.ceil(low / step) * step; v <= high + 1e-9; v += step) found.push(Number(v.toPrecision(12)));
-  return found;
-}
+import { svg as s, ticks } from "./svg_parts.js";
 
 export class FrontDiagram {
   constructor(plan) {

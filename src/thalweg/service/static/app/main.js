@@ -8,9 +8,11 @@ import { announce, colour, errorBox, fill, h } from "./elements.js";
 import { duration, known, number, plainPosition, seconds, time } from "./format.js";
 import { DEMO, PlanForm, typedTime } from "./plan_form.js";
 import { ProgressView } from "./progress_view.js";
+import { ProjectView } from "./project_view.js";
 import { loadResult, profileOf, ResultView } from "./result_view.js";
 import { Feature, line, speedColours, stroke } from "./route_layers.js";
 import { selection } from "./selection.js";
+import { StudyView } from "./study_view.js";
 import { KINDS } from "./weather_layer.js";
 
 const panel = document.getElementById("panel");
@@ -27,6 +29,20 @@ class Application {
     this.drawer = new Drawer(document.getElementById("drawer"));
     this.form = new PlanForm(this.chart);
     this.compare = new CompareView({ show: (routes, table) => this.#showCompared(routes, table), run: (job, done) => this.#runBeside(job, done) });
+    const batch = (view) => ({
+      sheet: (element, tall) => { if (this.view === view) this.#sheet(element, tall); },
+      panel: (parts) => { if (this.view === view) fill(panel, parts); },
+      link: (id) => { if (this.view === view) this.#link(id ? `plan=${id}` : `view=${view}`); },
+      fit: (points) => { if (this.view === view) this.chart.fit(points); },
+      hidden: () => this.view !== view,
+      leave: () => this.#switch("voyages"),
+      plan: () => { this.result = null; this.#switch("plan"); },
+      demo: () => this.form.set(DEMO),
+      ends: (voyage) => this.#fitVoyage(voyage),
+      voyage: (request) => { this.form.set(request); this.result = null; this.#switch("plan"); this.#hint("The voyage is filled in."); },
+    });
+    this.projects = new ProjectView(this.chart, this.form, batch("projects"));
+    this.studies = new StudyView(this.form, batch("studies"));
     this.#listen();
     this.#layers();
     this.#keys();
@@ -69,21 +85,67 @@ class Application {
   }
 
   #switch(view) {
+    this.#weatherOf(view);
     this.view = view;
     this.#tabs();
     this.drawer.stop();
-    if (view !== "compare") this.chart.areas.getSource && this.compareLayer?.getSource().clear();
+    this.projects.close?.();
+    this.studies.close?.();
+    this.#sheet(null);
     if (view === "plan") {
       if (this.progress) this.#showProgress();
       else if (this.result) this.showResult(this.result);
       else this.#showForm();
-    } else {
-      this.chart.routes.clear();
-      this.chart.routes.showEnds([]);
-      this.chart.closeMenu();
-      this.#link(`view=${view}`);
-      if (view === "compare") this.#showCompare();
-      else this.#showVoyages();
+      return;
+    }
+    this.chart.routes.clear();
+    this.chart.routes.showEnds([]);
+    this.chart.showAreas(this.form.areas, null);
+    this.chart.closeMenu();
+    this.#link(`view=${view}`);
+    if (view === "compare") this.#showCompare();
+    else if (view === "projects" || view === "studies") this.#showBatch();
+    else this.#showVoyages();
+  }
+
+  // The ends of the voyage of a study, whose places may be text.
+  async #fitVoyage({ start, goal }) {
+    const place = async (given, role) => (Array.isArray(given) ? { role, lat: given[0], lon: given[1], label: "" } : { ...(await get(`/places?text=${encodeURIComponent(given)}`)), role });
+    try {
+      const ends = (await Promise.all([place(start, "start"), place(goal, "goal")])).map((end) => ({ ...end, label: end.kind === "port" ? end.name : "" }));
+      if (this.view !== "studies") return;
+      this.chart.routes.showEnds(ends);
+      this.chart.map.updateSize();
+      this.chart.fit(ends.map((end) => [end.lon, end.lat]));
+    } catch { /* the study states what is wrong with its places */ }
+  }
+
+  // The weather of a voyage is not that of a project or a study.
+  #weatherOf(view) {
+    const { weather } = this.chart, apart = ["projects", "studies"].includes(view);
+    if (apart && weather.kind) { this.kindBefore = weather.kind; weather.set({ kind: "" }); } else if (!apart && this.kindBefore) { weather.set({ kind: this.kindBefore }); this.kindBefore = ""; }
+    if (apart) fill(document.getElementById("valid"));
+    this.chart.showLegend();
+  }
+
+  // The drawer holds the player with its diagrams, or one other element.
+  #sheet(element, tall = false) {
+    const drawer = document.getElementById("drawer");
+    this.drawerParts ||= [...drawer.children];
+    drawer.classList.toggle("tall", Boolean(element && tall));
+    drawer.hidden = !element;
+    fill(drawer, element || this.drawerParts);
+  }
+
+  async #showBatch(id = null) {
+    const { view } = this, shown = this[view];
+    try {
+      if (id) { await shown.openJob(id); return; }
+      const element = await shown.show();
+      if (this.view === view) fill(panel, element);
+      if (view === "studies") this.chart.routes.showEnds(this.form.ends);
+    } catch (problem) {
+      if (this.view === view) fill(panel, h("div.scroll", {}, errorBox(problem)));
     }
   }
 
@@ -127,8 +189,16 @@ class Application {
       fill(this.form.problem, errorBox(problem));
       return;
     }
+    const batch = { project: "projects", study: "studies" }[job.kind];
+    if (batch) {
+      this.#switch(batch);
+      await this.#showBatch(id);
+      return;
+    }
     this.view = "plan";
     this.#tabs();
+    if (job.kind === "forecast") { this.#showForm(); await this.form.openForecast?.(job); return; }
+    this.#sheet(null);
     if (job.kind === "plan") this.form.set(job.request);
     if (!["done", "failed", "cancelled"].includes(job.state)) { this.#follow(job); return; }
     await this.#ended(job, route, t);
@@ -249,6 +319,7 @@ class Application {
   }
 
   #valid() {
+    if (this.view === "projects" || this.view === "studies") return;
     const t = selection.time, { weather } = this.chart;
     const shown = weather.kind && known(t) ? [h("b", {}, time(t, true)), " UTC"] : [];
     const period = this.form.period;
@@ -289,17 +360,7 @@ class Application {
     const features = routes.map((points, i) => { const feature = new Feature(line(points)); feature.setStyle(() => [...(i ? [] : [stroke(colour("casing"), 6.5)]), stroke(colour(PAINTS[i]), i ? 2.4 : 4, DASHES[i] || undefined)]); return feature; });
     source.addFeatures(features);
     if (routes.length) this.chart.fit(routes.flat());
-    const drawer = document.getElementById("drawer");
-    this.drawer.stop();
-    if (!table) return;
-    this.comparedSheet ||= h("div.sheet");
-    drawer.hidden = false;
-    fill(this.comparedSheet, table);
-    if (this.comparedSheet.parentElement !== drawer) { this.drawerParts ||= [...drawer.children]; fill(drawer, this.comparedSheet); }
-  }
-
-  #restoreDrawer() {
-    if (this.drawerParts && this.view !== "compare") fill(document.getElementById("drawer"), this.drawerParts);
+    if (table) this.#sheet(h("div.sheet", {}, table));
   }
 
   #runBeside(job, done) {
@@ -320,8 +381,7 @@ class Application {
   }
 
   async #showVoyages() {
-    this.drawer.hide();
-    const box = h("div.scroll", {}, h("h1", {}, "Voyages"), h("p.lead", {}, "All plans of this computer, the newest first."));
+    const box = h("div.scroll", {}, h("h1", {}, "Voyages"), h("p.lead", {}, "All plans, projects and studies of this computer, the newest first."));
     fill(panel, box);
     try {
       const { jobs } = await get("/plans?size=100");
@@ -332,6 +392,10 @@ class Application {
   }
 
   #facts(job) {
+    if (job.summary && job.kind !== "plan" && job.kind !== "evaluation") {
+      const what = { project: () => `Project · ${number(job.summary.duration_days, 1)} days · ${number(job.summary.cycles)} cycles`, study: () => `Study · ${number(job.summary.voyages)} voyages`, forecast: () => `Forecast · ${number(job.summary.bytes / 1e6, 1)} MB` }[job.kind]();
+      return `${what} · ${time(seconds(job.created))}`;
+    }
     if (job.summary) return `${duration(job.summary.time_h)} · ${number(job.summary.distance_nm, 0)} nm · ${time(seconds(job.created))}`;
     return job.problem ? job.problem.asked : time(seconds(job.created));
   }
@@ -359,7 +423,7 @@ class Application {
     addEventListener("beforeprint", () => this.#forPaper(true));
     addEventListener("afterprint", () => this.#forPaper(false));
     chart.weather.onState = (state) => chart.showLegend(state);
-    document.querySelectorAll(".tab").forEach((tab) => tab.addEventListener("click", () => { if (tab.dataset.view !== "compare") { this.view = tab.dataset.view; this.#restoreDrawer(); } this.#switch(tab.dataset.view); }));
+    document.querySelectorAll(".tab").forEach((tab) => tab.addEventListener("click", () => this.#switch(tab.dataset.view)));
     const button = document.getElementById("layers-button"), layers = document.getElementById("layers");
     button.addEventListener("click", () => { layers.hidden = !layers.hidden; button.setAttribute("aria-expanded", String(!layers.hidden)); });
     document.getElementById("palette").addEventListener("click", () => this.#palette());
@@ -387,6 +451,7 @@ class Application {
   }
 
   #clicked({ lat, lon, number: number_, port, coordinate }) {
+    if (this.view === "projects") { this.projects.clicked(lat, lon, coordinate); return; }
     if (this.view !== "plan" || this.progress) return;
     if (this.result) {
       if (number_ !== null && number_ !== undefined) {
@@ -414,6 +479,7 @@ class Application {
     document.getElementById("palette").setAttribute("aria-label", `Palette: ${next}. Change to ${PALETTES[(PALETTES.indexOf(next) + 1) % 3]}`);
     this.chart.paint();
     if (this.result?.profile) this.drawer.show(this.drawer.result);
+    dispatchEvent(new Event("palette"));
     announce(`Palette: ${next}`);
   }
 
@@ -427,7 +493,7 @@ class Application {
         ",": () => this.drawer.step(-3), ".": () => this.drawer.step(3),
         "[": () => this.#stepRoute(-1), "]": () => this.#stepRoute(1),
         c: () => this.result?.view.handlers.compare(), n: () => this.#palette(), "?": () => this.#help(),
-        p: () => document.querySelector('.tab[data-view="plan"]').click(), v: () => document.querySelector('.tab[data-view="voyages"]').click(), l: () => document.getElementById("layers-button").click(),
+        p: () => document.querySelector('.tab[data-view="plan"]').click(), d: () => this.#switch("projects"), s: () => this.#switch("studies"), v: () => document.querySelector('.tab[data-view="voyages"]').click(), l: () => document.getElementById("layers-button").click(),
       }[event.key];
       if (act && act() !== false) event.preventDefault();
     });
@@ -439,7 +505,7 @@ class Application {
 
   #help() {
     const dialog = document.getElementById("keys");
-    const rows = [["Space", "play and pause"], [", .", "three hours back and on"], ["[ ]", "the route before, the next route"], ["Arrow keys", "on the front: along it; on the chart: move it"], ["+ −", "on the chart: closer and farther"], ["c", "compare this route"], ["l", "layers"], ["n", "day, dusk, night"], ["p, v", "plan, voyages"], ["?", "this list"]];
+    const rows = [["Space", "play and pause"], [", .", "three hours back and on"], ["[ ]", "the route before, the next route"], ["Arrow keys", "on the front: along it; on the chart: move it"], ["+ −", "on the chart: closer and farther"], ["c", "compare this route"], ["l", "layers"], ["n", "day, dusk, night"], ["p, v", "plan, voyages"], ["d, s", "dredging projects, studies"], ["?", "this list"]];
     fill(dialog, h("h2", { id: "keys-title" }, "Keys"), h("dl", {}, rows.map(([key, text]) => [h("dt", {}, h("kbd", {}, key)), h("dd", {}, text)])), h("p.lead", {}, "Programs can use the same interface: see /openapi.json. Thalweg is not a navigation system; check every route against official charts and notices."), h("p", {}, h("button.quiet", { type: "button", onclick: () => dialog.close(), autofocus: true }, "Close")));
     dialog.showModal();
   }

@@ -63,6 +63,19 @@ export class RouteLayers {
     source.addFeature(feature);
   }
 
+  // Many routes of several runs: [{paint, dash, lines}].
+  showBundles(groups, faint) {
+    const source = this.others.getSource();
+    source.clear();
+    for (const { paint, dash, lines } of groups) {
+      for (const points of lines) {
+        const feature = new Feature(line(points));
+        feature.setStyle(() => stroke(colour(paint) + (faint ? "55" : "b0"), dash ? 2 : 1.4, dash));
+        source.addFeature(feature);
+      }
+    }
+  }
+
   showOthers(routes, chosen, hovered) {
     const source = this.others.getSource();
     source.clear();

@@ -1,0 +1,291 @@
+// Dredging projects: the form, the simulation while it runs, and the result.
+
+import { follow, get, post, remove, resultAddress, tableAddress } from "./api.js";
+import { announce, errorBox, fill, h, unit } from "./elements.js";
+import { duration, inputTime, known, number, plainPosition, seconds, time } from "./format.js";
+import { PlaceField } from "./places.js";
+import { drawActivities, drawLoads, drawPlaceAndTime, drawVolume, runColour, showCycles } from "./project_diagrams.js";
+import { SheetTabs } from "./sheet_tabs.js";
+
+const NUMBERS = [["volume_m3", "Volume to move", "m³"], ["hopper_m3", "Full load", "m³"], ["loading", "Loads at", "m³/s"], ["unloading", "Unloads at", "m³/s"], ["days", "At most", "days"], ["min_ukc_m", "Under-keel clearance", "m"], ["load_factors", "Loads to choose from", "count"], ["spacing_m", "Spacing of the network", "m"]];
+const asRow = ([lat, lon]) => `${lat}, ${lon}`;
+
+export class ProjectView {
+  // handlers: sheet(element), link(id), fit(points)
+  constructor(chart, form, handlers) {
+    this.chart = chart;
+    this.plans = form; // its lists of ships and seas
+    this.handlers = handlers;
+    this.load = new PlaceField("start", "Loads at", () => this.places());
+    this.unload = new PlaceField("goal", "Unloads at", () => this.places());
+    this.rest = {};
+    this.#build();
+  }
+
+  #build() {
+    this.numbers = Object.fromEntries(NUMBERS.map(([name]) => [name, h("input", { type: "text", inputmode: "decimal", id: `p-${name}`, autocomplete: "off" })]));
+    const field = (name) => { const [, label, unitText] = NUMBERS.find((row) => row[0] === name); return h("div.field", { "data-field": name }, h("label.label", { for: `p-${name}` }, label), h("div.with-unit", {}, this.numbers[name], h("span.unit", {}, unitText)), h("div.slot")); };
+    this.title = h("input", { type: "text", id: "p-title", maxlength: 200 });
+    this.ship = h("select", { id: "p-ship" });
+    this.sea = h("div");
+    this.start = h("input", { type: "text", id: "p-start", autocomplete: "off", placeholder: "2026-05-01 00:00" });
+    this.tides = h("input", { type: "checkbox", id: "p-tides" });
+    this.base = h("textarea", { id: "p-base", rows: 4, placeholder: "51.7449, 3.5790\n51.6964, 3.4370\n51.6596, 3.6514" });
+    this.baseLoad = h("select", { id: "p-base-load" }, h("option", { value: "best" }, "in each cycle the one that moves most"), h("option", { value: "1" }, "always full"));
+    this.file = h("input.hidden", { type: "file", id: "project-file", "aria-label": "Project file", accept: ".yaml,.yml,.json", tabindex: "-1", onchange: () => this.#open() });
+    this.problem = h("div");
+    this.earlier = h("div");
+    this.button = h("button.primary", { type: "submit" }, "Simulate the project");
+    this.element = h("form", { novalidate: true, class: "form", style: "display: contents", onsubmit: (event) => { event.preventDefault(); this.submit(); } },
+      h("div.scroll", {}, h("h1", {}, "Dredging project"), h("p.lead", {}, "Load, sail full, unload, sail empty, until a volume is moved. Each cycle takes the load and the routes that move most."),
+        h("div.exports.block", {}, h("button.quiet.small", { type: "button", onclick: () => this.example() }, "Fill in the example"), h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Project file …"), this.file),
+        this.earlier,
+        h("div.block", {}, h("div.itinerary", {}, this.load.element, this.unload.element)),
+        h("div.block", {}, h("div.field", { "data-field": "ship" }, h("label.label", { for: "p-ship" }, "Ship"), this.ship, h("div.slot"))),
+        h("fieldset.block", { "data-field": "seas" }, h("legend", {}, "Sea"), this.sea, h("label.check", {}, this.tides, h("span", {}, "Predict from the tides in the files", h("small", {}, "for dates that the files do not cover"))), h("div.slot")),
+        h("div.block", {}, h("div.pair", {}, field("volume_m3"), field("hopper_m3")), h("div.pair", {}, field("loading"), field("unloading")), h("div.pair", {}, h("div.field", { "data-field": "start" }, h("label.label", { for: "p-start" }, "Starts ", unit("UTC")), this.start, h("div.slot")), field("days"))),
+        h("div.block", {}, h("details", {}, h("summary", {}, "Depth and network"), h("div.inside", {}, h("div.pair", {}, field("min_ukc_m"), field("spacing_m")), field("load_factors"), h("p.facts", {}, "Empty: the clearance of the ship file, 11 loads, and the mesh of the sea data."))),
+          h("details", {}, h("summary", {}, "Base case to compare with"), h("div.inside", {}, h("div.field", { "data-field": "base_case" }, h("label.label", { for: "p-base" }, "Charted route: latitude, longitude"), this.base, h("div.slot")), h("div.field", {}, h("label.label", { for: "p-base-load" }, "Load"), this.baseLoad)))),
+        h("div.field.block", {}, h("label.label", { for: "p-title" }, "Name"), this.title), this.problem),
+      h("div.foot", {}, this.button));
+  }
+
+  // The form
+
+  async show() {
+    this.job = null;
+    this.close?.();
+    this.handlers.link("");
+    this.handlers.sheet(null);
+    this.chart.routes.clear();
+    this.lists();
+    this.places();
+    if (!this.load.value && !this.touched) await this.example().catch((problem) => fill(this.problem, errorBox(problem)));
+    const { jobs } = await get("/plans?kind=project&size=20");
+    fill(this.earlier, jobs.length ? h("details", {}, h("summary", {}, "Earlier projects", h("span.set", {}, String(jobs.length))), h("div.inside", {}, jobs.map((job) => h("button.job", { type: "button", onclick: () => this.openJob(job.id) }, h("b", {}, job.title), " ", job.state === "done" ? null : h(`span.state.${job.state}`, {}, job.state), h("span", {}, job.summary ? `${number(job.summary.duration_days, 1)} days · ${number(job.summary.cycles)} cycles · ${time(seconds(job.created))}` : time(seconds(job.created))))))) : null);
+    return this.element;
+  }
+
+  lists() {
+    const own = typeof this.rest.ship === "object" ? [h("option", { value: "own" }, this.rest.ship.name || "Ship of the project file")] : [];
+    const chosen = this.ship.value;
+    fill(this.ship, own, (this.plans.ships || []).map((ship) => h("option", { value: ship.id }, ship.name)));
+    this.ship.value = chosen || (own.length ? "own" : "hopper-dredger");
+    if (!this.ship.value) this.ship.selectedIndex = 0;
+    const before = new Set([...this.sea.querySelectorAll("input:checked")].map((box) => box.value));
+    if (!this.sea.childElementCount) before.add("synthetic-estuary");
+    const rows = [{ id: "synthetic-estuary", name: "Made-up estuary with tides", facts: "a bank that dries, and a gully behind it" }, ...(this.plans.seas || []).filter((sea) => !sea.embedded).map((sea) => ({ ...sea, facts: (sea.frames || []).join(", ") }))];
+    fill(this.sea, rows.map((sea) => h("label.check", {}, h("input", { type: "checkbox", value: sea.id, checked: before.has(sea.id), onchange: (event) => { if (event.target.checked) for (const box of this.sea.querySelectorAll("input")) if (box !== event.target && (box.value === "synthetic-estuary" || event.target.value === "synthetic-estuary")) box.checked = false; } }), h("span", {}, sea.name, h("small", {}, sea.facts)))));
+  }
+
+  async example() {
+    const { project } = await get("/projects/example");
+    this.set(project);
+    this.fit();
+  }
+
+  fit() {
+    const points = [this.load, this.unload].filter((field) => field.place).map((field) => [field.place.lon, field.place.lat]);
+    if (points.length) this.handlers.fit(points);
+  }
+
+  async #open() {
+    const [file] = this.file.files;
+    this.file.value = "";
+    if (!file) return;
+    fill(this.problem);
+    await this.#start({ project: await file.text() });
+  }
+
+  set(project) {
+    this.touched = true;
+    this.rest = structuredClone(project);
+    this.title.value = project.name || "";
+    const place = (field, value) => { if (Array.isArray(value)) field.setPosition(...value); else field.set(value || ""); };
+    place(this.load, project.load);
+    place(this.unload, project.unload);
+    for (const [name] of NUMBERS) { const value = project[name]; this.numbers[name].value = typeof value === "object" && value !== null ? value.rate_m3_s ?? (Array.isArray(value) ? value.length : "") : value ?? ""; }
+    this.start.value = project.start ? inputTime(seconds(project.start)) : "";
+    this.tides.checked = Boolean(project.tides);
+    this.base.value = (project.base_case?.route || []).map(asRow).join("\n");
+    this.baseLoad.value = String(project.base_case?.load_factor ?? "best") === "best" ? "best" : "1";
+    this.ship.value = "";
+    this.lists();
+    this.ship.value = typeof project.ship === "object" ? "own" : project.ship || "hopper-dredger";
+    const seas = [project.sea].flat();
+    for (const box of this.sea.querySelectorAll("input")) box.checked = seas.includes(box.value);
+    this.places();
+  }
+
+  places() {
+    if (!this.unload || this.handlers.hidden()) return;
+    const ends = [[this.load, "start", "Loads"], [this.unload, "goal", "Unloads"]].filter(([field]) => field.place);
+    this.chart.routes.showEnds(ends.map(([field, role, label]) => ({ role, label, lat: field.place.lat, lon: field.place.lon })));
+  }
+
+  clicked(lat, lon, coordinate) {
+    if (this.job) return;
+    this.chart.choose(coordinate, plainPosition(lat, lon), [["Load here", () => this.load.setPosition(lat, lon)], ["Unload here", () => this.unload.setPosition(lat, lon)], ["Close", () => {}]]);
+  }
+
+  request() {
+    const { load, unload } = this;
+    for (const [field, what] of [[load, "loading"], [unload, "unloading"]]) if (!field.place) { field.fail({ asked: `The project has no ${what} site.`, remedy: "Type a position, or click it on the chart." }); field.input.focus(); return null; }
+    const project = { ...this.rest, name: this.title.value.trim() || "Dredging project", load: [load.place.lat, load.place.lon], unload: [unload.place.lat, unload.place.lon] };
+    for (const [name, label] of NUMBERS) {
+      const text = this.numbers[name].value.trim().replace(",", "."), before = this.rest[name];
+      if (text === "") { if (typeof before !== "object") delete project[name]; continue; }
+      const value = Number(text);
+      if (!Number.isFinite(value)) { this.fail({ field: name, asked: `${label}: ${text} is not a number.`, remedy: "Give a number." }); return null; }
+      if (before && typeof before === "object") { if (!Array.isArray(before) && before.rate_m3_s !== undefined) project[name] = { ...before, rate_m3_s: value }; else if (Array.isArray(before) && before.length !== value) project[name] = value; } else project[name] = value;
+    }
+    if (this.ship.value !== "own") project.ship = this.ship.value;
+    project.sea = [...this.sea.querySelectorAll("input:checked")].map((box) => box.value);
+    if (project.sea.length === 1) [project.sea] = project.sea;
+    if (this.tides.checked) project.tides ||= true; else delete project.tides;
+    project.start = `${this.start.value.trim().replace(" ", "T")}Z`;
+    const route = this.base.value.split("\n").map((row) => row.split(/[,;\s]+/).filter(Boolean).map(Number)).filter((row) => row.length === 2 && row.every(Number.isFinite));
+    if (route.length > 1) project.base_case = { ...this.rest.base_case, route, load_factor: this.baseLoad.value === "best" ? "best" : 1 };
+    else delete project.base_case;
+    return { title: project.name, project };
+  }
+
+  fail(problem) {
+    const name = { load: "start", unload: "goal" }[problem.field] || problem.field;
+    const slot = this.element.querySelector(`[data-field="${name}"] .slot`);
+    slot?.closest("details")?.setAttribute("open", "");
+    fill(slot || this.problem, errorBox(problem));
+    (slot || this.problem).scrollIntoView({ block: "center" });
+  }
+
+  async submit() {
+    this.element.querySelectorAll(".slot").forEach((slot) => fill(slot));
+    fill(this.problem);
+    const request = this.request();
+    if (request) await this.#start(request);
+  }
+
+  async #start(request) {
+    try {
+      const job = await post("/projects", request, { "Idempotency-Key": crypto.randomUUID?.() || String(Math.random()) });
+      await this.openJob(job.id);
+    } catch (problem) {
+      this.fail(problem);
+    }
+  }
+
+  // A job
+
+  async openJob(id) {
+    const job = await get(`/plans/${id}`);
+    this.job = job;
+    this.handlers.link(id);
+    this.set(job.request.project);
+    if (["done", "failed", "cancelled"].includes(job.state)) await this.#ended(job);
+    else this.#watch(job);
+  }
+
+  #watch(job) {
+    this.close?.();
+    const runs = { optimised: [], "base case": [] };
+    if (!job.request.project.base_case) delete runs["base case"];
+    const state = h("p.lead", { role: "status" }, "Waiting for its turn."), steps = h("ol.steps"), cards = h("dl.cards"), problem = h("div");
+    const tabs = new SheetTabs("The project so far", [["volume", "Volume so far", (sheet) => (runs.optimised.length ? drawVolume(sheet, runs, job.request.project.volume_m3, seconds(job.request.project.start)) : (fill(sheet, h("p.empty", {}, h("b", {}, "No cycle yet"), "The volume that is moved appears here, cycle by cycle.")), ""))]]);
+    this.handlers.panel([h("div.scroll", {}, h("h1", {}, job.title), state, steps, cards, problem), h("div.foot", {}, h("button.quiet", { type: "button", onclick: async () => { state.textContent = "Stopping …"; await remove(`/plans/${job.id}`).catch((error) => fill(problem, errorBox(error))); } }, "Stop"), h("button.quiet", { type: "button", onclick: () => this.handlers.leave() }, "Leave it running"))]);
+    this.handlers.sheet(tabs.element);
+    let pending = false;
+    const redraw = () => { if (pending) return; pending = true; requestAnimationFrame(() => { pending = false; tabs.redraw(); this.#cards(cards, runs); }); };
+    this.close = follow(job.id, {
+      stage: (data) => {
+        if (/^\d+ cycles/.test(data.text)) return;
+        state.textContent = "Simulating.";
+        steps.querySelector(".now")?.classList.remove("now");
+        steps.append(h("li.now", {}, h("span", {}, data.text[0].toUpperCase() + data.text.slice(1)), h("span.unit", {}, `${number(data.after_s, 0)} s`)));
+        announce(data.text);
+      },
+      progress: ({ run, cycle }) => {
+        if (cycle.number === 1) runs[run] = [];
+        (runs[run] ||= []).push(cycle);
+        this.chart.routes.showChosen(cycle.out, null, null, 0);
+        redraw();
+      },
+      state: async (data) => {
+        if (data.state === "queued" && data.why) { fill(steps); for (const name of Object.keys(runs)) runs[name] = []; state.textContent = `Started again: ${data.why}.`; return; }
+        if (!["done", "failed", "cancelled"].includes(data.state)) return;
+        const done = await get(`/plans/${job.id}`);
+        if (this.job?.id === job.id) await this.#ended(done);
+      },
+      waiting: () => { state.textContent = "The service does not answer; the job goes on when it runs again."; },
+    });
+  }
+
+  #cards(cards, runs) {
+    const name = runs["base case"]?.length ? "base case" : "optimised", cycles = runs[name];
+    if (!cycles.length) return;
+    const card = (title, value, unitText) => h("div.card", {}, h("dt", {}, title), h("dd", {}, value, unitText ? unit(unitText) : null));
+    fill(cards, card(name === "optimised" ? "Optimised: cycles" : "Base case: cycles", number(cycles.length)), card("Moved", number(cycles.reduce((sum, c) => sum + c.volume_m3, 0)), "m³"), card("Mean load", number(100 * cycles.reduce((sum, c) => sum + c.load_factor, 0) / cycles.length), "%"), card("Waited", duration(cycles.reduce((sum, c) => sum + c.waiting_h, 0))));
+  }
+
+  async #ended(job) {
+    this.job = job;
+    if (!job.result) {
+      const element = await this.show();
+      this.handlers.panel([element]);
+      if (job.problem) this.fail(job.problem);
+      else fill(this.problem, h("p.note", {}, "The simulation was stopped."));
+      return;
+    }
+    const [result, diagrams] = await Promise.all([get(`/plans/${job.id}/result`), get(`/plans/${job.id}/diagrams.json`)]);
+    this.result = result;
+    this.diagrams = diagrams;
+    this.handlers.panel(this.#panel(job, result, diagrams));
+    const cycles = Object.fromEntries(Object.entries(result.runs).map(([name, run]) => [name, run.cycles.map((c) => ({ ...c, end: seconds(c.end) }))]));
+    const start = seconds(result.project.start);
+    const names = Object.keys(result.runs).sort((a, b) => (a === "base case") - (b === "base case"));
+    const ordered = Object.fromEntries(names.map((name) => [name, cycles[name]]));
+    let spaceRun = names.at(-1);
+    const tabs = new SheetTabs("Diagrams of the project", [
+      ["volume", "Volume", (sheet) => drawVolume(sheet, ordered, result.project.volume_m3, start)],
+      ["days", "First days", (sheet) => drawActivities(sheet, { ...diagrams, runs: Object.fromEntries(names.map((name) => [name, diagrams.runs[name]])) }, start)],
+      ["space", "Place and time", (sheet) => drawPlaceAndTime(sheet, diagrams, spaceRun, (name) => { spaceRun = name; tabs.redraw(); })],
+      ["loads", "Loads", (sheet) => drawLoads(sheet, ordered)],
+      ["cycles", "Cycles", (sheet) => showCycles(sheet, Object.fromEntries(names.map((name) => [name, result.runs[name]])), this.chosen, (name, i) => { this.chosen = { name, i }; this.draw(); tabs.redraw(); })],
+    ]);
+    this.chosen = null;
+    this.handlers.sheet(tabs.element);
+    this.draw();
+    const all = Object.values(diagrams.runs).flatMap((run) => run.tracks.slice(0, 40).flatMap((track) => track.out));
+    this.handlers.fit(all);
+    announce("The project is simulated.");
+  }
+
+  // All routes on the chart; a chosen cycle alone in full colour.
+  draw() {
+    const { routes } = this.chart;
+    const groups = Object.entries(this.diagrams.runs).map(([name, run]) => ({ paint: runColour(name).slice(2), dash: name === "base case" ? [8, 6] : undefined, lines: distinct(run.tracks.flatMap((track) => [track.out, track.back])) }));
+    routes.showBundles(groups, Boolean(this.chosen));
+    if (this.chosen) { const track = this.diagrams.runs[this.chosen.name].tracks[this.chosen.i]; routes.showChosen([...track.out, ...track.back], null, null, 0); } else routes.showChosen(null);
+    this.places();
+  }
+
+  #panel(job, result, diagrams) {
+    const best = result.runs.optimised, { totals } = best, gains = result.gains;
+    const card = (name, value, unitText, more) => h("div.card", {}, h("dt", {}, name), h("dd", {}, value, unitText ? unit(unitText) : null, more ? h("small", {}, more) : null));
+    const gain = (share, good) => (known(share) ? [h(`span.${(share > 0) === good ? "less" : "more"}`, {}, `${share > 0 ? "+" : "−"}${number(Math.abs(100 * share), 0)} %`), " against the base case"] : null);
+    const notes = Object.entries(result.runs).flatMap(([name, run]) => run.notes.map((text) => `${name}: ${text}`));
+    const [head, ...rows] = diagrams.table;
+    return [h("div.scroll", {},
+      h("h1", {}, result.project.name), h("p.lead", {}, `${number(result.project.volume_m3)} m³ from ${time(seconds(result.project.start), true)} UTC`),
+      best.feasible ? null : h("div.error", { role: "alert" }, h("b", {}, "Some legs break a limit."), "The notes state how many."),
+      h("dl.cards", {}, card("Production", number(totals.production_m3_week), "m³/week", gain(gains.production_gain, true)), card("Duration", duration(totals.duration_days * 24), null, known(gains.time_saved) ? gain(-gains.time_saved, false) : null), card("Cycles", number(totals.cycles), null, `mean load ${number(100 * totals.mean_load_factor)} %`), card("Waiting", `${number(100 * totals.waiting_share, 1)}`, "% of the time"), card("Fuel", known(totals.fuel_t) ? number(totals.fuel_t, 1) : "unknown", known(totals.fuel_t) ? "t" : null), card("CO₂ per volume", known(totals.co2_kg_m3) ? number(totals.co2_kg_m3, 2) : "unknown", known(totals.co2_kg_m3) ? "kg/m³" : null)),
+      h("div.block", {}, h("h2", {}, "All figures"), h("div.table.narrow", { tabindex: 0 }, h("table", {}, h("caption.hidden", {}, "Figures of the runs, as in Table 5.1 of van Halem (2019)"), h("thead", {}, h("tr", {}, head.map((text, i) => h(i ? "th" : "th.text", { scope: "col" }, text)))), h("tbody", {}, rows.map((row) => h("tr", {}, row.map((text, i) => (i ? h("td", {}, text) : h("th.text", { scope: "row" }, (text[0].toUpperCase() + text.slice(1)).replace(/m3/g, "m³").replace("CO2", "CO₂")))))))))),
+      notes.length ? h("div.block", {}, h("h2", {}, "Notes"), h("ul.list", {}, notes.map((text) => h("li", {}, text)))) : null,
+      h("div.block", {}, h("h2", {}, "Files"), h("div.exports", {}, h("a.quiet.small", { href: tableAddress(job.id, "cycles"), download: "" }, "Cycles as CSV"), h("a.quiet.small", { href: resultAddress(job.id), download: "project.json" }, "project.json")))),
+    h("div.foot", {}, h("button.primary", { type: "button", onclick: async () => this.handlers.panel([await this.show()]) }, "Change the project"))];
+  }
+}
+
+function distinct(lines) {
+  const found = new Map(lines.map((points) => [points.map((p) => p.map((v) => v.toFixed(3))).join(), points]));
+  return [...found.values()];
+}

@@ -1,0 +1,203 @@
+// Studies: the voyage of the plan form over departures, speeds and ships, as a heat map.
+
+import { follow, get, post, remove, resultAddress, tableAddress } from "./api.js";
+import { announce, errorBox, fill, h, unit } from "./elements.js";
+import { duration, inputTime, known, number, seconds, time } from "./format.js";
+import { HeatMap } from "./heat_map.js";
+import { typedTime } from "./plan_form.js";
+
+const SECONDS_EACH = 6; // of an ocean voyage, about
+
+export class StudyView {
+  // handlers: sheet(element, tall), panel(elements), link(id), leave(), plan(), ends(voyage), voyage(request)
+  constructor(form, handlers) {
+    this.plans = form;
+    this.handlers = handlers;
+    this.from = h("input", { type: "text", id: "s-from", autocomplete: "off", placeholder: "2026-01-01 00:00", oninput: () => this.#count() });
+    this.to = h("input", { type: "text", id: "s-to", autocomplete: "off", placeholder: "2026-12-31 00:00", oninput: () => this.#count() });
+    this.step = h("input", { type: "text", inputmode: "decimal", id: "s-step", value: "12", oninput: () => this.#count() });
+    this.speeds = h("input", { type: "text", id: "s-speeds", autocomplete: "off", placeholder: "12, 13, 14", oninput: () => this.#count() });
+    this.ships = h("div");
+    this.blind = h("input", { type: "checkbox", id: "s-blind" });
+    this.title = h("input", { type: "text", id: "s-title", maxlength: 200 });
+    this.counted = h("p.facts", { role: "status" });
+    this.problem = h("div");
+    this.voyage = h("div");
+    this.earlier = h("div");
+    this.file = h("input.hidden", { type: "file", id: "study-file", "aria-label": "Study file", accept: ".yaml,.yml,.json", tabindex: "-1", onchange: () => this.#open() });
+    const field = (name, label, input, more = null) => h("div.field", { "data-field": name }, h("label.label", { for: input.id }, label), input, more, h("div.slot"));
+    this.element = h("form", { novalidate: true, class: "form", style: "display: contents", onsubmit: (event) => { event.preventDefault(); this.submit(); } },
+      h("div.scroll", {}, h("h1", {}, "Study"), h("p.lead", {}, "One voyage for many departures, speeds and ships: when is it fast, cheap, or not possible at all?"),
+        h("div.exports.block", {}, h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Study file …"), this.file), this.earlier,
+        h("div.block", {}, h("h2", {}, "Voyage"), this.voyage),
+        h("fieldset.block", {}, h("legend", {}, "Departures ", unit("UTC")), h("div.pair", {}, field("from", "From", this.from), field("to", "To", this.to)), h("div.field", { "data-field": "step" }, h("label.label", { for: "s-step" }, "Every"), h("div.with-unit", {}, this.step, h("span.unit", {}, "h")), h("div.slot"))),
+        h("div.block", {}, field("speed_kn", ["Speeds ", unit("kn, separated by commas")], this.speeds, h("p.facts", {}, "Empty: as the voyage states."))),
+        h("fieldset.block", { "data-field": "ship" }, h("legend", {}, "Ships"), this.ships, h("div.slot")),
+        h("div.block", {}, h("label.check", {}, this.blind, h("span", {}, "Compare with routes that ignore the weather", h("small", {}, "states what routing saves"))), field("title", "Name", this.title), this.counted), this.problem),
+      h("div.foot", {}, h("button.primary", { type: "submit" }, "Plan the study")));
+    this.ships.addEventListener("change", () => this.#count());
+  }
+
+  async show() {
+    this.job = null;
+    this.close?.();
+    this.handlers.link("");
+    this.handlers.sheet(null);
+    const { plans } = this, { period } = plans, ends = plans.start.value && plans.goal.value;
+    if (!this.from.value && period) {
+      const begin = Math.ceil(period[0] / 43200) * 43200;
+      this.from.value = inputTime(begin);
+      this.to.value = inputTime(Math.min(begin + 3 * 86400, period[1]));
+    }
+    const seas = plans.chosenSeas.map((id) => plans.seas.find((sea) => sea.id === id)?.name.split(":")[0] || id);
+    fill(this.voyage, ends
+      ? h("p", {}, h("b", {}, plans.defaultTitle()), h("small.lead", {}, ` ${plans.objective.selectedOptions[0].text.toLowerCase()} · ${seas.join(", ") || "no sea chosen"}`))
+      : h("p.note", {}, "The voyage has no ends yet. "), h("div.exports", { style: "margin-top: 8px" }, h("button.quiet.small", { type: "button", onclick: () => this.handlers.plan() }, ends ? "Change the voyage" : "Fill in the voyage"), ends ? null : h("button.quiet.small", { type: "button", onclick: async () => { this.handlers.demo(); this.handlers.panel([await this.show()]); } }, "Use the storm of 1998")),
+      plans.areas.length || plans.numbers.wave_height_m.value || plans.numbers.wind_speed_kn.value ? h("p.note", {}, "Areas and weather limits of the form are not used in studies; those of the ship file are.") : null);
+    const before = [...this.ships.querySelectorAll("input:checked")].map((box) => box.value);
+    const chosen = before.length ? before : [plans.ship.value];
+    fill(this.ships, (plans.ships || []).map((ship) => h("label.check", {}, h("input", { type: "checkbox", value: ship.id, checked: chosen.includes(ship.id) }), h("span", {}, ship.name))));
+    this.#count();
+    const { jobs } = await get("/plans?kind=study&size=20");
+    fill(this.earlier, jobs.length ? h("details", {}, h("summary", {}, "Earlier studies", h("span.set", {}, String(jobs.length))), h("div.inside", {}, jobs.map((job) => h("button.job", { type: "button", onclick: () => this.openJob(job.id) }, h("b", {}, job.title), " ", job.state === "done" ? null : h(`span.state.${job.state}`, {}, job.state), h("span", {}, job.summary ? `${number(job.summary.voyages)} voyages · ${time(seconds(job.created))}` : time(seconds(job.created))))))) : null);
+    return this.element;
+  }
+
+  get #axes() {
+    const ships = [...this.ships.querySelectorAll("input:checked")].map((box) => box.value);
+    const speeds = this.speeds.value.split(/[,;\s]+/).filter(Boolean).map(Number);
+    return { ships, speeds, from: typedTime(this.from), to: typedTime(this.to), step: Number(this.step.value.replace(",", ".")) };
+  }
+
+  #count() {
+    const { ships, speeds, from, to, step } = this.#axes;
+    const departures = from !== null && to !== null && step > 0 && to >= from ? Math.floor((to - from) / (step * 3600) + 1e-9) + 1 : 0;
+    this.size = departures * Math.max(1, speeds.length) * Math.max(1, ships.length);
+    this.counted.textContent = this.size ? `${number(this.size)} voyage${this.size === 1 ? "" : "s"}; an ocean voyage takes a few seconds: about ${duration((this.size * SECONDS_EACH) / 3600)}.` : "";
+  }
+
+  fail(problem) {
+    const slot = this.element.querySelector(`[data-field="${problem.field}"] .slot`) || this.problem;
+    fill(slot, errorBox(problem));
+    slot.scrollIntoView({ block: "center" });
+  }
+
+  async submit() {
+    this.element.querySelectorAll(".slot").forEach((slot) => fill(slot));
+    fill(this.problem);
+    const { ships, speeds, from, to, step } = this.#axes;
+    if (from === null) return this.fail({ field: "from", asked: "The first departure is not a time.", remedy: "Give year, month, day, hour and minute, such as 2026-01-31 12:00." });
+    if (to === null || to < from) return this.fail({ field: "to", asked: "The last departure is not a time after the first.", remedy: "Correct it." });
+    if (!(step > 0)) return this.fail({ field: "step", asked: "The step is not a number of hours.", remedy: "Give 12, for example." });
+    if (speeds.some((v) => !(v > 0))) return this.fail({ field: "speed_kn", asked: "A speed is not a number.", remedy: "Separate them by commas: 12, 13, 14." });
+    if (!ships.length) return this.fail({ field: "ship", asked: "No ship is chosen.", remedy: "Choose one or more." });
+    const base = this.plans.request();
+    if (!base) { this.handlers.plan(); return null; }
+    const { depart, depart_window: window, arrive_by: latest, ...voyage } = base.voyage;
+    const study = { name: this.title.value.trim() || base.title, ship: ships[0], sea: base.seas.length === 1 ? base.seas[0] : base.seas, voyage, axes: { depart: { from: `${inputTime(from).replace(" ", "T")}Z`, to: `${inputTime(to).replace(" ", "T")}Z`, step_h: step } } };
+    if (base.fill) study.fill = base.fill;
+    if (ships.length > 1) study.axes.ship = ships;
+    if (speeds.length > 1) study.axes.speed_kn = speeds;
+    else if (speeds.length) [study.voyage.speed_kn] = speeds;
+    if (this.blind.checked) study.compare = "weather_blind";
+    return this.#start({ title: study.name, study });
+  }
+
+  async #open() {
+    const [file] = this.file.files;
+    this.file.value = "";
+    if (file) await this.#start({ study: await file.text() });
+  }
+
+  async #start(request) {
+    try {
+      const job = await post("/studies", request, { "Idempotency-Key": crypto.randomUUID?.() || String(Math.random()) });
+      await this.openJob(job.id);
+    } catch (problem) {
+      this.fail(problem);
+    }
+  }
+
+  async openJob(id) {
+    const job = await get(`/plans/${id}`);
+    this.job = job;
+    this.handlers.link(id);
+    const drawn = Object.keys(job.request.study.sample || {}).filter((name) => !["count", "seed"].includes(name));
+    this.map = new HeatMap([...Object.keys(job.request.study.axes || {}), ...drawn], (name, cell) => this.#cell(name, cell));
+    this.handlers.sheet(this.map.element, true);
+    this.cellBox = h("div.block", {}, h("p.facts", {}, "Choose a cell to see its voyages."));
+    this.handlers.ends(job.request.study.voyage);
+    if (["done", "failed", "cancelled"].includes(job.state)) await this.#ended(job);
+    else this.#watch(job);
+  }
+
+  #watch(job) {
+    this.close?.();
+    this.map.draw();
+    const state = h("p.lead", { role: "status" }, "Waiting for its turn."), meter = h("progress.meter", { max: 1, value: 0, "aria-label": "Voyages planned" }), facts = h("p.facts"), problem = h("div");
+    this.handlers.panel([h("div.scroll", {}, h("h1", {}, job.title), state, meter, facts, this.cellBox, problem), h("div.foot", {}, h("button.quiet", { type: "button", onclick: async () => { state.textContent = "Stopping …"; await remove(`/plans/${job.id}`).catch((error) => fill(problem, errorBox(error))); } }, "Stop, keep these"), h("button.quiet", { type: "button", onclick: () => this.handlers.leave() }, "Leave it running"))]);
+    this.close = follow(job.id, {
+      progress: (data) => {
+        state.textContent = `${number(data.done)} of ${number(data.total)} voyages`;
+        meter.value = data.done / data.total;
+        const refused = this.map.rows.concat(data.rows).filter((row) => row.refusal).length;
+        facts.textContent = [known(data.left_s) && data.done < data.total ? `about ${duration(data.left_s / 3600)} left` : "", refused ? `${refused} without a route` : ""].filter(Boolean).join(" · ");
+        this.map.add(data.rows);
+      },
+      state: async (data) => {
+        if (data.state === "queued" && data.why) { state.textContent = `Started again: ${data.why}. Voyages that were planned are kept.`; return; }
+        if (!["done", "failed", "cancelled"].includes(data.state)) return;
+        const done = await get(`/plans/${job.id}`);
+        if (this.job?.id === job.id) await this.#ended(done);
+      },
+      waiting: () => { state.textContent = "The service does not answer; the study goes on when it runs again."; },
+    });
+  }
+
+  async #ended(job) {
+    this.job = job;
+    if (!job.result) {
+      this.handlers.panel([await this.show()]);
+      if (job.problem) this.fail(job.problem);
+      else fill(this.problem, h("p.note", {}, "The study was stopped before a voyage was planned."));
+      return;
+    }
+    const result = await get(`/plans/${job.id}/result`);
+    this.map.axes = result.axes;
+    this.map.rows = [];
+    this.map.add(result.rows.map((row) => Object.fromEntries(result.columns.map((name, i) => [name, row[i]]))));
+    const { summary } = job, best = result.best[0];
+    const usable = this.map.rows.filter((row) => !row.refusal && row.feasible !== false && known(row.time_h));
+    const times = usable.map((row) => row.time_h).sort((a, b) => a - b), at = (q) => times[Math.round(q * (times.length - 1))];
+    const fastest = usable.reduce((a, b) => (a && a.time_h <= b.time_h ? a : b), null);
+    const card = (name, value, more) => h("div.card", {}, h("dt", {}, name), h("dd", {}, value, more ? h("small", {}, more) : null));
+    const months = ["January", "February", "March", "April", "May", "June", "July", "August", "September", "October", "November", "December"];
+    this.handlers.panel([h("div.scroll", {}, h("h1", {}, job.title), h("p.lead", {}, this.#facts(summary)),
+      summary.cancelled ? h("p.note", {}, `Stopped: ${number(summary.voyages)} of ${number(summary.total)} voyages were planned.`) : null,
+      h("dl.cards", {}, card("Median time", times.length ? duration(at(0.5)) : "unknown", times.length > 2 ? `80 % within ${duration(at(0.1))} to ${duration(at(0.9))}` : null), card("Without a route", number(this.map.rows.length - usable.length), this.map.rows.length ? `${number((100 * (this.map.rows.length - usable.length)) / this.map.rows.length)} % of the voyages` : null), fastest?.depart ? card("Fastest", duration(fastest.time_h), `leaves ${time(seconds(fastest.depart))}`) : null, best?.month && new Set(this.map.rows.map((row) => row.at?.getUTCMonth())).size > 1 ? card("Best month", months[best.month - 1], `median ${duration(best.time_h_p50)}`) : null),
+      this.cellBox,
+      result.refusals.length ? h("div.block", {}, h("h2", {}, "Why there is no route"), h("ul.list", {}, result.refusals.slice(0, 6).map((row) => h("li", {}, `${number(row.voyages)} voyages: ${row.reason}`)))) : null,
+      h("div.block", {}, h("h2", {}, "Files"), h("div.exports", {}, h("a.quiet.small", { href: tableAddress(job.id, "voyages"), download: "" }, "Voyages as CSV"), h("a.quiet.small", { href: tableAddress(job.id, "summary"), download: "" }, "Summary as CSV"), h("a.quiet.small", { href: resultAddress(job.id), download: "study.json" }, "study.json")))),
+    h("div.foot", {}, h("button.primary", { type: "button", onclick: async () => this.handlers.panel([await this.show()]) }, "Another study"))]);
+    announce("The study is planned.");
+  }
+
+  #facts(summary) {
+    const departs = this.map.rows.map((row) => row.at?.getTime()).filter(known);
+    const ships = [...new Set(this.map.rows.map((row) => row.ship).filter(Boolean))];
+    return [`${number(summary.voyages)} voyages`, ships.length ? ships.join(", ") : [this.job.request.study.ship].flat()[0]?.name || this.job.request.study.ship, departs.length ? `${time(Math.min(...departs) / 1000)} to ${time(Math.max(...departs) / 1000, true)}` : null].filter((part) => typeof part === "string").join(" · ");
+  }
+
+  #cell(name, cell) {
+    const rows = cell.rows.slice(0, 12);
+    fill(this.cellBox, h("h2", {}, name), h("p.facts", {}, `${number(cell.rows.length)} voyage${cell.rows.length === 1 ? "" : "s"}${cell.lost ? `, ${cell.lost} without a route` : ""}`), rows.map((row) => h("button.job", { type: "button", title: "Fill in this voyage to plan it", onclick: () => this.#plan(row) }, h("b", {}, row.depart ? time(seconds(row.depart)) : "Voyage"), h("span", {}, row.refusal ? row.reason : `${duration(row.time_h)} · ${known(row.fuel_t) ? `${number(row.fuel_t, 1)} t` : "fuel unknown"}${known(row.max_significant_wave_height_m) ? ` · waves ${number(row.max_significant_wave_height_m, 1)} m` : ""}`))), cell.rows.length > rows.length ? h("p.facts", {}, `and ${number(cell.rows.length - rows.length)} more, in the CSV file`) : null);
+  }
+
+  // Fill the plan form with one voyage of the study.
+  #plan(row) {
+    const { study, title } = this.job.request;
+    const voyage = { ...study.voyage };
+    for (const name of this.map.axes) if (name in row && !["ship", "sea", "load_factor", "member"].includes(name) && typeof row[name] !== "object") voyage[name] = row[name];
+    this.handlers.voyage({ title: title || "", ship: row.ship || study.ship, seas: [study.sea].flat(), fill: study.fill, voyage });
+  }
+}
