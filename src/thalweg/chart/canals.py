@@ -2,9 +2,10 @@
 
 A canal is one leg between two positions in open water off its entrances, with its own length, time
 and fee. The figures in ``data/canals.json`` are published ones, for planning, collected on
-2026-11-21; each canal names its sources. A fee is the mean that ships paid and not a tariff: dues
-depend on tonnage, cargo and towage. For a ship whose dues are known, give the chart other canals
-with `dataclasses.replace`.
+2026-11-21; each canal names its sources. The dues of Suez, Panama and Kiel depend on the tonnage,
+beam and type of the ship (`thalweg.chart.canal_tariff`); elsewhere, and for ships of unknown size,
+the fee is the mean that ships paid. Rebates, towage and waiting are not counted. For a ship whose
+dues are known, give the chart other canals with `dataclasses.replace`.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thalweg.chart.canal_tariff import CanalTariff
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import Position, distance
 from thalweg.core.units import HOUR
@@ -42,6 +44,8 @@ class Canal:
     fee : Mean dues of one transit [USD].
     max_draught, max_beam : Largest draught and beam allowed [m]; inf where there is no limit.
     source : Sources of the figures, with dates.
+    tariff : Dues by the size of the ship; it counts as long as ``fee`` is its mean.
+    fee_basis : How the fee of a ship was found.
 
     Raises
     ------
@@ -57,6 +61,8 @@ class Canal:
     max_draught: float = np.inf
     max_beam: float = np.inf
     source: str = ""
+    tariff: CanalTariff | None = None
+    fee_basis: str = ""
 
     if not TYPE_CHECKING:
         __getattr__ = renamed_attributes(
@@ -119,6 +125,9 @@ def _read_canals() -> tuple[Canal, ...]:
             max_draught=row["max_draught_m"],
             max_beam=np.inf if row["max_beam_m"] is None else row["max_beam_m"],
             source=row["source"],
+            tariff=(
+                CanalTariff.from_row(row["tariff"], row["fee_usd"]) if "tariff" in row else None
+            ),
         )
         for row in json.loads(text)
     )

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.approaches import MAX_APPROACH_SPEED
+from thalweg.chart.canal_tariff import canals_with_dues
 from thalweg.chart.canals import Canal
 from thalweg.core.errors import ThalwegError
 from thalweg.core.geodesy import Position, direct, inverse
@@ -129,13 +130,15 @@ def canal_legs(track: Track, chart: Chart | None, ship: Ship | None = None) -> C
     Parameters
     ----------
     ship : Ship, optional
-        With a ship, legs along approaches of the chart are included: they are sailed at
-        `thalweg.chart.approaches.MAX_APPROACH_SPEED`, or the ordered speed if that is lower.
+        With a ship, canals have its dues, and legs along approaches of the chart are included:
+        they are sailed at `thalweg.chart.approaches.MAX_APPROACH_SPEED`, or the ordered speed if
+        that is lower.
     """
     none = np.full(len(track) - 1, -1, np.int64)
     legs = CanalLegs(none, (), none < -1)
     if chart is not None and chart.canals:
-        legs = _through_canals(track, chart)
+        canals = chart.canals if ship is None else canals_with_dues(chart.canals, ship.file.hull)
+        legs = _through_canals(track, chart, canals)
     if ship is not None and getattr(chart, "approaches", None) is not None:
         legs = _with_approach_legs(legs, track, chart, ship)  # type: ignore[arg-type]
     return legs
@@ -177,15 +180,15 @@ def approach_leg(start: Position, goal: Position, speed: float) -> ApproachLeg:
     return ApproachLeg("approach", "approach", (start, goal), max(length / speed, 1e-3), 0.0)
 
 
-def _through_canals(track: Track, chart: Chart) -> CanalLegs:
+def _through_canals(track: Track, chart: Chart, canals: tuple[Canal, ...]) -> CanalLegs:
     a, b, c, d = track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:]
     number = np.asarray(chart.canal_of_legs(a, b, c, d))
     backward = np.zeros(len(number), np.bool_)
     for leg in np.flatnonzero(number >= 0):
-        first, last = chart.canals[number[leg]].ends
+        first, last = canals[number[leg]].ends
         here = (track.lat[leg], track.lon[leg])
         backward[leg] = inverse(*here, *last)[0] < inverse(*here, *first)[0]
-    return CanalLegs(number, chart.canals, backward)
+    return CanalLegs(number, canals, backward)
 
 
 def sea_stretches(track: Track, chart: Chart | None) -> list[tuple[int, int]]:

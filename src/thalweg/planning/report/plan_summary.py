@@ -245,12 +245,15 @@ def _fuel(route: Route) -> str:
 
 
 def _cost(plan: PlanData) -> str:
-    route, dues = plan.best, sum(canal.fee for canal in canals_passed(plan))
+    route, canals = plan.best, canals_passed(plan)
+    dues = sum(canal.fee for canal in canals)
+    basis = " and ".join(dict.fromkeys(canal.fee_basis for canal in canals if canal.fee_basis))
+    basis = f" (by {basis})" if basis else ""
     if route.cost is None:
-        paid = f"; canal dues {dues:,.0f} USD" if dues else ""
+        paid = f"; canal dues {dues:,.0f} USD{basis}" if dues else ""
         return f"not known: no price of fuel or time{paid}"
     counted = route.currency == "USD"
-    paid = f", {'of it ' if counted else 'without '}canal dues {dues:,.0f} USD" if dues else ""
+    paid = f", {'of it ' if counted else 'without '}canal dues {dues:,.0f} USD{basis}" if dues else ""
     return f"{route.cost:,.0f} {route.currency}{paid}"
 
 

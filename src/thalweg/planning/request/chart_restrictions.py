@@ -5,8 +5,10 @@ from __future__ import annotations
 import itertools
 import warnings
 from collections.abc import Sequence
+from dataclasses import replace
 
 from thalweg.chart import Chart
+from thalweg.chart.canal_tariff import canals_with_dues
 from thalweg.chart.canals import Canal
 from thalweg.core.errors import ThalwegWarning
 from thalweg.core.geodesy import distance
@@ -27,6 +29,7 @@ def exclude_closed_canals(
 ) -> tuple[Chart, list[str]]:
     """Return the chart without canals that are forbidden or too small, and notes about them.
 
+    The canals have the dues of the ship.
     Canal dues are in USD: where the objective is a cost in another currency, canals with dues are
     excluded as well. Only canals near the geodesic get a note.
 
@@ -37,6 +40,7 @@ def exclude_closed_canals(
     """
     if voyage.forbid:
         chart = chart.without_canals(*voyage.forbid)
+    chart = replace(chart, canals=canals_with_dues(chart.canals, ship.file.hull))
     beam = ship.breadth
     currency = _foreign_currency(voyage, ship)
     notes, closed = [], []

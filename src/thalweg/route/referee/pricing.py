@@ -253,11 +253,18 @@ def _canal_dues(
 ) -> tuple[FloatArray, tuple[str, ...]]:
     """Return the dues of every leg, and notes; NaN in another currency than USD."""
     fee = sailed.pieces.canals.fee
+    canals = (sailed.pieces.canals.of(leg) for leg in sailed.pieces.canals.legs)
+    paid = tuple(
+        f"Dues of the {canal.title}: {canal.fee:,.0f} USD, by {canal.fee_basis}. "
+        f"{canal.source if canal.tariff is None else canal.tariff.source}."
+        for canal in dict.fromkeys(canals)
+        if canal.fee_basis
+    )
     if not np.isfinite(cost).all():
-        return fee, ()
+        return fee, paid
     if not terms.currency and (cost.any() or terms.time_price):
-        return fee, ("The prices name no currency: US dollars are assumed.",)
+        return fee, (*paid, "The prices name no currency: US dollars are assumed.")
     if terms.currency in ("", "USD") or not fee.any():
-        return fee, ()
+        return fee, paid
     note = f"Canal dues are in USD, prices in {terms.currency}: the cost is not known."
-    return np.where(fee > 0.0, math.nan, 0.0), (note,)
+    return np.where(fee > 0.0, math.nan, 0.0), (*paid, note)

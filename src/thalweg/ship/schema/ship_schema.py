@@ -84,6 +84,8 @@ class HullSection(Section):
     displacement_t: Volume | None = None
     deadweight_t: Volume | None = None
     gross_tonnage: Volume | None = None
+    suez_net_tonnage: Volume | None = None
+    panama_net_tonnage: Volume | None = None
     block_coefficient: Coefficient | None = None
     midship_coefficient: Coefficient | None = None
     prismatic_coefficient: Coefficient | None = None
