@@ -179,3 +179,14 @@ def test_comfort_needs_places(ship):
     voyage = Voyage(start=(65.0, 0.0), goal=(65.0, 1.0), depart=DEPART, objective="comfort")
     with pytest.raises(InputError, match="no named places"):
         plan(voyage, ship=plain, sea=_sea(), chart=Chart.open_water())
+
+
+@pytest.mark.slow
+def test_outputs_state_the_sickness_at_every_place(plans):
+    plan_of_comfort = plans["comfort"]
+    (row, *_) = plan_of_comfort.to_dict()["routes"]
+    places = row["indicators"]["places"]
+    assert set(places) == {"mess", "bridge"}
+    sick = places["bridge"]["sick_percent"]
+    assert sick == plan_of_comfort.best.indicators["places"]["bridge"]["sick_percent"] > 0.0
+    assert f"bridge {sick:.0f} %" in str(plan_of_comfort)

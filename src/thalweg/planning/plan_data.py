@@ -217,6 +217,7 @@ def route_dict(route: Route, objective: str) -> dict[str, Any]:
         "referee_tolerance_h": _finite_or_none(route.tolerance_s / HOUR),
         "feasible": route.feasible,
         "violations": [violation.as_dict() for violation in route.violations],
+        "indicators": route.indicators,
         "waypoints": route.waypoints(),
     }
 

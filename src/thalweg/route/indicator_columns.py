@@ -3,7 +3,7 @@
 Columns of legs, per place NAME of the ship file, in SI and NaN where unknown:
 ``squared_dose:NAME`` [m2/s3] (of sailing the leg and of waiting before it), the greatest root mean
 squares ``weighted_acceleration:NAME``, ``acceleration:NAME`` [m/s2], ``velocity:NAME`` [m/s] and
-``displacement:NAME`` [m]; ``heave`` [m] and ``pitch`` [rad] (greatest root mean squares);
+``displacement:NAME`` [m]; ``heave`` [m], ``pitch`` and ``roll`` [rad] (greatest root mean squares);
 ``workable_time:TASK`` [s]; ``inshore_length`` [m] and ``inshore_time`` [s] (land nearer than
 `INSHORE_DISTANCE`); ``land_distance`` [m] (least, at most `LAND_DISTANCE_CAP`); ``shallow_time``
 [s] (water less than twice as deep as the draught).
@@ -251,10 +251,11 @@ def indicator_table(route: RefereedRoute) -> dict[str, Any]:
     }
     ship = {}
     if "heave" in legs:
-        heave, pitch = _largest(legs["heave"]), math.degrees(_largest(legs["pitch"]))
-        ship = {
-            "max_heave_rms_m": heave if math.isfinite(heave) else None,
-            "max_pitch_rms_deg": pitch if math.isfinite(pitch) else None,
+        largest = {
+            "max_heave_rms_m": _largest(legs["heave"]),
+            "max_pitch_rms_deg": math.degrees(_largest(legs["pitch"])),
+            "max_roll_rms_deg": math.degrees(_largest(legs["roll"])),
         }
+        ship = {name: value if math.isfinite(value) else None for name, value in largest.items()}
     names = ("inshore_nm", "inshore_percent", "inshore_h", "land_distance_nm", "shallow_h")
     return {**{name: plain(name) for name in names}, **ship, "places": places, "tasks": tasks}

@@ -28,13 +28,14 @@ def print_motions(sheet: Mapping[str, Any]) -> None:
 
     console = Console()
     console.print(
-        f"Motions in waves of {sheet['wave_height_m']:g} m and {sheet['wave_period_s']:.1f} s at "
-        f"{sheet['speed_kn']:.1f} kn: root mean squares; sick: share of people after "
-        f"{sheet['exposure_h']:g} h (ISO 2631-1)",
+        f"Motions in waves of {sheet['wave_height_m']:g} m and {sheet['wave_period_s']:.1f} s, with "
+        f"the power for {sheet['ordered_speed_kn']:.1f} kn in calm water: root mean squares; "
+        f"waves by their angle off the bow; sick: share of people after {sheet['exposure_h']:g} h "
+        "(ISO 2631-1)",
         highlight=False,
     )
     table = Table(box=box.SIMPLE, pad_edge=False, padding=(0, 1, 0, 0))
-    for head in ("waves\ndeg off bow", "heave\nm", "pitch\ndeg"):
+    for head in ("waves\ndeg", "speed\nkn", "heave\nm", "pitch\ndeg", "roll\ndeg"):
         table.add_column(head, justify="right", no_wrap=True)
     for name in sheet["places"]:
         table.add_column(f"{escape(name)}\nm/s2", justify="right", no_wrap=True)
@@ -44,8 +45,10 @@ def print_motions(sheet: Mapping[str, Any]) -> None:
             continue
         cells = [
             f"{heading}",
+            _text(sheet["attained_speed_kn"][k], 1),
             _text(sheet["heave_rms_m"][k], 2),
             _text(sheet["pitch_rms_deg"][k], 2),
+            _text(sheet["roll_rms_deg"][k], 1),
         ]
         for at in sheet["places"].values():
             cells += [_text(at["acceleration_rms_m_s2"][k], 2), _text(at["sick_percent"][k], 0)]
@@ -82,7 +85,7 @@ def draw_motions(sheet: Mapping[str, Any], path: Path) -> Path:
     axes.set_title(
         f"Per cent of people sick after {sheet['exposure_h']:g} h, by where the waves come from\n"
         f"(0: ahead); {sheet['wave_height_m']:g} m, {sheet['wave_period_s']:.1f} s, "
-        f"{sheet['speed_kn']:.1f} kn"
+        f"power for {sheet['ordered_speed_kn']:.1f} kn in calm water"
     )
     axes.legend(loc="lower left", bbox_to_anchor=(-0.1, -0.1))
     save_figure(figure, path)

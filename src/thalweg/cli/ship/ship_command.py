@@ -206,11 +206,7 @@ def _write(ship: Any, sheet: dict[str, Any], weather: dict[str, float], out: str
 def _motions(ship: Any, weather: dict[str, float], speeds: list[float]) -> dict[str, Any] | None:
     """Return motions by place and heading, in waves and where the ship file has places."""
     from thalweg.ship.comfort.motion_sheet import motion_sheet
-    from thalweg.ship.performance_sheet_weather import assumed_peak_period
 
-    height = weather.get("wave_height", 0.0)
-    if not height > 0.0:
+    if not weather.get("wave_height", 0.0) > 0.0:
         return None
-    period = weather.get("wave_period") or float(assumed_peak_period(height))
-    speed = max(speeds) if speeds else None
-    return motion_sheet(ship, wave_height=height, wave_period=period, speed_kn=speed)
+    return motion_sheet(ship, weather, speed_kn=max(speeds) if speeds else None)

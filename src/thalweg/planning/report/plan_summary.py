@@ -64,7 +64,7 @@ def summary_items(plan: PlanData) -> list[tuple[str, str]]:
         items.append(("Energy", f"{best.energy_mwh:,.2f} MWh"))
     if plan.front is not None and len(plan.routes) > 1:
         items.append(("Choice", _choice(plan)))
-    items += [("Weather", worst_weather(plan)), ("Depth", least_clearance_text(best))]
+    items += [("Weather", worst_weather(plan) + sickness_text(best)), ("Depth", least_clearance_text(best))]
     items += [("Limits", limits_text(plan)), ("Quality", quality_text(plan))]
     return items
 
@@ -119,6 +119,19 @@ def worst_weather(plan: PlanData) -> str:
             at = int(np.nanargmax(values))
             return f"{word} {values[at]:.{0 if word == 'wind' else 1}f} kn {_place(route, at)}"
     return "calm or not known: no wind, waves or currents in the data"
+
+
+def sickness_text(route: Route) -> str:
+    """Return the share of people sick at each place of the ship; empty where it has none."""
+    found = route.indicators
+    places = [
+        f"{name} {row['sick_percent']:.0f} %"
+        for name, row in found["places"].items()
+        if row["sick_percent"] is not None
+    ]
+    roll = found.get("max_roll_rms_deg")
+    rolling = "" if roll is None else f"; roll to {roll:.1f} deg (root mean square)"
+    return f"; sick: {', '.join(places)}{rolling}" if places else ""
 
 
 def _weather_on_route(plan: PlanData) -> dict[str, np.ndarray]:

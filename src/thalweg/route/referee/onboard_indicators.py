@@ -13,7 +13,12 @@ from thalweg.route.indicator_columns import INSHORE_DISTANCE, LAND_DISTANCE_CAP
 from thalweg.route.referee.leg_segments import TrackPoints
 from thalweg.route.referee.sailing import SailedTrack
 from thalweg.route.referee.sailing_physics import SailingEnvironment, SailingState
-from thalweg.ship.comfort.onboard_motions import OnboardMotions, ShipMotions, onboard_motions
+from thalweg.ship.comfort.onboard_motions import (
+    ROLL_NOTE,
+    OnboardMotions,
+    ShipMotions,
+    onboard_motions,
+)
 from thalweg.ship.condition_variables import WAVE_EAST, WAVE_HEIGHT, WAVE_NORTH, WAVE_PERIOD
 from thalweg.ship.conditions import Conditions
 
@@ -64,6 +69,8 @@ def indicator_columns(
         found, known_waves = _motions_at(world, own, points, time, motion)
         if not known_waves:
             notes.append(NO_WAVES_NOTE)
+        if own.roll_period is None:
+            notes.append(ROLL_NOTE)
         sheltered = np.isin(leg, np.flatnonzero(_sheltered_legs(sailed)))
         if sheltered.any():
             notes.append(SHELTERED_NOTE)
@@ -177,6 +184,7 @@ def _motion_columns(
     columns = {
         "heave": _greatest(leg, calm(found.heave), count),
         "pitch": _greatest(leg, calm(found.pitch), count),
+        "roll": _greatest(leg, calm(found.roll), count),
     }
     for name, at in found.places.items():
         squared = np.where(weights > 0.0, calm(at.weighted) ** 2, 0.0)

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT
-from thalweg.ship.comfort.onboard_motions import onboard_motions
+from thalweg.ship.comfort.onboard_motions import ROLL_NOTE, onboard_motions
 from thalweg.ship.methods.seakeeping.motion_sickness import (
     motion_sickness_dose,
     motion_sickness_percent_iso,
 )
 from thalweg.ship.methods.seakeeping.ship_motions import motions_validity
+from thalweg.ship.performance_sheet_weather import assumed_peak_period, sheet_conditions
 
 if TYPE_CHECKING:
     from thalweg.ship.ship import Ship
@@ -23,21 +26,25 @@ HEADINGS_DEG: Final = tuple(range(0, 181, 15))  #: off the waves: 0 head, 180 fo
 
 
 def motion_sheet(
-    ship: Ship, *, wave_height: float, wave_period: float, speed_kn: float | None = None
+    ship: Ship, weather: Mapping[str, float], *, speed_kn: float | None = None
 ) -> dict[str, Any] | None:
     """Return motions and sickness at every place and heading, as plain data.
 
     Parameters
     ----------
-    wave_height, wave_period : Significant height [m] and peak period [s] of long-crested waves.
+    ship : Ship
+    weather : mapping
+        As of `thalweg.ship.performance_sheet`, with ``wave_height`` [m]; a wind without an angle
+        comes from the direction of the waves.
     speed_kn : float, optional
-        Speed through water [kn]; by default the highest of the ship in calm water. It is held on
-        every heading.
+        Speed through water in calm water [kn]; by default the highest of the ship. The motions are
+        those at the speed that she attains in these waves with the same power, where it is known.
 
     Returns
     -------
     dict or None
-        ``headings_deg`` between bow and waves; ``heave_rms_m``, ``pitch_rms_deg`` by heading;
+        ``headings_deg`` between bow and waves; ``attained_speed_kn``, ``heave_rms_m``,
+        ``pitch_rms_deg``, ``roll_rms_deg`` by heading;
         ``places``: for each name root mean squares by heading and the percentage of people sick
         after `EXPOSURE_H`; ``tasks``: by heading whether each can be done. None where the ship
         file has no places.
@@ -50,9 +57,12 @@ def motion_sheet(
     own = onboard_motions(ship)
     if own is None:
         return None
-    speed = float(np.max(ship.speeds)) if speed_kn is None else speed_kn * KNOT
+    ordered = float(np.max(ship.speeds)) if speed_kn is None else speed_kn * KNOT
     angles = np.radians(HEADINGS_DEG)
-    found = own.at(speed, wave_angle=angles, wave_height=wave_height, wave_period=wave_period)
+    height = weather["wave_height"]
+    period = weather.get("wave_period") or assumed_peak_period(height)
+    speed = _attained_speed(ship, {**weather, "wave_period": period}, ordered)
+    found = own.at(speed, wave_angle=angles, wave_height=height, wave_period=period)
     places = {}
     for name, at in found.places.items():
         dose = motion_sickness_dose(at.weighted, duration=EXPOSURE_H * HOUR)
@@ -69,17 +79,33 @@ def motion_sheet(
         good, known = own.workable(task, found)
         tasks[task] = [bool(g) if k else None for g, k in zip(good, known)]
     return {
-        "speed_kn": speed / KNOT,
-        "wave_height_m": wave_height,
-        "wave_period_s": wave_period,
+        "ordered_speed_kn": ordered / KNOT,
+        "wave_height_m": height,
+        "wave_period_s": period,
         "exposure_h": EXPOSURE_H,
         "headings_deg": list(HEADINGS_DEG),
+        "attained_speed_kn": _plain(speed / KNOT),
         "heave_rms_m": _plain(found.heave),
         "pitch_rms_deg": _plain(np.degrees(found.pitch)),
+        "roll_rms_deg": _plain(np.degrees(found.roll)),
         "places": places,
         "tasks": tasks,
-        "warnings": [str(note) for note in motions_validity(speed, own.hull)],
+        "warnings": [
+            *(str(note) for note in motions_validity(speed, own.hull)),
+            *([ROLL_NOTE] if own.roll_period is None else []),
+        ],
     }
+
+
+def _attained_speed(ship: Ship, weather: Mapping[str, float], ordered: float) -> FloatArray:
+    """Return the speed [m/s] on each heading; NaN where the ship does not get ahead."""
+    sailing = ship.with_speeds([ordered])
+    found = []
+    for heading in HEADINGS_DEG:
+        angle = math.radians(heading)
+        here = {"wind_angle": angle, **weather, "wave_angle": angle}
+        found.append(float(sailing.speed_through_water(sheet_conditions(ship, here), 0)))
+    return np.where(np.array(found) > 0.0, found, np.nan)
 
 
 def _plain(values: Any) -> list[float | None]:

@@ -13,14 +13,23 @@ from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.ship.hull.hull import complete_hull
 from thalweg.ship.methods.seakeeping.motion_sickness import weighted_acceleration
+from thalweg.ship.methods.seakeeping.roll_motion import ROLL_DAMPING, roll_rms
 from thalweg.ship.methods.seakeeping.ship_motions import MotionHull, ship_response
-from thalweg.ship.seaway_limits import LONGEST_PERIOD, SHORTEST_PERIOD, make_motion_hull
+from thalweg.ship.seaway_limits import (
+    LONGEST_PERIOD,
+    SHORTEST_PERIOD,
+    make_motion_hull,
+    natural_roll_period,
+)
 
 if TYPE_CHECKING:
     from thalweg.ship.schema.ship_schema import TaskSection
     from thalweg.ship.ship import Ship
 
 _BLOCK_SIZE: Final = 20_000  # conditions that are worked at once
+ROLL_NOTE: Final = (
+    "Roll is not known: give hull.roll_period_s or hull.metacentric_height_m in the ship file."
+)
 
 
 @dataclass(frozen=True)
@@ -49,12 +58,17 @@ class ShipMotions:
     ----------
     heave : float64 array
         At midship [m].
-    pitch : float64 array [rad]
-    places : By the names of the ship file.
+    pitch : float64 array
+        [rad].
+    roll : float64 array
+        [rad]; NaN everywhere where the ship has no natural roll period.
+    places : dict of str to PlaceMotions
+        By the names of the ship file; on the centre line, so that roll does not move them.
     """
 
     heave: FloatArray
     pitch: FloatArray
+    roll: FloatArray
     places: dict[str, PlaceMotions]
 
 
@@ -69,11 +83,17 @@ class OnboardMotions:
         objective comfort counts.
     tasks : mapping of str to TaskSection
         Limits of motions by task.
+    roll_period : float or None
+        Natural period [s]; None where the ship file gives neither it nor GM.
+    roll_damping : float
+        Share of the critical damping.
     """
 
     hull: MotionHull
     places: Mapping[str, float]
     tasks: Mapping[str, TaskSection]
+    roll_period: float | None = None
+    roll_damping: float = ROLL_DAMPING
 
     @property
     def first_place(self) -> str:
@@ -107,7 +127,8 @@ class OnboardMotions:
         References
         ----------
         J. J. Jensen, A. E. Mansour, A. S. Olsen, Ocean Engineering 31 (2004), with strip decay
-        (`thalweg.ship.methods.seakeeping.ship_motions`); ISO 2631-1:1997 for the weighting.
+        (`thalweg.ship.methods.seakeeping.ship_motions`); ISO 2631-1:1997 for the weighting; roll
+        by `thalweg.ship.methods.seakeeping.roll_motion`.
         """
         given = np.broadcast_arrays(
             *(np.asarray(x, float) for x in (speed, wave_angle, wave_height, wave_period))
@@ -117,7 +138,7 @@ class OnboardMotions:
         names, count = list(self.places), flat[0].size
         forward = np.array([[self.places[name]] for name in names])
         rows = np.empty((4, len(names), count))
-        common = np.empty((2, count))
+        common = np.empty((3, count))
         for first in range(0, count, _BLOCK_SIZE):
             part = slice(first, first + _BLOCK_SIZE)
             v, angle, height, period = (x[part] for x in flat)
@@ -137,11 +158,27 @@ class OnboardMotions:
             )
             common[0, part] = np.sqrt(state.heave.m0[0])
             common[1, part] = np.sqrt(state.pitch.m0[0])
+            common[2, part] = self._roll(v, angle, height, period)
         places = {
             name: PlaceMotions(*(row[k].reshape(shape) for row in rows))
             for k, name in enumerate(names)
         }
-        return ShipMotions(common[0].reshape(shape), common[1].reshape(shape), places)
+        return ShipMotions(*(row.reshape(shape) for row in common), places)
+
+    def _roll(
+        self, speed: FloatArray, angle: FloatArray, height: FloatArray, period: FloatArray
+    ) -> FloatArray:
+        if self.roll_period is None:
+            return np.full(len(speed), np.nan)
+        return roll_rms(
+            height=height,
+            period=np.clip(period, SHORTEST_PERIOD, LONGEST_PERIOD),
+            wave_angle=angle,
+            speed=speed,
+            hull=self.hull,
+            natural_period=self.roll_period,
+            damping=self.roll_damping,
+        )
 
     def workable(self, task: str, motions: ShipMotions) -> tuple[BoolArray, BoolArray]:
         """Return where a task can be done, and where that is known.
@@ -169,6 +206,7 @@ class OnboardMotions:
             (at.acceleration, limits.max_vertical_acceleration_m_s2, 1.0),
             (at.velocity, limits.max_vertical_velocity_m_s, 1.0),
             (motions.pitch, limits.max_pitch_deg, 180.0 / np.pi),
+            (motions.roll, limits.max_roll_deg, 180.0 / np.pi),
         )
         good, known = np.ones(motions.heave.shape, bool), np.ones(motions.heave.shape, bool)
         for values, most, factor in checks:
@@ -198,7 +236,8 @@ def onboard_motions(ship: Ship) -> OnboardMotions | None:
                 key="places",
             )
         return None
-    hull = make_motion_hull(complete_hull(file.hull.plain()), ship.loading)
+    complete = complete_hull(file.hull.plain())
+    hull = make_motion_hull(complete, ship.loading)
     for name, forward in file.places.items():
         if abs(forward) > 0.75 * hull.length:
             raise InputError(
@@ -210,7 +249,14 @@ def onboard_motions(ship: Ship) -> OnboardMotions | None:
     for name, task in file.tasks.items():
         if task.place not in file.places:
             raise unknown_name_error(f"place for the task {name!r}", task.place, file.places)
-    return OnboardMotions(hull, dict(file.places), dict(file.tasks))
+    damping = file.hull.roll_damping
+    return OnboardMotions(
+        hull,
+        dict(file.places),
+        dict(file.tasks),
+        natural_roll_period(complete, hull),
+        ROLL_DAMPING if damping is None else damping,
+    )
 
 
 def required_motions(ship: Ship) -> OnboardMotions:

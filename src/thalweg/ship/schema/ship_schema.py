@@ -111,6 +111,7 @@ class HullSection(Section):
     pitch_gyration: Annotated[Number, Field(gt=0.0, le=0.5)] | None = None
     metacentric_height_m: Annotated[Number, Field(gt=0.0, le=20.0)] | None = None
     roll_period_s: Annotated[Number, Field(gt=0.0, le=100.0)] | None = None
+    roll_damping: Annotated[Number, Field(gt=0.0, le=0.5)] | None = None
     rudders: Annotated[WholeNumber, Field(ge=0, le=4)] | None = None
     brackets: AppendageCount | None = None
     bosses: AppendageCount | None = None
@@ -210,6 +211,7 @@ class TaskSection(Section):
     max_vertical_acceleration_m_s2: Annotated[Number, Field(gt=0.0, le=20.0)] | None = None
     max_vertical_velocity_m_s: Annotated[Number, Field(gt=0.0, le=20.0)] | None = None
     max_pitch_deg: Annotated[Number, Field(gt=0.0, le=45.0)] | None = None
+    max_roll_deg: Annotated[Number, Field(gt=0.0, le=45.0)] | None = None
 
 
 class CostsSection(Section):
