@@ -53,6 +53,8 @@ def test_the_speed_found_is_that_of_length_time_and_current(hold) -> None:
     held = "constant speed through water" if hold == "speed" else "constant power"
     assert {row["held"] for row in found.best.waypoints()[:-1]} == {held}
     assert found.notes[0].startswith("Constant ")
+    lowest = "lowest speed through water" if hold == "speed" else "lowest power"
+    assert f", {lowest}, to arrive at " in str(found).splitlines()[0]
 
 
 def test_one_speed_over_ground_in_a_current_that_turns() -> None:
@@ -79,6 +81,7 @@ def test_the_latest_departure_is_the_arrival_less_the_passage() -> None:
     slower = planned(sea_with_current(1.0), arrive=arrive, speed_kn=10.0)
     assert slower.best.depart == pytest.approx(arrive - LENGTH / (11.0 * KNOT), abs=240.0)
     assert "Latest departure" in slower.notes[0]
+    assert ", latest departure, to arrive at " in str(slower).splitlines()[0]
 
 
 def test_an_impossible_arrival_states_what_is_possible() -> None:

@@ -8,13 +8,12 @@ import pytest
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.chart.canals import Canal
 from thalweg.core.geodesy import format_position_minutes, parse_position
+from thalweg.core.time import duration_text, utc_text
 from thalweg.planning.report.plan_summary import (
     MAX_LINES,
-    duration_text,
     limits_text,
     quality_text,
     summary_with_notes,
-    utc_text,
     worst_weather,
 )
 from thalweg.route import Violation

@@ -38,6 +38,11 @@ def test_maps_across_the_antimeridian(tmp_path):
     axes = figure.axes[0]
     lines = [line.get_xdata() for line in axes.lines if len(line.get_xdata()) > 2]
     assert lines and all(np.abs(np.diff(x)).max() < 2.0 for x in lines)
+    lines_of_summary = str(found).splitlines()
+    departs, arrives = (line.split(maxsplit=1)[1] for line in lines_of_summary[1:3])
+    arrives, lasts = arrives.split(", after ")
+    title = axes.get_title(loc="left")
+    assert f"depart {departs}, arrive {arrives}" in title and f": {lasts}, " in title
     west, east = axes.get_xlim()
     assert all(west <= x.min() and x.max() <= east for x in lines)
     assert figure.axes[1].get_ylabel() == "water depth at passage [m]"

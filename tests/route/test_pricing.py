@@ -315,7 +315,9 @@ def test_canals_take_the_power_and_the_cubed_speed_of_their_setting(world):
     brake = 6e6 * (9.0 / 12.0) ** 3  # 7.2 kn: 9 kn is the slowest setting that keeps up
     assert route.legs["energy"][1] == pytest.approx((brake + 5e5) * SUEZ.transit_time)
     spent = 1.0 + 0.01 * (9.0 * KNOT) ** 3
-    assert route.legs["cost"][1] == pytest.approx(spent * SUEZ.transit_time + SUEZ.fee)  # size not known
+    assert route.legs["cost"][1] == pytest.approx(
+        spent * SUEZ.transit_time + SUEZ.fee
+    )  # size not known
 
 
 def test_the_price_of_speed_counts_while_sailing_and_zones_multiply_it():

@@ -126,7 +126,11 @@ def test_a_made_year_gives_its_best_month(folder, tmp_path):
     assert length / (other["time_h"] * 3600.0) == pytest.approx(speed - 1.0, rel=1e-4)
     assert (rows["saved_time_h"] >= -0.01).all()
     files = summary.write(tmp_path / "tables")
-    assert {path.name for path in files} == {"summary.csv", "refusals.csv", "months.png"}
+    assert {path.name for path in files} == {
+        "summary.csv", "refusals.csv", "months.png", "voyages.csv",
+    }  # fmt: skip
+    assert summary.voyages["depart"].tolist() == sorted(rows["depart"])
+    assert summary.voyages["time_h"].notna().all()
 
 
 @pytest.mark.slow
@@ -246,6 +250,10 @@ def test_the_command_line(folder, tmp_path, capsys):
     answer = json.loads(capsys.readouterr().out)
     assert [group["month"] for group in answer["groups"]] == [3, 6]
     assert answer["best"][0]["month"] == 6
+    assert [row["depart"][:10] for row in answer["voyages"]] == ["2026-03-01", "2026-06-02"]
+    assert all(row["time_h"] > 0.0 for row in answer["voyages"])
+    assert main(["study", "summary", str(tmp_path / "o")]) == 0
+    assert "2026-06-02" in capsys.readouterr().out
     assert main(["study", "summary", str(tmp_path / "nothing")]) == 2
     assert "has no study" in capsys.readouterr().err
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from thalweg.cli.exit_codes import SUCCESS
 from thalweg.cli.progress import ProgressMessages
@@ -35,10 +35,9 @@ def add_command(commands: Any) -> None:
     run.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler: tcp://host:8786")
     run.add_argument("--count", action="store_true", help="print the number of voyages and stop")
     run.set_defaults(run=_run)
-    ready = actions.add_parser("ready", help="list the ready studies, or print one to change it")
-    ready.add_argument("name", nargs="?", metavar="NAME", help="print this study file")
-    ready.set_defaults(run=_ready)
-    summary = actions.add_parser("summary", help="quantiles by month and axis, and refusals")
+    summary = actions.add_parser(
+        "summary", help="voyages one by one, quantiles by month and axis, and refusals"
+    )
     summary.add_argument("folder", metavar="DIR")
     summary.add_argument("--out", metavar="DIR", help="write tables and a plot into this folder")
     summary.add_argument("--json", action="store_true", help="print JSON")
@@ -86,6 +85,21 @@ def _words(state: StudyProgress) -> str:
     return text if left is None else f"{text}, about {left / 60.0:.1f} min left"
 
 
+_SHOWN_VOYAGES: Final = 10
+_LONG_COLUMNS: Final = ("reason", "first_violation")
+
+
+def _print_voyages(voyages: Any) -> None:
+    """Print the first voyages, one line for each."""
+    shown = voyages.head(_SHOWN_VOYAGES)
+    hidden = [name for name in _LONG_COLUMNS if name in shown]
+    print(shown.drop(columns=hidden).round(2).to_string(index=False, na_rep="-"))
+    left = len(voyages) - len(shown)
+    if left:
+        print(f"and {left} more voyages: --out writes all of them to voyages.csv")
+    print()
+
+
 def _summary(arguments: argparse.Namespace) -> int:
     from thalweg.studies import summarise_study
 
@@ -99,12 +113,12 @@ def _summary(arguments: argparse.Namespace) -> int:
                 ("groups", summary.table),
                 ("refusals", summary.refusals),
                 ("best", summary.best),
-                ("fronts", summary.fronts),
-                ("annual", summary.annual),
+                ("voyages", summary.voyages),
             )
         }
         print(json.dumps(parts, indent=2, allow_nan=False))
         return SUCCESS
+    _print_voyages(summary.voyages)
     hidden = [name for name in map(str, summary.table) if name.endswith(("_low", "_high"))]
     print(summary.table.drop(columns=hidden).round(2).to_string(index=False, na_rep="-"))
     if not summary.best.empty:

@@ -10,7 +10,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.given_numbers import shortened_repr, to_number
-from thalweg.core.units import DAY
+from thalweg.core.units import DAY, MINUTE
 
 TimeLike: TypeAlias = "str | float | int | date | np.datetime64"
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
@@ -140,3 +140,39 @@ def to_datetime64(seconds: float | np.ndarray) -> np.ndarray:
     ticks = np.round(np.where(np.isnan(given), 0.0, given) * scale).astype(np.int64)
     stamps = ticks.astype(f"datetime64[{unit}]")
     return np.where(np.isnan(given), np.array("NaT", stamps.dtype), stamps)[()]
+
+
+def utc_text(time: float) -> str:
+    """Return a time [s since 1970] to the minute, such as ``2026-01-01 06:00 UTC``.
+
+    Parameters
+    ----------
+    time : float
+        Seconds since 1970-01-01T00:00Z; not finite: "not known".
+
+    Returns
+    -------
+    str
+    """
+    if not math.isfinite(time):
+        return "not known"
+    return format_time(round(time / MINUTE) * MINUTE)[:16].replace("T", " ") + " UTC"
+
+
+def duration_text(seconds: float) -> str:
+    """Return a duration [s] to the minute, such as ``7 d 21 h 25 min``.
+
+    Parameters
+    ----------
+    seconds : float
+
+    Returns
+    -------
+    str
+    """
+    minutes = round(seconds / MINUTE)
+    days, rest = divmod(minutes, round(DAY / MINUTE))
+    hours, minutes = divmod(rest, 60)
+    return (
+        (f"{days} d " if days else "") + (f"{hours} h " if days or hours else "") + f"{minutes} min"
+    )

@@ -11,11 +11,10 @@ from scipy.optimize import brentq
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.geodesy import distance
-from thalweg.core.time import format_time
+from thalweg.core.time import duration_text, format_time, utc_text
 from thalweg.core.units import HOUR, KNOT, MINUTE
 from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import Proof
-from thalweg.planning.report.plan_summary import duration_text, utc_text
 from thalweg.planning.request.ordered_speed import with_exact_speed
 from thalweg.planning.request.requirements import period_of_data, required_under_keel_clearance
 from thalweg.planning.request.voyage_endpoints import resolve_endpoint

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.file_writing import new_figure, save_figure
-from thalweg.core.time import format_time
+from thalweg.core.time import utc_text
 from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.plots.map_labels import marked_times, time_label
 from thalweg.route import Route
@@ -60,8 +60,8 @@ def _draw_time_axis(axes: Any, route: Route) -> None:
     axes.set_xlim(0.0, max(last, 1e-6))
     axes.set_xticks((times - route.depart) / HOUR)
     axes.set_xticklabels([time_label(float(time), step) for time in times])
-    departs = format_time(route.depart)[:16].replace("T", " ")
-    axes.set_xlabel(f"UTC, departure {departs}", fontsize=8)
+    departs = utc_text(route.depart)
+    axes.set_xlabel(f"UTC, departure {departs.removesuffix(' UTC')}", fontsize=8)
 
 
 def _hours(route: Route) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 
 from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.core.geodesy import unwrap_longitude, wrap_longitude
-from thalweg.core.time import format_time
+from thalweg.core.time import duration_text, utc_text
 from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.plots.map_extent import MapExtent
 from thalweg.planning.plots.map_labels import LabelPlacer, marked_times, time_label
@@ -326,12 +326,11 @@ def _longitudes_on_line(route: Route, box: MapExtent) -> np.ndarray:
 def _decorate_axes(axes: Any, plan: PlanData, box: MapExtent) -> None:
     best = plan.best
     fuel = "" if best.fuel_t is None else f", {best.fuel_t:,.1f} t fuel"
-    departs, arrives = (
-        format_time(time)[:16].replace("T", " ") for time in (best.depart, best.arrive)
-    )
+    departs, arrives = (utc_text(time) for time in (best.depart, best.arrive))
     axes.set_title(
-        f"{plan.provenance.get('from')} to {plan.provenance.get('to')}: {best.time_h:.1f} h, "
-        f"{best.distance_nm:,.0f} nm{fuel}\ndepart {departs} UTC, arrive {arrives} UTC",
+        f"{plan.provenance.get('from')} to {plan.provenance.get('to')}: "
+        f"{duration_text(best.arrive - best.depart)}, {best.distance_nm:,.1f} nm{fuel}\n"
+        f"depart {departs}, arrive {arrives}",
         fontsize=9,
         loc="left",
     )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thalweg.core.geodesy import format_position_minutes
-from thalweg.core.time import format_time
+from thalweg.core.time import duration_text, utc_text
 from thalweg.core.units import DAY, HOUR, KNOT, MINUTE
 from thalweg.kernels.codes import OUTSIDE_PERIOD, REASONS
 from thalweg.planning.plan_front import knee
@@ -26,6 +26,7 @@ _CURRENT = ("eastward_sea_water_velocity", "northward_sea_water_velocity")
 _NAMES = (_WAVES, *_WIND, *_CURRENT)
 #: Notes whose contents the summary states in its own lines.
 _STATED = ("No depth in the data",)
+_HELD = {"speed": "speed through water", "power": "power", "ground": "speed over ground"}
 _LEAST = {"comfort": "least motion sickness"}
 #: Notes on the safety of the ship come first.
 _FIRST = ("Check the depth",)
@@ -64,7 +65,10 @@ def summary_items(plan: PlanData) -> list[tuple[str, str]]:
         items.append(("Energy", f"{best.energy_mwh:,.2f} MWh"))
     if plan.front is not None and len(plan.routes) > 1:
         items.append(("Choice", _choice(plan)))
-    items += [("Weather", worst_weather(plan) + sickness_text(best)), ("Depth", least_clearance_text(best))]
+    items += [
+        ("Weather", worst_weather(plan) + sickness_text(best)),
+        ("Depth", least_clearance_text(best)),
+    ]
     items += [("Limits", limits_text(plan)), ("Quality", quality_text(plan))]
     return items
 
@@ -86,23 +90,6 @@ def one_line(plan: PlanData) -> str:
     state = "" if best.feasible else ", breaks a limit"
     routes = f", {len(plan.routes)} routes" if len(plan.routes) > 1 else ""
     return f"<Plan: {_title(plan)}, {totals}{routes}{state}>"
-
-
-def utc_text(time: float) -> str:
-    """Return a time to the minute, such as ``2026-01-01 06:00 UTC``."""
-    if not math.isfinite(time):
-        return "not known"
-    return format_time(round(time / MINUTE) * MINUTE)[:16].replace("T", " ") + " UTC"
-
-
-def duration_text(seconds: float) -> str:
-    """Return a duration, such as ``7 d 21 h 25 min``."""
-    minutes = round(seconds / MINUTE)
-    days, rest = divmod(minutes, round(DAY / MINUTE))
-    hours, minutes = divmod(rest, 60)
-    return (
-        (f"{days} d " if days else "") + (f"{hours} h " if days or hours else "") + f"{minutes} min"
-    )
 
 
 def worst_weather(plan: PlanData) -> str:
@@ -220,7 +207,11 @@ def _title(plan: PlanData) -> str:
         else _LEAST.get(objective, f"least {objective}")
     )
     if plan.voyage.arrive is not None:
-        what += f", to arrive at {utc_text(float(plan.voyage.arrive))}"  # type: ignore[arg-type]
+        at = utc_text(float(plan.voyage.arrive))  # type: ignore[arg-type]
+        if objective in ("time", "distance"):
+            held = _HELD[plan.voyage.hold or "power"]
+            what = f"lowest {held}" if plan.voyage.depart is not None else "latest departure"
+        what += f", to arrive at {at}"
     return f"{start} to {goal}, {what}"
 
 
@@ -266,7 +257,9 @@ def _cost(plan: PlanData) -> str:
         paid = f"; canal dues {dues:,.0f} USD{basis}" if dues else ""
         return f"not known: no price of fuel or time{paid}"
     counted = route.currency == "USD"
-    paid = f", {'of it ' if counted else 'without '}canal dues {dues:,.0f} USD{basis}" if dues else ""
+    paid = (
+        f", {'of it ' if counted else 'without '}canal dues {dues:,.0f} USD{basis}" if dues else ""
+    )
     return f"{route.cost:,.0f} {route.currency}{paid}"
 
 

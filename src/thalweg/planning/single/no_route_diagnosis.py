@@ -65,8 +65,10 @@ def no_route_error(
         )
     if reasons.get(codes.REASONS[codes.NO_DATA]) and fields is not None:
         reached += _unknown_beyond(network, result.nearest_node, fields)
+    ended = _data_ended(reasons, last)
+    within = f"arrives before the data end at {format_time(last)}" if ended else "keeps the limits"
     return NoRouteError(
-        f"No route from {ends[0].name} to {ends[1].name} within the limits, departing "
+        f"No route from {ends[0].name} to {ends[1].name} {within}, departing "
         f"{format_time(depart)}.",
         reached,
         _advice(reasons, last),
@@ -187,7 +189,13 @@ _ADVICE = {
 }
 
 
+def _data_ended(reasons: dict[str, int], last: float) -> bool:
+    """Return whether the search came to the end of the data."""
+    return bool(reasons.get(codes.REASONS[codes.OUTSIDE_PERIOD])) and math.isfinite(last)
+
+
 def _advice(reasons: dict[str, int], last: float) -> str:
+    later = "Add a longer forecast, or depart earlier." if _data_ended(reasons, last) else ""
     counts = {
         code: reasons.get(codes.REASONS[code], 0)
         for code in codes.REASONS
@@ -195,7 +203,8 @@ def _advice(reasons: dict[str, int], last: float) -> str:
     }
     code = max(counts, key=lambda c: counts[c])
     if counts[code]:
-        return _ADVICE.get(code, "Change the limits or the area.")
-    if reasons.get(codes.REASONS[codes.OUTSIDE_PERIOD]) and math.isfinite(last):
-        return f"The data end at {format_time(last)}: add later data, or depart earlier."
+        advice = _ADVICE.get(code, "Change the limits or the area.")
+        return f"{later} If that does not help: {advice}" if later else advice
+    if later:
+        return later
     return "Try a finer resolution, or check that the places are not enclosed by land."

@@ -239,7 +239,8 @@ def _search(
         if context.voyage.arrive_by is not None:
             raise _late_arrival_error(context, network, limits, window, ends)
         raise no_route_error(
-            network, result, ends, depart=context.voyage.earliest_departure, last=context.data_end,
+            network, result, ends, depart=context.voyage.earliest_departure,
+            last=context.data_end if end >= context.data_end else math.inf,
             fields=frozen.stations, required=limits.required_depth,
         )  # fmt: skip
     return frozen, result
