@@ -223,3 +223,11 @@ def test_departure_is_from_the_berth():
     assert plan.best.depart == plan.voyage.earliest_departure
     assert plan.lower_bound <= plan.objective_value * (1.0 + 1e-9)
     assert plan.objective_value == pytest.approx(plan.best.distance_nm)
+
+
+def test_degrees_that_may_be_swapped_are_noted():
+    end = resolve_endpoint("4.1,52.0", chart(), "start")
+    assert end.note.startswith("Check the position: 4.1,52 is read as 4.1000N 52.0000E, more than")
+    assert "52.0000N 4.1000E is 3 nm from Europoort, NL: latitude comes first." in end.note
+    for sound in ("52.0,4.1", "45.0,-30.0", "36.2,14.2"):
+        assert "Check" not in resolve_endpoint(sound, chart(), "start").note

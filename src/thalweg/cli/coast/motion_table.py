@@ -28,8 +28,8 @@ def print_motions(sheet: Mapping[str, Any]) -> None:
 
     console = Console()
     console.print(
-        f"Motions in waves of {sheet['wave_height_m']:g} m and {sheet['wave_period_s']:.1f} s, with "
-        f"the power for {sheet['ordered_speed_kn']:.1f} kn in calm water: root mean squares; "
+        f"Motions in waves of {sheet['wave_height_m']:g} m and {sheet['wave_period_s']:.1f} s, "
+        f"with the power for {sheet['ordered_speed_kn']:.1f} kn in calm water: root mean squares; "
         f"waves by their angle off the bow; sick: share of people after {sheet['exposure_h']:g} h "
         "(ISO 2631-1)",
         highlight=False,

@@ -13,6 +13,7 @@ from thalweg.core.time import duration_text, utc_text
 from thalweg.core.units import DAY, HOUR, KNOT, MINUTE
 from thalweg.kernels.codes import OUTSIDE_PERIOD, REASONS
 from thalweg.planning.plan_front import knee
+from thalweg.planning.request.voyage_endpoints import CHECK_POSITION
 
 if TYPE_CHECKING:
     from thalweg.chart.canals import Canal
@@ -29,7 +30,7 @@ _STATED = ("No depth in the data",)
 _HELD = {"speed": "speed through water", "power": "power", "ground": "speed over ground"}
 _LEAST = {"comfort": "least motion sickness"}
 #: Notes on the safety of the ship come first.
-_FIRST = ("Check the depth",)
+_FIRST = (CHECK_POSITION, "Check the depth")
 _ALWAYS = ("land", "no-go zone")  # reasons that every coastal route meets
 
 

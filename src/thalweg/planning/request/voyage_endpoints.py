@@ -19,6 +19,8 @@ MAX_SNAP_POSITION = 2_000.0
 MAX_SNAP_PORT = 60_000.0
 #: A position on land within this distance of a port is taken as that port [m].
 NEAR_PORT: Final = 10.0 * NAUTICAL_MILE
+_FAR_FROM_PORTS: Final = 60.0 * NAUTICAL_MILE
+CHECK_POSITION: Final = "Check the position"  #: a note on swapped degrees begins so
 
 
 @dataclass(frozen=True)
@@ -120,7 +122,7 @@ def _resolve_position(lat: float, lon: float, chart: Chart, what: str) -> Endpoi
     name = format_position(lat, lon)
     on_water = bool(chart.is_navigable(lat, lon))
     if on_water and chart.is_joined_to_sea(lat, lon):
-        return Endpoint(name, lat, lon, 0.0)
+        return Endpoint(name, lat, lon, 0.0, notice=_swap_notice(lat, lon, chart))
     near = (
         None if chart.approaches is None else chart.approaches.nearest(lat, lon, within=NEAR_PORT)
     )
@@ -186,6 +188,21 @@ def _swap_hint(lat: float, lon: float, chart: Chart) -> str:
             f"Latitude comes first: {lon:g}, {lat:g} is at sea. Are latitude and longitude swapped?"
         )
     return ""
+
+
+def _swap_notice(lat: float, lon: float, chart: Chart) -> str:
+    """Return a note where a position is far from ports, but the swapped one is near a port."""
+    ports = chart.approaches
+    if ports is None or abs(lon) > 90.0 or ports.nearest(lat, lon, within=_FAR_FROM_PORTS):
+        return ""
+    swapped = ports.nearest(lon, lat, within=NEAR_PORT)
+    if swapped is None:
+        return ""
+    return (
+        f"{CHECK_POSITION}: {lat:g},{lon:g} is read as {format_position(lat, lon)}, more than "
+        f"{_FAR_FROM_PORTS / NAUTICAL_MILE:.0f} nm from any port. {format_position(lon, lat)} is "
+        f"{swapped[1] / NAUTICAL_MILE:.0f} nm from {swapped[0].label}: latitude comes first."
+    )
 
 
 def without_approach(end: Endpoint) -> Endpoint:
