@@ -220,7 +220,7 @@ def test_many_times_are_averaged_in_parts(monkeypatch) -> None:
     y, x = lat[hydro.quads()].mean(axis=1), lon[hydro.quads()].mean(axis=1)
     times = hydro.T0 + 3600.0 * hydro.HOURS
     whole = Sea.open(data, draught_m=4.0).series([EAST], times, y, x)[EAST]
-    monkeypatch.setattr("thalweg.sea.grids.source_variables.MAX_LAYERED_VALUES", 1000)
+    monkeypatch.setattr("thalweg.sea.grids.source_variables.MAX_VALUES_AT_ONCE", 1000)
     parts = Sea.open(data, draught_m=4.0).series([EAST], times, y, x)[EAST]
     assert np.array_equal(whole, parts, equal_nan=True)
 

@@ -50,13 +50,20 @@ class BlockCache:
         if cached is not None:
             both = self._union(window, cached.window)
             window = both if both.size <= MAX_UNION_VALUES else window
+        self.blocks.pop(key, None)
+        del cached  # the old values and the new ones are not held together
         found = CachedBlock(window, quantity.read(window, columns))
         self.blocks[key] = found
         return found
 
+    @property
+    def held_bytes(self) -> int:
+        """Bytes of the values that are held."""
+        return sum(v.nbytes for block in self.blocks.values() for v in block.values.values())
+
     def _window_with_margin(self, window: GridWindow, misses: int) -> GridWindow:
-        """Return the window with a margin: none at first, a quarter of its size per later read."""
-        if misses == 0:
+        """Return the window with a margin: a quarter of its size, if it is small and not the first."""
+        if misses == 0 or window.size > MAX_UNION_VALUES:
             return window
         nt, ny, nx = self.shape
         dt = 1 + (window.t1 - window.t0) // 4

@@ -24,6 +24,9 @@ from thalweg.sea.recognition_record import RecognitionRecord
 from thalweg.sea.triangle_mesh import Mesh
 
 
+MAX_WINDOW_BYTES = 500_000_000  #: of all quantities that are read for one window
+
+
 @dataclass(frozen=True, eq=False)
 class GridLayer:
     """Quantities of one or more files on one grid and one time axis.
@@ -73,6 +76,13 @@ class GridLayer:
         if not known.any():
             return samples
         wanted = self._window(located, moments, known)
+        for part in self._parts_in_time(names, wanted, moments, known):
+            found = self.sample(names, time[part], lat[part], lon[part])
+            for name, values in found.items():
+                samples[name][part] = values
+            known[part] = False
+        if not known.any():
+            return samples
         for window, blocks in self._read_blocks(names, wanted):
             corner = _indices_in_window(located.corner, window, self.grid.shape[1])
             level = np.where(moments.level >= 0, moments.level - window.t0, -1)
@@ -92,6 +102,13 @@ class GridLayer:
         if not (inside.any() and when.any()):
             return {name: np.full(shape, np.nan) for name in names}
         wanted = self._window(located, moments, inside, when)
+        parts = self._parts_in_time(names, wanted, moments, when)
+        if parts:
+            samples = {name: np.full(shape, np.nan) for name in names}
+            for part in parts:
+                for name, values in self.series(names, times[part], lat, lon).items():
+                    samples[name][:, part] = values
+            return samples
         samples = {}
         for window, blocks in self._read_blocks(names, wanted):
             corner = _indices_in_window(located.corner, window, self.grid.shape[1])
@@ -143,6 +160,19 @@ class GridLayer:
                 group = found.setdefault(block.window, {})
                 group.update((name, block.values[name]) for name in own)
         return list(found.items())
+
+    def _parts_in_time(
+        self, names: Sequence[str], wanted: GridWindow, moments: TimeLocation, known: BoolArray
+    ) -> list[NDArray[np.intp]]:
+        """Return points in groups of near times, where one window would take too much memory."""
+        asked = [q for q in self.quantities if not set(q.names).isdisjoint(names)]
+        each = wanted.size // (wanted.t1 - wanted.t0) * sum(q.bytes_per_value for q in asked)
+        levels = max(2, MAX_WINDOW_BYTES // max(1, each)) - 1  # one more is read at the end
+        if wanted.t1 - wanted.t0 <= levels + 1:
+            return []
+        points = np.flatnonzero(known)
+        group = (moments.level[points] - wanted.t0) // levels
+        return [points[group == number] for number in np.unique(group)]
 
     def _window(
         self,

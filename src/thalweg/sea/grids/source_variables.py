@@ -19,7 +19,7 @@ from thalweg.sea import plausible_values
 
 RawArray: TypeAlias = NDArray[Any]
 READ_ERRORS = (OSError, RuntimeError, ValueError, IndexError, KeyError, EOFError, OverflowError)
-MAX_LAYERED_VALUES = 4_000_000  #: values in vertical layers that are read at once
+MAX_VALUES_AT_ONCE = 4_000_000  #: values that are read and converted at once
 
 
 class GridWindow(NamedTuple):
@@ -194,29 +194,37 @@ class Quantity:
     source: str
     layers: int = 1
 
+    @property
+    def _kind(self) -> type[np.floating[Any]]:
+        return np.float64 if any(v.is_double for v in self.variables) else np.float32
+
+    @property
+    def bytes_per_value(self) -> int:
+        """Bytes of one value of all its names."""
+        return np.dtype(self._kind).itemsize * len(self.names)
+
     def read(self, window: GridWindow, columns: int) -> dict[str, RawArray]:
         """Return arrays (times, points) by canonical name, checked for plausible values."""
-        at_once = max(
-            1, MAX_LAYERED_VALUES // max(1, self.layers * window.size // _level_count(window))
-        )
-        if self.layers == 1 or _level_count(window) <= at_once:
+        points = window.size // _level_count(window)
+        at_once = max(1, MAX_VALUES_AT_ONCE // max(1, self.layers * points))
+        if _level_count(window) <= at_once or not any(v.timed for v in self.variables):
             return self._read(window, columns)
-        parts = [
-            self._read(window._replace(t0=t, t1=min(t + at_once, window.t1)), columns)
-            for t in range(window.t0, window.t1, at_once)
-        ]
-        return {name: np.concatenate([part[name] for part in parts]) for name in self.names}
+        found = {name: np.empty((_level_count(window), points), self._kind) for name in self.names}
+        for t in range(window.t0, window.t1, at_once):
+            part = window._replace(t0=t, t1=min(t + at_once, window.t1))
+            for name, values in self._read(part, columns).items():
+                found[name][part.t0 - window.t0 : part.t1 - window.t0] = values
+        return found
 
     def _read(self, window: GridWindow, columns: int) -> dict[str, RawArray]:
         raws = [np.asarray(v.read(window, columns), np.float64) for v in self.variables]
-        kind = np.float64 if any(v.is_double for v in self.variables) else np.float32
         made = {}
         for name, value in zip(self.names, self.make(raws, window)):
             plausible_values.check_plausible(
                 name, value, [v.name for v in self.variables], self.source
             )
             value = plausible_values.without_packing_error(name, value)
-            made[name] = np.ascontiguousarray(value.reshape(value.shape[0], -1), kind)
+            made[name] = np.ascontiguousarray(value.reshape(value.shape[0], -1), self._kind)
         return made
 
 
