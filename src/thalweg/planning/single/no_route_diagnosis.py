@@ -45,13 +45,19 @@ def no_route_error(
     for reason, count in result.refused.items():
         reasons[reason] = reasons.get(reason, 0) + count
     reasons = {reason: count for reason, count in reasons.items() if count}
-    nearest, reached = None, "No point beyond the start can be reached."
+    nearest, reached, ended = None, "No point beyond the start can be reached.", False
     if result.nearest_node >= 0:
         lat = float(network.stations.lat[result.nearest_node])
         lon = float(network.stations.lon[result.nearest_node])
         nearest = (lat, lon)
-        left = float(distance(lat, lon, ends[1].lat, ends[1].lon)) / NAUTICAL_MILE
-        reached = f"The nearest point reached is {format_position(lat, lon)}, {left:.1f} nm short."
+        left = float(distance(lat, lon, ends[1].lat, ends[1].lon))
+        reached = (
+            f"The nearest point reached is {format_position(lat, lon)}, "
+            f"{left / NAUTICAL_MILE:.1f} nm short."
+        )
+        sailed = float(distance(ends[0].lat, ends[0].lon, lat, lon))
+        here = float(result.node_arrival[result.nearest_node])
+        ended = sailed > 0.0 and here + (here - depart) * left / sailed > last
     deficit = None if fields is None else _depth_deficit(network, fields, required)
     if deficit is not None:
         return NoRouteError(
@@ -65,13 +71,13 @@ def no_route_error(
         )
     if reasons.get(codes.REASONS[codes.NO_DATA]) and fields is not None:
         reached += _unknown_beyond(network, result.nearest_node, fields)
-    ended = _data_ended(reasons, last)
+    ended = ended and bool(reasons.get(codes.REASONS[codes.OUTSIDE_PERIOD]))
     within = f"arrives before the data end at {format_time(last)}" if ended else "keeps the limits"
     return NoRouteError(
         f"No route from {ends[0].name} to {ends[1].name} {within}, departing "
         f"{format_time(depart)}.",
         reached,
-        _advice(reasons, last),
+        _advice(reasons, ended),
         reasons=reasons,
         nearest=nearest,
     )
@@ -189,17 +195,15 @@ _ADVICE = {
 }
 
 
-def _data_ended(reasons: dict[str, int], last: float) -> bool:
-    """Return whether the search came to the end of the data."""
-    return bool(reasons.get(codes.REASONS[codes.OUTSIDE_PERIOD])) and math.isfinite(last)
+_OF_ANY_COAST = (codes.LAND, codes.OFFING, codes.NO_GO, codes.OUTSIDE_PERIOD)
 
 
-def _advice(reasons: dict[str, int], last: float) -> str:
-    later = "Add a longer forecast, or depart earlier." if _data_ended(reasons, last) else ""
+def _advice(reasons: dict[str, int], ended: bool) -> str:
+    later = "Add a longer forecast, or depart earlier." if ended else ""
     counts = {
         code: reasons.get(codes.REASONS[code], 0)
         for code in codes.REASONS
-        if code not in (codes.LAND, codes.OUTSIDE_PERIOD)
+        if code not in _OF_ANY_COAST
     }
     code = max(counts, key=lambda c: counts[c])
     if counts[code]:
@@ -207,4 +211,6 @@ def _advice(reasons: dict[str, int], last: float) -> str:
         return f"{later} If that does not help: {advice}" if later else advice
     if later:
         return later
+    if reasons.get(codes.REASONS[codes.OFFING]):
+        return "Try a finer resolution, or a smaller offing: --resolution, --offing."
     return "Try a finer resolution, or check that the places are not enclosed by land."
