@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from thalweg.chart.canal_tariff import canals_with_dues, known_gross_tonnage, tariff_kind
-from thalweg.chart.canals import CANALS, CORINTH, KIEL, PANAMA, SUEZ
+from thalweg.chart.canal_tariff import known_gross_tonnage, tariff_kind
+from thalweg.chart.canals import CANALS, CORINTH, KIEL, PANAMA, SUEZ, canals_with_dues
 from thalweg.ship import Ship
 from thalweg.ship.schema.ship_schema import HullSection
 

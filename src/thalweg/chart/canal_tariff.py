@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from thalweg.chart.canals import Canal
     from thalweg.ship.schema.ship_schema import HullSection
 
 _OLD_LOCKS_BEAM: Final = 32.31  # largest beam in the old locks of Panama [m]
@@ -175,39 +174,3 @@ def known_gross_tonnage(hull: HullSection) -> tuple[float | None, str]:
     if displacement is None:
         return None, "the size of the ship is not known"
     return _GROSS_PER_DEADWEIGHT * _DEADWEIGHT_SHARE * displacement, how
-
-
-def canals_with_dues(canals: Sequence[Canal], hull: HullSection) -> tuple[Canal, ...]:
-    """Return canals with the dues of a ship.
-
-    Parameters
-    ----------
-    canals : sequence of Canal
-        Those whose fee is not the mean of their tariff stay as they are.
-    hull : HullSection
-        Of a ship file: tonnage, breadth and type.
-
-    Returns
-    -------
-    tuple of Canal
-        ``fee_basis`` says how the dues were found.
-    """
-    return tuple(_with_dues(canal, hull) for canal in canals)
-
-
-def _with_dues(canal: Canal, hull: HullSection) -> Canal:
-    tariff = canal.tariff
-    if tariff is None or canal.fee != tariff.mean:
-        return canal
-    tons = getattr(hull, tariff.tonnage)
-    name, how = tariff.tonnage.replace("_", " "), "of the ship file"
-    if tons is None:
-        gross, how = known_gross_tonnage(hull)
-        if gross is None:
-            return replace(canal, fee_basis=f"the mean of all ships, since {how}")
-        tons = tariff.tons_per_gross_ton * gross
-        how = f"estimated: {how}" if how else "from the gross tonnage of the ship file"
-    kinds = tariff_kind(hull.type or "", hull.breadth_m)
-    paid = tariff.dues(tons, beam=hull.breadth_m, kind=kinds.get(tariff.tonnage, ""))
-    basis = f"{name} {tons:,.0f} ({how})"
-    return replace(canal, fee=float(round(paid)), fee_basis=basis)

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib import resources
 from typing import TYPE_CHECKING, Final
@@ -20,11 +20,14 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.chart.canal_tariff import CanalTariff
+from thalweg.chart.canal_tariff import CanalTariff, known_gross_tonnage, tariff_kind
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import Position, distance
 from thalweg.core.units import HOUR
 from thalweg.deprecated_names import renamed_attributes
+
+if TYPE_CHECKING:
+    from thalweg.ship.schema.ship_schema import HullSection
 
 END_TOLERANCE: Final = 2.0  # a leg ends at a canal's end when it ends this near to it [m]
 _END_TOLERANCE_DEGREES: Final = 2e-5  # only ends nearer than this in latitude are measured
@@ -135,6 +138,42 @@ def _read_canals() -> tuple[Canal, ...]:
 
 CANALS: Final = _read_canals()  #: the canals of `thalweg/chart/data/canals.json`
 SUEZ, PANAMA, KIEL, CORINTH, CAPE_COD = CANALS
+
+
+def canals_with_dues(canals: Sequence[Canal], hull: HullSection) -> tuple[Canal, ...]:
+    """Return canals with the dues of a ship.
+
+    Parameters
+    ----------
+    canals : sequence of Canal
+        Those whose fee is not the mean of their tariff stay as they are.
+    hull : HullSection
+        Of a ship file: tonnage, breadth and type.
+
+    Returns
+    -------
+    tuple of Canal
+        ``fee_basis`` says how the dues were found.
+    """
+    return tuple(_with_dues(canal, hull) for canal in canals)
+
+
+def _with_dues(canal: Canal, hull: HullSection) -> Canal:
+    tariff = canal.tariff
+    if tariff is None or canal.fee != tariff.mean:
+        return canal
+    tons = getattr(hull, tariff.tonnage)
+    name, how = tariff.tonnage.replace("_", " "), "of the ship file"
+    if tons is None:
+        gross, how = known_gross_tonnage(hull)
+        if gross is None:
+            return replace(canal, fee_basis=f"the mean of all ships, since {how}")
+        tons = tariff.tons_per_gross_ton * gross
+        how = f"estimated: {how}" if how else "from the gross tonnage of the ship file"
+    kinds = tariff_kind(hull.type or "", hull.breadth_m)
+    paid = tariff.dues(tons, beam=hull.breadth_m, kind=kinds.get(tariff.tonnage, ""))
+    basis = f"{name} {tons:,.0f} ({how})"
+    return replace(canal, fee=float(round(paid)), fee_basis=basis)
 
 
 def exclude_canals(canals: Sequence[Canal], names: Sequence[str]) -> tuple[Canal, ...]:

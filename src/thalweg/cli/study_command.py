@@ -35,9 +35,10 @@ def add_command(commands: Any) -> None:
     run.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler: tcp://host:8786")
     run.add_argument("--count", action="store_true", help="print the number of voyages and stop")
     run.set_defaults(run=_run)
-    summary = actions.add_parser(
-        "summary", help="voyages one by one, quantiles by month and axis, and refusals"
-    )
+    ready = actions.add_parser("ready", help="list the ready studies, or print one to change it")
+    ready.add_argument("name", nargs="?", metavar="NAME", help="print this study file")
+    ready.set_defaults(run=_ready)
+    summary = actions.add_parser("summary", help="voyages, quantiles by month and axis, refusals")
     summary.add_argument("folder", metavar="DIR")
     summary.add_argument("--out", metavar="DIR", help="write tables and a plot into this folder")
     summary.add_argument("--json", action="store_true", help="print JSON")
@@ -113,6 +114,8 @@ def _summary(arguments: argparse.Namespace) -> int:
                 ("groups", summary.table),
                 ("refusals", summary.refusals),
                 ("best", summary.best),
+                ("fronts", summary.fronts),
+                ("annual", summary.annual),
                 ("voyages", summary.voyages),
             )
         }

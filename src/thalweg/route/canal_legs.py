@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.approaches import MAX_APPROACH_SPEED
-from thalweg.chart.canal_tariff import canals_with_dues
-from thalweg.chart.canals import Canal
+from thalweg.chart.canals import Canal, canals_with_dues
 from thalweg.core.errors import ThalwegError
 from thalweg.core.geodesy import Position, direct, inverse
 from thalweg.core.types import FloatArray

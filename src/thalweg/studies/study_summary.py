@@ -13,6 +13,10 @@ from scipy.stats import binom
 
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import make_folder, save_figure, write_csv_rows
+from thalweg.ship import Ship
+from thalweg.studies.annual_figures import annual_figures
+from thalweg.studies.front_statistics import draw_front_statistics, front_statistics
+from thalweg.studies.row_runner import ship_of_request
 from thalweg.studies.study import Study
 from thalweg.studies.study_parts import read_parts, read_study
 
@@ -36,6 +40,10 @@ class StudySummary:
         ``refusal``, ``reason`` and ``voyages``, most frequent first.
     best : pandas.DataFrame
         The month with the least median time of each group of the other axes.
+    fronts : pandas.DataFrame
+        Indicators of fronts of time and fuel (`front_statistics`); empty without.
+    annual : pandas.DataFrame
+        Figures of a year (`annual_figures`); empty if the study has no entry ``annual``.
     voyages : pandas.DataFrame
         One row per voyage, by its axes: departure, arrival, key figures, and why there is no route.
     """
@@ -43,10 +51,14 @@ class StudySummary:
     table: pd.DataFrame
     refusals: pd.DataFrame
     best: pd.DataFrame
+    fronts: pd.DataFrame
+    annual: pd.DataFrame
     voyages: pd.DataFrame
 
     def write(self, folder: str | Path) -> list[Path]:
-        """Write ``summary.csv``, ``voyages.csv``, ``refusals.csv`` and, with months, ``months.png``.
+        """Write ``summary.csv``, ``voyages.csv``, ``refusals.csv``, and what else there is.
+
+        ``months.png`` with months, ``fronts.csv`` and ``fronts.png`` with fronts, ``annual.csv``.
 
         Parameters
         ----------
@@ -58,10 +70,13 @@ class StudySummary:
         """
         folder = make_folder(folder)
         files = []
-        tables = (
-            ("summary", self.table), ("voyages", self.voyages), ("refusals", self.refusals),
-        )  # fmt: skip
-        for name, frame in tables:
+        tables = {
+            "summary": self.table, "voyages": self.voyages, "refusals": self.refusals,
+            "fronts": self.fronts, "annual": self.annual,
+        }  # fmt: skip
+        for name, frame in tables.items():
+            if frame.empty and name in ("fronts", "annual"):
+                continue
             path = folder / f"{name}.csv"
             rows = frame.astype(object).where(frame.notna(), None).to_numpy().tolist()
             write_csv_rows(path, [list(frame.columns), *rows])
@@ -159,14 +174,20 @@ def summarise_study(folder: str | Path) -> StudySummary:
             row |= _quantiles(name, good[name].astype(float).dropna().to_numpy())
         rows.append(row)
     table = pd.DataFrame(rows)
+    axes = [name for name in study.axes if name in frame]
     return StudySummary(
-        table, _refusals(frame, usable), _best(table, by), _voyages(study, frame, figures)
+        table,
+        _refusals(frame, usable),
+        _best(table, by),
+        front_statistics(frame[usable], axes),
+        _annual(study, frame[usable], [name for name in axes if name not in times]),
+        _voyages(frame, list(study.axes), figures),
     )
 
 
-def _voyages(study: Study, frame: pd.DataFrame, figures: list[str]) -> pd.DataFrame:
-    """Return one row per voyage in order of its axes, without empty columns."""
-    first = [name for name in study.axes if name in frame]
+def _voyages(frame: pd.DataFrame, axes: list[str], figures: list[str]) -> pd.DataFrame:
+    """Return one row per voyage in order of departure and axes, without empty columns."""
+    first = [name for name in axes if name in frame]
     wanted = [*first, "depart", "arrive", *figures, "feasible", "first_violation", "refusal"]
     names = [name for name in dict.fromkeys([*wanted, "reason"]) if name in frame]
     order = [name for name in dict.fromkeys(["depart", *first]) if name in frame]
@@ -177,6 +198,17 @@ def _voyages(study: Study, frame: pd.DataFrame, figures: list[str]) -> pd.DataFr
 def _sortable(column: pd.Series) -> pd.Series:
     numbers = pd.to_numeric(column, errors="coerce")
     return numbers if numbers.notna().any() else column.astype(str)
+
+
+def _annual(study: Study, usable: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+    if not study.annual or usable.empty:
+        return pd.DataFrame()
+    ships: dict[Any, Ship] = {}
+    for row in study.rows():
+        label = row.labels.get("ship")
+        if label not in ships:
+            ships[label] = ship_of_request(row.request, str(study.folder))
+    return annual_figures(usable, by, ships, study.annual)
 
 
 def _quantiles(name: str, values: np.ndarray) -> dict[str, float | None]:

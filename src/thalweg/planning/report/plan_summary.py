@@ -10,7 +10,7 @@ import numpy as np
 
 from thalweg.core.geodesy import format_position_minutes
 from thalweg.core.time import duration_text, utc_text
-from thalweg.core.units import DAY, HOUR, KNOT, MINUTE
+from thalweg.core.units import HOUR, KNOT
 from thalweg.kernels.codes import OUTSIDE_PERIOD, REASONS
 from thalweg.planning.plan_front import knee
 from thalweg.planning.request.voyage_endpoints import CHECK_POSITION

@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from thalweg.chart import Chart
-from thalweg.chart.canal_tariff import canals_with_dues
-from thalweg.chart.canals import Canal
+from thalweg.chart.canals import Canal, canals_with_dues
 from thalweg.core.errors import ThalwegWarning
 from thalweg.core.geodesy import distance
 from thalweg.planning.request.voyage_endpoints import Endpoint

@@ -62,7 +62,7 @@ class BlockCache:
         return sum(v.nbytes for block in self.blocks.values() for v in block.values.values())
 
     def _window_with_margin(self, window: GridWindow, misses: int) -> GridWindow:
-        """Return the window with a margin: a quarter of its size, if it is small and not the first."""
+        """Return a small window that is not the first with a margin, a quarter of its size."""
         if misses == 0 or window.size > MAX_UNION_VALUES:
             return window
         nt, ny, nx = self.shape
