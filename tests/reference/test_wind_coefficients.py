@@ -161,11 +161,9 @@ def test_relative_wind_from_vectors_agrees():
     np.testing.assert_allclose(polar, vectors, rtol=1e-12)
 
 
-def test_wind_resistance_and_calm_air():
+def test_wind_resistance():
     force = wind_resistance(16.0, 0.8, frontal_area=500.0, density=1.25)
     assert force == pytest.approx(0.5 * 1.25 * 500.0 * 256.0 * 0.8)
-    still = wind_resistance(6.0, 0.8, frontal_area=500.0, calm_air_coefficient=0.8, ship_speed=6.0)
-    assert still == pytest.approx(0.0, abs=1e-9)
 
 
 def test_yu_rule():

@@ -369,6 +369,6 @@ def _quantile(values: FloatArray, share: float) -> float:
     return float(ordered[low] + part * (ordered[low + 1] - ordered[low]))
 
 
-def _listed(numbers: tuple[int, ...], most: int = 8) -> str:
-    text = ", ".join(map(str, numbers[:most]))
-    return text + (", ..." if len(numbers) > most else "")
+def _listed(numbers: tuple[int, ...]) -> str:
+    text = ", ".join(map(str, numbers[:8]))
+    return text + (", ..." if len(numbers) > 8 else "")

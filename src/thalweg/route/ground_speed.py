@@ -28,12 +28,11 @@ def at_constant_ground_speed(
     evaluate_track: Callable[[Track], Route],
     *,
     ordered_range: tuple[float, float],
-    longest_leg: float = HOUR,
 ) -> Route:
     """Sail a route at one speed over ground outside canals and approaches of ports.
 
-    The legs are divided, and the ordered speed of each part is changed until its mean speed over
-    ground is the given one.
+    The legs are divided into parts of an hour at most, and the ordered speed of each part is
+    changed until its mean speed over ground is the given one.
 
     Parameters
     ----------
@@ -44,7 +43,6 @@ def at_constant_ground_speed(
         will, the sea and the chart).
     ordered_range : (float, float)
         Lowest and highest speed that can be ordered [m/s].
-    longest_leg : Longest time with one ordered speed [s].
 
     Returns
     -------
@@ -56,7 +54,7 @@ def at_constant_ground_speed(
     NoRouteError
         If the ship cannot make this speed somewhere.
     """
-    track, at_sea = _divided(route, speed * longest_leg)
+    track, at_sea = _divided(route, speed * HOUR)
     low, top = ordered_range
     ordered = np.where(at_sea, np.clip(speed, low, top), track.speed)
     for _ in range(_MOST_STEPS):

@@ -90,11 +90,9 @@ def problem_of(error: ThalwegError, status: int = 422) -> dict[str, Any]:
     return problem
 
 
-def problem_response(
-    error: ThalwegError, status: int = 422, headers: Mapping[str, str] | None = None
-) -> JSONResponse:
+def problem_response(error: ThalwegError, headers: Mapping[str, str] | None = None) -> JSONResponse:
     """Return an error as a response."""
-    problem = problem_of(error, status)
+    problem = problem_of(error, 422)
     return JSONResponse(
         problem, problem["status"], media_type=MEDIA_TYPE, headers=dict(headers or {})
     )

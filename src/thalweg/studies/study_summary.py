@@ -219,13 +219,12 @@ def _quantiles(name: str, values: np.ndarray) -> dict[str, float | None]:
     return {**found, f"{name}_p50_low": low, f"{name}_p50_high": high}
 
 
-def median_interval(values: np.ndarray, confidence: float = _CONFIDENCE) -> tuple[float, float]:
+def median_interval(values: np.ndarray) -> tuple[float, float]:
     """Return the confidence interval of a median by order statistics.
 
     Parameters
     ----------
     values : float array (n,)
-    confidence : Least coverage, 0 to 1.
 
     Returns
     -------
@@ -234,7 +233,7 @@ def median_interval(values: np.ndarray, confidence: float = _CONFIDENCE) -> tupl
     """
     ordered = np.sort(values)
     n = len(ordered)
-    rank = int(binom.ppf(0.5 * (1.0 - confidence), n, 0.5))
+    rank = int(binom.ppf(0.5 * (1.0 - _CONFIDENCE), n, 0.5))
     if rank < 1:
         return float("nan"), float("nan")
     return float(ordered[rank - 1]), float(ordered[n - rank])

@@ -83,18 +83,17 @@ def cut_segments(
     *,
     sea: Sea | None = None,
     length: float = SEGMENT_DURATION,
-    steady: bool = True,
 ) -> MeasuredSegments:
     """Divide all sailing of a track into segments.
+
+    The ends of every leg, where the ship accelerates or slows down, are left out: everything before
+    the first and after the last position with at least 80 % of the leg's median speed (the "free
+    sailing" of Schless 2023, section 4.2, by its speed alone).
 
     Parameters
     ----------
     sea : For the currents.
     length : Least length of a segment [s]; the last of a leg takes the rest.
-    steady : bool
-        Leave out the ends of every leg, where the ship accelerates or slows down: everything before
-        the first and after the last position with at least 80 % of the leg's median speed
-        (the "free sailing" of Schless 2023, section 4.2, by its speed alone).
 
     Returns
     -------
@@ -107,7 +106,7 @@ def cut_segments(
         (activity.trip, SAILING_KINDS.index(activity.kind), *pair)
         for activity in activities
         if activity.kind in SAILING_KINDS
-        for pair in _segment_ends(log, activity, speeds, length, steady)
+        for pair in _segment_ends(log, activity, speeds, length)
     ]
     table = np.array(rows, dtype=np.int64).reshape(-1, 4)
     leg, kind, first, last = table.T
@@ -127,11 +126,11 @@ def cut_segments(
 
 
 def _segment_ends(
-    log: TrackLog, activity: Activity, speeds: FloatArray, length: float, steady: bool
+    log: TrackLog, activity: Activity, speeds: FloatArray, length: float
 ) -> list[tuple[int, int]]:
     """Return (first, last) positions of the segments of a leg."""
     first, last = activity.first, activity.last
-    if steady and last > first:
+    if last > first:
         seen = speeds[first : last + 1]
         fast = np.flatnonzero(seen >= STEADY_SPEED_SHARE * np.median(seen))
         first, last = first + int(fast[0]), first + int(fast[-1])

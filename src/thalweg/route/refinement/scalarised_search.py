@@ -38,14 +38,12 @@ def scalarised_local_search(
     lines: ScoredTracks,
     *,
     stop: Callable[[], bool] = lambda: False,
-    levels: tuple[int, ...] = REFINEMENT_LEVELS,
 ) -> ScoredTracks:
     """Return tracks refined for their prices of time.
 
     Parameters
     ----------
     stop : Called between steps; true ends the search.
-    levels : Least number of legs, level by level.
 
     Returns
     -------
@@ -63,7 +61,7 @@ def scalarised_local_search(
         lines = remove_points(lines, allowance=_REMOVAL_LOSS)
         if stop() or lines.population.count.sum() == before:
             break
-    for level in levels:
+    for level in REFINEMENT_LEVELS:
         if stop():
             return lines
         lines = split_long_legs(lines, legs=level)

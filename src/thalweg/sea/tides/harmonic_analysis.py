@@ -70,7 +70,6 @@ def analyse(
     lon: ArrayLike = np.nan,
     constituents: Sequence[str] | None = None,
     rayleigh: float = RAYLEIGH,
-    least_known: float = MIN_KNOWN_FRACTION,
     progress: ProgressCallback | None = None,
 ) -> TideAnalysis:
     r"""Return the tidal constituents of records.
@@ -84,14 +83,13 @@ def analyse(
     times : array_like (T,)
         Strictly increasing [s since 1970-01-01T00:00Z]; steps may differ.
     series : mapping of str to array_like (T,) or (N, T)
-        Records by variable, NaN where unknown.
+        Records by variable, NaN where unknown; nodes known less than half of the time get no tide.
     lat, lon : array_like (N,)
         Positions [deg]; their mean latitude is used for nodal corrections.
     constituents : sequence of str, optional
         Names as UTide spells them; by default all that the length and step of the record can
         separate, in the order of priority of Foreman (1977).
     rayleigh : Rayleigh criterion: least difference of two constituents [cycles] over the record.
-    least_known : Nodes with values at a smaller fraction of the times get no tide (NaN).
     progress : Called with the number of nodes done and in total.
 
     Raises
@@ -125,7 +123,7 @@ def analyse(
             if progress is not None:
                 progress(before + count, total)
 
-        found[name] = _fit(design, values, least_known, report)
+        found[name] = _fit(design, values, report)
         done += nodes
     return _analysis(empty, found, moments)
 
@@ -156,7 +154,7 @@ def _analysis(
 
 
 def _fit(
-    design: FloatArray, values: FloatArray, least_known: float, report: Callable[[int], None]
+    design: FloatArray, values: FloatArray, report: Callable[[int], None]
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return solutions (columns of the design, N), tidal shares and variances (N,)."""
     nodes = values.shape[0]
@@ -164,7 +162,7 @@ def _fit(
     share, variance = np.full(nodes, np.nan), np.full(nodes, np.nan)
     whole = design.T @ design
     _check_condition(whole)
-    needed = max(least_known * design.shape[0], design.shape[1] + 1)
+    needed = max(MIN_KNOWN_FRACTION * design.shape[0], design.shape[1] + 1)
     with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
         for first in range(0, nodes, NODES_PER_BLOCK):
             part = slice(first, min(first + NODES_PER_BLOCK, nodes))

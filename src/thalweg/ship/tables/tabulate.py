@@ -78,8 +78,6 @@ def tabulate_dense(
     *,
     tolerance: float,
     largest: int = LARGEST_TABLE,
-    base: FloatArray | float = 0.0,
-    check: Callable[[TablePart], TableError] | None = None,
 ) -> tuple[TablePart, TableError]:
     """Tabulate a function on a full grid, refined until the error meets the tolerance.
 
@@ -90,25 +88,22 @@ def tabulate_dense(
     axes : Where to begin; at least one.
     tolerance : Relative error that 99 % of random conditions must meet; see `TableError`.
     largest : Bytes the table may take. Refinement stops there; the error says what was reached.
-    base : What the function is a correction to, per setting; errors are relative to the sum.
-    check : Measures the error of a part in its own way.
 
     Returns
     -------
     part : TablePart
     error : TableError
     """
-    points = random_conditions(axes, _SAMPLES if check is None else 1, 0)
-    truth = function(points) + base
+    points = random_conditions(axes, _SAMPLES, 0)
+    truth = function(points)
     axes = _coarsened(axes, largest // (4 * truth.shape[-1]))
-    measure = check or (lambda part: table_error(part.lookup_all(points) + base, truth))
     while True:
         values = _on_grid(function, axes)
         part = TablePart(tuple(a.axis for a in axes), tuple(a.grid for a in axes), values)
-        error = measure(part)
+        error = table_error(part.lookup_all(points), truth)
         if error.p99 <= tolerance:
             return part, error
-        worst = _worst_axis(values, axes, base)
+        worst = _worst_axis(values, axes)
         if worst is None or 2 * values.nbytes > largest:
             return part, error
         axes[worst] = axes[worst].refined()
@@ -204,11 +199,9 @@ def _on_grid(function: ConditionsFunction, axes: Sequence[AxisRange]) -> NDArray
     return np.concatenate(slabs)
 
 
-def _worst_axis(
-    values: NDArray[np.float32], axes: Sequence[AxisRange], base: FloatArray | float
-) -> int | None:
+def _worst_axis(values: NDArray[np.float32], axes: Sequence[AxisRange]) -> int | None:
     """Return the axis along which linear interpolation errs most, by second differences."""
-    whole = np.abs(values + np.asarray(base, np.float32))
+    whole = np.abs(values)
     scale = np.maximum(whole, RELATIVE_ERROR_FLOOR * np.nanmax(whole, initial=0.0)) + 1e-12
     bends = []
     for k, axis in enumerate(axes):

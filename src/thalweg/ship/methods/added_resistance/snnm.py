@@ -253,7 +253,7 @@ def snnm_transfer(
     return weight * motion, 0.5625 * weight * breadth * (bow - stern)
 
 
-def snnm_validity(speed: ArrayLike, hull: SnnmHull, *, gravity: float = GRAVITY) -> list[RangeNote]:
+def snnm_validity(speed: ArrayLike, hull: SnnmHull) -> list[RangeNote]:
     """Return what is outside the range of the formula (unverified: quoted from memory).
 
     L_PP > 75 m, 4 < L_PP/B < 9, 2.2 < B/T < 9, 0.05 < Fr < 0.30, 0.50 < C_B < 0.90, and a trim of
@@ -265,8 +265,6 @@ def snnm_validity(speed: ArrayLike, hull: SnnmHull, *, gravity: float = GRAVITY)
         Speed through water [m/s].
     hull : SnnmHull
         Particulars of the hull [SI].
-    gravity : float, optional
-        Acceleration of gravity [m/s2].
 
     Returns
     -------
@@ -280,6 +278,6 @@ def snnm_validity(speed: ArrayLike, hull: SnnmHull, *, gravity: float = GRAVITY)
         "breadth to draught": (breadth / draught, 2.2, 9.0),
         "block coefficient": (block, 0.50, 0.90),
         "trim to length": (np.tan(trim), 0.0, 0.03),
-        "Froude number": (froude_number(speed, length=length, gravity=gravity), 0.05, 0.30),
+        "Froude number": (froude_number(speed, length=length), 0.05, 0.30),
     }
     return range_notes("snnm", ranges)

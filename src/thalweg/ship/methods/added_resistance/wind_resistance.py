@@ -28,14 +28,10 @@ def wind_resistance(
     *,
     frontal_area: ArrayLike,
     density: float = AIR_DENSITY,
-    calm_air_coefficient: ArrayLike | None = None,
-    ship_speed: ArrayLike = 0.0,
 ) -> FloatArray:
     r"""Wind resistance, negative where the wind pushes.
 
-    .. math::
-        R_{AA} = \frac{1}{2} \rho_A A_{XV} \left[V_{WR}^2 C_{AA}(\psi) - V_G^2
-            C_{AA}(0)\right]
+    .. math:: R_{AA} = \frac{1}{2} \rho_A A_{XV} V_{WR}^2 C_{AA}(\psi)
 
     Parameters
     ----------
@@ -47,11 +43,6 @@ def wind_resistance(
         A_XV [m2].
     density : float
         Of air [kg/m3].
-    calm_air_coefficient : array_like, optional
-        C_AA from ahead; given, the resistance of calm air at the ship's own speed is subtracted,
-        as ISO 15016 does when a trial curve already contains it.
-    ship_speed : array_like
-        Speed over ground for that subtraction [m/s].
 
     Returns
     -------
@@ -59,15 +50,12 @@ def wind_resistance(
 
     References
     ----------
-    ISO 15016:2015, Annex C; ITTC 7.5-04-01-01.1. The second term counts only where
-    ``calm_air_coefficient`` is given.
+    ISO 15016:2015, Annex C; ITTC 7.5-04-01-01.1. A trial curve without the resistance of calm air
+    adds its term, - V_G^2 C_AA(0); resistance formulas for deep calm water do not contain it.
     """
     pressure = 0.5 * density * np.asarray(frontal_area, dtype=float)
-    force = pressure * np.asarray(relative_speed, dtype=float) ** 2 * np.asarray(coefficient)
-    if calm_air_coefficient is not None:
-        own = np.asarray(ship_speed, dtype=float) ** 2
-        force = force - pressure * own * np.asarray(calm_air_coefficient)
-    return np.asarray(force)
+    squared = np.asarray(relative_speed, dtype=float) ** 2
+    return np.asarray(pressure * squared * np.asarray(coefficient))
 
 
 def fold_angle_off_bow(angle: ArrayLike) -> FloatArray:

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.types import FloatArray
-from thalweg.core.units import GRAVITY
 from thalweg.ship.methods.resistance.friction_lines import (
     Water,
     froude_number,
@@ -341,7 +340,6 @@ def hollenbach_validity(
     hull: HollenbachHull,
     *,
     variant: ResistanceVariant = "single_design",
-    gravity: float = GRAVITY,
 ) -> list[RangeNote]:
     """Return which speeds are outside the Froude range of the data.
 
@@ -354,7 +352,6 @@ def hollenbach_validity(
         Of scalars.
     variant : str
         Key of `RESISTANCE_COEFFICIENTS`.
-    gravity : float [m/s2]
 
     Returns
     -------
@@ -364,6 +361,6 @@ def hollenbach_validity(
         hull.length_between_perpendiculars, length_over_surface=hull.length_over_surface
     )
     low, high = froude_limits(hull.block_coefficient, variant=variant)
-    froude = froude_number(speed, length=length, gravity=gravity)
+    froude = froude_number(speed, length=length)
     limits = {"Froude number": (froude, float(low), float(high))}
     return range_notes(f"hollenbach_1998 ({variant})", limits)

@@ -328,7 +328,6 @@ def holtrop_validity(
     year: Literal[1982, 1984] = 1982,
     draught_fore: ArrayLike | None = None,
     bulb_centre_height: ArrayLike = 0.0,
-    gravity: float = GRAVITY,
 ) -> list[RangeNote]:
     """Return which quantities are outside the usual range of the method.
 
@@ -344,7 +343,6 @@ def holtrop_validity(
         Which method.
     draught_fore, bulb_centre_height : array_like, optional
         T_F and h_B [m], for the limit h_B <= 0.6 T_F.
-    gravity : float [m/s2]
 
     Returns
     -------
@@ -354,7 +352,7 @@ def holtrop_validity(
     fastest = 0.45 if year == 1982 else 1.0
     height = np.asarray(bulb_centre_height) / fore
     ranges: dict[str, tuple[ArrayLike, float, float]] = {
-        "Froude number": (froude_number(speed, length=hull.length, gravity=gravity), 0.0, fastest),
+        "Froude number": (froude_number(speed, length=hull.length), 0.0, fastest),
         "prismatic coefficient": (hull.prismatic_coefficient, 0.55, 0.85),
         "length to breadth": (hull.length / hull.breadth, 3.9, 15.0),
         "breadth to draught": (hull.breadth / hull.draught, 2.1, 4.0),

@@ -331,9 +331,7 @@ def ship_response(
     )
 
 
-def motions_validity(
-    speed: ArrayLike, hull: MotionHull, *, gravity: float = GRAVITY
-) -> list[RangeNote]:
+def motions_validity(speed: ArrayLike, hull: MotionHull) -> list[RangeNote]:
     """Return where `jensen_motions` is used outside the ships it was tried on.
 
     Parameters
@@ -341,14 +339,13 @@ def motions_validity(
     speed : array_like [m/s]
     hull : MotionHull
         Hull.
-    gravity : float [m/s2]
 
     Returns
     -------
     list of RangeNote
         Empty when all are inside. The ranges are our judgement of the ships in the paper.
     """
-    froude = as_float_array(speed) / np.sqrt(gravity * hull.length)
+    froude = as_float_array(speed) / np.sqrt(GRAVITY * hull.length)
     return range_notes(
         "Jensen-Mansour-Olsen motions",
         {

@@ -153,7 +153,7 @@ def bretschneider(frequency: ArrayLike, *, height: ArrayLike, period: ArrayLike)
     return jonswap(frequency, height=height, period=period, peak_factor=1.0)
 
 
-def pierson_moskowitz_period(height: ArrayLike, *, gravity: float = GRAVITY) -> FloatArray:
+def pierson_moskowitz_period(height: ArrayLike) -> FloatArray:
     """Return the peak period of a fully developed sea of given height [s].
 
     From m0 = 0.0081 g^2 / (5 wp^4): wp = 0.02592^(1/4) sqrt(g / Hs), 0.02592 = 16 0.0081 / 5.
@@ -162,7 +162,6 @@ def pierson_moskowitz_period(height: ArrayLike, *, gravity: float = GRAVITY) -> 
     ----------
     height : array_like
         Significant height [m].
-    gravity : float [m/s2]
 
     Returns
     -------
@@ -173,11 +172,11 @@ def pierson_moskowitz_period(height: ArrayLike, *, gravity: float = GRAVITY) -> 
     ----------
     W. J. Pierson, L. Moskowitz, J. Geophys. Res. 69 (1964).
     """
-    period: FloatArray = 2.0 * np.pi / 0.02592**0.25 * np.sqrt(as_float_array(height) / gravity)
+    period: FloatArray = 2.0 * np.pi / 0.02592**0.25 * np.sqrt(as_float_array(height) / GRAVITY)
     return period
 
 
-def pierson_moskowitz_wind(height: ArrayLike, *, gravity: float = GRAVITY) -> FloatArray:
+def pierson_moskowitz_wind(height: ArrayLike) -> FloatArray:
     """Return the wind at 10 m that raises a fully developed sea of given height [m/s].
 
     From Hs = 2 U^2 sqrt(0.0081 / 0.74) / g with the wind U at 19.5 m, which is 1.026 times that at
@@ -187,7 +186,6 @@ def pierson_moskowitz_wind(height: ArrayLike, *, gravity: float = GRAVITY) -> Fl
     ----------
     height : array_like
         Significant height [m].
-    gravity : float [m/s2]
 
     Returns
     -------
@@ -200,7 +198,7 @@ def pierson_moskowitz_wind(height: ArrayLike, *, gravity: float = GRAVITY) -> Fl
     Oceanography (2008), section 16.4, for the factor 1.026.
     """
     steepness = 2.0 * np.sqrt(0.0081 / 0.74)
-    wind: FloatArray = np.sqrt(as_float_array(height) * gravity / steepness) / 1.026
+    wind: FloatArray = np.sqrt(as_float_array(height) * GRAVITY / steepness) / 1.026
     return wind
 
 

@@ -232,9 +232,7 @@ def karpov_speed(
     return np.asarray(np.asarray(speed, dtype=float) / alpha)
 
 
-def karpov_validity(
-    speed: ArrayLike, *, depth: ArrayLike, gravity: float = GRAVITY
-) -> list[RangeNote]:
+def karpov_validity(speed: ArrayLike, *, depth: ArrayLike) -> list[RangeNote]:
     """Return which depth Froude numbers exceed 1.0, where the fit of the curves ends.
 
     Parameters
@@ -243,15 +241,13 @@ def karpov_validity(
         Speed through water [m/s].
     depth : array_like
         Water depth [m].
-    gravity : float, optional
-        Acceleration of gravity [m/s2].
 
     Returns
     -------
     list of RangeNote
         Empty inside the range.
     """
-    froude = froude_number(speed, length=_positive(depth), gravity=gravity)
+    froude = froude_number(speed, length=_positive(depth))
     return range_notes(
         "karpov", {"depth Froude number": (froude, 0.0, LARGEST_KARPOV_FROUDE_NUMBER)}
     )
@@ -343,7 +339,6 @@ def lackenby_1963_validity(
     *,
     depth: ArrayLike,
     midship_area: ArrayLike,
-    gravity: float = GRAVITY,
 ) -> list[RangeNote]:
     """Return what exceeds a speed loss of 30 %, the end of Lackenby's chart (unverified).
 
@@ -355,13 +350,11 @@ def lackenby_1963_validity(
         Water depth [m].
     midship_area : array_like
         Submerged area of the midship section [m2].
-    gravity : float, optional
-        Acceleration of gravity [m/s2].
 
     Returns
     -------
     list of RangeNote
         Empty inside the range.
     """
-    loss = lackenby_1963_speed_loss(speed, depth=depth, midship_area=midship_area, gravity=gravity)
+    loss = lackenby_1963_speed_loss(speed, depth=depth, midship_area=midship_area)
     return range_notes("lackenby_1963", {"speed loss": (loss, 0.0, 0.30)})
