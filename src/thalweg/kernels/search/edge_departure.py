@@ -17,7 +17,8 @@ from thalweg.kernels.search.sample_openings import opening_of_sample
 OPENING_TOLERANCE = 0.1  # accuracy of opening times [s]
 _SLOW = 3.0  # times the least time of an edge: slower ships may gain by a short wait
 _MOST_MARCHES = 2000  # of one edge in one call
-_PROBES = 12  # of a stretch of departures, each at half the distance of the one before
+_SHORT_STEP, _MOST_STEPS = 20.0, 400  # between departures of a ship that may be overtaken [s]
+_PROBES = 7  # before the first of these, each at half the distance of the one before
 _GOLDEN = 0.6180339887498949
 _CLOSE = 0.2  # accuracy of the best departure between openings [s]
 
@@ -65,22 +66,31 @@ def _first_past(network, sea, ship, where, since, closed, step, work):
     """
     edge, tail_node, k = where
     sample, passed, opens = closed
-    departure, then, status, at = since, passed, OK, sample
+    low, high, found = since, math.inf, (since, passed, OK, sample)
     for _ in range(_MOST_MARCHES):
-        departure = since + step
+        departure = low + step
         near = interval_near(sea.times, k, departure)
         then, status, at = _march_at(network, sea, ship, edge, tail_node, near, departure, work)
         blocks = at == sample and status not in (OK, OUTSIDE_PERIOD)
-        if step <= OPENING_TOLERANCE or (blocks and then <= opens + OPENING_TOLERANCE):
+        if blocks and then <= opens + OPENING_TOLERANCE:
+            if high == math.inf:
+                return departure, then, status, at
+            low = departure
+        else:  # past the opening: what is open between must not be passed over
+            high, found = departure, (departure, then, status, at)
+            before = departure - 0.9 * OPENING_TOLERANCE
+            if before > low:
+                near = interval_near(sea.times, k, before)
+                then, status, at = _march_at(
+                    network, sea, ship, edge, tail_node, near, before, work
+                )
+                blocks = at == sample and status not in (OK, OUTSIDE_PERIOD)
+                if blocks and then <= opens + OPENING_TOLERANCE:
+                    break
+        if high - low <= OPENING_TOLERANCE:
             break
-        before = departure - 0.9 * OPENING_TOLERANCE
-        near = interval_near(sea.times, k, before)
-        earlier, was, last = _march_at(network, sea, ship, edge, tail_node, near, before, work)
-        blocks = last == sample and was not in (OK, OUTSIDE_PERIOD)
-        if blocks and earlier <= opens + OPENING_TOLERANCE:
-            break
-        step *= 0.5  # past the opening: what is open between must not be passed over
-    return departure, then, status, at
+        step = 0.5 * (high - low)
+    return found
 
 
 @kernel_only
@@ -122,7 +132,8 @@ def _next_open_departure(network, sea, ship, where, since, latest, bounds, work)
         )
         k = interval_near(sea.times, k, since)
         rate, same = 1.0, sample == at and status == blocked[0]
-        crawl = 2.0 * crawl if same and then < moment else 1.0
+        crawl = min(2.0 * crawl, _SHORT_STEP) if then < moment else math.inf
+        crawl = crawl if same else 1.0
         if not same:
             push = _push(status)
         elif then < opens - push:
@@ -147,21 +158,25 @@ def _cost_at(network, sea, ship, where, since, factor, departure, work):
 def _best_in_stretch(network, sea, ship, where, since, factor, stretch, work):
     """Return (departure, arrival, cost) of the best of a stretch of departures that begins open.
 
-    Departures at halved distances to its begin are tried, then a golden section round the best.
+    Departures every 20 s and, near its begin, at halved distances to it are tried, then a golden
+    section round the best.
     """
     begin, end = stretch
     best, at, found = math.inf, end, math.inf
     low, high = begin, end
     length = end - begin
-    for probe in range(_PROBES + 1):
-        departure = begin + length * 0.5**probe
+    count = max(min(math.ceil(length / _SHORT_STEP), _MOST_STEPS), 1)
+    for probe in range(1, count + _PROBES + 1):
+        share = probe / count
+        earlier, later = (probe - 1) / count, (probe + 1) / count
+        if probe > count:
+            share = 0.5 ** (probe - count) / count
+            earlier, later = 0.5 * share, 2.0 * share
+        departure = begin + length * share
         cost, arrival = _cost_at(network, sea, ship, where, since, factor, departure, work)
         if cost < best:
             best, at, found = cost, departure, arrival
-            low, high = (
-                begin + length * 0.5 ** (probe + 1),
-                min(begin + length * 2.0 * 0.5**probe, end),
-            )
+            low, high = begin + length * earlier, min(begin + length * later, end)
     if best == math.inf:
         return at, found, best
     one, two = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
@@ -172,7 +187,10 @@ def _best_in_stretch(network, sea, ship, where, since, factor, stretch, work):
             best, at, found = at_one, one, first
         if at_two < best:
             best, at, found = at_two, two, second
-        if at_one < at_two:
+        earlier = at_one <= at_two
+        if at_one == math.inf and at_two == math.inf:  # the best is beside closed departures
+            earlier = at <= two
+        if earlier:
             high, two, at_two, second = two, one, at_one, first
             one = high - _GOLDEN * (high - low)
             at_one, first = _cost_at(network, sea, ship, where, since, factor, one, work)
