@@ -60,7 +60,6 @@ MANY_ARGUMENTS_OF_KERNELS = [
     "leg.point_speed.fuel_rate_at_speed",
     "leg.point_speed.point_speed_from_guess",
     "leg.point_speed.point_speed_with_axes",
-    "search.edge_departure._find_opening",
     "search.edge_departure.edge_arrivals",
     "search.edge_departure.wait_for_edge",
     "search.label_setting._best_departure",

@@ -107,8 +107,9 @@ def earliest_arrival(
     Notes
     -----
     By time and with penalty factors of 1 the result is exact on the network as long as edges keep
-    order (a later departure arrives later); waiting provides that where it is allowed, to within
-    the sampling of departures named in `thalweg.kernels.search.edge_departure.wait_for_edge`.
+    order (a later departure arrives later); waiting provides that where it is allowed, with the
+    departures of `thalweg.kernels.search.edge_departure.wait_for_edge`: limits open and close at
+    the roots of fields that are linear in time.
     Elsewhere `thalweg.search.fifo.fifo_report` measures how far order is broken. By distance, or
     with other penalty factors, one label per node is exact as long as the time of passage does not
     decide which edges are open; ties go to the earlier arrival.

@@ -232,11 +232,14 @@ def march_edge(network, sea, ship, fuel, edge, k, t, cutoff, work):
     Returns
     -------
     arrival : float
-        [s]; inf when it is not useful. When the status is not `OK`: when the ship was to pass the
-        sample that blocks the edge.
+        [s]; of one that is not useful a lower bound that is not useful either. When the status is
+        not `OK`: when the ship was to pass the sample that blocks the edge.
     burnt : float
         Fuel [kg]; 0 without a fuel table.
     status : int
+    sample : int
+        Index of the sample that blocks the edge: less than those inside the edge for the tail, the
+        one after them for the head, the next where the head is not open.
 
     Notes
     -----
@@ -262,11 +265,11 @@ def march_edge(network, sea, ship, fuel, edge, k, t, cutoff, work):
                 remaining = network.length[edge] * (1.0 - to) * cutoff.least
                 least = 0.5 * piece * (slowness + cutoff.least) + remaining
                 if t + least >= cutoff.latest:
-                    return math.inf, 0.0, OK
+                    return t + least, 0.0, OK, p
             then = t + piece * slowness
             k = interval_near(sea.times, k, then)
             if k < 0:
-                return math.inf, 0.0, OUTSIDE_PERIOD
+                return math.inf, 0.0, OUTSIDE_PERIOD, p
             a = b = network.station[network.target[edge]]
             weight = 0.0
             if p < last:
@@ -277,7 +280,7 @@ def march_edge(network, sea, ship, fuel, edge, k, t, cutoff, work):
             here, index, east, north, table, setting, depth, limits, needs, guess
         )
         if status != OK:
-            return then, 0.0, status
+            return then, 0.0, status, p
         before = slowness
         slowness = 1.0 / speed
         if fuel is not None:
@@ -285,16 +288,16 @@ def march_edge(network, sea, ship, fuel, edge, k, t, cutoff, work):
                 here, index, (east, north), fuel.table, setting, depth, limits, fuel.needs, guess
             )
             if not known:
-                return then, 0.0, SHIP_RANGE
+                return then, 0.0, SHIP_RANGE, p
             burnt += 0.5 * piece * (rate * before + used * slowness)
             rate = used
         t += 0.5 * piece * (before + slowness)
     if t > sea.times[-1]:
-        return math.inf, 0.0, OUTSIDE_PERIOD
+        return math.inf, 0.0, OUTSIDE_PERIOD, last + 1
     head = network.target[edge]
     if not network.opens[head] <= t < network.closes[head]:
-        return t, 0.0, DEPTH  # afloat there, but at another tide
-    return t, burnt, OK
+        return t, 0.0, DEPTH, last + 1  # afloat there, but at another tide
+    return t, burnt, OK, last + 1
 
 
 @inlined
@@ -307,5 +310,5 @@ def sail_edge(network, sea, ship, edge, k, t, cutoff, work):
     fixed = network.fixed_time[edge]
     if fixed == fixed:
         return pass_canal(network, edge, t, sea.times[-1])
-    arrival, _, status = march_edge(network, sea, ship, None, edge, k, t, cutoff, work)
+    arrival, _, status, _ = march_edge(network, sea, ship, None, edge, k, t, cutoff, work)
     return arrival, status

@@ -176,7 +176,8 @@ def point_speed_from_guess(
 ):
     """Do as `point_speed_with_axes`, with a guess of the speed through water for the first heading.
 
-    Returns (speed over ground, status, speed through water); a guess of inf is none.
+    Returns (speed over ground, status, speed through water); a guess of inf is none. Against too
+    strong a current the speed through water is the one that does not suffice, else 0 where closed.
     """
     current = (0.0, 0.0)
     if channel_index[CURRENT_EAST] >= 0 and channel_index[CURRENT_NORTH] >= 0:
@@ -206,7 +207,7 @@ def point_speed_from_guess(
     spare = speed * speed - across * across
     over_ground = along + math.sqrt(max(spare, 0.0))
     if speed <= 0.0 or spare <= 0.0 or over_ground <= 0.0:
-        return 0.0, CURRENT, 0.0
+        return 0.0, CURRENT, speed
     if not field and has_wave_limits(table):
         sine = -across / speed
         cosine = math.sqrt(max(1.0 - sine * sine, 0.0))

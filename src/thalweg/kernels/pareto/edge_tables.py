@@ -143,7 +143,7 @@ def _pass_fixed_time_edge(world, edge, choice, t):
 def _sail_sea_edge(world, edge, choice, k, t, work):
     """Sail an edge in open water: return (arrival, fuel, status)."""
     ship = world.ship
-    return march_edge(
+    arrival, burnt, status, _ = march_edge(
         world.network,
         world.sea,
         ShipArrays(ship.table, ship.settings[choice], ship.limits, ship.needs),
@@ -154,6 +154,7 @@ def _sail_sea_edge(world, edge, choice, k, t, work):
         None,
         (work[1], work[2], work[3]),
     )
+    return arrival, burnt, status
 
 
 @kernel_only

@@ -2,58 +2,215 @@
 
 import math
 
-from thalweg.kernels.codes import DEPTH, LIMIT_REQUIRED_DEPTH, NO_DATA, OK, OUTSIDE_PERIOD
-from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
-from thalweg.kernels.leg.edge_sailing import MarchCutoff, interval_of, sail_edge, sample_station
-from thalweg.kernels.leg.point_speed import water_depth
+from thalweg.kernels.codes import NO_DATA, OK, OUTSIDE_PERIOD
+from thalweg.kernels.compilation.decorators import allocation_free, inlined_by_numba, kernel_only
+from thalweg.kernels.leg.edge_sailing import (
+    MarchCutoff,
+    interval_near,
+    interval_of,
+    march_edge,
+    pass_canal,
+    sample_station,
+)
+from thalweg.kernels.search.sample_openings import opening_of_sample
 
 OPENING_TOLERANCE = 0.1  # accuracy of opening times [s]
+_SLOW = 3.0  # times the least time of an edge: slower ships may gain by a short wait
+_MOST_MARCHES = 2000  # of one edge in one call
+_SHORT_STEP, _MOST_STEPS = 20.0, 400  # between departures of a ship that may be overtaken [s]
+_PROBES = 7  # before the first of these, each at half the distance of the one before
+_GOLDEN = 0.6180339887498949
+_CLOSE = 0.2  # accuracy of the best departure between openings [s]
 
 
 @kernel_only
-def _sail_edge_at(network, sea, ship, edge, tail_node, k, t, work):
-    """Sail an edge at any departure of interval k, sampling the tail too."""
+def _march_at(network, sea, ship, edge, tail_node, k, t, work):
+    """Sail an edge at any departure of interval k: return (arrival, status, blocking sample)."""
+    fixed = network.fixed_time[edge]
+    if fixed == fixed:
+        arrival, status = pass_canal(network, edge, t, sea.times[-1])
+        return arrival, status, network.via_ptr[edge + 1] + 1
     sample_station(sea, tail_node, k, t, work[1])
-    cutoff = MarchCutoff(math.inf, 0.0)
-    return sail_edge(network, sea, ship, edge, k, t, cutoff, (work[1], work[2], work[3]))
+    arrival, _, status, sample = march_edge(
+        network, sea, ship, None, edge, k, t, MarchCutoff(math.inf, 0.0),
+        (work[1], work[2], work[3]),
+    )  # fmt: skip
+    return arrival, status, sample
 
 
 @kernel_only
-def _find_opening(
-    network, sea, ship, edge, tail_node, k, closed, open_from, arrival, useless, work
-):
-    """Return the earliest (departure, arrival) of an edge that opens in (closed, open_from].
+def _opening_on_edge(network, sea, ship, where, passed, blocked, useless, work):
+    """Return from when on a blocking sample is open; ``where`` is (edge, tail, interval).
 
-    Where depth is what lacks, which is linear between the times of the data, two departures
-    give the time when it suffices; else by halving. The arrival is inf if no departure before
-    ``useless`` is open.
+    ``passed`` is when the ship is at the sample, ``blocked`` is (status, sample).
     """
-    required, depth = ship.limits[LIMIT_REQUIRED_DEPTH], float(network.depth[edge])
-    guess, share, checking = math.nan, 0.001, False
-    passed, lacked = math.nan, math.nan
-    while open_from - closed > OPENING_TOLERANCE:
-        if closed >= useless:
-            return open_from, math.inf
-        guessed = closed < guess < open_from
-        probe = guess if guessed else closed + share * (open_from - closed)
-        then, status = _sail_edge_at(network, sea, ship, edge, tail_node, k, probe, work)
-        if status == OK:
-            open_from, arrival = probe, then
-            if guessed:  # once just before it, to see that it is closed there
-                guess = math.nan if checking else probe - 0.9 * OPENING_TOLERANCE
-                checking = not checking
+    edge, tail_node, k = where
+    status, sample = blocked
+    if sample > network.via_ptr[edge + 1]:  # afloat at the head, but at another tide
+        opens = network.opens[network.target[edge]]
+        return opens if passed < opens else math.inf
+    place = (edge, tail_node, sample)
+    k = interval_near(sea.times, k, passed)
+    if k < 0:
+        return math.inf
+    return opening_of_sample(network, sea, ship, place, k, passed, (status, useless), work)
+
+
+@kernel_only
+def _first_past(network, sea, ship, where, since, closed, step, work):
+    """Return (departure, passage, status, sample) of the first departure a sample does not block.
+
+    ``closed`` is (sample, when it is passed by a departure at ``since``, when it opens). A
+    departure that still reaches it before it opens is returned as well, as progress. ``step`` is
+    a guess of how much later the ship leaves.
+    """
+    edge, tail_node, k = where
+    sample, passed, opens = closed
+    low, high, found = since, math.inf, (since, passed, OK, sample)
+    for _ in range(_MOST_MARCHES):
+        departure = low + step
+        near = interval_near(sea.times, k, departure)
+        then, status, at = _march_at(network, sea, ship, edge, tail_node, near, departure, work)
+        blocks = at == sample and status not in (OK, OUTSIDE_PERIOD)
+        if blocks and then <= opens + OPENING_TOLERANCE:
+            if high == math.inf:
+                return departure, then, status, at
+            low = departure
+        else:  # past the opening: what is open between must not be passed over
+            high, found = departure, (departure, then, status, at)
+            before = departure - 0.9 * OPENING_TOLERANCE
+            if before > low:
+                near = interval_near(sea.times, k, before)
+                then, status, at = _march_at(
+                    network, sea, ship, edge, tail_node, near, before, work
+                )
+                blocks = at == sample and status not in (OK, OUTSIDE_PERIOD)
+                if blocks and then <= opens + OPENING_TOLERANCE:
+                    break
+        if high - low <= OPENING_TOLERANCE:
+            break
+        step = 0.5 * (high - low)
+    return found
+
+
+@kernel_only
+def _push(status):
+    """Return how much later than an opening a ship aims at [s]: data begin at their times."""
+    return 0.0 if status == NO_DATA else 0.5 * OPENING_TOLERANCE
+
+
+@kernel_only
+def _next_open_departure(network, sea, ship, where, since, latest, bounds, work):
+    """Return (departure, arrival, status, interval) of the first departure that is open.
+
+    ``since`` is a blocked departure, ``bounds`` are the time from which passing a sample is of no
+    use and the least time of the edge. All departures that reach the blocking sample before it
+    opens are blocked, since a later ship is not there before an earlier one; only ships that are
+    very slow at first may be overtaken, and are followed in small steps.
+    """
+    edge, tail_node, k = where
+    useless, least_time = bounds
+    then, status, sample = _march_at(network, sea, ship, edge, tail_node, k, since, work)
+    push, rate, crawl = _push(status), 1.0, 1.0
+    for _ in range(_MOST_MARCHES):
+        if status in (OK, OUTSIDE_PERIOD):
+            return since, then, status, k
+        blocked = (status, sample)
+        opens = _opening_on_edge(
+            network, sea, ship, (edge, tail_node, k), then, blocked, useless, work
+        )
+        slow = then - since > _SLOW * least_time
+        if since >= latest or not (opens < math.inf or slow):
+            break
+        step = max((opens - then) / rate, 0.0) + push
+        if slow:
+            step = min(step, crawl)
+        step = min(step, latest - since)
+        before, at, moment = since, sample, then
+        since, then, status, sample = _first_past(
+            network, sea, ship, (edge, tail_node, k), before, (at, moment, opens), step, work
+        )
+        k = interval_near(sea.times, k, since)
+        rate, same = 1.0, sample == at and status == blocked[0]
+        crawl = min(2.0 * crawl, _SHORT_STEP) if then < moment else math.inf
+        crawl = crawl if same else 1.0
+        if not same:
+            push = _push(status)
+        elif then < opens - push:
+            rate = min(max((then - moment) / (since - before), 0.1), 10.0)
+        elif status != NO_DATA:
+            push = min(2.0 * push, 60.0)  # rounding of the root
+    return since, math.inf, status, k
+
+
+@kernel_only
+def _cost_at(network, sea, ship, where, since, factor, departure, work):
+    """Return (waiting plus weighted sailing [s], arrival) of a departure; inf where blocked."""
+    edge, tail_node, k = where
+    k = interval_near(sea.times, k, departure)
+    arrival, status, _ = _march_at(network, sea, ship, edge, tail_node, k, departure, work)
+    if status != OK:
+        return math.inf, math.inf
+    return departure - since + factor * (arrival - departure), arrival
+
+
+@kernel_only
+def _best_in_stretch(network, sea, ship, where, since, factor, stretch, work):
+    """Return (departure, arrival, cost) of the best of a stretch of departures that begins open.
+
+    Departures every 20 s and, near its begin, at halved distances to it are tried, then a golden
+    section round the best.
+    """
+    begin, end = stretch
+    best, at, found = math.inf, end, math.inf
+    low, high = begin, end
+    length = end - begin
+    count = max(min(math.ceil(length / _SHORT_STEP), _MOST_STEPS), 1)
+    for probe in range(1, count + _PROBES + 1):
+        share = probe / count
+        earlier, later = (probe - 1) / count, (probe + 1) / count
+        if probe > count:
+            share = 0.5 ** (probe - count) / count
+            earlier, later = 0.5 * share, 2.0 * share
+        departure = begin + length * share
+        cost, arrival = _cost_at(network, sea, ship, where, since, factor, departure, work)
+        if cost < best:
+            best, at, found = cost, departure, arrival
+            low, high = begin + length * earlier, min(begin + length * later, end)
+    if best == math.inf:
+        return at, found, best
+    one, two = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+    at_one, first = _cost_at(network, sea, ship, where, since, factor, one, work)
+    at_two, second = _cost_at(network, sea, ship, where, since, factor, two, work)
+    while high - low > _CLOSE:
+        if at_one < best:
+            best, at, found = at_one, one, first
+        if at_two < best:
+            best, at, found = at_two, two, second
+        earlier = at_one <= at_two
+        if at_one == math.inf and at_two == math.inf:  # the best is beside closed departures
+            earlier = at <= two
+        if earlier:
+            high, two, at_two, second = two, one, at_one, first
+            one = high - _GOLDEN * (high - low)
+            at_one, first = _cost_at(network, sea, ship, where, since, factor, one, work)
         else:
-            closed, guess, checking = probe, math.nan, False
-            if status == DEPTH:
-                sample = work[2] if then > probe else work[1]
-                lack = required - water_depth(sample, sea.channel_index, depth)
-                if 0.0 < lack < lacked and then > passed:
-                    opens = then + lack * (then - passed) / (lacked - lack)
-                    guess = opens - (then - probe) + 0.5 * OPENING_TOLERANCE
-                passed, lacked = then, lack
-        if not guessed:
-            share = min(60.0 * share, 0.5)
-    return open_from, arrival
+            low, one, at_one, first = one, two, at_two, second
+            two = low + _GOLDEN * (high - low)
+            at_two, second = _cost_at(network, sea, ship, where, since, factor, two, work)
+    return at, found, best
+
+
+@inlined_by_numba
+def waiting_is_useless(sea, k, t, arrival, status, enough, weighted):
+    """Return whether a ship that may leave at t gains nothing by a wait.
+
+    ``enough`` as in `wait_for_edge`; ``weighted`` is (factor, least time of the edge).
+    """
+    factor, least_time = weighted
+    if status != OK or arrival - t > _SLOW * least_time:
+        return False
+    return sea.times[k + 1] - t + factor * least_time >= min(enough, factor * (arrival - t))
 
 
 @kernel_only
@@ -93,51 +250,51 @@ def wait_for_edge(
 
     Notes
     -----
-    Candidates are t itself, every later time of the data, where one of these is blocked the
-    departure that passes the blocking sample at that time (fields are linear between times, so a
-    sample is at its best at one of them: a short window at high water is found), and the opening
-    before a candidate that is open (to 0.1 s). Of their arrivals the least is taken: the
-    suffix minimum (van Halem 2019, section 3.4, corrected for series that start blocked). A better
-    departure between two that are both open is not looked for, and a window between two times can
-    be missed where one sample closes as another opens.
+    Candidates are t itself, every moment at which the edge opens (to 0.1 s; see
+    `opening_of_sample`), every later time of the data, and where the cost falls after one of
+    these, the least one before the next. A later ship is taken to pass each sample later than an
+    earlier one.
     """
-    departure, best = t, math.inf
-    if status == OK:
-        best = factor * (arrival - t)
-    before, before_status = t, status
-    last = sea.times.shape[0] - 1
-    for j in range(k + 1, last + 1):
-        s, interval = min(sea.times[j], until), min(j, last - 1)
-        if s < sea.times[j]:
-            interval = j - 1
-        if s <= before:
-            if s < until:
-                continue
+    departure, best, found = t, math.inf, status
+    latest = min(until, sea.times[-1])
+    s, then, now = t, arrival, status
+    if now == OK:  # the arrival may be a lower bound only
+        then = _march_at(network, sea, ship, edge, tail, k, t, work)[0]
+    for _ in range(_MOST_MARCHES):
+        useless = t + min(best, enough) - factor * least_time
+        if s >= useless or s > latest:
             break
-        earliest = s if before_status == OK else before
-        if earliest - t + factor * least_time >= min(best, enough):
+        if now not in (OK, OUTSIDE_PERIOD):
+            passed = t + min(best, enough) / min(factor, 1.0)
+            s, then, now, k = _next_open_departure(
+                network, sea, ship, (edge, tail, k), s, latest, (passed, least_time), work
+            )
+            if now not in (OK, OUTSIDE_PERIOD) or s >= useless:
+                break
+        cost = math.inf
+        if now == OK:
+            cost = s - t + factor * (then - s)
+        if cost < best:
+            departure, arrival, best, found = s, then, cost, OK
+        useless = t + min(best, enough) - factor * least_time
+        end = min(sea.times[k + 1], latest, useless)
+        if not end > s:
             break
-        then, now = _sail_edge_at(network, sea, ship, edge, tail, interval, s, work)
-        if now == OUTSIDE_PERIOD:
+        then, now, _ = _march_at(
+            network, sea, ship, edge, tail, interval_near(sea.times, k, end), end, work
+        )
+        at_end = end - t + factor * (then - end) if now == OK else math.inf
+        soon = s + min(max(0.002 * (end - s), 1.0), end - s)
+        where = (edge, tail, k)
+        nearby = _cost_at(network, sea, ship, where, t, factor, soon, work)[0]
+        if nearby < cost - 1e-6 or at_end < cost or (cost == math.inf and best == math.inf):
+            one, two, three = _best_in_stretch(network, sea, ship, where, t, factor, (s, end), work)
+            if three < best:
+                departure, arrival, best, found = one, two, three, OK
+        s, k = end, interval_near(sea.times, k, end)
+        if s in (latest, useless):
             break
-        start, found = s, now
-        if now != OK and s - (then - s) > before:  # pass the sample that blocks at a time of data
-            start = s - (then - s)
-            then, found = _sail_edge_at(network, sea, ship, edge, tail, j - 1, start, work)
-        if found == OK:
-            value = start - t + factor * (then - start)
-            if value < best:
-                departure, arrival, best, status = start, then, value, OK
-            if before_status != OK:
-                useless = t + min(best, enough) - factor * least_time
-                start, then = _find_opening(
-                    network, sea, ship, edge, tail, j - 1, before, start, then, useless, work
-                )
-                value = start - t + factor * (then - start)
-                if value < best:
-                    departure, arrival, best, status = start, then, value, OK
-        before, before_status = s, now
-    return departure, arrival, status
+    return departure, arrival if best < math.inf else math.inf, found
 
 
 @allocation_free
@@ -165,7 +322,7 @@ def edge_arrivals(network, sea, ship, edges, tails, departures, arrivals, status
                 arrivals[i, j] = math.inf
                 statuses[i, j] = OUTSIDE_PERIOD if departures[j] == departures[j] else NO_DATA
                 continue
-            arrivals[i, j], statuses[i, j] = _sail_edge_at(
+            arrivals[i, j], statuses[i, j], _ = _march_at(
                 network, sea, ship, edges[i], tails[i], k, departures[j], work
             )
             if statuses[i, j] != OK:

@@ -22,7 +22,7 @@ from thalweg.kernels.leg.edge_sailing import (
     sample_station,
 )
 from thalweg.kernels.search import heap
-from thalweg.kernels.search.edge_departure import wait_for_edge
+from thalweg.kernels.search.edge_departure import wait_for_edge, waiting_is_useless
 from thalweg.kernels.search.field_bounds import never_deep_enough
 
 
@@ -133,12 +133,12 @@ def _best_departure(network, sea, ship, query, node, edge, k, time, enough, work
     arrival, status = sail_edge(
         network, sea, ship, edge, k, time, cutoff, (work[0], work[2], work[3])
     )
-    if not (query.wait and network.can_wait[node]):
-        return time, arrival, status
-    pause = sea.times[k + 1] - time  # until the next time of the data
-    useful = min(enough, factor * (arrival - time))
-    if status == OK and pause + factor * quickest >= useful:
-        return time, arrival, status
+    useless = status == OK and arrival >= latest
+    may_wait = query.wait and network.can_wait[node]
+    if not may_wait or waiting_is_useless(
+        sea, k, time, arrival, status, enough, (factor, quickest)
+    ):
+        return time, math.inf if useless else arrival, status
     station, until = network.station[node], network.until[node]
     return wait_for_edge(
         network, sea, ship, edge, station, k, time, until,

@@ -20,7 +20,7 @@ from thalweg.kernels.codes import (
 from thalweg.kernels.compilation.decorators import allocation_free, inlined_by_numba
 from thalweg.kernels.leg.edge_sailing import MarchCutoff, interval_of, sail_edge, sample_station
 from thalweg.kernels.search import heap
-from thalweg.kernels.search.edge_departure import wait_for_edge
+from thalweg.kernels.search.edge_departure import wait_for_edge, waiting_is_useless
 
 CURRENT_DIRECTIONS = 16  # directions for which the strongest current is tabulated
 _SHRINK = 1.0 - 1e-7  # so that bounds are below the exact values in single precision
@@ -256,15 +256,13 @@ def _best_passage(
     arrival, status = sail_edge(
         network, sea, ship, edge, k, time, cutoff, (work[0], work[2], work[3])
     )
-    if not (trip.wait and network.can_wait[node]):
-        return time, arrival, status
-    pause = sea.times[k + 1] - time  # until the next time of the data
-    useful = min(enough, factor * (arrival - time))
-    if status == OK and pause + least_edge_time >= useful:
-        return time, arrival, status
+    useless = status == OK and arrival >= cutoff.latest
+    may_wait, least = trip.wait and network.can_wait[node], least_edge_time / factor
+    if not may_wait or waiting_is_useless(sea, k, time, arrival, status, enough, (factor, least)):
+        return time, math.inf if useless else arrival, status
     return wait_for_edge(
         network, sea, ship, edge, node, k, time, until,
-        arrival, status, factor, least_edge_time / factor, enough, work,
+        arrival, status, factor, least, enough, work,
     )  # fmt: skip
 
 
