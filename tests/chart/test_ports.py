@@ -5,9 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from thalweg.chart.countries import country_code_of
 from thalweg.chart.port_names import normalised_port_name, place_name, written_names
-from thalweg.chart.ports import PORTS
+from thalweg.chart.ports import PORTS, country_code_of
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import distance, parse_position
 from thalweg.core.units import NAUTICAL_MILE

@@ -15,7 +15,7 @@ from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError
 from thalweg.network import check_network, mesh, shortest_path, spacing_fraction, with_endpoints
-from thalweg.network.triangular_mesh.node_neighbours import pairs_by_ring
+from thalweg.network.triangular_mesh.mesh_builder import pairs_by_ring
 from thalweg.network.triangular_mesh.thinning import dimensionless_curl, thin_by_spacing
 
 OPEN = Chart.open_water()

@@ -12,11 +12,10 @@ import gzip
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from importlib import resources
 from typing import Final
 
-from thalweg.chart.countries import country_code_of
 from thalweg.chart.port_names import normalised_port_name, place_name, written_names
 from thalweg.core.errors import InputError, close_matches
 from thalweg.core.geodesy import distance, format_position
@@ -291,3 +290,22 @@ def _port_from_row(row: dict[str, str]) -> Port:
 
 
 PORTS = Ports()
+
+
+def country_code_of(text: str) -> str:
+    """Return the ISO code of a country given by code or name ('NL', 'Netherlands'), '' if unknown.
+
+    Case and accents do not matter.
+    """
+    return _codes_by_name().get(normalised_port_name(text), "")
+
+
+@cache
+def _codes_by_name() -> dict[str, str]:
+    table = resources.files("thalweg.chart").joinpath("data/countries.csv")
+    codes: dict[str, str] = {}
+    for row in csv.DictReader(table.read_text(encoding="utf-8").splitlines()):
+        names = (row["country_code"], row["name"], *row["other_names"].split(";"))
+        codes.update({normalised_port_name(name): row["country_code"] for name in names})
+    codes.pop("", None)
+    return codes

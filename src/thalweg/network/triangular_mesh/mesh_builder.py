@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import wrap_longitude
-from thalweg.core.types import BoolArray, FloatArray, IntArray
+from thalweg.core.types import BoolArray, FloatArray, Int32Array, IntArray
 from thalweg.network.assembly import (
     Pairs,
     add_counts,
@@ -27,7 +27,6 @@ from thalweg.network.assembly import (
 from thalweg.network.assembly import measured_pairs as measure_pairs
 from thalweg.network.conformal_projection import mercator_projection
 from thalweg.network.network import Network, NetworkMeta, Stations
-from thalweg.network.triangular_mesh.node_neighbours import pairs_by_ring
 from thalweg.network.triangular_mesh.thinning import spacing_fraction, thin_by_spacing
 
 if TYPE_CHECKING:
@@ -273,3 +272,28 @@ def _pass_through_nodes(pairs: Pairs, n: int) -> BoolArray:
     through = np.zeros(count, bool)
     through[pair[straight]] = True
     return through
+
+
+def adjacency(triangles: IntArray, n: int) -> Any:
+    """Return the symmetric adjacency of a triangulation as a sparse boolean matrix."""
+    from scipy.sparse import coo_array
+
+    a, b, c = np.asarray(triangles).T
+    rows, columns = np.concatenate([a, b, c, b, c, a]), np.concatenate([b, c, a, a, b, c])
+    return coo_array((np.ones(len(rows), bool), (rows, columns)), shape=(n, n)).tocsr()
+
+
+def pairs_by_ring(triangles: IntArray, n: int, rings: int) -> list[tuple[Int32Array, Int32Array]]:
+    """Return for ring 1, 2, ... the pairs (a < b) of nodes that many edges apart."""
+    near = adjacency(triangles, n).astype(np.int8)
+    reached, known = near, np.empty(0, np.int64)
+    result = []
+    for _ in range(rings):
+        entries = reached.tocoo()
+        upper = entries.row < entries.col
+        keys = entries.row[upper].astype(np.int64) * n + entries.col[upper]
+        new = np.setdiff1d(keys, known)
+        result.append(((new // n).astype(np.int32), (new % n).astype(np.int32)))
+        known = np.union1d(known, keys)
+        reached = ((reached @ near) > 0).astype(np.int8)
+    return result

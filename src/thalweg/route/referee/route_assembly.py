@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,16 +27,19 @@ from thalweg.route.referee.sailing_physics import (
     conditions_at,
     sample_sea_and_depth,
 )
-from thalweg.route.referee.waiting_limits import waiting_violations
 from thalweg.route.route import Route, Violation
 from thalweg.route.track import Track
 from thalweg.ship.consumption import engine_order
 from thalweg.ship.fuel_prices import FuelTerms
 from thalweg.ship.models.known_speed_model import speed_loss_notes
 
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
 OUT_OF_RANGE = "The speed loss is used outside its range"  #: start of a note of a route
 MAX_CHECK_POINTS = 10_000  #: further points at which limits are checked (fewer on coarse data)
 CHECK_POINTS_PER_CELL = 8  #: of gridded data
+WAITING_NOT_ALLOWED = "waiting not allowed"
 _MAX_CHECK_INTERVAL = 300.0  # longest time between two checks of the depth while waiting [s]
 
 
@@ -311,3 +315,24 @@ def _repeated_waypoint(
         charted[:] = np.asarray(world.chart.depths.at(track.lat[index], track.lon[index]), float)
     zero = np.zeros(count, dtype=np.int64)
     return TrackPoints(lat, lon, np.zeros(count), zero, zero, np.zeros(count), charted)
+
+
+def waiting_violations(chart: Chart | None, track: Track, arrive: FloatArray) -> list[Violation]:
+    """Return the waits at waypoints where the chart allows none; the first waypoint is a berth.
+
+    Parameters
+    ----------
+    arrive : float64 array (legs,)
+        When each leg ends [s since 1970]; NaN where the ship does not get.
+    """
+    waits = np.flatnonzero(track.wait[1:-1]) + 1
+    if chart is None or not waits.size:
+        return []
+    allowed = chart.may_wait(track.lat[waits], track.lon[waits])
+    return [
+        Violation(
+            WAITING_NOT_ALLOWED, float(arrive[k - 1]), float(track.lat[k]), float(track.lon[k])
+        )
+        for k in waits[~allowed]
+        if np.isfinite(arrive[k - 1])
+    ]

@@ -2,13 +2,18 @@
 
 Source: M.W.C. Oosterveld and P. van Oossanen, "Further computer-analyzed data of the Wageningen
 B-screw series", International Shipbuilding Progress 22 (1975) 251-262: polynomials of 39 and 47
-terms for Rn = 2e6, and their Reynolds correction. The coefficients agree between several
-independent reprints; the worked example of Holtrop and Mennen (1982) is among the tests.
+terms for Rn = 2e6, and their Reynolds correction (``b_series_coefficients.csv``). The coefficients
+agree between several independent reprints; the worked example of Holtrop and Mennen (1982) is among
+the tests.
 """
 
 from __future__ import annotations
 
+import csv
 from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,7 +21,6 @@ from numpy.typing import ArrayLike
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.core.units import SEA_WATER_DENSITY
-from thalweg.ship.methods.propulsion.b_series_coefficients import polynomial_terms
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
 
@@ -353,3 +357,30 @@ def b_series_validity(propeller: Propeller) -> list[RangeNote]:
         "pitch ratio": (propeller.pitch_ratio, 0.5, 1.4),
     }
     return range_notes("b_series", ranges)
+
+
+SeriesQuantity = Literal["thrust", "torque", "thrust_reynolds", "torque_reynolds"]
+_COLUMNS = ("coefficient", "advance_ratio", "pitch_ratio", "area_ratio", "blades", "log_reynolds")
+
+
+@cache
+def polynomial_terms(quantity: SeriesQuantity) -> FloatArray:
+    """Return the terms of one polynomial of the B-series.
+
+    Parameters
+    ----------
+    quantity : {"thrust", "torque", "thrust_reynolds", "torque_reynolds"}
+        K_T or K_Q at Rn = 2e6, or the Reynolds correction of one of them.
+
+    Returns
+    -------
+    ndarray
+        Shape ``(terms, 6)``: the coefficient, and the powers of J, P/D, A_E/A_0, Z and
+        log10(Rn) - 0.301; read-only.
+    """
+    file = resources.files("thalweg.ship.methods").joinpath("data", "b_series_coefficients.csv")
+    lines = file.read_text(encoding="utf-8").splitlines()
+    rows = [row for row in csv.DictReader(lines) if row["quantity"] == quantity]
+    terms = np.array([[float(row[column]) for column in _COLUMNS] for row in rows])
+    terms.flags.writeable = False
+    return terms
