@@ -25,6 +25,7 @@ from thalweg.cli import (
     waiting_command,
 )
 from thalweg.cli.exit_codes import INTERRUPTED, SUCCESS, exit_code, print_error
+from thalweg.cli.history import distances_command, history_command
 from thalweg.cli.options import accept_negative_positions, add_quiet_option
 from thalweg.cli.progress import ProgressMessages
 from thalweg.cli.serve import serve_command
@@ -36,6 +37,7 @@ _COMMANDS = (
     plan_command.add_command,
     evaluate_command.add_command,
     distance_command.add_command,
+    distances_command.add_command,
     inspect_command.add_command,
     fetch_command.add_command,
     ship_command.add_command,
@@ -44,6 +46,7 @@ _COMMANDS = (
     study_command.add_command,
     waiting_command.add_command,
     tracks_command.add_command,
+    history_command.add_command,
     serve_command.add_command,
     demo_command.add_command,
 )

@@ -10,6 +10,7 @@ from thalweg.cli import option_values, options
 from thalweg.cli.coast.layered_options import add_layered_options, layered_request
 from thalweg.cli.exit_codes import INTERRUPTED, NO_ROUTE, SUCCESS
 from thalweg.cli.first_run import announce_compilation
+from thalweg.cli.history.corridor_options import add_corridor_option, requested_network
 from thalweg.cli.tables import print_plan
 from thalweg.kernels.compilation import warm_up
 
@@ -129,12 +130,14 @@ def _add_network_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--network",
         default="auto",
-        metavar="auto|lattice|mesh|globe|layered",
+        metavar="auto|lattice|mesh|globe|layered|history:NET",
         help="network to search: a regular grid around the route (lattice), the mesh of the sea "
-        "data (mesh), a global grid (globe), or layers between every two places (layered); "
+        "data (mesh), a global grid (globe), layers between every two places (layered), or the "
+        "water that ships usually use, from a file of thalweg history build (history:NET); "
         "default: auto",
     )
     add_layered_options(parser)
+    add_corridor_option(parser)
     parser.add_argument(
         "--resolution",
         type=float,
@@ -227,7 +230,7 @@ def run(arguments: argparse.Namespace) -> int:
             ship=ship,
             sea=sea,
             chart=option_values.open_chart(arguments),
-            network=arguments.network,
+            network=requested_network(arguments),
             resolution=resolution,
             proof=arguments.proof,
             progress=arguments.progress,

@@ -14,6 +14,7 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
+from thalweg.network.history.history_corridor import HistoryCorridor
 from thalweg.planning.approach_sailing import (
     ApproachSailing,
     plan_along_approaches,
@@ -37,7 +38,11 @@ from thalweg.planning.request.chart_restrictions import (
 from thalweg.planning.request.coverage_check import check_argument_types, endpoints_within_coverage
 from thalweg.planning.request.early_checks import check_request
 from thalweg.planning.request.lane_choice import add_traffic_schemes
-from thalweg.planning.request.network_choice import NetworkBuilder, NetworkChoice
+from thalweg.planning.request.network_choice import (
+    NetworkBuilder,
+    NetworkChoice,
+    history_corridor,
+)
 from thalweg.planning.request.offing_choice import chosen_offing, restrict_passages
 from thalweg.planning.request.ordered_speed import ordered_setting, with_order
 from thalweg.planning.request.requirements import derive_requirements
@@ -69,7 +74,7 @@ def plan(
     ship: Ship,
     sea: Sea,
     chart: Chart | None = None,
-    network: str | NetworkBuilder = "auto",
+    network: str | NetworkBuilder | HistoryCorridor = "auto",
     resolution: float | None = None,
     proof: float | None = None,
     progress: Callable[[str], None] | None = None,
@@ -86,9 +91,11 @@ def plan(
         Currents, levels, wind and waves. There is no default; use `Sea.calm` for still water.
     chart : Chart, optional
         Land, depth and zones; by default the GSHHG coastline at resolution "i".
-    network : {"auto", "lattice", "mesh", "globe", "layered"} or callable
-        How the network is built; see
-        `thalweg.planning.NetworkChoice`.
+    network : {"auto", "lattice", "mesh", "globe", "layered"}, "history:FILE" or callable
+        How the network is built; see `thalweg.planning.NetworkChoice`. With a file made by
+        ``thalweg history build``, or a
+        `thalweg.network.history.history_corridor.HistoryCorridor`, the plan stays in the water
+        that ships usually use.
     resolution : float, optional
         Spacing of the network [m]; by default it depends on the distance.
     proof : float, optional
@@ -164,6 +171,25 @@ def plan(
             "Correct it, or leave it out.",
             field="proof",
         )
+    corridor = history_corridor(network)
+    if corridor is not None:
+        from thalweg.planning.history_plans import CorridorRequest, plan_in_corridor
+
+        def plan_one(open_water: Chart, builder: Any) -> Plan:
+            return plan(
+                voyage,
+                ship=ship,
+                sea=sea,
+                chart=open_water,
+                network=builder,
+                resolution=resolution,
+                proof=proof,
+                progress=progress,
+            )
+
+        request = CorridorRequest(voyage, corridor, chart, _endpoints(voyage, chart), plan_one)
+        return plan_in_corridor(request, ship.draught)
+    assert not isinstance(network, HistoryCorridor)  # planned above
     choice = NetworkChoice(network, resolution, voyage.layered)
     if choice.layered is not None:
         choice.layered.shapes(len(voyage.via) + 1)  # refuses lists of another length

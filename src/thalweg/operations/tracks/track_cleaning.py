@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import distance, wrap_longitude
+from thalweg.core.geodesy import distance, rough_lengths, wrap_longitude
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT
 
 _MIN_UNDER_WAY_SPEED = 2.0  #: measured speeds are checked above this speed of positions [m/s]
 _SPEED_RATIO_TOLERANCE = 0.2
+_ROUGH = 0.02  # rough lengths decide beside this share of the limit
 
 
 @dataclass(frozen=True)
@@ -212,8 +213,7 @@ def _reachable_positions(
     keep, jumps = np.ones(count, dtype=bool), np.zeros(count, dtype=bool)
     if count < 2:
         return keep, jumps
-    sailed = distance(raw.lat[:-1], raw.lon[:-1], raw.lat[1:], raw.lon[1:])
-    cuts = np.flatnonzero(sailed > rules.fastest * np.diff(raw.time)) + 1
+    cuts = np.flatnonzero(_too_fast(raw, rules)) + 1
     starts = np.concatenate([[0], cuts])
     ends = np.concatenate([cuts, [count]])
     long = ends - starts > rules.max_outliers
@@ -232,6 +232,16 @@ def _reachable_positions(
         jumps[start] = whole and not fits
         last = end - 1 if keep[start] else last
     return keep, jumps
+
+
+def _too_fast(raw: RawTrack, rules: CleaningRules) -> NDArray[np.bool_]:
+    """Return which steps are too fast; exact lengths only where rough ones do not decide."""
+    ratio = rough_lengths(raw.lat, raw.lon) / (rules.fastest * np.diff(raw.time))
+    fast = ratio > 1.0
+    near = np.flatnonzero(np.abs(ratio - 1.0) < _ROUGH)
+    ends = raw.lat[near], raw.lon[near], raw.lat[near + 1], raw.lon[near + 1]
+    fast[near] = distance(*ends) > rules.fastest * np.diff(raw.time)[near]
+    return np.asarray(fast)
 
 
 def _reachable(raw: RawTrack, i: int, j: int, rules: CleaningRules) -> bool:

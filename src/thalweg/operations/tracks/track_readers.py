@@ -34,6 +34,7 @@ COLUMN_NAMES: Final[dict[str, tuple[str, ...]]] = {
     "speed": ("sog", "speed_over_ground", "speed", "vessel_sog", "velocity"),
     "course": ("cog", "course_over_ground", "course"),
     "draught": ("draught", "draft"),
+    "length": ("length", "loa", "ship_length", "vessel_length", "length_overall"),
     "power": ("power", "engine_power", "shaft_power", "brake_power"),
     "vessel": ("mmsi", "imo", "vessel", "vessel_name", "ship", "ship_name", "name"),
 }
@@ -42,6 +43,7 @@ UNIT_FACTORS: Final[dict[str, dict[str, float]]] = {
     "speed": {"kn": KNOT, "kt": KNOT, "knots": KNOT, "m_s": 1.0, "ms": 1.0, "km_h": 1.0 / 3.6},
     "power": {"kw": 1e3, "w": 1.0, "mw": 1e6},
     "draught": {"m": 1.0, "dm": 0.1, "cm": 0.01},
+    "length": {"m": 1.0, "ft": 0.3048},
     "course": {"deg": float(np.pi / 180.0), "rad": 1.0},
     "lat": {"deg": 1.0},
     "lon": {"deg": 1.0},
@@ -89,13 +91,13 @@ def read_tracks(
         file, or fewer than two positions remain.
     """
     table, name = _table(source)
-    found = _columns(table, dict(columns or {}), name)
+    found = recognised_columns(table, dict(columns or {}), name)
     notes: list[str] = []
     ships, rows = _one_vessel(table, found, vessel)
     table = table[rows]
-    time = _times(table, found, time_format, name, notes)
+    time = track_times(table, found, time_format, name, notes)
     values = {
-        kind: _numbers(table[column], kind, column, notes)
+        kind: column_in_si(table[column], kind, column, notes)
         for kind, column in found.items()
         if kind not in ("time", "date", "vessel")
     }
@@ -142,8 +144,28 @@ def _split_unit(column: str, kind: str) -> tuple[str, str | None]:
     return plain, None
 
 
-def _columns(table: pd.DataFrame, given: dict[str, str], name: str) -> dict[str, str]:
-    """Return the column of every kind that is present."""
+def recognised_columns(table: pd.DataFrame, given: dict[str, str], name: str) -> dict[str, str]:
+    """Return the column of every kind that is present.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Its column names are used.
+    given : dict of str to str
+        Columns by kind that the user states.
+    name : str
+        Of the file, for messages.
+
+    Returns
+    -------
+    dict of str to str
+        Column by kind; see ``COLUMN_NAMES``.
+
+    Raises
+    ------
+    InputError
+        If a kind or a stated column is unknown, or time or position are missing.
+    """
     unknown = sorted(set(given) - set(COLUMN_NAMES))
     absent = sorted(column for column in given.values() if column not in table.columns)
     if unknown or absent:
@@ -202,8 +224,25 @@ def _one_vessel(
     return str(vessel).strip(), (names == str(vessel).strip()).to_numpy()
 
 
-def _numbers(column: pd.Series[Any], kind: str, header: str, notes: list[str]) -> FloatArray:
-    """Return a column in SI units; NaN where there is no number."""
+def column_in_si(column: pd.Series[Any], kind: str, header: str, notes: list[str]) -> FloatArray:
+    """Return a column in SI units; NaN where there is no number.
+
+    Parameters
+    ----------
+    column : Series
+        Numbers or texts.
+    kind : str
+        One of ``UNIT_FACTORS``.
+    header : str
+        Name of the column, with its unit or without.
+    notes : list of str
+        A note is added where the unit is assumed.
+
+    Returns
+    -------
+    float64 array
+        [m/s], [W], [m], [rad] or [deg].
+    """
     import pandas as pd
 
     values = pd.to_numeric(column, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan)
@@ -219,14 +258,37 @@ def _numbers(column: pd.Series[Any], kind: str, header: str, notes: list[str]) -
     return np.asarray(values * units[unit])
 
 
-def _times(
+def track_times(
     table: pd.DataFrame,
     found: dict[str, str],
     time_format: str | None,
     name: str,
     notes: list[str],
 ) -> FloatArray:
-    """Return times [s since 1970-01-01T00:00Z]; NaN where unreadable."""
+    """Return times [s since 1970-01-01T00:00Z]; NaN where unreadable.
+
+    Parameters
+    ----------
+    table : DataFrame
+    found : dict of str to str
+        Column by kind, by `recognised_columns`.
+    time_format : str or None
+        As in ``strptime``; None to recognise it.
+    name : str
+        Of the file, for messages.
+    notes : list of str
+        A note is added where the order of day and month is found from the rows.
+
+    Returns
+    -------
+    float64 array
+        One for each row.
+
+    Raises
+    ------
+    InputError
+        If times cannot be read or are ambiguous.
+    """
     import pandas as pd
 
     column = table[found["time"]]

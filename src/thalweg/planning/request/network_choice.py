@@ -8,12 +8,15 @@ from typing import TypeAlias
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.network import LayeredRequest, Network
+from thalweg.network.history.history_corridor import HistoryCorridor
+from thalweg.network.history.history_file import read_history
 from thalweg.network.layered.section_shape import SectionShape
 
 #: A builder of the user: (chart, start, goal, spacing) -> Network with its endpoints attached.
 NetworkBuilder: TypeAlias = Callable[..., Network]
 
 NETWORK_KINDS = ("auto", "lattice", "mesh", "globe", "layered")
+_HISTORY = "history:"  # before the file of a history network
 
 
 @dataclass(frozen=True)
@@ -53,7 +56,9 @@ class NetworkChoice:
                 field="layered",
             )
         if not callable(self.network) and self.network not in NETWORK_KINDS:
-            raise unknown_name_error("network", str(self.network), NETWORK_KINDS)
+            raise unknown_name_error(
+                "network", str(self.network), (*NETWORK_KINDS, f"{_HISTORY}FILE")
+            )
         number = isinstance(self.spacing, (int, float)) and not isinstance(self.spacing, bool)
         if self.spacing is not None and not (number and 0.1 <= self.spacing <= 1e6):
             raise InputError(
@@ -81,3 +86,27 @@ class NetworkChoice:
         """Shape of the section that is built; None where it is chosen."""
         number, count = self.section
         return None if self.layered is None else self.layered.shapes(count)[number]
+
+
+def history_corridor(network: object) -> HistoryCorridor | None:
+    """Return the corridor of a request for a history network; None for other networks.
+
+    Parameters
+    ----------
+    network : object
+        A `HistoryCorridor`, or text such as ``"history:routes.json"``.
+
+    Returns
+    -------
+    HistoryCorridor or None
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read.
+    """
+    if isinstance(network, HistoryCorridor):
+        return network
+    if not (isinstance(network, str) and network.startswith(_HISTORY)):
+        return None
+    return HistoryCorridor(read_history(network.removeprefix(_HISTORY)))

@@ -84,14 +84,27 @@ def resolve_endpoint(place: Place, chart: Chart, what: str) -> Endpoint:
     if isinstance(place, str):
         position = parse_position(place)
         if position is None:
-            return _resolve_port(PORTS.lookup(place), chart, what)
+            return resolve_port(PORTS.lookup(place), chart, what)
     else:
         position = place
     return _resolve_position(*position, chart, what)
 
 
-def _resolve_port(port: Port, chart: Chart, what: str) -> Endpoint:
-    """Return the sea end of a port, or the nearest water on a chart without its approach."""
+def resolve_port(port: Port, chart: Chart, what: str) -> Endpoint:
+    """Return the sea end of a port, or the nearest water on a chart without its approach.
+
+    Parameters
+    ----------
+    port : Port
+    chart : Chart
+    what : str
+        What the port is, for messages.
+
+    Raises
+    ------
+    InputError
+        If the port cannot be reached on the chart.
+    """
     approach = _usable_approach(port, chart)
     if approach is not None:
         return Endpoint(port.label, *approach.sea_end, 0.0, is_port=True, approach=approach)
@@ -128,7 +141,7 @@ def _resolve_position(lat: float, lon: float, chart: Chart, what: str) -> Endpoi
     )
     water = chart.nearest_navigable(lat, lon, largest=MAX_SNAP_POSITION)
     if near is not None and (water is None or near[1] <= water[2]):
-        port = _resolve_port(near[0], chart, what)
+        port = resolve_port(near[0], chart, what)
         kind = "in enclosed water" if on_water else "on charted land"
         miles = near[1] / NAUTICAL_MILE
         return replace(

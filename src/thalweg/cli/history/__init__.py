@@ -1,0 +1,1 @@
+"""Commands on historic routes: ``thalweg history`` and ``thalweg distances``."""

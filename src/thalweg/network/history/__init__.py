@@ -1,0 +1,1 @@
+"""Networks of the routes that ships have taken, made from tracks."""

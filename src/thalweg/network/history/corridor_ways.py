@@ -1,0 +1,171 @@
+"""Arcs of the water that ships usually use between two places: lanes along them, their tubes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+
+from thalweg.core import geodesy
+from thalweg.core.types import FloatArray, IntArray
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.kernels.network.static_paths import static_astar
+from thalweg.network.history.arc_statistics import SHARES
+from thalweg.network.history.history_network import HistoryArcs
+
+LANES: Final = 5  #: nodes across the corridor
+_TUBE_SPACING: Final = 5.0 * NAUTICAL_MILE
+_LEAST_HALF_WIDTH: Final = 2.0 * NAUTICAL_MILE
+
+
+@dataclass(frozen=True, eq=False)
+class CorridorWays:
+    """Arcs of a corridor between two places.
+
+    Parameters
+    ----------
+    places : (lat, lon) of ndarray (N,)
+        Nodes [deg].
+    arcs : HistoryArcs
+        All arcs.
+    kept : int64 ndarray
+        Those of the corridor.
+    ends : (int, int)
+        Nodes of start and goal.
+    weight : float64 ndarray (A,)
+        What arcs count in the choice of the way [m].
+    """
+
+    places: tuple[FloatArray, FloatArray]
+    arcs: HistoryArcs
+    kept: IntArray
+    ends: tuple[int, int]
+    weight: FloatArray = field(repr=False)
+
+    def shortest(self) -> float:
+        """Return the least weight from start to goal [m]."""
+        known = _distances(len(self.places[0]), self.arcs, self.weight, self.ends[0])
+        return float(known[self.ends[1]])
+
+    def line(self, arc: int) -> tuple[FloatArray, FloatArray]:
+        """Return the waypoints of an arc [deg], from node to node."""
+        lat, lon = (values.copy() for values in self.arcs.lines.of(arc))
+        for at, node in ((0, self.arcs.tail[arc]), (-1, self.arcs.head[arc])):
+            lat[at], lon[at] = self.places[0][node], self.places[1][node]
+        return lat, lon
+
+    def lanes(self, arc: int, spacing: float) -> tuple[FloatArray, FloatArray]:
+        """Return positions across an arc at its stations.
+
+        Parameters
+        ----------
+        arc : int
+        spacing : float
+            Greatest distance between stations [m].
+
+        Returns
+        -------
+        lat, lon : ndarray (m, 5)
+            [deg]; port to starboard, the middle one on the line. The ends of the arc are left out.
+        """
+        lat, lon, _ = geodesy.densify(*self.line(arc), spacing)
+        lat, lon, course, share = _stations(lat, lon)
+        tube = self.arcs.tube[arc]
+        port = np.minimum(np.interp(share, SHARES, tube[:, 0]), -_LEAST_HALF_WIDTH)
+        starboard = np.maximum(np.interp(share, SHARES, tube[:, 1]), _LEAST_HALF_WIDTH)
+        half = LANES // 2
+        steps = np.arange(1, half + 1) / half
+        aside = np.concatenate(
+            [port[:, None] * steps[::-1], np.zeros((len(share), 1)), starboard[:, None] * steps],
+            axis=1,
+        )
+        found = geodesy.direct(lat[:, None], lon[:, None], course[:, None] + 0.5 * np.pi, aside)
+        for values, middle in zip(found, (lat, lon)):
+            values[:, half] = middle
+        return found[0][1:-1], found[1][1:-1]
+
+    def tube(self, arc: int, radius: float) -> list[Any]:
+        """Return shapely polygons that cover the tube of an arc and its nodes."""
+        lat, lon, _ = geodesy.densify(*self.line(arc), _TUBE_SPACING)
+        _, _, _, share = _stations(lat, lon)
+        tube = self.arcs.tube[arc]
+        port, starboard = (
+            np.maximum(sign * np.interp(share, SHARES, side), _LEAST_HALF_WIDTH)
+            for sign, side in zip((-1.0, 1.0), tube.T)
+        )
+        near = np.maximum(radius * (1.0 - np.minimum(share, 1.0 - share) * 10.0), 0.0)
+        return strip_polygons(np.stack([lat, lon], axis=1), np.maximum(port, near),
+                      np.maximum(starboard, near))  # fmt: skip
+
+
+def _stations(
+    lat: FloatArray, lon: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return a line with its courses [rad] and shares of its length at every position."""
+    length, start, end = geodesy.inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    first, last = np.append(start, end[-1]), np.append(start[0], end)
+    course = np.angle(np.exp(1j * first) + np.exp(1j * last))
+    along = np.concatenate([[0.0], np.cumsum(length)])
+    return lat, lon, course, along / max(float(along[-1]), 1e-9)
+
+
+def strip_polygons(
+    line: FloatArray, port: FloatArray | float, starboard: FloatArray | float | None = None
+) -> list[Any]:
+    """Return polygons that cover the water beside a line (n, 2) [deg], longitudes unwrapped."""
+    import shapely
+
+    lat, lon = line[:, 0], geodesy.unwrap_longitude(line[:, 1])
+    count = len(lat)
+    widths = [np.broadcast_to(np.asarray(w, float), (count,))
+              for w in (port, port if starboard is None else starboard)]  # fmt: skip
+    around = np.arange(16) * (2.0 * np.pi / 16.0)
+    if count > 1 and (np.diff(lat) != 0.0).any() | (np.diff(lon) != 0.0).any():
+        _, _, course, _ = _stations(lat, lon)
+    else:
+        course = np.zeros(count)
+    sides = []
+    for width, sign in zip(widths, (-1.0, 1.0)):
+        y, x = geodesy.direct(lat, lon, course + sign * 0.5 * np.pi, width)
+        sides.append((y, lon + geodesy.wrap_longitude(x - lon)))
+    shapes = []
+    for k in range(count - 1):
+        corners = [(sides[s][1][k + d], sides[s][0][k + d]) for s in (0, 1) for d in (0, 1)]
+        shapes.append(shapely.convex_hull(shapely.multipoints(corners)))
+    for k in (0, count - 1):
+        reach = max(float(widths[0][k]), float(widths[1][k]))
+        y, x = geodesy.direct(lat[k], lon[k], around, reach)
+        shapes.append(
+            shapely.polygons(np.stack([lon[k] + geodesy.wrap_longitude(x - lon[k]), y], 1))
+        )
+    return [shape for shape in shapes if shape.geom_type == "Polygon"]
+
+
+def _distances(count: int, arcs: HistoryArcs, weight: FloatArray, root: int, *,
+               backward: bool = False) -> FloatArray:  # fmt: skip
+    """Return the least weights from a node to all others, or to it."""
+    tail, head = (arcs.head, arcs.tail) if backward else (arcs.tail, arcs.head)
+    order = np.argsort(tail, kind="stable")
+    indptr = np.searchsorted(tail[order], np.arange(count + 1)).astype(np.int64)
+    known, parent = np.empty(count), np.empty(count, np.int64)
+    static_astar(
+        indptr, head[order].astype(np.int32), weight[order], np.zeros(count), root, -1, known,
+        parent,
+    )  # fmt: skip
+    return known
+
+
+def arcs_between(
+    count: int, arcs: HistoryArcs, weight: FloatArray, ends: tuple[int, int], longest: float
+) -> IntArray:
+    """Return the arcs on ways from start to goal that are not too long."""
+    before = _distances(count, arcs, weight, ends[0])
+    after = _distances(count, arcs, weight, ends[1], backward=True)
+    if not np.isfinite(before[ends[1]]):
+        return np.empty(0, np.int64)
+    with np.errstate(invalid="ignore"):
+        whole = before[arcs.tail] + weight + after[arcs.head]
+        forward = before[arcs.tail] < before[arcs.head]
+    near = np.isfinite(whole) & (whole <= longest * before[ends[1]])
+    return np.flatnonzero(near & forward)

@@ -1,0 +1,192 @@
+"""The builder of history networks: from tracks of voyages to nodes and arcs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.core.time import format_time
+from thalweg.core.types import IntArray
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.network.history.arc_lines import GlobeWays, LinesOffLand, lines_off_land
+from thalweg.network.history.arc_statistics import ArcEvidence, FoundArcs, arcs_of_occurrences
+from thalweg.network.history.history_network import (
+    SAILED,
+    HistoryArcs,
+    HistoryNetwork,
+    HistoryNodes,
+)
+from thalweg.network.history.junction_visits import arc_occurrences
+from thalweg.network.history.junctions import CorridorLine, Junctions, find_junctions
+from thalweg.network.history.missing_arcs import connected_arcs
+from thalweg.network.history.turning_points import turning_points
+from thalweg.network.history.voyage_tracks import HistoryPort, VoyageTracks
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+_LEAST_RADIUS: Final = 0.1 * NAUTICAL_MILE
+
+
+@dataclass(frozen=True)
+class HistoryRules:
+    """Rules by which a history network is made.
+
+    Attributes
+    ----------
+    radius : float
+        Radius of a junction [m].
+    tolerance : float
+        Turning points keep tracks within this distance [m].
+    least : int
+        Voyages that make a junction, and from which on an arc is believed.
+    """
+
+    radius: float = 10.0 * NAUTICAL_MILE
+    tolerance: float = 2.0 * NAUTICAL_MILE
+    least: int = 3
+
+    def __post_init__(self) -> None:
+        good = np.isfinite(self.radius) and self.radius >= _LEAST_RADIUS
+        if not (good and 0.0 < self.tolerance <= self.radius and self.least >= 1):
+            raise InputError(
+                f"The rules of the history network are {self}.",
+                "The radius is at least 0.1 nm, the tolerance above 0 and at most the radius, and "
+                "the least number of voyages at least 1.",
+                "Correct them.",
+            )
+
+
+def build_history(
+    chart: Chart,
+    tracks: VoyageTracks,
+    ports: Sequence[HistoryPort],
+    *,
+    rules: HistoryRules | None = None,
+    corridors: Sequence[CorridorLine] = (),
+    progress: Callable[[str], None] | None = None,
+) -> HistoryNetwork:
+    """Return the network of the routes of voyages.
+
+    Nodes are the ports, the ends of canals, the corridors, and clusters of turning points. Every
+    track is divided where it passes a node. Of the parts between the same two nodes in the same
+    direction the medoid is the line of the arc; its counts, percentiles of length and time, months
+    and sizes of ships are those of all parts. Every leg of every line is tested against land.
+
+    Parameters
+    ----------
+    chart : Chart
+        Land, canals and emission control areas.
+    tracks : VoyageTracks
+        At least one voyage.
+    ports : sequence of HistoryPort
+        Those that the tracks count; ports without a voyage are joined by ways over the globe.
+    rules : HistoryRules, optional
+    corridors : sequence of CorridorLine, optional
+        Lines across straits or other places that ships pass.
+    progress : callable, optional
+        Called with a short text at each stage.
+
+    Returns
+    -------
+    HistoryNetwork
+        In which every port reaches every other, as far as the chart allows.
+
+    Raises
+    ------
+    InputError
+        If there is no voyage, or no arc is left.
+
+    References
+    ----------
+    Seuren (2020), appendix G, with clusters of turning points for nodes, directed arcs, and exact
+    land tests.
+    """
+    rules = rules or HistoryRules()
+    report = progress or (lambda text: None)
+    if not len(tracks):
+        raise InputError(
+            "There is no voyage between two ports in the tracks.",
+            "A voyage begins and ends with a stop at a port, or with the end of a track near one.",
+            "Check the ports, and the rules for stops.",
+        )
+    report("finding turning points and junctions")
+    turning = turning_points(tracks, rules.tolerance)
+    junctions = find_junctions(
+        chart, tracks, turning, radius=rules.radius, least=rules.least, corridors=corridors
+    )
+    report("dividing the tracks at the junctions")
+    occurrences = arc_occurrences(tracks, junctions, ports, radius=rules.radius)
+    found = arcs_of_occurrences(tracks, occurrences, radius=rules.radius, least=rules.least)
+    report("testing the arcs against land")
+    places = (
+        np.append(junctions.lat, [port.lat for port in ports]),
+        np.append(junctions.lon, [port.lon for port in ports]),
+    )
+    ways = GlobeWays(chart)
+    tested = lines_off_land(
+        chart, tracks, occurrences, found.candidates, places=places, turning=turning,
+        radius=rules.radius, ways=ways,
+    )  # fmt: skip
+    arcs = _sailed_arcs(chart, found, tested)
+    report("connecting the network")
+    nodes = HistoryNodes(*places, (*junctions.names, *([""] * len(ports))), tuple(ports))
+    used = range(nodes.first_port, len(nodes))
+    arcs, alone = connected_arcs(chart, arcs, places, used, ways)
+    notes = [f"{ports[k - nodes.first_port].name} cannot be reached by sea."
+             for k in alone if k >= nodes.first_port]  # fmt: skip
+    summary = _summary(tracks, found, tested, junctions) | {"notes": notes}
+    return _without_unused(HistoryNetwork(nodes, arcs, rules.radius, rules.least, summary))
+
+
+def _sailed_arcs(chart: Chart, found: FoundArcs, tested: LinesOffLand) -> HistoryArcs:
+    """Return the arcs whose lines are allowed."""
+    arc = tested.arc
+    evidence = ArcEvidence(
+        *(getattr(found.evidence, column.name)[arc] for column in fields(ArcEvidence))
+    )
+    return HistoryArcs(
+        found.tail[arc],
+        found.head[arc],
+        np.full(len(arc), SAILED, np.int64),
+        tested.lines,
+        evidence,
+        found.tube[arc],
+        tested.lines.control_area_shares(chart),
+        tested.repaired,
+    )
+
+
+def _summary(
+    tracks: VoyageTracks, found: FoundArcs, tested: LinesOffLand, junctions: Junctions
+) -> dict[str, Any]:
+    return {
+        "voyages": len(tracks),
+        "positions": len(tracks.lat),
+        "first": format_time(float(tracks.time.min())),
+        "last": format_time(float(tracks.time.max())),
+        "junctions": len(junctions),
+        "outliers": found.outliers,
+        "arcs_repaired": int((tested.repaired > 0.0).sum()),
+        "arcs_without_a_line": int(len(found.tail) - len(tested.arc)),
+    }
+
+
+def _without_unused(network: HistoryNetwork) -> HistoryNetwork:
+    """Return a network without junctions that no arc uses."""
+    nodes, arcs = network.nodes, network.arcs
+    keep = np.zeros(len(nodes), bool)
+    keep[arcs.tail] = keep[arcs.head] = True
+    keep[nodes.first_port :] = True
+    number: IntArray = np.cumsum(keep) - 1
+    names = tuple(name for name, good in zip(nodes.names, keep.tolist()) if good)
+    left = HistoryNodes(nodes.lat[keep], nodes.lon[keep], names, nodes.ports)
+    new = HistoryArcs(
+        number[arcs.tail], number[arcs.head], arcs.kind, arcs.lines, arcs.evidence, arcs.tube,
+        arcs.eca_share, arcs.repaired,
+    )  # fmt: skip
+    return HistoryNetwork(left, new, network.radius, network.least, network.summary)

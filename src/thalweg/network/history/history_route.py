@@ -1,0 +1,90 @@
+"""The usual route between two ports of a history network."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from thalweg.core.geodesy import Position
+from thalweg.core.units import HOUR, NAUTICAL_MILE
+from thalweg.network.history.season_masks import LEAST_SAMPLES
+from thalweg.network.history.voyage_tracks import HistoryPort
+
+_FEW: Final = 3  # voyages below which the confidence is low
+_MUCH: Final = 0.05  # share of the length without tracks above which the confidence is low
+
+
+@dataclass(frozen=True)
+class HistoryRoute:
+    """The usual route between two ports.
+
+    Attributes
+    ----------
+    start, goal : HistoryPort
+    arcs : tuple of int
+        Arcs of the network, in order.
+    length : float
+        Usual length with the approaches of both ports [m].
+    duration : (float, float, float)
+        Sums of p10, p50 and p90 of the time under way on the arcs [s], without approaches; NaN
+        where an arc was not sailed.
+    voyages : int
+        Least number of voyages of its arcs; 0 with arcs that were not sailed in this direction.
+    globe_share : float
+        Share of the length that no track shows.
+    eca_share : float
+        Share of the length inside emission control areas; NaN where unknown.
+    line : tuple of (lat, lon)
+        Waypoints from sea end to sea end [deg].
+    passes : tuple of str
+        Corridors and canals, in order.
+    """
+
+    start: HistoryPort
+    goal: HistoryPort
+    arcs: tuple[int, ...]
+    length: float
+    duration: tuple[float, float, float]
+    voyages: int
+    globe_share: float
+    eca_share: float
+    line: tuple[Position, ...]
+    passes: tuple[str, ...]
+
+    @property
+    def nm(self) -> float:
+        """Usual length with the approaches of both ports [nautical miles]."""
+        return self.length / NAUTICAL_MILE
+
+    @property
+    def confidence(self) -> str:
+        """How well the route is known: "high", "medium", "low" or "none"."""
+        if self.globe_share > 0.5:
+            return "none"
+        if self.globe_share > _MUCH or self.voyages < _FEW:
+            return "low"
+        return "high" if self.voyages >= LEAST_SAMPLES else "medium"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON.
+
+        Returns
+        -------
+        dict
+            Distances [nm], times [h] and shares; unknown values are None.
+        """
+        hours = [None if np.isnan(t) else t / HOUR for t in self.duration]
+        return {
+            "from": self.start.name,
+            "to": self.goal.name,
+            "distance_nm": self.nm,
+            "duration_h": dict(zip(("p10", "p50", "p90"), hours)),
+            "voyages": self.voyages,
+            "confidence": self.confidence,
+            "share_without_tracks": self.globe_share,
+            "eca_share": None if np.isnan(self.eca_share) else self.eca_share,
+            "passes": list(self.passes),
+            "line": [list(place) for place in self.line],
+        }

@@ -1,0 +1,206 @@
+"""Which junctions every track passes in turn, and the stretches of track between them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.types import FloatArray, IntArray
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.network.history.junctions import Junctions
+from thalweg.network.history.voyage_tracks import (
+    HistoryPort,
+    VoyageTracks,
+    port_vectors,
+    sphere_vectors,
+)
+
+_SAMPLES_PER_RADIUS: Final = 2.0
+#: A voyage leaves or reaches the sea end of a port within one and a half times the length of the
+#: approach and this distance [m].
+_HARBOUR: Final = 20.0 * NAUTICAL_MILE
+_FINE, _FINE_SAMPLES = 5.0 * NAUTICAL_MILE, 101  # ports are passed where tracks are nearest to them
+
+
+@dataclass(frozen=True, eq=False)
+class ArcOccurrences:
+    """Stretches of tracks from one node to the next, m in all.
+
+    Parameters
+    ----------
+    voyage : int64 ndarray (m,)
+        Voyage.
+    tail, head : int64 ndarray (m,)
+        Nodes: the junctions, then the ports.
+    begin, end : float64 ndarray (m,)
+        Where the track passes them, as `VoyageTracks.along` [m].
+    """
+
+    voyage: IntArray
+    tail: IntArray
+    head: IntArray
+    begin: FloatArray
+    end: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.voyage)
+
+    def take(self, index: NDArray[np.int64] | NDArray[np.bool_]) -> ArcOccurrences:
+        """Return some of the stretches.
+
+        Parameters
+        ----------
+        index : int or bool array
+            Which of them.
+
+        Returns
+        -------
+        ArcOccurrences
+            In the order of the index.
+        """
+        return ArcOccurrences(*(getattr(self, column.name)[index] for column in fields(self)))
+
+
+@dataclass(frozen=True, eq=False)
+class _Visits:
+    """Visits of nodes: voyage, place along the tracks, node, distance from the node [m]."""
+
+    voyage: IntArray
+    along: FloatArray
+    node: IntArray
+    away: FloatArray
+
+
+def arc_occurrences(
+    tracks: VoyageTracks, junctions: Junctions, ports: Sequence[HistoryPort], *, radius: float
+) -> ArcOccurrences:
+    """Return the stretches of all tracks between the nodes that they pass.
+
+    A track passes a junction where it is nearest to it within the radius, or where it crosses its
+    corridor; a port where it is nearest to its position at sea, at the begin and the end.
+
+    Parameters
+    ----------
+    tracks : VoyageTracks
+    junctions : Junctions
+    ports : sequence of HistoryPort
+        Those that ``tracks.start`` and ``tracks.goal`` count; their nodes follow the junctions.
+    radius : float
+        Radius of a junction [m].
+
+    Returns
+    -------
+    ArcOccurrences
+        In order of voyages and along them; without stretches from a node to itself.
+    """
+    along, voyage = _samples(tracks, radius / _SAMPLES_PER_RADIUS)
+    vectors = tracks.vectors_at(along)
+    start, goal = _port_passages(tracks, ports, along, voyage, vectors)
+    visits = _junction_visits(junctions, along, voyage, vectors, radius)
+    crossings = junctions.crossings
+    crossed_by = np.searchsorted(tracks.along[tracks.ptr[:-1]], crossings.along, side="right") - 1
+    count, every = len(tracks), np.arange(len(tracks))
+    merged = _Visits(
+        np.concatenate([every, visits.voyage, crossed_by, every]),
+        np.concatenate([start, visits.along, crossings.along, goal]),
+        np.concatenate([
+            len(junctions) + tracks.start, visits.node, crossings.node,
+            len(junctions) + tracks.goal,
+        ]),
+        np.concatenate([np.zeros(count), visits.away, np.zeros(len(crossings.along)),
+                        np.zeros(count)]),
+    )  # fmt: skip
+    rank = np.repeat([0, 1, 1, 2], [count, len(visits.node), len(crossings.node), count])
+    inside = (rank != 1) | (
+        (merged.along > start[merged.voyage]) & (merged.along < goal[merged.voyage])
+    )
+    order = np.lexsort((merged.along, rank, merged.voyage))
+    order = order[inside[order]]
+    return _between_visits(merged, order)
+
+
+def _samples(tracks: VoyageTracks, spacing: float) -> tuple[FloatArray, IntArray]:
+    """Return evenly spaced places on all tracks, and their voyages."""
+    begin, end = tracks.along[tracks.ptr[:-1]], tracks.along[tracks.ptr[1:] - 1]
+    pieces = np.maximum(1, np.ceil((end - begin) / spacing)).astype(np.int64)
+    voyage = np.repeat(np.arange(len(tracks)), pieces + 1)
+    first = np.cumsum(pieces + 1) - (pieces + 1)
+    share = (np.arange(len(voyage)) - first[voyage]) / pieces[voyage]
+    return begin[voyage] + share * (end - begin)[voyage], voyage
+
+
+def _port_passages(
+    tracks: VoyageTracks,
+    ports: Sequence[HistoryPort],
+    along: FloatArray,
+    voyage: IntArray,
+    vectors: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Return where every voyage is nearest to its start and to its goal at sea."""
+    where = port_vectors(ports)
+    reach = 1.5 * np.array([port.approach_m for port in ports]) + _HARBOUR
+    begin, end = tracks.along[tracks.ptr[:-1]], tracks.along[tracks.ptr[1:] - 1]
+    middle = 0.5 * (begin + end)
+    found = []
+    for port, outer, inner in (
+        (tracks.start, begin, np.minimum(begin + reach[tracks.start], middle)),
+        (tracks.goal, np.maximum(end - reach[tracks.goal], middle), end),
+    ):
+        near = np.flatnonzero((along >= outer[voyage]) & (along <= inner[voyage]))
+        away = np.sum((vectors[near] - where[port[voyage[near]]]) ** 2, axis=1)
+        order = near[np.lexsort((away, voyage[near]))]
+        first = np.unique(voyage[order], return_index=True)[1]
+        found.append(_nearest_between(tracks, along[order[first]], outer, inner, where[port]))
+    return found[0], found[1]
+
+
+def _nearest_between(
+    tracks: VoyageTracks, along: FloatArray, outer: FloatArray, inner: FloatArray, port: FloatArray
+) -> FloatArray:
+    """Return the places nearest to ports (V, 3) among finer samples around those given."""
+    step = _FINE * np.linspace(-1.0, 1.0, _FINE_SAMPLES)
+    tried = np.clip(along[:, None] + step, outer[:, None], inner[:, None])
+    away = np.sum((tracks.vectors_at(tried) - port[:, None]) ** 2, axis=-1)
+    return tried[np.arange(len(tried)), np.argmin(away, axis=1)]
+
+
+def _junction_visits(
+    junctions: Junctions, along: FloatArray, voyage: IntArray, vectors: FloatArray, radius: float
+) -> _Visits:
+    """Return the visits of junctions: one for every stretch of samples nearest to one of them."""
+    from scipy.spatial import cKDTree
+
+    if not len(junctions):
+        none = np.empty(0, np.int64)
+        return _Visits(none, np.empty(0), none, np.empty(0))
+    tree = cKDTree(sphere_vectors(junctions.lat, junctions.lon))
+    away, node = tree.query(vectors, distance_upper_bound=radius)
+    near = np.flatnonzero(np.isfinite(away))
+    follows = np.append(False, np.diff(near) == 1)
+    same = np.append(False, np.diff(node[near]) == 0) & np.append(False, np.diff(voyage[near]) == 0)
+    run = np.cumsum(~(follows & same)) - 1
+    order = near[np.lexsort((away[near], run))]
+    best = order[np.unique(run, return_index=True)[1]] if len(near) else near
+    return _Visits(voyage[best], along[best], node[best].astype(np.int64), away[best])
+
+
+def _between_visits(visits: _Visits, order: IntArray) -> ArcOccurrences:
+    """Return the stretches between visits in their order.
+
+    Of repeated visits of one node without another between them the nearest counts; at ports the
+    one of the port itself.
+    """
+    voyage, node, along = visits.voyage[order], visits.node[order], visits.along[order]
+    again = np.append(False, (np.diff(voyage) == 0) & (np.diff(node) == 0))
+    group = np.cumsum(~again) - 1
+    nearest = np.lexsort((visits.away[order], group))
+    chosen = nearest[np.unique(group, return_index=True)[1]]
+    voyage, node, along = voyage[chosen], node[chosen], along[chosen]
+    joined = np.flatnonzero(np.diff(voyage) == 0)
+    return ArcOccurrences(
+        voyage[joined], node[joined], node[joined + 1], along[joined], along[joined + 1]
+    )

@@ -1,0 +1,57 @@
+"""Months in which arcs of a history network are closed, as far as the samples show it."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from thalweg.core.types import BoolArray, FloatArray, IntArray
+
+MONTHS: Final = 12
+LEAST_SAMPLES: Final = 10  #: a season of an arc with fewer voyages in all is not believed
+_FEW: Final = 0.1  # of the voyages expected in a month with even use: so few may be stray
+_CHANCE: Final = 0.01  # of seeing so few ships in these months though the arc is open
+
+
+def open_months(seen: IntArray, leaving: IntArray) -> BoolArray:
+    """Return in which months arcs are open.
+
+    With even use an arc with n voyages has ``e = n w`` of them in months with the share w of all
+    ships that leave its first node. It is closed in consecutive months with at most a tenth of e in
+    each, if n is at least `LEAST_SAMPLES` and the chance of so few is below 1 % (Poisson with the
+    mean e of all these months together; so e is at least 4.6).
+
+    Parameters
+    ----------
+    seen : int64 ndarray (A, 12)
+        Voyages on each arc by month.
+    leaving : int64 ndarray (A, 12)
+        Voyages that left its first node by month, on any arc.
+
+    Returns
+    -------
+    bool ndarray (A, 12)
+        True where the arc is open or nothing is known.
+    """
+    from scipy.special import pdtr
+
+    total = seen.sum(axis=1, keepdims=True)
+    expected = total * leaving / np.maximum(leaving.sum(axis=1, keepdims=True), 1)
+    few = (seen <= _FEW * expected) & (total >= LEAST_SAMPLES)
+    chance = pdtr(_sums_of_runs(seen, few), np.maximum(_sums_of_runs(expected, few), 1e-9))
+    return np.asarray(~(few & (chance < _CHANCE)))
+
+
+def _sums_of_runs(value: FloatArray | IntArray, inside: BoolArray) -> FloatArray:
+    """Return for every month the sum over the run of months that it belongs to, round the year."""
+    total = np.zeros(value.shape)
+    value = np.where(inside, value, 0.0)
+    for step in (1, -1):
+        carry = np.zeros(len(value))
+        for k in range(2 * MONTHS):
+            month = (step * k) % MONTHS
+            carry = np.where(inside[:, month], carry + value[:, month], 0.0)
+            if k >= MONTHS:
+                total[:, month] += carry
+    return np.where(inside, total - value, 0.0)

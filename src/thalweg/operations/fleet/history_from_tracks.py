@@ -1,0 +1,210 @@
+"""History networks from the tracks of a fleet: ports, calls, voyages, network."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from os import PathLike
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thalweg.chart.geojson_polygons import read_features
+from thalweg.chart.ports import PORTS, Port
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import Position, check_position
+from thalweg.core.types import IntArray
+from thalweg.network.history.history_builder import HistoryRules, build_history
+from thalweg.network.history.history_network import HistoryNetwork
+from thalweg.network.history.junctions import CorridorLine
+from thalweg.network.history.voyage_tracks import HistoryPort
+from thalweg.operations.fleet.fleet_tracks import FleetTracks
+from thalweg.operations.fleet.port_calls import (
+    PortCallRules,
+    find_port_calls,
+    voyages_between_calls,
+)
+from thalweg.planning.distance_table import read_places
+from thalweg.planning.request.voyage_endpoints import MAX_SNAP_PORT, resolve_port
+from thalweg.planning.voyage_parts import Place
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+
+def history_from_tracks(
+    fleet: FleetTracks,
+    chart: Chart,
+    *,
+    ports: Sequence[HistoryPort] | None = None,
+    corridors: Sequence[CorridorLine] = (),
+    rules: HistoryRules | None = None,
+    calls: PortCallRules | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> HistoryNetwork:
+    """Return the history network of the tracks of a fleet.
+
+    Parameters
+    ----------
+    fleet : FleetTracks
+    chart : Chart
+        Land, canals, emission control areas and approaches of ports.
+    ports : sequence of HistoryPort, optional
+        By default the ports of the World Port Index that are called at.
+    corridors : sequence of CorridorLine, optional
+        Lines across straits or other places that ships pass.
+    rules : HistoryRules, optional
+    calls : PortCallRules, optional
+    progress : callable, optional
+        Called with a short text at each stage.
+
+    Returns
+    -------
+    HistoryNetwork
+
+    Raises
+    ------
+    InputError
+        If no voyage between two ports is found.
+    """
+    report = progress or (lambda text: None)
+    report("finding port calls and voyages")
+    if ports is None:
+        known, places = _index_ports(chart)
+        found = find_port_calls(fleet, places, calls)
+        at_sea = {k: _at_sea(chart, known[k], places[k]) for k in np.unique(found.port).tolist()}
+        number = _numbers(len(known), [k for k, port in at_sea.items() if port is not None])
+        own = [port for port in at_sea.values() if port is not None]
+        reachable = number[found.port] >= 0
+        found = replace(
+            found, ship=found.ship[reachable], port=number[found.port[reachable]],
+            first=found.first[reachable], last=found.last[reachable],
+        )  # fmt: skip
+        closed = [str(known[k]) for k, port in at_sea.items() if port is None]
+    else:
+        own, closed = list(ports), []
+        found = find_port_calls(fleet, [port.places for port in own], calls)
+    tracks = voyages_between_calls(fleet, found)
+    network = build_history(chart, tracks, own, rules=rules, corridors=corridors, progress=progress)
+    notes = [*fleet.notes, *network.summary["notes"]]
+    notes += [
+        f"Calls at {name} are left out: no water of the chart leads there." for name in closed
+    ]
+    return replace(network, summary={
+        **network.summary, "ships": len(fleet.ptr) - 1, "port_calls": len(found.port),
+        "notes": notes,
+    })  # fmt: skip
+
+
+def read_history_ports(path: str | PathLike[str], chart: Chart) -> list[HistoryPort]:
+    """Read ports from a CSV file.
+
+    Parameters
+    ----------
+    path : path
+        By `thalweg.planning.distance_table.read_places`; rows without a position are ports of the
+        World Port Index.
+    chart : Chart
+        Positions are moved to its navigable water.
+
+    Returns
+    -------
+    list of HistoryPort
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or a port is unknown or too far from water.
+    """
+    return [_history_port_at(name, place, chart) for name, place in read_places(path)]
+
+
+def read_corridors(path: str | PathLike[str]) -> list[CorridorLine]:
+    """Read corridors from GeoJSON lines of two positions with a property ``name``.
+
+    Parameters
+    ----------
+    path : path
+        GeoJSON file.
+
+    Returns
+    -------
+    list of CorridorLine
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or a feature is not a line.
+    """
+    found = []
+    for number, (geometry, properties) in enumerate(read_features(path, "corridors"), start=1):
+        line = geometry.get("coordinates") or []
+        if geometry.get("type") != "LineString" or len(line) < 2:
+            raise InputError(
+                f"Feature {number} of {str(path)!r} is no line.",
+                "A corridor is a LineString from one side to the other.",
+                "Draw a line across the way of the ships.",
+            )
+        ends = [check_position(float(p[1]), float(p[0]), "end of a corridor")
+                for p in (line[0], line[-1])]  # fmt: skip
+        found.append(CorridorLine(str(properties.get("name") or f"corridor {number}"), *ends))
+    return found
+
+
+def history_port(port: Port, chart: Chart) -> HistoryPort:
+    """Return a port of the World Port Index as a port of history networks.
+
+    Parameters
+    ----------
+    port : Port
+    chart : Chart
+        Gives its approach, or the nearest water.
+
+    Raises
+    ------
+    InputError
+        If the port cannot be reached on this chart.
+    """
+    end = resolve_port(port, chart, "port")
+    line = end.approach.line if end.approach else ()
+    length = end.approach.length if end.approach else 0.0
+    places = ((port.lat, port.lon), *line)
+    return HistoryPort(port.label, port.locode, end.lat, end.lon, length, places)
+
+
+def _index_ports(chart: Chart) -> tuple[list[Port], list[tuple[Position, ...]]]:
+    """Return the ports of the World Port Index with their berths and approaches."""
+    ports = list(PORTS.all)
+    places = []
+    for port in ports:
+        approach = None if chart.approaches is None else chart.approaches.of(port)
+        places.append(((port.lat, port.lon), *(approach.line if approach else ())))
+    return ports, places
+
+
+def _at_sea(chart: Chart, port: Port, places: Sequence[Position]) -> HistoryPort | None:
+    try:
+        return replace(history_port(port, chart), places=tuple(places))
+    except InputError:
+        return None
+
+
+def _numbers(count: int, kept: Sequence[int]) -> IntArray:
+    """Return the new number of every port, -1 for those that are not kept."""
+    number = np.full(count, -1, np.int64)
+    number[list(kept)] = np.arange(len(kept))
+    return number
+
+
+def _history_port_at(name: str, place: Place, chart: Chart) -> HistoryPort:
+    """Return a named port, or the water nearest to a position under a name."""
+    if isinstance(place, str):
+        return history_port(PORTS.lookup(place), chart)
+    water = chart.nearest_navigable(*place, largest=MAX_SNAP_PORT)
+    if water is None:
+        raise InputError(
+            f"The port {name} is farther than 60 km from navigable water.",
+            "Ports are moved to the nearest water of the chart.",
+            "Correct its position.",
+        )
+    return HistoryPort(name, "", water[0], water[1], 0.0, (place,))

@@ -1,0 +1,217 @@
+"""Stops of ships, calls at ports, and the voyages between them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import Position, densify
+from thalweg.core.types import BoolArray, FloatArray, IntArray
+from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
+from thalweg.network.history.arc_statistics import group_percentiles
+from thalweg.network.history.voyage_tracks import (
+    TrackShips,
+    VoyageTracks,
+    ellipsoid_vectors,
+    lengths_between,
+)
+from thalweg.operations.fleet.fleet_tracks import FleetTracks
+
+#: A single position near a port is a call where the positions before and after are this far [s].
+_SPARSE: Final = 6.0 * HOUR
+_PLACE_SPACING: Final = 1.0 * NAUTICAL_MILE
+
+
+@dataclass(frozen=True)
+class PortCallRules:
+    """Rules for stops and port calls.
+
+    Attributes
+    ----------
+    slow : float
+        A mean speed between positions below this [m/s] is a stop if it lasts.
+    shortest_stop : float
+        Shortest stop [s].
+    reach : float
+        A stop within this distance of a berth or of the approach of a port [m] is a call there.
+    """
+
+    slow: float = 1.0 * KNOT
+    shortest_stop: float = 1.0 * HOUR
+    reach: float = 5.0 * NAUTICAL_MILE
+
+    def __post_init__(self) -> None:
+        values = (self.slow, self.shortest_stop, self.reach)
+        if not all(np.isfinite(v) and v > 0.0 for v in values):
+            raise InputError(
+                f"The rules for port calls are {self}.",
+                "Speed, time and distance are above zero.",
+                "Correct them.",
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class PortCalls:
+    """Calls at ports, c in all, in order of ships and time.
+
+    Attributes
+    ----------
+    ship, port : int64 array (c,)
+        Ship of the fleet, and number of the port.
+    first, last : int64 array (c,)
+        Its first and last position.
+    stopped : bool array (n,)
+        Intervals after positions in which the ship does not move, at ports or elsewhere.
+    """
+
+    ship: IntArray
+    port: IntArray
+    first: IntArray
+    last: IntArray
+    stopped: BoolArray
+
+
+def find_port_calls(
+    fleet: FleetTracks, places: Sequence[Sequence[Position]], rules: PortCallRules | None = None
+) -> PortCalls:
+    """Return the calls of ships at ports.
+
+    A call is a stop within reach of a port; the begin or end of a track within reach; or, in
+    tracks with a position every six hours or more, one position within reach. Stops elsewhere, at
+    anchor or adrift, are no calls.
+
+    Parameters
+    ----------
+    fleet : FleetTracks
+    places : sequence of sequence of (lat, lon)
+        Of every port: its berth and the line of its approach [deg].
+    rules : PortCallRules, optional
+
+    Returns
+    -------
+    PortCalls
+        Consecutive calls at one port are one.
+    """
+    rules = rules or PortCallRules()
+    vectors = ellipsoid_vectors(fleet.lat, fleet.lon)
+    gap = np.append(np.diff(fleet.time), np.inf)
+    gap[fleet.ptr[1:] - 1] = np.inf
+    step = np.append(lengths_between(vectors[:-1], vectors[1:]), np.inf)
+    slow = step < rules.slow * gap
+    slow[fleet.ptr[1:] - 1] = False
+    begin, end = _runs(slow)
+    long = fleet.time[end] - fleet.time[begin] >= rules.shortest_stop
+    begin, end = begin[long], end[long]
+    change = np.zeros(len(slow), np.int64)  # runs do not touch each other
+    change[begin], change[end] = 1, -1
+    stopped = np.asarray(np.cumsum(change) > 0)
+    middle = _means(vectors, begin, end)
+    before = np.concatenate([[np.inf], gap[:-1]])
+    single = np.flatnonzero((before >= _SPARSE) & (gap >= _SPARSE) & ~stopped)
+    first = np.concatenate([begin, single])
+    last = np.concatenate([end, single])
+    edge = np.setdiff1d(np.concatenate([fleet.ptr[:-1], fleet.ptr[1:] - 1]), single)
+    first, last = np.append(first, edge), np.append(last, edge)
+    where = np.concatenate([middle, vectors[single], vectors[edge]])
+    port = _nearest_ports(where, places, rules.reach)
+    order = np.flatnonzero(port >= 0)
+    order = order[np.lexsort((last[order], first[order]))]
+    ship = np.searchsorted(fleet.ptr, first[order], side="right") - 1
+    return _merged(PortCalls(ship, port[order], first[order], last[order], stopped))
+
+
+def _runs(inside: BoolArray) -> tuple[IntArray, IntArray]:
+    """Return the first position of each run of intervals, and the position after the run."""
+    change = np.diff(np.concatenate([[0], inside.astype(np.int8), [0]]))
+    return np.flatnonzero(change == 1), np.flatnonzero(change == -1)
+
+
+def _means(vectors: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
+    """Return the means of the vectors from first to last."""
+    if not len(first):
+        return np.empty((0, 3))
+    ends = np.stack([first, last], axis=1).ravel()
+    return np.add.reduceat(vectors, ends, axis=0)[::2] / (last - first)[:, None]
+
+
+def _nearest_ports(
+    vectors: FloatArray, places: Sequence[Sequence[Position]], reach: float
+) -> IntArray:
+    """Return the port nearest to each position within reach, -1 for none."""
+    from scipy.spatial import cKDTree
+
+    lat, lon, owner = [], [], []
+    for number, line in enumerate(places):
+        y, x = np.array(line, float).reshape(-1, 2).T
+        if len(y) > 1:
+            y, x, _ = densify(y, x, _PLACE_SPACING)
+        lat.append(y)
+        lon.append(x)
+        owner.append(np.full(len(y), number))
+    if not lat or not len(vectors):
+        return np.full(len(vectors), -1, np.int64)
+    tree = cKDTree(ellipsoid_vectors(np.concatenate(lat), np.concatenate(lon)))
+    away, near = tree.query(vectors, distance_upper_bound=reach)
+    known = np.isfinite(away)
+    of = np.append(np.concatenate(owner), -1)
+    return np.where(known, of[np.where(known, near, -1)], -1).astype(np.int64)
+
+
+def _merged(calls: PortCalls) -> PortCalls:
+    """Return calls with consecutive ones of a ship at one port as one."""
+    again = np.append(False, (np.diff(calls.ship) == 0) & (np.diff(calls.port) == 0))[
+        : len(calls.ship)
+    ]
+    head = np.flatnonzero(~again)
+    tail = np.append(head[1:], len(again)) - 1 if len(head) else head
+    last = np.maximum.accumulate(calls.last) if len(head) else calls.last
+    return PortCalls(calls.ship[head], calls.port[head], calls.first[head], last[tail],
+                     calls.stopped)  # fmt: skip
+
+
+def voyages_between_calls(fleet: FleetTracks, calls: PortCalls) -> VoyageTracks:
+    """Return the tracks between consecutive calls of a ship at different ports.
+
+    Positions inside stops are left out but for the first and last, and stops do not count as time
+    under way.
+
+    Parameters
+    ----------
+    fleet : FleetTracks
+    calls : PortCalls
+
+    Returns
+    -------
+    VoyageTracks
+        ``start`` and ``goal`` are the numbers of the ports.
+    """
+    at = np.flatnonzero((np.diff(calls.ship) == 0) & (calls.last[:-1] < calls.first[1:]))
+    first, last = calls.last[at], calls.first[at + 1]
+    count = last - first + 1
+    index = np.arange(count.sum()) + np.repeat(first - np.cumsum(count) + count, count)
+    voyage = np.repeat(np.arange(len(at)), count)
+    keep = ~(calls.stopped[index] & calls.stopped[np.maximum(index - 1, 0)])
+    edges = np.cumsum(count)
+    keep[edges - count] = True
+    keep[edges - 1] = True
+    moving = np.where(calls.stopped, 0.0, np.append(np.diff(fleet.time), 0.0))
+    sailed = np.concatenate([[0.0], np.cumsum(moving)[:-1]])
+    index, voyage = index[keep], voyage[keep]
+    ptr = np.searchsorted(voyage, np.arange(len(at) + 1)).astype(np.int64)
+    draught = group_percentiles(fleet.draught[index], ptr, (50.0,))[:, 0]
+    length = group_percentiles(fleet.length[index], ptr, (100.0,))[:, 0]
+    return VoyageTracks(
+        ptr,
+        fleet.time[index],
+        fleet.lat[index],
+        fleet.lon[index],
+        sailed[index] - sailed[first][voyage],
+        fleet.broken[index] & ~calls.stopped[index],
+        calls.port[at],
+        calls.port[at + 1],
+        TrackShips(draught, length),
+    )

@@ -1,0 +1,117 @@
+"""Plans in the water that ships usually use: inside it, out of it for a gain, beside the usual."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from tests.network.test_history_parts import line_between, voyage_tracks
+from thalweg.chart import Chart
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import distance
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.network.history.history_builder import HistoryRules, build_history
+from thalweg.network.history.history_corridor import HistoryCorridor
+from thalweg.network.history.history_file import write_history
+from thalweg.network.history.voyage_tracks import HistoryPort
+from thalweg.planning import Voyage, plan
+from thalweg.planning.distance_table import usual_distance_table
+from thalweg.planning.history_plans import usual_against_optimal
+from thalweg.sea import Sea
+from thalweg.ship import Ship
+
+NM = NAUTICAL_MILE
+WEST, EAST = (45.0, -16.0), (45.0, -13.0)
+PORTS = (HistoryPort("West", "", *WEST), HistoryPort("East", "", *EAST))
+SHIP = Ship.simple(speed_kn=14.0, draught_m=6.0)
+OPTIONS = {
+    "ship": SHIP,
+    "sea": Sea.calm(),
+    "chart": Chart.open_water(),
+    "proof": 0.0,
+    "resolution": 15_000.0,
+}
+VOYAGE = Voyage(start=WEST, goal=EAST, depart="2026-01-10")
+
+
+@pytest.fixture(scope="module")
+def network():
+    """Ships sail round a bend 20 nm north of the straight line, 2 nm to either side."""
+    lines = [line_between(WEST, (45.33 + d, -14.5), EAST) for d in np.linspace(-0.03, 0.03, 9)]
+    tracks = voyage_tracks([*lines, *(line[::-1] for line in lines)], start=[0] * 9 + [1] * 9)
+    return build_history(
+        Chart.open_water(), tracks, PORTS, rules=HistoryRules(5 * NM, 1 * NM, 3)
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def inside(network):
+    return plan(VOYAGE, network=HistoryCorridor(network), **OPTIONS)
+
+
+def test_the_plan_stays_in_the_usual_water(network, inside):
+    route = inside.best
+    assert route.feasible
+    at = np.argmin(np.abs(route.track.lon - -14.5))
+    assert route.track.lat[at] > 45.2
+    straight, usual = distance(*WEST, *EAST) / NM, network.route("West", "East").nm
+    assert 1.005 * straight < route.distance_nm <= usual * 1.001
+    assert any("stays in the water that ships usually use" in note for note in inside.notes)
+
+
+@pytest.mark.slow
+def test_the_plan_leaves_it_only_for_the_gain(network, inside):
+    straight = float(distance(*WEST, *EAST)) / NM
+    gain = 1.0 - straight / inside.best.distance_nm
+    free = plan(VOYAGE, network=HistoryCorridor(network, gain=0.5 * gain), **OPTIONS)
+    assert free.best.distance_nm == pytest.approx(straight, rel=1e-3)
+    assert any("leaves the water" in note for note in free.notes)
+    kept = plan(VOYAGE, network=HistoryCorridor(network, gain=2.0 * gain), **OPTIONS)
+    assert kept.best.distance_nm == pytest.approx(inside.best.distance_nm, rel=1e-6)
+    assert any("not more than" in note for note in kept.notes)
+
+
+def test_too_few_draughts_do_not_close_an_arc(network):
+    assert network.arcs.evidence.draughts_known.max() < 10
+    assert np.isfinite(network.weights(draught=99.0)).all()
+
+
+def test_a_file_is_a_network_of_plan(network, inside, tmp_path):
+    write_history(network, tmp_path / "net.json")
+    again = plan(VOYAGE, network=f"history:{tmp_path / 'net.json'}", **OPTIONS)
+    assert again.best.distance_nm == pytest.approx(inside.best.distance_nm, rel=1e-4)
+    with pytest.raises(InputError, match="cannot be read"):
+        plan(VOYAGE, network="history:nowhere.json", **OPTIONS)
+    with pytest.raises(InputError, match="history:FILE"):
+        plan(VOYAGE, network="histories", **OPTIONS)
+
+
+def test_gains_are_checked(network):
+    with pytest.raises(InputError, match="gain"):
+        HistoryCorridor(network, gain=-0.1)
+
+
+def test_usual_against_optimal_is_the_saving_of_the_straight_way(network):
+    voyage = Voyage(start="West", goal="East", depart="2026-01-10")
+    found = usual_against_optimal(
+        voyage, network, ship=SHIP, sea=OPTIONS["sea"], chart=OPTIONS["chart"],
+        plan_one=lambda request: plan(request, **OPTIONS),
+    )  # fmt: skip
+    straight = float(distance(*WEST, *EAST)) / NM
+    row = found.to_dict()["distance_nm"]
+    assert row["optimal"] == pytest.approx(straight, rel=1e-3)
+    line = np.array(found.history.line)
+    legs = sum(float(distance(*a, *b)) for a, b in itertools.pairwise(line)) / NM
+    assert row["usual"] == pytest.approx(legs, rel=1e-3)
+    assert row["saving_percent"] == pytest.approx(100.0 * (1.0 - straight / legs), abs=0.15)
+    assert found.to_dict()["voyages"] == 9
+
+
+def test_tables_hold_the_routes_of_the_network(network):
+    table = usual_distance_table(["West", "East"], network)
+    assert table.nm[0, 1] == network.route("West", "East").nm
+    assert table.nm[1, 0] == network.route("East", "West").nm
+    assert table.nm[0, 0] == 0.0
+    assert table.to_csv().splitlines()[0] == "nm,West,East"
+    with pytest.raises(InputError, match="twice"):
+        usual_distance_table(["West", "West"], network)
