@@ -76,6 +76,8 @@ MORE_NAMES: dict[str, tuple[str, ...]] = {
         "openclsim.plugin.PlannedRouteMovable",
         "examples.synthetic_tracks.SyntheticCycle",
         "examples.synthetic_tracks.synthetic_track",
+        "fleet.history_from_tracks.read_history_ports",
+        "fleet.history_from_tracks.read_corridors",
         "examples.synthetic_fleet.SyntheticFleet",
         "examples.synthetic_fleet.SyntheticRoute",
         "examples.synthetic_fleet.synthetic_fleet",
