@@ -47,7 +47,7 @@ class BlockCache:
             return cached
         misses = self.misses[key] = self.misses.get(key, -1) + 1
         most = MAX_UNION_BYTES // quantity.bytes_per_value
-        small = 0 < misses and wanted.size <= most
+        small = misses > 0 and wanted.size <= most
         window = self._window_with_margin(wanted) if small else wanted
         if cached is not None:
             both = self._union(window, cached.window)
