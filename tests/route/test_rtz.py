@@ -8,6 +8,7 @@ import pytest
 
 from tests.conftest import data_file
 from tests.route.planar import ship
+from thalweg.chart import Chart
 from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.core.geodesy import distance
 from thalweg.core.rhumb_lines import inverse_rhumb
@@ -211,3 +212,36 @@ def test_a_canal_is_read_as_one_leg(tmp_path, canal):
     again = evaluate(tmp_path / "canal.rtz", ship=ship(7.0), sea=Sea.calm(), chart=chart)
     assert again.time_h == pytest.approx(sailed.time_h, rel=1e-4)
     assert [row["leg_kind"] for row in again.waypoints()].count("canal") == 1
+
+
+def _with_limits(port: float, starboard: float) -> str:
+    leg = f'<leg portsideXTD="{port}" starboardXTD="{starboard}" geometryType="Loxodrome"/>'
+    points = [(0.0, 0.0), (0.0, 1.0), (0.5, 1.0)]
+    made = "".join(
+        f'<waypoint id="{k}" revision="0"><position lat="{lat}" lon="{lon}"/>'
+        f"{leg if k == 1 else ''}</waypoint>"
+        for k, (lat, lon) in enumerate(points)
+    )
+    return f"{HEAD}<waypoints>{made}</waypoints></route>"
+
+
+@pytest.mark.parametrize(
+    ("port", "starboard", "words"),
+    [
+        (2.0, 0.5, "meet land or closed zones: leg 1 to port (2.00 nm)."),
+        (0.5, 2.0, "keep clear of charted land and closed zones."),
+    ],
+)
+def test_the_cross_track_limits_of_a_file_are_checked(tmp_path, port, starboard, words):
+    """A shoal 1.2 to 3 nm north of an eastbound leg, closed by a zone."""
+    path = tmp_path / "a.rtz"
+    path.write_text(_with_limits(port, starboard))
+    ring = [[0.4, 0.02], [0.6, 0.02], [0.6, 0.05], [0.4, 0.05], [0.4, 0.02]]
+    zone = {"type": "Feature", "properties": {"kind": "no-go", "name": "shoal"},
+            "geometry": {"type": "Polygon", "coordinates": [ring]}}  # fmt: skip
+    chart = Chart.open_water().with_zones({"type": "FeatureCollection", "features": [zone]})
+    found = evaluate(path, ship=ship(7.5), sea=Sea.calm(), chart=chart, depart=DEPART)
+    assert found.feasible
+    assert f"The cross-track limits of the file {words}" in found.assumptions
+    without = evaluate(read_track(path, depart=DEPART), ship=ship(7.5), sea=Sea.calm(), chart=chart)
+    assert not any("cross-track" in text for text in without.assumptions)

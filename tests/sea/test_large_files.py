@@ -26,7 +26,7 @@ def grid_layer(sea):
 def small_windows(monkeypatch, sea):
     layer = grid_layer(sea)
     monkeypatch.setattr(gridded_layer, "MAX_WINDOW_BYTES", LIMIT)
-    monkeypatch.setattr(block_cache, "MAX_UNION_VALUES", 1)
+    monkeypatch.setattr(block_cache, "MAX_UNION_BYTES", 1)
     layer.cache.blocks.clear()
     return layer
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike
@@ -16,6 +16,7 @@ from thalweg.route.formats.csv_format import parse_csv, write_csv
 from thalweg.route.formats.geojson_format import parse_geojson, write_geojson
 from thalweg.route.formats.gpx_format import parse_gpx, write_gpx
 from thalweg.route.formats.kml_writer import write_kml
+from thalweg.route.formats.leg_corridors import corridor_notes
 from thalweg.route.formats.parsed_track import ParsedTrack, track_of
 from thalweg.route.formats.route_file_options import ROUTE_FORMATS, RouteFileOptions
 from thalweg.route.formats.rtz_reader import parse_rtz, parse_rtzp
@@ -25,10 +26,14 @@ from thalweg.route.formats.s421_writer import write_s421
 from thalweg.route.route import Route
 from thalweg.route.track import Track
 
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
 __all__ = [
     "LARGEST_FILE",
     "ROUTE_FORMATS",
     "RouteFileOptions",
+    "cross_track_notes",
     "read_track",
     "write_csv",
     "write_geojson",
@@ -117,6 +122,25 @@ def read_track(path: str | Path, *, depart: TimeLike | None = None) -> Track:
         waypoints or impossible positions, or if there is no departure.
     """
     path = Path(path)
+    return track_of(_contents_of(path), depart, path.name)
+
+
+def cross_track_notes(path: str | Path, chart: Chart) -> list[str]:
+    """Return whether the cross-track limits in a route file keep clear of land and closed zones.
+
+    Parameters
+    ----------
+    path : As of `read_track`; RTZ has such limits.
+
+    Returns
+    -------
+    list of str
+        One note; empty where the file has no limits.
+    """
+    return corridor_notes(_contents_of(Path(path)), chart)
+
+
+def _contents_of(path: Path) -> ParsedTrack:
     ending = path.suffix.lower()
     if ending not in (*_PARSERS, *_BYTE_PARSERS):
         raise InputError(
@@ -127,8 +151,8 @@ def read_track(path: str | Path, *, depart: TimeLike | None = None) -> Track:
         )
     data = _bytes_of(path)
     if ending in _BYTE_PARSERS:
-        return track_of(_BYTE_PARSERS[ending](data), depart, path.name)
-    return track_of(_PARSERS[ending](_text_of(data, path)), depart, path.name)
+        return _BYTE_PARSERS[ending](data)
+    return _PARSERS[ending](_text_of(data, path))
 
 
 def _bytes_of(path: Path) -> bytes:

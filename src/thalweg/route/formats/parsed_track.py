@@ -31,6 +31,7 @@ class ParsedTrack:
     orders : By position; empty where the file has none.
     rhumb : By leg, whether it is a rhumb line; empty: all legs are geodesics.
     notes : What the file has otherwise than its format, and how it was read.
+    corridors : By leg, the cross-track limits to port and starboard [m]; NaN: none. Empty: none.
     """
 
     positions: list[Position]
@@ -38,6 +39,7 @@ class ParsedTrack:
     orders: list[WaypointOrder] = field(default_factory=list)
     rhumb: list[bool] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    corridors: list[tuple[float, float]] = field(default_factory=list)
 
 
 class WaypointOrder(NamedTuple):

@@ -7,6 +7,7 @@ the standard is noted. A leg is a rhumb line unless it is marked ``Orthodrome``.
 from __future__ import annotations
 
 import io
+import math
 import re
 import zipfile
 from collections.abc import Mapping
@@ -15,7 +16,9 @@ from xml.etree import ElementTree
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position
+from thalweg.core.given_numbers import to_number
 from thalweg.core.time import parse_time
+from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route.formats.parsed_track import (
     ParsedTrack,
     WaypointOrder,
@@ -64,7 +67,8 @@ def parse_rtz(data: bytes) -> ParsedTrack:
     if first_time is not None:
         first_time -= orders[0].wait  # the departure of the schedule comes after the wait
     rhumb = [_is_rhumb(root, waypoint, notes) for waypoint in waypoints[1:]]
-    return ParsedTrack(positions, first_time, orders, rhumb, list(dict.fromkeys(notes)))
+    corridors = [_corridor(root, waypoint) for waypoint in waypoints[1:]]
+    return ParsedTrack(positions, first_time, orders, rhumb, list(dict.fromkeys(notes)), corridors)
 
 
 def parse_rtzp(data: bytes) -> ParsedTrack:
@@ -125,14 +129,28 @@ def _position(waypoint: ElementTree.Element, number: int, notes: list[str]) -> P
 
 def _is_rhumb(root: ElementTree.Element, waypoint: ElementTree.Element, notes: list[str]) -> bool:
     """Return whether the leg that ends at a waypoint is a rhumb line."""
+    kind = _leg_attribute(root, waypoint, "geometryType") or "Loxodrome"
+    if str(kind) not in ("Loxodrome", "Orthodrome"):
+        notes.append(f"a leg has the geometry {kind!r}: a rhumb line is used")
+    return str(kind) != "Orthodrome"
+
+
+def _leg_attribute(root: ElementTree.Element, waypoint: ElementTree.Element, name: str) -> str:
+    """Return an attribute of the leg that ends at a waypoint, or of the default leg; or ''."""
     default = [
         e for group in children(root, "waypoints") for e in children(group, "defaultWaypoint")
     ]
     legs = [leg for place in (waypoint, *default) for leg in children(place, "leg")]
-    kind = next((leg.get("geometryType") for leg in legs if leg.get("geometryType")), "Loxodrome")
-    if str(kind) not in ("Loxodrome", "Orthodrome"):
-        notes.append(f"a leg has the geometry {kind!r}: a rhumb line is used")
-    return str(kind) != "Orthodrome"
+    return next((leg.get(name, "") for leg in legs if leg.get(name)), "")
+
+
+def _corridor(root: ElementTree.Element, waypoint: ElementTree.Element) -> tuple[float, float]:
+    """Return the cross-track limits (port, starboard) of the leg that ends at a waypoint [m]."""
+    miles = (
+        to_number(_leg_attribute(root, waypoint, name)) for name in ("portsideXTD", "starboardXTD")
+    )
+    port, starboard = (x * NAUTICAL_MILE if 0.0 < x < 10.0 else math.nan for x in miles)
+    return port, starboard
 
 
 def _schedule(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -132,6 +133,11 @@ def evaluate(
     coarse = sail_track(world, track, step, MIN_PIECES, None)
     fine = sail_track(world, track, 0.5 * step, 2 * MIN_PIECES, coarse)
     result = assemble_route(fine, min_ukc, abs(fine.arrive - coarse.arrive), terms)
+    if isinstance(route, (str, Path)) and chart is not None:
+        from thalweg.route.formats import cross_track_notes
+
+        notes = cross_track_notes(route, chart)
+        result = replace(result, assumptions=(*result.assumptions, *notes))
     if strict and not math.isfinite(result.arrive):
         gaps = [violation for violation in result.violations if is_data_gap(violation)]
         if gaps:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from thalweg.sea.grids.source_variables import GridWindow, Quantity, RawArray
 
-MAX_UNION_VALUES = 30_000_000  #: larger blocks are not extended to hold the previous block too
+MAX_UNION_BYTES = 80_000_000  #: larger blocks are not extended to hold the previous block too
 
 
 class CachedBlock(NamedTuple):
@@ -46,10 +46,12 @@ class BlockCache:
         if cached is not None and cached.window.contains(wanted, columns):
             return cached
         misses = self.misses[key] = self.misses.get(key, -1) + 1
-        window = self._window_with_margin(wanted, misses)
+        most = MAX_UNION_BYTES // quantity.bytes_per_value
+        small = misses > 0 and wanted.size <= most
+        window = self._window_with_margin(wanted) if small else wanted
         if cached is not None:
             both = self._union(window, cached.window)
-            window = both if both.size <= MAX_UNION_VALUES else window
+            window = both if both.size <= most else window
         self.blocks.pop(key, None)
         del cached  # the old values and the new ones are not held together
         found = CachedBlock(window, quantity.read(window, columns))
@@ -61,10 +63,8 @@ class BlockCache:
         """Bytes of the values that are held."""
         return sum(v.nbytes for block in self.blocks.values() for v in block.values.values())
 
-    def _window_with_margin(self, window: GridWindow, misses: int) -> GridWindow:
-        """Return a small window that is not the first with a margin, a quarter of its size."""
-        if misses == 0 or window.size > MAX_UNION_VALUES:
-            return window
+    def _window_with_margin(self, window: GridWindow) -> GridWindow:
+        """Return a window with a margin, a quarter of its size."""
         nt, ny, nx = self.shape
         dt = 1 + (window.t1 - window.t0) // 4
         dy = 2 + (window.y1 - window.y0) // 4

@@ -23,7 +23,7 @@ from thalweg.sea.layer import Samples, nan_pairs
 from thalweg.sea.recognition_record import RecognitionRecord
 from thalweg.sea.triangle_mesh import Mesh
 
-MAX_WINDOW_BYTES = 500_000_000  #: of all quantities that are read for one window
+MAX_WINDOW_BYTES = 400_000_000  #: of all quantities that are read for one window
 
 
 @dataclass(frozen=True, eq=False)

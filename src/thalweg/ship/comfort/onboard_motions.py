@@ -163,7 +163,8 @@ class OnboardMotions:
             name: PlaceMotions(*(row[k].reshape(shape) for row in rows))
             for k, name in enumerate(names)
         }
-        return ShipMotions(*(row.reshape(shape) for row in common), places)
+        heave, pitch, roll = (row.reshape(shape) for row in common)
+        return ShipMotions(heave, pitch, roll, places)
 
     def _roll(
         self, speed: FloatArray, angle: FloatArray, height: FloatArray, period: FloatArray
