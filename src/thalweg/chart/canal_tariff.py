@@ -36,22 +36,17 @@ class CanalTariff:
 
     Parameters
     ----------
-    tonnage : str
-        The key of a ship file with the tonnage that counts, such as ``"suez_net_tonnage"``.
+    tonnage : The key of a ship file with the tonnage that counts, such as ``"suez_net_tonnage"``.
     tons_per_gross_ton : float
         That tonnage per gross ton, for ships of whom only the gross tonnage is known.
-    usd : float
-        US dollars per unit of the tariff.
+    usd : US dollars per unit of the tariff.
     fixed : tuple of (beam, amount)
         Part of the dues up to a beam [m], ascending.
-    bands : tuple of float
-        Widths of the first bands of tonnage; one more follows without an end.
+    bands : Widths of the first bands of tonnage; one more follows without an end.
     rates : mapping of str to tuple of float
         Amount per ton in each band, by kind of ship.
-    mean : float
-        Mean dues [USD], for ships of unknown size.
-    source : str
-        Sources and assumptions.
+    mean : Mean dues [USD], for ships of unknown size.
+    source : Sources and assumptions.
     """
 
     tonnage: str
@@ -71,12 +66,7 @@ class CanalTariff:
         ----------
         row : mapping
             Its ``tariff``.
-        mean : float
-            Mean dues [USD].
-
-        Returns
-        -------
-        CanalTariff
+        mean : Mean dues [USD].
         """
         return cls(
             row["tonnage"],
@@ -94,17 +84,13 @@ class CanalTariff:
 
         Parameters
         ----------
-        tons : float
-            Tonnage that counts.
-        beam : float, optional
-            Breadth [m]; without it the smallest fixed part counts.
-        kind : str
-            Kind of ship, a key of ``rates``; others pay as the last one.
+        tons : Tonnage that counts.
+        beam : Breadth [m]; without it the smallest fixed part counts.
+        kind : Kind of ship, a key of ``rates``; others pay as the last one.
 
         Returns
         -------
-        float
-            [USD].
+        float [USD]
         """
         paid = next(amount for limit, amount in self.fixed if (beam or 0.0) <= limit)
         rates = self.rates.get(kind, list(self.rates.values())[-1])
@@ -118,14 +104,8 @@ def tariff_kind(ship_type: str, beam: float | None) -> dict[str, str]:
 
     Parameters
     ----------
-    ship_type : str
-        Type in the ship file, such as ``"bulk carrier"``.
-    beam : float or None
-        Breadth [m].
-
-    Returns
-    -------
-    dict of str to str
+    ship_type : Type in the ship file, such as ``"bulk carrier"``.
+    beam : Breadth [m].
     """
     plain = ship_type.casefold()
     kinds = (kind for words, kind in _KINDS if any(word in plain for word in words))
@@ -141,8 +121,7 @@ def known_gross_tonnage(hull: HullSection) -> tuple[float | None, str]:
 
     Parameters
     ----------
-    hull : HullSection
-        Of a ship file.
+    hull : Of a ship file.
 
     Returns
     -------

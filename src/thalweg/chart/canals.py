@@ -145,10 +145,8 @@ def canals_with_dues(canals: Sequence[Canal], hull: HullSection) -> tuple[Canal,
 
     Parameters
     ----------
-    canals : sequence of Canal
-        Those whose fee is not the mean of their tariff stay as they are.
-    hull : HullSection
-        Of a ship file: tonnage, breadth and type.
+    canals : Those whose fee is not the mean of their tariff stay as they are.
+    hull : Of a ship file: tonnage, breadth and type.
 
     Returns
     -------

@@ -147,12 +147,7 @@ def utc_text(time: float) -> str:
 
     Parameters
     ----------
-    time : float
-        Seconds since 1970-01-01T00:00Z; not finite: "not known".
-
-    Returns
-    -------
-    str
+    time : Seconds since 1970-01-01T00:00Z; not finite: "not known".
     """
     if not math.isfinite(time):
         return "not known"
@@ -160,16 +155,7 @@ def utc_text(time: float) -> str:
 
 
 def duration_text(seconds: float) -> str:
-    """Return a duration [s] to the minute, such as ``7 d 21 h 25 min``.
-
-    Parameters
-    ----------
-    seconds : float
-
-    Returns
-    -------
-    str
-    """
+    """Return a duration [s] to the minute, such as ``7 d 21 h 25 min``."""
     minutes = round(seconds / MINUTE)
     days, rest = divmod(minutes, round(DAY / MINUTE))
     hours, minutes = divmod(rest, 60)

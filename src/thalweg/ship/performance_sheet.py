@@ -255,11 +255,8 @@ def carbon_intensity_of(ship: Ship, co2: float, *, year: int) -> dict[str, Any] 
 
     Parameters
     ----------
-    ship : Ship
-    co2 : float
-        Emission per distance [kg/nm].
-    year : int
-        Of the rating, 2019 to 2030.
+    co2 : Emission per distance [kg/nm].
+    year : Of the rating, 2019 to 2030.
 
     Returns
     -------

@@ -28,10 +28,6 @@ def checked_annual(given: Any) -> dict[str, float]:
     given : mapping
         ``port_h``: time in port after each voyage [h]; ``year`` of the carbon intensity rating.
 
-    Returns
-    -------
-    dict of str to float
-
     Raises
     ------
     InputError

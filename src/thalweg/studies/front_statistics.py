@@ -77,13 +77,7 @@ def draw_front_statistics(table: pd.DataFrame, path: Path) -> Path:
 
     Parameters
     ----------
-    table : pandas.DataFrame
-        Of `front_statistics`.
-    path : Path
-
-    Returns
-    -------
-    Path
+    table : Of `front_statistics`.
     """
     from matplotlib.figure import Figure
 

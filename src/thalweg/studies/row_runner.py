@@ -183,12 +183,7 @@ def ship_of_request(request: Mapping[str, Any], folder: str) -> Ship:
     ----------
     request : mapping
         Of a `StudyRow`.
-    folder : str
-        Files are relative to it.
-
-    Returns
-    -------
-    Ship
+    folder : Files are relative to it.
     """
     return _ship(canonical_json([request.get("ship"), request.get("load_factor")]), folder)
 

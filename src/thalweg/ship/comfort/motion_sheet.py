@@ -32,7 +32,6 @@ def motion_sheet(
 
     Parameters
     ----------
-    ship : Ship
     weather : mapping
         As of `thalweg.ship.performance_sheet`, with ``wave_height`` [m]; a wind without an angle
         comes from the direction of the waves.

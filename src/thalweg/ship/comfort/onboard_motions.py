@@ -58,12 +58,10 @@ class ShipMotions:
     ----------
     heave : float64 array
         At midship [m].
-    pitch : float64 array
-        [rad].
+    pitch : float64 array [rad]
     roll : float64 array
         [rad]; NaN everywhere where the ship has no natural roll period.
-    places : dict of str to PlaceMotions
-        By the names of the ship file; on the centre line, so that roll does not move them.
+    places : By the names of the ship file; on the centre line, so that roll does not move them.
     """
 
     heave: FloatArray
@@ -83,10 +81,8 @@ class OnboardMotions:
         objective comfort counts.
     tasks : mapping of str to TaskSection
         Limits of motions by task.
-    roll_period : float or None
-        Natural period [s]; None where the ship file gives neither it nor GM.
-    roll_damping : float
-        Share of the critical damping.
+    roll_period : Natural period [s]; None where the ship file gives neither it nor GM.
+    roll_damping : Share of the critical damping.
     """
 
     hull: MotionHull

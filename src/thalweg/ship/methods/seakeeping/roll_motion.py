@@ -49,13 +49,11 @@ def roll_amplitude(
         Natural roll period [s].
     damping : float
         Share of the critical damping, nu.
-    gravity : float
-        [m/s2].
+    gravity : float [m/s2]
 
     Returns
     -------
-    ndarray
-        [rad/m].
+    ndarray [rad/m]
 
     Notes
     -----
