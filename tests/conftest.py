@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -36,6 +37,18 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Put modules with slow tests first: no worker is left with one at the end."""
     slow = {item.path for item in items if item.get_closest_marker("slow")}
     items.sort(key=lambda item: item.path not in slow)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def brief_proofs() -> Iterator[None]:
+    """Limit the time for proofs that a test does not set: by default it is that of the search."""
+    from thalweg.planning import planner
+    from thalweg.planning.pareto import bounds
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(planner, "_LONGEST_DEFAULT_PROOF", 0.2)
+        patch.setattr(bounds, "_SECONDS", 0.2)
+        yield
 
 
 ROOT = Path(__file__).resolve().parent.parent
