@@ -41,13 +41,17 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session", autouse=True)
 def brief_proofs() -> Iterator[None]:
-    """Limit the time for proofs that a test does not set: by default it is that of the search."""
+    """Limit proofs that a test does not set, which take as long as the search, and their rasters."""
     from thalweg.planning import planner
     from thalweg.planning.pareto import bounds
+    from thalweg.planning.single import certified_bound
+    from thalweg.search.certificate import time_certificate
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(planner, "_LONGEST_DEFAULT_PROOF", 0.2)
         patch.setattr(bounds, "_SECONDS", 0.2)
+        patch.setattr(certified_bound, "_CELLS_OF_PATH", 250)
+        patch.setattr(time_certificate, "_CELLS_OF_GEODESIC", 120)
         yield
 
 
