@@ -41,7 +41,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session", autouse=True)
 def brief_proofs() -> Iterator[None]:
-    """Limit proofs that a test does not set, which take as long as the search, and their rasters."""
+    """Limit the time for proofs that a test does not set, and the rasters that plans make."""
     from thalweg.planning import planner
     from thalweg.planning.pareto import bounds
     from thalweg.planning.single import certified_bound
