@@ -14,7 +14,11 @@ from tests.compile_kernels import compile_once
 
 # A gate must not depend on luck: where CI is set, the examples are the same every time.
 settings.register_profile(
-    "thalweg", deadline=None, print_blob=True, derandomize=bool(os.environ.get("CI"))
+    "thalweg",
+    deadline=None,
+    print_blob=True,
+    derandomize=bool(os.environ.get("CI")),
+    max_examples=int(os.environ.get("THALWEG_EXAMPLES", "40")),
 )
 settings.load_profile("thalweg")
 
