@@ -24,7 +24,7 @@ def known_where(condition):
 
 def ask(start, goal, sea, chart=WATER, **more):
     voyage = Voyage(start=start, goal=goal, depart="2026-01-01", **more)
-    return plan(voyage, ship=SHIP, sea=sea, chart=chart)
+    return plan(voyage, ship=SHIP, sea=sea, chart=chart, resolution=5000.0)
 
 
 def test_a_position_outside_the_data_is_refused_with_the_nearest_covered_water():

@@ -52,7 +52,9 @@ def test_waves_of_known_height_alone_are_head_seas(tmp_path):
     }
     ahead = Sea.from_functions(constant, time_step=0.0).filled(wind=0.0)
     voyage = Voyage(start=(50.0, 1.0), goal=(50.0, 3.0), depart="2026-01-01")
-    one, two = (plan(voyage, ship=ship, sea=s, chart=WATER) for s in (filled, ahead))
+    one, two = (
+        plan(voyage, ship=ship, sea=s, chart=WATER, resolution=10_000.0) for s in (filled, ahead)
+    )
     assert one.best.feasible
     assert one.best.time_h == pytest.approx(two.best.time_h, rel=2e-3)
     assert any("from ahead" in note for note in one.notes)

@@ -255,7 +255,7 @@ def test_a_plan_avoids_dangerous_waves_as_evaluated_by_the_referee():
     routes = []
     for limits in ({}, {"msc_circ_1228": ["surf_riding"]}):
         ship = _ship(limits, speeds_kn=[24])
-        routes.append(plan(voyage, ship=ship, sea=sea, chart=chart).best)
+        routes.append(plan(voyage, ship=ship, sea=sea, chart=chart, resolution=8000.0).best)
     free, careful = routes
     assert free.violations == careful.violations == ()
     assert 1.05 < careful.time_h / free.time_h < 1.0 / math.cos(math.radians(45.0)) + 0.02
