@@ -100,7 +100,7 @@ def test_a_jet_beside_the_way_is_bounded_from_below():
         lambda t, y, x: 4.5 * np.exp(-(((y * 110574.0 - 11100.0) / 1800.0) ** 2)) + 0 * x,
         lambda t, y, x: 0 * x,
     )
-    found = bound(sea, 9.777 * 3600.0, ends=((0.0, 0.0), (0.0, wide)), cells=300)
+    found = bound(sea, 9.777 * 3600.0, ends=((0.0, 0.0), (0.0, wide)), cells=400)
     assert 0.94 * 9.706 < found.value / 3600.0 <= 9.706
 
 
