@@ -8,7 +8,8 @@ Without ``--tolerance`` numbers must be the same to the byte. A tolerance is the
 of a quantity over its largest number in the plan; ``NAME=NUMBER`` is one for the quantities whose
 name ends so. A quantity that a file has and the code no longer gives is a difference, and so is
 another number of routes or waypoints; quantities that are new in the code are not. Texts, versions,
-fingerprints, bounds and timings are not compared. In a brief file a tolerance is for the sums of waypoints.
+fingerprints, bounds and timings are not compared. In a brief file a tolerance is for the sums of
+waypoints.
 Numbers are valid for one machine and one set of libraries. All cases state positions, not ports.
 """
 
