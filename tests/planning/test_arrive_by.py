@@ -21,6 +21,7 @@ def contrary(time, lat, lon):
     return np.where(np.abs(lat) < 0.1, -6.0 * KNOT, 0.0) + 0.0 * lon
 
 
+@pytest.mark.slow
 def test_the_shortest_route_is_late_and_another_is_in_time() -> None:
     sea = Sea.from_functions(
         {

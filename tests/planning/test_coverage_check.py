@@ -39,6 +39,7 @@ def test_a_position_far_outside_the_data_is_refused():
         ask((50.5, 1.5), (50.5, 4.5), known_where(lambda lat, lon: lon < 2.0))
 
 
+@pytest.mark.slow
 def test_a_port_moves_to_covered_water_with_a_note():
     found = ask((50.5, 1.5), "Rotterdam", known_where(lambda lat, lon: lon < 4.0))
     end = found.best.track

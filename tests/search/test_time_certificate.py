@@ -104,6 +104,7 @@ def test_a_jet_beside_the_way_is_bounded_from_below():
     assert 0.94 * 9.706 < found.value / 3600.0 <= 9.706
 
 
+@pytest.mark.slow
 def test_land_between_lengthens_the_bound():
     wall = {
         "type": "Polygon",

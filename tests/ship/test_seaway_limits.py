@@ -94,6 +94,7 @@ def test_kernels_and_model_forbid_the_same_of_the_circular(setting, angle, heigh
     st.floats(0.0, 12.0),
     st.floats(3.0, 20.0),
 )
+@pytest.mark.slow
 def test_kernels_and_model_forbid_the_same_motions_away_from_the_edge(
     which, setting, angle, height, period
 ):
