@@ -4,6 +4,8 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 OUT    ?= demo
+# Every worker and command keeps its compiled bytecode: tests start many processes.
+PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
 .PHONY: demo serve test check format docs bench install clean
 
@@ -26,14 +28,14 @@ serve: $(STAMP)
 	$(BIN)/python -m thalweg.cli.main serve --demo --open
 
 test: $(STAMP)
-	$(BIN)/python -m pytest -n auto --dist worksteal
+	$(PYTEST)
 
 check: $(STAMP)
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/python -m pytest -n auto --dist worksteal -q -m "not slow"
+	$(PYTEST) -q -m "not slow"
 
 format: $(STAMP)
 	$(BIN)/ruff format .

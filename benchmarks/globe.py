@@ -44,8 +44,8 @@ def main() -> None:
     print(f"  {len(grid.lat):,} nodes, {len(grid.pairs.first):,} legs, {grid.rejected:,} rejected")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "grid.npz"
-        grid._save(path, grid)
-        timed(f"loaded ({path.stat().st_size / 1e6:.0f} MB)", grid._load, path)
+        globe_grid._save(path, grid)
+        timed(f"loaded ({path.stat().st_size / 1e6:.0f} MB)", globe_grid._load, path)
     globe(chart, *VOYAGES["Rotterdam - Gdansk"])
     for name, ends in VOYAGES.items():
         print(name)

@@ -19,7 +19,6 @@ import numpy as np
 import shapely
 
 from thalweg.chart import Chart
-from thalweg.chart.basemap import land_polygons
 from thalweg.core import geodesy
 
 
@@ -59,7 +58,7 @@ def run(resolution, count, check):
     rng = np.random.default_rng(2)
     chart = Chart.gshhg(resolution)
     window = (25.0, 70.0, -45.0, 25.0)
-    land = shapely.union_all(land_polygons(chart, -89.9, 89.9, -179.999, 179.999))
+    land = shapely.union_all(chart.coastline.polygons(-89.9, 89.9, -179.999, 179.999))
     parts = shapely.get_parts(land)
     print(f"GSHHG {resolution}: {len(parts)} polygons, {shapely.get_num_coordinates(land)} points")
     shapely.prepare(land)

@@ -15,6 +15,7 @@ Usage: ``python benchmarks/sea_distances.py [PAIRS] [FILE.csv]``
 from __future__ import annotations
 
 import csv
+import importlib.util
 import random
 import sys
 import time
@@ -92,6 +93,9 @@ def compare(start: str, goal: str, seas: Seaways) -> dict[str, object]:
 
 
 def main() -> None:
+    if importlib.util.find_spec("searoute") is None:
+        print("searoute is not installed: there is nothing to compare (pip install searoute)")
+        return
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 300
     seas = Seaways.of_chart(Chart.gshhg("i"), ())
     rows = [compare(a, b, seas) for a, b in chosen_pairs(count)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,11 @@ from tests.compile_kernels import compile_once
 
 # A gate must not depend on luck: where CI is set, the examples are the same every time.
 settings.register_profile(
-    "thalweg", deadline=None, print_blob=True, derandomize=bool(os.environ.get("CI"))
+    "thalweg",
+    deadline=None,
+    print_blob=True,
+    derandomize=bool(os.environ.get("CI")),
+    max_examples=int(os.environ.get("THALWEG_EXAMPLES", "40")),
 )
 settings.load_profile("thalweg")
 
@@ -36,6 +41,22 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Put modules with slow tests first: no worker is left with one at the end."""
     slow = {item.path for item in items if item.get_closest_marker("slow")}
     items.sort(key=lambda item: item.path not in slow)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def brief_proofs() -> Iterator[None]:
+    """Limit the time for proofs that a test does not set, and the rasters that plans make."""
+    from thalweg.planning import planner
+    from thalweg.planning.pareto import bounds
+    from thalweg.planning.single import certified_bound
+    from thalweg.search.certificate import time_certificate
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(planner, "_LONGEST_DEFAULT_PROOF", 0.2)
+        patch.setattr(bounds, "_SECONDS", 0.2)
+        patch.setattr(certified_bound, "_CELLS_OF_PATH", 250)
+        patch.setattr(time_certificate, "_CELLS_OF_GEODESIC", 120)
+        yield
 
 
 ROOT = Path(__file__).resolve().parent.parent

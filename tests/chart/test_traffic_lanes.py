@@ -66,12 +66,14 @@ def test_a_plan_goes_round_a_lane_against_it_and_through_it_with_it(water, ship)
         ship=ship,
         sea=Sea.calm(),
         chart=chart,
+        resolution=4000.0,
     )
     west = plan(
         Voyage(start=(50.5, 2.8), goal=(50.5, 1.2), depart=DEPART),
         ship=ship,
         sea=Sea.calm(),
         chart=chart,
+        resolution=4000.0,
     )
     straight = float(distance(50.5, 1.2, 50.5, 2.8)) / 1852.0
     assert east.best.distance_nm == pytest.approx(straight, rel=1e-3)
@@ -98,7 +100,8 @@ def test_the_referee_refuses_a_route_against_a_lane(water, ship):
 def test_the_routes_of_a_choice_of_speeds_keep_out_of_a_lane(water):
     chart = water.with_zones(collection(lane()))
     voyage = Voyage(start=(50.5, 2.8), goal=(50.5, 1.2), depart=DEPART, objective="fuel")
-    found = plan(voyage, ship=Ship.load("handysize-bulker"), sea=Sea.calm(), chart=chart)
+    ship = Ship.load("handysize-bulker")
+    found = plan(voyage, ship=ship, sea=Sea.calm(), chart=chart, resolution=10_000.0)
     assert found.best.feasible
 
 

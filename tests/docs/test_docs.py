@@ -20,6 +20,7 @@ def name(page: Path) -> str:
 
 
 @pytest.mark.parametrize("page", [p for p in TRIED if BLOCK.search(p.read_text())], ids=name)
+@pytest.mark.slow
 def test_python_in_pages_runs(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     world: dict[str, object] = {}
@@ -49,6 +50,7 @@ def test_every_public_name_has_a_docstring():
         assert (getattr(thalweg, public).__doc__ or "").strip(), public
 
 
+@pytest.mark.slow
 def test_the_commands_of_the_readme_run_as_they_stand(tmp_path, monkeypatch, capsys):
     from thalweg.cli.main import main
 

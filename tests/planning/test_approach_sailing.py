@@ -46,6 +46,7 @@ def approach_of(name):
     return PORT_APPROACHES.of(PORTS.lookup(name))
 
 
+@pytest.mark.slow
 def test_the_chart_of_the_plots_keeps_its_offing_and_its_approaches():
     kept = planned().plot_context.chart
     assert kept.offing.distance == pytest.approx(2.0 * NAUTICAL_MILE)
@@ -161,6 +162,7 @@ def test_a_position_far_from_the_sea_is_refused_with_the_nearest_water():
         resolve_endpoint((52.09, 5.12), chart(), "goal")  # Utrecht
 
 
+@pytest.mark.slow
 def test_water_that_does_not_lead_to_the_sea_is_not_used():
     # a lagoon of 4 km in the middle of an island
     ring = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]

@@ -84,6 +84,7 @@ def test_the_latest_departure_is_the_arrival_less_the_passage() -> None:
     assert ", latest departure, to arrive at " in str(slower).splitlines()[0]
 
 
+@pytest.mark.slow
 def test_an_impossible_arrival_states_what_is_possible() -> None:
     sea = sea_with_current(0.0)
     with pytest.raises(NoRouteError) as caught:
@@ -96,6 +97,7 @@ def test_an_impossible_arrival_states_what_is_possible() -> None:
     assert "leave out the departure" in caught.value.remedy
 
 
+@pytest.mark.slow
 def test_the_least_fuel_arrives_by_the_time_asked() -> None:
     arrive = DEPART + 1.2 * mid_speed_time()
     given = {"objective": "fuel", "method": "exact"}

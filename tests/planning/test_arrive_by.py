@@ -12,6 +12,7 @@ from thalweg.planning.single.no_route_diagnosis import late_arrival_error
 
 KNOT, HOUR, DEPART = 1852.0 / 3600.0, 3600.0, 1767225600.0
 SHIP = Ship.simple(speed_kn=10.0, draught_m=5.0)
+WATER = Chart.open_water(-0.6, 0.6, -0.2, 2.2)
 ENDS = {"start": (0.0, 0.0), "goal": (0.0, 2.0), "depart": DEPART}
 
 
@@ -20,6 +21,7 @@ def contrary(time, lat, lon):
     return np.where(np.abs(lat) < 0.1, -6.0 * KNOT, 0.0) + 0.0 * lon
 
 
+@pytest.mark.slow
 def test_the_shortest_route_is_late_and_another_is_in_time() -> None:
     sea = Sea.from_functions(
         {
@@ -27,7 +29,7 @@ def test_the_shortest_route_is_late_and_another_is_in_time() -> None:
             "northward_sea_water_velocity": lambda t, lat, lon: 0.0 * lat,
         }
     )
-    given = {"ship": SHIP, "sea": sea, "chart": Chart.open_water(-0.6, 0.6, -0.2, 2.2)}
+    given = {"ship": SHIP, "sea": sea, "chart": WATER, "resolution": 5000.0}
     fast = plan(Voyage(**ENDS), **given).best  # about 13 h; along the equator it takes 30 h
     assert fast.time_h < 20.0
     latest = DEPART + 22.0 * HOUR
@@ -43,7 +45,7 @@ def test_a_fastest_arrival_in_time_is_not_reported_as_late() -> None:
 
 
 def test_a_route_that_the_referee_finds_late_is_not_reported_as_in_time(monkeypatch) -> None:
-    given = {"ship": SHIP, "sea": Sea.calm(), "chart": Chart.open_water(-0.6, 0.6, -0.2, 2.2)}
+    given = {"ship": SHIP, "sea": Sea.calm(), "chart": WATER, "resolution": 5000.0}
     hours = float(distance(0.0, 0.0, 0.0, 2.0)) / (10.0 * KNOT) / HOUR
     latest = DEPART + (hours + 0.5) * HOUR
     assert plan(Voyage(**ENDS, arrive_by=latest), **given).best.arrive <= latest

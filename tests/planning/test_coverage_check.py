@@ -24,7 +24,7 @@ def known_where(condition):
 
 def ask(start, goal, sea, chart=WATER, **more):
     voyage = Voyage(start=start, goal=goal, depart="2026-01-01", **more)
-    return plan(voyage, ship=SHIP, sea=sea, chart=chart)
+    return plan(voyage, ship=SHIP, sea=sea, chart=chart, resolution=5000.0)
 
 
 def test_a_position_outside_the_data_is_refused_with_the_nearest_covered_water():
@@ -39,6 +39,7 @@ def test_a_position_far_outside_the_data_is_refused():
         ask((50.5, 1.5), (50.5, 4.5), known_where(lambda lat, lon: lon < 2.0))
 
 
+@pytest.mark.slow
 def test_a_port_moves_to_covered_water_with_a_note():
     found = ask((50.5, 1.5), "Rotterdam", known_where(lambda lat, lon: lon < 4.0))
     end = found.best.track

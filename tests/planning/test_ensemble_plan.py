@@ -52,6 +52,7 @@ def planned(sea: Sea, objective: str):
 
 
 @pytest.mark.parametrize("objective", ["front", "fuel"])
+@pytest.mark.slow
 def test_a_member_that_closes_every_route_leaves_the_choice_to_the_others(objective):
     """A front over such members ended in an IndexError."""
     found = planned(Sea.ensemble(member(1.0, 1.0), member(-1.0, 1.0), member(0.0, 3.0)), objective)

@@ -18,6 +18,7 @@ def bank_depth(time, lat, lon):
 
 @pytest.mark.parametrize("objective", ["time", "distance"])
 @pytest.mark.parametrize("resolution", [30_000.0])
+@pytest.mark.slow
 def test_a_closed_bank_between_the_nodes_is_planned_round(objective, resolution) -> None:
     """Both were once answered with a route over the bank, 3 m too shallow."""
     still = {name: lambda time, lat, lon: 0.0 * lat for name in CURRENT}

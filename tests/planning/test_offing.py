@@ -43,6 +43,7 @@ def world():
     return Chart.gshhg("i")
 
 
+@pytest.mark.slow
 def test_every_basin_is_reached_two_miles_off_land(world):
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -121,6 +122,7 @@ def ship():
     return Ship.simple(speed_kn=12.0, draught_m=9.0)
 
 
+@pytest.mark.slow
 def test_a_plan_keeps_two_miles_off_a_cape_and_says_so(world, ship):
     # past Cape Tourinan and Cape Finisterre
     voyage = Voyage(start=(43.35, -9.30), goal=(42.75, -9.30), depart=DEPART)
@@ -151,6 +153,7 @@ def test_the_referee_names_a_leg_that_is_too_near(world, ship):
     assert shore == pytest.approx(first.value, rel=0.01)
 
 
+@pytest.mark.slow
 def test_where_no_route_exists_a_smaller_offing_is_used_and_stated(ship):
     # two lands 1.6 nm apart, without a named passage
     wall = [[[-1.0, -0.2], [-0.8 / 60, -0.2], [-0.8 / 60, 0.2], [-1.0, 0.2], [-1.0, -0.2]]]
@@ -164,6 +167,7 @@ def test_where_no_route_exists_a_smaller_offing_is_used_and_stated(ship):
     assert found.best.distance_nm == pytest.approx(59.7, abs=0.3)
 
 
+@pytest.mark.slow
 def test_an_end_near_land_is_relaxed_there_only(world, ship):
     voyage = Voyage(start=(43.05, -9.33), goal=(42.4, -9.35), depart=DEPART)
     found = plan(voyage, ship=ship, sea=Sea.calm(), chart=world)
@@ -175,6 +179,7 @@ def test_an_end_near_land_is_relaxed_there_only(world, ship):
     assert OffingDisc(43.05, -9.33, 1.0).radius == 0.0
 
 
+@pytest.mark.slow
 def test_a_route_through_narrows_lists_them(world, ship):
     voyage = Voyage(start=(40.3, 25.5), goal=(41.6, 29.4), depart=DEPART, objective="distance")
     found = plan(voyage, ship=ship, sea=Sea.calm(), chart=world)
@@ -204,6 +209,7 @@ def test_only_closed_passages_that_would_shorten_the_route_are_mentioned():
 
 
 # The old network left Recife by one leg of 118 nm to a node beyond it and came back.
+@pytest.mark.slow
 def test_no_route_passes_its_goal_and_returns(world, ship):
     voyage = Voyage(start=(-6.5, -34.5), goal=(-8.05, -34.8707), depart=DEPART, offing_nm=0)
     found = plan(voyage, ship=ship, sea=Sea.calm(), chart=world)
@@ -211,6 +217,7 @@ def test_no_route_passes_its_goal_and_returns(world, ship):
     assert found.lower_bound <= found.objective_value
 
 
+@pytest.mark.slow
 def test_liverpool_is_not_left_by_the_menai_strait(world, ship):
     for offing in (0.0, None):
         voyage = Voyage(start=(53.45, -3.3), goal=(52.3, -4.9), depart=DEPART, offing_nm=offing)
@@ -220,6 +227,7 @@ def test_liverpool_is_not_left_by_the_menai_strait(world, ship):
         assert not inside.any()
 
 
+@pytest.mark.slow
 def test_new_york_is_left_by_the_narrows(world):
     bulker = Ship.load("handysize-bulker")
     voyage = Voyage(start=(40.70, -74.02), goal=(38.5, -73.0), depart=DEPART, objective="distance")

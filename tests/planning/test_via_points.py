@@ -23,7 +23,7 @@ def test_two_via_points(objective):
     voyage = Voyage(
         start=(51.0, 1.5), goal=(51.0, 3.5), via=via, depart="2026-01-01", objective=objective
     )
-    found = plan(voyage, ship=SHIP, sea=SEA, chart=WATER)
+    found = plan(voyage, ship=SHIP, sea=SEA, chart=WATER, resolution=6000.0)
     best = found.best
     assert best.feasible and found.lower_bound <= found.objective_value * (1 + 1e-9)
     for lat, lon in via:
@@ -43,7 +43,7 @@ def test_a_penalty_zone_is_avoided_when_that_costs_less():
     }
     chart = Chart.open_water(50.0, 54.0, 1.0, 5.0).with_zones(zone)
     voyage = Voyage(start=(52.0, 2.5), goal=(52.0, 3.7), depart="2026-01-01")
-    best = plan(voyage, ship=SHIP, sea=Sea.calm(), chart=chart).best
+    best = plan(voyage, ship=SHIP, sea=Sea.calm(), chart=chart, resolution=5000.0).best
     inside = (best.samples["lon"] > 2.91) & (best.samples["lon"] < 3.29)
     assert best.samples["lat"][inside].min() > 52.39
 

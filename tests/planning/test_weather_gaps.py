@@ -39,6 +39,7 @@ def test_the_message_names_the_filling_of_every_missing_quantity(tmp_path):
     assert "wind=0 waves=head_seas" in caught.value.remedy
 
 
+@pytest.mark.slow
 def test_waves_of_known_height_alone_are_head_seas(tmp_path):
     """As in waves of the same height and period that meet the ship head on."""
     ship = Ship.load("kvlcc2")
@@ -52,7 +53,9 @@ def test_waves_of_known_height_alone_are_head_seas(tmp_path):
     }
     ahead = Sea.from_functions(constant, time_step=0.0).filled(wind=0.0)
     voyage = Voyage(start=(50.0, 1.0), goal=(50.0, 3.0), depart="2026-01-01")
-    one, two = (plan(voyage, ship=ship, sea=s, chart=WATER) for s in (filled, ahead))
+    one, two = (
+        plan(voyage, ship=ship, sea=s, chart=WATER, resolution=10_000.0) for s in (filled, ahead)
+    )
     assert one.best.feasible
     assert one.best.time_h == pytest.approx(two.best.time_h, rel=2e-3)
     assert any("from ahead" in note for note in one.notes)
@@ -75,6 +78,7 @@ SHIP = Ship.simple(speed_kn=10.0, draught_m=5.0)
 VOYAGE = Voyage(start=(50.5, 1.0), goal=(50.5, 3.0), depart="2026-01-01")
 
 
+@pytest.mark.slow
 def test_a_gap_between_the_stations_is_planned_round():
     """A disc of 1.1 km without data on the straight way, which no node or sample touches."""
 
@@ -101,6 +105,7 @@ def test_a_gap_across_the_way_is_named():
     assert caught.value.reasons["no data"] > 0
 
 
+@pytest.mark.slow
 def test_a_gap_that_the_referee_alone_sees_is_named():
     """A strip that is thinner than the samples of edges, and wider than those of the referee."""
     sea = current_unknown_where(lambda lat, lon: np.abs(lon - 2.013) < 0.008)
@@ -115,6 +120,7 @@ def test_a_gap_that_the_referee_alone_sees_is_named():
 FUEL_SHIP = Ship.simple(speed_kn=10.0, speeds_kn=[7.0, 10.0], draught_m=5.0, fuel_t_per_day=20.0)
 
 
+@pytest.mark.slow
 def test_a_front_is_planned_round_a_gap():
     """The disc of the test above: the fastest and the cheapest route once ended in it."""
 

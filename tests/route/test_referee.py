@@ -49,6 +49,20 @@ def test_heading_crabs_against_the_current():
     assert row["heading_deg"] == pytest.approx(32.032691, abs=1e-4)
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+@pytest.mark.parametrize("lat", [0.0, -3e-16])
+def test_two_waypoints_at_one_place_take_no_time(lat):
+    """Refined tracks may have them: a leg of no length."""
+    sea = Sea.from_functions(
+        {UE: lambda t, a, o: 0.5 * np.sin(t / 5000.0) + 0 * a, UN: lambda t, a, o: 0.2 + 0 * a}
+    )
+    once, twice = (
+        evaluate(Track(*places, 0), ship=Ship.simple(10.0), sea=sea)
+        for places in (([0, 0.5], [0, 1.0]), ([0, lat, 0.5], [0, 0, 1.0]))
+    )
+    assert twice.time_h == pytest.approx(once.time_h, rel=1e-9)
+
+
 def test_mean_speed_over_equal_lengths_is_harmonic():
     route = evaluate(
         Track([0, 0, 0], [0, 1, 2], 0, setting=[0, 1]),

@@ -50,12 +50,14 @@ def on_meshes(passage: PassageToBound, cells: int = 120, meshes: int = 1) -> Tim
     return max(found, key=lambda one: one.value)
 
 
+@pytest.mark.slow
 def test_in_still_water_the_bound_is_the_geodesic_to_a_per_cent_and_a_half():
     best = float(distance(*START, *GOAL)) / SPEED
     found = bound(Sea.calm(), 1.002 * best, meshes=2)
     assert 0.985 * best < found.value <= best
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("east, north", [(2.0, 0.0), (-1.5, 1.0), (0.0, -3.0)])
 def test_in_a_uniform_current_the_bound_is_that_of_the_current_triangle(east, north):
     length = float(distance(*START, *GOAL))
@@ -70,6 +72,7 @@ def test_in_a_uniform_current_the_bound_is_that_of_the_current_triangle(east, no
     assert 0.97 * best < found.value <= 1.001 * best  # the course is that of a plane
 
 
+@pytest.mark.slow
 def test_in_a_current_that_turns_with_the_tide_the_bound_follows_the_times():
     """A uniform current u(t): the ship arrives when the drift and V t together make the way."""
     period, strength = 12.42 * 3600.0, 2.5
@@ -101,6 +104,7 @@ def test_a_jet_beside_the_way_is_bounded_from_below():
     assert 0.94 * 9.706 < found.value / 3600.0 <= 9.706
 
 
+@pytest.mark.slow
 def test_land_between_lengthens_the_bound():
     wall = {
         "type": "Polygon",
@@ -116,6 +120,7 @@ def test_land_between_lengthens_the_bound():
     assert 1.1 * straight < 0.96 * best < found.value <= best
 
 
+@pytest.mark.slow
 def test_a_limit_of_waves_closes_water_to_the_bound_as_to_the_ship():
     """High waves all over a strip of the way: a ship with a limit goes round, as by land."""
     names = "sea_surface_wave_significant_height"

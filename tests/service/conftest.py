@@ -27,6 +27,7 @@ SHORT = {
     "seas": ["calm"],
     "coast": "c",
     "resolution_nm": 4.0,
+    "proof_s": 0.0,
 }
 ENDED = ("done", "failed", "cancelled")
 

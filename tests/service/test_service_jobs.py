@@ -47,6 +47,7 @@ def test_the_result_is_the_plan_of_the_library(client, done):
         sea=Sea.calm(),
         chart=Chart.gshhg("c"),
         resolution=4.0 * 1852.0,
+        proof=0.0,
     )
     assert result == json.loads(found.to_json())
 

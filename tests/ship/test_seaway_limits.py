@@ -1,6 +1,7 @@
 """Safety and comfort as limits: ship files, the model, the kernels, and a leg that is refused."""
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -41,12 +42,18 @@ def _ship(limits, **more):
 CIRCULAR = _ship({"msc_circ_1228": ["all"]})
 BOW = _ship({"max_vertical_acceleration_m_s2": 1.5})
 SICK = _ship({"max_motion_sickness_percent": 20, "motion_sickness_at_m": 30.0})
-TABLES = {id(s): s.tabulate().kernel_arrays() for s in (CIRCULAR, BOW, SICK)}
+SHIPS = (CIRCULAR, BOW, SICK)
+
+
+@cache
+def _arrays(number):
+    """Return the arrays of a ship by its place in `SHIPS`; tables of motions take seconds."""
+    return SHIPS[number].tabulate().kernel_arrays()
 
 
 def _status(ship, setting, angle, height, period):
     """Ask the kernel: course north, waves from ``angle`` to starboard of the bow."""
-    arrays = TABLES[id(ship)]
+    arrays = _arrays(SHIPS.index(ship))
     sample, index = np.zeros(codes.CHANNEL_COUNT), np.full(codes.CHANNEL_COUNT, -1)
     for channel, value in (
         (codes.WAVE_HEIGHT_CHANNEL, height),
@@ -87,6 +94,7 @@ def test_kernels_and_model_forbid_the_same_of_the_circular(setting, angle, heigh
     st.floats(0.0, 12.0),
     st.floats(3.0, 20.0),
 )
+@pytest.mark.slow
 def test_kernels_and_model_forbid_the_same_motions_away_from_the_edge(
     which, setting, angle, height, period
 ):
@@ -147,7 +155,7 @@ def test_waves_are_needed_and_unknown_waves_refuse():
         "sea_surface_wave_significant_height",
         "sea_surface_wave_period_at_variance_spectral_density_maximum",
     }
-    assert axes_needed(TABLES[id(CIRCULAR)]) == sum(
+    assert axes_needed(_arrays(0)) == sum(
         1 << axis
         for axis in (codes.AXIS_WAVE_HEIGHT, codes.AXIS_WAVE_ANGLE, codes.AXIS_WAVE_PERIOD)
     )
@@ -248,7 +256,7 @@ def test_a_plan_avoids_dangerous_waves_as_evaluated_by_the_referee():
     routes = []
     for limits in ({}, {"msc_circ_1228": ["surf_riding"]}):
         ship = _ship(limits, speeds_kn=[24])
-        routes.append(plan(voyage, ship=ship, sea=sea, chart=chart).best)
+        routes.append(plan(voyage, ship=ship, sea=sea, chart=chart, resolution=8000.0).best)
     free, careful = routes
     assert free.violations == careful.violations == ()
     assert 1.05 < careful.time_h / free.time_h < 1.0 / math.cos(math.radians(45.0)) + 0.02

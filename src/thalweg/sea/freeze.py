@@ -31,6 +31,7 @@ DerivedChannel: TypeAlias = Callable[
 ]
 
 POINTS_PER_CHUNK = 1 << 17  #: values computed at a time, so that temporaries stay small
+_BLOCK_OF_COPY = 1 << 16  # values copied at a time into another order
 
 
 class SampledSea(Mapping[str, FloatArray]):
@@ -178,9 +179,19 @@ def freeze_grid_fields(
     stations = freeze_station_fields(
         layers, rows.ravel(), columns.ravel(), start, end, channels, extra=extra
     )
-    shape = (ny, nx, stations.times.size, stations.values.shape[2])
-    values = np.ascontiguousarray(stations.values.reshape(shape).transpose(2, 0, 1, 3))
+    values = _by_time(stations.values)
+    values = values.reshape(stations.times.size, ny, nx, values.shape[2])
     return GridFields(stations.times, south, dlat, west, dlon, values, stations.channel_index)
+
+
+def _by_time(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return values (S, T, K) as (T, S, K), copied in blocks that fit into the cache."""
+    count, times, channels = values.shape
+    turned = np.empty((times, count, channels), values.dtype)
+    rows = max(1, _BLOCK_OF_COPY // max(times * channels, 1))
+    for first in range(0, count, rows):
+        turned[:, first : first + rows] = values[first : first + rows].transpose(1, 0, 2)
+    return turned
 
 
 def locate_channels(

@@ -17,14 +17,20 @@ from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.seakeeping.motion_sickness import (
     MIXED_ADULT_SUSCEPTIBILITY,
-    weighted_acceleration,
+    wf_weighting,
 )
-from thalweg.ship.methods.seakeeping.ship_motions import MotionHull, ship_response
+from thalweg.ship.methods.seakeeping.ship_motions import (
+    MotionHull,
+    encounter_ratio,
+    jensen_motions,
+    vertical_motion,
+)
 from thalweg.ship.methods.seakeeping.stability_msc1_circ1228 import (
     dangerous_situations,
     roll_period,
     surf_riding_speed,
 )
+from thalweg.ship.methods.seakeeping.wave_spectra import jonswap, quadrature
 from thalweg.ship.schema.ship_schema import LimitsSection
 
 #: the situations of MSC.1/Circ.1228 that a ship file may name
@@ -90,20 +96,34 @@ class AccelerationLimit:
         found = np.empty(height.shape)
         for first in range(0, height.size, _BLOCK_SIZE):
             part = slice(first, first + _BLOCK_SIZE)
-            state = ship_response(
-                height=height[part],
-                period=np.clip(period[part], SHORTEST_PERIOD, LONGEST_PERIOD),
-                wave_angle=angle[part],
-                speed=speed[part],
-                hull=hull,
-                forward=self.forward,
+            peak_period = np.clip(period[part], SHORTEST_PERIOD, LONGEST_PERIOD)
+            response = self.squared_response(
+                hull, speed=speed[part], angle=angle[part], period=peak_period
             )
-            if self.weighted:
-                rms = weighted_acceleration(state.acceleration_parts, state.encounter_frequency)
-            else:
-                rms = np.sqrt(state.acceleration.m0)
-            found[part] = rms / self.greatest
+            found[part] = self.ratio_in_sea(response, height=height[part], period=peak_period)
         return found
+
+    def squared_response(
+        self, hull: MotionHull, *, speed: FloatArray, angle: FloatArray, period: FloatArray
+    ) -> FloatArray:
+        """Return the squared acceleration per wave amplitude at the nodes of `quadrature`."""
+        w, _ = quadrature(period)
+        heave, pitch = jensen_motions(w, speed=speed, wave_angle=angle, hull=hull, decay="strip")
+        meeting = np.abs(w * encounter_ratio(w, speed=speed, wave_angle=angle))
+        amplitude = meeting**2 * vertical_motion(heave, pitch, forward=self.forward)
+        if self.weighted:
+            amplitude *= wf_weighting(meeting / (2.0 * np.pi))
+        squared: FloatArray = amplitude**2
+        return squared
+
+    def ratio_in_sea(
+        self, squared_response: FloatArray, *, height: FloatArray, period: FloatArray
+    ) -> FloatArray:
+        """Return the root mean square of this response in JONSWAP seas over the limit."""
+        w, weights = quadrature(period)
+        waves = jonswap(w, height=height, period=period)
+        rms: FloatArray = np.sqrt(np.einsum("ij,ij,ij->i", squared_response, waves, weights))
+        return rms / self.greatest
 
 
 @dataclass(frozen=True)
@@ -218,13 +238,30 @@ class SafetyLimits:
         ends = ((0.0, self.top_speed), (0.0, math.pi), (SHORTEST_PERIOD, LONGEST_PERIOD))
         axes = [np.linspace(*end, size) for end, size in zip(ends, _GRID_SHAPE)]
         v, angle, period = (x.ravel() for x in np.meshgrid(*axes, indexing="ij"))
-        height = np.full(v.shape, _INITIAL_WAVE_HEIGHT)
-        for _ in range(_ITERATIONS):  # the spectrum's peak depends a little on the height
-            share = np.maximum(self._share(v, angle, height, period), 1e-6)
-            height = np.clip(height / share, 0.05, 60.0)
+        height = np.empty(v.shape)
+        for first in range(0, height.size, _BLOCK_SIZE):
+            part = slice(first, first + _BLOCK_SIZE)
+            height[part] = self._heights_at_limit(v[part], angle[part], period[part])
         inverse = np.where(height < 60.0, 1.0 / height, 0.0)
         grid = np.array([[axis[0], 1.0 / (axis[1] - axis[0])] for axis in axes])
         return inverse.reshape(_GRID_SHAPE).astype(np.float32), grid
+
+    def _heights_at_limit(
+        self, speed: FloatArray, angle: FloatArray, period: FloatArray
+    ) -> FloatArray:
+        """The significant height [m] that reaches the first limit, 0.05 to 60 m."""
+        responses = [
+            limit.squared_response(self.hull, speed=speed, angle=angle, period=period)
+            for limit in self.motions
+        ]
+        height = np.full(speed.shape, _INITIAL_WAVE_HEIGHT)
+        for _ in range(_ITERATIONS):  # the spectrum's peak depends a little on the height
+            ratios = [
+                limit.ratio_in_sea(response, height=height, period=period)
+                for limit, response in zip(self.motions, responses)
+            ]
+            height = np.clip(height / np.maximum(np.max(ratios, axis=0), 1e-6), 0.05, 60.0)
+        return height
 
 
 def build_safety_limits(given: LimitsSection, hull: Hull, loading: Loading) -> SafetyLimits | None:

@@ -25,6 +25,8 @@ from thalweg.core.errors import InputError, ThalwegWarning, unknown_name_error
 from thalweg.core.geodesy import densify
 from thalweg.core.time import TimeLike, parse_time
 
+_POSITIONS_AT_A_TIME: Final = 256  # tested against the edges near their latitudes
+
 DATA_DATE: Final = "2026-11-21"  #: date on which the dates of the areas were checked
 MAX_EDGE_LENGTH: Final = (
     10_000.0  # edges that are geodesics are split into pieces no longer than this [m]
@@ -105,6 +107,7 @@ class EcaZone:
         keep[rings.start[1:-1] - 1] = False
         y0, y1 = rings.lat[:-1][keep], rings.lat[1:][keep]
         x0, x1 = rings.lon[:-1][keep], rings.lon[1:][keep]
+        low, high = np.minimum(y0, y1), np.maximum(y0, y1)
         inside = np.zeros(len(y), bool)
         for turn in (-360.0, 0.0, 360.0):
             k = np.flatnonzero(
@@ -113,11 +116,16 @@ class EcaZone:
                 & (x + turn >= x0.min(initial=720.0))
                 & (x + turn <= x0.max(initial=-720.0))
             )
-            for part in np.array_split(k, len(k) * len(y0) // 4_000_000 + 1):
+            k = k[np.argsort(y[k])]  # positions of similar latitude meet few edges
+            for part in np.array_split(k, len(k) // _POSITIONS_AT_A_TIME + 1):
+                if not len(part):
+                    continue
                 yy, xx = y[part, None], x[part, None] + turn
+                near = np.flatnonzero((low <= yy[-1]) & (high > yy[0]))
+                a0, a1, o0, o1 = y0[near], y1[near], x0[near], x1[near]
                 with np.errstate(divide="ignore", invalid="ignore"):
-                    cross = x0 + (yy - y0) / (y1 - y0) * (x1 - x0) > xx
-                inside[part] |= (((y0 <= yy) != (y1 <= yy)) & cross).sum(axis=1) % 2 == 1
+                    cross = o0 + (yy - a0) / (a1 - a0) * (o1 - o0) > xx
+                inside[part] |= (((a0 <= yy) != (a1 <= yy)) & cross).sum(axis=1) % 2 == 1
         return inside.reshape(a.shape)
 
 

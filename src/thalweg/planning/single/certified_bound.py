@@ -40,6 +40,8 @@ _NO_REGION = (
 _NOT_SAILED = "no bound: the route breaks a limit"
 _CELLS_FOR_CURRENT = 100  # where the data are no finer
 _CELLS_OF_PATH = 800  # of functions, along the longer side
+#: Cells of functions in the spacing of a network that is coarser than usual, and how many at least.
+_CELLS_OF_SPACING, _FEWEST_CELLS_OF_PATH = 10, 100
 _CANAL = "no bound: a canal may shorten the way"
 _CONTRADICTED = (
     "no bound: in {sampling} the route of the plan would not be possible in its time, so that a "
@@ -103,7 +105,11 @@ def path_through_data(
     simple = not context.table.axes and context.ship.speed_field is None
     if not (currents and simple and route.feasible) or context.voyage.objective == "distance":
         return None
-    return fast_path_on_raster(_passage(context, route), _CELLS_OF_PATH)
+    passage, spacing = _passage(context, route), context.choice.spacing
+    cells = _CELLS_OF_PATH
+    if spacing is not None:
+        cells = min(cells, round(_CELLS_OF_SPACING * passage.length / spacing))
+    return fast_path_on_raster(passage, max(cells, _FEWEST_CELLS_OF_PATH))
 
 
 def certified_distance(context: PlanningContext, route: Route, *, seconds: float) -> LowerBound:

@@ -181,7 +181,7 @@ def _slowness_time_derivative(
     """Return d slowness / d time at every point, from two iterates; the old one if they agree."""
     known = np.abs(elapsed) > 1e-4
     new = np.where(known, change / np.where(known, elapsed, 1.0), old)
-    largest = 0.5 / step[:, None]
+    largest = 0.5 / np.maximum(step[:, None], 1e-9)
     return np.clip(np.where(np.isfinite(new), new, 0.0), -largest, largest)
 
 

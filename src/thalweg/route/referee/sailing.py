@@ -149,7 +149,8 @@ def _first_guess(
         middle = pieces.start + 0.5 * pieces.step
         ends = np.cumsum(np.bincount(coarse.pieces.leg))
         first = np.concatenate([[0], ends[:-1]])[pieces.leg]
-        nearest = first + (middle / coarse.pieces.step[first]).astype(np.int64)
+        step = coarse.pieces.step[first]  # zero between two waypoints at one place
+        nearest = first + (middle / np.where(step > 0.0, step, 1.0)).astype(np.int64)
         mean = coarse.passage.slowness.mean(axis=1)
         mean = mean[np.minimum(nearest, ends[pieces.leg] - 1)]
         return np.repeat(np.where(np.isnan(canal), mean, 1.0 / canal)[:, None], 2, axis=1)

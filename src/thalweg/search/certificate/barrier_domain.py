@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from thalweg.sea import Sea
 
 _MARGIN: Final = 1.02
+_CELLS_FOR_SPEED: Final = 60  # of functions, while the greatest speed over ground is sought
 _STEPS_ROUND_ELLIPSE: Final = 73
 
 
@@ -89,22 +90,41 @@ class BarrierDomain:
     ship: ShipInBarrier
 
     @classmethod
-    def around(cls, passage: PassageToBound, cells: int) -> BarrierDomain | None:
+    def around(
+        cls, passage: PassageToBound, cells: int, *, fastest: float = 0.0
+    ) -> BarrierDomain | None:
         """Return the domain of a passage; None near a pole and across half of the globe.
 
         Parameters
         ----------
         cells : Cells of the raster along its longer side where the data are no finer.
+        fastest : Speed over ground [m/s] that is known to be reached in the data.
         """
-        ship, fastest = passage.ship, passage.ship.top_speed
-        if not math.isfinite(fastest):
-            fastest = passage.length / passage.known
-        fastest = max(fastest, passage.canal_speed(fastest))
+        first = passage.ship.top_speed
+        if not math.isfinite(first):
+            first = passage.length / passage.known
+        first = max(first, fastest, passage.canal_speed(max(first, fastest)))
+        found = None
+        for wanted in sorted({min(cells, _CELLS_FOR_SPEED), cells}):
+            found = cls._within_reach(passage, wanted, first)
+            if found is None:
+                return None
+            if abs(max(found.raster.values.shape[1:3]) - 1 - wanted) > 1:
+                break  # the data decide on the cells
+            first = found.fastest
+        return found
+
+    @classmethod
+    def _within_reach(
+        cls, passage: PassageToBound, cells: int, fastest: float
+    ) -> BarrierDomain | None:
+        """Return the domain that a ship can reach by its greatest speed over ground in it."""
+        ship = passage.ship
+        period = passage.depart, passage.depart + passage.departures + passage.known
         for _ in range(8):
             box = _box_of_routes(passage, fastest * _MARGIN)
             if box is None:
                 return None
-            period = passage.depart, passage.depart + passage.departures + passage.known
             request = RasterRequest(
                 passage.sea, passage.channels, box, period, cells, ship.speed_field
             )

@@ -90,7 +90,7 @@ def certify_time(
         return None
     best = free_space_time(passage, domain)
     if domain.sampling:
-        finer = BarrierDomain.around(passage, _CELLS_OF_GEODESIC)
+        finer = BarrierDomain.around(passage, _CELLS_OF_GEODESIC, fastest=domain.fastest)
         best = best if finer is None else free_space_time(passage, finer)
     if seconds <= 0.0:
         return best

@@ -124,8 +124,9 @@ def jonswap(
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         x = w / peak
         width = np.where(x <= 1.0, 0.07, 0.09)
-        enhance = gamma ** np.exp(-((x - 1.0) ** 2) / (2.0 * width**2))
-        shape = np.where(x > 0.0, x**-5.0 * np.exp(-1.25 * x**-4.0), 0.0 * x)
+        enhance = np.exp(np.log(gamma) * np.exp(-((x - 1.0) ** 2) / (2.0 * width**2)))
+        fourth = 1.0 / np.square(x * x)
+        shape = np.where(x > 0.0, fourth / x * np.exp(-1.25 * fourth), 0.0 * x)
     return 0.3125 * hs**2 / peak * (1.0 - 0.287 * np.log(gamma)) * shape * enhance
 
 
