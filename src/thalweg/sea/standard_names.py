@@ -8,6 +8,7 @@ directions in degrees are derived from these, so that a direction is never inter
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
@@ -71,6 +72,27 @@ WAVES: Final = VectorNames(
 )
 VECTORS: Final = (WIND, CURRENT, WAVES)
 VECTOR_OF: Final[dict[str, VectorNames]] = {name: v for v in VECTORS for name in v.pair}
+
+_PLAIN_NAMES: Final = {
+    EASTWARD_WIND: "wind", NORTHWARD_WIND: "wind",
+    EASTWARD_CURRENT: "current", NORTHWARD_CURRENT: "current",
+    WAVE_HEIGHT: "wave height", WAVE_PERIOD: "wave period",
+    WAVE_TO_EAST: "wave direction", WAVE_TO_NORTH: "wave direction",
+    WATER_LEVEL: "water level", BED_DEPTH: "depth of the bed", PRESSURE: "air pressure",
+    ICE: "sea ice",
+}  # fmt: skip
+
+
+def plain_names(names: Iterable[str]) -> str:
+    """Return variables in the words of a mariner, each once, such as "wave height, wind".
+
+    Parameters
+    ----------
+    names : CF standard names; unknown ones stay as they are.
+    """
+    words = {_PLAIN_NAMES.get(name, name) for name in names}
+    return ", ".join(sorted(words)) or "nothing"
+
 
 CHANNEL_VARIABLES: Final[dict[int, str]] = {
     codes.CURRENT_EAST: EASTWARD_CURRENT,

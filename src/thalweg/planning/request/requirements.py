@@ -105,8 +105,9 @@ def check_variables(ship: Ship, sea: Sea, needed: frozenset[str] | None = None) 
     missing = sorted(name for name in needed if name not in sea.variables)
     if missing:
         raise MissingVariableError(
-            f"The ship {ship.name!r} needs {', '.join(missing)}, which the sea does not provide.",
-            f"The sea provides: {', '.join(sorted(sea.variables)) or 'nothing'}.",
+            f"The ship {ship.name!r} needs data that the sea does not have: "
+            f"{standard_names.plain_names(missing)}.",
+            f"The sea has: {standard_names.plain_names(sea.variables)}.",
             f"Add a file with {'it' if len(missing) == 1 else 'them'}, or fill by name: "
             f"{fill_hint(missing, sea.variables)}.",
             missing=missing,

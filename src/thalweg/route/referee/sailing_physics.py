@@ -12,6 +12,7 @@ from thalweg.chart.chart import control_areas_in_force
 from thalweg.core.errors import MissingVariableError
 from thalweg.core.types import FloatArray
 from thalweg.route.referee.leg_segments import TrackPoints
+from thalweg.sea.standard_names import plain_names
 from thalweg.ship.condition_variables import (
     BED_DEPTH,
     EASTWARD_CURRENT,
@@ -108,8 +109,9 @@ def make_sailing_environment(ship: Ship, sea: Sea, chart: Chart | None) -> Saili
     missing = sorted(name for name in ship.needs if name not in sea.variables)
     if missing:
         raise MissingVariableError(
-            f"The ship {ship.name!r} needs {', '.join(missing)}, which the sea does not have.",
-            f"The sea has: {', '.join(sorted(sea.variables)) or 'nothing'}.",
+            f"The ship {ship.name!r} needs data that the sea does not have: "
+            f"{plain_names(missing)}.",
+            f"The sea has: {plain_names(sea.variables)}.",
             "Add data with it, or fill it by name (Sea.filled).",
             missing=missing,
         )
