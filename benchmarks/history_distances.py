@@ -2,15 +2,16 @@
 
 A made fleet sails the shortest ways between the ports of the table in `tests/reference`, both ways,
 for 600 days with a position every hour. The network is made from its tracks; its distances and
-those of the ways themselves are compared with the published ones. Call from the root of the
-project with ``python -m benchmarks.history_distances``.
+those of the ways themselves are compared with the published ones.
 """
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 import numpy as np
 
-from tests.reference.test_distances_nga_pub_151 import PUBLISHED
 from thalweg.chart import Chart
 from thalweg.operations.examples.synthetic_fleet import (
     SyntheticFleet,
@@ -19,6 +20,9 @@ from thalweg.operations.examples.synthetic_fleet import (
 )
 from thalweg.operations.fleet import history_from_tracks, read_fleet
 from thalweg.planning.sea_distance import sea_distance
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from tests.reference.test_distances_nga_pub_151 import PUBLISHED
 
 
 def main() -> None:
