@@ -135,9 +135,10 @@ def _read_schemes() -> tuple[TrafficScheme, ...]:
     for row in csv.DictReader(text.splitlines()):
         points = [point.split(",") for point in row["line"].split()]
         line = tuple((float(lat), float(lon)) for lat, lon in points)
-        widths = (float(row[f"{part}_nm"]) for part in ("zone", "starboard", "port"))
-        metres = [width * NAUTICAL_MILE for width in widths]
-        schemes.append(TrafficScheme(row["name"], line, *metres, row["source"]))
+        zone, starboard, port = (
+            float(row[f"{part}_nm"]) * NAUTICAL_MILE for part in ("zone", "starboard", "port")
+        )
+        schemes.append(TrafficScheme(row["name"], line, zone, starboard, port, row["source"]))
     return tuple(schemes)
 
 
