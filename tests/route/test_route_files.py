@@ -201,7 +201,7 @@ def test_a_bend_along_the_edge_of_the_offing_is_no_string_of_short_legs():
     rows = file_route(bend, RouteFileOptions(chart=chart))
     y, x = positions(rows.rows)
     lengths = np.asarray(distance(y[:-1], x[:-1], y[1:], x[1:]))
-    assert len(y) <= 8 and lengths.min() > 0.5 * NAUTICAL_MILE
+    assert len(y) <= 10 and lengths.min() > 0.25 * NAUTICAL_MILE
     assert rows.cross_track_m < 0.1 * NAUTICAL_MILE
     y, x, _ = rhumb_pieces(y, x, 20.0)
     again = evaluate(Track(y, x, 0.0), ship=ship(7.0), sea=Sea.calm())
