@@ -114,3 +114,16 @@ def test_shoals_add_to_penalty_zones_and_change_the_fingerprint():
     assert joined.factors(*leg)[0] == pytest.approx(1.0 + SHOALS.excess(*leg) + 1.0)
     assert joined.has_penalty and alone.has_penalty and not Zones().has_penalty
     assert len({tuple(z.texts()) for z in (joined, both.zones, alone, Zones())}) == 4
+
+
+def test_beside_points_that_are_too_shallow_gentle_slopes_count_as_shoal_from_the_next_point_on():
+    # Eierlandse Gronden: the points off Texel have 22 m and 7 m, one tenth of a degree apart
+    assert coarse_depth(53.2, 4.7) > 20.0 and coarse_depth(53.2, 4.8) < 9.0
+    shoals = Shoals(10.0, 7.2)
+    code = shoals.arrays.code
+    assert code[1432, 1847] == 11 and global_depth_codes()[1432, 1847] > 20  # 10 m
+    assert shoals.excess(53.2, 4.71, 53.2, 4.73) > 0.0  # where the layer has more than 15 m
+    assert shoals.excess(53.2, 4.5, 53.2, 4.65) == 0.0
+    open_sea = np.s_[1460:1500, 1790:1850]  # steep slopes off Norway stay as they are
+    steep = global_depth_codes()[open_sea] > 3.0 * 10.0 + 1.0
+    assert np.array_equal(code[open_sea][steep], global_depth_codes()[open_sea][steep])

@@ -82,7 +82,7 @@ def test_departure_outside_the_data():
 
 
 def test_missing_variable_is_named():
-    with pytest.raises(MissingVariableError, match="does not have: .*wind"):
+    with pytest.raises(MissingVariableError, match=r"does not have: .*wind"):
         ask(ship=Ship.load("handysize-bulker"), sea=current(lambda t, lat, lon: 0.0 * lat))
 
 
@@ -236,7 +236,7 @@ def test_wind_speed_without_direction_suffices_for_ships_that_use_only_speed():
     angled = Ship.from_speed_function(
         lambda c: 6.0 - 0.1 * c.wind_speed * np.cos(c.wind_angle), draught_m=5.0
     )
-    with pytest.raises(MissingVariableError, match="does not have: .*wind"):
+    with pytest.raises(MissingVariableError, match=r"does not have: .*wind"):
         ask(ship=angled, sea=sea)
 
 

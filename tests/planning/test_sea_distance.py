@@ -153,3 +153,15 @@ def test_command(capsys):
     found = json.loads(capsys.readouterr().out)
     assert found["distance_nm"] == pytest.approx(thalweg.distance("Rotterdam", "Hamburg").nm)
     assert main(["distance", "Rotterdam", "Nowhere", "--quiet"]) == 2
+
+
+def test_with_a_draught_shallow_canals_are_closed_and_shoals_avoided_or_named():
+    plain = sea_distance("USNYC", "USBOS")
+    assert plain.canals == ("Cape Cod Canal",) and plain.nm < 260.0 and not plain.notes
+    deep = sea_distance("USNYC", "USBOS", draught_m=12.0)
+    assert deep.canals == ()
+    assert deep.nm > sea_distance("USNYC", "USBOS", avoid=["cape-cod"]).nm
+    assert sum("less water than the draught" in note for note in deep.notes) == 1
+    for wrong in (0.0, -1.0, 40.0, float("nan"), "deep"):
+        with pytest.raises(InputError, match="draught"):
+            sea_distance("USNYC", "USBOS", draught_m=wrong)

@@ -97,3 +97,15 @@ def test_plans_with_depth_or_without_offing_or_of_own_charts_are_left_alone():
     ):
         same, notes = add_shoals(chart, request, BULKER, calm, ENDS)
         assert same.zones.shoals is None and notes == []
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "draught", "length"), [("Rotterdam", "Esbjerg", 6.0, 110.0)]
+)
+def test_ships_keep_off_the_grounds_between_the_points_of_the_layer(start, goal, draught, length):
+    ship = Ship.simple(13.0, draught, length_m=length)
+    found = plan(voyage(start, goal), ship=ship, sea=Sea.calm(), proof=0.0)
+    lat, lon = line_of(found.best)
+    texel = (lat > 53.0) & (lat < 53.35) & (lon < 5.2)  # Eierlandse Gronden, 3 nm off the land
+    shore = WORLD.coastline.shore_distance(lat[texel], lon[texel])
+    assert shore.min() > 3.0 * NAUTICAL_MILE

@@ -210,7 +210,7 @@ def test_sailing_beyond_the_end_of_the_data_is_reported():
 
 
 def test_a_ship_that_needs_what_the_sea_lacks_is_refused():
-    with pytest.raises(MissingVariableError, match="does not have: .*wind"):
+    with pytest.raises(MissingVariableError, match=r"does not have: .*wind"):
         evaluate(
             [(0, 0), (0, 1)],
             ship=Ship.simple(10, 5, max_wind_speed_kn=30),

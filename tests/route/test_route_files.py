@@ -8,7 +8,7 @@ import pytest
 from tests.route.planar import ship
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import distance
+from thalweg.core.geodesy import direct, distance
 from thalweg.core.rhumb_lines import inverse_rhumb, rhumb_deviation, rhumb_pieces
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route import (
@@ -187,3 +187,25 @@ def test_legs_that_a_file_calls_rhumb_lines_are_sailed_as_such(tmp_path, suffix)
     path.write_text(path.read_text().replace("RL", "spiral"))
     with pytest.raises(InputError, match="geometry of the leg after waypoint 1"):
         read_track(path, depart=DEPART)
+
+
+def test_a_bend_along_the_edge_of_the_offing_is_no_string_of_short_legs():
+    corner = {"type": "Polygon", "coordinates": [[[4, 52], [5, 52], [5, 53], [4, 53], [4, 52]]]}
+    chart = Chart.from_geojson(corner).with_offing(2.0 * NAUTICAL_MILE)
+    angles = np.radians(np.arange(180.0, 271.0, 3.0))  # legs of a tenth of a mile
+    lat, lon = direct(52.0, 4.0, angles, 2.003 * NAUTICAL_MILE)
+    lat = np.concatenate([[lat[0]], lat, [52.4]])
+    lon = np.concatenate([[4.4], lon, [lon[-1]]])
+    bend = evaluate(Track(lat, lon, 0.0), ship=ship(7.0), sea=Sea.calm(), chart=chart, strict=False)
+    assert bend.feasible and len(bend.track) == 33
+    rows = file_route(bend, RouteFileOptions(chart=chart))
+    y, x = positions(rows.rows)
+    lengths = np.asarray(distance(y[:-1], x[:-1], y[1:], x[1:]))
+    assert len(y) <= 10 and lengths.min() > 0.25 * NAUTICAL_MILE
+    assert rows.cross_track_m < 0.1 * NAUTICAL_MILE
+    y, x, _ = rhumb_pieces(y, x, 20.0)
+    again = evaluate(Track(y, x, 0.0), ship=ship(7.0), sea=Sea.calm())
+    assert again.time_h == pytest.approx(bend.time_h, rel=1e-3)
+    assert (
+        not chart.with_offing(1.94 * NAUTICAL_MILE).legs_blocked(y[:-1], x[:-1], y[1:], x[1:]).any()
+    )

@@ -56,6 +56,13 @@ def add_command(commands: Any) -> None:
         help="distance from land that is kept outside passages, where there is so much water [nm] "
         "(default: 2)",
     )
+    parser.add_argument(
+        "--draught",
+        type=float,
+        metavar="M",
+        help="keep out of water shallower than one and a half draughts [m] where it can, as plans "
+        "do; default: shoals do not count",
+    )
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.set_defaults(run=run)
 
@@ -76,6 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
         avoid=avoid,
         open=tuple(arguments.open),
         offing_nm=arguments.offing,
+        draught_m=arguments.draught,
     )
     days = None if arguments.speed is None else found.days(arguments.speed)
     if arguments.json:
@@ -83,6 +91,8 @@ def run(arguments: argparse.Namespace) -> int:
         print(json.dumps(found.to_dict() | more, indent=2, allow_nan=False))
     else:
         _print_distance(found, arguments.speed, days)
+        if arguments.draught is None:
+            print("  shoals and draught were not considered: give --draught for a ship")
     return SUCCESS
 
 

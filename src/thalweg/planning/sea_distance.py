@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Final
 
@@ -12,13 +12,16 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.chart.approaches import MAX_APPROACH_SPEED, line_between, line_length
+from thalweg.chart.depth.global_depth import NAME
+from thalweg.chart.depth.shoals import EXCESS
 from thalweg.chart.offing import check_offing
 from thalweg.chart.passage_crossings import names_passed
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import Position
+from thalweg.core.geodesy import Position, densify, distance
 from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
 from thalweg.planning.request.voyage_endpoints import (
+    Endpoint,
     check_distinct,
     resolve_endpoint,
     without_approach,
@@ -30,6 +33,7 @@ from thalweg.planning.voyage_parts import Place
 SMALL_CANALS: Final = ("corinth",)
 #: Distance from land that ways keep outside passages, where they can [nm].
 DEFAULT_OFFING_NM: Final = 2.0
+_DEEPEST_DRAUGHT: Final = 30.0  # [m]
 
 
 @dataclass(frozen=True)
@@ -128,6 +132,7 @@ def sea_distance(
     avoid: Sequence[str] = SMALL_CANALS,
     open: Sequence[str] = (),
     offing_nm: float = DEFAULT_OFFING_NM,
+    draught_m: float | None = None,
     chart: Chart | None = None,
 ) -> SeaDistance:
     """Return the shortest way by sea between two ports or positions.
@@ -147,6 +152,10 @@ def sea_distance(
     offing_nm : float
         Distance from land [nm] that the way keeps outside passages, ends and canals, 0 to 50;
         less only where the graph has no water so far from land.
+    draught_m : float, optional
+        Draught [m], 0 to 30: canals and passages that are too shallow are closed, and miles in
+        water shallower than one and a half draughts count more, as in plans. By default neither
+        counts. The graph is coarse near shoals: a note states what is left of them.
     chart : Chart, optional
         By default the GSHHG coastline at resolution "i".
 
@@ -157,7 +166,7 @@ def sea_distance(
     Raises
     ------
     InputError
-        For places on land, unknown ports, and unknown canals and passages.
+        For places on land, draughts out of range, unknown ports, and unknown canals and passages.
     NoRouteError
         If there is no way by sea.
 
@@ -165,8 +174,8 @@ def sea_distance(
     -----
     The way is the shortest over a graph of all seas, where water within 2 nautical miles of land
     counts up to half more, after string pulling. Passages for small or local ships are closed.
-    Water north of 72 N and south of 65 S is used only by ways that begin or end there. Draught,
-    traffic rules and weather are not considered. The graph is made once (10 to 20 s) and kept in
+    Water north of 72 N and south of 65 S is used only by ways that begin or end there. Traffic
+    rules and weather are not considered. The graph is made once (10 to 20 s) and kept in
     the cache.
     """
     chart = world_chart() if chart is None else chart
@@ -180,6 +189,8 @@ def sea_distance(
     notes = tuple(end.note for end in ends if end.note)
     first, last = ends[0].approach, ends[-1].approach
     seas = Seaways.of_chart(chart, closed, opened=open)
+    if draught_m is not None:
+        seas = _seas_for_draught(seas, draught_m, ends)
     if len(ends) == 2 and first and last:
         line = line_between(first, last, legs_blocked=chart.legs_blocked)
         if line is not None:
@@ -190,6 +201,7 @@ def sea_distance(
     parts = [seas.path(a, b, offing=offing) for a, b in itertools.pairwise(ends)]
     path = [parts[0][0], *(place for part in parts for place in part[1:])]
     length, canals = path_length_and_canals(chart, path)
+    notes += _shoal_notes(seas, path)
     approaches = tuple((a.port.label, a.length) for a in (first, last) if a is not None)
     line = (
         *(first.line[:-1] if first else ()),
@@ -199,6 +211,45 @@ def sea_distance(
     total = length + sum(miles for _, miles in approaches)
     straits = names_passed(chart.coastline, chart.passages, *np.array(line, float).T)
     return SeaDistance(ends[0].name, ends[-1].name, total, canals, straits, approaches, line, notes)
+
+
+def _seas_for_draught(seas: Seaways, draught: float, ends: Sequence[Endpoint]) -> Seaways:
+    """Return the seaways for a draught [m]: what plans close and where a mile counts more."""
+    from thalweg.planning.request.shoal_choice import shoals_of_draught
+
+    if not (is_number(draught) and 0.0 < draught <= _DEEPEST_DRAUGHT):
+        raise InputError(
+            f"The draught is {shortened_repr(draught)} m.",
+            f"Draughts are above 0 and at most {_DEEPEST_DRAUGHT:g} m.",
+            "Correct it, or leave it out.",
+            field="draught_m",
+        )
+    for canal in seas.chart.canals:
+        if canal.name not in seas.canals and canal.transit_restriction(draught=draught, beam=None):
+            seas = seas.without(canal.name)
+    for passage in seas.chart.passages:
+        if passage.name not in seas.passages and passage.max_draught < draught:
+            seas = seas.without(passage.name)
+    shoals = shoals_of_draught(seas.chart, float(draught), float(draught), ends)
+    return replace(seas, shoals=shoals)
+
+
+def _shoal_notes(seas: Seaways, path: Sequence[Position]) -> tuple[str, ...]:
+    """Return how many miles of a way have less water than the draught, as a note."""
+    if seas.shoals is None or len(path) < 2:
+        return ()
+    way = np.array(path, float)
+    lat, lon, _ = densify(way[:, 0], way[:, 1], NAUTICAL_MILE)
+    legs = lat[:-1], lon[:-1], lat[1:], lon[1:]
+    in_canals = np.asarray(seas.chart.canal_of_legs(*legs)) >= 0
+    shallow = (seas.shoals.excess(*legs) > EXCESS[0]) & ~in_canals
+    miles = float(np.sum(distance(*legs)[shallow])) / NAUTICAL_MILE
+    if miles < 1.0:
+        return ()
+    return (
+        f"{miles:.0f} nm of the way have less water than the draught, by the {NAME}: this graph of "
+        "all seas is coarse near shoals, and a plan may find a longer way round.",
+    )
 
 
 @lru_cache(maxsize=1)

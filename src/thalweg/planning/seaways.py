@@ -10,6 +10,7 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.chart.canals import exclude_canals
+from thalweg.chart.depth.shoals import Shoals
 from thalweg.chart.offing import disc_at, required_offing
 from thalweg.chart.passages import find_passages, split_avoided
 from thalweg.core.geodesy import Position, distance, wrap_longitude
@@ -41,11 +42,13 @@ class Seaways:
     chart : Without the passages for small or local ships.
     canals : Names of canals of the chart that are not used.
     passages : Names of passages of the chart that are not used.
+    shoals : Shoal water, in which a mile counts more.
     """
 
     chart: Chart
     canals: tuple[str, ...] = ()
     passages: tuple[str, ...] = ()
+    shoals: Shoals | None = None
 
     @classmethod
     def of_chart(cls, chart: Chart, avoid: Sequence[str], *, opened: Sequence[str] = ()) -> Seaways:
@@ -97,7 +100,9 @@ class Seaways:
         chart = self.chart.without_passages(*self.passages) if self.passages else self.chart
         closed = [k for k, canal in enumerate(chart.canals) if canal.name in self.canals]
         graph = sea_graph(self.chart)
-        path = graph.path(chart, *ends, closed=closed, passages=find_passages(self.passages))
+        path = graph.path(
+            chart, *ends, closed=closed, passages=find_passages(self.passages), shoals=self.shoals
+        )
         if outside_ice(*ends):
             chart = chart.within(*ICE_LATITUDES, -180.0, 180.0)
         discs = [disc_at(chart.coastline, end) for end in ends]
@@ -106,7 +111,20 @@ class Seaways:
         canal = chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:])
         ends_of_canals = np.flatnonzero(np.asarray(canal) >= 0) + 1
         return [place for part in np.split(np.array(path), ends_of_canals)
-                for place in _pulled(chart, off_land, part)]  # fmt: skip
+                for place in self._pulled(chart, off_land, part)]  # fmt: skip
+
+    def _pulled(self, chart: Chart, off_land: Chart, part: FloatArray) -> list[Position]:
+        """Return a stretch between canals after string pulling."""
+        if self.shoals is None or len(part) < 3:
+            return _pulled(chart, off_land, part)
+        shoals = self.shoals
+        off_land_cost = _cost_off_land(off_land)
+
+        def cost(*leg: FloatArray) -> FloatArray:
+            return np.asarray(off_land_cost(*leg) + leg_lengths(*leg) * shoals.excess(*leg))
+
+        lat, lon = string_pull_path(chart, *part.T, leg_cost=cost, rounds=_ROUNDS)
+        return _places(lat, lon)
 
 
 def _pulled(chart: Chart, off_land: Chart, path: FloatArray) -> list[Position]:

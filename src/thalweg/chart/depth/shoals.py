@@ -35,6 +35,7 @@ _LINE_STEP: Final = 2.0 * NAUTICAL_MILE
 #: Points of the grid so near to a channel, or to a harbour, are changed [m].
 _MARGIN: Final = 4.0 * NAUTICAL_MILE
 _HARBOUR: Final = 8.0 * NAUTICAL_MILE
+_GENTLE: Final = 3.0  # contours: where the next point is deeper, the slope is steep
 _TILES: Final = 10  # tiles farther away than this are not told apart
 
 
@@ -114,6 +115,7 @@ def _arrays(shoals: Shoals) -> ShoalArrays:
     for area in SHOAL_AREAS:
         row, column = _points_inside(area)
         code[row, column] = np.minimum(code[row, column], np.uint8(area.depth + 1.0))
+    code[_beside_shoals(code, shoals)] = deep
     for line, margin in (
         *((channel, _MARGIN) for channel in shoals.channels),
         *(((place,), _HARBOUR) for place in shoals.harbours),
@@ -122,6 +124,20 @@ def _arrays(shoals: Shoals) -> ShoalArrays:
         code[row, column] = np.maximum(code[row, column], deep)
     depths = np.array([shoals.contour, shoals.least])
     return ShoalArrays(code, _free_tiles((code > 0) & (code < deep)), depths, np.array(EXCESS))
+
+
+def _beside_shoals(code: NDArray[np.uint8], shoals: Shoals) -> NDArray[np.bool_]:
+    """Return the points beside one with less water than the ship requires, on gentle slopes.
+
+    A point says nothing about the water half-way to the next. These points count as no deeper than
+    the contour, so that water towards the shoal is shoal.
+    """
+    from scipy.ndimage import minimum_filter
+
+    water = np.where(code > 0, code, np.uint8(255))
+    least = minimum_filter(water, size=3, mode=("nearest", "wrap"))
+    gentle = (code > shoals.contour + 1.0) & (code <= _GENTLE * shoals.contour + 1.0)
+    return gentle & (least < shoals.least + 1.0)
 
 
 def _points_inside(area: ShoalArea) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

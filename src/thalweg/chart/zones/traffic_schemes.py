@@ -4,7 +4,8 @@ The table is ``data/traffic_schemes.csv``, one row a scheme. Ships keep a separa
 port (the general direction of traffic of all schemes in the table; Rule 10 (b) of the Collision
 Regulations, 1972). The lines are rounded to about half a mile and are not charted: they decide on
 which side of a strait a plan passes, not where the lanes are. Lanes among the zones of
-a user (`thalweg.chart.zones.traffic_lanes`) take their place.
+a user (`thalweg.chart.zones.traffic_lanes`) take their
+place.
 """
 
 from __future__ import annotations
@@ -134,8 +135,9 @@ def _read_schemes() -> tuple[TrafficScheme, ...]:
     for row in csv.DictReader(text.splitlines()):
         points = [point.split(",") for point in row["line"].split()]
         line = tuple((float(lat), float(lon)) for lat, lon in points)
-        widths = (float(row[f"{part}_nm"]) for part in ("zone", "starboard", "port"))
-        zone, starboard, port = (width * NAUTICAL_MILE for width in widths)
+        zone, starboard, port = (
+            float(row[f"{part}_nm"]) * NAUTICAL_MILE for part in ("zone", "starboard", "port")
+        )
         schemes.append(TrafficScheme(row["name"], line, zone, starboard, port, row["source"]))
     return tuple(schemes)
 

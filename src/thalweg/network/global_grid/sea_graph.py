@@ -40,6 +40,7 @@ from thalweg.network.global_grid.grid import FORMAT, GlobeGrid, GridResolution, 
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.chart.depth.shoals import Shoals
 
 _FORMAT: Final = 5  # increase when the arrays or their construction change
 _RESOLUTION: Final = GridResolution(4, 5, 4, 12)
@@ -86,6 +87,7 @@ class SeaGraph:
         *,
         closed: Sequence[int] = (),
         passages: Sequence[Passage] = (),
+        shoals: Shoals | None = None,
     ) -> list[Position]:
         """Return the positions of the shortest way between two positions over the graph.
 
@@ -96,6 +98,7 @@ class SeaGraph:
             Positions on navigable water [deg].
         closed : Canals of the chart that may not be used.
         passages : Passages that are closed in the chart but not in the graph.
+        shoals : Shoal water, in which a mile counts more.
 
         Raises
         ------
@@ -115,7 +118,13 @@ class SeaGraph:
         first = len(self.waters.lat)
         second = first + len(ends[0].lat)
         links = [_joint_pairs(end, at, lat, lon) for end, at in zip(ends, (first, second))]
-        indptr, target, weight = self._with_links(concatenate_pairs(links), len(lat), weight)
+        joints = concatenate_pairs(links)
+        if shoals is not None:
+            weight *= 1.0 + self._shoal_excess(shoals)
+            a, b = joints.first, joints.second
+            excess = shoals.excess(lat[a], lon[a], lat[b], lon[b])
+            joints = replace(joints, length=joints.length * (1.0 + excess))
+        indptr, target, weight = self._with_links(joints, len(lat), weight)
         known, parent = np.empty(len(lat)), np.empty(len(lat), np.int64)
         bound = distance_bounds(lat, lon, *goal)
         static_astar(indptr, target, weight, bound, first, second, known, parent)
@@ -130,6 +139,16 @@ class SeaGraph:
         while parent[path[-1]] >= 0:
             path.append(int(parent[path[-1]]))
         return [(float(lat[k]), float(lon[k])) for k in reversed(path)]
+
+    def _shoal_excess(self, shoals: Shoals) -> FloatArray:
+        """Return by how much a mile counts more on each edge; 0 in canals."""
+        lat, lon = self.waters.lat, self.waters.lon
+        at_sea = np.flatnonzero(self.canal < 0)
+        tail = np.repeat(np.arange(len(lat)), np.diff(self.indptr))[at_sea]
+        head = self.target[at_sea]
+        excess = np.zeros(len(self.target))
+        excess[at_sea] = shoals.excess(lat[tail], lon[tail], lat[head], lon[head])
+        return excess
 
     def _weight_without(
         self, chart: Chart, closed: Sequence[int], passages: Sequence[Passage]

@@ -16,7 +16,8 @@ from thalweg.planning.report.land_report import passages_used
 from thalweg.route import Route
 
 _STEP: Final = 1.0 * NAUTICAL_MILE
-_NOT_JUDGED: Final = 3.0 * NAUTICAL_MILE  # from land, half a cell of the layer
+_NOT_JUDGED: Final = 1.0 * NAUTICAL_MILE  # from land, the spacing of the data of the layer
+_NARROW: Final = 3.0 * NAUTICAL_MILE  # half width of passages that the layer does not show
 _ENDS: Final = 12.0 * NAUTICAL_MILE  # from the ends, where ports have dredged channels
 _MOST_LEGS: Final = 5
 
@@ -61,11 +62,11 @@ def _judged(context: PlanningContext, route: Route, lat: FloatArray, lon: FloatA
     for end in (0, -1):
         judged &= distance(lat, lon, lat[end], lon[end]) >= _ENDS
     for passage in passages_used(context.chart, route):
-        if passage.half_width < _NOT_JUDGED:
+        if passage.half_width < _NARROW:
             y, x, _ = densify(*passage.positions, 2.0 * _STEP)
             close = np.flatnonzero(judged & (np.abs(lat - y.mean()) < np.ptp(y) + 0.2))
             for k in close:
-                judged[k] = distance(lat[k], lon[k], y, x).min() >= 2.0 * _NOT_JUDGED
+                judged[k] = distance(lat[k], lon[k], y, x).min() >= 2.0 * _NARROW
     return judged
 
 
@@ -88,5 +89,5 @@ def _shallow_legs(
     return (
         f"Check the depth: {required:.1f} m are required, and the {NAME} has {'; '.join(named)}"
         f"{more}. It does not show small shoals and channels, and was not read within 12 nm of the "
-        "ends, 3 nm of land and in narrow passages."
+        "ends, 1 nm of land and in narrow passages."
     )

@@ -51,16 +51,36 @@ def add_shoals(
         return chart, []
     if not draught > 0.0:
         return chart, ["Shoals were not avoided: the draught of the ship is not known."]
-    contour = safety_contour(draught)
     least = draught + required_under_keel_clearance(voyage, ship)
-    lines = tuple(line for passage in chart.passages for line in _channels(chart, passage))
-    harbours = tuple((float(end.lat), float(end.lon)) for end in ends)
-    shoals = Shoals(contour, min(least, 0.9 * contour), lines, harbours)
+    shoals = shoals_of_draught(chart, draught, least, ends)
     note = (
-        f"Keeps out of water shallower than {contour:g} m where it can: a mile there counts up to "
-        f"20 by the {NAME} and the named shoal areas; not near the ends and in narrow passages."
+        f"Keeps out of water shallower than {shoals.contour:g} m where it can: a mile there counts "
+        f"up to 20 by the {NAME} and the named shoal areas; not near the ends and in narrow "
+        "passages."
     )
     return replace(chart, zones=replace(chart.zones, shoals=shoals)), [note]
+
+
+def shoals_of_draught(
+    chart: Chart, draught: float, least: float, ends: Sequence[Endpoint]
+) -> Shoals:
+    """Return the shoal water for a draught.
+
+    Parameters
+    ----------
+    chart : Chart
+        With the passages that may be used.
+    draught : float
+        [m], above 0.
+    least : float
+        Depth that the ship requires [m].
+    ends : sequence of Endpoint
+        Round them the layer does not count.
+    """
+    contour = safety_contour(draught)
+    lines = tuple(line for passage in chart.passages for line in _channels(chart, passage))
+    harbours = tuple((float(end.lat), float(end.lon)) for end in ends)
+    return Shoals(contour, min(least, 0.9 * contour), lines, harbours)
 
 
 def _channels(chart: Chart, passage: Passage) -> list[tuple[Position, ...]]:

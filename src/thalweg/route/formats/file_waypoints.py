@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,8 @@ _SAME_PLACE = 20.0  # waypoints closer than this are one [m]
 _CLEARING_SHARES = (1.0, 0.2, 0.04, 0.01)  # of the limit, tried in turn beside land
 _RHUMB_TEST = 5.0  # geodesics this close stand for a rhumb line in tests against land [m]
 _MOVES = (5.0, 15.0, 40.0, 80.0)  # of waypoints on the shore [m]
+_SHORT_LEG = 0.5 * NAUTICAL_MILE  # shorter legs are joined where the cross-track limit allows it
+_OFFING_KEPT = 0.97  # share of the offing that files keep: routes follow its edge, corner by corner
 _WIDEST = 200.0  # times the limit, for a given number of waypoints
 
 
@@ -62,6 +64,7 @@ def file_vertices(route: Route, options: RouteFileOptions) -> FileVertices:
         If the route needs more waypoints than are allowed.
     """
     most, limit = options.max_waypoints, options.limit
+    options = _with_room(options)
     found = _vertices(route, options, limit)
     if most is None or len(found.lat) <= most:
         return found
@@ -85,13 +88,23 @@ def file_vertices(route: Route, options: RouteFileOptions) -> FileVertices:
     return least
 
 
+def _with_room(options: RouteFileOptions) -> RouteFileOptions:
+    """Return the options with a chart whose offing is a little smaller."""
+    chart = options.chart
+    if chart is None or chart.offing.distance <= 0.0:
+        return options
+    offing = replace(chart.offing, distance=_OFFING_KEPT * chart.offing.distance)
+    return replace(options, chart=replace(chart, offing=offing))
+
+
 def _vertices(route: Route, options: RouteFileOptions, limit: float) -> FileVertices:
     thinning = options.thinning * limit
     kept = _thinned(route, options, thinning)
     lats, lons, places = [], [], []
     start = np.concatenate([[0.0], np.cumsum(route.legs["length"])])
     for first, last in itertools.pairwise(kept):
-        lat, lon = _broken_leg(route, options, first, last, limit - thinning)
+        left_out = float(_cross_tracks(route, first, last).max(initial=0.0))
+        lat, lon = _broken_leg(route, options, first, last, limit - left_out)
         lats.append(lat[:-1])
         lons.append(lon[:-1])
         places.append(np.linspace(start[first], start[last], len(lat))[:-1])
@@ -99,10 +112,12 @@ def _vertices(route: Route, options: RouteFileOptions, limit: float) -> FileVert
     lat = np.round(np.concatenate([*lats, track.lat[-1:]]), options.decimals)
     lon = np.round(np.concatenate([*lons, track.lon[-1:]]), options.decimals)
     lon = np.where(lon >= 180.0, lon - 360.0, lon)
-    lat, lon = _off_land(options, lat, lon)
     at = np.concatenate([*places, start[-1:]])
     leg = np.searchsorted(start, at + 1e-6, side="right") - 1
     leg = np.minimum(leg, len(track) - 2).astype(np.int64)
+    approach = _approach_legs(route)[leg]
+    approach[1:] |= approach[:-1]
+    lat, lon = _off_land(options, lat, lon, approach)
     return FileVertices(lat, lon, leg, at, _cross_track(route, lat, lon, at))
 
 
@@ -113,7 +128,43 @@ def _thinned(route: Route, options: RouteFileOptions, tolerance: float) -> list[
     for first, last in itertools.pairwise(held):
         kept += _between(route, options, first, last, tolerance)
         kept.append(last)
-    return _without_repeats(route, kept)
+    kept = _without_repeats(route, kept)
+    return _without_short_legs(route, options, kept, set(held), tolerance)
+
+
+def _without_short_legs(
+    route: Route,
+    options: RouteFileOptions,
+    kept: list[int],
+    held: set[int],
+    tolerance: float,
+) -> list[int]:
+    """Return the waypoints without those beside short legs that may go, the nearest first."""
+    lat, lon = route.track.lat, route.track.lon
+    found, stays = list(kept), set(held)
+    while True:
+        lengths = distance(lat[found[:-1]], lon[found[:-1]], lat[found[1:]], lon[found[1:]])
+        inner = [k for k in range(1, len(found) - 1) if found[k] not in stays]
+        shortest = {k: float(min(lengths[k - 1], lengths[k])) for k in inner}
+        k = min(shortest, key=shortest.__getitem__, default=0)
+        if k == 0 or shortest[k] >= _SHORT_LEG:
+            return found
+        before, after = found[k - 1], found[k + 1]
+        if _may_join(route, options, before, after, tolerance):
+            del found[k]
+        else:
+            stays.add(found[k])
+
+
+def _may_join(
+    route: Route, options: RouteFileOptions, first: int, last: int, tolerance: float
+) -> bool:
+    """Return whether one leg may stand for those between two waypoints."""
+    lat, lon = route.track.lat, route.track.lon
+    ends = lat[first], lon[first], lat[last], lon[last]
+    if options.chart is not None and options.chart.legs_blocked(*ends):
+        return False
+    return float(_cross_tracks(route, first, last).max()) <= tolerance
 
 
 def _held(route: Route) -> list[int]:
@@ -131,6 +182,12 @@ def _held(route: Route) -> list[int]:
 def _canal_legs(route: Route) -> NDArray[np.bool_]:
     """Return which legs follow the line of a canal: those longer than their geodesic."""
     return np.asarray(route.legs["length"] > 1.0001 * route.track.lengths + 1.0)
+
+
+def _approach_legs(route: Route) -> NDArray[np.bool_]:
+    """Return which legs are part of the approach of a port, which may cross charted land."""
+    kind = np.asarray(route.legs.get("leg_kind", 0))
+    return np.broadcast_to(kind != 0, (len(route.track) - 1,)).copy()
 
 
 def _without_repeats(route: Route, kept: list[int]) -> list[int]:
@@ -156,6 +213,16 @@ def _between(
     """Return the waypoints to keep between two others (Douglas and Peucker 1973)."""
     if last - first < 2:
         return []
+    cross_track = _cross_tracks(route, first, last)
+    worst = first + 1 + int(np.argmax(cross_track))
+    if _may_join(route, options, first, last, tolerance):
+        return []
+    before = _between(route, options, first, worst, tolerance)
+    return [*before, worst, *_between(route, options, worst, last, tolerance)]
+
+
+def _cross_tracks(route: Route, first: int, last: int) -> FloatArray:
+    """Return the distances [m] of the waypoints between two others from the line of these."""
     lat, lon = route.track.lat, route.track.lon
     inner = slice(first + 1, last)
     away, bearing, _ = inverse(lat[first], lon[first], lat[inner], lon[inner])
@@ -164,15 +231,9 @@ def _between(
     cross_track = np.abs(np.arcsin(np.sin(arc) * np.sin(bearing - course))) * MEAN_RADIUS
     along = away * np.cos(bearing - course)
     beyond = (along < 0.0) | (along > length)
-    cross_track = np.where(
-        beyond, np.minimum(away, np.abs(away - length)) + cross_track, cross_track
+    return np.asarray(
+        np.where(beyond, np.minimum(away, np.abs(away - length)) + cross_track, cross_track)
     )
-    worst = first + 1 + int(np.argmax(cross_track))
-    ends = lat[first], lon[first], lat[last], lon[last]
-    if cross_track.max() <= tolerance and not (options.chart and options.chart.legs_blocked(*ends)):
-        return []
-    before = _between(route, options, first, worst, tolerance)
-    return [*before, worst, *_between(route, options, worst, last, tolerance)]
 
 
 def _broken_leg(
@@ -182,6 +243,9 @@ def _broken_leg(
     lat, lon = route.track.lat[[first, last]], route.track.lon[[first, last]]
     if _canal_legs(route)[first]:
         return lat, lon
+    if _approach_legs(route)[first]:
+        lat, lon, _ = densify_for_rhumb(lat, lon, limit, options.spacing)
+        return lat, lon
     for share in _CLEARING_SHARES:
         found = densify_for_rhumb(lat, lon, share * limit, options.spacing)[:2]
         if options.chart is None or not _touches_land(options, *found):
@@ -190,9 +254,11 @@ def _broken_leg(
 
 
 def _off_land(
-    options: RouteFileOptions, lat: FloatArray, lon: FloatArray
+    options: RouteFileOptions, lat: FloatArray, lon: FloatArray, approach: NDArray[np.bool_]
 ) -> tuple[FloatArray, FloatArray]:
     """Return the waypoints, those on the very shore moved by some metres until both legs clear it.
+
+    Waypoints of approaches stay: their lines are given.
 
     Routes may touch the charted shore, where rounding and rhumb lines would put them on land.
     """
@@ -202,7 +268,7 @@ def _off_land(
     bearings = np.radians(np.arange(0.0, 360.0, 30.0))
     for index in range(1, len(lat) - 1):
         near = slice(index - 1, index + 2)
-        if not _touches_land(options, lat[near], lon[near], RHUMB_DEVIATION):
+        if approach[index] or not _touches_land(options, lat[near], lon[near], RHUMB_DEVIATION):
             continue
         here = lat[index], lon[index]
         for metres, bearing in itertools.product(_MOVES, bearings):

@@ -58,7 +58,7 @@ class RouteFileOptions:
     max_waypoints: int | None = None
     rtz_version: str = "1.2"
     chart: Chart | None = None
-    thinning: float = 0.1
+    thinning: float = 0.5
     decimals: int = 6
     formats: tuple[str, ...] = ("rtz", "gpx", "geojson", "csv")
 
