@@ -38,28 +38,9 @@ MANY_ARGUMENTS = {
     "ship.ship.Ship.simple": "public entry point with keyword options",
 }
 
-#: Kernels with more arguments, below thalweg.kernels. Those of the searches are inlined into one
-#: loop each, where the arguments are local variables of it. Take names off this list, add none.
+#: Kernels with more arguments, below thalweg.kernels. They are inlined into one loop each, where the
+#: arguments are local variables of it. Take names off this list, add none.
 MANY_ARGUMENTS_OF_KERNELS = [
-    "certificate.barrier_check._check_cell",
-    "certificate.barrier_check._triangle",
-    "certificate.barrier_check.check_barrier",
-    "certificate.barrier_solver._between",
-    "certificate.barrier_solver._fill_times",
-    "certificate.barrier_solver.solve_barrier",
-    "evolution.crossover.crossover",
-    "evolution.crossover.make_offspring",
-    "geometry.coast_index._edge_cut",
-    "geometry.coast_index.edges_of_cell_touched",
-    "geometry.cube_sphere._side_of_edge",
-    "geometry.cube_sphere.winding_from",
-    "geometry.field_sampling.find_triangles",
-    "geometry.winding_numbers._carry",
-    "leg.edge_sailing.march_edge",
-    "leg.point_speed._speed_through_water",
-    "leg.point_speed.fuel_rate_at_speed",
-    "leg.point_speed.point_speed_from_guess",
-    "leg.point_speed.point_speed_with_axes",
     "search.edge_departure.edge_arrivals",
     "search.edge_departure.wait_for_edge",
     "search.label_setting._best_departure",

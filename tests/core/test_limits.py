@@ -5,9 +5,8 @@ import pytest
 
 from thalweg.core.errors import InputError
 from thalweg.core.limits import (
-    NETWORK_TIGHTENING,
-    REFINEMENT_TIGHTENING,
-    SITE_LEG_TIGHTENING,
+    NETWORK_STEPS,
+    TIGHTENING,
     Limits,
     Tightening,
 )
@@ -37,25 +36,22 @@ def test_nan_is_refused_with_its_name(name):
 
 
 def test_tightening_adds_depth_and_takes_shares_off():
-    tight = LIMITS.tightened(Tightening(depth=0.5, depth_share=0.1, share=0.25))
-    assert tight == Limits(12.0 * 1.1 + 0.5, 3.0, 15.0)
+    tight = LIMITS.tightened(Tightening(depth=0.5, share=0.25))
+    assert tight == Limits(12.5, 3.0, 15.0)
 
 
-@pytest.mark.parametrize(
-    "schedule", [NETWORK_TIGHTENING, REFINEMENT_TIGHTENING, SITE_LEG_TIGHTENING]
-)
-def test_schedules_begin_with_the_limits_and_become_stricter(schedule):
-    steps = [LIMITS.tightened(step) for step in schedule]
+def test_the_schedule_begins_with_the_limits_and_becomes_stricter():
+    steps = [LIMITS.tightened(step) for step in TIGHTENING]
     assert steps[0] == LIMITS
+    assert (NETWORK_STEPS[0], NETWORK_STEPS[-1]) == (0, len(TIGHTENING) - 1)
     for looser, stricter in itertools.pairwise(steps):
         assert stricter.required_depth > looser.required_depth
-        assert stricter.wave_height <= looser.wave_height
-        assert stricter.wind_speed <= looser.wind_speed
+        assert stricter.wave_height < looser.wave_height
+        assert stricter.wind_speed < looser.wind_speed
 
 
-@pytest.mark.parametrize("schedule", [NETWORK_TIGHTENING, REFINEMENT_TIGHTENING])
-def test_what_is_not_limited_stays_so(schedule):
-    assert all(Limits().tightened(step) == Limits() for step in schedule)
+def test_what_is_not_limited_stays_so():
+    assert all(Limits().tightened(step) == Limits() for step in TIGHTENING)
     assert Limits().relaxed(0.1) == Limits()
 
 

@@ -54,6 +54,29 @@ def test_the_time_evaluator_agrees_to_rounding():
     assert arrive[0, :n] == pytest.approx(quick[0], rel=1e-12)
 
 
+def test_earliest_departures_mean_the_same_to_both_evaluators():
+    evaluator = jet.evaluator()
+    genome = wavy(seed=4)
+    n = len(genome)
+    population = evaluator.population([genome])
+    _, free = evaluator.sail(population)
+    leave = np.full((1, n), -np.inf)
+    leave[0, 0], leave[0, 3], leave[0, 6] = 30.0, free[0, 3] + 100.0, 0.0  # the last: no wait
+    score, arrive = evaluator.sail(population, leave=leave)
+    batch = TrackBatch(
+        genome.lat[None], genome.lon[None], leave, genome.setting[None], depart=np.zeros(1)
+    )
+    quick, left, _ = evaluator.time_evaluator.sail_and_wait(batch)
+    assert arrive[0, :n] == pytest.approx(quick[0], rel=1e-3)
+    assert (left[0, 0], left[0, 3]) == (30.0, free[0, 3] + 100.0)
+    waits = np.zeros((1, n))
+    waits[0, 0], waits[0, 3] = 30.0, leave[0, 3] - arrive[0, 3]
+    population.genes[:, :n, population_sailing.WAITING_TIME] = waits
+    again, there = evaluator.sail(population)
+    assert there == pytest.approx(arrive, rel=1e-12)
+    assert again == pytest.approx(score, rel=1e-12)
+
+
 def test_a_population_gives_the_results_of_single_tracks_for_any_number_of_threads():
     evaluator = jet.evaluator()
     genomes = [wavy(int(rng.integers(3, 30)), seed) for seed in range(80)]

@@ -24,6 +24,10 @@ def test_the_hash_follows_the_text_and_neither_place_nor_time(tmp_path, monkeypa
     assert compiled_code_cache._source_hash() == first
     assert _hash_of(monkeypatch, tmp_path / "two", "1") == first
     assert _hash_of(monkeypatch, tmp_path / "two", "2") != first
+    changed = tmp_path / "ellipsoid.py"
+    changed.write_text("FLATTENING = 0.0")
+    monkeypatch.setattr(compiled_code_cache, "_CONSTANTS", changed)
+    assert _hash_of(monkeypatch, tmp_path / "two", "1") != first
 
 
 @pytest.mark.slow

@@ -14,6 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pyproj import Geod
 
+from thalweg.core.ellipsoid import AXIS_RATIO_SQUARED as AXIS_RATIO_SQUARED
+from thalweg.core.ellipsoid import EQUATORIAL_RADIUS as EQUATORIAL_RADIUS
+from thalweg.core.ellipsoid import FLATTENING as FLATTENING
+from thalweg.core.ellipsoid import MEAN_RADIUS as MEAN_RADIUS
 from thalweg.core.errors import InputError
 from thalweg.core.given_numbers import to_number
 from thalweg.core.types import FloatArray
@@ -21,10 +25,6 @@ from thalweg.core.types import FloatArray
 Position: TypeAlias = tuple[float, float]
 
 WGS84 = Geod(ellps="WGS84")
-EQUATORIAL_RADIUS = WGS84.a
-FLATTENING = WGS84.f
-AXIS_RATIO_SQUARED: Final = (1.0 - FLATTENING) ** 2  #: tan(geocentric latitude) / tan(latitude)
-MEAN_RADIUS: Final = 6371008.8  #: mean radius of the ellipsoid [m] (IUGG)
 METRES_PER_DEGREE: Final = 111_195.0  #: length of a degree of a great circle on the mean sphere [m]
 
 

@@ -14,40 +14,33 @@ from thalweg.core.types import FloatArray
 
 @dataclass(frozen=True)
 class Tightening:
-    """One step of a tightening schedule: how much stricter than requested the limits are.
+    """One step of the tightening schedule: how much stricter than requested the limits are.
 
     Attributes
     ----------
     depth : float
         Added to the required depth [m].
-    depth_share : float
-        Added to the required depth, as a share of it.
     share : float
         Taken off the limits of wave height and wind speed, as a share of them.
     """
 
     depth: float = 0.0
-    depth_share: float = 0.0
     share: float = 0.0
 
 
-#: For searches on networks. They check limits at stations, which may be kilometres apart; the
-#: referee also checks between them.
-NETWORK_TIGHTENING: Final = (
+#: Steps tried one after the other while the referee, which checks limits in small steps, finds
+#: violations on a route that searches and refinement allow.
+TIGHTENING: Final = (
     Tightening(),
+    Tightening(depth=0.05, share=0.005),
     Tightening(depth=0.1, share=0.02),
     Tightening(depth=0.3, share=0.05),
     Tightening(depth=1.0, share=0.1),
 )
 
-#: For the refinement of routes, whose legs are checked several times in each cell of the fields.
-REFINEMENT_TIGHTENING: Final = tuple(
-    Tightening(depth_share=share, share=share) for share in (0.0, 0.005, 0.02, 0.06)
-)
-
-#: For the legs of a dredging project. A margin costs time at every tide, so steps are small, and
-#: only depth varies on short distances.
-SITE_LEG_TIGHTENING: Final = tuple(Tightening(depth=depth) for depth in (0.0, 0.05, 0.2, 0.5))
+#: The steps of `TIGHTENING` for searches on networks: their stations can be kilometres apart, so
+#: that the smallest step seldom helps and an attempt takes long.
+NETWORK_STEPS: Final = (0, 2, 3, 4)
 
 
 @dataclass(frozen=True)
@@ -119,7 +112,7 @@ class Limits:
             speed.
         """
         return Limits(
-            self.required_depth * (1.0 + step.depth_share) + step.depth,
+            self.required_depth + step.depth,
             self.wave_height * (1.0 - step.share),
             self.wind_speed * (1.0 - step.share),
             self.offing,

@@ -20,9 +20,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thalweg.core.ellipsoid import ECCENTRICITY_SQUARED, EQUATORIAL_RADIUS
 from thalweg.core.geodesy import (
-    EQUATORIAL_RADIUS,
-    FLATTENING,
     WGS84,
     densify,
     direct,
@@ -32,7 +31,6 @@ from thalweg.core.geodesy import (
 )
 from thalweg.core.types import FloatArray
 
-_ECCENTRICITY_SQUARED: Final = FLATTENING * (2.0 - FLATTENING)
 _CLOSE: Final = 0.1  # radians of latitude within which quadrature is used
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 _FRACTIONS: Final = np.linspace(0.1, 0.9, 9)  # of a leg, where its deviation is measured
@@ -168,7 +166,7 @@ def rhumb_cross_track(
     lon_change = np.radians(wrap_longitude(lon - start[1]))
     length = math.hypot(float(turn), float(psi[0]))
     phi = np.radians(lat)
-    scale = EQUATORIAL_RADIUS * np.cos(phi) / np.sqrt(1 - _ECCENTRICITY_SQUARED * np.sin(phi) ** 2)
+    scale = EQUATORIAL_RADIUS * np.cos(phi) / np.sqrt(1 - ECCENTRICITY_SQUARED * np.sin(phi) ** 2)
     apart = (
         np.hypot(lon_change, rise)
         if length == 0.0
@@ -269,8 +267,8 @@ def _isometric_step(start: FloatArray, end: FloatArray) -> tuple[FloatArray, Flo
     phi1, phi2 = np.radians(start), np.radians(end)
     half = 0.5 * (phi2 - phi1)
     nodes = (0.5 * (phi1 + phi2))[..., None] + half[..., None] * _NODES
-    square = 1.0 - _ECCENTRICITY_SQUARED * np.sin(nodes) ** 2
-    meridian = EQUATORIAL_RADIUS * (1.0 - _ECCENTRICITY_SQUARED) / square**1.5
+    square = 1.0 - ECCENTRICITY_SQUARED * np.sin(nodes) ** 2
+    meridian = EQUATORIAL_RADIUS * (1.0 - ECCENTRICITY_SQUARED) / square**1.5
     radius = EQUATORIAL_RADIUS * np.cos(nodes) / np.sqrt(square)
     near_psi = half * np.sum(_WEIGHTS * meridian / radius, axis=-1)
     mean = np.sum(_WEIGHTS * meridian, axis=-1) / np.sum(_WEIGHTS * meridian / radius, axis=-1)
@@ -287,5 +285,5 @@ def _isometric_step(start: FloatArray, end: FloatArray) -> tuple[FloatArray, Flo
 
 
 def _isometric(phi: FloatArray) -> FloatArray:
-    e = math.sqrt(_ECCENTRICITY_SQUARED)
+    e = math.sqrt(ECCENTRICITY_SQUARED)
     return np.asarray(np.arctanh(np.sin(phi)) - e * np.arctanh(e * np.sin(phi)))

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.evolution import mutation, random_numbers
-from thalweg.kernels.evolution.crossover import make_offspring
+from thalweg.kernels.evolution.crossover import VariationWorkspace, make_offspring
 from thalweg.kernels.geometry.coast_index import CoastArrays
-from thalweg.kernels.leg.population_sailing import GENE_COLUMNS
+from thalweg.kernels.leg.population_sailing import GENE_COLUMNS, TrackGenes
 from thalweg.route.evaluators.evaluation_threads import run_in_threads
 from thalweg.route.evaluators.population import Population
 from thalweg.route.evaluators.population_evaluator import Evaluator
@@ -152,23 +152,21 @@ def reproduce(
     offspring = np.zeros((n, 2, capacity, GENE_COLUMNS))
     work, weights = np.empty((n, capacity, GENE_COLUMNS)), np.empty((n, 2 * capacity))
     given = (evaluator.settings, variation_settings.array())
-    count = np.ascontiguousarray(population.count)
-    genes = np.ascontiguousarray(population.genes)
+    parents = TrackGenes(
+        np.ascontiguousarray(population.count), np.ascontiguousarray(population.genes)
+    )
     coast = evaluator.chart.arrays if evaluator.chart is not None else coast_without_land()
     chosen = np.ascontiguousarray(pairs, dtype=np.int64)
 
     def part(piece: slice) -> None:
         make_offspring(
-            count,
-            genes,
+            parents,
             chosen[piece],
             coast,
             *given,
             states[piece],
-            child_counts[piece],
-            offspring[piece],
-            work[piece],
-            weights[piece],
+            TrackGenes(child_counts[piece], offspring[piece]),
+            VariationWorkspace(work[piece], weights[piece]),
         )
 
     run_in_threads(part, n)

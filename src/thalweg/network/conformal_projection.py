@@ -15,10 +15,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.core.geodesy import FLATTENING, MEAN_RADIUS, Position, wrap_longitude
+from thalweg.core.ellipsoid import ECCENTRICITY_SQUARED
+from thalweg.core.geodesy import MEAN_RADIUS, Position, wrap_longitude
 from thalweg.core.types import FloatArray
 
-_E2 = FLATTENING * (2.0 - FLATTENING)
+_E2 = ECCENTRICITY_SQUARED
 _E = float(np.sqrt(_E2))
 # Series of geodetic latitude in conformal latitude: Snyder (1987), Map Projections, eq. 3-5.
 _TO_GEODETIC = (

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import AXIS_DEPTH, BED_DEPTH, LIMIT_REQUIRED_DEPTH, WATER_LEVEL
-from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays, ShipArrays
+from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays
+from thalweg.kernels.leg.point_speed import ShipArrays
 from thalweg.kernels.leg.table_lookup import TableArrays, table_value
 from thalweg.kernels.search import repeated_search as kernel
 from thalweg.kernels.search import tidal_intervals

@@ -20,7 +20,8 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError
 from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray
-from thalweg.kernels.leg.edge_sailing import NetworkArrays, ShipArrays
+from thalweg.kernels.leg.edge_sailing import NetworkArrays
+from thalweg.kernels.leg.point_speed import ShipArrays
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.search import repeated_search as kernel
 from thalweg.kernels.search.tidal_intervals import TidalStates

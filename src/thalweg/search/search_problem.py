@@ -12,7 +12,8 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import distance
 from thalweg.core.limits import Limits
 from thalweg.kernels.codes import CHANNEL_COUNT
-from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays, ShipArrays
+from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays
+from thalweg.kernels.leg.point_speed import ShipArrays
 from thalweg.kernels.leg.table_lookup import ARRAY_TYPES, TableArrays, axes_needed
 from thalweg.kernels.search.field_bounds import largest_current, largest_speed_field, tidal_extremes
 from thalweg.network.distance_bounds import BOUND_RADIUS, ROUNDING_FACTOR, distance_bounds

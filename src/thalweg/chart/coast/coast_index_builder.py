@@ -8,20 +8,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.rings import Rings
+from thalweg.core.ellipsoid import MEAN_RADIUS
 from thalweg.core.geodesy import geocentric_positions, geocentric_unit_vectors
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry.cube_sphere import (
     FIRST_ROW,
-    RADIUS,
     IndexArrays,
     cell_middle,
 )
 from thalweg.kernels.geometry.winding_numbers import carry_windings
 
 MAX_SEGMENT_LENGTH: Final = (
-    10_000.0 / RADIUS
+    10_000.0 / MEAN_RADIUS
 )  # edges are split into pieces no longer than this [rad]
-MAX_BULGE: Final = 1.0 / RADIUS  # and bulging no more than this [rad]
+MAX_BULGE: Final = 1.0 / MEAN_RADIUS  # and bulging no more than this [rad]
 CELL_MARGIN: Final = 8.0e-5  # edges are listed in cells this near on the face (about 500 m)
 MAX_CLEARANCE: Final = 0.5  # largest distance that is stored [rad]
 

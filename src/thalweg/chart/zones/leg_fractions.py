@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.coast.coast_index_builder import empty_index
+from thalweg.core.ellipsoid import MEAN_RADIUS
 from thalweg.core.geodesy import direct, inverse
 from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import LAND
 from thalweg.kernels.geometry.coast_index import CoastArrays, outlines_touched, point_codes
-from thalweg.kernels.geometry.cube_sphere import ALL_LAND, RADIUS, IndexArrays
+from thalweg.kernels.geometry.cube_sphere import ALL_LAND, IndexArrays
 from thalweg.kernels.geometry.polygon_fractions import fractions_by_bisection, middles_inside
 
 CROSSING_TOLERANCE: Final = 0.25  # pieces this short are not split further [m]
@@ -118,5 +119,5 @@ def _fractions_by_bisection(
 
     low, high = ends(number / parts[leg]), ends((number + 1) / parts[leg])
     share = np.empty(len(leg))
-    fractions_by_bisection(index, outlines, *low, *high, finest / RADIUS, share)
+    fractions_by_bisection(index, outlines, *low, *high, finest / MEAN_RADIUS, share)
     return np.minimum(np.bincount(leg, share / parts[leg], minlength=len(parts)), 1.0)

@@ -20,6 +20,7 @@ from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit
 
 _GOLDEN = 0.6180339887498949
+_TWIST = 0.0625  # share of the twist of the currents of a cell that counts in a triangle
 _ABOVE_ROUNDING = 1.0 + 2e-7  # of 32-bit numbers
 _HALF = math.pi / SECTORS
 _SINE, _COSINE = math.sin(_HALF), math.cos(_HALF)
@@ -46,12 +47,51 @@ class KeptSpeeds(NamedTuple):
     longer: float
 
 
+class BarrierExcess(NamedTuple):
+    """What a check finds in each cell.
+
+    Attributes
+    ----------
+    excess : float64[Y - 1, X - 1]
+        Greatest rate less 1; -1 where no ship may be, or where it is not checked.
+    centre : float64[Y - 1, X - 1]
+        Value of the barrier at the centre of each cell [s].
+    """
+
+    excess: np.ndarray
+    centre: np.ndarray
+
+
+class CellMotion(NamedTuple):
+    """What moves a ship in a cell during a window of time.
+
+    Attributes
+    ----------
+    currents : float64[INSTANTS, 4, 2]
+        At the corners at each instant [m/s].
+    instants : int
+        How many of them count.
+    speed : float64[SECTORS]
+        Greatest speed through water for headings in each sector [m/s].
+    top : float
+        Greatest of these [m/s].
+    disc : bool
+        Whether ``top`` holds for all headings.
+    """
+
+    currents: np.ndarray
+    instants: int
+    speed: np.ndarray
+    top: float
+    disc: bool
+
+
 @kernel_only
-def _support(east, north, speed, top, disc):
+def _support(east, north, motion):
     """Return the greatest scalar product of (east, north) with a velocity through the water."""
     size = math.sqrt(east * east + north * north)
-    if disc:
-        return top * size
+    if motion.disc:
+        return motion.top * size
     best = 0.0
     for k in range(SECTORS):
         along = east * _HEADINGS_EAST[k] + north * _HEADINGS_NORTH[k]
@@ -60,19 +100,20 @@ def _support(east, north, speed, top, disc):
             value = size
         else:
             value = along * _COSINE + across * _SINE
-        best = max(best, speed[k] * value)
+        best = max(best, motion.speed[k] * value)
     return best
 
 
 @kernel_only
-def _triangle(p_east, p_north, corners, twist, currents, instants, speed, top, disc):
+def _triangle(p_east, p_north, corners, motion):
     """Return the greatest of current and ship along a gradient [s/m] over a triangle.
 
     ``corners`` are the two corners of the cell that the triangle has beside the centre.
     """
     one, two = corners
+    currents = motion.currents
     best = -math.inf
-    for k in range(instants):
+    for k in range(motion.instants):
         a = currents[k, one, 0] * p_east + currents[k, one, 1] * p_north
         b = currents[k, two, 0] * p_east + currents[k, two, 1] * p_north
         m = 0.0
@@ -80,13 +121,13 @@ def _triangle(p_east, p_north, corners, twist, currents, instants, speed, top, d
         turn_north = currents[k, 0, 1] - currents[k, 1, 1] - currents[k, 2, 1] + currents[k, 3, 1]
         for c in range(4):
             m += 0.25 * (currents[k, c, 0] * p_east + currents[k, c, 1] * p_north)
-        value = max(a, b, m) + twist * abs(turn_east * p_east + turn_north * p_north)
+        value = max(a, b, m) + _TWIST * abs(turn_east * p_east + turn_north * p_north)
         best = max(best, value)
-    return best + _support(p_east, p_north, speed, top, disc)
+    return best + _support(p_east, p_north, motion)
 
 
 @kernel_only
-def _greatest_rate(phi, centre, scales, currents, instants, speed, top, disc):
+def _greatest_rate(phi, centre, scales, motion):
     """Return the greatest rate of the barrier along any motion in a cell (1 is as fast as time)."""
     a, b, c, d = phi
     per_east_low, per_east_high, per_north, slack = scales
@@ -102,7 +143,7 @@ def _greatest_rate(phi, centre, scales, currents, instants, speed, top, disc):
             x, y, pair = b + d - 2.0 * centre, d - b, (1, 3)
         y *= per_north
         for per_east in (per_east_low, per_east_high):
-            value = _triangle(x * per_east, y, pair, 0.0625, currents, instants, speed, top, disc)
+            value = _triangle(x * per_east, y, pair, motion)
             best = max(best, value + slack * abs(y))
     return best
 
@@ -176,8 +217,9 @@ def _kept_speeds(world, j, i, first, last, found, buffers, kept):
 
 
 @kernel_only
-def _check_cell(world, phi, j, i, window, forward, strict, centre_before, buffers, kept):
+def _check_cell(world, phi, cell, window, forward, strict, buffers, kept):
     """Return (excess, centre value): how far the barrier rises faster than time in one cell."""
+    j, i = cell
     a, b, c, d = phi[j, i], phi[j, i + 1], phi[j + 1, i], phi[j + 1, i + 1]
     least, greatest = min(a, b, c, d), max(a, b, c, d)
     first, last = window
@@ -206,8 +248,8 @@ def _check_cell(world, phi, j, i, window, forward, strict, centre_before, buffer
     )
     corners = (a, b, c, d)
     centre = 0.25 * (a + b + c + d)
-    currents, speed = buffers.current, buffers.speed
-    rate = _greatest_rate(corners, centre, scales, currents, instants, speed, top, disc)
+    motion = CellMotion(buffers.current, instants, buffers.speed, top, disc)
+    rate = _greatest_rate(corners, centre, scales, motion)
     if rate > 1.0 + (-6e-4 if strict else 2e-4):
         low, high = min(0.5 * (a + d), 0.5 * (b + c)), max(0.5 * (a + d), 0.5 * (b + c))
         low, high = low - 0.5 * (high - low), high + 0.5 * (high - low)
@@ -216,17 +258,17 @@ def _check_cell(world, phi, j, i, window, forward, strict, centre_before, buffer
             min(high, greatest + 0.4 * (greatest - least)),
         )
         one, two = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
-        at_one = _greatest_rate(corners, one, scales, currents, instants, speed, top, disc)
-        at_two = _greatest_rate(corners, two, scales, currents, instants, speed, top, disc)
+        at_one = _greatest_rate(corners, one, scales, motion)
+        at_two = _greatest_rate(corners, two, scales, motion)
         for _ in range(7):
             if at_one < at_two:
                 high, two, at_two = two, one, at_one
                 one = high - _GOLDEN * (high - low)
-                at_one = _greatest_rate(corners, one, scales, currents, instants, speed, top, disc)
+                at_one = _greatest_rate(corners, one, scales, motion)
             else:
                 low, one, at_one = one, two, at_two
                 two = low + _GOLDEN * (high - low)
-                at_two = _greatest_rate(corners, two, scales, currents, instants, speed, top, disc)
+                at_two = _greatest_rate(corners, two, scales, motion)
         if at_one < rate:
             rate, centre = at_one, one
         if at_two < rate:
@@ -235,9 +277,7 @@ def _check_cell(world, phi, j, i, window, forward, strict, centre_before, buffer
 
 
 @jit
-def check_barrier(
-    world, phi, candidate, window_first, window_last, forward, strict, excess, centre, kept
-):
+def check_barrier(world, phi, candidate, windows, forward, strict, found, kept):
     """Fill for each candidate cell how far the barrier rises faster than time, at most.
 
     Parameters
@@ -247,20 +287,19 @@ def check_barrier(
         The barrier at the nodes: time since departure [s], or until arrival.
     candidate : bool[Y - 1, X - 1]
         Cells to check.
-    window_first, window_last : float64[Y - 1, X - 1]
+    windows : TimeWindows
         For a barrier until arrival: the times at which a ship may be in each cell [s].
     forward : bool
         Whether the barrier counts from the departure; its own values are then the times.
     strict : bool
         Whether centre values are searched for the smallest excess too.
-    excess : float64[Y - 1, X - 1]
-        Greatest rate less 1; -1 where no ship may be, or where it is not checked.
-    centre : float64[Y - 1, X - 1]
-        Value of the barrier at the centre of each cell [s].
+    found : BarrierExcess
+        Filled.
     kept : KeptSpeeds
         Speeds of cells that are kept between calls.
     """
     buffers = make_buffers()
+    excess, centre = found
     for j in range(phi.shape[0] - 1):
         for i in range(phi.shape[1] - 1):
             if not candidate[j, i]:
@@ -269,21 +308,20 @@ def check_barrier(
                     phi[j, i] + phi[j, i + 1] + phi[j + 1, i] + phi[j + 1, i + 1]
                 )
                 continue
-            window = (window_first[j, i], window_last[j, i])
+            window = (windows.first[j, i], windows.last[j, i])
             excess[j, i], centre[j, i] = _check_cell(
-                world, phi, j, i, window, forward, strict, centre[j, i], buffers, kept
+                world, phi, (j, i), window, forward, strict, buffers, kept
             )
 
 
 @jit
-def closed_throughout(world, first, last, closed):
+def closed_throughout(world, windows, closed):
     """Fill which cells no ship may be in at any moment of their windows of time.
 
     Parameters
     ----------
     world : BarrierWorld
-    first, last : float64[Y - 1, X - 1]
-        Windows [s].
+    windows : TimeWindows
     closed : bool[Y - 1, X - 1]
         Whether to test each cell before; whether it is closed after.
     """
@@ -291,4 +329,5 @@ def closed_throughout(world, first, last, closed):
     for j in range(closed.shape[0]):
         for i in range(closed.shape[1]):
             if closed[j, i]:
-                closed[j, i] = not read_cell(world, j, i, first[j, i], last[j, i], buffers)[1]
+                first, last = windows.first[j, i], windows.last[j, i]
+                closed[j, i] = not read_cell(world, j, i, first, last, buffers)[1]

@@ -4,6 +4,7 @@ Any function may be checked as a barrier; this one is near the earliest arrival.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from thalweg.kernels.certificate.cell_conditions import sample_node, time_step_o
 from thalweg.kernels.codes import CHANNEL_COUNT, OK
 from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit
-from thalweg.kernels.leg.point_speed import point_speed_with_axes
+from thalweg.kernels.leg.point_speed import ShipArrays, point_speed_from_guess
 
 COURSES = 32  # directions to the square of neighbours round a node
 _RENEWAL = 0.02  # of the step of the data, after which times round a node are found again
@@ -25,6 +26,39 @@ _RING = np.array(
 )
 
 
+class SolvedNodes(NamedTuple):
+    """What is given at the nodes of a mesh.
+
+    Attributes
+    ----------
+    fixed : bool[Y, X]
+        Nodes whose value is given; it may be lowered.
+    factor : float64[Y, X]
+        Factor on the times at each node.
+    solvable : bool[Y, X]
+        Nodes that take part.
+    """
+
+    fixed: np.ndarray
+    factor: np.ndarray
+    solvable: np.ndarray
+
+
+class RingTimes(NamedTuple):
+    """Times round the nodes of a mesh, kept between calls.
+
+    Attributes
+    ----------
+    times : float32[Y, X, COURSES]
+        [s].
+    moment : float64[Y, X]
+        The moment they hold for [s]; NaN where they are still to be computed.
+    """
+
+    times: np.ndarray
+    moment: np.ndarray
+
+
 @kernel_only
 def _course_offset(course):
     """Return (rows, columns) from a node to a point on the square of its neighbours."""
@@ -36,8 +70,9 @@ def _course_offset(course):
 
 
 @kernel_only
-def _fill_times(world, j, i, t, forward, fallback, sample, limits, out):
+def _fill_times(world, ship, node, t, forward, sample, out):
     """Fill the times [s] from the points round a node to it (or from it to them) at one moment."""
+    j, i = node
     step, fraction = time_step_of(world.raster.times, t)
     sample_node(world, j, i, step, fraction, sample)
     dlat = world.raster.corner[1] / world.refinement
@@ -50,22 +85,20 @@ def _fill_times(world, j, i, t, forward, fallback, sample, limits, out):
         east, north = east / size, north / size
         if forward:
             east, north = -east, -north
-        speed, status = point_speed_with_axes(
-            sample, world.raster.channel_index, east, north, world.table, world.setting,
-            math.inf, limits, world.needs,
-        )  # fmt: skip
+        speed, status, _ = point_speed_from_guess(
+            sample, world.raster.channel_index, (east, north), ship, math.inf, math.inf
+        )
         if status != OK:
-            speed = fallback
+            speed = world.top_speed
         out[course] = size / speed if speed > 0.0 else UNREACHED
 
 
 @kernel_only
 def _update(phi, f, j, i, times, aspect):
     """Return the least time at a node by way of the square of its neighbours."""
-    ny, nx = phi.shape
     best, best_course = UNREACHED, -1
     for course in range(COURSES):
-        value = _through(phi, f, j, i, course, times, ny, nx)
+        value = _through(phi, f, j, i, course, times)
         if value < best:
             best, best_course = value, course
     if best_course < 0:
@@ -75,27 +108,28 @@ def _update(phi, f, j, i, times, aspect):
         first = best_course if side else (best_course + COURSES - 1) % COURSES
         low, high = 0.0, 1.0
         one, two = 1.0 - _GOLDEN, _GOLDEN
-        at_one = _between(phi, f, j, i, first, one, times, aspect, ny, nx)
-        at_two = _between(phi, f, j, i, first, two, times, aspect, ny, nx)
+        at_one = _between(phi, f, j, i, first, one, times, aspect)
+        at_two = _between(phi, f, j, i, first, two, times, aspect)
         for _ in range(9):
             if at_one < at_two:
                 high, two, at_two = two, one, at_one
                 one = high - _GOLDEN * (high - low)
-                at_one = _between(phi, f, j, i, first, one, times, aspect, ny, nx)
+                at_one = _between(phi, f, j, i, first, one, times, aspect)
             else:
                 low, one, at_one = one, two, at_two
                 two = low + _GOLDEN * (high - low)
-                at_two = _between(phi, f, j, i, first, two, times, aspect, ny, nx)
+                at_two = _between(phi, f, j, i, first, two, times, aspect)
         best = min(best, at_one, at_two)
     return best
 
 
 @kernel_only
-def _between(phi, f, j, i, course, share, times, aspect, ny, nx):
+def _between(phi, f, j, i, course, share, times, aspect):
     """Return the time at a node by way of a point between two courses of the ring.
 
     ``aspect`` is the width of a cell over its height.
     """
+    ny, nx = phi.shape
     after = (course + 1) % COURSES
     row, column = _course_offset(course)
     row_after, column_after = _course_offset(after)
@@ -121,7 +155,8 @@ def _between(phi, f, j, i, course, share, times, aspect, ny, nx):
 
 
 @kernel_only
-def _through(phi, f, j, i, course, times, ny, nx):
+def _through(phi, f, j, i, course, times):
+    ny, nx = phi.shape
     side, part = course // _PER_SIDE, (course % _PER_SIDE) / _PER_SIDE
     row, column = j + _RING[side, 0], i + _RING[side, 1]
     if row < 0 or column < 0 or row >= ny or column >= nx:
@@ -139,9 +174,7 @@ def _through(phi, f, j, i, course, times, ny, nx):
 
 
 @jit
-def solve_barrier(
-    world, phi, fixed, f, solvable, window_first, window_last, forward, cap, ring_times, ring_moment
-):
+def solve_barrier(world, phi, nodes, windows, forward, cap, rings):
     """Fill ``phi`` with approximate earliest arrivals, or least times to the goal.
 
     Parameters
@@ -149,22 +182,14 @@ def solve_barrier(
     world : BarrierWorld
     phi : float64[Y, X]
         `UNREACHED` but at the nodes where it is given.
-    fixed : bool[Y, X]
-        Nodes whose value is given; it may be lowered.
-    f : float64[Y, X]
-        Factor on the times at each node.
-    solvable : bool[Y, X]
-        Nodes that take part.
-    window_first, window_last : float64[Y, X]
-        Times [s] whose best conditions count, for a barrier until arrival.
+    nodes : SolvedNodes
+    windows : TimeWindows
+        Times whose best conditions count, for a barrier until arrival.
     forward : bool
         Whether the barrier counts from the departure.
     cap : float
         Values from here on are not passed on [s].
-    ring_times : float32[Y, X, COURSES]
-        Times round each node, kept between calls [s].
-    ring_moment : float64[Y, X]
-        The moment they hold for [s]; NaN where they are still to be computed.
+    rings : RingTimes
 
     Returns
     -------
@@ -175,19 +200,19 @@ def solve_barrier(
     active = np.zeros((ny, nx), np.bool_)
     for j in range(ny):
         for i in range(nx):
-            if fixed[j, i]:
+            if nodes.fixed[j, i]:
                 for k in range(8):
                     row, column = j + _RING[k, 0], i + _RING[k, 1]
                     if 0 <= row < ny and 0 <= column < nx:
                         active[row, column] = True
     sample, times = np.full(CHANNEL_COUNT, np.nan), np.empty(COURSES)
     other = np.empty(COURSES)
-    limits = world.limits.copy()
+    limits = world.ship.limits.copy()
     limits[0] = -np.inf
     limits[1:] = np.inf
+    ship = ShipArrays(world.ship.table, world.ship.setting, limits, world.ship.needs)
     axis = world.raster.times
     renewal = max(_RENEWAL * (axis[1] - axis[0]), 30.0)
-    fallback = world.top_speed
     sweep = 0
     for sweep in range(300):
         changes = 0
@@ -198,7 +223,7 @@ def solve_barrier(
                 if not active[j, i]:
                     continue
                 active[j, i] = False
-                if not solvable[j, i]:
+                if not nodes.solvable[j, i]:
                     continue
                 moment = phi[j, i]
                 if moment >= cap:
@@ -211,23 +236,23 @@ def solve_barrier(
                     continue
                 if not forward:
                     moment = 0.0
-                if not abs(ring_moment[j, i] - moment) <= renewal:
-                    ring_moment[j, i] = moment
+                if not abs(rings.moment[j, i] - moment) <= renewal:
+                    rings.moment[j, i] = moment
                     if forward:
-                        _fill_times(world, j, i, moment, True, fallback, sample, limits, times)
+                        _fill_times(world, ship, (j, i), moment, True, sample, times)
                     else:
                         times[:] = UNREACHED
                         for part in range(5):
                             share = 0.25 * part
-                            t = window_first[j, i] * (1.0 - share) + window_last[j, i] * share
-                            _fill_times(world, j, i, t, False, fallback, sample, limits, other)
+                            t = windows.first[j, i] * (1.0 - share) + windows.last[j, i] * share
+                            _fill_times(world, ship, (j, i), t, False, sample, other)
                             for k in range(COURSES):
                                 times[k] = min(times[k], other[k])
                     for k in range(COURSES):
-                        ring_times[j, i, k] = times[k]
+                        rings.times[j, i, k] = times[k]
                 aspect = world.metres_east[j] * world.raster.corner[3]
                 aspect /= world.metres_north[j] * world.raster.corner[1]
-                value = _update(phi, f, j, i, ring_times[j, i], aspect)
+                value = _update(phi, nodes.factor, j, i, rings.times[j, i], aspect)
                 if value < phi[j, i] - 1e-9 * max(abs(phi[j, i]), 1.0):
                     phi[j, i] = value
                     changes += 1

@@ -29,8 +29,8 @@ from thalweg.kernels.codes import (
     WIND_NORTH,
 )
 from thalweg.kernels.compilation.decorators import kernel_only
+from thalweg.kernels.leg.point_speed import ShipArrays
 from thalweg.kernels.leg.raster_sampling import RasterArrays
-from thalweg.kernels.leg.table_lookup import TableArrays
 
 SECTORS = 48  # of headings
 MAX_INSTANTS = 128  # of one window; longer windows are treated as unlimited
@@ -55,12 +55,7 @@ class BarrierWorld(NamedTuple):
         Cells without any navigable water, whatever the time.
     deepest : float32[Y - 1, X - 1]
         Greatest charted depth in each cell [m below datum]; +inf where it is unknown.
-    table : TableArrays
-        Speed through water.
-    setting : int
-    needs : int
-        Axes of the table (`axes_needed`).
-    limits : float64[LIMITS]
+    ship : ShipArrays
     top_speed : float
         Upper bound of the speed through water [m/s].
     departures : float
@@ -76,12 +71,16 @@ class BarrierWorld(NamedTuple):
     metres_north: np.ndarray
     closed: np.ndarray
     deepest: np.ndarray
-    table: TableArrays
-    setting: int
-    needs: int
-    limits: np.ndarray
+    ship: ShipArrays
     top_speed: float
     departures: float
+
+
+class TimeWindows(NamedTuple):
+    """Windows of time of cells or nodes [s]: first and last moment of each, float64[Y, X]."""
+
+    first: np.ndarray
+    last: np.ndarray
 
 
 class CellBuffers(NamedTuple):
@@ -252,7 +251,7 @@ def read_cell(world, j, i, first, last, buffers):
                         low[AXIS_WAVE_HEIGHT], high[AXIS_WAVE_HEIGHT], height
                     )
                     lowest_wave = min(lowest_wave, height)
-                elif world.needs & (1 << AXIS_WAVE_HEIGHT):
+                elif world.ship.needs & (1 << AXIS_WAVE_HEIGHT):
                     known = False
                 if index[WAVE_EAST] >= 0 and index[WAVE_NORTH] >= 0:
                     a, b = sample[WAVE_EAST], sample[WAVE_NORTH]
@@ -273,7 +272,7 @@ def read_cell(world, j, i, first, last, buffers):
                 if a == a and b == b:
                     buffers.wind[winds, 0], buffers.wind[winds, 1] = a, b
                     winds += 1
-                elif world.needs & _WIND:
+                elif world.ship.needs & _WIND:
                     known = False
             if index[BED_DEPTH] >= 0 and sample[BED_DEPTH] == sample[BED_DEPTH]:
                 bed_low, bed_high = _widen(bed_low, bed_high, sample[BED_DEPTH])
@@ -302,19 +301,20 @@ def read_cell(world, j, i, first, last, buffers):
     low[AXIS_DEPTH], high[AXIS_DEPTH] = bed_low, deep
     if unlimited:
         return -1, True, field_high, winds, waves
-    is_open = deep >= world.limits[LIMIT_REQUIRED_DEPTH]
+    is_open = deep >= world.ship.limits[LIMIT_REQUIRED_DEPTH]
     if lowest_wave < math.inf:
-        is_open = is_open and lowest_wave <= world.limits[LIMIT_WAVE_HEIGHT]
-    if winds > 0 and world.limits[LIMIT_WIND_SPEED] < math.inf:
+        is_open = is_open and lowest_wave <= world.ship.limits[LIMIT_WAVE_HEIGHT]
+    if winds > 0 and world.ship.limits[LIMIT_WIND_SPEED] < math.inf:
         shortest = direction_range(buffers.wind, winds)[2]
-        is_open = is_open and shortest <= world.limits[LIMIT_WIND_SPEED]
+        is_open = is_open and shortest <= world.ship.limits[LIMIT_WIND_SPEED]
     return instants, is_open, field_high, winds, waves
 
 
 @kernel_only
 def cell_speeds(world, instants, field_high, winds, waves, buffers):
     """Fill the greatest speed by sector of heading; return (greatest, same for all headings)."""
-    index, table = world.raster.channel_index, world.table
+    index = world.raster.channel_index
+    table, setting, _, needs = world.ship
     if index[SPEED_FIELD] >= 0:
         top = field_high if instants > 0 else world.top_speed
         buffers.speed[:] = max(top, 0.0)
@@ -322,7 +322,7 @@ def cell_speeds(world, instants, field_high, winds, waves, buffers):
     if instants < 0:
         buffers.speed[:] = world.top_speed
         return world.top_speed, True
-    low, high, needs = buffers.low, buffers.high, world.needs
+    low, high = buffers.low, buffers.high
     wind_first, wind_last, shortest, longest = direction_range(buffers.wind, winds)
     wave_first, wave_last, _, _ = direction_range(buffers.waves, waves)
     low[AXIS_WIND_SPEED], high[AXIS_WIND_SPEED] = shortest, longest
@@ -330,7 +330,7 @@ def cell_speeds(world, instants, field_high, winds, waves, buffers):
         if not low[axis] <= high[axis]:  # nothing known: anything
             low[axis], high[axis] = -math.inf, math.inf
     if not needs & ANGLES:
-        top = greatest_speed(table, world.setting, low, high, world.top_speed, buffers.place)
+        top = greatest_speed(table, setting, low, high, world.top_speed, buffers.place)
         buffers.speed[:] = top
         return top, True
     half = math.pi / SECTORS
@@ -344,7 +344,7 @@ def cell_speeds(world, instants, field_high, winds, waves, buffers):
         low[AXIS_WAVE_ANGLE], high[AXIS_WAVE_ANGLE] = _angle_from_bow_range(
             wave_first + math.pi - heading - half, wave_last + math.pi - heading + half
         )
-        speed = greatest_speed(table, world.setting, low, high, world.top_speed, buffers.place)
+        speed = greatest_speed(table, setting, low, high, world.top_speed, buffers.place)
         buffers.speed[sector] = speed
         top = max(top, speed)
     return top, False

@@ -9,20 +9,23 @@ import os
 import shutil
 from pathlib import Path
 
+from thalweg.core import ellipsoid
 from thalweg.core.cache_folder import cache_folder, is_usable, private_temporary_folder
 
 #: The folder of the package `kernels`.
 PACKAGE = Path(__file__).resolve().parents[1]
+_CONSTANTS = Path(ellipsoid.__file__).resolve()  # compiled into the kernels
 _MAX_FOLDERS = 4  # largest number of folders of compiled code, the newest ones
 
 
 def _source_hash() -> str:
-    """Return a hash that changes with the text of any file of the package and its sub-packages.
+    """Return a hash that changes with the text of any module that is compiled.
 
     It depends neither on the place of the package nor on file times, so that all installations
     and checkouts of one version share their compiled code.
     """
     total = hashlib.sha256()
+    total.update(_CONSTANTS.read_bytes())
     for file in sorted(PACKAGE.rglob("*.py")):
         text = file.read_bytes()
         total.update(f"{file.relative_to(PACKAGE).as_posix()} {len(text)}\n".encode() + text)

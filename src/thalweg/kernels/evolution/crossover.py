@@ -5,6 +5,9 @@ to the bit in any number of threads.
 """
 
 import math
+from typing import NamedTuple
+
+import numpy as np
 
 from thalweg.kernels.codes import OK
 from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
@@ -26,10 +29,24 @@ from thalweg.kernels.leg.population_sailing import (
     LAT,
     LON,
     PIECES,
+    TrackGenes,
 )
 
 _MAX_PARTNER_POINTS = 3  # points of the other parent that a crossover tries
 _MAX_CROSSOVER_POINTS = 8  # points of the first parent that it tries
+
+
+class VariationWorkspace(NamedTuple):
+    """Work space of variation.
+
+    Attributes
+    ----------
+    genes : float64[K, M, GENE_COLUMNS]
+    weights : float64[K, 2 * M]
+    """
+
+    genes: np.ndarray
+    weights: np.ndarray
 
 
 @kernel_only
@@ -76,8 +93,13 @@ def _splice(head, i, tail, j, count, target):
 
 
 @kernel_only
-def crossover(a, na, b, nb, coast, c, d, state, weight):
-    """Cross two tracks at neighbouring waypoints; return points of the children, or (0, 0)."""
+def crossover(first, second, coast, c, d, state, weight):
+    """Cross two tracks at neighbouring waypoints; return points of the children, or (0, 0).
+
+    The parents are `TrackGenes`; the genes of the children are written into ``c`` and ``d``.
+    """
+    na, a = first
+    nb, b = second
     room = c.shape[0]
     if na < 3 or nb < 3:
         return 0, 0
@@ -101,25 +123,14 @@ def crossover(a, na, b, nb, coast, c, d, state, weight):
 
 @allocation_free
 def make_offspring(
-    count,
-    genes,
-    pairs,
-    coast,
-    settings,
-    variation_settings,
-    states,
-    counts_out,
-    offspring,
-    work,
-    weights,
+    parents, pairs, coast, settings, variation_settings, states, offspring, workspace
 ):
     """Make two children of each pair of parents.
 
     Parameters
     ----------
-    count : int64[N]
-    genes : float64[N, M, COLUMNS]
-        The parents.
+    parents : TrackGenes
+        Of N tracks.
     pairs : int64[K, 2]
         Indices of the parents of each pair.
     coast : CoastArrays
@@ -129,23 +140,20 @@ def make_offspring(
     variation_settings : float64[VARIATION_SETTING_COUNT]
     states : uint64[K, 1]
         A seed for each pair.
-    counts_out : int64[K, 2]
-        Points of the children; filled.
-    offspring : float64[K, 2, M, COLUMNS]
-        The children; filled.
-    work : float64[K, M, COLUMNS]
-    weights : float64[K, 2 * M]
-        Work space.
+    offspring : TrackGenes
+        Of (K, 2) children; filled.
+    workspace : VariationWorkspace
     """
+    count, genes = parents
     for k in range(pairs.shape[0]):
         first, second = pairs[k, 0], pairs[k, 1]
-        state, weight, spare = states[k], weights[k], work[k]
-        c, d = offspring[k, 0], offspring[k, 1]
+        state, weight, spare = states[k], workspace.weights[k], workspace.genes[k]
+        c, d = offspring.genes[k, 0], offspring.genes[k, 1]
         nc, nd = 0, 0
         if random_uniform(state) < variation_settings[CROSSOVER_PROBABILITY]:
-            nc, nd = crossover(
-                genes[first], count[first], genes[second], count[second], coast, c, d, state, weight
-            )
+            one = TrackGenes(count[first], genes[first])
+            other = TrackGenes(count[second], genes[second])
+            nc, nd = crossover(one, other, coast, c, d, state, weight)
         crossed = nc > 0
         if not crossed:
             nc, nd = count[first], count[second]
@@ -155,4 +163,4 @@ def make_offspring(
             nc = mutate(c, nc, coast, settings, variation_settings, state, weight, spare)
         if not crossed or random_uniform(state) < variation_settings[MUTATION_PROBABILITY]:
             nd = mutate(d, nd, coast, settings, variation_settings, state, weight, spare)
-        counts_out[k, 0], counts_out[k, 1] = nc, nd
+        offspring.count[k, 0], offspring.count[k, 1] = nc, nd

@@ -6,6 +6,7 @@ All displacements are made in the tangent plane of the place they are made at, i
 import math
 from typing import Final
 
+from thalweg.core.ellipsoid import MEAN_RADIUS
 from thalweg.kernels.codes import OK
 from thalweg.kernels.compilation.decorators import inlined, kernel_only
 from thalweg.kernels.evolution.random_numbers import (
@@ -16,7 +17,6 @@ from thalweg.kernels.evolution.random_numbers import (
     random_uniform,
 )
 from thalweg.kernels.geometry.coast_index import leg_code
-from thalweg.kernels.geometry.cube_sphere import RADIUS
 from thalweg.kernels.leg.population_sailing import (
     FIXED_TIME,
     GENE_COLUMNS,
@@ -64,7 +64,7 @@ def offset_position(lat, lon, east, north):
     d = math.sqrt(east * east + north * north)
     if d == 0.0:
         return lat, lon
-    s, c = math.sin(d / RADIUS), math.cos(d / RADIUS)
+    s, c = math.sin(d / MEAN_RADIUS), math.cos(d / MEAN_RADIUS)
     y, x = math.sin(lat * RADIANS), math.cos(lat * RADIANS)
     sine = min(max(y * c + x * s * north / d, -1.0), 1.0)
     turn = math.atan2(s * east / d, x * c - y * s * north / d)
@@ -84,7 +84,7 @@ def _middle(a, b):
     mx, my, mz = ax + bx, ay + by, az + bz
     ex, ey, ez = bx - ax, by - ay, bz - az
     lm, le = math.sqrt(mx * mx + my * my + mz * mz), math.sqrt(ex * ex + ey * ey + ez * ez)
-    half = RADIUS * math.atan2(le, lm)
+    half = MEAN_RADIUS * math.atan2(le, lm)
     if le == 0.0 or lm == 0.0:
         return a[LAT], a[LON], half, 0.0, 1.0
     lat, lon = math.atan2(mz, math.sqrt(mx * mx + my * my)), math.atan2(my, mx)

@@ -19,28 +19,26 @@ Coast edges are straight in longitude and latitude, split so that the arc betwee
 at most `BULGE` from them; where that matters an edge is split further.
 """
 
-from math import asin, atan, atan2, ceil, hypot, sqrt
+from math import asin, atan2, ceil, hypot, sqrt
 from typing import Final, NamedTuple
 
 import numpy as np
 
+from thalweg.core.ellipsoid import AXIS_RATIO_SQUARED, FLATTENING
 from thalweg.kernels.codes import LAND, NO_DATA, NO_GO, OFFING, OK
 from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
+from thalweg.kernels.geometry.arc_edge_tests import arc_frame, edges_of_cell_touched
 from thalweg.kernels.geometry.cube_sphere import (
-    AXIS_RATIO_SQUARED,
-    BULGE,
     DEGREE,
     FIRST_ROW,
-    FLATTENING,
     IndexArrays,
     column_of,
     face_components,
     face_of,
     inside,
-    latitude_longitude,
     unit_vector,
 )
-from thalweg.kernels.geometry.geodesic_arc import geodesic_point, plane_offset
+from thalweg.kernels.geometry.geodesic_arc import geodesic_point
 from thalweg.kernels.geometry.offing_tests import (
     KEPT,
     NO_OFFING,
@@ -72,79 +70,6 @@ class CoastArrays(NamedTuple):
 
 
 @kernel_only
-def _edge_cut(p, q, m, e, n, k, half, tan_half, unsure):
-    """Test an edge near the leg in fine pieces: 0 clear, 1 touched, 2 unsure."""
-    plat, plon = latitude_longitude(p[0], p[1], p[2])
-    qlat, qlon = latitude_longitude(q[0], q[1], q[2])
-    east = (qlon - plon + 540.0) % 360.0 - 180.0
-    s0 = t0 = 0.0
-    answer = 0
-    for piece in range(65):
-        share = piece / 64.0
-        x, y, z = p[0], p[1], p[2]
-        if piece == 64:
-            x, y, z = q[0], q[1], q[2]
-        elif piece > 0:
-            x, y, z = unit_vector(plat + share * (qlat - plat), plon + share * east)
-        t1 = atan2(x * e[0] + y * e[1] + z * e[2], x * m[0] + y * m[1] + z * m[2])
-        s1 = x * n[0] + y * n[1] + z * n[2] - plane_offset(k, m[2], e[2], half, tan_half, t1)
-        if abs(t1) <= half and abs(s1) < unsure:
-            answer = 2
-        if piece > 0 and s0 * s1 <= 0.0:
-            t = t0 if s0 == s1 else t0 + (t1 - t0) * s0 / (s0 - s1)
-            if abs(t) <= half * (1.0 + 1e-13) + 1e-15:
-                if unsure == 0.0 or min(abs(s0), abs(s1)) > unsure:
-                    return 1
-                answer = 2
-        s0, t0 = s1, t1
-    return answer
-
-
-@kernel_only
-def _edge_touched(p, q, m, e, n, k, tan_half, unsure):
-    """Test one edge that is near the leg's plane: 0 clear, 1 touched, 2 unsure."""
-    half = atan(tan_half)
-    t0 = atan2(p[0] * e[0] + p[1] * e[1] + p[2] * e[2], p[0] * m[0] + p[1] * m[1] + p[2] * m[2])
-    t1 = atan2(q[0] * e[0] + q[1] * e[1] + q[2] * e[2], q[0] * m[0] + q[1] * m[1] + q[2] * m[2])
-    if min(t0, t1) > half + BULGE or max(t0, t1) < -half - BULGE:
-        return 0
-    s0 = p[0] * n[0] + p[1] * n[1] + p[2] * n[2] - plane_offset(k, m[2], e[2], half, tan_half, t0)
-    s1 = q[0] * n[0] + q[1] * n[1] + q[2] * n[2] - plane_offset(k, m[2], e[2], half, tan_half, t1)
-    near = BULGE + unsure
-    if (s0 > near and s1 > near) or (s0 < -near and s1 < -near):
-        return 0
-    if (s0 > near and s1 < -near) or (s0 < -near and s1 > near):
-        across, along = abs(s0 - s1), abs(t0 - t1)
-        slack = BULGE * (1.0 + 2.0 * (across + along) / across)
-        beyond = abs(t0 + (t1 - t0) * s0 / (s0 - s1)) - half
-        if beyond > slack:
-            return 0
-        if beyond < -slack:
-            return 1
-    return _edge_cut(p, q, m, e, n, k, half, tan_half, unsure)
-
-
-@kernel_only
-def edges_of_cell_touched(index, row, m, e, n, k, tan_half, near, unsure):
-    """Test the edges of one cell: 0 clear, 1 touched, 2 unsure."""
-    xyz, first = index.xyz, index.first
-    nx, ny, nz = n
-    answer = 0
-    s0 = 0.0
-    for i in range(index.start[row], index.start[row + 1]):
-        s1 = nx * xyz[i, 0] + ny * xyz[i, 1] + nz * xyz[i, 2]
-        if not ((s0 > near and s1 > near) or (s0 < -near and s1 < -near)) and first[i] == 0:
-            p = (xyz[i - 1, 0], xyz[i - 1, 1], xyz[i - 1, 2])
-            q = (xyz[i, 0], xyz[i, 1], xyz[i, 2])
-            touched = _edge_touched(p, q, m, e, n, k, tan_half, unsure)
-            if touched == 1:
-                return 1
-            answer = max(answer, touched)
-        s0 = s1
-    return answer
-
-
-@kernel_only
 def _column_exit(direction, side, column, mu, eu, mw, ew, tau):
     """Return where the leg leaves a column of cells, as the tangent of the angle; or infinity."""
     if direction == 0.0:
@@ -168,18 +93,10 @@ def cell_exit(m, e, face, i, j, side, tau):
 
 
 @kernel_only
-def arc_frame(m, n, tan_half):
-    """Return the geodesic's curvature against the plane n, and how near the plane matters."""
-    k = -FLATTENING * n[2]
-    return k, abs(k) * tan_half * tan_half * (1.01 * abs(m[2]) + 0.4 * tan_half) + BULGE
-
-
-@kernel_only
 def _arc_touched(index, m, e, tan_half, unsure):
     """Walk an arc of at most `LONGEST_ARC`: 0 clear, 1 touched, 2 unsure."""
     side, cell = index.side, index.cell
-    n = (m[1] * e[2] - m[2] * e[1], m[2] * e[0] - m[0] * e[2], m[0] * e[1] - m[1] * e[0])
-    k, near = arc_frame(m, n, tan_half)
+    arc, near = arc_frame(m, e, tan_half)
     near += unsure
     big = min(3.0 / side, 0.1)
     answer = 0
@@ -197,7 +114,7 @@ def _arc_touched(index, m, e, tan_half, unsure):
             if value > FIRST_ROW:
                 return 1
             row = int(FIRST_ROW - value)
-            touched = edges_of_cell_touched(index, row, m, e, n, k, tan_half, near, unsure)
+            touched = edges_of_cell_touched(index, row, arc, near, unsure)
             if touched == 1:
                 return 1
             answer = max(answer, touched)

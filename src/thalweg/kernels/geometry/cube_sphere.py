@@ -11,13 +11,11 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from thalweg.core.ellipsoid import AXIS_RATIO_SQUARED, MEAN_RADIUS
 from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
 
-FLATTENING: Final = 1.0 / 298.257223563  # WGS 84
-AXIS_RATIO_SQUARED: Final = (1.0 - FLATTENING) ** 2  # tan(geocentric latitude) / tan(latitude)
-RADIUS: Final = 6371008.8  # [m]
 DEGREE: Final = pi / 180.0
-BULGE: Final = 1.3 / RADIUS  # most an edge's arc leaves the straight line in lon, lat [rad]
+BULGE: Final = 1.3 / MEAN_RADIUS  # most an edge's arc leaves the straight line in lon, lat [rad]
 ALL_LAND: Final = -1.0
 FIRST_ROW: Final = -2.0  # cell values from here down are rows of edges
 
@@ -115,19 +113,21 @@ def latitude_longitude(x, y, z):
 
 
 @kernel_only
-def _side_of_edge(px, py, pz, qx, qy, qz, x, y, z):
+def _side_of_edge(p, q, point):
     """Return on which side of the edge p, q, straight in lon and lat, a near point is."""
-    plat, plon = latitude_longitude(px, py, pz)
-    qlat, qlon = latitude_longitude(qx, qy, qz)
-    lat, lon = latitude_longitude(x, y, z)
+    plat, plon = latitude_longitude(p[0], p[1], p[2])
+    qlat, qlon = latitude_longitude(q[0], q[1], q[2])
+    lat, lon = latitude_longitude(point[0], point[1], point[2])
     east = (qlon - plon + 540.0) % 360.0 - 180.0
     here = (lon - plon + 540.0) % 360.0 - 180.0
     return east * (lat - plat) - here * (qlat - plat)
 
 
 @kernel_only
-def winding_from(index, row, ax, ay, az, bx, by, bz, winding, exact):
+def winding_from(index, row, a, b, winding, exact):
     """Return the winding number at a, given that at b; both are in the row's cell."""
+    ax, ay, az = a
+    bx, by, bz = b
     nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
     xyz, first = index.xyz, index.first
     before = False
@@ -140,7 +140,7 @@ def winding_from(index, row, ax, ay, az, bx, by, bz, winding, exact):
             side_a = ex * ax + ey * ay + ez * az
             side_b = ex * bx + ey * by + ez * bz
             if exact and side_a * side_a < 4.0 * BULGE * BULGE * (ex * ex + ey * ey + ez * ez):
-                side_a = _side_of_edge(px, py, pz, qx, qy, qz, ax, ay, az)
+                side_a = _side_of_edge((px, py, pz), (qx, qy, qz), a)
             if (side_a >= 0.0) != (side_b >= 0.0):
                 winding += 1 if side_a >= 0.0 else -1
         before = here
@@ -164,5 +164,5 @@ def inside(index, x, y, z):
     if value > FIRST_ROW:
         return value < 0.0
     row = int(FIRST_ROW - value)
-    bx, by, bz = cell_middle(face, i, j, side)
-    return winding_from(index, row, x, y, z, bx, by, bz, index.winding[row], True) != 0
+    middle = cell_middle(face, i, j, side)
+    return winding_from(index, row, (x, y, z), middle, index.winding[row], True) != 0

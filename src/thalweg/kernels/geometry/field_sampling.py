@@ -4,6 +4,8 @@ Interpolation in space is a weighted sum over the corners of a cell, in time bet
 A corner or level of weight 0 is not read; any other that is NaN makes the answer NaN.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from thalweg.kernels.compilation.jit import jit
@@ -12,6 +14,34 @@ from thalweg.kernels.compilation.jit import jit
 #: mesh are in it.
 INSIDE_TOLERANCE = -1e-3
 _BIN_MARGIN = 1e-3  # of the size of a bin, for the same reason
+
+
+class TriangleBins(NamedTuple):
+    """Triangles sorted into square bins of a plane.
+
+    Attributes
+    ----------
+    x, y : float64[M, 3]
+        Corners of the triangles.
+    corners : int64[M, 3]
+        Their nodes.
+    frame : float64[4]
+        x0, y0, bin width, bin height.
+    shape : (int, int)
+        Rows and columns of bins.
+    start : int64[rows * columns + 1]
+        First item of each bin.
+    items : int64[:]
+        Triangles whose bounding box meets each bin.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    corners: np.ndarray
+    frame: np.ndarray
+    shape: tuple
+    start: np.ndarray
+    items: np.ndarray
 
 
 @jit(inline="always")
@@ -101,13 +131,14 @@ def bin_range(x, y, t, frame, rows, columns):
 
 
 @jit
-def find_triangles(px, py, x, y, frame, shape, start, items, triangle, weight):
+def find_triangles(px, py, bins, triangle, weight):
     """Find the triangle that holds each point and its barycentric weights.
 
-    ``triangle`` (N,) gets -1 where there is none; ``weight`` (N, 3) sums to 1. Just outside the
-    mesh (`INSIDE_TOLERANCE`) the nearest triangle is used, with no weight below 0.
+    ``bins`` is a `TriangleBins`; ``triangle`` (N,) gets -1 where there is none; ``weight`` (N, 3)
+    sums to 1. Just outside the mesh (`INSIDE_TOLERANCE`) the nearest triangle is used, with no
+    weight below 0.
     """
-    rows, columns = shape
+    x, y, _, frame, (rows, columns), start, items = bins
     for i in range(px.shape[0]):
         triangle[i] = -1
         fc = (px[i] - frame[0]) / frame[2]

@@ -5,8 +5,8 @@
 
 from math import atan2, cos, sin, sqrt, tan
 
+from thalweg.core.ellipsoid import FLATTENING
 from thalweg.kernels.compilation.decorators import kernel_only
-from thalweg.kernels.geometry.cube_sphere import FLATTENING
 
 
 @kernel_only

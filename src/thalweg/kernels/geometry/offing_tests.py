@@ -16,8 +16,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from thalweg.core.ellipsoid import MEAN_RADIUS
 from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
-from thalweg.kernels.geometry.cube_sphere import RADIUS
 from thalweg.kernels.geometry.geodesic_arc import geodesic_point
 from thalweg.kernels.geometry.shore_distance import cell_clearance, nearest_edge
 
@@ -71,7 +71,7 @@ NO_OFFING: Final = OffingArrays(
 @kernel_only
 def _metres_apart(x, y, z, p):
     ax, ay, az = x - p[0], y - p[1], z - p[2]
-    return RADIUS * sqrt(ax * ax + ay * ay + az * az)
+    return MEAN_RADIUS * sqrt(ax * ax + ay * ay + az * az)
 
 
 @kernel_only
@@ -83,7 +83,7 @@ def _metres_to_segment(x, y, z, s):
     share = 0.0 if square == 0.0 else (ax * ex + ay * ey + az * ez) / square
     share = min(max(share, 0.0), 1.0)
     ax, ay, az = ax - share * ex, ay - share * ey, az - share * ez
-    return RADIUS * sqrt(ax * ax + ay * ay + az * az)
+    return MEAN_RADIUS * sqrt(ax * ax + ay * ay + az * az)
 
 
 @allocation_free
@@ -129,7 +129,7 @@ def offing_along(land, offing, a, b, chord):
     A leg that is `KEPT` and begins in water touches no land; one that is `RELAXED` may.
     """
     longest = LONGEST_STEP * offing.distance
-    length = 2.0 * asin(min(0.5 * chord, 1.0)) * RADIUS
+    length = 2.0 * asin(min(0.5 * chord, 1.0)) * MEAN_RADIUS
     if length <= longest:  # most short legs are decided at their middle
         p = geodesic_point(a, b, 0.5) if length > 0.0 else a
         half = 0.5 * length / STEP_SHARE

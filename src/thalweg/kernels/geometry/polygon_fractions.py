@@ -3,13 +3,13 @@
 from math import atan2, cos, sin, sqrt
 from typing import Final
 
+from thalweg.core.ellipsoid import ECCENTRICITY_SQUARED
 from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
 from thalweg.kernels.geometry.coast_index import SHORTEST_ARC, outline_touched
-from thalweg.kernels.geometry.cube_sphere import FLATTENING, inside, unit_vector
+from thalweg.kernels.geometry.cube_sphere import inside, unit_vector
 from thalweg.kernels.geometry.geodesic_arc import geodesic_point
 
 MAX_TESTS: Final = 2048  # of one leg, before crossings are found less finely
-_ECCENTRICITY_SQUARED: Final = FLATTENING * (2.0 - FLATTENING)  # eccentricity squared
 
 
 @kernel_only
@@ -42,8 +42,8 @@ def _metres_per_radian(a, b, arc, share):
     p, q = sin(arc - t) / sin(arc), sin(t) / sin(arc)
     z = p * a[2] + q * b[2]
     rise = (cos(t) * b[2] - cos(arc - t) * a[2]) / sin(arc)  # dz / dt
-    w = 1.0 / (1.0 - _ECCENTRICITY_SQUARED * (1.0 - z * z))
-    slope = _ECCENTRICITY_SQUARED * z * rise * w  # of the radius, over the radius
+    w = 1.0 / (1.0 - ECCENTRICITY_SQUARED * (1.0 - z * z))
+    slope = ECCENTRICITY_SQUARED * z * rise * w  # of the radius, over the radius
     return sqrt(w * (1.0 + slope * slope))
 
 

@@ -4,10 +4,10 @@ from math import asin, sqrt
 
 import numpy as np
 
+from thalweg.core.ellipsoid import MEAN_RADIUS
 from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
 from thalweg.kernels.geometry.cube_sphere import (
     FIRST_ROW,
-    RADIUS,
     column_of,
     face_components,
     face_of,
@@ -65,14 +65,14 @@ def cell_clearance(index, x, y, z):
     u, v, w = face_components(x, y, z, face)
     value = index.cell[(face * side + column_of(v / w, side)) * side + column_of(u / w, side)]
     # 0.9943: the least length of a radian of geocentric direction, over the mean radius
-    return value * RADIUS * 0.9943
+    return value * MEAN_RADIUS * 0.9943
 
 
 @kernel_only
 def nearest_edge(index, x, y, z, radius):
     """Return the distance [m] to the nearest edge within a radius [m], else the radius."""
-    square = _nearest_within(index, x, y, z, radius / RADIUS * 1.006)
-    return min(radius, 2.0 * asin(min(sqrt(square) / 2.0, 1.0)) * RADIUS * 0.9943)
+    square = _nearest_within(index, x, y, z, radius / MEAN_RADIUS * 1.006)
+    return min(radius, 2.0 * asin(min(sqrt(square) / 2.0, 1.0)) * MEAN_RADIUS * 0.9943)
 
 
 @allocation_free
@@ -92,9 +92,9 @@ def shore_distances(index, lat, lon, cap, distance):
         found = cap
         while clear < cap:
             radius = min(radius, cap)
-            square = _nearest_within(index, x, y, z, radius / RADIUS * 1.006)
-            if square <= (radius / RADIUS) ** 2 or radius == cap:
-                found = min(cap, 2.0 * asin(min(sqrt(square) / 2.0, 1.0)) * RADIUS * 0.9943)
+            square = _nearest_within(index, x, y, z, radius / MEAN_RADIUS * 1.006)
+            if square <= (radius / MEAN_RADIUS) ** 2 or radius == cap:
+                found = min(cap, 2.0 * asin(min(sqrt(square) / 2.0, 1.0)) * MEAN_RADIUS * 0.9943)
                 break
             radius *= 3.0
         distance[k] = max(clear, found)

@@ -6,12 +6,8 @@ import numpy as np
 
 from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
 from thalweg.kernels.compilation.jit import jit
-from thalweg.kernels.geometry.coast_index import (
-    LONGEST_ARC,
-    arc_frame,
-    cell_exit,
-    edges_of_cell_touched,
-)
+from thalweg.kernels.geometry.arc_edge_tests import arc_frame, edges_of_cell_touched
+from thalweg.kernels.geometry.coast_index import LONGEST_ARC, cell_exit
 from thalweg.kernels.geometry.cube_sphere import (
     FIRST_ROW,
     column_of,
@@ -28,8 +24,7 @@ _MAX_HALVINGS = 64  # more halvings of an edge than any grid has
 def _arc_crosses(index, m, e, tan_half):
     """Return whether an arc of at most `LONGEST_ARC` touches an outline, inland or at sea."""
     side, cell = index.side, index.cell
-    n = (m[1] * e[2] - m[2] * e[1], m[2] * e[0] - m[0] * e[2], m[0] * e[1] - m[1] * e[0])
-    k, near = arc_frame(m, n, tan_half)
+    arc, near = arc_frame(m, e, tan_half)
     big = min(3.0 / side, 0.1)
     tau = -tan_half
     while tau < tan_half:
@@ -43,7 +38,7 @@ def _arc_crosses(index, m, e, tan_half):
             continue
         if value <= FIRST_ROW:
             row = int(FIRST_ROW - value)
-            if edges_of_cell_touched(index, row, m, e, n, k, tan_half, near, 0.0) == 1:
+            if edges_of_cell_touched(index, row, arc, near, 0.0) == 1:
                 return True
         tau = cell_exit(m, e, face, i, j, side, tau)
     return False

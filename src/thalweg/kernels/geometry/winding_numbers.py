@@ -7,15 +7,17 @@ SEA = 1.0e-9  # a cell value: outside the polygons, distance to them not known y
 
 
 @kernel_only
-def _carry(index, face, i, j, from_i, from_j, to_i, to_j, winding):
-    """Propagate a winding number between two points of one cell (halves are its borders)."""
-    value = index.cell[(face * index.side + j) * index.side + i]
+def _carry(index, face, cell, start, end, winding):
+    """Propagate a winding number between two points (column, row) of one cell.
+
+    Points are counted in cells; halves are borders.
+    """
+    value = index.cell[(face * index.side + cell[1]) * index.side + cell[0]]
     if value > FIRST_ROW:
         return winding
-    ax, ay, az = cell_middle(face, to_i, to_j, index.side)
-    bx, by, bz = cell_middle(face, from_i, from_j, index.side)
-    row = int(FIRST_ROW - value)
-    return winding_from(index, row, ax, ay, az, bx, by, bz, winding, False)
+    a = cell_middle(face, end[0], end[1], index.side)
+    b = cell_middle(face, start[0], start[1], index.side)
+    return winding_from(index, int(FIRST_ROW - value), a, b, winding, False)
 
 
 @allocation_free
@@ -35,13 +37,15 @@ def carry_windings(index, seeds):
         first = seeds[face]
         for j in range(side):
             if j > 0:
-                first = _carry(index, face, 0, j - 1, 0.0, j - 1.0, 0.0, j - 0.5, first)
-                first = _carry(index, face, 0, j, 0.0, j - 0.5, 0.0, j + 0.0, first)
+                border = (0.0, j - 0.5)
+                first = _carry(index, face, (0, j - 1), (0.0, j - 1.0), border, first)
+                first = _carry(index, face, (0, j), border, (0.0, j + 0.0), first)
             winding = first
             for i in range(side):
                 if i > 0:
-                    winding = _carry(index, face, i - 1, j, i - 1.0, j, i - 0.5, j, winding)
-                    winding = _carry(index, face, i, j, i - 0.5, j, i + 0.0, j, winding)
+                    border = (i - 0.5, j + 0.0)
+                    winding = _carry(index, face, (i - 1, j), (i - 1.0, j + 0.0), border, winding)
+                    winding = _carry(index, face, (i, j), border, (i + 0.0, j + 0.0), winding)
                 k = (face * side + j) * side + i
                 if cell[k] <= FIRST_ROW:
                     index.winding[int(FIRST_ROW - cell[k])] = winding

@@ -12,8 +12,11 @@ from thalweg.kernels.codes import (
     SHIP_RANGE,
 )
 from thalweg.kernels.compilation.decorators import inlined, kernel_only
-from thalweg.kernels.leg.point_speed import fuel_rate_at_speed, point_speed_from_guess
-from thalweg.kernels.leg.table_lookup import TableArrays
+from thalweg.kernels.leg.point_speed import (
+    ShipArrays,
+    fuel_rate_at_speed,
+    point_speed_from_guess,
+)
 
 
 class NetworkArrays(NamedTuple):
@@ -79,20 +82,12 @@ class SeaArrays(NamedTuple):
     deepest: np.ndarray
 
 
-class ShipArrays(NamedTuple):
-    """A ship at one setting, with its limits and the axes its table needs."""
+class ShipOnEdges(NamedTuple):
+    """What edges are sailed with: a network, the sea at its stations, and a ship at one setting."""
 
-    table: TableArrays
-    setting: int
-    limits: np.ndarray
-    needs: int
-
-
-class FuelTable(NamedTuple):
-    """The fuel rate of a ship [kg/s] by setting, and the axes its table needs."""
-
-    table: TableArrays
-    needs: int
+    network: NetworkArrays
+    sea: SeaArrays
+    ship: ShipArrays
 
 
 class MarchCutoff(NamedTuple):
@@ -211,12 +206,14 @@ def least_time(network, edge, slowness):
 
 
 @inlined
-def march_edge(network, sea, ship, fuel, edge, k, t, cutoff, work):
+def march_edge(world, ship, fuel, edge, k, t, cutoff, work):
     """Sail one edge that is not a canal: return (arrival, fuel burnt, status).
 
     Parameters
     ----------
-    network, sea, ship : NetworkArrays, SeaArrays, ShipArrays
+    world : ShipOnEdges or FrontArrays
+        Network and sea.
+    ship : ShipArrays
     fuel : FuelTable or None
         None if the fuel is not needed; its code is then not compiled.
     edge : int
@@ -248,9 +245,9 @@ def march_edge(network, sea, ship, fuel, edge, k, t, cutoff, work):
     at the time predicted with G0. Its fuel is ``d (r0/G0 + r1/G1) / 2`` with the fuel rates r0 and
     r1. Any blocked sample blocks the edge.
     """
-    east, north = course_vector(float(network.course[edge]))
+    network, sea = world.network, world.sea
+    course = course_vector(float(network.course[edge]))
     depth = np.float64(network.depth[edge])  # single precision would be another leg to compile
-    table, setting, limits, needs = ship
     index = sea.channel_index
     tail, sample, spare = work
     slowness, rate, burnt, at, here, guess, then = 0.0, 0.0, 0.0, 0.0, tail, math.inf, t
@@ -276,17 +273,13 @@ def march_edge(network, sea, ship, fuel, edge, k, t, cutoff, work):
                 a, b, weight = network.via_a[p], network.via_b[p], float(network.via_w[p])
             sample_between(sea, a, b, weight, k, then, sample, spare)
             here = sample
-        speed, status, guess = point_speed_from_guess(
-            here, index, east, north, table, setting, depth, limits, needs, guess
-        )
+        speed, status, guess = point_speed_from_guess(here, index, course, ship, depth, guess)
         if status != OK:
             return then, 0.0, status, p
         before = slowness
         slowness = 1.0 / speed
         if fuel is not None:
-            used, known = fuel_rate_at_speed(
-                here, index, (east, north), fuel.table, setting, depth, limits, fuel.needs, guess
-            )
+            used, known = fuel_rate_at_speed(here, index, course, fuel, ship, depth, guess)
             if not known:
                 return then, 0.0, SHIP_RANGE, p
             burnt += 0.5 * piece * (rate * before + used * slowness)
@@ -310,5 +303,6 @@ def sail_edge(network, sea, ship, edge, k, t, cutoff, work):
     fixed = network.fixed_time[edge]
     if fixed == fixed:
         return pass_canal(network, edge, t, sea.times[-1])
-    arrival, _, status, _ = march_edge(network, sea, ship, None, edge, k, t, cutoff, work)
+    world = ShipOnEdges(network, sea, ship)
+    arrival, _, status, _ = march_edge(world, ship, None, edge, k, t, cutoff, work)
     return arrival, status

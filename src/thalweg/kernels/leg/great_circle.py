@@ -5,12 +5,11 @@ radii of curvature; they differ in length from geodesics by less than 1e-6.
 """
 
 import math
-from typing import Final
 
+from thalweg.core.ellipsoid import EQUATORIAL_RADIUS
 from thalweg.kernels.compilation.decorators import inlined
 
-MAJOR_AXIS: Final = 6378137.0  # of WGS 84 [m]
-_ECCENTRICITY2 = 6.69437999014e-3
+_ECCENTRICITY2 = 6.69437999014e-3  # `ECCENTRICITY_SQUARED` to 12 digits, as routes have it
 _RADIANS = math.pi / 180.0
 _SHORTEST_ARC = 1e-12  # [rad], below which a leg has no length
 
@@ -57,7 +56,7 @@ def great_circle_point(a, f, sine, cosine):
     east = (px * dy - py * dx) / level
     north = dz * level - pz * (px * dx + py * dy) / level
     w2 = 1.0 / (1.0 - _ECCENTRICITY2 * pz * pz)
-    prime = MAJOR_AXIS * math.sqrt(w2)  # radius of curvature in the prime vertical
+    prime = EQUATORIAL_RADIUS * math.sqrt(w2)  # radius of curvature in the prime vertical
     east, north = east * prime, north * prime * (1.0 - _ECCENTRICITY2) * w2
     scale = math.sqrt(east * east + north * north)
     lat, lon = math.atan2(pz, level) / _RADIANS, math.atan2(py, px) / _RADIANS

@@ -9,10 +9,16 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from thalweg.core.ellipsoid import EQUATORIAL_RADIUS
 from thalweg.kernels.codes import CHANNEL_COUNT, NO_DATA, OK
 from thalweg.kernels.compilation.decorators import inlined
-from thalweg.kernels.leg.great_circle import MAJOR_AXIS, great_circle, great_circle_point
-from thalweg.kernels.leg.point_speed import fuel_rate_at_speed, point_speed_from_guess
+from thalweg.kernels.leg.great_circle import great_circle, great_circle_point
+from thalweg.kernels.leg.point_speed import (
+    FuelTable,
+    ShipArrays,
+    fuel_rate_at_speed,
+    point_speed_from_guess,
+)
 from thalweg.kernels.leg.raster_sampling import RasterArrays, interpolate_raster
 from thalweg.kernels.leg.table_lookup import TableArrays
 
@@ -90,24 +96,16 @@ def _piece_performance(world, fuel, needs, leg, t, place, course, scratch):
     if status != OK:
         return 0.0, 0.0, status
     index = world.raster.channel_index
+    ship = ShipArrays(world.table, leg.setting, world.limits, needs[0])
     over_ground, status, through = point_speed_from_guess(
-        scratch,
-        index,
-        course[0],
-        course[1],
-        world.table,
-        leg.setting,
-        leg.charted,
-        world.limits,
-        needs[0],
-        math.inf,
+        scratch, index, course, ship, leg.charted, math.inf
     )
     if status != OK:
         return 0.0, 0.0, status
     if fuel is None:
         return 1.0 / over_ground, 0.0, OK
     rate, ok = fuel_rate_at_speed(
-        scratch, index, course, fuel, leg.setting, leg.charted, world.limits, needs[1], through
+        scratch, index, course, FuelTable(fuel, needs[1]), ship, leg.charted, through
     )
     return 1.0 / over_ground, rate, OK if ok else NO_DATA
 
@@ -138,7 +136,7 @@ def sail_great_circle_leg(world, fuel, needs, leg, price, t, scratch):
         return t, OK
     count = leg.pieces
     if count == 0:
-        count = max(MIN_PIECES, math.ceil(MAJOR_AXIS * arc / leg.longest_piece))
+        count = max(MIN_PIECES, math.ceil(EQUATORIAL_RADIUS * arc / leg.longest_piece))
     step = arc / count
     turn_sine, turn_cosine = math.sin(step), math.cos(step)
     s, c = math.sin(0.5 * step), math.cos(0.5 * step)

@@ -1,6 +1,9 @@
 """Motion of a ship at one point of a leg: the compiled formula that all searches share."""
 
 import math
+from typing import NamedTuple
+
+import numpy as np
 
 from thalweg.kernels.codes import (
     AXIS_DEPTH,
@@ -33,7 +36,12 @@ from thalweg.kernels.codes import (
     WIND_SPEED,
 )
 from thalweg.kernels.compilation.decorators import allocation_free, inlined
-from thalweg.kernels.leg.table_lookup import axes_needed, has_wave_limits, sum_of_parts
+from thalweg.kernels.leg.table_lookup import (
+    TableArrays,
+    axes_needed,
+    has_wave_limits,
+    sum_of_parts,
+)
 from thalweg.kernels.leg.wave_limits import exceeds_wave_limits
 
 _WIND_AXES = (1 << AXIS_WIND_SPEED) | (1 << AXIS_WIND_ANGLE)
@@ -42,6 +50,22 @@ _ANGLE_AXES = (1 << AXIS_WIND_ANGLE) | (1 << AXIS_WAVE_ANGLE)
 _DEPTH_AXIS = 1 << AXIS_DEPTH
 _MAX_HEADING_CORRECTIONS = 6  # corrections of the heading at most
 _HEADING_TOLERANCE = 1e-3  # turn of the heading that no further correction is made for [rad]
+
+
+class ShipArrays(NamedTuple):
+    """A ship at one setting, with its limits and the axes its table needs."""
+
+    table: TableArrays
+    setting: int
+    limits: np.ndarray
+    needs: int
+
+
+class FuelTable(NamedTuple):
+    """The fuel rate of a ship [kg/s] by setting, and the axes its table needs."""
+
+    table: TableArrays
+    needs: int
 
 
 @inlined
@@ -108,8 +132,9 @@ def _known_waves(sample, channel_index, needs):
 
 
 @inlined
-def _speed_through_water(needs, table, setting, course, across, wind, waves, depth, guess):
+def _speed_through_water(ship, course, across, wind, waves, depth, guess):
     """Return (speed through water, ok), the heading corrected for the drift across the course."""
+    table, setting, _, needs = ship
     east, north = course
     wind_speed = 0.0
     if needs & _WIND_AXES:
@@ -171,14 +196,15 @@ def _conditions(sample, channel_index, current, needs, static_depth, limits):
 
 
 @inlined
-def point_speed_from_guess(
-    sample, channel_index, east, north, table, setting, static_depth, limits, needs, guess
-):
-    """Do as `point_speed_with_axes`, with a guess of the speed through water for the first heading.
+def point_speed_from_guess(sample, channel_index, course, ship, static_depth, guess):
+    """Do as `point_speed`, with a guess of the speed through water for the first heading.
 
-    Returns (speed over ground, status, speed through water); a guess of inf is none. Against too
-    strong a current the speed through water is the one that does not suffice, else 0 where closed.
+    ``course`` is (east, north), ``ship`` a `ShipArrays`. Returns (speed over ground, status, speed
+    through water); a guess of inf is none. Against too strong a current the speed through water is
+    the one that does not suffice, else 0 where closed.
     """
+    east, north = course
+    needs = ship.needs
     current = (0.0, 0.0)
     if channel_index[CURRENT_EAST] >= 0 and channel_index[CURRENT_NORTH] >= 0:
         current = (sample[CURRENT_EAST], sample[CURRENT_NORTH])
@@ -190,7 +216,7 @@ def point_speed_from_guess(
     if field:
         needs = 0
     depth, waves, wind, status = _conditions(
-        sample, channel_index, current, needs, static_depth, limits
+        sample, channel_index, current, needs, static_depth, ship.limits
     )
     if status != OK:
         return 0.0, status, 0.0
@@ -199,39 +225,40 @@ def point_speed_from_guess(
         if speed != speed:
             return 0.0, NO_DATA, 0.0
     else:
-        speed, ok = _speed_through_water(
-            needs, table, setting, (east, north), across, wind, waves, depth, guess
-        )
+        speed, ok = _speed_through_water(ship, course, across, wind, waves, depth, guess)
     if not ok:
         return 0.0, SHIP_RANGE, 0.0
     spare = speed * speed - across * across
     over_ground = along + math.sqrt(max(spare, 0.0))
     if speed <= 0.0 or spare <= 0.0 or over_ground <= 0.0:
         return 0.0, CURRENT, speed
-    if not field and has_wave_limits(table):
+    if not field and has_wave_limits(ship.table):
         sine = -across / speed
         cosine = math.sqrt(max(1.0 - sine * sine, 0.0))
         head_east, head_north = east * cosine - north * sine, north * cosine + east * sine
         angle = angle_from_bow(head_east, head_north, waves[1], waves[2])
-        if exceeds_wave_limits(table, speed, angle, waves[0], waves[3]):
+        if exceeds_wave_limits(ship.table, speed, angle, waves[0], waves[3]):
             return 0.0, SAFETY, 0.0
     return over_ground, OK, speed
 
 
 @inlined
-def fuel_rate_at_speed(sample, index, course, fuel, setting, static_depth, limits, needs, speed):
+def fuel_rate_at_speed(sample, index, course, fuel, ship, static_depth, speed):
     """Return (fuel rate [kg/s], ok) of a ship whose speed through water is known.
 
     The heading follows from the course, the current across it and the speed, as in
-    `point_speed`; limits are not tested. ``needs = axes_needed(fuel)``.
+    `point_speed_from_guess`. ``fuel`` is a `FuelTable`.
     """
     east, north = course
+    needs = fuel.needs
     if needs == 0:
-        return sum_of_parts(fuel, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), setting)
+        return sum_of_parts(fuel.table, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), ship.setting)
     current = (0.0, 0.0)
     if index[CURRENT_EAST] >= 0 and index[CURRENT_NORTH] >= 0:
         current = (sample[CURRENT_EAST], sample[CURRENT_NORTH])
-    depth, waves, wind, status = _conditions(sample, index, current, needs, static_depth, limits)
+    depth, waves, wind, status = _conditions(
+        sample, index, current, needs, static_depth, ship.limits
+    )
     if status != OK:
         return 0.0, False
     wind_speed, wind_angle, wave_angle = 0.0, 0.0, 0.0
@@ -247,19 +274,7 @@ def fuel_rate_at_speed(sample, index, course, fuel, setting, static_depth, limit
         if needs & (1 << AXIS_WAVE_ANGLE):
             wave_angle = angle_from_bow(head_east, head_north, waves[1], waves[2])
     values = (wind_speed, wind_angle, waves[0], wave_angle, waves[3], depth)
-    return sum_of_parts(fuel, values, setting)
-
-
-@inlined
-def point_speed_with_axes(
-    sample, channel_index, east, north, table, setting, static_depth, limits, needs
-):
-    """Do as `point_speed` with ``needs = axes_needed(table)`` found beforehand."""
-    none = math.inf
-    speed, status, _ = point_speed_from_guess(
-        sample, channel_index, east, north, table, setting, static_depth, limits, needs, none
-    )
-    return speed, status
+    return sum_of_parts(fuel.table, values, ship.setting)
 
 
 @allocation_free
@@ -301,6 +316,8 @@ def point_speed(sample, channel_index, east, north, table, setting, static_depth
     the moving water; wind and wave angles are from the heading, which is first taken as the course
     and then corrected by the current triangle until it would turn by less than 0.001 rad.
     """
-    return point_speed_with_axes(
-        sample, channel_index, east, north, table, setting, static_depth, limits, axes_needed(table)
+    ship = ShipArrays(table, setting, limits, axes_needed(table))
+    speed, status, _ = point_speed_from_guess(
+        sample, channel_index, (east, north), ship, static_depth, math.inf
     )
+    return speed, status

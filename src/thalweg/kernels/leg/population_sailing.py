@@ -53,6 +53,21 @@ VIOLATION: Final = 2
 SCORE_COUNT: Final = 3
 
 
+class TrackGenes(NamedTuple):
+    """Genes of one track, or of many.
+
+    Attributes
+    ----------
+    count : int or int64[...]
+        Points of each track.
+    genes : float64[..., M, GENE_COLUMNS]
+        Points and the legs that start there.
+    """
+
+    count: np.ndarray
+    genes: np.ndarray
+
+
 class FitnessArrays(NamedTuple):
     """The sea, the ship, its limits and the prices, for a population of tracks.
 
@@ -90,15 +105,16 @@ def _sail_gene_leg(world, needs, gene, after, t, scratch):
 
 
 @inlined
-def _sail_track(world, needs, count, genes, depart, score, arrive, scratch):
-    """Sail one track; fill its score and the arrival at each point."""
+def _sail_track(world, needs, track, leave, depart, score, arrive, scratch):
+    """Sail one track (count, genes); fill its score and the arrival at each point."""
+    count, genes = track
     for k in range(SCRATCH_SIZE):
         scratch[k] = 0.0
     terms = world.terms
     t = depart
     arrive[0] = t
     for p in range(count - 1):
-        wait = genes[p, WAITING_TIME]
+        wait = max(genes[p, WAITING_TIME], leave[p] - t)
         if wait > 0.0:
             t += wait
             scratch[COST_SO_FAR] += wait * (terms[WAITING_PRICE] + terms[TIME_PRICE])
@@ -122,15 +138,16 @@ def _sail_track(world, needs, count, genes, depart, score, arrive, scratch):
 
 
 @allocation_free
-def sail_population(count, genes, depart, world, score, arrive, scratch):
+def sail_population(tracks, leave, depart, world, score, arrive, scratch):
     """Sail many tracks; parts of a population may be sailed in several threads at once.
 
     Parameters
     ----------
-    count : int64[N]
-        Points of each track, at least 2.
-    genes : float64[N, M, GENE_COLUMNS]
-        Points and the legs that start there.
+    tracks : TrackGenes
+        N tracks of at least 2 points.
+    leave : float64[N, M]
+        The ship leaves a point no earlier than this [s]; -inf where only the waiting time of the
+        point counts.
     depart : float64[N]
         [s], on the clock of the raster.
     world : FitnessArrays
@@ -150,5 +167,6 @@ def sail_population(count, genes, depart, world, score, arrive, scratch):
     larger violations compare as worse.
     """
     needs = (axes_needed(world.table), axes_needed(world.fuel))
-    for i in range(count.shape[0]):
-        _sail_track(world, needs, count[i], genes[i], depart[i], score[i], arrive[i], scratch[i])
+    for i in range(tracks.count.shape[0]):
+        track = TrackGenes(tracks.count[i], tracks.genes[i])
+        _sail_track(world, needs, track, leave[i], depart[i], score[i], arrive[i], scratch[i])

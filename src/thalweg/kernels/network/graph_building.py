@@ -4,13 +4,12 @@ import math
 
 import numpy as np
 
+from thalweg.core.ellipsoid import EQUATORIAL_RADIUS, FLATTENING
 from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit
-from thalweg.kernels.leg.great_circle import MAJOR_AXIS
 
-_F = 1.0 / 298.257223563
-_B = MAJOR_AXIS * (1.0 - _F)
-_EP2 = (MAJOR_AXIS * MAJOR_AXIS - _B * _B) / (_B * _B)
+_B = EQUATORIAL_RADIUS * (1.0 - FLATTENING)
+_EP2 = (EQUATORIAL_RADIUS * EQUATORIAL_RADIUS - _B * _B) / (_B * _B)
 
 
 @jit
@@ -25,7 +24,7 @@ def fill_lengths_and_courses(lat, lon, first, second, length, course):
     su = np.empty(n)
     cu = np.empty(n)
     for i in range(n):
-        t = (1.0 - _F) * math.tan(math.radians(lat[i]))
+        t = (1.0 - FLATTENING) * math.tan(math.radians(lat[i]))
         cu[i] = 1.0 / math.sqrt(1.0 + t * t)
         su[i] = t * cu[i]
     for e in range(first.shape[0]):
@@ -54,10 +53,10 @@ def _vincenty(su1, cu1, su2, cu2, delta):
         sin_a = cu1 * cu2 * sl / sin_s
         cos2_a = 1.0 - sin_a * sin_a
         c2m = cos_s - 2.0 * su1 * su2 / cos2_a if cos2_a > 1e-14 else 0.0
-        c = _F / 16.0 * cos2_a * (4.0 + _F * (4.0 - 3.0 * cos2_a))
+        c = FLATTENING / 16.0 * cos2_a * (4.0 + FLATTENING * (4.0 - 3.0 * cos2_a))
         series = sigma + c * sin_s * (c2m + c * cos_s * (2.0 * c2m * c2m - 1.0))
         before = lam
-        lam = delta + (1.0 - c) * _F * sin_a * series
+        lam = delta + (1.0 - c) * FLATTENING * sin_a * series
         if abs(lam - before) < 1e-13:
             settled = True
             break

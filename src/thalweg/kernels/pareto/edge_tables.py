@@ -17,16 +17,15 @@ from thalweg.kernels.codes import (
 )
 from thalweg.kernels.compilation.decorators import allocation_free, inlined, kernel_only
 from thalweg.kernels.leg.edge_sailing import (
-    FuelTable,
     NetworkArrays,
     SeaArrays,
-    ShipArrays,
     course_vector,
     interval_of,
     march_edge,
     pass_canal,
     sample_station,
 )
+from thalweg.kernels.leg.point_speed import FuelTable, ShipArrays
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.search.field_bounds import never_deep_enough
 
@@ -143,16 +142,10 @@ def _pass_fixed_time_edge(world, edge, choice, t):
 def _sail_sea_edge(world, edge, choice, k, t, work):
     """Sail an edge in open water: return (arrival, fuel, status)."""
     ship = world.ship
+    at_setting = ShipArrays(ship.table, ship.settings[choice], ship.limits, ship.needs)
+    fuel = FuelTable(ship.fuel, ship.fuel_needs)
     arrival, burnt, status, _ = march_edge(
-        world.network,
-        world.sea,
-        ShipArrays(ship.table, ship.settings[choice], ship.limits, ship.needs),
-        FuelTable(ship.fuel, ship.fuel_needs),
-        edge,
-        k,
-        t,
-        None,
-        (work[1], work[2], work[3]),
+        world, at_setting, fuel, edge, k, t, None, (work[1], work[2], work[3])
     )
     return arrival, burnt, status
 

@@ -6,6 +6,7 @@ from thalweg.kernels.codes import NO_DATA, OK, OUTSIDE_PERIOD
 from thalweg.kernels.compilation.decorators import allocation_free, inlined_by_numba, kernel_only
 from thalweg.kernels.leg.edge_sailing import (
     MarchCutoff,
+    ShipOnEdges,
     interval_near,
     interval_of,
     march_edge,
@@ -31,10 +32,10 @@ def _march_at(network, sea, ship, edge, tail_node, k, t, work):
         arrival, status = pass_canal(network, edge, t, sea.times[-1])
         return arrival, status, network.via_ptr[edge + 1] + 1
     sample_station(sea, tail_node, k, t, work[1])
+    world, cutoff = ShipOnEdges(network, sea, ship), MarchCutoff(math.inf, 0.0)
     arrival, _, status, sample = march_edge(
-        network, sea, ship, None, edge, k, t, MarchCutoff(math.inf, 0.0),
-        (work[1], work[2], work[3]),
-    )  # fmt: skip
+        world, ship, None, edge, k, t, cutoff, (work[1], work[2], work[3])
+    )
     return arrival, status, sample
 
 

@@ -95,9 +95,8 @@ def _margin(network, sea, ship, place, k, moment, work):
     sample, index = work[2], sea.channel_index
     east, north = course_vector(float(network.course[place[0]]))
     speed, status, through = point_speed_from_guess(
-        sample, index, east, north, ship.table, ship.setting,
-        float(network.depth[place[0]]), ship.limits, ship.needs, math.inf,
-    )  # fmt: skip
+        sample, index, (east, north), ship, float(network.depth[place[0]]), math.inf
+    )
     if status == OK:
         return speed
     if status != CURRENT or not through > 0.0:

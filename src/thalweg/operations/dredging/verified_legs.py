@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.geodesy import MEAN_RADIUS
-from thalweg.core.limits import SITE_LEG_TIGHTENING
+from thalweg.core.limits import TIGHTENING
 from thalweg.core.types import FloatArray
 from thalweg.network.conformal_projection import conformal_unit_vectors
 from thalweg.operations.dredging.cycle_records import SailedLeg, leg_energy
@@ -43,12 +43,12 @@ class SiteLegPlanner:
     def passages(self, load_factor: float, *, outward: bool, step: int = 0) -> ProfileSearch:
         """Return the passages of a load to the unloading site (outward) or back.
 
-        ``step`` is the step of `SITE_LEG_TIGHTENING`.
+        ``step`` is the step of `TIGHTENING`.
         """
         key = (load_factor, outward, step)
         if key not in self._passages:
             loaded = self.loaded(load_factor)
-            limits = loaded.limits.tightened(SITE_LEG_TIGHTENING[step])
+            limits = loaded.limits.tightened(TIGHTENING[step])
             self._passages[key] = self.site_network.passages(loaded, full=outward, limits=limits)
         return self._passages[key]
 
@@ -75,7 +75,7 @@ class SiteLegPlanner:
             first leg is returned; its route lists the violations.
         """
         loaded, best = self.loaded(load_factor), None
-        for step in range(len(SITE_LEG_TIGHTENING)):
+        for step in range(len(TIGHTENING)):
             if passage is None:
                 passage = self.passages(load_factor, outward=outward, step=step).sail(depart)
             if passage.found:

@@ -10,7 +10,7 @@ import numpy as np
 
 from thalweg.core.errors import NoRouteError
 from thalweg.core.interrupt import InterruptGuard
-from thalweg.core.limits import NETWORK_TIGHTENING
+from thalweg.core.limits import NETWORK_STEPS, TIGHTENING
 from thalweg.core.pareto_fronts import (
     ROUNDING_TOLERANCE,
     evenly_spaced_subset,
@@ -69,10 +69,10 @@ def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
             interrupt_guard,
         )
         alternatives = find_route_alternatives(context, ends)
-        steps, seen = deque(NETWORK_TIGHTENING), 0
+        steps, seen = deque(NETWORK_STEPS), 0
         while steps:  # while the referee finds no route within the limits and known water
             step = steps.popleft()
-            limits = context.needs.limits.tightened(step)
+            limits = context.needs.limits.tightened(TIGHTENING[step])
             explored = _explore_all(replace(trade_off, limits=limits), alternatives)
             scored, gaps = _refereed(
                 trade_off, _candidates(replace(trade_off, limits=limits), explored)

@@ -11,7 +11,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import distance, positions_along
-from thalweg.core.limits import NETWORK_TIGHTENING, Limits
+from thalweg.core.limits import TIGHTENING, Limits
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR
 from thalweg.kernels.compilation import warm_up
@@ -60,8 +60,8 @@ _HORIZONS = (2.5, 8.0, 30.0)
 _ISOCHRONE_TIME_RATIO = 1.5
 _TWO_TIDES = 25 * HOUR
 #: Attempts while the referee finds a limit exceeded between the stations: how many times finer the
-#: network is, and the step of `NETWORK_TIGHTENING`.
-_ATTEMPTS = ((1, 0), (1, 1), (2, 0), (2, 2), (4, 0), (4, 3))
+#: network is, and the step of `TIGHTENING`.
+_ATTEMPTS = ((1, 0), (1, 2), (2, 0), (2, 3), (4, 0), (4, 4))
 
 
 def plan_passage(
@@ -90,7 +90,7 @@ def plan_passage(
                     raise
                 continue
             networks[finer] = without_unknown_edges(context, network, gaps)
-        limits = context.needs.limits.tightened(NETWORK_TIGHTENING[step])
+        limits = context.needs.limits.tightened(TIGHTENING[step])
         try:
             tried = _search_and_refine(context, networks[finer], (start, goal), window, limits)
         except NoRouteError as error:

@@ -114,21 +114,8 @@ class CostEvaluator:
         self, batch: TrackBatch, *, pieces: IntArray | None = None, check: bool = True
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return (arrival at every point, cost without the value of time, passage time)."""
-        count, size = batch.lat.shape
         genes = self._genes(batch, pieces, check)
-        waits = np.isfinite(batch.leave[:, :-1])
-        if not waits.any():
-            score, arrive = self._run(genes, batch.depart)
-        else:  # times of departure become waits leg by leg
-            arrive = np.empty((count, size))
-            arrive[:, 0] = batch.depart
-            score = np.zeros((count, columns.SCORE_COUNT))
-            for k in range(size - 1):
-                pair = genes[:, k : k + 2].copy()
-                late = batch.leave[:, k] - arrive[:, k]
-                pair[:, 0, columns.WAITING_TIME] = np.where(late > 0.0, late, 0.0)
-                part, there = self._run(pair, arrive[:, k])
-                score, arrive[:, k + 1] = score + part, there[:, 1]
+        score, arrive = self._run(genes, batch.depart, batch.leave)
         bad = score[:, columns.VIOLATION] > 0.0
         cost = np.where(bad, math.inf, score[:, columns.COST])
         arrive[bad, -1] = math.inf
@@ -144,14 +131,16 @@ class CostEvaluator:
         genes = self._genes(batch, None, True)
         for k in range(size - 1):
             depart = np.where(np.isfinite(arrive[:, k]), arrive[:, k], batch.depart)
-            score, _ = self._run(genes[:, k : k + 2], depart)
+            score, _ = self._run(genes[:, k : k + 2], depart, None)
             broken[:, k] = score[:, columns.VIOLATION] > 0.0
         return broken
 
-    def _run(self, genes: FloatArray, depart: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _run(
+        self, genes: FloatArray, depart: FloatArray, leave: FloatArray | None
+    ) -> tuple[FloatArray, FloatArray]:
         count, size = genes.shape[:2]
         population = Population(np.full(count, size, np.int64), np.ascontiguousarray(genes))
-        return self.evaluator.sail(population, depart=depart)
+        return self.evaluator.sail(population, depart=depart, leave=leave)
 
     def _genes(self, batch: TrackBatch, pieces: IntArray | None, check: bool) -> FloatArray:
         """Return polylines as points of a population, every leg looked up."""

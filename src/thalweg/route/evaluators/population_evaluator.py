@@ -15,7 +15,7 @@ from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.kernels import codes
 from thalweg.kernels.leg import population_sailing as columns
-from thalweg.kernels.leg.population_sailing import FitnessArrays, sail_population
+from thalweg.kernels.leg.population_sailing import FitnessArrays, TrackGenes, sail_population
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.evaluators.calm_water_rates import calm_water_value, calm_water_values
 from thalweg.route.evaluators.evaluation_threads import run_in_threads
@@ -142,7 +142,11 @@ class Evaluator:
         return self.sail(population)[0]
 
     def sail(
-        self, population: Population, *, depart: FloatArray | None = None
+        self,
+        population: Population,
+        *,
+        depart: FloatArray | None = None,
+        leave: FloatArray | None = None,
     ) -> tuple[FloatArray, FloatArray]:
         """Return the scores of tracks and the arrival at every point.
 
@@ -152,6 +156,9 @@ class Evaluator:
             N tracks with space for M points.
         depart : float64 array (N,), optional
             Departure of each track [s after ``self.depart``]; by default 0.
+        leave : float64 array (N, M), optional
+            The ship leaves a point no earlier than this [s after ``self.depart``]; by default it
+            waits as the points say only.
 
         Returns
         -------
@@ -163,14 +170,17 @@ class Evaluator:
         self.look_up_legs(population)
         n, capacity = len(population), population.capacity
         start = np.zeros(n) if depart is None else np.ascontiguousarray(depart, float)
+        earliest = np.full((n, capacity), -math.inf)
+        if leave is not None:
+            earliest[:] = leave
         score, arrive = np.empty((n, columns.SCORE_COUNT)), np.full((n, capacity), math.nan)
         scratch = np.empty((n, columns.SCRATCH_SIZE))
-        count, genes = np.ascontiguousarray(population.count), population.genes
+        tracks = TrackGenes(np.ascontiguousarray(population.count), population.genes)
 
         def part(piece: slice) -> None:
             sail_population(
-                count[piece],
-                genes[piece],
+                TrackGenes(tracks.count[piece], tracks.genes[piece]),
+                earliest[piece],
                 start[piece],
                 self.world,
                 score[piece],

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thalweg.core.geodesy import unwrap_longitude
-from thalweg.core.limits import REFINEMENT_TIGHTENING, Limits
+from thalweg.core.limits import TIGHTENING, Limits
 from thalweg.kernels import codes
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_legs, sea_stretches
@@ -39,7 +39,7 @@ _RASTER_MARGINS = (
     0.6,
 )  # margins around the track, as shares of its box, tried while a track comes near the edge
 _RASTER_EDGE_SHARE = 0.04  # distance to the edge that counts as near, as a share of the raster
-# (step of `REFINEMENT_TIGHTENING`, whether it may wait anywhere), in the order of attempts
+# (step of `TIGHTENING`, whether it may wait anywhere), in the order of attempts
 _ATTEMPTS = ((0, True), (1, True), (2, True), (3, True), (0, False), (2, False))
 _ATTEMPTS_WITHOUT_WAITING = 4  # those that differ for a ship that does not wait
 _WAIT_TOLERANCE = 0.5  # seconds to which waits are shortened, or this share of the voyage if less:
@@ -123,7 +123,7 @@ def better_route(
                 track,
                 table=table,
                 fields=fields,
-                limits=limits.tightened(REFINEMENT_TIGHTENING[step]),
+                limits=limits.tightened(TIGHTENING[step]),
                 chart=chart,
                 objective=objective,
                 wait=may_wait and patient,

@@ -10,7 +10,7 @@ import numpy as np
 
 from thalweg.core.errors import unknown_name_error
 from thalweg.core.geodesy import direct, inverse, rough_lengths, unwrap_longitude
-from thalweg.core.limits import REFINEMENT_TIGHTENING, Tightening
+from thalweg.core.limits import TIGHTENING, Tightening
 from thalweg.core.objective import Objective
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.kernels.leg.table_lookup import TableArrays
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from thalweg.ship.fuel_prices import FuelTerms
 
 _OBJECTIVE_COLUMNS = {"fuel": "fuel", "cost": "cost", "co2": "co2"}
-_TIGHTENING = REFINEMENT_TIGHTENING[:3]  # steps tried while the referee finds violations
+_STEPS = TIGHTENING[:3]  # tried while the referee finds violations
 _MIN_LEGS_OF_LEVEL = (6, 12, 24, 48)  # least number of legs of each level
 _PASSES_PER_LEVEL = 2  # choices of settings, each followed by Newton's method
 _NEWTON_STEPS = 4  # iterations of Newton's method
@@ -172,7 +172,7 @@ def _best_attempt(
 
     def attempt(start: Route, target: float) -> Route:
         best = start
-        for step in _TIGHTENING:
+        for step in _STEPS:
             evaluator = evaluator_of(start.track, step)
             line = _optimised(
                 polyline_of_track(start.track, evaluator), evaluator, target - start.depart

@@ -11,6 +11,7 @@ import numpy as np
 from thalweg.core.bounding_box import EDGE_TOLERANCE, BoundingBox
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry import field_sampling
+from thalweg.kernels.geometry.field_sampling import TriangleBins
 from thalweg.sea.grids.grid_protocol import GridLocation
 from thalweg.sea.triangle_mesh import Mesh
 
@@ -83,9 +84,7 @@ class TriangleGrid:
         triangle = np.empty(lat.size, np.int64)
         weight = np.zeros((lat.size, 3))
         bins = self._bins
-        field_sampling.find_triangles(
-            x, y, bins.x, bins.y, bins.frame, bins.shape, bins.start, bins.items, triangle, weight
-        )
+        field_sampling.find_triangles(x, y, bins, triangle, weight)
         index = bins.corners[np.maximum(triangle, 0)]
         index[triangle < 0, 0] = -1
         return GridLocation(index, weight)
@@ -117,18 +116,6 @@ class MapPlane(NamedTuple):
             return (lon - self.west + EDGE_TOLERANCE) % 360.0 + self.west - EDGE_TOLERANCE, lat
         radius = 2.0 * np.degrees(np.tan(0.5 * np.radians(90.0 - self.pole * lat)))
         return radius * np.sin(np.radians(lon)), -radius * np.cos(np.radians(lon))
-
-
-class TriangleBins(NamedTuple):
-    """Triangles sorted into square bins of the plane."""
-
-    x: FloatArray
-    y: FloatArray
-    corners: IntArray
-    frame: FloatArray
-    shape: tuple[int, int]
-    start: IntArray
-    items: IntArray
 
 
 def make_triangle_bins(

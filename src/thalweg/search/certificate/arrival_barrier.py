@@ -12,12 +12,19 @@ from scipy import ndimage
 from thalweg.core.geodesy import inverse
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.kernels.certificate.barrier_check import (
+    BarrierExcess,
     KeptSpeeds,
     check_barrier,
     closed_throughout,
 )
-from thalweg.kernels.certificate.barrier_solver import COURSES, UNREACHED, solve_barrier
-from thalweg.kernels.certificate.cell_conditions import ANGLES, SECTORS
+from thalweg.kernels.certificate.barrier_solver import (
+    COURSES,
+    UNREACHED,
+    RingTimes,
+    SolvedNodes,
+    solve_barrier,
+)
+from thalweg.kernels.certificate.cell_conditions import ANGLES, SECTORS, TimeWindows
 from thalweg.kernels.codes import SPEED_FIELD
 from thalweg.search.certificate.barrier_mesh import BarrierMesh, strongest_current_near
 
@@ -105,36 +112,34 @@ def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
     windows = _windows(task)
     around = ndimage.binary_dilation(task.band, np.ones((3, 3), bool), iterations=_BESIDE_BAND)
     closed = around.copy()
-    closed_throughout(mesh.world, *windows, closed)
+    closed_throughout(mesh.world, windows, closed)
     solvable = _nodes_of(around & ~closed, shape)
-    latest = windows[1] + mesh.world.departures
-    node_windows = _node_minimum(windows[0]), -_node_minimum(-latest)
+    latest = windows.last + mesh.world.departures
+    node_windows = TimeWindows(_node_minimum(windows.first), -_node_minimum(-latest))
     given = _plane_at_source(task)
     f = np.ones(shape) if task.factor is None else task.factor.copy()
-    rings = np.zeros((*shape, COURSES), np.float32), np.full(shape, math.nan)
-    excess, centre = np.empty(cells), np.empty(cells)
+    rings = _no_ring_times(shape)
+    found = BarrierExcess(np.empty(cells), np.empty(cells))
     kept = _no_speeds(mesh)
     best, best_f, before, closing = -math.inf, f, -math.inf, 0
 
     def solve(values: FloatArray) -> FloatArray:
         fixed = ~np.isnan(values)
         phi = np.where(fixed, values, UNREACHED)
-        solve_barrier(
-            mesh.world, phi, fixed, f, solvable, *node_windows, task.forward,
-            _CAP_RATIO * known, *rings,
-        )  # fmt: skip
+        nodes = SolvedNodes(fixed, f, solvable)
+        cap = _CAP_RATIO * known
+        solve_barrier(mesh.world, phi, nodes, node_windows, task.forward, cap, rings)
         return np.minimum(phi, _CAP_RATIO * known)
 
     for number in range(rounds + _CLOSING_ROUNDS):
         phi = _solve_with_links(mesh, solve, given, (1 + closing) * _LINK_SLACK)
         candidate = task.band & (cell_minimum(phi) / 1.3 + task.other < known)
-        check_barrier(
-            mesh.world, phi, candidate, *windows, task.forward, closing > 0, excess, centre, kept
-        )
-        scale = _least_scale(task, phi, excess)
+        strict = closing > 0
+        check_barrier(mesh.world, phi, candidate, windows, task.forward, strict, found, kept)
+        scale = _least_scale(task, phi, found.excess)
         if closing and scale == 0.0:
             return _verified(task, phi, f, windows, kept)
-        value = mesh.value_at(phi, centre, *task.target) / (1.0 + scale)
+        value = mesh.value_at(phi, found.centre, *task.target) / (1.0 + scale)
         if value > best:
             best, best_f = value, f.copy()
         settled = scale < _SETTLED and value - before < _LEAST_GAIN * known
@@ -144,7 +149,8 @@ def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
         elif closing == _CLOSING_ROUNDS:
             break
         else:
-            _correct(f, excess + (closing > 0) * _CLOSING_MARGIN, task, raising=not closing)
+            excess = found.excess + (closing > 0) * _CLOSING_MARGIN
+            _correct(f, excess, task, raising=not closing)
             closing += closing > 0
     return None
 
@@ -159,24 +165,28 @@ def first_arrivals(task: BarrierTask) -> FloatArray:
     """
     mesh, shape = task.mesh, task.mesh.shape
     solvable = _nodes_of(task.band & ~mesh.world.closed, shape)
-    windows = tuple(np.zeros(shape) for _ in range(2))
+    windows = TimeWindows(np.zeros(shape), np.zeros(shape))
     given = np.full(shape, math.nan)
     j, i = mesh.cell_of(*task.source)
     given[j : j + 2, i : i + 2] = mesh.times_to_corners(*task.source)
     phi = np.where(np.isnan(given), UNREACHED, given)
-    solve_barrier(
-        mesh.world, phi, ~np.isnan(given), np.ones(shape), solvable, *windows, True,
-        _CAP_RATIO * task.known, np.zeros((*shape, COURSES), np.float32), np.full(shape, math.nan),
-    )  # fmt: skip
-    return np.minimum(phi, _CAP_RATIO * task.known)
+    nodes = SolvedNodes(~np.isnan(given), np.ones(shape), solvable)
+    cap = _CAP_RATIO * task.known
+    solve_barrier(mesh.world, phi, nodes, windows, True, cap, _no_ring_times(shape))
+    return np.minimum(phi, cap)
+
+
+def _no_ring_times(shape: tuple[int, int]) -> RingTimes:
+    """Return room for the times round the nodes of a mesh."""
+    return RingTimes(np.zeros((*shape, COURSES), np.float32), np.full(shape, math.nan))
 
 
 def _no_speeds(mesh: BarrierMesh) -> KeptSpeeds:
     """Return room for the speeds in the cells of a mesh, for ships that weather slows down."""
     cells = mesh.shape[0] - 1, mesh.shape[1] - 1
     world = mesh.world
-    sectors = SECTORS if world.needs & ANGLES else 1
-    if not world.needs or world.raster.channel_index[SPEED_FIELD] >= 0:
+    sectors = SECTORS if world.ship.needs & ANGLES else 1
+    if not world.ship.needs or world.raster.channel_index[SPEED_FIELD] >= 0:
         return KeptSpeeds(np.empty((0, 0)), np.empty((0, 0)), np.empty((0, 0, 1), np.float32), 0.0)
     longer = max(_KEPT_SHARE * float(world.raster.times[1] - world.raster.times[0]), 30.0)
     first, last = (np.full(cells, math.nan) for _ in range(2))
@@ -240,15 +250,16 @@ def _verified(
     task: BarrierTask,
     phi: FloatArray,
     factor: FloatArray,
-    windows: tuple[FloatArray, FloatArray],
+    windows: TimeWindows,
     kept: KeptSpeeds,
 ) -> CheckedBarrier | None:
     """Check a barrier for good, in every cell that a faster route may touch; None if it fails."""
     mesh = task.mesh
     cells = phi.shape[0] - 1, phi.shape[1] - 1
-    excess, centre = np.empty(cells), np.empty(cells)
+    found = BarrierExcess(np.empty(cells), np.empty(cells))
     mask = task.band & (cell_minimum(phi) + task.other < task.known)
-    check_barrier(mesh.world, phi, mask, *windows, task.forward, True, excess, centre, kept)
+    check_barrier(mesh.world, phi, mask, windows, task.forward, True, found, kept)
+    excess, centre = found
     if float(excess[mask].max(initial=-1.0)) > -_ROUNDING or not _links_kept(task, phi, centre):
         return None
     low = np.minimum(cell_minimum(phi), centre) + task.other < task.known
@@ -335,11 +346,11 @@ def finer_factors(factor: FloatArray) -> FloatArray:
     return result
 
 
-def _windows(task: BarrierTask) -> tuple[FloatArray, FloatArray]:
+def _windows(task: BarrierTask) -> TimeWindows:
     """Return the times since departure at which a faster route may be in each cell [s]."""
     if task.forward:
-        return task.own, task.known - task.other
-    return task.other, np.maximum(task.known - task.own, task.other)
+        return TimeWindows(task.own, task.known - task.other)
+    return TimeWindows(task.other, np.maximum(task.known - task.own, task.other))
 
 
 def _nodes_of(band: BoolArray, shape: tuple[int, int]) -> BoolArray:

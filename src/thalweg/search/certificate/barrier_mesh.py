@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING, distance
+from thalweg.core.ellipsoid import ECCENTRICITY_SQUARED, EQUATORIAL_RADIUS
+from thalweg.core.geodesy import distance
 from thalweg.core.types import FloatArray
 from thalweg.kernels.certificate.cell_conditions import BarrierWorld
 from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
+from thalweg.kernels.leg.point_speed import ShipArrays
 from thalweg.kernels.leg.raster_sampling import RasterArrays
 from thalweg.kernels.leg.table_lookup import TableArrays, axes_needed
 from thalweg.search.certificate.closed_water import closed_cells
@@ -19,8 +21,6 @@ from thalweg.search.certificate.closed_water import closed_cells
 if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.sea.freeze import DerivedChannel
-
-_ECCENTRICITY_SQUARED = FLATTENING * (2.0 - FLATTENING)
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,10 +154,7 @@ def build_mesh(
         north,
         closed_cells(chart, lat, lon),
         np.full((lat.size - 1, lon.size - 1), np.inf, np.float32),
-        ship.table,
-        ship.setting,
-        int(axes_needed(ship.table)),
-        ship.limits,
+        ShipArrays(ship.table, ship.setting, ship.limits, int(axes_needed(ship.table))),
         ship.top_speed,
         departures,
     )
@@ -186,8 +183,8 @@ def metres_per_degree(lat: FloatArray) -> tuple[FloatArray, FloatArray]:
     ``w = sqrt(1 - e^2 sin^2(lat))``, times pi / 180.
     """
     phi = np.radians(lat)
-    w = np.sqrt(1.0 - _ECCENTRICITY_SQUARED * np.sin(phi) ** 2)
-    north = EQUATORIAL_RADIUS * (1.0 - _ECCENTRICITY_SQUARED) / w**3
+    w = np.sqrt(1.0 - ECCENTRICITY_SQUARED * np.sin(phi) ** 2)
+    north = EQUATORIAL_RADIUS * (1.0 - ECCENTRICITY_SQUARED) / w**3
     east = EQUATORIAL_RADIUS * np.cos(phi) / w
     return np.radians(1.0) * north, np.radians(1.0) * np.maximum(east, 1.0)
 

@@ -20,7 +20,7 @@ from thalweg.kernels.codes import (
     CHANNEL_COUNT,
     SPEED_FIELD,
 )
-from thalweg.kernels.leg.edge_sailing import ShipArrays
+from thalweg.kernels.leg.point_speed import ShipArrays
 from thalweg.kernels.leg.table_lookup import TableArrays, axes_needed, table_value
 from thalweg.kernels.pareto.edge_tables import (
     EdgePrices,
