@@ -38,8 +38,8 @@ MANY_ARGUMENTS = {
     "ship.ship.Ship.simple": "public entry point with keyword options",
 }
 
-#: Kernels with more arguments, below thalweg.kernels. They are inlined into one loop each, where the
-#: arguments are local variables of it. Take names off this list, add none.
+#: Kernels with more arguments, below thalweg.kernels. Most are inlined into one loop each, where
+#: the arguments are local variables. Take names off this list, add none.
 MANY_ARGUMENTS_OF_KERNELS = [
     "search.edge_departure.edge_arrivals",
     "search.edge_departure.wait_for_edge",
