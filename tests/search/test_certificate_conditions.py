@@ -11,6 +11,7 @@ import pytest
 from tests.search.test_time_certificate import (
     CURRENTS,
     EAST,
+    NORTH,
     SPEED,
     on_meshes,
     sea_of,
@@ -19,9 +20,12 @@ from tests.search.test_time_certificate import (
 from thalweg.chart import Chart
 from thalweg.chart.canals import Canal
 from thalweg.core.geodesy import distance
+from thalweg.core.limits import Limits
 from thalweg.kernels import codes
+from thalweg.kernels.certificate.barrier_check import closed_throughout
 from thalweg.sea import Sea
-from thalweg.search.certificate.barrier_domain import PassageToBound
+from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
+from thalweg.search.certificate.barrier_mesh import build_mesh
 from thalweg.search.certificate.closed_water import closed_cells
 from thalweg.search.certificate.departure_certificate import certify_departures
 from thalweg.search.certificate.time_certificate import certify_time
@@ -129,3 +133,37 @@ def test_the_bound_of_the_geodesic_takes_the_strongest_current_of_the_data():
     assert EAST in sea.variables and codes.CURRENT_EAST in CURRENTS
     assert found.cells == 0 and found.barrier is None
     assert 0.98 * STRAIGHT * 5.0 / 7.0 < found.value < 1.02 * STRAIGHT * 5.0 / 7.0
+
+
+def test_the_limit_of_the_wind_is_one_over_the_ground():
+    """A wind of 14 m/s against a current of 3 m/s: 17 m/s over the water, and within the limit."""
+    winds = {"eastward_wind": lambda t, y, x: 14.0 + 0 * x, "northward_wind": lambda t, y, x: 0 * x}
+    flow = {EAST: lambda t, y, x: -3.0 + 0 * x, NORTH: lambda t, y, x: 0 * x}
+    sea = Sea.from_functions({**winds, **flow}, time_step=0)
+    best = STRAIGHT * SPEED / (SPEED - 3.0)
+    channels = (*CURRENTS, codes.WIND_EAST, codes.WIND_NORTH)
+    limited = ship_of_one_speed(SPEED, Limits(wind_speed=15.0))
+    found = on_meshes(passage(1.05 * best, sea=sea, ship=limited, channels=channels), cells=60)
+    assert found.reached <= 1.001 * best
+
+
+@pytest.mark.parametrize("by_steps", [False, True])
+def test_water_of_functions_may_open_at_any_moment_between_samples(by_steps):
+    """It opens 10 s after a sample; linear between samples it would open 9 minutes later."""
+    opens = 1e9 + 12 * 1200.0 + 10.0
+
+    def depth(t, y, x):
+        return np.where(t < opens, -5.0, 20.0) + 0 * x
+
+    sea = Sea.from_functions({"sea_floor_depth_below_geoid": depth}, time_step=1200.0)
+    afloat = ship_of_one_speed(SPEED, Limits(required_depth=6.5))
+    where = passage(1.1 * STRAIGHT, sea=sea, ship=afloat, channels=(codes.BED_DEPTH,))
+    domain = BarrierDomain.around(where, 24)
+    mesh = build_mesh(domain.raster, 1, domain.ship, None, by_steps=by_steps)
+    cells = mesh.lat.size - 1, mesh.lon.size - 1
+    step = float(np.diff(domain.raster.times)[0])
+    sample = step * math.ceil((opens - 1e9) / step)  # the first one at which it is open
+    for moment, expected in ((sample + 5.0, False), (sample - 0.9 * step, not by_steps)):
+        closed, window = np.ones(cells, bool), np.full(cells, moment)
+        closed_throughout(mesh.world, window, window + 1.0, closed)
+        assert (closed == expected).all()

@@ -178,6 +178,7 @@ def make_buffers():
         np.zeros((MAX_INSTANTS, 4, 2)),
         np.zeros((4 * MAX_INSTANTS, 2)),
         np.zeros((4 * MAX_INSTANTS, 2)),
+        np.zeros((4 * MAX_INSTANTS, 2)),
         np.zeros(AXIS_COUNT),
         np.zeros(AXIS_COUNT),
         np.zeros(4 * AXIS_COUNT),

@@ -61,6 +61,9 @@ class BarrierWorld(NamedTuple):
     departures : float
         From the first to the last departure [s]; times count from each departure, those of the
         raster from the first one.
+    by_steps : bool
+        Whether limits may open and close at any moment between two times of the raster, as where it
+        samples functions, and not only as its linear interpolation says.
     """
 
     raster: RasterArrays
@@ -74,6 +77,7 @@ class BarrierWorld(NamedTuple):
     ship: ShipArrays
     top_speed: float
     departures: float
+    by_steps: bool
 
 
 class TimeWindows(NamedTuple):
@@ -93,6 +97,8 @@ class CellBuffers(NamedTuple):
         Current at the corners at each instant of the window.
     wind, waves : float64[INSTANTS * 4, 2]
         Known vectors of the wind over the water and of the direction of the waves.
+    wind_over_ground : float64[INSTANTS * 4, 2]
+        Known vectors of the wind, which its limit holds for.
     low, high : float64[AXES]
         Ranges of the conditions.
     place : float64[4 * AXES]
@@ -104,6 +110,7 @@ class CellBuffers(NamedTuple):
     current: np.ndarray
     wind: np.ndarray
     waves: np.ndarray
+    wind_over_ground: np.ndarray
     low: np.ndarray
     high: np.ndarray
     place: np.ndarray
@@ -202,13 +209,8 @@ def _folded(angle):
 
 
 @kernel_only
-def read_cell(world, j, i, first, last, buffers):
-    """Collect the conditions in a cell during a window of time since each departure.
-
-    Returns (instants, open): 0 instants where nothing is known; ``open`` is False where no ship
-    may be in the cell at any moment of the window. Fills the ranges of the conditions, the
-    vectors of wind and waves and the currents at the corners of ``buffers``.
-    """
+def _read_window(world, j, i, first, last, buffers):
+    """Collect the conditions in a cell during a window of time; see `read_cell`."""
     times, index = world.raster.times, world.raster.channel_index
     final = times.shape[0] - 1
     low, high = buffers.low, buffers.high
@@ -271,6 +273,8 @@ def read_cell(world, j, i, first, last, buffers):
                 a, b = sample[WIND_EAST] - east, sample[WIND_NORTH] - north
                 if a == a and b == b:
                     buffers.wind[winds, 0], buffers.wind[winds, 1] = a, b
+                    buffers.wind_over_ground[winds, 0] = sample[WIND_EAST]
+                    buffers.wind_over_ground[winds, 1] = sample[WIND_NORTH]
                     winds += 1
                 elif world.ship.needs & _WIND:
                     known = False
@@ -305,9 +309,30 @@ def read_cell(world, j, i, first, last, buffers):
     if lowest_wave < math.inf:
         is_open = is_open and lowest_wave <= world.ship.limits[LIMIT_WAVE_HEIGHT]
     if winds > 0 and world.ship.limits[LIMIT_WIND_SPEED] < math.inf:
-        shortest = direction_range(buffers.wind, winds)[2]
+        shortest = direction_range(buffers.wind_over_ground, winds)[2]
         is_open = is_open and shortest <= world.ship.limits[LIMIT_WIND_SPEED]
     return instants, is_open, field_high, winds, waves
+
+
+@kernel_only
+def read_cell(world, j, i, first, last, buffers):
+    """Collect the conditions in a cell during a window of time since each departure.
+
+    Returns (instants, open): 0 instants where nothing is known; ``open`` is False where no ship
+    may be in the cell at any moment of the window. Fills the ranges of the conditions, the
+    vectors of wind and waves and the currents at the corners of ``buffers``.
+    """
+    found = _read_window(world, j, i, first, last, buffers)
+    if found[1] or not world.by_steps or world.closed[j, i]:
+        return found
+    # what is closed at two samples of a function is taken to be closed between them, no more
+    times = world.raster.times
+    step, fraction = time_step_of(times, last + world.departures)
+    until = times[step + 1] if fraction > 0.0 else times[step]
+    since = times[time_step_of(times, first)[0]]
+    return _read_window(
+        world, j, i, min(first, since), max(last, until - world.departures), buffers
+    )
 
 
 @kernel_only

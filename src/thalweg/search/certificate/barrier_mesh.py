@@ -130,6 +130,7 @@ def build_mesh(
     chart: Chart | None,
     *,
     departures: float = 0.0,
+    by_steps: bool = False,
 ) -> BarrierMesh:
     """Build the mesh that divides each cell of a raster into ``refinement`` squared cells.
 
@@ -139,6 +140,7 @@ def build_mesh(
     refinement : 1 or more.
     chart : Land, offing, zones and canals; None for open water.
     departures : From the first to the last departure [s].
+    by_steps : Whether the raster samples functions, whose limits may open between its times.
     """
     _, rows, columns, _ = raster.values.shape
     lat0, dlat, lon0, dlon = raster.corner
@@ -157,6 +159,7 @@ def build_mesh(
         ShipArrays(ship.table, ship.setting, ship.limits, int(axes_needed(ship.table))),
         ship.top_speed,
         departures,
+        by_steps,
     )
     return BarrierMesh(lat, lon, world, _links(chart, lat, lon))
 

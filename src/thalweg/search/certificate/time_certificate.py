@@ -142,7 +142,7 @@ class BarrierSearch:
         passage, domain, began = self.passage, self.domain, clock.perf_counter()
         mesh = build_mesh(
             domain.raster, self._refinement, domain.ship, passage.chart,
-            departures=passage.departures,
+            departures=passage.departures, by_steps=bool(domain.sampling),
         )  # fmt: skip
         self._level = _Level.on(mesh, passage, domain.fastest, self._level)
         task, barrier = self._level.certify(passage)
