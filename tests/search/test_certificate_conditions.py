@@ -23,6 +23,7 @@ from thalweg.core.geodesy import distance
 from thalweg.core.limits import Limits
 from thalweg.kernels import codes
 from thalweg.kernels.certificate.barrier_check import closed_throughout
+from thalweg.kernels.certificate.cell_conditions import TimeWindows
 from thalweg.sea import Sea
 from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
 from thalweg.search.certificate.barrier_mesh import build_mesh
@@ -165,5 +166,5 @@ def test_water_of_functions_may_open_at_any_moment_between_samples(by_steps):
     sample = step * math.ceil((opens - 1e9) / step)  # the first one at which it is open
     for moment, expected in ((sample + 5.0, False), (sample - 0.9 * step, not by_steps)):
         closed, window = np.ones(cells, bool), np.full(cells, moment)
-        closed_throughout(mesh.world, window, window + 1.0, closed)
+        closed_throughout(mesh.world, TimeWindows(window, window + 1.0), closed)
         assert (closed == expected).all()
