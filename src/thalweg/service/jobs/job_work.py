@@ -110,6 +110,8 @@ def _plan_first(
             chart=world.chart,
             network=request.network,
             resolution=_metres(request.resolution_nm),
+            proof=0.0,
+            progress=stages,
         )
         note = "The job was stopped: this is the fastest route, the objective was not reached."
         found = replace(found, notes=(note, *found.notes), cancelled=True)
