@@ -75,6 +75,7 @@ class StageMessages:
         self._start = time.monotonic()
         self._last = ""
         self._shown: dict[tuple[float, ...], float] = {}
+        self.route: Route | None = None  # the one shown last
 
     def __call__(self, text: str) -> None:
         """State what begins now."""
@@ -88,6 +89,7 @@ class StageMessages:
         ends = tuple(round(float(line[k]), 3) for line in (track.lat, track.lon) for k in (0, -1))
         if route.time_h < self._shown.get(ends, math.inf) and len(self._shown) < _MOST_SHOWN:
             self._shown[ends] = route.time_h
+            self.route = route
             self._messages.send("route", {"route": first_look(route), "final": False})
 
     def show_front(self, points: Sequence[tuple[float, float]], unit: str) -> None:
