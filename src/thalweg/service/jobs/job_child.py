@@ -66,7 +66,7 @@ def _plan_short_voyage(chart: Chart, order_read: threading.Event) -> None:
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 
-    voyage = Voyage((47.0, -20.0), (47.3, -19.5), depart="1998-08-31T12:00Z")
+    voyage = Voyage(start=(47.0, -20.0), goal=(47.3, -19.5), depart="1998-08-31T12:00Z")
     ship = Ship.load("handysize-bulker")
 
     def stop_for_order(_: str) -> None:
