@@ -79,6 +79,45 @@ def test_what_is_missing_is_said_at_its_field(visit):
     assert "never assumed" in page.locator("[data-field=seas] .error").inner_text()
 
 
+def test_points_are_dragged_and_a_voyage_file_and_a_link_restore_them(visit, tmp_path):
+    page = visit.open()
+    visit.fill_short("47.0N 20.0W", "47.0N 30.0W")
+    page.locator(".field.goal input").press("Tab")
+    page.locator(".field.goal .understood", has_text="Position").wait_for()
+    place = "([lon, lat]) => window.thalweg.chart.map.getPixelFromCoordinate([lon * 111319.49, "
+    place += "Math.log(Math.tan(Math.PI / 4 + lat * Math.PI / 360)) * 6378137])"
+    box = page.locator("#chart").bounding_box()
+    x, y = page.evaluate(place, [-30.0, 47.0])
+    page.mouse.move(box["x"] + x, box["y"] + y)
+    page.mouse.down()
+    page.mouse.move(box["x"] + x + 20, box["y"] + y + 60, steps=4)
+    page.mouse.up()
+    goal = page.locator(".field.goal input")
+    playwright_api.expect(goal).not_to_have_value("47.0N 30.0W")
+    moved = goal.input_value()
+    assert re.match(r"4[0-6]\.\d+N 2[6-9]\.\d+W", moved)
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Save voyage file").click()
+    file = tmp_path / "mine.voyage.json"
+    file.write_bytes(Path(download.value.path()).read_bytes())
+    goal.fill("Brest")
+    page.locator("#voyage-file").set_input_files(str(file))
+    playwright_api.expect(goal).to_have_value(moved)
+    page.get_by_role("button", name="Copy link").click()
+    page.wait_for_url(re.compile("voyage="))
+    page.reload()
+    playwright_api.expect(page.locator(".field.goal input")).to_have_value(moved)
+
+
+def test_a_forecast_without_network_is_an_error_in_words(visit):
+    page = visit.open()
+    visit.fill_short()
+    page.get_by_text("Fetch a forecast").click()
+    page.locator("#f-days").fill("x")
+    page.get_by_role("button", name="Estimate the download").click()
+    assert "number of days" in page.locator(".fetch .error").inner_text()
+
+
 def test_a_broken_upload_is_an_error_at_the_sea(visit, tmp_path):
     page = visit.open()
     page.wait_for_selector("#ship option", state="attached")

@@ -56,7 +56,7 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
         yield found
 
 
-def ended(get: Any, job: str, seconds: float = 120.0) -> dict[str, Any]:
+def ended(get: Any, job: str, seconds: float = 400.0) -> dict[str, Any]:
     """Return a job when it has its final state."""
     limit = time.monotonic() + seconds
     while time.monotonic() < limit:

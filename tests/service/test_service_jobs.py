@@ -154,6 +154,21 @@ def test_cancelling_keeps_the_route_found_so_far(client):
     assert result["cancelled"] is True and result["routes"][0]["feasible"]
 
 
+def test_a_front_is_sent_while_it_is_searched(client):
+    voyage = {**SHORT["voyage"], "objective": "fuel"}
+    job = client.post("/api/v1/plans", json={**SHORT, "voyage": voyage}).json()["id"]
+    assert ended(client.get, job)["state"] == "done"
+    sent = events_of(_events(client, job))
+    fronts = [data for _, kind, data in sent if kind == "front"]
+    assert len(fronts) >= 2
+    for front in fronts:
+        hours, tonnes = zip(*front["points"])
+        assert front["unit"] == "t"
+        assert list(hours) == sorted(hours) and list(tonnes) == sorted(tonnes, reverse=True)
+    routes = [data for _, kind, data in sent if kind == "route"]
+    assert [data["final"] for data in routes].count(True) == 1 and not routes[0]["final"]
+
+
 def _events(client, job: str) -> str:
     store = client.app.state.service.store
     rows = store.events(job)

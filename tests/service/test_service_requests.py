@@ -247,3 +247,14 @@ def test_vendored_scripts_are_those_of_their_checksums():
         assert hashlib.sha256((vendor / name).read_bytes()).hexdigest() == digest
     assert {p.stem for p in (vendor / "licences").iterdir()} >= {"ol", "uplot"}
     assert sum(p.stat().st_size for p in STATIC.rglob("*") if p.is_file()) < 800_000
+
+
+def test_a_voyage_file_is_read_as_a_request(client):
+    text = "start: Halifax\ngoal: 49.7N 6.5W\ndepart: 1998-08-31T12:00Z\n"
+    found = client.post("/api/v1/voyages/read", json={"text": text}).json()
+    assert found["voyage"]["goal"] == "49.7N 6.5W"
+    whole = json.dumps(SHORT)
+    assert client.post("/api/v1/voyages/read", json={"text": whole}).json() == SHORT
+    wrong = client.post("/api/v1/voyages/read", json={"text": "start: Halifax\nspeed: 12\n"})
+    assert "speed" in problem(wrong, 422)["asked"]
+    assert problem(client.post("/api/v1/voyages/read", json={"text": "- a"}), 422)["remedy"]

@@ -102,7 +102,9 @@ def plan(
         Time for the proof of the lower bound [s], 0 for the bound of the geodesic alone; by
         default as long as the search. It ends earlier where the gap is below 0.5 %.
     progress : callable, optional
-        Called with a short text at each stage.
+        Called with a short text at each stage. If it also has methods ``show_route`` and
+        ``show_front``, these receive each better route, and the times [s] and values of each
+        better front with the unit of the values, while planning goes on.
 
     Returns
     -------

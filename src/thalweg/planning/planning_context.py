@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -39,7 +39,7 @@ class PlanningContext:
     Attributes
     ----------
     needs : Channels of the sea, limits and the end of the data.
-    report_progress : Called with a short text at each stage.
+    report_progress : Called with a short text at each stage; see `show_route`, `show_front`.
     proof_seconds : Time for the certificate of a lower bound [s]; None for that of the search.
     """
 
@@ -52,6 +52,26 @@ class PlanningContext:
     choice: NetworkChoice
     report_progress: Callable[[str], None] = field(default=lambda text: None)
     proof_seconds: float | None = None
+
+    def show_route(self, route: Route) -> None:
+        """Give a route that was found so far to a progress callback with ``show_route``."""
+        show = getattr(self.report_progress, "show_route", None)
+        if show is not None and route.feasible:
+            show(route)
+
+    def show_front(self, points: Sequence[tuple[float, float]], unit: str) -> None:
+        """Give the front so far to a progress callback with ``show_front``.
+
+        Parameters
+        ----------
+        points : sequence of (float, float)
+            Time [s] and value.
+        unit : str
+            Of the value.
+        """
+        show = getattr(self.report_progress, "show_front", None)
+        if show is not None:
+            show(points, unit)
 
     @property
     def table(self) -> PerformanceTable:

@@ -104,6 +104,7 @@ def _explore_all(
             break
         try:
             found.append(explore_alternative(trade_off, alternative))
+            _show(trade_off, [each for one in found for each in _exact_candidates(one)])
         except NoRouteError as error:
             refusal = refusal or error
     if not found:
@@ -166,7 +167,16 @@ def _refined_candidates(
         trade_off.context.report_progress(f"refining the front: {one.alternative.name}")
         of_alternative = [c for c in (*exact, *found) if c.alternative == one.alternative.name]
         found += evolutionary_candidates(trade_off, one, of_alternative)
+        _show(trade_off, [*exact, *found])
     return found
+
+
+def _show(trade_off: TradeOffContext, found: list[TrackCandidate]) -> None:
+    """Give the front of candidates to whoever watches the plan."""
+    if found:
+        kept = non_dominated_indices(*_times_and_values(found), tolerance=ROUNDING_TOLERANCE)
+        points = [(found[index].time, found[index].value) for index in kept]
+        trade_off.context.show_front(points, trade_off.objective.unit)
 
 
 def _times_and_values(found: list[TrackCandidate]) -> tuple[np.ndarray, np.ndarray]:

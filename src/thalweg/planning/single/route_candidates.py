@@ -73,15 +73,18 @@ def refine_track(context: PlanningContext, track: Track, limits: Limits) -> Rout
     """Evaluate a track, refine it, and return the better route."""
     context.report_progress("refining the route")
     scored = context.evaluate(track)
+    context.show_route(scored)
     conditions = RefinementConditions(
         context.ship, context.sea, context.chart, context.table, limits, context.min_ukc
     )
-    return better_route(
+    refined = better_route(
         scored,
         conditions,
         objective="distance" if context.voyage.objective == "distance" else "time",
         wait=context.voyage.wait,
     )
+    context.show_route(refined)
+    return refined
 
 
 def track_from_result(network: Network, result: SearchResult, setting: int) -> Track:

@@ -9,13 +9,14 @@ from typing import Any
 from thalweg.core.time import format_time
 from thalweg.service.jobs.batch_requests import FetchOrder
 from thalweg.service.jobs.job_order import JobOrder, StageMessages
+from thalweg.service.jobs.sea_facts import sea_facts
 from thalweg.service.upload_store import UploadStore, file_identity
-from thalweg.service.worker.worker_tasks import inspect
 
 
 def fetch_sea(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
     """Download a forecast and keep its files among the uploaded seas; return the key figures."""
     from thalweg.forecasts.fetching import fetch_forecast
+    from thalweg.sea import Sea
 
     request = FetchOrder.model_validate(order.request)
     out = Path(order.workspace) / "forecast.nc"
@@ -23,7 +24,7 @@ def fetch_sea(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
     stages("reading what has arrived")
     seas = []
     for path in done.files:
-        facts, _ = inspect({"seas": ["file"], "files": {"file": str(path)}, "in_detail": True})
+        facts = sea_facts(Sea.open(path), in_detail=True)
         if done.run is not None:
             facts["run"] = format_time(done.run)
         seas.append(_kept(path, request, facts, order))

@@ -9,15 +9,20 @@ import json
 import sys
 import threading
 import traceback
-from typing import Any
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
 
 from thalweg.core.errors import InputError, ThalwegError
+from thalweg.core.interrupt import SearchInterrupted
 from thalweg.service.jobs.child_messages import (
     MessageWriter,
     end_with_the_server,
     take_over_output,
 )
 from thalweg.service.problem_details import problem_of
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
 
 
 def main() -> int:
@@ -39,12 +44,37 @@ def main() -> int:
 
 
 def _load_libraries(order_read: threading.Event) -> None:
-    """Load what every plan needs while no order has come: imports, coastline, kernels."""
+    """Load what every plan needs while no order has come: imports, coastline, kernels.
+
+    The voyage that is planned for this is short; it loads the compiled kernels, the control areas
+    and the traffic lanes, which take longer than itself.
+    """
     import thalweg.planning  # noqa: F401
     from thalweg.chart import Chart
 
+    if order_read.is_set():
+        return
+    chart = Chart.gshhg("i")
     if not order_read.is_set():
-        Chart.gshhg("i")
+        with suppress(ThalwegError, SearchInterrupted):
+            _plan_short_voyage(chart, order_read)
+
+
+def _plan_short_voyage(chart: Chart, order_read: threading.Event) -> None:
+    """Plan a voyage of 25 nm; it ends as soon as there is an order."""
+    from thalweg.planning import Voyage, plan
+    from thalweg.sea import Sea
+    from thalweg.ship import Ship
+
+    voyage = Voyage(start=(47.0, -20.0), goal=(47.3, -19.5), depart="1998-08-31T12:00Z")
+    ship = Ship.load("handysize-bulker")
+
+    def stop_for_order(_: str) -> None:
+        if order_read.is_set():
+            raise SearchInterrupted
+
+    sea = Sea.storm()
+    plan(voyage, ship=ship, sea=sea, chart=chart, proof=0.0, progress=stop_for_order)
 
 
 def _ended(order: dict[str, Any], messages: MessageWriter) -> dict[str, Any]:

@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import json
+import math
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Final
 
 from thalweg.core.file_writing import write_text
+from thalweg.core.units import HOUR
 from thalweg.service.jobs.child_messages import MessageWriter
+from thalweg.service.jobs.route_profiles import first_look
+
+if TYPE_CHECKING:
+    from thalweg.route import Route
+
+_MOST_SHOWN: Final = 40  # stretches of a voyage whose routes are shown before the end
 
 
 @dataclass(frozen=True)
@@ -60,18 +68,34 @@ class JobOrder:
 
 
 class StageMessages:
-    """Sends the stages of the work with the time since the start."""
+    """Sends the stages of the work with the time since the start, and what is found until then."""
 
     def __init__(self, messages: MessageWriter) -> None:
         self._messages = messages
         self._start = time.monotonic()
         self._last = ""
+        self._shown: dict[tuple[float, ...], float] = {}
+        self.route: Route | None = None  # the one shown last
 
     def __call__(self, text: str) -> None:
         """State what begins now."""
         if text != self._last:
             self._last = text
             self._messages.send("stage", {"text": text, "after_s": self.seconds()})
+
+    def show_route(self, route: Route) -> None:
+        """Send a route found so far, if it is faster than those between the same places."""
+        track = route.track
+        ends = tuple(round(float(line[k]), 3) for line in (track.lat, track.lon) for k in (0, -1))
+        if route.time_h < self._shown.get(ends, math.inf) and len(self._shown) < _MOST_SHOWN:
+            self._shown[ends] = route.time_h
+            self.route = route
+            self._messages.send("route", {"route": first_look(route), "final": False})
+
+    def show_front(self, points: Sequence[tuple[float, float]], unit: str) -> None:
+        """Send a front found so far: hours and values."""
+        rows = [[round(t / HOUR, 4), round(value, 4)] for t, value in sorted(points)]
+        self._messages.send("front", {"points": rows, "unit": unit})
 
     def seconds(self) -> float:
         """Return the time since the start [s]."""

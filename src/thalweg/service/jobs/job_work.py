@@ -6,6 +6,7 @@ Files are written into a draft folder; the server gives the complete folder its 
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
@@ -60,10 +61,46 @@ def run_order(order: JobOrder, messages: MessageWriter) -> tuple[str, dict[str, 
 def _plan(
     order: JobOrder, messages: MessageWriter, stages: StageMessages
 ) -> tuple[str, dict[str, Any]]:
-    from thalweg.planning import plan
-
     request = PlanRequest.model_validate(order.request)
     voyage = request.checked_voyage()
+    try:
+        return _plan_whole(voyage, request, order, messages, stages)
+    except KeyboardInterrupt:
+        kept = (order.path / FIRST_FOLDER / "plan.json").exists()
+        if kept or stages.route is None or voyage.via:
+            raise
+        return "cancelled", _keep_shown(stages.route, voyage, order, stages)
+
+
+def _keep_shown(
+    route: Route, voyage: Voyage, order: JobOrder, stages: StageMessages
+) -> dict[str, Any]:
+    """Write the route that was shown last as the result of a job that is stopped."""
+    from thalweg.planning import Plan
+    from thalweg.planning.plan_data import Proof
+
+    found = Plan(
+        voyage=replace(voyage, objective="time", method="default"),
+        routes=(route,),
+        proof=Proof(math.nan, "no bound: the job was stopped before", route.time_h),
+        rejections={},
+        notes=("The job was stopped: this is the route found until then, without approaches.",),
+        provenance={"from": str(voyage.start), "to": str(voyage.goal)},
+        cancelled=True,
+    )
+    parts = write_plan_result(found, order.path, None)
+    return {**job_summary(found, stages.seconds()), "parts": parts}
+
+
+def _plan_whole(
+    voyage: Voyage,
+    request: PlanRequest,
+    order: JobOrder,
+    messages: MessageWriter,
+    stages: StageMessages,
+) -> tuple[str, dict[str, Any]]:
+    from thalweg.planning import plan
+
     stages("reading the ship, the sea and the coastline")
     world = open_world(request, order.files)
     if voyage.chooses_speeds:
@@ -110,6 +147,8 @@ def _plan_first(
             chart=world.chart,
             network=request.network,
             resolution=_metres(request.resolution_nm),
+            proof=0.0,
+            progress=stages,
         )
         note = "The job was stopped: this is the fastest route, the objective was not reached."
         found = replace(found, notes=(note, *found.notes), cancelled=True)

@@ -11,7 +11,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time
-from thalweg.sea import standard_names as nm
+from thalweg.service.jobs.sea_facts import FRAME_VARIABLES, sea_facts
 
 if TYPE_CHECKING:
     from thalweg.sea import Sea
@@ -19,14 +19,6 @@ if TYPE_CHECKING:
 TaskResult = tuple[dict[str, Any], bytes]
 FRAME_HEADER: Final = struct.Struct("<4sHHHHf4f")  #: magic, nx, ny, fields, 0, scale, box
 UNKNOWN: Final = -32768  #: an unknown value in a frame
-#: Variables of frames: names of the sea, and the value of one unit of a frame.
-FRAME_VARIABLES: Final[Mapping[str, tuple[tuple[str, ...], float]]] = {
-    "waves": ((nm.WAVE_HEIGHT, *nm.WAVES.pair), 0.01),
-    "wind": (nm.WIND.pair, 0.01),
-    "current": (nm.CURRENT.pair, 0.001),
-    "ice": ((nm.ICE,), 0.001),
-    "depth": ((nm.BED_DEPTH,), 0.5),
-}
 
 
 def frame(task: Mapping[str, Any]) -> TaskResult:
@@ -90,47 +82,7 @@ def inspect(task: Mapping[str, Any]) -> TaskResult:
         ``seas`` and ``files``.
     """
     sea = _sea(tuple(task["seas"]), tuple(sorted(task["files"].items())))
-    one = sea.member(0) if sea.members else sea
-    rows = one.coverage()
-    starts = [row.start for row in rows if row.start is not None]
-    ends = [row.end for row in rows if row.end is not None]
-    steps = [row.step_s for row in rows if row.step_s]
-    frames = [name for name, row in FRAME_VARIABLES.items() if one.variables & set(row[0])]
-    facts = {
-        "variables": sorted(one.variables),
-        "frames": frames,
-        "members": sea.members,
-        "box": _box(rows),
-        "start": format_time(max(starts)) if starts else None,
-        "end": format_time(min(ends)) if ends else None,
-        "step_s": min(steps) if steps else None,
-        "assumptions": list(sea.assumptions),
-    }
-    if task.get("in_detail"):
-        found = sea.describe()
-        facts["ignored"] = found.as_dict()["ignored"]
-        facts["missing_fraction"] = dict(found.missing)
-        if not sea.variables:
-            raise InputError(
-                "The file holds no variable that is used.",
-                "Used are wind, waves, currents, water level, depth and ice.",
-                "Choose another file.",
-                field="file",
-            )
-    return facts, b""
-
-
-def _box(rows: Any) -> list[float] | None:
-    """Return (south, north, west, east) around all data; None for formulas of the whole world."""
-    gridded = [row for row in rows if row.spacing_deg is not None]
-    if not gridded:
-        return None
-    return [
-        min(row.south for row in gridded),
-        max(row.north for row in gridded),
-        min(row.west for row in gridded),
-        max(row.east for row in gridded),
-    ]
+    return sea_facts(sea, in_detail=bool(task.get("in_detail"))), b""
 
 
 def import_route(task: Mapping[str, Any]) -> TaskResult:

@@ -68,7 +68,7 @@ export function uploadSea(file, onProgress) {
 // Follow a job until its final state; the browser reconnects with Last-Event-ID by itself.
 export function follow(id, handlers) {
   const source = new EventSource(`${BASE}/plans/${id}/events`);
-  for (const kind of ["state", "stage", "route", "progress"]) {
+  for (const kind of ["state", "stage", "route", "front", "progress"]) {
     source.addEventListener(kind, (event) => {
       const data = JSON.parse(event.data);
       const last = kind === "state" && ["done", "failed", "cancelled"].includes(data.state);

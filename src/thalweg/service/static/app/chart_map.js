@@ -1,6 +1,6 @@
 // The chart: coast, graticule, ports, control areas, canals, weather, routes, drawn areas.
 
-import { Map as OlMap, View, Overlay, Graticule, ScaleLine, Zoom, Draw, Modify, Snap, GeoJSON, toLonLat, transformExtent, extent as extents, defaultInteractions } from "../vendor/ol.mjs";
+import { Map as OlMap, View, Overlay, Graticule, ScaleLine, Zoom, Draw, Modify, Snap, Translate, GeoJSON, toLonLat, transformExtent, extent as extents, defaultInteractions } from "../vendor/ol.mjs";
 import { get } from "./api.js";
 import { CoastLayers } from "./coast_layer.js";
 import { bandColours, KINDS, WeatherLayer } from "./weather_layer.js";
@@ -30,6 +30,7 @@ export class Chart extends EventTarget {
     this.graticule = null;
     this.#pointer();
     this.#chooser();
+    this.#dragging();
     this.#loadChart();
     this.map.once("rendercomplete", () => element.setAttribute("data-idle", "true"));
     this.paint();
@@ -92,7 +93,7 @@ export class Chart extends EventTarget {
       output.textContent = position(lat, lon);
       if (event.dragging) return;
       const found = this.#routeAt(event.pixel);
-      this.element.style.cursor = found === null ? "" : "pointer";
+      this.element.style.cursor = this.#endAt(event.pixel) ? "grab" : found === null ? "" : "pointer";
       this.dispatchEvent(new CustomEvent("hoverroute", { detail: found }));
     });
     this.element.addEventListener("pointerleave", () => this.dispatchEvent(new CustomEvent("hoverroute", { detail: null })));
@@ -102,6 +103,20 @@ export class Chart extends EventTarget {
       const number = this.#routeAt(event.pixel);
       const port = this.map.forEachFeatureAtPixel(event.pixel, (feature) => feature.get("port"), { layerFilter: (one) => one === this.ports, hitTolerance: 5 });
       this.dispatchEvent(new CustomEvent("click", { detail: { lat, lon, number, port: port || null, coordinate: event.coordinate } }));
+    });
+  }
+
+  #endAt(pixel) {
+    return this.map.forEachFeatureAtPixel(pixel, (feature) => (feature.get("movable") ? feature : null), { layerFilter: (one) => one === this.routes.ends, hitTolerance: 6 });
+  }
+
+  // Start, goal and via points are dragged; where they are dropped is reported.
+  #dragging() {
+    const drag = new Translate({ layers: [this.routes.ends], filter: (feature) => Boolean(feature.get("movable")), hitTolerance: 6 });
+    this.map.addInteraction(drag);
+    drag.on("translateend", ({ features }) => {
+      const feature = features.item(0), [lon, lat] = toLonLat(feature.getGeometry().getCoordinates());
+      this.dispatchEvent(new CustomEvent("dragged", { detail: { number: feature.get("index"), lat: Number(lat.toFixed(4)), lon: Number(lon.toFixed(4)) } }));
     });
   }
 

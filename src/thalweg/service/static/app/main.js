@@ -6,13 +6,14 @@ import { CompareView, DASHES, PAINTS } from "./compare_view.js";
 import { Drawer, indexAt, placeAt } from "./diagrams.js";
 import { announce, colour, errorBox, fill, h } from "./elements.js";
 import { duration, known, number, plainPosition, seconds, time } from "./format.js";
-import { DEMO, PlanForm, typedTime } from "./plan_form.js";
+import { DEMO, PlanForm } from "./plan_form.js";
 import { ProgressView } from "./progress_view.js";
 import { ProjectView } from "./project_view.js";
 import { loadResult, profileOf, ResultView } from "./result_view.js";
 import { Feature, line, speedColours, stroke } from "./route_layers.js";
 import { selection } from "./selection.js";
 import { StudyView } from "./study_view.js";
+import { typedTime } from "./typed_time.js";
 import { KINDS } from "./weather_layer.js";
 
 const panel = document.getElementById("panel");
@@ -61,11 +62,16 @@ class Application {
     addEventListener("hashchange", () => this.#route());
   }
 
-  // The address: #demo, #plan=ID&route=2, #view=compare
+  // The address: #demo, #plan=ID&route=2, #voyage=REQUEST, #view=compare
 
   async #route() {
     const given = new URLSearchParams(location.hash.slice(1));
     if (location.hash === this.written) return;
+    if (given.get("voyage")) {
+      try { this.form.set(JSON.parse(given.get("voyage"))); } catch { this.#hint("The link holds no voyage."); }
+      this.#switch("plan");
+      return;
+    }
     if (given.has("demo")) { this.form.set(DEMO); this.#switch("plan"); return; }
     if (given.get("plan")) { await this.openJob(given.get("plan"), Number(given.get("route") || 1) - 1, given.has("t") ? Number(given.get("t")) : null); return; }
     if (given.get("view")) this.#switch(given.get("view"));
@@ -163,7 +169,7 @@ class Application {
   }
 
   #placesOnChart() {
-    if (this.view === "plan" && !this.result) this.chart.routes.showEnds(this.form.ends);
+    if (this.view === "plan" && !this.result) this.chart.routes.showEnds(this.form.ends, true);
   }
 
   // The time of the weather while the form is shown: the departure.
@@ -430,6 +436,11 @@ class Application {
     document.getElementById("help").addEventListener("click", () => this.#help());
     form.addEventListener("places", () => this.#placesOnChart());
     form.addEventListener("seas", () => { if (!this.chart.weather.kind && form.frameKinds.includes("waves") && form.chosenSeas[0] !== "calm") this.chart.weather.set({ kind: "waves" }); this.#fieldTime(); });
+    form.addEventListener("link", async (event) => {
+      this.#link(`voyage=${encodeURIComponent(JSON.stringify(event.detail))}`);
+      try { await navigator.clipboard.writeText(location.href); this.#hint("The link is copied."); } catch { this.#hint("The link is in the address line."); }
+    });
+    chart.addEventListener("dragged", ({ detail: { number: n, lat, lon } }) => { if (this.view === "projects") this.projects.moved(n, lat, lon); else form.moved(n, lat, lon); });
     form.addEventListener("change", () => this.#fieldTime());
     form.addEventListener("started", (event) => this.#follow(event.detail));
     chart.addEventListener("hoverroute", (event) => { if (this.result?.plan.routes.length > 1) selection.hover(event.detail); });

@@ -3,7 +3,9 @@
 import { get, post, uploadForm, uploadSea } from "./api.js";
 import { announce, errorBox, fill, h } from "./elements.js";
 import { inputTime, known, number, seconds, time } from "./format.js";
+import { ForecastFetch } from "./forecast_fetch.js";
 import { PlaceField } from "./places.js";
+import { typedTime } from "./typed_time.js";
 
 const OBJECTIVES = [
   ["front", "All trade-offs of time and fuel"], ["time", "Least time"], ["fuel", "Least fuel"], ["cost", "Least cost"],
@@ -63,6 +65,8 @@ export class PlanForm extends EventTarget {
       h("option", { value: "" }, "closed water"), h("option", { value: "0" }, "none (0)"), h("option", { value: "nearest:25" }, "nearest value within 25 nm"),
       name === "waves" ? [h("option", { value: "wind" }, "those that the wind raises"), h("option", { value: "head_seas" }, "head seas, where only heights are known")] : [])]);
     this.button = h("button.primary", { type: "submit" }, "Plan the voyage");
+    this.fetch = new ForecastFetch(() => this.ends, () => typedTime(this.depart), (seas) => this.#fetched(seas));
+    this.voyageFile = h("input.hidden", { type: "file", id: "voyage-file", "aria-label": "Voyage file", accept: ".json,.yaml,.yml", tabindex: "-1", onchange: () => this.#openFile() });
     const swap = h("button.quiet.small", { type: "button", onclick: () => this.#swap() }, "⇅ Swap");
     const addVia = h("button.quiet.small", { type: "button", onclick: () => this.addVia() }, "+ Via point");
     const body = h("div.scroll", {},
@@ -71,7 +75,7 @@ export class PlanForm extends EventTarget {
       h("div.block", {}, h("div.itinerary", {}, this.start.element, this.viaBox, this.goal.element), h("div.row", { style: null }, h("span"), swap, addVia)),
       h("div.block", {},
         h("div.field", { "data-field": "ship" }, h("label.label", { for: "ship" }, "Ship"), h("div.row", {}, this.ship, h("button.quiet", { type: "button", onclick: () => this.shipFile.click() }, "Ship file …")), this.shipFile, this.sheet, h("div.slot"))),
-      h("fieldset.block", { "data-field": "seas" }, h("legend", {}, "Sea"), this.seaBox, this.drop, this.seaFile, h("div.slot")),
+      h("fieldset.block", { "data-field": "seas" }, h("legend", {}, "Sea"), this.seaBox, this.drop, this.seaFile, this.fetch.element, h("div.slot")),
       h("div.block", {},
         h("div.field", { "data-field": "depart" }, h("label.label", { for: "depart" }, "Departure ", h("span.unit", {}, "UTC")), this.depart, this.departFacts, h("div.slot")),
         h("div.field", { "data-field": "objective" }, h("label.label", { for: "objective" }, "Objective"), this.objective, h("div.slot"))),
@@ -100,7 +104,8 @@ export class PlanForm extends EventTarget {
           h("p.facts", {}, "Water without data is closed; it never becomes calm. A filling is noted in the result."),
           this.fills.map(([name, select]) => h("div.field", { "data-field": "fill" }, h("label.label", { for: select.id }, `Unknown ${name}`), select)),
         ]),
-        h("div.field", {}, h("label.label", { for: "title" }, "Name"), this.title)),
+        h("div.field", {}, h("label.label", { for: "title" }, "Name"), this.title),
+        h("div.exports.block", {}, h("button.quiet.small", { type: "button", onclick: () => this.#saveFile() }, "Save voyage file"), h("button.quiet.small", { type: "button", onclick: () => this.voyageFile.click() }, "Open …"), h("button.quiet.small", { type: "button", onclick: () => { const request = this.request(); if (request) this.dispatchEvent(new CustomEvent("link", { detail: request })); } }, "Copy link"), this.voyageFile)),
       this.problem);
     fill(this.element, body, h("div.foot", {}, this.button));
     this.#showAreas();
@@ -271,6 +276,47 @@ export class PlanForm extends EventTarget {
     }
   }
 
+  async #fetched(seas) {
+    this.seas = await get("/seas");
+    this.#showSeas(seas);
+  }
+
+  openForecast(job) {
+    this.fetch.watch(job);
+    this.fetch.element.scrollIntoView({ block: "center" });
+  }
+
+  // Voyage files: the request as it is sent
+
+  #saveFile() {
+    const request = this.request();
+    if (!request) return;
+    const address = URL.createObjectURL(new Blob([JSON.stringify(request, null, 2)], { type: "application/json" }));
+    h("a", { href: address, download: `${request.title.replace(/[^\w. -]+/g, "_")}.voyage.json` }).click();
+    setTimeout(() => URL.revokeObjectURL(address), 10_000);
+  }
+
+  async #openFile() {
+    const [file] = this.voyageFile.files;
+    this.voyageFile.value = "";
+    if (!file) return;
+    fill(this.problem);
+    try {
+      this.set(await post("/voyages/read", { text: await file.text() }));
+      announce(`${file.name} is filled in.`);
+      this.element.querySelector(".scroll").scrollTop = 0;
+    } catch (problem) {
+      fill(this.problem, errorBox(problem));
+      this.problem.scrollIntoView({ block: "center" });
+    }
+  }
+
+  // A point that was dragged on the chart: its number counts the shown ends.
+  moved(number_, lat, lon) {
+    const fields = [this.start, ...this.vias, this.goal].filter((field) => field.place);
+    fields[number_]?.setPosition(lat, lon);
+  }
+
   // Areas
 
   async #drawArea(kind) {
@@ -425,17 +471,8 @@ export class PlanForm extends EventTarget {
     this.title.value = request.title && request.title !== this.defaultTitle() ? request.title : "";
     this.areas = (request.areas?.features || []).filter((f) => f.geometry?.type === "Polygon").map((f) => ({ kind: f.properties.kind, factor: f.properties.factor ?? null, ring: f.geometry.coordinates[0] }));
     this.#showAreas();
-    if (this.ships) this.#showShips(request.ship);
-    if (this.seas) this.#showSeas(request.seas);
+    if (this.ships) this.#showShips(request.ship || this.ship.value);
+    if (this.seas) this.#showSeas(request.seas || this.chosenSeas);
     this.#summaries();
   }
-}
-
-// A time as it is typed, in UTC [s since 1970]; null where it is none.
-export function typedTime(input) {
-  const found = /^\s*(\d{4})-(\d\d?)-(\d\d?)(?:[T ]+(\d\d?):(\d\d))?\s*Z?\s*$/.exec(input.value);
-  if (!found) return null;
-  const [year, month, day, hour = 0, minute = 0] = found.slice(1).map((part) => Number(part ?? 0));
-  const t = Date.UTC(year, month - 1, day, hour, minute);
-  return new Date(t).getUTCDate() === day && hour < 24 && minute < 60 ? t / 1000 : null;
 }

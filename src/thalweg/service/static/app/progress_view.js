@@ -2,6 +2,7 @@
 
 import { follow, remove } from "./api.js";
 import { announce, errorBox, fill, h, unit } from "./elements.js";
+import { LiveFront } from "./live_front.js";
 import { duration, known, number, time, seconds } from "./format.js";
 
 export class ProgressView {
@@ -12,9 +13,10 @@ export class ProgressView {
     this.best = h("div");
     this.state = h("p.lead", { role: "status" }, "Waiting for its turn.");
     this.problem = h("div");
+    this.front = new LiveFront();
     this.cancel = h("button.quiet", { type: "button", onclick: () => this.stop() }, "Stop, keep the best");
-    this.element = [h("div.scroll", {}, h("h1", {}, job.title || "Plan"), this.state, this.steps, this.best, this.problem), h("div.foot", {}, this.cancel, h("button.quiet", { type: "button", onclick: handlers.leave }, "Leave it running"))];
-    this.close = follow(job.id, { state: (data) => this.#state(data), stage: (data) => this.#stage(data), route: (data) => this.#route(data), waiting: () => { this.state.textContent = "The service does not answer; the job goes on when it runs again."; }, open: () => this.#say() });
+    this.element = [h("div.scroll", {}, h("h1", {}, job.title || "Plan"), this.state, this.steps, this.best, this.front.element, this.problem), h("div.foot", {}, this.cancel, h("button.quiet", { type: "button", onclick: handlers.leave }, "Leave it running"))];
+    this.close = follow(job.id, { state: (data) => this.#state(data), stage: (data) => this.#stage(data), route: (data) => this.#route(data), front: (data) => this.front.show(data), waiting: () => { this.state.textContent = "The service does not answer; the job goes on when it runs again."; }, open: () => this.#say() });
   }
 
   #say() {
@@ -50,7 +52,7 @@ export class ProgressView {
   }
 
   #route({ route, final }) {
-    fill(this.best, h("h2.block", {}, final ? "Route found" : "First route: the fastest"), h("dl.cards", {},
+    fill(this.best, h("h2.block", {}, final ? "Route found" : ["time", "distance"].includes(this.job.request.voyage?.objective || "time") ? "Best route so far" : "First route: the fastest"), h("dl.cards", {},
       h("div.card", {}, h("dt", {}, "Time"), h("dd", {}, duration(route.time_h))),
       h("div.card", {}, h("dt", {}, "Distance"), h("dd", {}, number(route.distance_nm, 1), unit("nm"))),
       h("div.card", {}, h("dt", {}, "Fuel"), h("dd", {}, known(route.fuel_t) ? [number(route.fuel_t, 1), unit("t")] : "unknown")),

@@ -120,7 +120,11 @@ export class ProjectView {
   places() {
     if (!this.unload || this.handlers.hidden()) return;
     const ends = [[this.load, "start", "Loads"], [this.unload, "goal", "Unloads"]].filter(([field]) => field.place);
-    this.chart.routes.showEnds(ends.map(([field, role, label]) => ({ role, label, lat: field.place.lat, lon: field.place.lon })));
+    this.chart.routes.showEnds(ends.map(([field, role, label]) => ({ role, label, lat: field.place.lat, lon: field.place.lon })), !this.job);
+  }
+
+  moved(number_, lat, lon) {
+    [this.load, this.unload].filter((field) => field.place)[number_]?.setPosition(lat, lon);
   }
 
   clicked(lat, lon, coordinate) {

@@ -154,12 +154,12 @@ export class RouteLayers {
     feature.setStyle(() => new Style({ image: new RegularShape({ points: 3, radius: 11, scale: [0.72, 1.15], rotateWithView: true, rotation: ((course || 0) * Math.PI) / 180, fill: new Fill({ color: colour("ink") }), stroke: new Stroke({ color: colour("casing"), width: 2 }) }) }));
   }
 
-  // ends: [{role, lat, lon, label}]
-  showEnds(ends) {
+  // ends: [{role, lat, lon, label}]; movable ones can be dragged.
+  showEnds(ends, movable = false) {
     const source = this.ends.getSource();
     source.clear();
-    for (const end of ends) {
-      const feature = new Feature({ geometry: new Point(fromLonLat([end.lon, end.lat])), role: end.role });
+    for (const [index, end] of ends.entries()) {
+      const feature = new Feature({ geometry: new Point(fromLonLat([end.lon, end.lat])), role: end.role, index, movable });
       feature.setStyle(() => new Style({
         image: new Circle({ radius: 6, fill: new Fill({ color: end.role === "goal" ? colour("route") : colour("casing") }), stroke: new Stroke({ color: colour("route"), width: 2.5 }) }),
         text: new Text({ text: end.label || "", font: `600 ${FONT}`, offsetX: 11, textAlign: "left", fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 3.5 }) }),

@@ -4,7 +4,7 @@ import { follow, get, post, remove, resultAddress, tableAddress } from "./api.js
 import { announce, errorBox, fill, h, unit } from "./elements.js";
 import { duration, inputTime, known, number, seconds, time } from "./format.js";
 import { HeatMap } from "./heat_map.js";
-import { typedTime } from "./plan_form.js";
+import { typedTime } from "./typed_time.js";
 
 const SECONDS_EACH = 6; // of an ocean voyage, about
 
