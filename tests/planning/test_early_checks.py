@@ -42,7 +42,7 @@ PLACES = ["plan", "50.5,1.2", "50.5,2.8", "--ship", "kvlcc2"]
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (["--sea", "{file}"], "eastward_wind"),
+        (["--sea", "{file}"], "--fill wind=0"),
         (["--calm", "--speed", "60"], "60 kn"),
         (["--calm", "--resolution", "1000"], "resolution"),
         (["--calm", "--objective", "fule"], "fuel"),
