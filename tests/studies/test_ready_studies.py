@@ -85,8 +85,14 @@ def test_tables_and_plots_are_written(tmp_path):
     nothing = pd.DataFrame()
     table = front_statistics(fronts(), ["method", "seed"])
     summary = StudySummary(
-        pd.DataFrame({"voyages": [3]}), nothing, nothing, table, pd.DataFrame({"fuel_t": [1.0]})
+        table=pd.DataFrame({"voyages": [3]}),
+        refusals=nothing,
+        best=nothing,
+        fronts=table,
+        annual=pd.DataFrame({"fuel_t": [1.0]}),
+        voyages=pd.DataFrame({"time_h": [1.0]}),
     )
     names = {path.name for path in summary.write(tmp_path)}
-    assert names == {"summary.csv", "refusals.csv", "fronts.csv", "annual.csv", "fronts.png"}
+    tables = {f"{name}.csv" for name in ("summary", "voyages", "refusals", "fronts", "annual")}
+    assert names == tables | {"fronts.png"}
     assert len((tmp_path / "fronts.csv").read_text().splitlines()) == 4
