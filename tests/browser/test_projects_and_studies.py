@@ -30,8 +30,17 @@ def test_a_project_is_simulated_and_read(visit):
     page.get_by_role("tab", name="Cycles").click()
     page.locator("#batch-sheet tbody tr").nth(1).click()
     assert page.locator("#batch-sheet tr[aria-current=true]").count() == 1
+    lists: list[str] = []
+    page.on(
+        "request",
+        lambda request: lists.append(request.url) if "/plans?kind=" in request.url else None,
+    )
     page.reload()
     page.get_by_text("All figures").wait_for()
+    page.wait_for_load_state("networkidle")
+    assert lists == [], "the form, with its list of projects, must not replace the result"
+    assert page.get_by_text("All figures").is_visible()
+    assert "plan=" in page.url
 
 
 def test_a_project_that_is_wrong_says_so_at_its_field(visit):

@@ -89,7 +89,7 @@ class ServerProcess:
         command = [sys.executable, "-m", "thalweg.cli.main", "serve", "--quiet"]
         command += ["--port", str(self.port), "--data", str(self.folder), "--token", TOKEN]
         self.process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
-        limit = time.monotonic() + 60.0
+        limit = time.monotonic() + 180.0
         while time.monotonic() < limit:
             try:
                 if self.http.get("/api/v1/health").status_code == 200:

@@ -90,7 +90,8 @@ class Application {
     }
   }
 
-  #switch(view) {
+  // A project or study that is opened takes the place of the form of its view.
+  #switch(view, job = null) {
     this.#weatherOf(view);
     this.view = view;
     this.#tabs();
@@ -108,9 +109,9 @@ class Application {
     this.chart.routes.showEnds([]);
     this.chart.showAreas(this.form.areas, null);
     this.chart.closeMenu();
-    this.#link(`view=${view}`);
+    this.#link(job ? `plan=${job}` : `view=${view}`);
     if (view === "compare") this.#showCompare();
-    else if (view === "projects" || view === "studies") this.#showBatch();
+    else if (view === "projects" || view === "studies") this.#showBatch(job);
     else this.#showVoyages();
   }
 
@@ -143,12 +144,13 @@ class Application {
     fill(drawer, element || this.drawerParts);
   }
 
-  async #showBatch(id = null) {
+  async #showBatch(id) {
     const { view } = this, shown = this[view];
     try {
       if (id) { await shown.openJob(id); return; }
       const element = await shown.show();
-      if (this.view === view) fill(panel, element);
+      if (this.view !== view || shown.job) return;
+      fill(panel, element);
       if (view === "studies") this.chart.routes.showEnds(this.form.ends);
     } catch (problem) {
       if (this.view === view) fill(panel, h("div.scroll", {}, errorBox(problem)));
@@ -196,11 +198,7 @@ class Application {
       return;
     }
     const batch = { project: "projects", study: "studies" }[job.kind];
-    if (batch) {
-      this.#switch(batch);
-      await this.#showBatch(id);
-      return;
-    }
+    if (batch) { this.#switch(batch, id); return; }
     this.view = "plan";
     this.#tabs();
     if (job.kind === "forecast") { this.#showForm(); await this.form.openForecast?.(job); return; }
