@@ -180,7 +180,11 @@ def test_inspect(capsys, currents):
         (["--ship", "SHIP", "--calm", "--speed", "0"], 2, "speed"),
         (["--ship", "SHIP", "--calm", "--ukc", "1"], 3, "depth"),
         (["--ship", "SHIP", "--sea", "CURRENTS", "--depart", "2027-01-01"], 3, "2026-01-02"),
-        (["--ship", "handysize-bulker", "--sea", "CURRENTS"], 3, "does not have: wave height, wind"),
+        (
+            ["--ship", "handysize-bulker", "--sea", "CURRENTS"],
+            3,
+            "does not have: wave height, wind",
+        ),
         (["--ship", "SHIP", "--sea", "nowhere.nc"], 2, "nowhere.nc"),
         (["--ship", "SHIP", "--calm", "--fill", "tea=2"], 2, "currents=0"),
         (["--ship", "SHIP", "--calm", "--fill", "wind=0"], 2, "Both --calm and --fill"),

@@ -62,7 +62,7 @@ class JobOrder:
     def without_paths(self, text: str) -> str:
         """Return a text in which no path of an uploaded file stands."""
         for name, path in self.files.items():
-            for written in (json.dumps(path)[1:-1], path):
+            for written in (json.dumps(path, allow_nan=False)[1:-1], path):
                 text = text.replace(written, name)
         return text
 
