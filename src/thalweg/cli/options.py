@@ -48,7 +48,8 @@ def add_ship_and_chart_options(parser: argparse.ArgumentParser, *, default_ukc: 
         "--ukc",
         type=float,
         metavar="M",
-        help=f"minimum under-keel clearance [m]; default: {default_ukc}",
+        help="minimum under-keel clearance [m]: depth less draught, squat not subtracted; "
+        f"default: {default_ukc}",
     )
     add_load_factor_option(parser)
     add_output_options(parser, "files and plots")

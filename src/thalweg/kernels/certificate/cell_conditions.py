@@ -318,9 +318,22 @@ def _read_window(world, j, i, first, last, buffers):
 def read_cell(world, j, i, first, last, buffers):
     """Collect the conditions in a cell during a window of time since each departure.
 
-    Returns (instants, open): 0 instants where nothing is known; ``open`` is False where no ship
-    may be in the cell at any moment of the window. Fills the ranges of the conditions, the
-    vectors of wind and waves and the currents at the corners of ``buffers``.
+    Returns
+    -------
+    instants : int
+        Moments that were read; 0 where nothing is known, -1 where they are more than the buffers
+        hold, so that any conditions are taken as possible.
+    is_open : bool
+        False where no ship may be in the cell at any moment of the window.
+    field_high : float
+        Greatest speed of a field of speeds [m/s]; not above 0 where none is known.
+    winds, waves : int
+        Vectors of wind and of waves in ``buffers``.
+
+    Notes
+    -----
+    Fills the ranges of the conditions, the vectors of wind and waves, and the currents at the
+    corners in ``buffers``.
     """
     found = _read_window(world, j, i, first, last, buffers)
     if found[1] or not world.by_steps or world.closed[j, i]:

@@ -207,7 +207,7 @@ def least_time(network, edge, slowness):
 
 @inlined
 def march_edge(world, ship, fuel, edge, k, t, cutoff, work):
-    """Sail one edge that is not a canal: return (arrival, fuel burnt, status).
+    """Sail one edge that is not a canal: return (arrival, fuel burnt, status, blocking sample).
 
     Parameters
     ----------
@@ -247,7 +247,8 @@ def march_edge(world, ship, fuel, edge, k, t, cutoff, work):
     """
     network, sea = world.network, world.sea
     course = course_vector(float(network.course[edge]))
-    depth = np.float64(network.depth[edge])  # single precision would be another leg to compile
+    # float32 would make numba compile a second version of `point_speed_from_guess`
+    depth = np.float64(network.depth[edge])
     index = sea.channel_index
     tail, sample, spare = work
     slowness, rate, burnt, at, here, guess, then = 0.0, 0.0, 0.0, 0.0, tail, math.inf, t

@@ -132,17 +132,20 @@ def _known_waves(sample, channel_index, needs):
 
 
 @inlined
-def _speed_through_water(ship, course, across, wind, waves, depth, guess):
-    """Return (speed through water, ok), the heading corrected for the drift across the course."""
+def _speed_through_water(ship, course, to_port, wind, waves, depth, guess):
+    """Return (speed through water, ok), the heading corrected for the current across the course.
+
+    ``to_port`` is the current across the course [m/s], positive to port.
+    """
     table, setting, _, needs = ship
     east, north = course
     wind_speed = 0.0
     if needs & _WIND_AXES:
         wind_speed = math.sqrt(wind[0] * wind[0] + wind[1] * wind[1])
-    turns = across != 0.0 and needs & _ANGLE_AXES
-    speed = guess if guess > abs(across) else math.inf
+    turns = to_port != 0.0 and needs & _ANGLE_AXES
+    speed = guess if guess > abs(to_port) else math.inf
     for _ in range(_MAX_HEADING_CORRECTIONS):
-        sine = -across / speed
+        sine = -to_port / speed
         cosine = math.sqrt(1.0 - sine * sine)
         head_east = east * cosine - north * sine
         head_north = north * cosine + east * sine
@@ -156,9 +159,9 @@ def _speed_through_water(ship, course, across, wind, waves, depth, guess):
         speed, ok = sum_of_parts(table, axis_values, setting)
         if not ok:
             return 0.0, False
-        if not turns or speed <= abs(across):
+        if not turns or speed <= abs(to_port):
             break
-        if abs((speed - before) * across) <= _HEADING_TOLERANCE * speed * speed:
+        if abs((speed - before) * to_port) <= _HEADING_TOLERANCE * speed * speed:
             break
     return speed, True
 
@@ -209,8 +212,8 @@ def point_speed_from_guess(sample, channel_index, course, ship, static_depth, gu
     if channel_index[CURRENT_EAST] >= 0 and channel_index[CURRENT_NORTH] >= 0:
         current = (sample[CURRENT_EAST], sample[CURRENT_NORTH])
     along = current[0] * east + current[1] * north
-    across = current[1] * east - current[0] * north  # positive to the left of the course
-    if not (along == along and across == across):
+    to_port = current[1] * east - current[0] * north
+    if not (along == along and to_port == to_port):
         return 0.0, NO_DATA, 0.0
     field = channel_index[SPEED_FIELD] >= 0
     if field:
@@ -225,15 +228,15 @@ def point_speed_from_guess(sample, channel_index, course, ship, static_depth, gu
         if speed != speed:
             return 0.0, NO_DATA, 0.0
     else:
-        speed, ok = _speed_through_water(ship, course, across, wind, waves, depth, guess)
+        speed, ok = _speed_through_water(ship, course, to_port, wind, waves, depth, guess)
     if not ok:
         return 0.0, SHIP_RANGE, 0.0
-    spare = speed * speed - across * across
+    spare = speed * speed - to_port * to_port
     over_ground = along + math.sqrt(max(spare, 0.0))
     if speed <= 0.0 or spare <= 0.0 or over_ground <= 0.0:
         return 0.0, CURRENT, speed
     if not field and has_wave_limits(ship.table):
-        sine = -across / speed
+        sine = -to_port / speed
         cosine = math.sqrt(max(1.0 - sine * sine, 0.0))
         head_east, head_north = east * cosine - north * sine, north * cosine + east * sine
         angle = angle_from_bow(head_east, head_north, waves[1], waves[2])

@@ -29,6 +29,10 @@ from thalweg.kernels.leg.point_speed import FuelTable, ShipArrays
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.search.field_bounds import never_deep_enough
 
+# States of a block of an edge table: not filled yet; filled; some edge is closed at some setting,
+# but may open; some edge is so at all settings.
+UNFILLED, FILLED, SOME_CLOSED, ALL_CLOSED = 0, 1, 2, 3
+
 
 class MultiSettingShip(NamedTuple):
     """A ship with a choice of settings.
@@ -99,8 +103,7 @@ class EdgeTables(NamedTuple):
     offset : int64[N]
         Where the values of the node's first block start.
     state : uint8[:]
-        0: not filled yet; 1: filled; 2: some edge is closed at some setting, but may open; 3: some
-        edge is so at all settings.
+        `UNFILLED`, `FILLED`, `SOME_CLOSED` or `ALL_CLOSED`, for each block.
     values : float32[:]
     refused : int64[COUNT]
         How many sails were refused, by status.
@@ -195,7 +198,7 @@ def fill_edge_table(world, tables, node, i, work):
     at = tables.offset[node] + i * (e1 - e0) * 2 * count
     t = world.depart + tables.times[tables.first[node] + i]
     k = interval_of(sea.times, t)
-    found = 1
+    found = FILLED
     if k >= 0:
         sample_station(sea, network.station[node], k, t, work[1])
     required = ship.limits[LIMIT_REQUIRED_DEPTH]
@@ -218,7 +221,8 @@ def fill_edge_table(world, tables, node, i, work):
                 tables.refused[status] += 1
             tables.values[at + s] = duration
             tables.values[at + count + s] = cost
-        found = max(found, 3 if closed == count else 2 if closed > 0 else 1)
+        if closed > 0:
+            found = max(found, ALL_CLOSED if closed == count else SOME_CLOSED)
         at += 2 * count
     tables.state[tables.place[node] + i] = found
 

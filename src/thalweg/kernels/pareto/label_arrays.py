@@ -69,7 +69,21 @@ class LabelTarget(NamedTuple):
 
 
 class TimeBins(NamedTuple):
-    """How time is divided: width of the bins [s], latest arrival [s], bins; whether one waits."""
+    """How time is divided for labels.
+
+    Attributes
+    ----------
+    width : float
+        Width of a bin [s].
+    latest : float
+        Latest useful arrival [s after departure].
+    count : int
+        Number of bins B.
+    group : int
+        Bins whose bounds are tested together first.
+    wait : bool
+        Whether ships wait where the network allows it.
+    """
 
     width: float
     latest: float
@@ -79,7 +93,17 @@ class TimeBins(NamedTuple):
 
 
 class ActiveNodes(NamedTuple):
-    """Nodes by first bin, those whose bins have begun and not ended, and counts."""
+    """The nodes whose bins have begun and not ended.
+
+    Attributes
+    ----------
+    order : int32[M]
+        Nodes that have bins, by their first bin.
+    active : int32[M]
+        The active nodes, in the first ``counts[ACTIVE]`` entries.
+    counts : int64[COUNTER_COUNT]
+        See `VISITED` and the constants beside it.
+    """
 
     order: np.ndarray
     active: np.ndarray
@@ -94,9 +118,9 @@ class LabelSearch(NamedTuple):
     world : FrontArrays
     labels : BinLabels
     target : LabelTarget
-    clock : TimeBins
+    time_bins : TimeBins
     tables : EdgeTables
-    agenda : ActiveNodes
+    active_nodes : ActiveNodes
     work : float64[4, CHANNELS]
         Work space.
     at_settings : float32[2 S]
@@ -106,9 +130,9 @@ class LabelSearch(NamedTuple):
     world: FrontArrays
     labels: BinLabels
     target: LabelTarget
-    clock: TimeBins
+    time_bins: TimeBins
     tables: EdgeTables
-    agenda: ActiveNodes
+    active_nodes: ActiveNodes
     work: np.ndarray
     at_settings: np.ndarray
 
@@ -136,20 +160,20 @@ class LabelDeparture(NamedTuple):
 
 
 @inlined
-def activate_nodes(agenda, first, b):
+def activate_nodes(active_nodes, first, b):
     """Add the nodes whose first bin is b or before to the active ones."""
-    counts = agenda.counts
-    while counts[STARTED] < agenda.order.shape[0]:
-        node = agenda.order[counts[STARTED]]
+    counts = active_nodes.counts
+    while counts[STARTED] < active_nodes.order.shape[0]:
+        node = active_nodes.order[counts[STARTED]]
         if first[node] > b:
             break
-        agenda.active[counts[ACTIVE]] = node
+        active_nodes.active[counts[ACTIVE]] = node
         counts[ACTIVE] += 1
         counts[STARTED] += 1
 
 
 @inlined
-def deactivate_node(agenda, n):
+def deactivate_node(active_nodes, n):
     """Replace the n-th active node by the last one."""
-    agenda.counts[ACTIVE] -= 1
-    agenda.active[n] = agenda.active[agenda.counts[ACTIVE]]
+    active_nodes.counts[ACTIVE] -= 1
+    active_nodes.active[n] = active_nodes.active[active_nodes.counts[ACTIVE]]

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from thalweg.kernels.compilation.decorators import allocation_free, inlined, kernel_only
+from thalweg.kernels.pareto.edge_tables import UNFILLED
 from thalweg.kernels.pareto.label_arrays import (
     ACTIVE,
     PRUNED,
@@ -25,7 +26,7 @@ from thalweg.kernels.pareto.time_expanded_labels import clamped_interval, may_be
 @inlined
 def _waits(search, node):
     """Return whether a ship may wait at a node."""
-    return search.clock.wait and search.world.network.can_wait[node]
+    return search.time_bins.wait and search.world.network.can_wait[node]
 
 
 @inlined
@@ -48,17 +49,17 @@ def _lower_bins(search, scalarised, head, arrivals, value, b):
     ``arrivals`` are the earliest and the latest. Where a ship may wait, the first bin stands for
     those after it, unless time has a price.
     """
-    labels, clock = search.labels, search.clock
+    labels, time_bins = search.labels, search.time_bins
     only_first = False
     if scalarised is None:
         only_first = _waits(search, head)
     if scalarised is not None and not value + scalarised.floor[head] < scalarised.known:
         return False
     first, last = labels.first[head], labels.last[head]
-    low = max(int(arrivals[0] / clock.width), b, first)
+    low = max(int(arrivals[0] / time_bins.width), b, first)
     if low > last:
         return False
-    high = low if only_first else max(min(int(arrivals[1] / clock.width), last), low)
+    high = low if only_first else max(min(int(arrivals[1] / time_bins.width), last), low)
     lowered = False
     for j in range(low, high + 1):
         there = labels.place[head] + j - first
@@ -76,7 +77,7 @@ def _sail_piece(search, scalarised, node, piece, every_edge):
     i = k - tables.first[node]
     if i < 0 or i + 1 >= tables.count[node]:
         return False
-    if search.error_bounds.state[tables.place[node] + i] == 0:
+    if search.error_bounds.state[tables.place[node] + i] == UNFILLED:
         bound_interpolation_errors(search, node, i)
     rate = world.prices.waiting_cost_rate
     if scalarised is not None:
@@ -93,10 +94,10 @@ def _sail_piece(search, scalarised, node, piece, every_edge):
         useful_later = every_edge or search.error_bounds.gains[here] > 0
         errors = interpolation_errors(search, here)
         here += 1
-        latest = search.clock.latest - search.target.time_to_go[head]
+        latest = search.time_bins.latest - search.target.time_to_go[head]
         margin = _cost_margin(search, scalarised, head, value, useful_later)
         if latest > begin and margin > 0.0:
-            search.agenda.counts[RELAXED] += count
+            search.active_nodes.counts[RELAXED] += count
             for s in range(count):
                 d0, d1 = np.float64(values[at + s]), np.float64(values[at + span + s])
                 c0 = np.float64(values[at + count + s])
@@ -121,11 +122,11 @@ def _sail_bin(search, scalarised, node, b, value, fresh):
 
     Unless ``fresh`` only edges that may be cheaper later are sailed, as long as no slice begins.
     """
-    times, clock, lowered = search.tables.times, search.clock, False
-    begin = b * clock.width
-    end = min(begin + clock.width, clock.latest)
+    times, time_bins, lowered = search.tables.times, search.time_bins, False
+    begin = b * time_bins.width
+    end = min(begin + time_bins.width, time_bins.latest)
     k = clamped_interval(times, begin)
-    every_edge = fresh or times[k] > begin - clock.width  # the first bin of an interval
+    every_edge = fresh or times[k] > begin - time_bins.width  # the first bin of an interval
     while begin < end:
         until = min(end, times[k + 1])
         lowered |= _sail_piece(search, scalarised, node, (begin, until, value, k, b), every_edge)
@@ -139,7 +140,7 @@ def _sail_bin(search, scalarised, node, b, value, fresh):
 @inlined
 def _expand_bin_lower(search, node, b, first):
     """Sail on from a node in a bin, with its least cost so far; return whether the bin improved."""
-    labels, counts = search.labels, search.agenda.counts
+    labels, counts = search.labels, search.active_nodes.counts
     value = labels.cost[labels.place[node] + b - labels.first[node]]
     waits = _waits(search, node)
     fresh = value < labels.best[node]
@@ -148,11 +149,11 @@ def _expand_bin_lower(search, node, b, first):
     if waits:
         value = min(value, labels.best[node])
     labels.best[node] = value
-    time = b * search.clock.width
+    time = b * search.time_bins.width
     if value >= labels.dead[node]:
         return False
     cost = value + search.world.prices.waiting_cost_rate * time
-    if not may_be_non_dominated(search.target, search.clock, node, time, cost):
+    if not may_be_non_dominated(search.target, search.time_bins, node, time, cost):
         counts[PRUNED] += 1
         if waits:
             labels.dead[node] = value
@@ -177,16 +178,16 @@ def process_bins_lower(search, begin, end):
     of at least the least up to that bin. It may depart at any moment of the bin: the earliest
     arrival and the least cost over those moments are combined.
     """
-    labels, agenda = search.labels, search.agenda
+    labels, active_nodes = search.labels, search.active_nodes
     for b in range(begin, end):
-        activate_nodes(agenda, labels.first, b)
+        activate_nodes(active_nodes, labels.first, b)
         first, improved = True, True
         while improved:
             improved, n = False, 0
-            while n < agenda.counts[ACTIVE]:
-                node = agenda.active[n]
+            while n < active_nodes.counts[ACTIVE]:
+                node = active_nodes.active[n]
                 if labels.last[node] < b:
-                    deactivate_node(agenda, n)
+                    deactivate_node(active_nodes, n)
                     continue
                 if first and not _waits(search, node):
                     labels.best[node] = math.inf
@@ -206,7 +207,7 @@ def _expand_bin_scalarised(search, target, node, b):
     if not (value < labels.dead[node] and value + target.floor[node] < target.known):
         return False
     labels.dead[node] = value
-    search.agenda.counts[VISITED] += 1
+    search.active_nodes.counts[VISITED] += 1
     return _sail_bin(search, target, node, b, value, value == value)
 
 
@@ -226,17 +227,22 @@ def process_bins_scalarised(search):
     The value includes the time, so the unknown moment of arrival within a bin causes no error:
     only the sea is taken at the most favourable moment of the bin.
     """
-    labels, clock, agenda, target = search.labels, search.clock, search.agenda, search.target
-    held = (target.rate + search.world.prices.waiting_cost_rate) * clock.width
-    for b in range(clock.count):
-        activate_nodes(agenda, labels.first, b)
+    labels, time_bins, active_nodes, target = (
+        search.labels,
+        search.time_bins,
+        search.active_nodes,
+        search.target,
+    )
+    held = (target.rate + search.world.prices.waiting_cost_rate) * time_bins.width
+    for b in range(time_bins.count):
+        activate_nodes(active_nodes, labels.first, b)
         first, improved = True, True
         while improved:
             improved, n = False, 0
-            while n < agenda.counts[ACTIVE]:
-                node = agenda.active[n]
+            while n < active_nodes.counts[ACTIVE]:
+                node = active_nodes.active[n]
                 if labels.last[node] < b:
-                    deactivate_node(agenda, n)
+                    deactivate_node(active_nodes, n)
                     continue
                 n += 1
                 if node == target.goal:
@@ -245,7 +251,7 @@ def process_bins_scalarised(search):
                     labels.dead[node] = math.inf
                 improved |= _expand_bin_scalarised(search, target, node, b)
             first = False
-        for n in range(agenda.counts[ACTIVE]):
-            node = agenda.active[n]
+        for n in range(active_nodes.counts[ACTIVE]):
+            node = active_nodes.active[n]
             value = labels.cost[labels.place[node] + b - labels.first[node]]
             labels.best[node] = min(value, labels.best[node] + held)

@@ -9,6 +9,8 @@ from thalweg.kernels.codes import OK
 from thalweg.kernels.compilation.decorators import inlined, kernel_only
 from thalweg.kernels.leg.edge_sailing import interval_of, sample_station
 from thalweg.kernels.pareto.edge_tables import (
+    FILLED,
+    UNFILLED,
     EdgeTables,
     FrontArrays,
     fill_edge_table,
@@ -58,7 +60,7 @@ class InterpolationBounds(NamedTuple):
     start : int64[N]
         Where a node's first block starts.
     state : uint8[B]
-        By block: 0 not checked; 1 known.
+        By block: `UNFILLED` or `FILLED`.
     off : float32[:, 3]
         How much shorter a passage may be, how much cheaper without the price of time, and how much
         longer; each as a share.
@@ -110,10 +112,10 @@ class LowerSearch(NamedTuple):
     world : FrontArrays
     labels : LowerLabels
     target : LabelTarget or ScalarisedLabelTarget
-    clock : TimeBins
+    time_bins : TimeBins
     tables : EdgeTables
     error_bounds : InterpolationBounds
-    agenda : ActiveNodes
+    active_nodes : ActiveNodes
     work : float64[4, CHANNELS]
         Work space.
     """
@@ -121,10 +123,10 @@ class LowerSearch(NamedTuple):
     world: FrontArrays
     labels: LowerLabels
     target: LabelTarget | ScalarisedLabelTarget
-    clock: TimeBins
+    time_bins: TimeBins
     tables: EdgeTables
     error_bounds: InterpolationBounds
-    agenda: ActiveNodes
+    active_nodes: ActiveNodes
     work: np.ndarray
 
 
@@ -187,7 +189,7 @@ def bound_interpolation_errors(search, node, i):
     """Find the errors of interpolation between a slice and the next."""
     world, tables, bounds = search.world, search.tables, search.error_bounds
     for j in (i, i + 1):
-        if tables.state[tables.place[node] + j] == 0:
+        if tables.state[tables.place[node] + j] == UNFILLED:
             fill_edge_table(world, tables, node, j, search.work)
     network, count = world.network, world.ship.settings.shape[0]
     rate = world.prices.waiting_cost_rate
@@ -227,7 +229,7 @@ def bound_interpolation_errors(search, node, i):
         bounds.gains[here] = gains
         here += 1
         at += 2 * count
-    bounds.state[tables.place[node] + i] = 1
+    bounds.state[tables.place[node] + i] = FILLED
 
 
 @inlined

@@ -7,7 +7,13 @@ import numpy as np
 from thalweg.kernels.codes import OK
 from thalweg.kernels.compilation.decorators import allocation_free, inlined, kernel_only
 from thalweg.kernels.leg.edge_sailing import interval_of, sample_station
-from thalweg.kernels.pareto.edge_tables import fill_edge_table, sail_edge_priced
+from thalweg.kernels.pareto.edge_tables import (
+    ALL_CLOSED,
+    SOME_CLOSED,
+    UNFILLED,
+    fill_edge_table,
+    sail_edge_priced,
+)
 from thalweg.kernels.pareto.label_arrays import (
     ACTIVE,
     PRUNED,
@@ -22,25 +28,25 @@ from thalweg.kernels.pareto.label_arrays import (
 
 
 @inlined
-def may_be_non_dominated(target, clock, node, time, cost):
+def may_be_non_dominated(target, time_bins, node, time, cost):
     """Return whether a label may still lead to an arrival that no known arrival dominates.
 
     It may if for some bin of arrival the largest of the lower bounds of the cost at the end of
     the bin is below what is known for its start.
     """
     earliest = time + target.time_to_go[node]
-    if not earliest <= clock.latest:
+    if not earliest <= time_bins.latest:
         return False
-    b, count = int(earliest / clock.width), clock.count
+    b, count = int(earliest / time_bins.width), time_bins.count
     while b < count:
-        after = min((b // clock.group + 1) * clock.group, count)
-        available = clock.width * after - time
+        after = min((b // time_bins.group + 1) * time_bins.group, count)
+        available = time_bins.width * after - time
         bound = -math.inf
         for r in range(target.rates.shape[0]):
             bound = max(bound, target.floor[node, r] - target.rates[r] * available)
         if cost + bound < target.upper[b]:
             for j in range(b, after):
-                available = clock.width * (j + 1) - time
+                available = time_bins.width * (j + 1) - time
                 bound = -math.inf
                 for r in range(target.rates.shape[0]):
                     bound = max(bound, target.floor[node, r] - target.rates[r] * available)
@@ -57,8 +63,8 @@ def _insert_label(search, head, time, cost, origin):
     ``origin`` is the label it comes from, when the ship left that node, and the code of edge and
     setting.
     """
-    labels, target, clock = search.labels, search.target, search.clock
-    b = int(time / clock.width)
+    labels, target, time_bins = search.labels, search.target, search.time_bins
+    b = int(time / time_bins.width)
     if b < labels.first[head] or b > labels.last[head]:
         return -1
     there = labels.place[head] + b - labels.first[head]
@@ -68,7 +74,7 @@ def _insert_label(search, head, time, cost, origin):
     labels.when[there, 0], labels.when[there, 1] = time, origin[1]
     labels.source[there, 0], labels.source[there, 1] = origin[0], origin[2]
     if head == target.goal:
-        for j in range(b + 1, clock.count + 1):
+        for j in range(b + 1, time_bins.count + 1):
             if target.upper[j] <= cost:
                 break
             target.upper[j] = cost
@@ -91,7 +97,7 @@ def clamped_interval(times, t):
 @inlined
 def _cost_margin(search, head, time, cost):
     """Return what an edge may cost less waiting: more is dominated by an earlier arrival."""
-    if search.clock.wait and search.world.network.can_wait[head]:
+    if search.time_bins.wait and search.world.network.can_wait[head]:
         reduced = cost - search.world.prices.waiting_cost_rate * time
         return search.labels.best[head] - reduced
     return math.inf
@@ -127,7 +133,7 @@ def _sail_closed(search, node, edge, e0, i, start):
         then, price, status = sail_edge_priced(world, edge, s, k, now, search.work)
         duration = then - now
         arrival = start.time + duration
-        if status != OK or arrival + search.target.time_to_go[head] > search.clock.latest:
+        if status != OK or arrival + search.target.time_to_go[head] > search.time_bins.latest:
             continue
         if price - world.prices.waiting_cost_rate * duration < margin:
             origin = (start.slot, start.left, edge * count + s)
@@ -147,11 +153,11 @@ def _expand(search, node, start, only_closed):
     if i < 0 or i + 1 >= tables.count[node]:
         return False
     state = tables.place[node] + i
-    if tables.state[state] == 0:
+    if tables.state[state] == UNFILLED:
         fill_edge_table(world, tables, node, i, work)
-    if tables.state[state + 1] == 0:
+    if tables.state[state + 1] == UNFILLED:
         fill_edge_table(world, tables, node, i + 1, work)
-    closed = tables.state[state] > 1 or tables.state[state + 1] > 1
+    closed = tables.state[state] >= SOME_CLOSED or tables.state[state + 1] >= SOME_CLOSED
     count = world.ship.settings.shape[0]
     e0, e1 = network.indptr[node], network.indptr[node + 1]
     at, span = tables.offset[node] + i * (e1 - e0) * 2 * count, (e1 - e0) * 2 * count
@@ -159,10 +165,10 @@ def _expand(search, node, start, only_closed):
     values, at_settings, improved = tables.values, search.at_settings, False
     for edge in range(e0, e1):
         head = network.target[edge]
-        available = search.clock.latest - search.target.time_to_go[head] - time
+        available = search.time_bins.latest - search.target.time_to_go[head] - time
         if available > 0.0 and not only_closed:
             margin = _cost_margin(search, head, time, cost)
-            search.agenda.counts[RELAXED] += count
+            search.active_nodes.counts[RELAXED] += count
             for s in range(2 * count):
                 low = values[at + s]
                 at_settings[s] = low + f * (values[at + span + s] - low)
@@ -191,13 +197,13 @@ def _wait_until(search, node, k, b):
         return False
     rate = prices.waiting_cost_rate
     cost = labels.best[node] + rate * time
-    if not may_be_non_dominated(search.target, search.clock, node, time, cost):
+    if not may_be_non_dominated(search.target, search.time_bins, node, time, cost):
         return False
     state = tables.place[node] + i
-    if tables.state[state] == 0:
+    if tables.state[state] == UNFILLED:
         fill_edge_table(world, tables, node, i, search.work)
     known = i > 0
-    if known and tables.state[state - 1] == 0:
+    if known and tables.state[state - 1] == UNFILLED:
         fill_edge_table(world, tables, node, i - 1, search.work)
     f = 0.0
     if known:
@@ -209,9 +215,9 @@ def _wait_until(search, node, k, b):
     slot, values, improved = int(labels.best_at[node, 1]), tables.values, False
     for edge in range(e0, e1):
         head = network.target[edge]
-        available = search.clock.latest - search.target.time_to_go[head] - time
+        available = search.time_bins.latest - search.target.time_to_go[head] - time
         margin = _cost_margin(search, head, time, cost)
-        search.agenda.counts[WAITED] += count
+        search.active_nodes.counts[WAITED] += count
         for s in range(count):
             duration, price = np.float64(values[at + s]), np.float64(values[at + count + s])
             reduced = price - rate * duration
@@ -233,27 +239,28 @@ def _wait_until(search, node, k, b):
 @kernel_only
 def _wait_in_bin(search, node, b):
     """Let the best label so far of a node leave in this bin, where waiting may be useful."""
-    world, labels, clock, tables = search.world, search.labels, search.clock, search.tables
+    world, labels, time_bins, tables = search.world, search.labels, search.time_bins, search.tables
     improved = False
     if labels.best[node] == math.inf or not world.network.can_wait[node]:
         return False
     times = tables.times
-    k = search.agenda.counts[SLICE]
-    while k < times.shape[0] and times[k] < (b + 1) * clock.width:
+    k = search.active_nodes.counts[SLICE]
+    while k < times.shape[0] and times[k] < (b + 1) * time_bins.width:
         improved |= _wait_until(search, node, k, b)
         k += 1
-    time = b * clock.width
+    time = b * time_bins.width
     i = clamped_interval(times, time) - tables.first[node]
     if i < 0 or i + 1 >= tables.count[node] or labels.best_at[node, 0] > time:
         return improved
     state = tables.place[node] + i
-    if tables.state[state] != 3 and tables.state[state + 1] != 3:
+    if tables.state[state] != ALL_CLOSED and tables.state[state + 1] != ALL_CLOSED:
         return improved
     cost = labels.best[node] + world.prices.waiting_cost_rate * time
     if world.depart + time <= world.network.until[node] and may_be_non_dominated(
-        search.target, clock, node, time, cost
+        search.target, time_bins, node, time, cost
     ):
         start = LabelDeparture(time, cost, int(labels.best_at[node, 1]), time, b)
+        # true, but a variable: numba would compile a copy of `_expand` for each constant
         only_closed = time == time
         improved |= _expand(search, node, start, only_closed)
     return improved
@@ -262,14 +269,14 @@ def _wait_in_bin(search, node, b):
 @inlined
 def _expand_bin(search, node, b):
     """Sail on from the label of a node in this bin; return whether this bin was improved."""
-    world, labels, counts = search.world, search.labels, search.agenda.counts
+    world, labels, counts = search.world, search.labels, search.active_nodes.counts
     slot = labels.place[node] + b - labels.first[node]
     cost = np.float64(labels.cost[slot])
     if cost == math.inf or (labels.done[node, 0] == b and not cost < labels.done[node, 1]):
         return False
     labels.done[node, 0], labels.done[node, 1] = b, cost
     time = np.float64(labels.when[slot, 0])
-    if search.clock.wait and world.network.can_wait[node]:
+    if search.time_bins.wait and world.network.can_wait[node]:
         reduced = cost - world.prices.waiting_cost_rate * time
         if reduced >= labels.best[node]:
             return False
@@ -277,11 +284,11 @@ def _expand_bin(search, node, b):
         labels.best_at[node, 0], labels.best_at[node, 1] = time, slot
     if node == search.target.goal:
         return False
-    if not may_be_non_dominated(search.target, search.clock, node, time, cost):
+    if not may_be_non_dominated(search.target, search.time_bins, node, time, cost):
         counts[PRUNED] += 1
         return False
     counts[VISITED] += 1
-    # flags are variables, not constants: numba would compile a copy for each constant
+    # false, but a variable: numba would compile a copy of `_expand` for each constant
     start, only_closed = LabelDeparture(time, cost, slot, math.nan, b), time != time
     return _expand(search, node, start, only_closed)
 
@@ -300,24 +307,29 @@ def process_bins(search, begin, end):
     Edges shorter than a bin feed the bin they start in; its nodes are then visited again until
     none of its labels improves.
     """
-    labels, clock, agenda, times = search.labels, search.clock, search.agenda, search.tables.times
-    active, counts = agenda.active, agenda.counts
+    labels, time_bins, active_nodes, times = (
+        search.labels,
+        search.time_bins,
+        search.active_nodes,
+        search.tables.times,
+    )
+    active, counts = active_nodes.active, active_nodes.counts
     for b in range(begin, end):
-        activate_nodes(agenda, labels.first, b)
+        activate_nodes(active_nodes, labels.first, b)
         first, improved = True, True
         while improved:
             improved, n = False, 0
             while n < counts[ACTIVE]:
                 node = active[n]
                 if labels.last[node] < b:
-                    deactivate_node(agenda, n)
+                    deactivate_node(active_nodes, n)
                     continue
-                if first and clock.wait and node != search.target.goal:
+                if first and time_bins.wait and node != search.target.goal:
                     improved |= _wait_in_bin(search, node, b)
                 improved |= _expand_bin(search, node, b)
                 n += 1
             first = False
-        while counts[SLICE] < times.shape[0] and times[counts[SLICE]] < (b + 1) * clock.width:
+        while counts[SLICE] < times.shape[0] and times[counts[SLICE]] < (b + 1) * time_bins.width:
             counts[SLICE] += 1
 
 

@@ -23,7 +23,7 @@ from thalweg.ship.condition_variables import (
     WAVE_NORTH,
 )
 from thalweg.ship.conditions import Conditions
-from thalweg.ship.methods.current_triangle import current_triangle
+from thalweg.ship.methods.current_triangle import crab_angle, current_triangle
 from thalweg.ship.ship_assumptions import stated_assumptions
 
 if TYPE_CHECKING:
@@ -86,9 +86,8 @@ class SailingState:
     sampled : Variables of the sea by name, SI.
     depth : Water depth, level included [m]; +inf where no source of depth exists, NaN unknown.
     heading : [rad from north].
-    through_water, over_ground : ndarray
-        Speeds [m/s]; ``speed_over_ground`` is NaN where the ship cannot hold its course or its
-        speed is unknown.
+    speed_through_water, speed_over_ground : ndarray
+        [m/s]; the latter is NaN where the ship cannot hold its course or its speed is unknown.
     """
 
     sampled: dict[str, FloatArray]
@@ -195,9 +194,9 @@ def solve_sailing_state(
     if world.has_current:
         east, north = sampled[EASTWARD_CURRENT], sampled[NORTHWARD_CURRENT]
     across = east * np.cos(points.course) - north * np.sin(points.course)
-    speed, drift = _solve_current_triangle(world, points, time, sampled, depth, across, guess)
+    speed, crab = _solve_current_triangle(world, points, time, sampled, depth, across, guess)
     found = current_triangle(speed, points.course, current_east=east, current_north=north)
-    heading = np.where(found.possible, found.heading, (points.course - drift) % (2.0 * math.pi))
+    heading = np.where(found.possible, found.heading, (points.course + crab) % (2.0 * math.pi))
     return SailingState(sampled, depth, heading, speed, found.speed_over_ground)
 
 
@@ -240,29 +239,29 @@ def _solve_current_triangle(
     across: FloatArray,
     guess: FloatArray | None,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return (speed through water, drift angle), consistent with each other."""
+    """Return (speed through water, crab angle), consistent with each other."""
     ship = world.ship
     field = ship.speed_field
     if field is not None:
         speed = np.broadcast_to(field(sampled, time, points.lat, points.lon), across.shape)
-        return speed, _drift_angle(across, speed)
+        return speed, crab_angle(across, speed)
     fixed = not ship.heading_matters or not np.any(across)
-    drift = np.zeros_like(across) if guess is None or fixed else _drift_angle(across, guess)
+    crab = np.zeros_like(across) if guess is None or fixed else crab_angle(across, guess)
     speed = np.full_like(across, math.nan)
     change = math.inf
     for _ in range(_MAX_HEADING_ITERATIONS):
         before = speed
         here = conditions_at(
-            world, points, time, sampled=sampled, depth=depth, heading=points.course - drift
+            world, points, time, sampled=sampled, depth=depth, heading=points.course + crab
         )
         speed = np.broadcast_to(ship.speed_through_water(here, points.setting), across.shape)
-        drift = _drift_angle(across, speed)
+        crab = crab_angle(across, speed)
         if fixed:
             break
         last_change, change = change, _largest_change(before, speed)
         if change <= _SPEED_TOLERANCE or (change < _SPEED_NOISE and change > 0.3 * last_change):
             break
-    return speed, drift
+    return speed, crab
 
 
 def _largest_change(before: FloatArray, speed: FloatArray) -> float:
@@ -271,10 +270,3 @@ def _largest_change(before: FloatArray, speed: FloatArray) -> float:
         change = np.abs(speed - before) / np.abs(speed)
     change = np.where(speed == before, 0.0, change)[~np.isnan(speed)]
     return math.inf if np.isnan(change).any() else float(change.max(initial=0.0))
-
-
-def _drift_angle(across: FloatArray, speed: FloatArray) -> FloatArray:
-    """Return the angle between course and heading [rad]; 0 where the speed is unknown."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        sine = np.where(speed > 0.0, across / speed, 0.0)
-    return np.arcsin(np.clip(np.where(np.isfinite(sine), sine, 0.0), -1.0, 1.0))

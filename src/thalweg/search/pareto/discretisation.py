@@ -12,7 +12,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import STATUS_COUNT
 from thalweg.kernels.pareto.edge_tables import EdgeTables, sail_departures
-from thalweg.kernels.pareto.label_arrays import COUNTER_COUNT as AGENDA_COUNTS
+from thalweg.kernels.pareto.label_arrays import COUNTER_COUNT as ACTIVE_NODE_COUNTS
 from thalweg.kernels.pareto.label_arrays import (
     ActiveNodes,
     BinLabels,
@@ -75,12 +75,14 @@ class Discretisation(NamedTuple):
 
     Attributes
     ----------
+    time_bins : Bins of the labels.
+    windows : Bins of each state in which a label may be useful.
     slices : float64[K] [s after departure]
     table_error : 95th percentile of the difference to the legs, as a share.
     memory : [bytes]
     """
 
-    clock: TimeBins
+    time_bins: TimeBins
     windows: BinWindows
     slices: FloatArray
     table_error: float
@@ -114,9 +116,9 @@ def choose_discretisation(
     """
     width = _round_bin_width(request.horizon / _MAX_BINS) if bin_s is None else float(bin_s)
     while True:
-        clock = _clock(request, width)
-        windows = _windows(clock, bounds, earliest - request.depart)
-        coarsest = clock.count <= _MIN_BINS
+        time_bins = _time_bins(request, width)
+        windows = _windows(time_bins, bounds, earliest - request.depart)
+        coarsest = time_bins.count <= _MIN_BINS
         if (
             bin_s is None
             and not coarsest
@@ -124,11 +126,11 @@ def choose_discretisation(
         ):
             width = _round_bin_width(width * 1.5)
             continue
-        slices, error, memory = _slices(front_problem, request, clock, windows, memory_limit)
+        slices, error, memory = _slices(front_problem, request, time_bins, windows, memory_limit)
         if memory <= memory_limit:
-            return Discretisation(clock, windows, slices, error, memory)
+            return Discretisation(time_bins, windows, slices, error, memory)
         if bin_s is not None or coarsest:
-            raise _memory_error(front_problem, clock, memory, memory_limit)
+            raise _memory_error(front_problem, time_bins, memory, memory_limit)
         width = _round_bin_width(width * 1.5)
 
 
@@ -137,27 +139,27 @@ def _round_bin_width(width: float) -> float:
     return fitting[0] if fitting else math.ceil(width / 3600.0) * 3600.0
 
 
-def _clock(request: FrontRequest, width: float) -> TimeBins:
+def _time_bins(request: FrontRequest, width: float) -> TimeBins:
     count = int(request.horizon / width) + 1
     return TimeBins(
         width, request.horizon, count, max(1, round(math.sqrt(count / 2))), request.wait
     )
 
 
-def _windows(clock: TimeBins, bounds: BoundsToGoal, earliest: FloatArray) -> BinWindows:
+def _windows(time_bins: TimeBins, bounds: BoundsToGoal, earliest: FloatArray) -> BinWindows:
     """Return the bins of each state; the tables may be early by a little."""
-    early = np.maximum(0.995 * earliest - 0.5 * clock.width, 0.0)
-    late = clock.latest - bounds.time
+    early = np.maximum(0.995 * earliest - 0.5 * time_bins.width, 0.0)
+    late = time_bins.latest - bounds.time
     known = np.isfinite(early) & np.isfinite(late) & (late >= early)
-    first = np.where(known, np.where(known, early, 0.0) // clock.width, 1).astype(np.int32)
-    last = np.where(known, np.where(known, late, 0.0) // clock.width, 0).astype(np.int32)
-    return BinWindows(first, np.minimum(last, clock.count - 1))
+    first = np.where(known, np.where(known, early, 0.0) // time_bins.width, 1).astype(np.int32)
+    last = np.where(known, np.where(known, late, 0.0) // time_bins.width, 0).astype(np.int32)
+    return BinWindows(first, np.minimum(last, time_bins.count - 1))
 
 
 def _slices(
     front_problem: FrontProblem,
     request: FrontRequest,
-    clock: TimeBins,
+    time_bins: TimeBins,
     windows: BinWindows,
     memory_limit: float,
 ) -> tuple[FloatArray, float, int]:
@@ -166,20 +168,20 @@ def _slices(
     If none that fit the memory and take a bearable time are exact enough, the finest that do, or
     the sea's own times where finer ones help little: jumps are not known better for them.
     """
-    ladder = _slice_candidates(front_problem.world.sea.times - request.depart, clock.latest)
+    ladder = _slice_candidates(front_problem.world.sea.times - request.depart, time_bins.latest)
     most, own = (
         min(memory_limit, _MAX_BYTES_OF_FINER_SLICES),
         len(front_problem.world.sea.times) + 2,
     )
     chosen, error, memory, fine = ladder[0], math.inf, 0, False
     for slices in ladder:
-        needed = _memory(front_problem, clock, windows, slices)
+        needed = _memory(front_problem, time_bins, windows, slices)
         if error <= TABLE_TOLERANCE and (fine or needed > _CHEAP):
             break
         if error < math.inf and needed > most:
             break
         before = error
-        error, closes = _table_error(front_problem, request, windows, clock, slices)
+        error, closes = _table_error(front_problem, request, windows, time_bins, slices)
         if len(slices) > own and error > _MAX_ERROR_RATIO * before and needed > _CHEAP:
             error = before
             break
@@ -214,11 +216,11 @@ def _relaxations(front_problem: FrontProblem, windows: BinWindows) -> float:
 
 
 def slice_windows(
-    clock: TimeBins, windows: BinWindows, slices: FloatArray
+    time_bins: TimeBins, windows: BinWindows, slices: FloatArray
 ) -> tuple[IntArray, IntArray]:
     """Return the first slice of each state and how many it has."""
-    begin = np.minimum(windows.first * clock.width, clock.latest)
-    end = np.minimum((windows.last + 1) * clock.width, clock.latest)
+    begin = np.minimum(windows.first * time_bins.width, time_bins.latest)
+    end = np.minimum((windows.last + 1) * time_bins.width, time_bins.latest)
     first = np.searchsorted(slices, begin, side="right") - 1
     last = np.minimum(np.searchsorted(slices, end, side="right"), len(slices) - 1)
     first = np.minimum(first, len(slices) - 2)
@@ -227,9 +229,9 @@ def slice_windows(
 
 
 def _memory(
-    front_problem: FrontProblem, clock: TimeBins, windows: BinWindows, slices: FloatArray
+    front_problem: FrontProblem, time_bins: TimeBins, windows: BinWindows, slices: FloatArray
 ) -> int:
-    _, count = slice_windows(clock, windows, slices)
+    _, count = slice_windows(time_bins, windows, slices)
     degree = np.diff(front_problem.world.network.indptr)
     values = int((count * degree).sum()) * 2 * len(front_problem.world.ship.settings) * 4
     slack = int((count * degree).sum()) * 13
@@ -240,7 +242,7 @@ def _table_error(
     front_problem: FrontProblem,
     request: FrontRequest,
     windows: BinWindows,
-    clock: TimeBins,
+    time_bins: TimeBins,
     slices: FloatArray,
 ) -> tuple[float, bool]:
     """Return how far legs midway between two slices are from the mean of the two, as a share.
@@ -259,7 +261,7 @@ def _table_error(
     edges = net.indptr[nodes] + rng.integers(0, degree)
     choices = rng.integers(0, len(front_problem.world.ship.settings), _SAMPLED_EDGES)
     span = (windows.last - windows.first + 1)[nodes]
-    when = (windows.first[nodes] + rng.random(_SAMPLED_EDGES) * span) * clock.width
+    when = (windows.first[nodes] + rng.random(_SAMPLED_EDGES) * span) * time_bins.width
     k = np.clip(np.searchsorted(slices, when, side="right") - 1, 0, len(slices) - 2)
     begin, end = slices[k], slices[k + 1]
     found = []
@@ -279,12 +281,12 @@ def _table_error(
 
 
 def _memory_error(
-    front_problem: FrontProblem, clock: TimeBins, memory: int, limit: float
+    front_problem: FrontProblem, time_bins: TimeBins, memory: int, limit: float
 ) -> InputError:
     net = front_problem.world.network
     return InputError(
         f"A front over {len(net.station):,} nodes and {len(net.target):,} edges with "
-        f"{len(front_problem.world.ship.settings)} settings in bins of {clock.width:g} s "
+        f"{len(front_problem.world.ship.settings)} settings in bins of {time_bins.width:g} s "
         "would take "
         f"{memory / 1e9:.3g} GB of memory.",
         f"At most {limit / 1e9:.3g} GB may be taken.",
@@ -297,7 +299,7 @@ def _memory_error(
 
 def new_edge_tables(front_problem: FrontProblem, plan: Discretisation) -> EdgeTables:
     """Return tables of edges, not filled yet."""
-    first, count = slice_windows(plan.clock, plan.windows, plan.slices)
+    first, count = slice_windows(plan.time_bins, plan.windows, plan.slices)
     degree = np.diff(front_problem.world.network.indptr)
     size = count * degree * 2 * len(front_problem.world.ship.settings)
     return EdgeTables(
@@ -330,16 +332,18 @@ def new_bin_labels(windows: BinWindows) -> BinLabels:
     )
 
 
-def new_target(goal: int, bounds: BoundsToGoal, clock: TimeBins) -> LabelTarget:
+def new_target(goal: int, bounds: BoundsToGoal, time_bins: TimeBins) -> LabelTarget:
     """Return the goal with nothing known of arriving there."""
     return LabelTarget(
-        goal, np.full(clock.count + 1, np.inf), bounds.time, bounds.rates,
+        goal, np.full(time_bins.count + 1, np.inf), bounds.time, bounds.rates,
         np.ascontiguousarray(bounds.floor),
     )  # fmt: skip
 
 
-def new_agenda(windows: BinWindows) -> ActiveNodes:
+def new_active_nodes(windows: BinWindows) -> ActiveNodes:
     """Return the nodes in the order in which their bins begin."""
     used = np.flatnonzero(windows.last >= windows.first)
     order = used[np.argsort(windows.first[used], kind="stable")].astype(np.int32)
-    return ActiveNodes(order, np.empty(len(order), np.int32), np.zeros(AGENDA_COUNTS, np.int64))
+    return ActiveNodes(
+        order, np.empty(len(order), np.int32), np.zeros(ACTIVE_NODE_COUNTS, np.int64)
+    )

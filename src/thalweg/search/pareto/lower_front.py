@@ -22,7 +22,7 @@ from thalweg.kernels.pareto.slice_interpolation import (
 from thalweg.search.pareto.discretisation import (
     PROGRESS_CHUNKS,
     Discretisation,
-    new_agenda,
+    new_active_nodes,
     new_target,
 )
 from thalweg.search.pareto.front_problem import FrontProblem, FrontRequest, new_edge_workspace
@@ -99,30 +99,37 @@ def _lower_by_bins(
     report: Callable[[float], None],
 ) -> LowerFront:
     """Let every arrival count for the start of its bin."""
-    clock = plan.clock
-    target = new_target(request.goal, bounds, clock)
+    time_bins = plan.time_bins
+    target = new_target(request.goal, bounds, time_bins)
     for point in points:
-        tighten_target(target, clock, point)
+        tighten_target(target, time_bins, point)
     labels = _new_labels(plan)
     labels.cost[labels.place[request.start]] = 0.0
-    agenda = new_agenda(plan.windows)
+    active_nodes = new_active_nodes(plan.windows)
     search = LowerSearch(
-        front_problem.world, labels, target, clock, blocks, slack, agenda, new_edge_workspace()
+        front_problem.world,
+        labels,
+        target,
+        time_bins,
+        blocks,
+        slack,
+        active_nodes,
+        new_edge_workspace(),
     )
-    edges = np.unique(np.linspace(0, clock.count, PROGRESS_CHUNKS + 1).astype(int))
+    edges = np.unique(np.linspace(0, time_bins.count, PROGRESS_CHUNKS + 1).astype(int))
     for a, b in pairwise(edges.tolist()):
         process_bins_lower(search, a, b)
-        report(b / clock.count)
+        report(b / time_bins.count)
     first, last = int(labels.first[request.goal]), int(labels.last[request.goal])
     begin = int(labels.place[request.goal])
-    time = np.arange(first, last + 1) * clock.width
+    time = np.arange(first, last + 1) * time_bins.width
     cost = (
         labels.cost[begin : begin + last - first + 1]
         + front_problem.world.prices.waiting_cost_rate * time
     )
     time = np.append(time, [point.time for point in points])
     cost = np.append(_ROUNDING_MARGIN * cost, [point.cost for point in points])
-    counts = agenda.counts
+    counts = active_nodes.counts
     return LowerFront(
         *_staircase(time.astype(float), cost.astype(float)),
         int(counts[VISITED]),
@@ -149,16 +156,16 @@ def _lower_by_time_prices(
         known = float(np.min(cost + rate * time))
         floor = bounds.to_goal.floor(rate)
         target = ScalarisedLabelTarget(request.goal, rate, known, bounds.time, floor)
-        agenda = new_agenda(plan.windows)
+        active_nodes = new_active_nodes(plan.windows)
         process_bins_scalarised(
             LowerSearch(
                 front_problem.world,
                 labels,
                 target,
-                plan.clock,
+                plan.time_bins,
                 blocks,
                 slack,
-                agenda,
+                active_nodes,
                 new_edge_workspace(),
             )
         )
@@ -166,8 +173,8 @@ def _lower_by_time_prices(
         bins = int(labels.last[request.goal]) - int(labels.first[request.goal]) + 1
         found = float(labels.cost[begin : begin + bins].min())
         lines.append((rate, min(known, _ROUNDING_MARGIN * found)))
-        labelled += int(agenda.counts[VISITED])
-        relaxed += int(agenda.counts[RELAXED])
+        labelled += int(active_nodes.counts[VISITED])
+        relaxed += int(active_nodes.counts[RELAXED])
     return lines, (labelled, relaxed)
 
 
@@ -194,11 +201,11 @@ def _larger_bound(
     if not lines:
         return time, cost
     own = np.array([point.time for point in points])
-    grid = np.concatenate((time, np.arange(plan.clock.count + 1) * plan.clock.width, own))
-    grid = np.concatenate((grid, own + 1e-9 * plan.clock.latest))
-    grid = np.unique(grid[(grid >= time[0]) & (grid <= plan.clock.latest)])
+    grid = np.concatenate((time, np.arange(plan.time_bins.count + 1) * plan.time_bins.width, own))
+    grid = np.concatenate((grid, own + 1e-9 * plan.time_bins.latest))
+    grid = np.unique(grid[(grid >= time[0]) & (grid <= plan.time_bins.latest)])
     steps = cost[np.searchsorted(time, grid, side="right") - 1]
-    until = np.append(grid[1:], plan.clock.latest)
+    until = np.append(grid[1:], plan.time_bins.latest)
     rates, values = np.array(lines).T
     line = (values[:, None] - rates[:, None] * until).max(axis=0)
     return _staircase(grid, np.maximum(steps, line))

@@ -19,7 +19,7 @@ from thalweg.search.pareto.discretisation import (
     PROGRESS_CHUNKS,
     Discretisation,
     choose_discretisation,
-    new_agenda,
+    new_active_nodes,
     new_bin_labels,
     new_edge_tables,
     new_target,
@@ -197,7 +197,7 @@ def _search(
         memory=plan.memory,
     )
     refused = counts_by_reason(blocks.refused)
-    return NetworkFront(points, below.time, below.cost, plan.clock.width, work, refused)
+    return NetworkFront(points, below.time, below.cost, plan.time_bins.width, work, refused)
 
 
 def _set_labels(
@@ -210,28 +210,28 @@ def _set_labels(
     report: Callable[[float, int], None],
 ) -> tuple[list[FrontPoint], int, NDArray[np.int64]]:
     """Label all nodes bin by bin; return the goal's paths, how many are closed, and counts."""
-    target, labels = new_target(request.goal, bounds, plan.clock), new_bin_labels(plan.windows)
+    target, labels = new_target(request.goal, bounds, plan.time_bins), new_bin_labels(plan.windows)
     for point in known:
-        tighten_target(target, plan.clock, point)
+        tighten_target(target, plan.time_bins, point)
     begin = int(labels.place[request.start])
     labels.cost[begin], labels.when[begin], labels.source[begin] = 0.0, (0.0, np.nan), -1
-    agenda = new_agenda(plan.windows)
+    active_nodes = new_active_nodes(plan.windows)
     search = LabelSearch(
         front_problem.world,
         labels,
         target,
-        plan.clock,
+        plan.time_bins,
         blocks,
-        agenda,
+        active_nodes,
         new_edge_workspace(),
         np.empty(2 * len(request.settings), np.float32),
     )
-    edges = np.unique(np.linspace(0, plan.clock.count, PROGRESS_CHUNKS + 1).astype(int))
+    edges = np.unique(np.linspace(0, plan.time_bins.count, PROGRESS_CHUNKS + 1).astype(int))
     for a, b in pairwise(edges.tolist()):
         process_bins(search, a, b)
-        report(b / plan.clock.count, 0)
+        report(b / plan.time_bins.count, 0)
     found, dropped = paths_of_goal_labels(front_problem, request, labels)
-    return found, dropped, agenda.counts
+    return found, dropped, active_nodes.counts
 
 
 class _SeedPaths(NamedTuple):

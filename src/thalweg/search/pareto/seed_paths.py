@@ -165,16 +165,16 @@ def _path_through(front_problem: FrontProblem, path: IntArray) -> PlannedPath:
     return PlannedPath(path, np.array(edges, np.int64), np.zeros(len(edges), np.int64), still)
 
 
-def tighten_target(target: LabelTarget, clock: TimeBins, point: FrontPoint) -> None:
+def tighten_target(target: LabelTarget, time_bins: TimeBins, point: FrontPoint) -> None:
     """Lower what is known of arriving at the goal by a point.
 
     Parameters
     ----------
     target : Upper bounds of the cost at the goal; changed in place.
-    clock : The division of time.
+    time_bins : The division of time.
     point : A sailed path.
     """
-    b = int(point.time / clock.width) + 1
+    b = int(point.time / time_bins.width) + 1
     np.minimum(target.upper[b:], point.cost, out=target.upper[b:])
 
 

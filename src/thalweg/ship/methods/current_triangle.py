@@ -63,8 +63,8 @@ def current_along_and_across(
     return u * east + v * north, u * north - v * east
 
 
-def drift_angle(across: ArrayLike, speed: ArrayLike) -> FloatArray:
-    """Return course minus heading, asin(s / V).
+def crab_angle(across: ArrayLike, speed: ArrayLike) -> FloatArray:
+    """Return heading minus course, -asin(s / V).
 
     Parameters
     ----------
@@ -76,13 +76,14 @@ def drift_angle(across: ArrayLike, speed: ArrayLike) -> FloatArray:
     Returns
     -------
     ndarray
-        [rad], positive where the bow points to port of the course; 0 where the speed is unknown
-        or not positive, and -pi/2 or pi/2 where the current across is stronger than the ship.
+        [rad], positive where the bow points to starboard of the course; 0 where the speed is
+        unknown or not positive, and -pi/2 or pi/2 where the current across is stronger than the
+        ship.
     """
     s, v = as_float_array(across), as_float_array(speed)
     with np.errstate(invalid="ignore", divide="ignore"):
         sine = np.where(v > 0.0, s / v, 0.0)
-    return np.arcsin(np.clip(np.where(np.isfinite(sine), sine, 0.0), -1.0, 1.0))
+    return -np.arcsin(np.clip(np.where(np.isfinite(sine), sine, 0.0), -1.0, 1.0))
 
 
 def speed_over_ground(speed: ArrayLike, along: ArrayLike, across: ArrayLike) -> FloatArray:
@@ -146,7 +147,7 @@ def current_triangle(
     along, across = current_along_and_across(current_east, current_north, course)
     ground = speed_over_ground(speed, along, across)
     possible = np.isfinite(ground)
-    crab = np.where(possible, -drift_angle(across, speed), np.nan)
+    crab = np.where(possible, crab_angle(across, speed), np.nan)
     return CurrentTriangle(
         speed_over_ground=ground,
         heading=np.mod(as_float_array(course) + crab, 2.0 * np.pi),
