@@ -98,9 +98,9 @@ class WaitingSearch:
         """Sail without waiting from several nodes at one time."""
         start = len(self.given.network.station)
         arrays = _with_common_source(self.given.network, sources, max(self.goal, 0))
-        return self.search(arrays, start, time, goal, horizon, wait=False)
+        return self.labels_from_state(arrays, start, time, goal, horizon, wait=False)
 
-    def search(
+    def labels_from_state(
         self,
         arrays: NetworkArrays,
         start: int,
@@ -153,7 +153,8 @@ def earliest_arrival_with_restricted_waiting(
     Returns
     -------
     SearchResult
-        Its cost is the time from departure to arrival; penalty factors only steer single rounds.
+        Its cost is the time from departure to arrival [s], infinite without a path. Penalty factors
+        change the order in which a single round settles nodes; the cost does not contain them.
 
     Notes
     -----
@@ -164,40 +165,46 @@ def earliest_arrival_with_restricted_waiting(
     """
     horizon = math.inf if arrive_by is None else float(arrive_by)
     end = min(horizon, float(given.sea.times[-1]))
-    sweep = WaitingSearch(network, given, goal, depart, end)
-    sweep.stays[start] = [WaitInterval(depart, math.inf if network.can_wait[start] else depart, -1)]
+    search = WaitingSearch(network, given, goal, depart, end)
+    search.stays[start] = [
+        WaitInterval(depart, math.inf if network.can_wait[start] else depart, -1)
+    ]
     afloat = _safe_intervals(network, given, start)
     reached = np.full(network.n_nodes, math.inf)
-    best, best_wave = math.inf, -1
-    least = _arrival_with_unrestricted_waiting(sweep, start)
+    best, best_round = math.inf, -1
+    least = _arrival_with_unrestricted_waiting(search, start)
     for time in _departures(depart, end, step):
-        sources = sweep.present(time)
-        if time >= min(best, end) or _arrival_lower_bound(sweep, sources, time) >= best:
+        sources = search.present(time)
+        if time >= min(best, end) or _arrival_lower_bound(search, sources, time) >= best:
             break
-        if sweep.rounds and (best <= least + _TIME_TOLERANCE or least == math.inf):
+        if search.rounds and (best <= least + _TIME_TOLERANCE or least == math.inf):
             break
-        sweep.rounds.append(DepartureRound(float(time), sources))
-        safe = all(any(s.until == math.inf for s in sweep.stays.get(n, ())) for n in afloat)
-        labels = sweep.search_from(float(time), list(sources), goal if safe else -1, min(end, best))
+        search.rounds.append(DepartureRound(float(time), sources))
+        safe = all(any(s.until == math.inf for s in search.stays.get(n, ())) for n in afloat)
+        labels = search.search_from(
+            float(time), list(sources), goal if safe else -1, min(end, best)
+        )
         arrival = labels.time[: network.n_nodes]
         settled = labels.settled[: network.n_nodes]
         np.minimum(reached, np.where(settled, arrival, math.inf), out=reached)
-        _record_waits(sweep, arrival, settled, afloat)
+        _record_waits(search, arrival, settled, afloat)
         if settled[goal] and arrival[goal] < best:
-            best, best_wave = float(arrival[goal]), len(sweep.rounds) - 1
-    if best_wave >= 0:
-        best_wave = _refine_departure(sweep, best_wave, best)
-    return _assemble_result(sweep, start, best_wave, reached)
+            best, best_round = float(arrival[goal]), len(search.rounds) - 1
+    if best_round >= 0:
+        best_round = _refine_departure(search, best_round, best)
+    return _assemble_result(search, start, best_round, reached)
 
 
-def _arrival_with_unrestricted_waiting(sweep: WaitingSearch, start: int) -> float:
+def _arrival_with_unrestricted_waiting(search: WaitingSearch, start: int) -> float:
     """Return the arrival of a ship that may wait anywhere, afloat or not: a lower bound [s]."""
-    network = sweep.given.network
+    network = search.given.network
     free = network._replace(
         can_wait=np.ones_like(network.can_wait), factor=np.ones_like(network.factor)
     )
-    labels = sweep.search(free, start, sweep.depart, sweep.goal, sweep.horizon, wait=True)
-    return float(labels.time[sweep.goal])
+    labels = search.labels_from_state(
+        free, start, search.depart, search.goal, search.horizon, wait=True
+    )
+    return float(labels.time[search.goal])
 
 
 def _departures(depart: float, end: float, step: float) -> FloatArray:
@@ -207,16 +214,16 @@ def _departures(depart: float, end: float, step: float) -> FloatArray:
 
 
 def _arrival_lower_bound(
-    sweep: WaitingSearch, sources: dict[int, WaitInterval], time: float
+    search: WaitingSearch, sources: dict[int, WaitInterval], time: float
 ) -> float:
     """Return a lower bound of the arrival of any round that leaves now [s]."""
-    network, goal = sweep.network, sweep.goal
+    network, goal = search.network, search.goal
     nodes = np.flatnonzero(network.can_wait)
     nodes = nodes[nodes != goal]  # who is there leaves no more
     nodes = np.union1d(nodes, list(sources)).astype(np.int64)
     lat, lon = network.lat, network.lon
     away = distance_bounds(lat[nodes], lon[nodes], float(lat[goal]), float(lon[goal]))
-    fastest = max(sweep.given.fastest, canal_speed(network))
+    fastest = max(search.given.fastest, canal_speed(network))
     return time + float(away.min()) * ROUNDING_FACTOR / fastest if len(nodes) else math.inf
 
 
@@ -236,74 +243,74 @@ def _safe_intervals(network: Network, given: SearchProblem, start: int) -> dict[
 
 
 def _record_waits(
-    sweep: WaitingSearch,
+    search: WaitingSearch,
     arrival: FloatArray,
     settled: NDArray[np.bool_],
     afloat: dict[int, FloatArray],
 ) -> None:
     """Record the waits that the last round makes possible, if none is known as early."""
-    round_index = len(sweep.rounds) - 1
+    round_index = len(search.rounds) - 1
     for node, spans in afloat.items():
-        if not settled[node] or node == sweep.goal:
+        if not settled[node] or node == search.goal:
             continue
         time = float(arrival[node])
         span = spans[(spans[:, 0] <= time) & (time <= spans[:, 1])]
         if not len(span):
             continue
-        stays = sweep.stays.setdefault(node, [])
+        stays = search.stays.setdefault(node, [])
         same = [s for s in stays if s.until == span[0, 1]]
         if same and same[0].arrive <= time:
             continue
-        sweep.stays[node] = [s for s in stays if s.until != span[0, 1]]
-        sweep.stays[node].append(WaitInterval(time, float(span[0, 1]), round_index))
+        search.stays[node] = [s for s in stays if s.until != span[0, 1]]
+        search.stays[node].append(WaitInterval(time, float(span[0, 1]), round_index))
 
 
-def _refine_departure(sweep: WaitingSearch, round_index: int, best: float) -> int:
+def _refine_departure(search: WaitingSearch, round_index: int, best: float) -> int:
     """Look between the best round and the one before for an earlier one; return the best."""
     if round_index == 0:
         return round_index
-    low, high = sweep.rounds[round_index - 1].time, sweep.rounds[round_index].time
+    low, high = search.rounds[round_index - 1].time, search.rounds[round_index].time
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
-        sources = sweep.present(middle)
-        labels = sweep.search_from(middle, list(sources), sweep.goal, best)
-        if labels.settled[sweep.goal] and labels.time[sweep.goal] <= best:
-            best, high = float(labels.time[sweep.goal]), middle
-            sweep.rounds.append(DepartureRound(middle, sources))
-            round_index = len(sweep.rounds) - 1
+        sources = search.present(middle)
+        labels = search.search_from(middle, list(sources), search.goal, best)
+        if labels.settled[search.goal] and labels.time[search.goal] <= best:
+            best, high = float(labels.time[search.goal]), middle
+            search.rounds.append(DepartureRound(middle, sources))
+            round_index = len(search.rounds) - 1
         else:
             low = middle
     return round_index
 
 
 def _assemble_result(
-    sweep: WaitingSearch, start: int, round_index: int, reached: FloatArray
+    search: WaitingSearch, start: int, round_index: int, reached: FloatArray
 ) -> SearchResult:
     """Assemble the path backwards from the goal, wait by wait."""
     nodes: list[int] = []
     arrive: list[float] = []
     leave: list[float] = []
-    to = sweep.goal
+    to = search.goal
     while round_index >= 0:
-        sent = sweep.rounds[round_index]
-        labels = sweep.search_from(sent.time, list(sent.stays), to, math.inf)
-        path = _path(labels, to, len(sweep.given.network.station))
+        sent = search.rounds[round_index]
+        labels = search.search_from(sent.time, list(sent.stays), to, math.inf)
+        path = _path(labels, to, len(search.given.network.station))
         times = labels.time[path]
         wait = sent.stays[path[0]]
         nodes = [*path, *nodes[1:]]
         arrive = [wait.arrive, *times[1:].tolist(), *arrive[1:]]
         leave = [sent.time, *times[1:-1].tolist(), *(leave or [float(times[-1])])]
         to, round_index = path[0], wait.round_index
-    work = SearchWork.of(sweep.counts, sweep.refused)
-    lat, lon = sweep.network.lat, sweep.network.lon
+    work = SearchWork.of(search.counts, search.refused)
+    lat, lon = search.network.lat, search.network.lon
     known = np.flatnonzero(np.isfinite(reached))
-    goal = sweep.goal
+    goal = search.goal
     away = distance_bounds(lat[known], lon[known], float(lat[goal]), float(lon[goal]))
     return SearchResult(
         path=np.array(nodes, np.int64),
         path_arrive=np.array(arrive),
         path_depart=np.array(leave),
-        cost=arrive[-1] - sweep.depart if nodes else math.inf,
+        cost=arrive[-1] - search.depart if nodes else math.inf,
         node_arrival=reached,
         nearest_node=int(known[np.argmin(away)]) if len(known) else start,
         work=work,

@@ -275,7 +275,7 @@ def make_search_problem(
 
 
 def canal_speed(network: Network) -> float:
-    """Return the largest speed [m/s], as the crow flies, of edges of fixed time; 0 without any.
+    """Return the largest speed [m/s], along the geodesic, of edges of fixed time; 0 if none.
 
     A bound by speed holds only with at least this one: a slow ship may gain on it in a canal.
     """

@@ -145,7 +145,7 @@ class FuelTerms:
         Raises
         ------
         InputError
-            If ``what`` is not one of the three.
+            If ``what`` is not one of the four.
         """
         if what not in FUEL_QUANTITIES:
             raise unknown_name_error("sum of fuel", str(what), FUEL_QUANTITIES)

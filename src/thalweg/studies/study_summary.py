@@ -145,7 +145,8 @@ def summarise_study(folder: str | Path) -> StudySummary:
     -----
     The confidence interval of a median is that of its order statistics: with n voyages the ranks
     follow the binomial distribution B(n, 1/2), whatever the distribution of the figure (Conover
-    1999, Practical Nonparametric Statistics, sec. 3.2; cited from memory). It covers 90 %.
+    1999, Practical Nonparametric Statistics, sec. 3.2; not compared with the source). It covers
+    90 %.
     Departures close in time are not independent, so the true interval is wider.
     """
     study = read_study(folder)

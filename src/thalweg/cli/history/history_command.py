@@ -72,7 +72,7 @@ def _add_build(actions: Any) -> None:
         )  # fmt: skip
     build.add_argument(
         "--least", type=int, default=3, metavar="N",
-        help="voyages that make a junction, and from which on an arc is believed (default: 3)",
+        help="fewest voyages that make a junction or an arc (default: 3)",
     )  # fmt: skip
     build.add_argument(
         "--column", nargs="+", action="extend", default=[], metavar="WHAT=NAME",

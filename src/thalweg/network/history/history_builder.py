@@ -43,7 +43,7 @@ class HistoryRules:
     tolerance : float
         Turning points keep tracks within this distance [m].
     least : int
-        Voyages that make a junction, and from which on an arc is believed.
+        Fewest voyages that make a junction, and fewest that make an arc.
     """
 
     radius: float = 10.0 * NAUTICAL_MILE

@@ -116,7 +116,7 @@ class HistoryNetwork:
     radius : float
         Radius of a junction [m].
     least : int
-        Voyages from which on an arc is believed.
+        Fewest voyages that make an arc.
     summary : dict
         How it was made: counts of voyages, positions, outliers, repaired arcs; period; notes.
     """

@@ -172,7 +172,7 @@ def _refined_candidates(
 
 
 def _show(trade_off: TradeOffContext, found: list[TrackCandidate]) -> None:
-    """Give the front of candidates to whoever watches the plan."""
+    """Pass the front of candidates to ``show_front`` of the caller's progress."""
     if found:
         kept = non_dominated_indices(*_times_and_values(found), tolerance=ROUNDING_TOLERANCE)
         points = [(found[index].time, found[index].value) for index in kept]

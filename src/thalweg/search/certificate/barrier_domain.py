@@ -59,7 +59,7 @@ class PassageToBound:
         return 0.0 if self.latest is None else max(self.latest - self.depart, 0.0)
 
     def canal_speed(self, fastest: float) -> float:
-        """Return the greatest speed [m/s] at which a canal joins its ends, as the crow flies.
+        """Return the greatest speed [m/s] along the geodesic at which a canal joins its ends.
 
         Of those that a ship may pass in the known time with a greatest speed elsewhere; 0 without.
         """

@@ -22,16 +22,22 @@ from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBo
 from thalweg.search.certificate.barrier_mesh import BarrierMesh, build_mesh, slope_direction
 from thalweg.search.search_problem import ROUNDING_FACTOR
 
-_FIRST_CELLS: Final = 60  # along the geodesic, on the first mesh
-_FEWEST_CELLS: Final = 24  # the same, where there is little time
-_FEWEST_SAMPLES: Final = 120  # of functions, along the longer side
-_CELLS_OF_GEODESIC: Final = 400  # the same, for the strongest current
-_CONTRADICTION: Final = 2e-3  # of the known time
-_FINE_CELLS: Final = 800  # of functions, for ships that weather does not slow down ...
-_SECONDS_OF_FINE_CELLS: Final = 20.0  # ... and when there is this time; fewer with less
-_MOST_NODES: Final = 4_000_000
-_FIRST_ROUNDS: Final = 5, 14  # backwards and forwards
-_LATER_ROUNDS: Final = 3, 6  # on finer meshes, which begin with the factors of a coarser one
+_FIRST_CELLS: Final = 60  # cells of the first mesh along the geodesic
+_FEWEST_CELLS: Final = 24  # cells of the first mesh along the geodesic where there is little time
+#: Cells along the longer side of the raster, at least, for a sea that is given by functions.
+_FEWEST_SAMPLES: Final = 120
+#: Cells along the longer side of the raster for a sea of functions, for the strongest current of
+#: the bound of the geodesic.
+_CELLS_OF_GEODESIC: Final = 400
+_CONTRADICTION: Final = 2e-3  # a barrier above the known time by more than this share is refused
+#: Cells along the longer side of the raster for a sea of functions, for ships that weather does not
+#: slow down, if the search may take `_SECONDS_OF_FINE_CELLS` [s] or more; fewer with less time.
+_FINE_CELLS: Final = 800
+_SECONDS_OF_FINE_CELLS: Final = 20.0
+_MOST_NODES: Final = 4_000_000  # of a mesh
+_FIRST_ROUNDS: Final = 5, 14  # rounds on the first mesh, backwards and forwards
+#: Rounds backwards and forwards on finer meshes, which begin with the factors of a coarser one.
+_LATER_ROUNDS: Final = 3, 6
 _GROWTH: Final = 3.5  # of the time from one mesh to the next
 #: Seconds that a first mesh takes for each of its cells, without and with tables of weather.
 _SECONDS_A_CELL: Final = 3e-5, 3e-4
@@ -161,11 +167,22 @@ class BarrierSearch:
 
 @dataclass(eq=False)
 class _Level:
-    """Bounds of the times to and from each cell of one mesh, which its barriers improve."""
+    """Bounds of the times to and from each cell of one mesh, which its barriers improve.
+
+    Attributes
+    ----------
+    from_start : float64 ndarray (rows, columns)
+        Lower bound of the time from the start to a cell [s].
+    to_goal : float64 ndarray (rows, columns)
+        Lower bound of the time from a cell to the goal [s].
+    known : float
+        Time of the known route [s].
+    factors : Of the barriers from the goal and from the start, for a finer mesh; None for none.
+    """
 
     mesh: BarrierMesh
-    own: FloatArray
-    other: FloatArray
+    from_start: FloatArray
+    to_goal: FloatArray
     known: float
     factors: tuple[FloatArray | None, FloatArray | None] = (None, None)
 
@@ -181,15 +198,15 @@ class _Level:
         back, ahead = (None if f is None else finer_factors(f) for f in coarser.factors)
         return cls(
             mesh,
-            np.maximum(from_start, _halved_cells(coarser.own)),
-            np.maximum(to_goal, _halved_cells(coarser.other)),
+            np.maximum(from_start, _halved_cells(coarser.from_start)),
+            np.maximum(to_goal, _halved_cells(coarser.to_goal)),
             passage.known,
             (back, ahead),
         )
 
     def band(self) -> BoolArray:
         """Return the cells that a faster route may touch."""
-        return np.asarray(self.own + self.other < self.known)
+        return np.asarray(self.from_start + self.to_goal < self.known)
 
     def certify(self, passage: PassageToBound) -> tuple[BarrierTask, CheckedBarrier | None]:
         """Find barriers from the goal and from the start; return the latter with its task."""
@@ -197,27 +214,27 @@ class _Level:
         rounds = _FIRST_ROUNDS if back_factor is None else _LATER_ROUNDS
         back = find_barrier(
             BarrierTask(
-                self.mesh, passage.goal, passage.start, self.known, self.other, self.own, False,
-                factor=back_factor,
+                self.mesh, passage.goal, passage.start, self.known, self.to_goal, self.from_start,
+                False, factor=back_factor,
             ),
             rounds[0],
         )  # fmt: skip
         course = None
         if back is not None and back.complete:
-            self.other = np.where(
-                self.band(), np.maximum(self.other, _least_in_cells(back)), self.other
+            self.to_goal = np.where(
+                self.band(), np.maximum(self.to_goal, _least_in_cells(back)), self.to_goal
             )
             course = slope_direction(self.mesh, back.phi, *passage.start)
         task = BarrierTask(
-            self.mesh, passage.start, passage.goal, self.known, self.own, self.other, True,
+            self.mesh, passage.start, passage.goal, self.known, self.from_start, self.to_goal, True,
             course, ahead_factor,
         )  # fmt: skip
         forward = find_barrier(task, rounds[1])
         if forward is not None and not forward.complete:
             forward = None
         if forward is not None:
-            self.own = np.where(
-                self.band(), np.maximum(self.own, _least_in_cells(forward)), self.own
+            self.from_start = np.where(
+                self.band(), np.maximum(self.from_start, _least_in_cells(forward)), self.from_start
             )
         self.factors = (
             None if back is None else back.factor,

@@ -30,7 +30,7 @@ class ReferenceBand:
     fixed_capacity : float
         Capacity the line is read at, whatever the ship's; NaN for the ship's own.
     verified : bool
-        Whether the numbers were checked beyond memory.
+        Whether the numbers were compared with the source.
     note : str
         What else must be known.
     """

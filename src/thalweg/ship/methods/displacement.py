@@ -101,7 +101,7 @@ def block_at_draught(
     References
     ----------
     Riddlesworth's method as given by J.-P. Jalkanen et al., "Extension of an assessment model of
-    ship traffic exhaust emissions", Atmos. Chem. Phys. 12 (2012) (from memory).
+    ship traffic exhaust emissions", Atmos. Chem. Phys. 12 (2012); not compared with the source.
     """
     ratio = as_float_array(design_draught) / as_float_array(draught)
     return 1.0 - (1.0 - as_float_array(design_block)) * np.cbrt(ratio)

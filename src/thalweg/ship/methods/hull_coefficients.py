@@ -89,8 +89,9 @@ def lcb_from_prismatic(prismatic_coefficient: ArrayLike) -> FloatArray:
 
     References
     ----------
-    Schneekluth and Bertram (1998), section 1.5, from memory. It has two such lines, this one and
-    `lcb_from_froude`; which of them was drawn for tankers and bulkers is not certain.
+    Schneekluth and Bertram (1998), section 1.5, not compared with the source. It has two
+    such lines, this one and `lcb_from_froude`; which of them was drawn for tankers and bulkers is
+    not certain.
     """
     return 19.4 * as_float_array(prismatic_coefficient) - 13.5
 
@@ -110,6 +111,7 @@ def lcb_from_froude(froude: ArrayLike) -> FloatArray:
 
     References
     ----------
-    Schneekluth and Bertram (1998), section 1.5, from memory; see `lcb_from_prismatic`.
+    Schneekluth and Bertram (1998), section 1.5, not compared with the source; see
+    `lcb_from_prismatic`.
     """
     return 8.80 - 38.9 * as_float_array(froude)

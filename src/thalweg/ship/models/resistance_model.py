@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
+from thalweg.core.units import GRAVITY, KNOT
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.methods.validity import RangeNote
@@ -31,6 +32,9 @@ from thalweg.ship.tables.table_parts import TableError, TablePart
 #: parts, their error, and what follows their sum
 TabulatedModel: TypeAlias = tuple[tuple[TablePart, ...], TableError, OutputCurve | None]
 
+#: Calm-water speeds of displacement ships at a given power are searched up to this Froude number.
+_LARGEST_FROUDE_NUMBER: Final = 0.6
+
 
 @dataclass(frozen=True, eq=False)
 class ResistanceModel:
@@ -38,10 +42,16 @@ class ResistanceModel:
 
     Attributes
     ----------
-    balance_at : `ForceBalance` at a load factor.
+    balance_at : callable
+        Function of a load factor that returns the `ForceBalance`.
+    plant : EnginePlant
+        The engines: greatest power, and fuel by power.
+    orders : EngineOrders
+        What each setting orders: brake powers [W] or calm-water speeds [m/s].
     facts : mapping
-        The ship file's sections that went into it.
-    limits : Tables end there.
+        The sections of the ship file that the model was built from.
+    limits : ShipLimits
+        Greatest wave height and wind speed of the tables.
     """
 
     balance_at: Callable[[float], ForceBalance]
@@ -233,7 +243,7 @@ class ResistanceModel:
     def _calm_speeds(self, load_factor: float, powers: FloatArray) -> FloatArray:
         balance, flat = self.balance(load_factor), calm_conditions(len(powers))
         length = float(balance.calm.hull.values["length_between_perpendiculars_m"])
-        highest = np.full(len(powers), 0.6 * np.sqrt(9.80665 * length))
+        highest = np.full(len(powers), _LARGEST_FROUDE_NUMBER * np.sqrt(GRAVITY * length))
         return balance.speed_at_power(flat, powers, highest)
 
     def speed_of(
@@ -288,7 +298,7 @@ class ResistanceModel:
 
 
 def _unreachable_speed_error(speeds: FloatArray, power: FloatArray, limit: float) -> InputError:
-    knots = ", ".join(f"{s / 0.514444:.4g}" for s in speeds)
+    knots = ", ".join(f"{s / KNOT:.4g}" for s in speeds)
     needed = ", ".join(f"{p / 1000:.0f}" for p in power)
     return InputError(
         f"The ship cannot be ordered to {knots} kn: it takes {needed} kW in calm water.",

@@ -82,19 +82,19 @@ def resistance_terms(balance: ForceBalance, limits: ShipLimits) -> list[Resistan
     wind, waves, calm = balance.wind, balance.waves, balance.calm
     if wind is not None:
 
-        def blown(v: FloatArray, speed: FloatArray, angle: FloatArray) -> FloatArray:
+        def wind_force(v: FloatArray, speed: FloatArray, angle: FloatArray) -> FloatArray:
             still = wind.force(v, np.zeros(()), np.zeros(()))
             return wind.force(v, speed, angle) - still
 
-        found.append(ResistanceTerm((axes["wind_speed"], axes["wind_angle"]), blown))
+        found.append(ResistanceTerm((axes["wind_speed"], axes["wind_angle"]), wind_force))
     if waves is not None:
         found.append(_wave_term(waves, axes))
     if "depth" in axes:
 
-        def shallow(v: FloatArray, depth: FloatArray) -> FloatArray:
+        def depth_force(v: FloatArray, depth: FloatArray) -> FloatArray:
             return calm.total(v, depth) - calm.total(v, np.asarray(np.inf))
 
-        found.append(ResistanceTerm((axes["depth"],), shallow))
+        found.append(ResistanceTerm((axes["depth"],), depth_force))
     return found
 
 
@@ -104,15 +104,15 @@ def _wave_term(waves: AddedWaveResistance, axes: Mapping[str, AxisRange]) -> Res
         axes = {**axes, "wave_angle": replace(axes["wave_angle"], size=_SECTOR_ANGLES)}
     if "wave_period" in waves.reads:
 
-        def rough(v: FloatArray, angle: FloatArray, period: FloatArray) -> FloatArray:
+        def wave_force(v: FloatArray, angle: FloatArray, period: FloatArray) -> FloatArray:
             return waves.force(v, np.ones(()), period, angle)
 
-        return ResistanceTerm((axes["wave_angle"], axes["wave_period"]), rough, stop)
+        return ResistanceTerm((axes["wave_angle"], axes["wave_period"]), wave_force, stop)
 
-    def choppy(v: FloatArray, angle: FloatArray) -> FloatArray:
+    def wave_force_by_angle(v: FloatArray, angle: FloatArray) -> FloatArray:
         return waves.force(v, np.ones(()), np.asarray(10.0), angle)
 
-    return ResistanceTerm((axes["wave_angle"],), choppy, stop)
+    return ResistanceTerm((axes["wave_angle"],), wave_force_by_angle, stop)
 
 
 def condition_axes(balance: ForceBalance, limits: ShipLimits) -> dict[str, AxisRange]:

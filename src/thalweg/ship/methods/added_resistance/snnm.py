@@ -254,7 +254,7 @@ def snnm_transfer(
 
 
 def snnm_validity(speed: ArrayLike, hull: SnnmHull) -> list[RangeNote]:
-    """Return what is outside the range of the formula (unverified: quoted from memory).
+    """Return what is outside the range of the formula (not compared with the source).
 
     L_PP > 75 m, 4 < L_PP/B < 9, 2.2 < B/T < 9, 0.05 < Fr < 0.30, 0.50 < C_B < 0.90, and a trim of
     at most 0.03 L_PP, beyond which the formula has no value.

@@ -95,7 +95,7 @@ def stawave1(
 
     Notes
     -----
-    Meant for small motions: Hs <= 2.25 sqrt(L_PP / 100) (unverified: quoted from memory).
+    Meant for small motions: Hs <= 2.25 sqrt(L_PP / 100) (not compared with the source).
 
     References
     ----------
@@ -354,7 +354,7 @@ def stawave2_validity(
 def stawave1_validity(
     wave_height: ArrayLike, *, length_between_perpendiculars: float
 ) -> list[RangeNote]:
-    """Return which wave heights exceed 2.25 sqrt(L_PP / 100) (unverified: from memory).
+    """Return which wave heights exceed 2.25 sqrt(L_PP / 100) (not compared with the source).
 
     Parameters
     ----------

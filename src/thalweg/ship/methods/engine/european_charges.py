@@ -25,7 +25,7 @@ VOYAGE_SHARES: Final = (0.0, 0.5, 1.0)  #: outside, to or from, and within the U
 #: outermost regions with a code of their own (Treaty on the Functioning of the European Union,
 #: article 349), and of the European Economic Area Iceland and Norway (Council Decision (EU)
 #: 2023/2754), without Svalbard. Overseas territories such as Greenland, the Faroes, Aruba or
-#: French Polynesia are not in scope. The lists are from memory; the decision was seen in part.
+#: French Polynesia are not in scope. The lists were compared with a part of the decision only.
 PORTS_IN_SCOPE: Final = frozenset(
     (
         *("BE", "BG", "CY", "DE", "DK", "EE", "ES", "FI", "FR", "GR", "HR", "IE", "IT", "LT"),

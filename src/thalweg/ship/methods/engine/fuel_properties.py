@@ -31,7 +31,7 @@ class Fuel:
     kind : str
         ``residual``, ``distillate``, ``lng``, ``methanol`` or ``other``, as the engine tables use.
     verified : bool
-        True where the carbon factor was checked beyond memory.
+        True where the carbon factor was compared with ``source``.
     source : str
         What it was checked against.
     """

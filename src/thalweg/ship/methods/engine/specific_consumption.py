@@ -33,7 +33,7 @@ class BaseSfoc:
     varies_with_load : bool
         False for turbines.
     verified : bool
-        True where a second source repeats the numbers; else they are from memory.
+        True where a second source repeats the numbers; else they were not compared with the source.
     source : str
         Where they come from.
     """
@@ -44,7 +44,7 @@ class BaseSfoc:
     pilot: float = 0.0
     varies_with_load: bool = True
     verified: bool = False
-    source: str = f"{_GHG4}, from memory"
+    source: str = f"{_GHG4}, not compared with the source"
 
 
 _NAEI = f"{_GHG4}; repeated in the UK inventory's ship tables (NAEI, table 11)"

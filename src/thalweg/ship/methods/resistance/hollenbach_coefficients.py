@@ -7,7 +7,7 @@ Schneekluth and Bertram, "Ship Design for Efficiency and Economy" (2nd ed., 1998
 
 How sure the numbers are: the single-screw design coefficients reproduce a published table of 11
 speeds within 0.05 %. The other mean curves and the single-screw minimum agree between at least
-two independent reprints. Seen in one reprint only, or quoted from memory, and therefore
+two independent reprints. Seen in one reprint only, or not compared with a source, and therefore
 *unverified*: the Froude limits of ``single_ballast`` and ``twin_design``, and the lower Froude
 limit of ``twin_minimum``.
 """

@@ -166,7 +166,8 @@ def surf_riding_speed(
     length : array_like
         Ship length [m].
     factor : float
-        1.8 for surf-riding, 1.4 for the marginal zone of large surging (from memory).
+        1.8 for surf-riding, 1.4 for the marginal zone of large surging (1.4 was
+        not compared with the source).
 
     Returns
     -------

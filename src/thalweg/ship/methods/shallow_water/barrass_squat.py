@@ -190,7 +190,7 @@ def barrass_2004_squat(
 
     Notes
     -----
-    The constant 7.04 is from memory; it was not compared with the publication.
+    The constant 7.04 was not compared with the source.
 
     References
     ----------
