@@ -7,10 +7,10 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from thalweg.cli import option_values, options
-from thalweg.cli.coast.layered_options import add_layered_options, layered_request
 from thalweg.cli.exit_codes import INTERRUPTED, NO_ROUTE, SUCCESS
 from thalweg.cli.first_run import announce_compilation
 from thalweg.cli.history.corridor_options import add_corridor_option, requested_network
+from thalweg.cli.layered_options import add_layered_options, layered_request
 from thalweg.cli.tables import print_plan
 from thalweg.kernels.compilation import warm_up
 

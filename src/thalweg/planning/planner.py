@@ -7,7 +7,8 @@ import time as clock
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from functools import partial
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -63,6 +64,9 @@ from thalweg.route import with_wind_speed
 from thalweg.sea import Sea
 from thalweg.search import LowerBound
 from thalweg.ship import Ship
+
+#: `plan` with the network, resolution, proof and progress of a request.
+_Replan: TypeAlias = Callable[..., Plan]
 
 _LONGEST_PROOF = 3600.0  # [s]
 _LONGEST_DEFAULT_PROOF = 30.0  # [s]
@@ -125,40 +129,70 @@ def plan(
     chart = Chart.gshhg("i") if chart is None else chart
     check_argument_types(voyage, ship, sea, chart)
     ship = with_voyage_prices(ship, voyage)
+    replan: _Replan = partial(
+        plan, network=network, resolution=resolution, proof=proof, progress=progress
+    )
     if voyage.arrive is not None:
-        from thalweg.planning.arrival_planner import ArrivalRequest, plan_arrival
-
-        def plan_at_speed(request: Voyage, with_speed: Ship) -> Plan:
-            return plan(
-                request,
-                ship=with_speed,
-                sea=sea,
-                chart=chart,
-                network=network,
-                resolution=resolution,
-                proof=proof,
-                progress=progress,
-            )
-
-        check_request(voyage, ship, with_wind_speed(ship, sea))
-        return plan_arrival(ArrivalRequest(voyage, ship, sea, chart, plan_at_speed))
+        return _plan_arrival(voyage, ship, sea, chart, replan)
     ship = with_order(ship, voyage)
     if sea.members:
-        from thalweg.planning.ensemble_plan import plan_ensemble
+        return _plan_members(voyage, ship, sea, chart, replan)
+    _check_options(voyage, proof)
+    corridor = history_corridor(network)
+    if corridor is not None:
+        return _plan_in_usual_water(voyage, ship, sea, chart, corridor, replan)
+    assert not isinstance(network, HistoryCorridor)  # planned above
+    choice = NetworkChoice(network, resolution, voyage.layered)
+    if choice.layered is not None:
+        choice.layered.shapes(len(voyage.via) + 1)  # refuses lists of another length
+    context, ends = _context(voyage, ship, with_wind_speed(ship, sea), chart, choice)
+    context = replace(
+        context, report_progress=progress or context.report_progress, proof_seconds=proof
+    )
+    return _plan_with_approaches(context, ends)
 
-        def plan_member(request: Voyage, member: Sea) -> Plan:
-            return plan(
-                replace(request, ensemble=None),
-                ship=ship,
-                sea=member,
-                chart=chart,
-                network=network,
-                resolution=resolution,
-                proof=proof,
-                progress=progress,
-            )
 
-        return plan_ensemble(voyage, ship=ship, sea=sea, plan_one=plan_member)
+def _plan_arrival(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, replan: _Replan) -> Plan:
+    """Return the plan of a voyage that arrives at a given time."""
+    from thalweg.planning.arrival_planner import ArrivalRequest, plan_arrival
+
+    def plan_at_speed(request: Voyage, with_speed: Ship) -> Plan:
+        return replan(request, ship=with_speed, sea=sea, chart=chart)
+
+    check_request(voyage, ship, with_wind_speed(ship, sea))
+    return plan_arrival(ArrivalRequest(voyage, ship, sea, chart, plan_at_speed))
+
+
+def _plan_members(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, replan: _Replan) -> Plan:
+    """Return the plan of a voyage in an ensemble forecast."""
+    from thalweg.planning.ensemble_plan import plan_ensemble
+
+    def plan_member(request: Voyage, member: Sea) -> Plan:
+        return replan(replace(request, ensemble=None), ship=ship, sea=member, chart=chart)
+
+    return plan_ensemble(voyage, ship=ship, sea=sea, plan_one=plan_member)
+
+
+def _plan_in_usual_water(
+    voyage: Voyage,
+    ship: Ship,
+    sea: Sea,
+    chart: Chart,
+    corridor: HistoryCorridor,
+    replan: _Replan,
+) -> Plan:
+    """Return the plan in the water that ships usually use."""
+    from thalweg.planning.history_plans import CorridorRequest, plan_in_corridor
+
+    def plan_one(open_water: Chart, builder: Any) -> Plan:
+        return replan(voyage, ship=ship, sea=sea, chart=open_water, network=builder)
+
+    request = CorridorRequest(voyage, corridor, chart, _endpoints(voyage, chart), plan_one)
+    return plan_in_corridor(request, ship.draught)
+
+
+def _check_options(voyage: Voyage, proof: float | None) -> None:
+    """Refuse a risk measure without an ensemble, and a time for the proof out of range."""
     if voyage.ensemble is not None:
         raise InputError(
             f"The voyage sets the risk measure {voyage.ensemble!r} for an ensemble forecast.",
@@ -173,44 +207,22 @@ def plan(
             "Correct it, or leave it out.",
             field="proof",
         )
-    corridor = history_corridor(network)
-    if corridor is not None:
-        from thalweg.planning.history_plans import CorridorRequest, plan_in_corridor
 
-        def plan_one(open_water: Chart, builder: Any) -> Plan:
-            return plan(
-                voyage,
-                ship=ship,
-                sea=sea,
-                chart=open_water,
-                network=builder,
-                resolution=resolution,
-                proof=proof,
-                progress=progress,
-            )
 
-        request = CorridorRequest(voyage, corridor, chart, _endpoints(voyage, chart), plan_one)
-        return plan_in_corridor(request, ship.draught)
-    assert not isinstance(network, HistoryCorridor)  # planned above
-    choice = NetworkChoice(network, resolution, voyage.layered)
-    if choice.layered is not None:
-        choice.layered.shapes(len(voyage.via) + 1)  # refuses lists of another length
-    context, ends = _context(voyage, ship, with_wind_speed(ship, sea), chart, choice)
-    context = replace(
-        context, report_progress=progress or context.report_progress, proof_seconds=proof
-    )
+def _plan_with_approaches(context: PlanningContext, ends: list[Endpoint]) -> Plan:
+    """Return the plan at sea with the approaches of the ports at its ends."""
     line = shared_line(context, ends)
     if line is not None:
         return plan_along_approaches(context, ends, line)
     sailing = ApproachSailing.of_voyage(context, ends)
     at_sea = replace(
         context,
-        voyage=sailing.voyage_at_sea(voyage),
+        voyage=sailing.voyage_at_sea(context.voyage),
         chart=replace(context.chart, approaches=None),
     )
-    offing = chosen_offing(voyage, context.ship)
+    offing = chosen_offing(context.voyage, context.ship)
     found = plan_off_land(at_sea, ends, offing, lambda c: _plan_at_sea(c, ends))
-    return sailing.with_approaches(found, voyage, context)
+    return sailing.with_approaches(found, context.voyage, context)
 
 
 def _plan_at_sea(context: PlanningContext, ends: list[Endpoint]) -> Plan:

@@ -72,7 +72,7 @@ def _add_build(actions: Any) -> None:
         )  # fmt: skip
     build.add_argument(
         "--least", type=int, default=3, metavar="N",
-        help="fewest voyages that make a junction or an arc (default: 3)",
+        help="fewest voyages that make a junction, or an arc beside another one (default: 3)",
     )  # fmt: skip
     build.add_argument(
         "--column", nargs="+", action="extend", default=[], metavar="WHAT=NAME",

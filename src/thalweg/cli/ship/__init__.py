@@ -1,1 +1,1 @@
-"""``thalweg ship``: the ships of the library and their sheets."""
+"""``thalweg ship``: the ships of the library, their sheets and motions."""

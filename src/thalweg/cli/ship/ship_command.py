@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from thalweg.cli import options
-from thalweg.cli.coast.motion_table import draw_motions, print_motions
+from thalweg.cli.ship.motion_table import draw_motions, print_motions
 from thalweg.cli.ship.ship_sheet_table import print_sheet
 from thalweg.cli.tables import print_written
 from thalweg.core.errors import InputError

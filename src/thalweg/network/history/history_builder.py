@@ -43,7 +43,8 @@ class HistoryRules:
     tolerance : float
         Turning points keep tracks within this distance [m].
     least : int
-        Fewest voyages that make a junction, and fewest that make an arc.
+        Fewest voyages that make a junction. Of the arcs between two nodes, those with fewer
+        voyages are left out, except the one with the most.
     """
 
     radius: float = 10.0 * NAUTICAL_MILE

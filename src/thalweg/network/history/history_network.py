@@ -116,7 +116,7 @@ class HistoryNetwork:
     radius : float
         Radius of a junction [m].
     least : int
-        Fewest voyages that make an arc.
+        Arcs with fewer voyages count as longer when a route is chosen.
     summary : dict
         How it was made: counts of voyages, positions, outliers, repaired arcs; period; notes.
     """

@@ -1,1 +1,0 @@
-"""Options and tables for coasts: layered networks, motions and comfort."""
