@@ -15,6 +15,9 @@ from tests.service.conftest import TOKEN, ServerProcess
 playwright_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 #: Screenshots of the tests are kept here where it is set.
 PICTURES = os.environ.get("THALWEG_SCREENSHOTS")
+#: The script axe.min.js of axe-core.
+AXE = os.environ.get("THALWEG_AXE")
+PALETTES = ("day", "dusk", "night")
 
 
 def chromium_path() -> str | None:
@@ -82,6 +85,21 @@ class Visit:
         """Return a figure of the cards."""
         card = self.page.locator(".card", has=self.page.get_by_text(name, exact=True))
         return str(card.locator("dd").inner_text()).split("\n")[0]
+
+    def check_accessibility(self) -> None:
+        """Assert that axe-core, where the environment names it, finds nothing in any palette."""
+        if not AXE:
+            return
+        self.page.evaluate(Path(AXE).read_text("utf-8"))
+        found = {}
+        for palette in PALETTES:
+            self.page.evaluate("p => { document.documentElement.dataset.palette = p }", palette)
+            answer = self.page.evaluate("axe.run(document, {resultTypes: ['violations']})")
+            found[palette] = {
+                one["id"]: [node["html"] for node in one["nodes"]] for one in answer["violations"]
+            }
+        self.page.evaluate("p => { document.documentElement.dataset.palette = p }", PALETTES[0])
+        assert found == {palette: {} for palette in PALETTES}, "violations that axe-core finds"
 
     def picture(self, name: str) -> None:
         """Keep a screenshot where the environment asks for it."""

@@ -27,6 +27,7 @@ def test_a_project_is_simulated_and_read(visit):
     page.get_by_role("tab", name="Place and time").click()
     assert page.locator(".drawing path.curve").count() >= 1
     visit.picture("project_space_time")
+    visit.check_accessibility()
     page.get_by_role("tab", name="Cycles").click()
     page.locator("#batch-sheet tbody tr").nth(1).click()
     assert page.locator("#batch-sheet tr[aria-current=true]").count() == 1
@@ -73,6 +74,7 @@ def test_a_study_fills_a_heat_map(visit):
     hours = [float(row.first.inner_text()) for row in (first, second)]
     assert hours[0] == pytest.approx(1.2 * hours[1], rel=0.05)
     cells.first.click()
+    visit.check_accessibility()
     page.get_by_title("Fill in this voyage to plan it").click()
     assert page.locator("#depart").input_value() == "1998-08-29 00:00"
     assert page.locator("#n-speed_kn").input_value() == "10"

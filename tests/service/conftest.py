@@ -29,6 +29,8 @@ SHORT = {
     "resolution_nm": 4.0,
     "proof_s": 0.0,
 }
+#: A proxy on a port where nothing listens: the service reaches nothing outside.
+NO_NETWORK = {f"{kind}_proxy": "http://127.0.0.1:1" for kind in ("http", "https", "all")}
 ENDED = ("done", "failed", "cancelled")
 
 
@@ -88,7 +90,9 @@ class ServerProcess:
     def start(self) -> ServerProcess:
         command = [sys.executable, "-m", "thalweg.cli.main", "serve", "--quiet"]
         command += ["--port", str(self.port), "--data", str(self.folder), "--token", TOKEN]
-        self.process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+        self.process = subprocess.Popen(
+            command, stderr=subprocess.DEVNULL, env={**os.environ, **NO_NETWORK}
+        )
         limit = time.monotonic() + 180.0
         while time.monotonic() < limit:
             try:
