@@ -17,6 +17,9 @@ playwright_api = pytest.importorskip("playwright.sync_api", reason="playwright i
 PICTURES = os.environ.get("THALWEG_SCREENSHOTS")
 #: The script axe.min.js of axe-core.
 AXE = os.environ.get("THALWEG_AXE")
+#: Time in which something appears on a loaded machine [ms]; ``expect`` of playwright has 5 s.
+LONG_MS = 120_000
+playwright_api.expect.set_options(timeout=LONG_MS)
 PALETTES = ("day", "dusk", "night")
 
 
@@ -52,7 +55,7 @@ class Visit:
             viewport={"width": 1280, "height": 720}, accept_downloads=True
         )
         self.page = self.context.new_page()
-        self.page.set_default_timeout(120_000)
+        self.page.set_default_timeout(LONG_MS)
         self.outside: list[str] = []
         self.errors: list[str] = []
         self.page.on("request", self._note)

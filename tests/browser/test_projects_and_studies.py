@@ -6,13 +6,15 @@ import re
 
 import pytest
 
+from tests.browser.conftest import playwright_api
+
 pytestmark = pytest.mark.slow
 
 
 def test_a_project_is_simulated_and_read(visit):
     page = visit.open("#view=projects")
     page.get_by_role("button", name="Fill in the example").click()
-    page.wait_for_function("document.querySelector('#p-volume_m3')?.value === '425500'")
+    playwright_api.expect(page.locator("#p-volume_m3")).to_have_value("425500")
     visit.picture("project_form")
     page.locator("#p-volume_m3").fill("9000")
     page.get_by_text("Depth and network").click()
@@ -47,7 +49,7 @@ def test_a_project_is_simulated_and_read(visit):
 def test_a_project_that_is_wrong_says_so_at_its_field(visit):
     page = visit.open("#view=projects")
     page.get_by_role("button", name="Fill in the example").click()
-    page.wait_for_function("document.querySelector('#p-volume_m3')?.value === '425500'")
+    playwright_api.expect(page.locator("#p-volume_m3")).to_have_value("425500")
     page.locator("#p-volume_m3").fill("-5")
     page.get_by_role("button", name="Simulate the project").click()
     assert "volume_m3" in page.locator("form [role=alert]").inner_text()
