@@ -23,7 +23,7 @@ SHARED_FUNCTIONS = {
     "nodal_corrections",
 }
 MAX_LINES = 400  # of a module
-MAX_ARGUMENTS = 8  # of a function outside the kernels, without self and cls
+MAX_ARGUMENTS = 8  # of a function, without self and cls
 #: Functions with more arguments, by module below thalweg, and why they keep them.
 MANY_ARGUMENTS = {
     "network.regional_lattice.lattice_builder.lattice": "public entry point with keyword options",
@@ -37,18 +37,6 @@ MANY_ARGUMENTS = {
     "ship.methods.speed_loss.kwon_speed_loss": "parameters of a published formula",
     "ship.ship.Ship.simple": "public entry point with keyword options",
 }
-
-#: Kernels with more arguments, below thalweg.kernels. Most are inlined into one loop each, where
-#: the arguments are local variables. Take names off this list, add none.
-MANY_ARGUMENTS_OF_KERNELS = [
-    "search.edge_departure.edge_arrivals",
-    "search.edge_departure.wait_for_edge",
-    "search.label_setting._best_departure",
-    "search.label_setting._longest_useful_time",
-    "search.label_setting._relax_edge",
-    "search.repeated_search._best_passage",
-    "search.repeated_search._relax_edge_from_state",
-]
 
 
 def modules() -> dict[str, Path]:
@@ -127,28 +115,15 @@ def argument_count(function: ast.FunctionDef) -> int:
     return len(names) + len(function.args.kwonlyargs) - bound
 
 
-def test_functions_outside_the_kernels_have_few_arguments():
-    """A function that needs more takes them as a dataclass or a named tuple."""
+def test_functions_have_few_arguments():
+    """A function that needs more takes them as a dataclass or, in kernels, as a named tuple."""
     many = sorted(
         name.removeprefix("thalweg.")
         for module, tree in TREES.items()
-        if not module.startswith("thalweg.kernels.")
         for name, function in functions(tree, module)
         if argument_count(function) > MAX_ARGUMENTS
     )
     assert many == list(MANY_ARGUMENTS)
-
-
-def test_kernels_have_few_arguments():
-    """Arrays that belong together are named tuples."""
-    many = sorted(
-        name.removeprefix("thalweg.kernels.")
-        for module, tree in TREES.items()
-        if module.startswith("thalweg.kernels.")
-        for name, function in functions(tree, module)
-        if argument_count(function) > MAX_ARGUMENTS
-    )
-    assert many == MANY_ARGUMENTS_OF_KERNELS
 
 
 def imported(tree: ast.AST) -> set[str]:

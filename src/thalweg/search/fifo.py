@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.types import FloatArray
+from thalweg.kernels.leg.edge_sailing import ShipOnEdges
 from thalweg.kernels.search.edge_departure import edge_arrivals
 from thalweg.search.search_problem import ShipOnNetwork, make_search_problem
 
@@ -92,7 +93,7 @@ def sampled_arrivals(
     arrivals = np.empty((len(chosen), len(when)))
     statuses = np.empty((len(chosen), len(when)), np.int64)
     work = np.full((4, len(given.sea.channel_index)), np.nan)
-    edge_arrivals(*given[:3], chosen, tails, when, arrivals, statuses, work)
+    edge_arrivals(ShipOnEdges(*given[:3]), chosen, tails, when, arrivals, statuses, work)
     return arrivals, statuses
 
 

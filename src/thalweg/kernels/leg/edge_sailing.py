@@ -295,15 +295,14 @@ def march_edge(world, ship, fuel, edge, k, t, cutoff, work):
 
 
 @inlined
-def sail_edge(network, sea, ship, edge, k, t, cutoff, work):
+def sail_edge(world, edge, k, t, cutoff, work):
     """Sail one edge, or pass it if it is a canal: return (arrival, status).
 
-    Arguments and results as in `march_edge`. An edge of fixed time is passed in that time, whatever
-    the sea is.
+    ``world`` is a `ShipOnEdges`; other arguments and results as in `march_edge`. An edge of fixed
+    time is passed in that time, whatever the sea is.
     """
-    fixed = network.fixed_time[edge]
+    fixed = world.network.fixed_time[edge]
     if fixed == fixed:
-        return pass_canal(network, edge, t, sea.times[-1])
-    world = ShipOnEdges(network, sea, ship)
-    arrival, _, status, _ = march_edge(world, ship, None, edge, k, t, cutoff, work)
+        return pass_canal(world.network, edge, t, world.sea.times[-1])
+    arrival, _, status, _ = march_edge(world, world.ship, None, edge, k, t, cutoff, work)
     return arrival, status

@@ -1,16 +1,17 @@
 """Time of departure on an edge: ships that may wait, and edges that open."""
 
 import math
+from typing import NamedTuple
 
 from thalweg.kernels.codes import NO_DATA, OK, OUTSIDE_PERIOD
 from thalweg.kernels.compilation.decorators import allocation_free, inlined_by_numba, kernel_only
 from thalweg.kernels.leg.edge_sailing import (
     MarchCutoff,
-    ShipOnEdges,
     interval_near,
     interval_of,
     march_edge,
     pass_canal,
+    sail_edge,
     sample_station,
 )
 from thalweg.kernels.search.sample_openings import opening_of_sample
@@ -24,27 +25,69 @@ _GOLDEN = 0.6180339887498949
 _CLOSE = 0.2  # accuracy of the best departure between openings [s]
 
 
+class EdgePassage(NamedTuple):
+    """One passage of an edge.
+
+    Attributes
+    ----------
+    departure, arrival : float
+        [s]; the arrival is inf if the edge cannot be sailed to any use.
+    status : int
+        `OK`, or why the edge is blocked.
+    """
+
+    departure: float
+    arrival: float
+    status: int
+
+
+class WaitingTerms(NamedTuple):
+    """What a wait for an edge is worth.
+
+    Attributes
+    ----------
+    may_wait : bool
+        Whether the ship may wait at the tail at all.
+    until : float
+        How long it may wait there [s].
+    factor : float
+        Weight of the time under way; waiting weighs 1.
+    least_time : float
+        Lower bound of the time under way on the edge [s].
+    enough : float
+        A departure is useful only if waiting plus ``factor`` times sailing is below this [s].
+    """
+
+    may_wait: bool
+    until: float
+    factor: float
+    least_time: float
+    enough: float
+
+
 @kernel_only
-def _march_at(network, sea, ship, edge, tail_node, k, t, work):
+def _march_at(world, edge, tail_node, k, t, work):
     """Sail an edge at any departure of interval k: return (arrival, status, blocking sample)."""
+    network, sea = world.network, world.sea
     fixed = network.fixed_time[edge]
     if fixed == fixed:
         arrival, status = pass_canal(network, edge, t, sea.times[-1])
         return arrival, status, network.via_ptr[edge + 1] + 1
     sample_station(sea, tail_node, k, t, work[1])
-    world, cutoff = ShipOnEdges(network, sea, ship), MarchCutoff(math.inf, 0.0)
+    cutoff = MarchCutoff(math.inf, 0.0)
     arrival, _, status, sample = march_edge(
-        world, ship, None, edge, k, t, cutoff, (work[1], work[2], work[3])
+        world, world.ship, None, edge, k, t, cutoff, (work[1], work[2], work[3])
     )
     return arrival, status, sample
 
 
 @kernel_only
-def _opening_on_edge(network, sea, ship, where, passed, blocked, useless, work):
+def _opening_on_edge(world, where, passed, blocked, useless, work):
     """Return from when on a blocking sample is open; ``where`` is (edge, tail, interval).
 
     ``passed`` is when the ship is at the sample, ``blocked`` is (status, sample).
     """
+    network, sea = world.network, world.sea
     edge, tail_node, k = where
     status, sample = blocked
     if sample > network.via_ptr[edge + 1]:  # afloat at the head, but at another tide
@@ -54,11 +97,11 @@ def _opening_on_edge(network, sea, ship, where, passed, blocked, useless, work):
     k = interval_near(sea.times, k, passed)
     if k < 0:
         return math.inf
-    return opening_of_sample(network, sea, ship, place, k, passed, (status, useless), work)
+    return opening_of_sample(network, sea, world.ship, place, k, passed, (status, useless), work)
 
 
 @kernel_only
-def _first_past(network, sea, ship, where, since, closed, step, work):
+def _first_past(world, where, since, closed, step, work):
     """Return (departure, passage, status, sample) of the first departure a sample does not block.
 
     ``closed`` is (sample, when it is passed by a departure at ``since``, when it opens). A
@@ -66,12 +109,13 @@ def _first_past(network, sea, ship, where, since, closed, step, work):
     a guess of how much later the ship leaves.
     """
     edge, tail_node, k = where
+    times = world.sea.times
     sample, passed, opens = closed
     low, high, found = since, math.inf, (since, passed, OK, sample)
     for _ in range(_MOST_MARCHES):
         departure = low + step
-        near = interval_near(sea.times, k, departure)
-        then, status, at = _march_at(network, sea, ship, edge, tail_node, near, departure, work)
+        near = interval_near(times, k, departure)
+        then, status, at = _march_at(world, edge, tail_node, near, departure, work)
         blocks = at == sample and status not in (OK, OUTSIDE_PERIOD)
         if blocks and then <= opens + OPENING_TOLERANCE:
             if high == math.inf:
@@ -81,10 +125,8 @@ def _first_past(network, sea, ship, where, since, closed, step, work):
             high, found = departure, (departure, then, status, at)
             before = departure - 0.9 * OPENING_TOLERANCE
             if before > low:
-                near = interval_near(sea.times, k, before)
-                then, status, at = _march_at(
-                    network, sea, ship, edge, tail_node, near, before, work
-                )
+                near = interval_near(times, k, before)
+                then, status, at = _march_at(world, edge, tail_node, near, before, work)
                 blocks = at == sample and status not in (OK, OUTSIDE_PERIOD)
                 if blocks and then <= opens + OPENING_TOLERANCE:
                     break
@@ -101,7 +143,7 @@ def _push(status):
 
 
 @kernel_only
-def _next_open_departure(network, sea, ship, where, since, latest, bounds, work):
+def _next_open_departure(world, where, since, latest, bounds, work):
     """Return (departure, arrival, status, interval) of the first departure that is open.
 
     ``since`` is a blocked departure, ``bounds`` are the time from which passing a sample is of no
@@ -110,16 +152,15 @@ def _next_open_departure(network, sea, ship, where, since, latest, bounds, work)
     very slow at first may be overtaken, and are followed in small steps.
     """
     edge, tail_node, k = where
+    times = world.sea.times
     useless, least_time = bounds
-    then, status, sample = _march_at(network, sea, ship, edge, tail_node, k, since, work)
+    then, status, sample = _march_at(world, edge, tail_node, k, since, work)
     push, rate, crawl = _push(status), 1.0, 1.0
     for _ in range(_MOST_MARCHES):
         if status in (OK, OUTSIDE_PERIOD):
             return since, then, status, k
         blocked = (status, sample)
-        opens = _opening_on_edge(
-            network, sea, ship, (edge, tail_node, k), then, blocked, useless, work
-        )
+        opens = _opening_on_edge(world, (edge, tail_node, k), then, blocked, useless, work)
         slow = then - since > _SLOW * least_time
         if since >= latest or not (opens < math.inf or slow):
             break
@@ -129,9 +170,9 @@ def _next_open_departure(network, sea, ship, where, since, latest, bounds, work)
         step = min(step, latest - since)
         before, at, moment = since, sample, then
         since, then, status, sample = _first_past(
-            network, sea, ship, (edge, tail_node, k), before, (at, moment, opens), step, work
+            world, (edge, tail_node, k), before, (at, moment, opens), step, work
         )
-        k = interval_near(sea.times, k, since)
+        k = interval_near(times, k, since)
         rate, same = 1.0, sample == at and status == blocked[0]
         crawl = min(2.0 * crawl, _SHORT_STEP) if then < moment else math.inf
         crawl = crawl if same else 1.0
@@ -145,18 +186,19 @@ def _next_open_departure(network, sea, ship, where, since, latest, bounds, work)
 
 
 @kernel_only
-def _cost_at(network, sea, ship, where, since, factor, departure, work):
+def _cost_at(world, where, since, factor, departure, work):
     """Return (waiting plus weighted sailing [s], arrival) of a departure; inf where blocked."""
     edge, tail_node, k = where
-    k = interval_near(sea.times, k, departure)
-    arrival, status, _ = _march_at(network, sea, ship, edge, tail_node, k, departure, work)
+    times = world.sea.times
+    k = interval_near(times, k, departure)
+    arrival, status, _ = _march_at(world, edge, tail_node, k, departure, work)
     if status != OK:
         return math.inf, math.inf
     return departure - since + factor * (arrival - departure), arrival
 
 
 @kernel_only
-def _best_in_stretch(network, sea, ship, where, since, factor, stretch, work):
+def _best_in_stretch(world, where, since, factor, stretch, work):
     """Return (departure, arrival, cost) of the best of a stretch of departures that begins open.
 
     Departures every 20 s and, near its begin, at halved distances to it are tried, then a golden
@@ -174,15 +216,15 @@ def _best_in_stretch(network, sea, ship, where, since, factor, stretch, work):
             share = 0.5 ** (probe - count) / count
             earlier, later = 0.5 * share, 2.0 * share
         departure = begin + length * share
-        cost, arrival = _cost_at(network, sea, ship, where, since, factor, departure, work)
+        cost, arrival = _cost_at(world, where, since, factor, departure, work)
         if cost < best:
             best, at, found = cost, departure, arrival
             low, high = begin + length * earlier, min(begin + length * later, end)
     if best == math.inf:
         return at, found, best
     one, two = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
-    at_one, first = _cost_at(network, sea, ship, where, since, factor, one, work)
-    at_two, second = _cost_at(network, sea, ship, where, since, factor, two, work)
+    at_one, first = _cost_at(world, where, since, factor, one, work)
+    at_two, second = _cost_at(world, where, since, factor, two, work)
     while high - low > _CLOSE:
         if at_one < best:
             best, at, found = at_one, one, first
@@ -194,73 +236,51 @@ def _best_in_stretch(network, sea, ship, where, since, factor, stretch, work):
         if earlier:
             high, two, at_two, second = two, one, at_one, first
             one = high - _GOLDEN * (high - low)
-            at_one, first = _cost_at(network, sea, ship, where, since, factor, one, work)
+            at_one, first = _cost_at(world, where, since, factor, one, work)
         else:
             low, one, at_one, first = one, two, at_two, second
             two = low + _GOLDEN * (high - low)
-            at_two, second = _cost_at(network, sea, ship, where, since, factor, two, work)
+            at_two, second = _cost_at(world, where, since, factor, two, work)
     return at, found, best
 
 
-@inlined_by_numba
-def waiting_is_useless(sea, k, t, arrival, status, enough, weighted):
-    """Return whether a ship that may leave at t gains nothing by a wait.
-
-    ``enough`` as in `wait_for_edge`; ``weighted`` is (factor, least time of the edge).
-    """
-    factor, least_time = weighted
-    if status != OK or arrival - t > _SLOW * least_time:
-        return False
-    return sea.times[k + 1] - t + factor * least_time >= min(enough, factor * (arrival - t))
-
-
 @kernel_only
-def wait_for_edge(
-    network, sea, ship, edge, tail, k, t, until, arrival, status, factor, least_time, enough, work
-):
-    """Find the best departure of an edge for a ship that may wait at its tail since t.
+def wait_for_edge(world, edge, tail, k, at_once, terms, work):
+    """Find the best departure of an edge for a ship that may wait at its tail.
 
     Parameters
     ----------
-    network, sea, ship : NetworkArrays, SeaArrays, ShipArrays
+    world : ShipOnEdges
     edge, tail : int
         The edge and the station it leaves.
     k : int
-        Interval of the times that holds t.
-    t : float
-        Arrival at the tail [s].
-    until : float
-        How long the ship may wait there [s].
-    arrival, status : float, int
-        What `sail_edge` gives for departing at t.
-    factor : float
-        Weight of the time under way; waiting weighs 1.
-    least_time : float
-        Lower bound of the time under way on this edge [s].
-    enough : float
-        A departure is useful only if waiting plus ``factor`` times sailing is below this [s].
+        Interval of the times that holds the arrival at the tail.
+    at_once : EdgePassage
+        What `sail_edge` gives for departing at the arrival at the tail.
+    terms : WaitingTerms
     work : float64[4, CHANNELS]
         Work space; the first row is left alone.
 
     Returns
     -------
-    departure, arrival : float
-        [s]; arrival is inf if the edge cannot be sailed to any use.
-    status : int
-        `OK`, or why the edge is blocked (at t, when it is blocked throughout).
+    EdgePassage
+        With the status of ``at_once`` if the edge is blocked throughout.
 
     Notes
     -----
-    Candidates are t itself, every moment at which the edge opens (to 0.1 s; see
+    Candidates are the arrival at the tail, every moment at which the edge opens (to 0.1 s; see
     `opening_of_sample`), every later time of the data, and where the cost falls after one of
     these, the least one before the next. A later ship is taken to pass each sample later than an
     earlier one.
     """
+    t, arrival, status = at_once
+    _, until, factor, least_time, enough = terms
+    sea = world.sea
     departure, best, found = t, math.inf, status
     latest = min(until, sea.times[-1])
     s, then, now = t, arrival, status
     if now == OK:  # the arrival may be a lower bound only
-        then = _march_at(network, sea, ship, edge, tail, k, t, work)[0]
+        then = _march_at(world, edge, tail, k, t, work)[0]
     for _ in range(_MOST_MARCHES):
         useless = t + min(best, enough) - factor * least_time
         if s >= useless or s > latest:
@@ -268,7 +288,7 @@ def wait_for_edge(
         if now not in (OK, OUTSIDE_PERIOD):
             passed = t + min(best, enough) / min(factor, 1.0)
             s, then, now, k = _next_open_departure(
-                network, sea, ship, (edge, tail, k), s, latest, (passed, least_time), work
+                world, (edge, tail, k), s, latest, (passed, least_time), work
             )
             if now not in (OK, OUTSIDE_PERIOD) or s >= useless:
                 break
@@ -281,30 +301,66 @@ def wait_for_edge(
         end = min(sea.times[k + 1], latest, useless)
         if not end > s:
             break
-        then, now, _ = _march_at(
-            network, sea, ship, edge, tail, interval_near(sea.times, k, end), end, work
-        )
+        then, now, _ = _march_at(world, edge, tail, interval_near(sea.times, k, end), end, work)
         at_end = end - t + factor * (then - end) if now == OK else math.inf
         soon = s + min(max(0.002 * (end - s), 1.0), end - s)
         where = (edge, tail, k)
-        nearby = _cost_at(network, sea, ship, where, t, factor, soon, work)[0]
+        nearby = _cost_at(world, where, t, factor, soon, work)[0]
         if nearby < cost - 1e-6 or at_end < cost or (cost == math.inf and best == math.inf):
-            one, two, three = _best_in_stretch(network, sea, ship, where, t, factor, (s, end), work)
+            one, two, three = _best_in_stretch(world, where, t, factor, (s, end), work)
             if three < best:
                 departure, arrival, best, found = one, two, three, OK
         s, k = end, interval_near(sea.times, k, end)
         if s in (latest, useless):
             break
-    return departure, arrival if best < math.inf else math.inf, found
+    return EdgePassage(departure, arrival if best < math.inf else math.inf, found)
+
+
+@inlined_by_numba
+def _waiting_is_useless(sea, k, at_once, terms):
+    """Return whether a ship that may leave at once gains nothing by a wait."""
+    t, arrival, status = at_once
+    sailing, least = arrival - t, terms.least_time
+    if status != OK or sailing > _SLOW * least:
+        return False
+    pause = sea.times[k + 1] - t  # until the next time of the data
+    return pause + terms.factor * least >= min(terms.enough, terms.factor * sailing)
+
+
+@inlined_by_numba
+def best_edge_passage(world, edge, tail, k, time, cutoff, terms, work):
+    """Return the best use of an edge since a time: an `EdgePassage` at once or after a wait.
+
+    Parameters
+    ----------
+    world : ShipOnEdges
+    edge, tail : int
+        The edge and the station it leaves.
+    k : int
+        Interval of the times that holds the time.
+    time : float
+        Arrival at the tail [s].
+    cutoff : MarchCutoff
+        For a departure at once.
+    terms : WaitingTerms
+    work : float64[4, CHANNELS]
+        Work space; the first row holds the sea at the tail at the time.
+    """
+    arrival, status = sail_edge(world, edge, k, time, cutoff, (work[0], work[2], work[3]))
+    at_once = EdgePassage(time, arrival, status)
+    if terms.may_wait and not _waiting_is_useless(world.sea, k, at_once, terms):
+        return wait_for_edge(world, edge, tail, k, at_once, terms, work)
+    useless = status == OK and arrival >= cutoff.latest
+    return EdgePassage(time, math.inf if useless else arrival, status)
 
 
 @allocation_free
-def edge_arrivals(network, sea, ship, edges, tails, departures, arrivals, statuses, work):
+def edge_arrivals(world, edges, tails, departures, arrivals, statuses, work):
     """Sail edges at many departures, without waiting.
 
     Parameters
     ----------
-    network, sea, ship : NetworkArrays, SeaArrays, ShipArrays
+    world : ShipOnEdges
     edges, tails : int64[E]
         Edges and the nodes they leave.
     departures : float64[D]
@@ -318,13 +374,13 @@ def edge_arrivals(network, sea, ship, edges, tails, departures, arrivals, status
     """
     for i in range(edges.shape[0]):
         for j in range(departures.shape[0]):
-            k = interval_of(sea.times, departures[j])
+            k = interval_of(world.sea.times, departures[j])
             if k < 0:
                 arrivals[i, j] = math.inf
                 statuses[i, j] = OUTSIDE_PERIOD if departures[j] == departures[j] else NO_DATA
                 continue
             arrivals[i, j], statuses[i, j], _ = _march_at(
-                network, sea, ship, edges[i], tails[i], k, departures[j], work
+                world, edges[i], tails[i], k, departures[j], work
             )
             if statuses[i, j] != OK:
                 arrivals[i, j] = math.inf

@@ -16,13 +16,13 @@ from thalweg.kernels.codes import (
 from thalweg.kernels.compilation.decorators import allocation_free, inlined_by_numba
 from thalweg.kernels.leg.edge_sailing import (
     MarchCutoff,
+    ShipOnEdges,
     interval_of,
     least_time,
-    sail_edge,
     sample_station,
 )
 from thalweg.kernels.search import heap
-from thalweg.kernels.search.edge_departure import wait_for_edge, waiting_is_useless
+from thalweg.kernels.search.edge_departure import WaitingTerms, best_edge_passage
 from thalweg.kernels.search.field_bounds import never_deep_enough
 
 
@@ -105,18 +105,22 @@ def new_search_workspace(n_nodes):
 
 
 @inlined_by_numba
-def _longest_useful_time(query, cost, time, length, quickest, factor, goal_distance, labels, node):
-    """Return how much waiting plus weighted sailing [s] may at most be; not positive: no use."""
+def _longest_useful_time(query, labels, node, to, length, quickest, factor, goal_distance):
+    """Return how much waiting plus weighted sailing [s] from a node to a state may at most be.
+
+    Not positive: of no use.
+    """
+    cost, time = labels.cost[node], labels.time[node]
     if query.by_distance:
         here = cost + length * factor
-        known = labels.cost[node]
-        if here > known or (here == known and time + quickest >= labels.time[node]):
+        known = labels.cost[to]
+        if here > known or (here == known and time + quickest >= labels.time[to]):
             return -1.0
         if query.goal >= 0 and here + goal_distance * query.per_metre > labels.cost[query.goal]:
             return -1.0
         latest = query.horizon - time
-        return min(latest, labels.time[node] - time) if here == known else latest
-    enough = labels.cost[node] - cost
+        return min(latest, labels.time[to] - time) if here == known else latest
+    enough = labels.cost[to] - cost
     if query.goal >= 0:
         rest = goal_distance * query.per_metre
         enough = min(enough, labels.cost[query.goal] - cost - rest)
@@ -124,67 +128,59 @@ def _longest_useful_time(query, cost, time, length, quickest, factor, goal_dista
 
 
 @inlined_by_numba
-def _best_departure(network, sea, ship, query, node, edge, k, time, enough, work):
-    """Return (departure, arrival, status) of the best use of an edge from a node since a time."""
+def _best_departure(world, query, node, edge, k, time, enough, work):
+    """Return the best use of an edge from a node since a time, as an `EdgePassage`."""
+    network = world.network
     factor = 1.0 if query.by_distance else float(network.factor[edge])
     latest = math.inf if query.by_distance else time + enough / factor
-    least, quickest = query.slowness, least_time(network, edge, query.slowness)
-    cutoff = MarchCutoff(latest, least)
-    arrival, status = sail_edge(
-        network, sea, ship, edge, k, time, cutoff, (work[0], work[2], work[3])
-    )
-    useless = status == OK and arrival >= latest
+    cutoff = MarchCutoff(latest, query.slowness)
+    quickest = least_time(network, edge, query.slowness)
     may_wait = query.wait and network.can_wait[node]
-    if not may_wait or waiting_is_useless(
-        sea, k, time, arrival, status, enough, (factor, quickest)
-    ):
-        return time, math.inf if useless else arrival, status
-    station, until = network.station[node], network.until[node]
-    return wait_for_edge(
-        network, sea, ship, edge, station, k, time, until,
-        arrival, status, factor, quickest, enough, work,
-    )  # fmt: skip
+    terms = WaitingTerms(may_wait, network.until[node], factor, quickest, enough)
+    return best_edge_passage(world, edge, network.station[node], k, time, cutoff, terms, work)
 
 
 @inlined_by_numba
-def _relax_edge(network, sea, ship, query, distances, labels, memory, node, edge, k, size):
-    """Improve the label of an edge's head if the edge can; return the size of the heap."""
-    to = network.target[edge]
-    if labels.settled[to]:
-        return size
+def _relax_edges(world, query, distances, labels, memory, node, k, size):
+    """Improve the labels of the heads of a node's edges; return the size of the heap."""
+    network = world.network
     cost, time = labels.cost[node], labels.time[node]
-    length, factor, left = network.length[edge], float(network.factor[edge]), distances[to]
-    quickest = least_time(network, edge, query.slowness)
-    enough = _longest_useful_time(query, cost, time, length, quickest, factor, left, labels, to)
-    if enough <= 0.0:
-        return size
-    memory.counts[SAILED] += 1
-    required = ship.limits[LIMIT_REQUIRED_DEPTH]
-    status = OK
-    departure, arrival = time, math.inf
-    if required > -math.inf:
-        status = never_deep_enough(network, sea, edge, required)
-    if status == OK:
-        departure, arrival, status = _best_departure(
-            network, sea, ship, query, node, edge, k, time, enough, memory.samples
-        )
-    if status != OK:
-        memory.refused[status] += 1
-        return size
-    if arrival == math.inf:  # not useful
-        return size
-    if arrival > query.horizon:
-        memory.refused[ARRIVE_BY] += 1
-        return size
-    new = cost + length * factor
-    if not query.by_distance:
-        new = cost + (departure - time) + factor * (arrival - departure)
-    known = labels.cost[to]
-    if new < known or (new == known and arrival < labels.time[to]):
-        labels.cost[to], labels.time[to] = new, arrival
-        labels.before[to], labels.departed[to] = node, departure
-        key = new + left * query.per_metre
-        size = heap.push_or_lower(memory.nodes, memory.keys, memory.place, size, to, key)
+    required = world.ship.limits[LIMIT_REQUIRED_DEPTH]
+    for edge in range(network.indptr[node], network.indptr[node + 1]):
+        to = network.target[edge]
+        if labels.settled[to]:
+            continue
+        length, factor, left = network.length[edge], float(network.factor[edge]), distances[to]
+        quickest = least_time(network, edge, query.slowness)
+        enough = _longest_useful_time(query, labels, node, to, length, quickest, factor, left)
+        if enough <= 0.0:
+            continue
+        memory.counts[SAILED] += 1
+        status = OK
+        departure, arrival = time, math.inf
+        if required > -math.inf:
+            status = never_deep_enough(network, world.sea, edge, required)
+        if status == OK:
+            departure, arrival, status = _best_departure(
+                world, query, node, edge, k, time, enough, memory.samples
+            )
+        if status != OK:
+            memory.refused[status] += 1
+            continue
+        if arrival == math.inf:  # not useful
+            continue
+        if arrival > query.horizon:
+            memory.refused[ARRIVE_BY] += 1
+            continue
+        new = cost + length * factor
+        if not query.by_distance:
+            new = cost + (departure - time) + factor * (arrival - departure)
+        known = labels.cost[to]
+        if new < known or (new == known and arrival < labels.time[to]):
+            labels.cost[to], labels.time[to] = new, arrival
+            labels.before[to], labels.departed[to] = node, departure
+            key = new + left * query.per_metre
+            size = heap.push_or_lower(memory.nodes, memory.keys, memory.place, size, to, key)
     return size
 
 
@@ -217,6 +213,7 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
     in which it is afloat, so that an arrival at an earlier tide does not dominate one at a later
     tide.
     """
+    world = ShipOnEdges(network, sea, ship)
     nodes, keys, place, counts = memory.nodes, memory.keys, memory.place, memory.counts
     labels.cost[query.start], labels.time[query.start] = 0.0, query.depart
     size = heap.push_or_lower(nodes, keys, place, 0, query.start, 0.0)
@@ -226,15 +223,12 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
         counts[SETTLED] += 1
         if node == query.goal:
             break
-        first, last = network.indptr[node], network.indptr[node + 1]
-        counts[RELAXED] += last - first
+        degree = network.indptr[node + 1] - network.indptr[node]
+        counts[RELAXED] += degree
         time = labels.time[node]
         k = interval_of(sea.times, time)
         if k < 0:
-            memory.refused[OUTSIDE_PERIOD] += last - first
+            memory.refused[OUTSIDE_PERIOD] += degree
             continue
         sample_station(sea, network.station[node], k, time, memory.samples[0])
-        for edge in range(first, last):
-            size = _relax_edge(
-                network, sea, ship, query, distances, labels, memory, node, edge, k, size
-            )
+        size = _relax_edges(world, query, distances, labels, memory, node, k, size)

@@ -18,9 +18,9 @@ from thalweg.kernels.codes import (
     OK,
 )
 from thalweg.kernels.compilation.decorators import allocation_free, inlined_by_numba
-from thalweg.kernels.leg.edge_sailing import MarchCutoff, interval_of, sail_edge, sample_station
+from thalweg.kernels.leg.edge_sailing import MarchCutoff, ShipOnEdges, interval_of, sample_station
 from thalweg.kernels.search import heap
-from thalweg.kernels.search.edge_departure import wait_for_edge, waiting_is_useless
+from thalweg.kernels.search.edge_departure import WaitingTerms, best_edge_passage
 
 CURRENT_DIRECTIONS = 16  # directions for which the strongest current is tabulated
 _SHRINK = 1.0 - 1e-7  # so that bounds are below the exact values in single precision
@@ -247,56 +247,40 @@ def least_times_to_goal(reverse_ptr, reverse_edge, tails, times, goal, to_goal, 
 
 
 @inlined_by_numba
-def _best_passage(
-    network, sea, ship, trip, node, edge, k, time, until, enough, least_edge_time, work
-):
-    """Return (departure, arrival, status) of the best use of an edge since a time."""
-    factor = float(network.factor[edge])
-    cutoff = MarchCutoff(time + enough / factor, trip.slowness)
-    arrival, status = sail_edge(
-        network, sea, ship, edge, k, time, cutoff, (work[0], work[2], work[3])
-    )
-    useless = status == OK and arrival >= cutoff.latest
-    may_wait, least = trip.wait and network.can_wait[node], least_edge_time / factor
-    if not may_wait or waiting_is_useless(sea, k, time, arrival, status, enough, (factor, least)):
-        return time, math.inf if useless else arrival, status
-    return wait_for_edge(
-        network, sea, ship, edge, node, k, time, until,
-        arrival, status, factor, least, enough, work,
-    )  # fmt: skip
-
-
-@inlined_by_numba
-def _relax_edge_from_state(network, states, sea, ship, trip, to_goal, marks, state, edge, k, size):
-    """Improve the labels of an edge's head if the edge can; return the size of the heap."""
-    head, node = network.target[edge], states.node[state]
+def _relax_edges_of_state(world, states, trip, to_goal, marks, state, k, size):
+    """Improve the labels of the heads of a state's edges; return the size of the heap."""
+    network, node = world.network, states.node[state]
     cost, time = marks.cost[state], marks.time[state]
-    left, least_edge_time = to_goal.node[head], to_goal.edge[edge]
-    reach = min(trip.limit, marks.cost[trip.goal]) - cost - left
-    for s in range(states.ptr[head], states.ptr[head + 1]):
-        if not least_edge_time < reach or states.opens[s] - time >= reach:
-            break
-        enough = min(reach, marks.cost[s] - cost)
-        if states.closes[s] <= time or marks.settled[s] or not least_edge_time < enough:
-            continue
-        marks.counts[SAILED] += 1
-        network.opens[head], network.closes[head] = states.opens[s], states.closes[s]
-        departure, arrival, status = _best_passage(
-            network, sea, ship, trip, node, edge, k, time, states.until[state],
-            enough, least_edge_time, marks.samples,
-        )  # fmt: skip
-        if status != OK or arrival == math.inf or arrival > trip.latest:
-            continue
-        new = cost + (departure - time) + float(network.factor[edge]) * (arrival - departure)
-        known = marks.cost[s]
-        if new < known or (new == known and arrival < marks.time[s]):
-            if known == math.inf:
-                marks.touched[marks.counts[TOUCHED]] = s
-                marks.counts[TOUCHED] += 1
-            marks.cost[s], marks.time[s] = new, arrival
-            marks.before[s], marks.departed[s] = state, departure
-            key = new + trip.heuristic_weight * left
-            size = heap.push_or_lower(marks.nodes, marks.keys, marks.place, size, s, key)
+    may_wait, until = trip.wait and network.can_wait[node], states.until[state]
+    for edge in range(network.indptr[node], network.indptr[node + 1]):
+        head, factor = network.target[edge], float(network.factor[edge])
+        left, least_edge_time = to_goal.node[head], to_goal.edge[edge]
+        reach = min(trip.limit, marks.cost[trip.goal]) - cost - left
+        for s in range(states.ptr[head], states.ptr[head + 1]):
+            if not least_edge_time < reach or states.opens[s] - time >= reach:
+                break
+            enough = min(reach, marks.cost[s] - cost)
+            if states.closes[s] <= time or marks.settled[s] or not least_edge_time < enough:
+                continue
+            marks.counts[SAILED] += 1
+            network.opens[head], network.closes[head] = states.opens[s], states.closes[s]
+            cutoff = MarchCutoff(time + enough / factor, trip.slowness)
+            terms = WaitingTerms(may_wait, until, factor, least_edge_time / factor, enough)
+            departure, arrival, status = best_edge_passage(
+                world, edge, node, k, time, cutoff, terms, marks.samples
+            )
+            if status != OK or arrival == math.inf or arrival > trip.latest:
+                continue
+            new = cost + (departure - time) + factor * (arrival - departure)
+            known = marks.cost[s]
+            if new < known or (new == known and arrival < marks.time[s]):
+                if known == math.inf:
+                    marks.touched[marks.counts[TOUCHED]] = s
+                    marks.counts[TOUCHED] += 1
+                marks.cost[s], marks.time[s] = new, arrival
+                marks.before[s], marks.departed[s] = state, departure
+                key = new + trip.heuristic_weight * left
+                size = heap.push_or_lower(marks.nodes, marks.keys, marks.place, size, s, key)
     return size
 
 
@@ -327,6 +311,7 @@ def search_departure(network, states, sea, ship, trip, to_goal, marks):
     marks : ProfileWorkspace
         Holds the labels until the next `reset_workspace`, which must have been called before.
     """
+    world = ShipOnEdges(network, sea, ship)
     nodes, keys, place, counts = marks.nodes, marks.keys, marks.place, marks.counts
     counts[SETTLED] = counts[SAILED] = 0
     if not to_goal.node[states.node[trip.start]] <= trip.limit:
@@ -347,10 +332,7 @@ def search_departure(network, states, sea, ship, trip, to_goal, marks):
         if k < 0:
             continue
         sample_station(sea, node, k, time, marks.samples[0])
-        for edge in range(network.indptr[node], network.indptr[node + 1]):
-            size = _relax_edge_from_state(
-                network, states, sea, ship, trip, to_goal, marks, state, edge, k, size
-            )
+        size = _relax_edges_of_state(world, states, trip, to_goal, marks, state, k, size)
     return math.inf
 
 
