@@ -107,7 +107,7 @@ def test_only_with_known_depth_all_limits_are_called_kept(answer):
     legs = dict(answer.best.legs)
     legs["under_keel_clearance"] = np.full(len(legs["length"]), np.nan)
     unknown = replace(answer, routes=(replace(answer.best, legs=legs),), rejections={})
-    assert limits_text(unknown) == "kept: land, zones; NOT checked: depth under the keel"
+    assert limits_text(unknown) == "kept: land, zones; depth under the keel NOT checked"
 
 
 def test_limits_that_closed_other_water(answer):

@@ -30,7 +30,8 @@ _STATED = ("No depth in the data",)
 _HELD = {"speed": "speed through water", "power": "power", "ground": "speed over ground"}
 _LEAST = {"comfort": "least motion sickness"}
 #: Notes on the safety of the ship come first.
-_FIRST = (CHECK_POSITION, "Check the depth")
+_CHECK_DEPTH = "Check the depth"
+_FIRST = (CHECK_POSITION, _CHECK_DEPTH)
 _ALWAYS = ("land", "no-go zone")  # reasons that every coastal route meets
 
 
@@ -177,7 +178,9 @@ def _kept_text(plan: PlanData) -> str:
     if limits is not None:
         named = (("waves", limits.wave_height), ("wind", limits.wind_speed))
         checked += [what for what, limit in named if math.isfinite(limit)]
-    return f"kept: {', '.join(checked)}; NOT checked: depth under the keel"
+    shallow = any(note.startswith(_CHECK_DEPTH) for note in plan.notes)
+    depth = "TOO SHALLOW by the depth layer, see the note" if shallow else "NOT checked"
+    return f"kept: {', '.join(checked)}; depth under the keel {depth}"
 
 
 def quality_text(plan: PlanData) -> str:
