@@ -103,7 +103,7 @@ class Campaign:
                 found = (await self.http.get(f"/api/v1/plans/{job}")).json()
             states.append(found.get("state"))
             if states[-1] not in ("done", "cancelled"):
-                self.wrong.append(f"{job}: {states[-1] or 'lost'}")
+                self.wrong.append(f"{job}: {states[-1] or 'lost'}, {found.get('problem')}")
             elif states[-1] == "done":
                 result = (await self.http.get(f"/api/v1/plans/{job}/result")).json()
                 routes = json.dumps(result["routes"], sort_keys=True)
