@@ -17,7 +17,7 @@ SHARES: Final = (np.arange(9) + 0.5) / 9.0
 PERCENTILES: Final = (10.0, 50.0, 90.0)
 CANDIDATES: Final = 4  #: tracks of an arc that may become its line, the medoid first
 _TUBE: Final = (5.0, 95.0)
-_VARIANTS: Final = 4  # ways between two nodes that are told apart
+_VARIANTS: Final = 4  # ways between two nodes that are distinguished
 _SPREAD: Final = 0.05  # tracks of one way are this near to its medoid, as a share of the length
 _ROUNDS: Final = 2
 
