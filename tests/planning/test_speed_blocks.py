@@ -7,18 +7,16 @@ import numpy as np
 import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, evaluate
+from thalweg.core.limits import Limits
+from thalweg.core.objective import FUEL_MASS
 from thalweg.core.units import KNOT
+from thalweg.planning.pareto.cheapest_blocks import block_durations, cheapest_blocks
 from thalweg.planning.pareto.speed_blocks import in_speed_blocks, merged_settings
 from thalweg.planning.pareto.trade_off_context import RefereedCandidate, TrackCandidate
 from thalweg.route import Track
 
 SPEEDS = np.array([9.9, 14.1])
 DEPART = 1767225600.0  # 2026-01-01
-
-
-def runs(setting, hours):
-    first = np.flatnonzero(np.concatenate([[True], setting[1:] != setting[:-1]]))
-    return np.add.reduceat(hours, first)
 
 
 def test_a_short_leg_between_legs_of_one_speed_takes_theirs():
@@ -38,11 +36,39 @@ def test_merged_blocks_last_and_are_not_late_if_they_must_not(seed):
     speeds = np.array([8.0, 10.0, 12.0, 14.0])
     for late in (True, False):
         merged = merged_settings(setting, hours, speeds, 6.0, late=late)
-        lasting = runs(merged, hours)
+        lasting = block_durations(merged, hours)
         assert len(lasting) == 1 or lasting.min() >= 6.0
         time = (hours * speeds[setting] / speeds[merged]).sum()
         assert abs(time / hours.sum() - 1.0) < 0.35
     assert set(merged) <= set(setting)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_cheapest_blocks_against_all_choices(seed):
+    """Within 15 % of the cheapest where few pieces leave few choices, and exact without haste."""
+    draw = np.random.default_rng(seed)
+    pieces, speeds = 9, np.array([1.0, 1.3, 1.7])
+    length = draw.uniform(0.5, 1.5, pieces)
+    time = length[:, None] / speeds
+    cost = length[:, None] * draw.uniform(0.5, 1.5, (pieces, 1)) * speeds**2
+    time[draw.integers(pieces), 2] = np.inf
+    every = np.array(np.meshgrid(*[range(3)] * pieces)).reshape(pieces, -1).T
+    rows = np.arange(pieces)
+    all_time, all_cost = time[rows, every].sum(axis=1), cost[rows, every].sum(axis=1)
+    least = 1.5
+    held = np.array([block_durations(s, time[rows, s]).min() >= least for s in every])
+    allowed = held & np.isfinite(all_time)
+    fastest = all_time[allowed].min()
+    assert cheapest_blocks(time, cost, least, fastest - 1e-6) is None
+    for available in (fastest + 1e-9, 1.15 * fastest, 1.4 * fastest):
+        found = cheapest_blocks(time, cost, least, available)
+        spent, price = time[rows, found].sum(), cost[rows, found].sum()
+        assert spent <= available
+        assert block_durations(found, time[rows, found]).min() >= least
+        best = all_cost[allowed & (all_time <= available)].min()
+        assert best * (1.0 - 1e-12) <= price <= 1.15 * best
+    slow = cheapest_blocks(time, cost, least, np.inf)
+    assert cost[rows, slow].sum() == pytest.approx(all_cost[allowed].min(), rel=1e-12)
 
 
 def test_a_short_block_goes_and_its_cost_is_stated():
@@ -56,14 +82,23 @@ def test_a_short_block_goes_and_its_cost_is_stated():
     context = SimpleNamespace(
         voyage=Voyage(start=(0, 0), goal=(0, 2), depart=DEPART, objective="fuel"),
         ship=ship,
-        evaluate=score,
+        sea=Sea.calm(),
+        chart=Chart.open_water(),
+        table=ship.tabulate(),
+        needs=SimpleNamespace(channels=()),
+        evaluate=lambda track, terms: score(track),
         latest_arrival=np.inf,
+        data_end=np.inf,
     )
     trade_off = SimpleNamespace(
         context=context,
+        consumption=ship.tabulate_fuel(),
+        limits=Limits(),
         settings=np.arange(2),
         notes=[],
-        objective=SimpleNamespace(name="fuel", value=lambda route: route.fuel_t),
+        objective=SimpleNamespace(
+            name="fuel", prices=FUEL_MASS, terms=None, value=lambda route: route.fuel_t
+        ),
     )
     routes = [
         score(Track(np.zeros(4), lon, DEPART, None, np.array([0, middle, 0]))) for middle in (1, 0)

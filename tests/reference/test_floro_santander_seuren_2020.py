@@ -194,17 +194,8 @@ def planned(chart):
     return plan(voyage, ship=SHIP, sea=Sea.calm(), chart=chart)
 
 
-DEARER = "regression of 2.1 % above print, cause not traced: no point of the front near 120 h"
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "days",
-    [
-        pytest.param(d, marks=pytest.mark.xfail(strict=False, reason=DEARER)) if d == 5.0 else d
-        for d in DAYS
-    ],
-)
+@pytest.mark.parametrize("days", DAYS)
 def test_the_front_of_a_plan_costs_the_same_as_the_exact_routes(planned, days):
     best = min(costs[DAYS.index(days)] or np.inf for costs in THOUSANDS.values())
     hours = np.array([route.time_h for route in planned.routes])

@@ -128,7 +128,7 @@ def _evaluator(
     total = float(np.median([rough_lengths(track.lat, track.lon).sum() for track in seeds]))
     return make_evaluator(
         TabulatedShip(context.table, trade_off.consumption, trade_off.limits),
-        _freeze_raster(trade_off, seeds, depart, until),
+        freeze_around_tracks(trade_off, seeds, depart, until),
         depart=depart,
         chart=context.chart,
         latest=until,
@@ -137,12 +137,17 @@ def _evaluator(
     )
 
 
-def _freeze_raster(
-    trade_off: TradeOffContext, seeds: list[Track], start: float, end: float
+def freeze_around_tracks(
+    trade_off: TradeOffContext, tracks: list[Track], start: float, end: float
 ) -> GridFields:
-    """Freeze the sea around all seeds; unknown cells beside known ones are extrapolated."""
+    """Freeze the sea around tracks; unknown cells beside known ones are extrapolated.
+
+    Parameters
+    ----------
+    start, end : [s since 1970-01-01T00:00Z].
+    """
     sea, channels = trade_off.context.sea, trade_off.context.needs.channels
-    frozen = freeze_raster(sea, *_unwrapped_positions(seeds), (start, end), channels, _RASTER_SIZE)
+    frozen = freeze_raster(sea, *_unwrapped_positions(tracks), (start, end), channels, _RASTER_SIZE)
     return replace(frozen, values=_extrapolated_one_cell(frozen.values))
 
 

@@ -9,12 +9,21 @@ from numpy.typing import NDArray
 
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
+from thalweg.planning.pareto.cheapest_blocks import cheapest_blocks
 from thalweg.planning.pareto.front_points import essential_nodes
 from thalweg.planning.pareto.trade_off_context import RefereedCandidate, TradeOffContext
 from thalweg.route import Route, Track
+from thalweg.route.evaluators.cost_evaluator import CostEvaluator
+from thalweg.route.evaluators.evaluator_inputs import EvaluationResolution, TabulatedShip
+from thalweg.route.evaluators.polyline import polyline_of_track, track_of_polyline
+from thalweg.route.evaluators.population_evaluator import make_evaluator
+from thalweg.route.refinement.speed_profile import times_and_costs_by_setting
 
 #: A block is at least this share of the passage where that is less than the asked duration.
 _SHARE_OF_PASSAGE = 0.25
+_PIECE_SHARE = 0.25  # of a block: the longest piece whose setting is chosen
+_ROUNDS = 2  # choices of blocks, each at the times of passage of the one before
+_LATER = 0.1  # share of the passage by which blocks may arrive later within the frozen sea
 
 
 def in_speed_blocks(
@@ -29,14 +38,16 @@ def in_speed_blocks(
     Returns
     -------
     list of RefereedCandidate
-        A route keeps its own speeds where no merging of short blocks keeps every limit and the
-        latest arrival. The notes of the trade-off state what the blocks cost.
+        At the cheapest blocks that take no longer, or with short blocks merged where these exceed
+        a limit. A route keeps its own speeds where neither keeps every limit and the latest
+        arrival. The notes of the trade-off state what the blocks cost.
     """
     context = trade_off.context
     block_duration = context.voyage.least_speed_block_h * HOUR
     if block_duration <= 0.0 or len(trade_off.settings) < 2:
         return scored
-    found = [_blocked(trade_off, item, block_duration) for item in scored]
+    evaluator = _evaluator(trade_off, [item.route for item in scored])
+    found = [_blocked(trade_off, item, block_duration, evaluator) for item in scored]
     _note_costs(trade_off, scored, found)
     return found
 
@@ -83,23 +94,78 @@ def merged_settings(
 
 
 def _blocked(
-    trade_off: TradeOffContext, item: RefereedCandidate, block_duration: float
+    trade_off: TradeOffContext,
+    item: RefereedCandidate,
+    block_duration: float,
+    evaluator: CostEvaluator,
 ) -> RefereedCandidate:
-    """Return a route in blocks; the same where none of the mergings keeps the limits."""
+    """Return a route in blocks; the same where none within the limits is found."""
     route, context = item.route, trade_off.context
     hours = route.legs["arrive"] - route.legs["depart"]
     least = min(block_duration, _SHARE_OF_PASSAGE * float(hours.sum()))
     speeds = np.asarray(context.ship.speeds, float)
-    for late in (True, False):
-        setting = merged_settings(route.track.setting, hours, speeds, least, late=late)
-        if np.array_equal(setting, route.track.setting):
-            return item
-        tried = context.evaluate(_with_settings(route.track, setting))
+    merged = merged_settings(route.track.setting, hours, speeds, least, late=True)
+    if np.array_equal(merged, route.track.setting):
+        return item
+    not_late = merged_settings(route.track.setting, hours, speeds, least, late=False)
+    for track in (
+        _in_cheapest_blocks(route, least, evaluator),
+        _with_settings(route.track, merged),
+        _with_settings(route.track, not_late),
+    ):
+        if track is None:
+            continue
+        tried = context.evaluate(track, trade_off.objective.terms)
         in_time = tried.arrive <= context.latest_arrival + 1.0
         value = trade_off.objective.value(tried)
         if tried.feasible and in_time and np.isfinite(value):
             return replace(item, route=tried, value=value)
     return item
+
+
+def _evaluator(trade_off: TradeOffContext, routes: list[Route]) -> CostEvaluator:
+    """Return an evaluator of the cost of legs around some routes."""
+    from thalweg.planning.pareto.evolutionary_refinement import freeze_around_tracks
+
+    context = trade_off.context
+    tracks = [route.track for route in routes]
+    depart, arrive = min(t.depart for t in tracks), max(route.arrive for route in routes)
+    until = min(arrive + _LATER * (arrive - depart) + HOUR, context.data_end)
+    return CostEvaluator(
+        make_evaluator(
+            TabulatedShip(context.table, trade_off.consumption, trade_off.limits),
+            freeze_around_tracks(trade_off, tracks, depart, until),
+            depart=depart,
+            chart=context.chart,
+            prices=trade_off.objective.prices,
+            resolution=EvaluationResolution(
+                total=float(np.median([route.legs["length"].sum() for route in routes]))
+            ),
+        ),
+        0.0,
+    )
+
+
+def _in_cheapest_blocks(route: Route, least: float, evaluator: CostEvaluator) -> Track | None:
+    """Return the track of a route at the cheapest speeds in blocks; None if none is in time.
+
+    The times and costs of its pieces are those at the times of passage of the speeds before.
+    """
+    line = polyline_of_track(route.track, evaluator)
+    available = float((route.legs["arrive"] - route.legs["depart"]).sum())
+    longest = _PIECE_SHARE * least * float(route.legs["length"].sum()) / available
+    while True:
+        finer = line.split(longest, ~evaluator.canal_legs(line.lat, line.lon))
+        if len(finer) == len(line):
+            break
+        line = finer
+    for _ in range(_ROUNDS):
+        times, costs = times_and_costs_by_setting(line, evaluator)
+        setting = cheapest_blocks(times, costs, least, available)
+        if setting is None:
+            return None
+        line = replace(line, setting=setting)
+    return _with_settings(track_of_polyline(line, evaluator), line.setting)
 
 
 def _with_settings(track: Track, setting: NDArray[np.int64]) -> Track:

@@ -65,7 +65,7 @@ def choose_speeds(
     base = line
     rounds = _MAX_ROUNDS // 2 if whole else _MAX_ROUNDS
     for number in range(rounds):
-        times, costs = _times_and_costs_by_setting(base, evaluator)
+        times, costs = times_and_costs_by_setting(base, evaluator)
         available = budget - _departure_plus_waiting(base, evaluator)
         setting, slope, part = _knapsack(times, costs, available)
         base = replace(base, setting=setting)
@@ -86,12 +86,16 @@ def _departure_plus_waiting(line: Polyline, evaluator: CostEvaluator) -> float:
     return line.depart + float(waits[np.isfinite(waits)].sum())
 
 
-def _times_and_costs_by_setting(
+def times_and_costs_by_setting(
     line: Polyline, evaluator: CostEvaluator
 ) -> tuple[FloatArray, FloatArray]:
-    """Return (time, cost) of every leg (legs, settings) at the times of passage of the line.
+    """Return (time, cost) of every leg at every setting, at the times of passage of the line.
 
-    Cost includes the price of time; both are +inf where a leg cannot be sailed.
+    Returns
+    -------
+    time, cost : float64 array (legs, settings)
+        [s] and in the unit of the prices, with the price of time; +inf where a leg cannot be
+        sailed.
     """
     legs, settings = len(line) - 1, evaluator.settings
     arrive = evaluator.sail(line.batch(), check=False)[0][0]
