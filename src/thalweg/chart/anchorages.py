@@ -22,10 +22,8 @@ def waiting_allowed(
 
     Parameters
     ----------
-    anchorages, barred : sequence of shapely polygons
-        Zones of the kinds "anchorage" and "no-waiting"; lon, lat [deg].
-    lat, lon : float64 array
-        Positions [deg].
+    anchorages, barred : Zones of the kinds "anchorage" and "no-waiting"; lon, lat [deg].
+    lat, lon : Positions [deg].
     """
     allowed: NDArray[np.bool_] = np.ones(np.shape(lat), np.bool_)
     if anchorages:

@@ -131,8 +131,7 @@ class PortApproaches:
 
         Parameters
         ----------
-        lat, lon : float64 array (n,)
-            Waypoints [deg].
+        lat, lon : Waypoints [deg], (n,).
 
         Returns
         -------

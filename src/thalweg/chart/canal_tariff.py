@@ -43,8 +43,7 @@ class CanalTariff:
     fixed : tuple of (beam, amount)
         Part of the dues up to a beam [m], ascending.
     bands : Widths of the first bands of tonnage; one more follows without an end.
-    rates : mapping of str to tuple of float
-        Amount per ton in each band, by kind of ship.
+    rates : Amount per ton in each band, by kind of ship.
     mean : Mean dues [USD], for ships of unknown size.
     source : Sources and assumptions.
     """
@@ -64,8 +63,7 @@ class CanalTariff:
 
         Parameters
         ----------
-        row : mapping
-            Its ``tariff``.
+        row : Its ``tariff``.
         mean : Mean dues [USD].
         """
         return cls(

@@ -203,8 +203,7 @@ def canal_index_of_legs(
 
     Parameters
     ----------
-    lat1, lon1, lat2, lon2 : array_like
-        Ends of legs [deg]; they broadcast.
+    lat1, lon1, lat2, lon2 : Ends of legs [deg]; they broadcast.
 
     Returns
     -------

@@ -47,8 +47,7 @@ class CoastalFetch:
 
         Parameters
         ----------
-        lat, lon : float64 array (n,)
-            Positions [deg].
+        lat, lon : Positions [deg], (n,).
         origin : float64 array (n,) or (n, times)
             Direction that the wind comes from, clockwise from north [rad].
 

@@ -33,8 +33,7 @@ def read_features(
 
     Parameters
     ----------
-    source : path, str or mapping
-        A file, or GeoJSON as plain data.
+    source : A file, or GeoJSON as plain data.
     what : Name of the source, for messages.
 
     Returns
@@ -111,8 +110,7 @@ def parse_polygons(geometry: Mapping[str, Any], what: str, *, repair: bool = Tru
 
     Parameters
     ----------
-    geometry : mapping
-        A GeoJSON geometry.
+    geometry : A GeoJSON geometry.
     what : Name of the geometry, for messages.
     repair : Repair invalid outlines, with a warning.
 

@@ -18,9 +18,8 @@ class Rings:
 
     Attributes
     ----------
-    lat, lon : ndarray of float
-        Positions [deg]; the last of each ring repeats its first. Longitudes are continuous along
-        a ring and may leave [-180, 180].
+    lat, lon : Positions [deg]; the last of each ring repeats its first. Longitudes are continuous
+        along a ring and may leave [-180, 180].
     start : Where each ring begins, one more than there are rings.
     """
 

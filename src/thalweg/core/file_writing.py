@@ -38,8 +38,7 @@ def replacing_file(path: str | PathLike[str]) -> Iterator[IO[bytes]]:
 
     Parameters
     ----------
-    path : str or Path
-        File to write. A link is followed; the permissions of an existing file are kept. A device
+    path : File to write. A link is followed; the permissions of an existing file are kept. A device
         or a pipe is written directly.
 
     Yields
@@ -147,10 +146,6 @@ def write_text(path: str | PathLike[str], text: str) -> None:
 
 def write_csv_rows(path: str | PathLike[str], rows: Iterable[Iterable[Any]]) -> None:
     """Write rows as CSV, completely or not at all; None becomes an empty cell.
-
-    Parameters
-    ----------
-    rows : iterable of rows of cells
 
     Raises
     ------

@@ -150,8 +150,7 @@ def inverse(
 
     Parameters
     ----------
-    lat1, lon1, lat2, lon2 : array_like
-        Positions [deg]; broadcast together.
+    lat1, lon1, lat2, lon2 : Positions [deg]; broadcast together.
 
     Returns
     -------
@@ -175,8 +174,7 @@ def distance(lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike)
 
     Parameters
     ----------
-    lat1, lon1, lat2, lon2 : array_like
-        Ends of the geodesics [deg]; they broadcast together.
+    lat1, lon1, lat2, lon2 : Ends of the geodesics [deg]; they broadcast together.
 
     Returns
     -------
@@ -217,10 +215,8 @@ def positions_along(
 
     Parameters
     ----------
-    lat1, lon1, lat2, lon2 : float
-        Ends of the geodesic [deg].
-    fractions : array_like
-        Fractions of its length from the first end, 0 to 1.
+    lat1, lon1, lat2, lon2 : Ends of the geodesic [deg].
+    fractions : Fractions of its length from the first end, 0 to 1.
 
     Returns
     -------
@@ -238,10 +234,8 @@ def densify(
 
     Parameters
     ----------
-    lat, lon : array_like (n,)
-        Vertices of the polyline [deg].
-    spacing : float
-        Greatest length of a piece [m], above 0.
+    lat, lon : Vertices of the polyline [deg], (n,).
+    spacing : Greatest length of a piece [m], above 0.
 
     Returns
     -------
@@ -268,10 +262,8 @@ def check_position(lat: float, lon: float, what: str = "position") -> Position:
 
     Parameters
     ----------
-    lat, lon : float
-        Position [deg].
-    what : str, optional
-        Name of the position, for messages.
+    lat, lon : Position [deg].
+    what : Name of the position, for messages.
 
     Returns
     -------
@@ -359,8 +351,7 @@ def format_position(lat: float, lon: float) -> str:
 
     Parameters
     ----------
-    lat, lon : float
-        Position [deg].
+    lat, lon : Position [deg].
 
     Returns
     -------
@@ -375,8 +366,7 @@ def format_position_minutes(lat: float, lon: float) -> str:
 
     Parameters
     ----------
-    lat, lon : float
-        Position [deg].
+    lat, lon : Position [deg].
 
     Returns
     -------

@@ -35,7 +35,6 @@ def float_array(values: ArrayLike, what: str) -> FloatArray:
 
     Parameters
     ----------
-    values : array_like
     what : Name of the values in errors, such as ``latitudes``.
 
     Raises

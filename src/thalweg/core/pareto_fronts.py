@@ -17,8 +17,7 @@ def non_dominated_indices(
 
     Parameters
     ----------
-    first, second : array_like of float, shape (n,)
-        The two objectives. A point with NaN or infinity is dominated.
+    first, second : The two objectives, (n,). A point with NaN or infinity is dominated.
     tolerance : float
         Relative improvement of the second objective below which a point counts as dominated.
 
@@ -53,8 +52,7 @@ def lower_hull(first: ArrayLike, second: ArrayLike) -> IntArray:
 
     Parameters
     ----------
-    first, second : array_like of float, shape (n,)
-        Finite coordinates.
+    first, second : Finite coordinates, (n,).
 
     Notes
     -----
@@ -80,8 +78,7 @@ def length_along_front(first: ArrayLike, second: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    first, second : array_like of float, shape (n,)
-        A front in the order of its first objective.
+    first, second : A front in the order of its first objective, (n,).
 
     Returns
     -------
@@ -98,8 +95,7 @@ def evenly_spaced_subset(first: ArrayLike, second: ArrayLike, count: int) -> Int
 
     Parameters
     ----------
-    first, second : array_like of float, shape (n,)
-        The two objectives of a front, in any order.
+    first, second : The two objectives of a front, in any order, (n,).
     count : Number of points, at least 2.
 
     Returns

@@ -44,8 +44,7 @@ def inverse_rhumb(
 
     Parameters
     ----------
-    lat1, lon1, lat2, lon2 : array_like
-        Positions [deg]; broadcast together.
+    lat1, lon1, lat2, lon2 : Positions [deg]; broadcast together.
 
     Returns
     -------
@@ -68,12 +67,9 @@ def direct_rhumb(
 
     Parameters
     ----------
-    lat, lon : array_like
-        Positions [deg].
-    course : array_like
-        Course, clockwise from north [rad].
-    distance : array_like
-        Length of the rhumb line [m].
+    lat, lon : Positions [deg].
+    course : Course, clockwise from north [rad].
+    distance : Length of the rhumb line [m].
 
     Returns
     -------
@@ -101,10 +97,8 @@ def positions_along_rhumb(
 
     Parameters
     ----------
-    lat1, lon1, lat2, lon2 : float
-        Ends of the rhumb line [deg].
-    fractions : array_like
-        Fractions of its length from the first end, 0 to 1.
+    lat1, lon1, lat2, lon2 : Ends of the rhumb line [deg].
+    fractions : Fractions of its length from the first end, 0 to 1.
 
     Returns
     -------
@@ -123,8 +117,7 @@ def rhumb_deviation(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    lat, lon : array_like (n,)
-        Vertices of a polyline [deg].
+    lat, lon : Vertices of a polyline [deg], (n,).
 
     Returns
     -------
@@ -151,8 +144,7 @@ def rhumb_cross_track(
     ----------
     start, end : (lat, lon)
         Ends of the rhumb line [deg].
-    lat, lon : array_like (n,)
-        Positions [deg].
+    lat, lon : Positions [deg], (n,).
 
     Returns
     -------
@@ -182,12 +174,9 @@ def densify_for_rhumb(
 
     Parameters
     ----------
-    lat, lon : array_like (n,)
-        Vertices of the polyline [deg].
-    deviation : float
-        Greatest distance between rhumb line and geodesic of a piece [m], above 0.
-    spacing : float, optional
-        Greatest length of a piece [m].
+    lat, lon : Vertices of the polyline [deg], (n,).
+    deviation : Greatest distance between rhumb line and geodesic of a piece [m], above 0.
+    spacing : Greatest length of a piece [m].
 
     Returns
     -------
@@ -214,10 +203,8 @@ def rhumb_pieces(
 
     Parameters
     ----------
-    lat, lon : array_like (n,)
-        Vertices of the polyline [deg].
-    deviation : float
-        Greatest distance between rhumb line and geodesic of a piece [m], above 0.
+    lat, lon : Vertices of the polyline [deg], (n,).
+    deviation : Greatest distance between rhumb line and geodesic of a piece [m], above 0.
 
     Returns
     -------

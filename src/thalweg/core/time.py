@@ -23,8 +23,7 @@ def parse_time(value: TimeLike) -> float:
 
     Parameters
     ----------
-    value : str, datetime, numpy.datetime64 or float
-        ISO 8601 text (``2026-01-01T00:00Z``; without a zone it is read as UTC), a datetime
+    value : ISO 8601 text (``2026-01-01T00:00Z``; without a zone it is read as UTC), a datetime
         (naive ones are read as UTC) or seconds since the epoch.
 
     Raises

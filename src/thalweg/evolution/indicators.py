@@ -18,8 +18,7 @@ def non_dominated(points: ArrayLike) -> NDArray[np.bool_]:
 
     Parameters
     ----------
-    points : array_like, shape (n, 2)
-        Objectives; rows with NaN or infinity are dominated.
+    points : Objectives, (n, 2); rows with NaN or infinity are dominated.
 
     Returns
     -------
@@ -37,10 +36,8 @@ def hypervolume(points: ArrayLike, reference: ArrayLike) -> float:
 
     Parameters
     ----------
-    points : array_like, shape (n, 2)
-        Objectives; points that are not below the reference in both add nothing.
-    reference : array_like, shape (2,)
-        The largest values that count.
+    points : Objectives, (n, 2); points that are not below the reference in both add nothing.
+    reference : The largest values that count, (2,).
 
     Notes
     -----
@@ -66,8 +63,7 @@ def hypervolume_ratio(points: ArrayLike, *others: ArrayLike, reference: ArrayLik
     Parameters
     ----------
     points, *others : array_like, shape (n, 2)
-    reference : array_like, shape (2,)
-        The largest values that count.
+    reference : The largest values that count, (2,).
 
     Raises
     ------
@@ -122,9 +118,8 @@ def generational_distance(
     Parameters
     ----------
     front, target : array_like, shape (n, 2) and (m, 2)
-    scale : array_like, shape (2,), optional
-        What each objective is divided by first; by default its range over the target (1 where
-        that is zero).
+    scale : What each objective is divided by first, (2,); by default its range over the target (1
+        where that is zero).
 
     Notes
     -----

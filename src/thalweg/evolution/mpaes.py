@@ -24,10 +24,8 @@ class HillClimber:
 
     Attributes
     ----------
-    score : float64 array (3,)
-        Score of its current track.
-    near : float64 array (h, 3)
-        Its own archive H.
+    score : Score of its current track, (3,).
+    near : Its own archive H, (h, 3).
     fails, moves : int
     """
 

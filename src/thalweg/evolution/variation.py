@@ -141,8 +141,7 @@ def reproduce(
 
     Parameters
     ----------
-    pairs : int64 array (K, 2)
-        Indices of the parents.
+    pairs : Indices of the parents, (K, 2).
     evaluator : For its chart and number of settings.
     rng : Gives each pair its own seed, so that results do not depend on threads.
     """

@@ -54,10 +54,8 @@ def allowed_legs(
     Parameters
     ----------
     chart : Land, zones and depth.
-    lat, lon : ndarray (N,)
-        Positions [deg].
-    first, second : int array (P,)
-        Indices of the ends of each leg.
+    lat, lon : Positions [deg], (N,).
+    first, second : Indices of the ends of each leg, (P,).
 
     Returns
     -------
@@ -106,10 +104,8 @@ def measured_pairs(
 
     Parameters
     ----------
-    lat, lon : ndarray (N,)
-        Positions of the nodes [deg].
-    first, second : int32 array (P,)
-        Nodes of each pair.
+    lat, lon : Positions of the nodes [deg], (N,).
+    first, second : Nodes of each pair, (P,).
 
     Returns
     -------

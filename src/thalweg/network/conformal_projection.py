@@ -65,8 +65,7 @@ def angle_to_point(vectors: FloatArray, point: FloatArray) -> FloatArray:
     ----------
     vectors : ndarray (..., 3)
         Unit vectors.
-    point : ndarray (3,)
-        Unit vector.
+    point : Unit vector, (3,).
 
     Returns
     -------

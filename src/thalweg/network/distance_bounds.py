@@ -26,8 +26,7 @@ def distance_bounds(lat: ArrayLike, lon: ArrayLike, to_lat: float, to_lon: float
 
     Parameters
     ----------
-    lat, lon : array_like
-        Positions [deg].
+    lat, lon : Positions [deg].
     to_lat, to_lon : The other position [deg].
     """
     phi, to_phi = np.radians(np.asarray(lat, float)), np.radians(to_lat)

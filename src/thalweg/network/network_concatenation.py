@@ -36,8 +36,7 @@ def concatenate_networks(networks: Sequence[Network], links: Sequence[CanalLink 
     Parameters
     ----------
     networks : Each with its start and goal.
-    links : sequence of CanalLink or None, one fewer
-        Canal from each network to the next; None where the goal of the one is the start of the
+    links : Canal from each network to the next; None where the goal of the one is the start of the
         other.
 
     Returns

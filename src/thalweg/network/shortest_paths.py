@@ -44,8 +44,7 @@ def shortest_path_tree(graph: Graph, weight: FloatArray, root: int) -> ShortestP
     Parameters
     ----------
     graph : Nodes and directed edges.
-    weight : ndarray (E,)
-        Weight of every edge, not negative; edges of infinite weight are not used.
+    weight : Weight of every edge, not negative, (E,); edges of infinite weight are not used.
     root : Node from which the paths start.
     """
     from scipy.sparse import csr_array

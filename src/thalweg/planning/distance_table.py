@@ -172,8 +172,7 @@ def read_places(path: str | PathLike[str]) -> list[tuple[str, Place]]:
 
     Parameters
     ----------
-    path : path
-        A column ``port``, ``name`` or ``locode``, and maybe ``lat`` and ``lon`` [deg]; rows with
+    path : A column ``port``, ``name`` or ``locode``, and maybe ``lat`` and ``lon`` [deg]; rows with
         both are positions.
 
     Returns

@@ -42,9 +42,8 @@ class EnsembleCandidate:
     member : Member of the plan.
     index : Place of the route in the plan.
     distribution : The route in all members.
-    time, value : float
-        Time [h] and objective over the members in which the route can be sailed, by the measure of
-        the voyage; those of the plan if there is no such member.
+    time, value : Time [h] and objective over the members in which the route can be sailed, by the
+        measure of the voyage; those of the plan if there is no such member.
     time_risk, value_risk : The same over all members: inf if one of them is infeasible.
     """
 

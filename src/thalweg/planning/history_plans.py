@@ -29,13 +29,8 @@ class CorridorRequest:
 
     Attributes
     ----------
-    voyage : Voyage
-    corridor : HistoryCorridor
-    chart : Chart
-    ends : sequence of Endpoint
-        Start, via points and goal.
-    plan_one : callable
-        Plans with a chart and a network.
+    ends : Start, via points and goal.
+    plan_one : Plans with a chart and a network.
     """
 
     voyage: Voyage
@@ -50,9 +45,7 @@ def plan_in_corridor(request: CorridorRequest, draught: float | None) -> Plan:
 
     Parameters
     ----------
-    request : CorridorRequest
-    draught : float or None
-        Of the ship [m].
+    draught : Of the ship [m].
 
     Returns
     -------

@@ -28,8 +28,7 @@ class BaselineComparison:
     ----------
     routes : Scored by the referee, one per setting that reaches the goal; by ascending time.
     values : Their values, in the unit of the front.
-    rows : tuple of dict
-        Savings of the front over each: ``saved_h`` at the same value, ``saved`` (and
+    rows : Savings of the front over each: ``saved_h`` at the same value, ``saved`` (and
         ``saved_percent``) at the same time, which is ``saved_by_route`` (knowing the weather, at a
         constant speed) plus ``saved_by_speed`` (varying the speed); None outside the range of the
         front, and for a route that breaks a limit (``feasible``).
@@ -49,8 +48,7 @@ class ParetoFront:
     criterion : {"fuel", "energy", "cost", "co2", "comfort"}
         The key figure.
     unit : Its unit: t, MWh, or a currency.
-    values : ndarray (n,)
-        Of the routes of the plan, in their order.
+    values : Of the routes of the plan, in their order, (n,).
     stages : tuple of str (n,)
         Source of each route: ``"fastest"`` (refined for time), ``"exact"``,
         ``"alternative path"`` (a fixed route past other land or through other canals, with its
@@ -59,12 +57,10 @@ class ParetoFront:
     ways : tuple of str (n,)
         Label of each route: its canals, or ``"open sea"``, and the sides of land where these
         differ (`thalweg.planning.pareto.route_names.route_labels`).
-    lower : ndarray (2, m)
-        Times [h] and values of the lower front of the network: evidence, as what happens between
-        its nodes is neither searched nor bounded.
+    lower : Times [h] and values of the lower front of the network: evidence, as what happens
+        between its nodes is neither searched nor bounded, (2, m).
     comparison : The weather-blind route in the same weather.
-    certain : ndarray (2, m)
-        Times [h] and values of a front below every route, to be joined by lines.
+    certain : Times [h] and values of a front below every route, to be joined by lines, (2, m).
     """
 
     criterion: str
@@ -151,10 +147,8 @@ def knee(time: FloatArray, value: FloatArray) -> int:
 
     Parameters
     ----------
-    time : ndarray (n,)
-        Times of the points, ascending.
-    value : ndarray (n,)
-        Values of the points, descending.
+    time : Times of the points, ascending, (n,).
+    value : Values of the points, descending, (n,).
     """
     if len(time) < 3:
         return 0

@@ -66,8 +66,7 @@ class PlanningContext:
         ----------
         points : sequence of (float, float)
             Time [s] and value.
-        unit : str
-            Of the value.
+        unit : Of the value.
         """
         show = getattr(self.report_progress, "show_front", None)
         if show is not None:

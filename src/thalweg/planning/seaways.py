@@ -85,8 +85,7 @@ class Seaways:
 
         Parameters
         ----------
-        offing : float
-            Distance from land [m] that is kept outside passages, ends and canals where the
+        offing : Distance from land [m] that is kept outside passages, ends and canals where the
             graph has water so far from land.
 
         Raises

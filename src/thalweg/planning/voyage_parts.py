@@ -180,8 +180,7 @@ class SearchRequest:
     min_ukc_m : [m].
     speed_block_h : [h].
     offing_nm : [nm].
-    layered : LayeredRequest or mapping, optional
-        Shape of a layered network.
+    layered : Shape of a layered network.
     """
 
     objective: VoyageObjective = "time"

@@ -38,11 +38,9 @@ class CanalLegs:
 
     Attributes
     ----------
-    number : int64 array (legs,)
-        Index into ``canals``; -1 for legs at sea.
+    number : Index into ``canals``, (legs,); -1 for legs at sea.
     canals : Those of the chart, then the legs along approaches.
-    backward : bool array (legs,)
-        Whether the canal is passed from its last position to its first.
+    backward : Whether the canal is passed from its last position to its first, (legs,).
     """
 
     number: NDArray[np.int64]
@@ -128,8 +126,7 @@ def canal_legs(track: Track, chart: Chart | None, ship: Ship | None = None) -> C
 
     Parameters
     ----------
-    ship : Ship, optional
-        With a ship, canals have its dues, and legs along approaches of the chart are included:
+    ship : With a ship, canals have its dues, and legs along approaches of the chart are included:
         they are sailed at `thalweg.chart.approaches.MAX_APPROACH_SPEED`, or the ordered speed if
         that is lower.
     """

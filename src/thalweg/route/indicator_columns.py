@@ -82,8 +82,7 @@ def named_columns(legs: Mapping[str, Any], kind: str) -> dict[str, Any]:
 
     Parameters
     ----------
-    legs : mapping of str to array
-        Columns.
+    legs : Columns.
     kind : Such as ``squared_dose``.
     """
     return {

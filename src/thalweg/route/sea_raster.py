@@ -49,12 +49,10 @@ def freeze_raster(
 
     Parameters
     ----------
-    lat, lon : float64 array
-        Positions [deg]; longitudes without jumps.
+    lat, lon : Positions [deg]; longitudes without jumps.
     period : First and last time [s since 1970-01-01T00:00Z].
     channels : Channels to freeze (see `thalweg.kernels.codes`).
-    extra : mapping of int to callable, optional
-        Further channels, as in `Sea.freeze_grid`.
+    extra : Further channels, as in `Sea.freeze_grid`.
     """
     extent = max(float(np.ptp(lat)), float(np.ptp(lon)), 1e-5)
     margin = size.margin * extent

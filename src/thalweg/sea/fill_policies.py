@@ -58,8 +58,7 @@ def layers_filled(
     Parameters
     ----------
     layers : In order of priority.
-    policies : mapping
-        Values by policy (see `thalweg.sea.Sea.filled`).
+    policies : Values by policy (see `thalweg.sea.Sea.filled`).
 
     Raises
     ------

@@ -44,9 +44,8 @@ class Inspection:
     ignored : tuple of (file, variable, reason)
         Variables that are not used.
     coverage : Where and when each variable is known.
-    missing : mapping of str to float
-        Fraction of grid points without a value (land, ice, gaps), 0 to 1, by source and variable,
-        measured at up to 8 times spread over the period.
+    missing : Fraction of grid points without a value (land, ice, gaps), 0 to 1, by source and
+        variable, measured at up to 8 times spread over the period.
     ranges : mapping of str to (float, float)
         Least and greatest value [SI] at these times, by source and variable.
     gaps : Gaps in time axes; values are not interpolated across them.

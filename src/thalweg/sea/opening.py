@@ -26,8 +26,7 @@ def layers_of_sources(
     Parameters
     ----------
     sources : Met-ocean files, and files of tidal constituents at three nodes or more.
-    mapping : mapping of str to str or None
-        Canonical name to name in the file.
+    mapping : Canonical name to name in the file.
     draught : Draught [m] over which currents in layers are averaged.
 
     Raises

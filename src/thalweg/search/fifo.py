@@ -75,8 +75,7 @@ def sampled_arrivals(
     ----------
     ship_on_network : The network, the sea frozen at its stations, and the ship at one setting.
     departures : array_like (D,) [s]
-    edges : array_like (E,), optional
-        Edges (default: all).
+    edges : Edges (default: all), (E,).
 
     Returns
     -------

@@ -69,8 +69,7 @@ class WaitingSearch:
     ----------
     depart, horizon : [s].
     stays : By node, one for each time it is afloat.
-    counts, refused : int64 array
-        Of all searches.
+    counts, refused : Of all searches.
     """
 
     network: Network

@@ -60,8 +60,7 @@ def counts_by_reason(refused: NDArray[np.int64]) -> dict[str, int]:
 
     Parameters
     ----------
-    refused : int64 array (STATUS_COUNT,)
-        How many, by status.
+    refused : How many, by status, (STATUS_COUNT,).
 
     Returns
     -------

@@ -46,11 +46,9 @@ class FuelTerms:
     cubed_speed_price : float
         Price of a second of sailing per cubed ordered speed [currency/s per (m/s)^3], lambda_f of
         van Halem (2019); NaN when unknown. It is used where fuel has no price.
-    cubed_speed_co2 : float
-        CO2 of a second of sailing per cubed ordered speed [kg/s per (m/s)^3], van Halem (2019),
-        eq. 3.5; NaN when unknown. It is used where the CO2 of the fuel is unknown.
-    sources : mapping of str to str
-        Where the prices of ``fuel`` and ``time`` come from: "ship file" or "request".
+    cubed_speed_co2 : CO2 of a second of sailing per cubed ordered speed [kg/s per (m/s)^3], van
+        Halem (2019), eq. 3.5; NaN when unknown. It is used where the CO2 of the fuel is unknown.
+    sources : Where the prices of ``fuel`` and ``time`` come from: "ship file" or "request".
     charges : Emission allowances and FuelEU penalty, which add to the cost of fuel.
     """
 
@@ -195,10 +193,8 @@ class FuelTerms:
         Parameters
         ----------
         what : {"fuel", "cost", "co2", "charges"}
-        fuel_mass : array_like
-            Fuel m of the ship's model [kg], as if the fuel outside were burnt everywhere.
-        share_inside : array_like
-            Share s inside a control area, 0 to 1.
+        fuel_mass : Fuel m of the ship's model [kg], as if the fuel outside were burnt everywhere.
+        share_inside : Share s inside a control area, 0 to 1.
 
         Returns
         -------
@@ -239,8 +235,7 @@ class FuelTerms:
 
         Parameters
         ----------
-        usd_per_t : float, optional
-            Price of the fuel burnt outside [USD/t]; prices are in USD then. Without
+        usd_per_t : Price of the fuel burnt outside [USD/t]; prices are in USD then. Without
             ``eca_price_factor`` the price inside follows with the same ratio.
         eca_price_factor : Price inside over price outside.
         time_usd_per_day : Price of time [USD/day].

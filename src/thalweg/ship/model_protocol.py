@@ -33,10 +33,7 @@ class Tabulation(NamedTuple):
 
     Attributes
     ----------
-    parts : tuple of TablePart
-    error : TableError
-    curve : OutputCurve, optional
-        Applied to the sum of the parts.
+    curve : Applied to the sum of the parts.
     """
 
     parts: tuple[TablePart, ...]
@@ -306,10 +303,8 @@ def setting_index(setting: ArrayLike, count: int) -> NDArray[np.intp]:
 
     Parameters
     ----------
-    setting : array_like of int
-        Indices of settings.
-    count : int
-        Number of settings of the ship.
+    setting : Indices of settings.
+    count : Number of settings of the ship.
 
     Returns
     -------

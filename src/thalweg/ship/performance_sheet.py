@@ -47,8 +47,7 @@ def performance_sheet(
 
     Parameters
     ----------
-    weather : mapping, optional
-        Conditions by name, SI; calm and deep where not given.
+    weather : Conditions by name, SI; calm and deep where not given.
     speeds_kn : Speeds through water [kn]; the ship's settings when not given.
 
     Returns

@@ -279,8 +279,7 @@ def model_with_speeds(ship: ModelledShip, speeds: ArrayLike) -> ShipModel:
 
     Parameters
     ----------
-    speeds : array_like
-        Calm-water speeds [m/s] at the load factor, above 0; sorted, each once.
+    speeds : Calm-water speeds [m/s] at the load factor, above 0; sorted, each once.
 
     Returns
     -------

@@ -153,12 +153,9 @@ class SafetyLimits:
 
         Parameters
         ----------
-        speed : array_like
-            Through the water [m/s].
-        wave_angle : array_like
-            Between the bow and where the waves come from [rad], 0 head to pi following.
-        wave_height, wave_period : array_like
-            Significant height [m] and peak period [s].
+        speed : Through the water [m/s].
+        wave_angle : Between the bow and where the waves come from [rad], 0 head to pi following.
+        wave_height, wave_period : Significant height [m] and peak period [s].
 
         Returns
         -------

@@ -78,11 +78,9 @@ class Coastline:
 
         Parameters
         ----------
-        lat, lon : array_like
-            Positions [deg]; they broadcast.
-        cap : float
-            Up to this distance [m], at most 250 km, the result is the true distance to 1 %
-            and never above it; farther from land it is at least ``cap``. On land it is 0.
+        lat, lon : Positions [deg]; they broadcast.
+        cap : Up to this distance [m], at most 250 km, the result is the true distance to 1 % and
+            never above it; farther from land it is at least ``cap``. On land it is 0.
         """
         a, b = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
         distance = np.empty(a.size)

@@ -26,8 +26,7 @@ def leg_status(
     Parameters
     ----------
     coast : Index of a coast.
-    lat1, lon1, lat2, lon2 : array_like
-        Ends of the legs [deg].
+    lat1, lon1, lat2, lon2 : Ends of the legs [deg].
 
     Returns
     -------

@@ -40,8 +40,7 @@ def coarse_depth(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    lat, lon : array_like
-        Positions [deg]; broadcast together.
+    lat, lon : Positions [deg]; broadcast together.
 
     Returns
     -------

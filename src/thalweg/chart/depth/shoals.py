@@ -63,8 +63,7 @@ class Shoals:
     Attributes
     ----------
     contour : Water shallower than this is shoal [m].
-    least : float
-        Depth that the ship requires [m], below the contour. A mile at this depth counts 1.5, at
+    least : Depth that the ship requires [m], below the contour. A mile at this depth counts 1.5, at
         half of it and less 20; between the contour and these depths the factor is linear.
     channels : tuple of tuple of (lat, lon)
         Lines along which water is as deep as the contour, whatever the layer has [deg].
@@ -89,8 +88,7 @@ class Shoals:
 
         Parameters
         ----------
-        lat1, lon1, lat2, lon2 : array_like
-            Ends of legs [deg]; broadcast together.
+        lat1, lon1, lat2, lon2 : Ends of legs [deg]; broadcast together.
 
         Returns
         -------

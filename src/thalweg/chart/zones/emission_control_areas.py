@@ -41,9 +41,8 @@ class EmissionControlArea:
     ----------
     name : Short name, such as ``"north-sea"``.
     title : Its full name.
-    adopted, in_force, sulphur_from : str
-        ISO dates: when it was adopted, when the amendment came into force, and from when its
-        limit on sulphur (and so the higher fuel price) applies.
+    adopted, in_force, sulphur_from : ISO dates: when it was adopted, when the amendment came into
+        force, and from when its limit on sulphur (and so the higher fuel price) applies.
     source : The regulation or resolution.
     limits : {"points", "text", "unknown"}
         ``points``: the published list of points; ``text``: parallels, meridians and capes named

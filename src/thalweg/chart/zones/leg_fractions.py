@@ -33,8 +33,7 @@ def points_inside(index: IndexArrays, lat: FloatArray, lon: FloatArray) -> NDArr
     Parameters
     ----------
     index : Index of polygons.
-    lat, lon : ndarray (n,)
-        Positions [deg].
+    lat, lon : Positions [deg], (n,).
 
     Returns
     -------

@@ -36,8 +36,7 @@ class TrafficLane:
 
     Attributes
     ----------
-    shape : shapely polygon
-        x longitude, y latitude [deg].
+    shape : x longitude, y latitude [deg].
     direction : Direction of the traffic [deg], clockwise from north.
     tolerance : Courses that differ from it by more than this are against the lane [deg].
     factor : What a mile against the lane counts; inf: forbidden.

@@ -114,7 +114,6 @@ class Zones:
 
     Attributes
     ----------
-    no_go : tuple of shapely polygons
     penalty, price : tuple of (shapely polygon, factor)
         They do not overlap.
     eca : Emission control areas; they may overlap.

@@ -18,8 +18,7 @@ def print_motions(sheet: Mapping[str, Any]) -> None:
 
     Parameters
     ----------
-    sheet : mapping
-        From `thalweg.ship.comfort.motion_sheet.motion_sheet`.
+    sheet : From `thalweg.ship.comfort.motion_sheet.motion_sheet`.
     """
     from rich import box
     from rich.console import Console
@@ -67,8 +66,7 @@ def draw_motions(sheet: Mapping[str, Any], path: Path) -> Path:
 
     Parameters
     ----------
-    sheet : mapping
-        From `thalweg.ship.comfort.motion_sheet.motion_sheet`.
+    sheet : From `thalweg.ship.comfort.motion_sheet.motion_sheet`.
     path : Picture to write.
     """
     from matplotlib.figure import Figure

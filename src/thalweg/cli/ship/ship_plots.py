@@ -40,10 +40,8 @@ def draw_ship(
 
     Parameters
     ----------
-    sheet : mapping
-        From `thalweg.ship.performance_sheet.performance_sheet`.
-    weather : mapping
-        Conditions by name, SI.
+    sheet : From `thalweg.ship.performance_sheet.performance_sheet`.
+    weather : Conditions by name, SI.
     folder : Exists.
     """
     rows = sorted(sheet["conditions"], key=lambda row: row["speed_kn"] or 0.0)

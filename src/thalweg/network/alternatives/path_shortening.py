@@ -72,11 +72,9 @@ def string_pull_path(
     ----------
     chart : Tests the legs; legs through canals are not changed.
     lat, lon : Path of allowed legs [deg].
-    leg_cost : callable, optional
-        Cost of legs; by default their length [m]. With a cost, waypoints are also moved sideways,
-        because the cost differs from place to place.
-    sides : callable, optional
-        Meridian crossings of legs, so that islands stay on the same side (see
+    leg_cost : Cost of legs; by default their length [m]. With a cost, waypoints are also moved
+        sideways, because the cost differs from place to place.
+    sides : Meridian crossings of legs, so that islands stay on the same side (see
         `thalweg.network.alternatives.homotopy`).
     rounds : Largest number of passes that cut corners; with 0, waypoints are only removed.
 

@@ -31,10 +31,8 @@ class ArcLines:
 
     Parameters
     ----------
-    ptr : int64 ndarray (A + 1,)
-        The waypoints of arc a are ``ptr[a]:ptr[a + 1]``, its two nodes included.
-    lat, lon : float64 ndarray
-        Waypoints [deg].
+    ptr : The waypoints of arc a are ``ptr[a]:ptr[a + 1]``, its two nodes included, (A + 1,).
+    lat, lon : Waypoints [deg].
     """
 
     ptr: IntArray
@@ -52,10 +50,6 @@ class ArcLines:
         ----------
         lines : sequence of sequence of (lat, lon)
             One for each arc.
-
-        Returns
-        -------
-        ArcLines
         """
         ptr = np.cumsum([0, *(len(line) for line in lines)])
         places = [place for line in lines for place in line]
@@ -67,8 +61,7 @@ class ArcLines:
 
         Parameters
         ----------
-        arc : int
-            Its index.
+        arc : Its index.
 
         Returns
         -------
@@ -107,8 +100,7 @@ class ArcLines:
 
         Parameters
         ----------
-        chart : Chart
-            Land, zones and canals.
+        chart : Land, zones and canals.
 
         Returns
         -------
@@ -125,8 +117,7 @@ class ArcLines:
 
         Parameters
         ----------
-        chart : Chart
-            Its areas, else those in force.
+        chart : Its areas, else those in force.
 
         Returns
         -------
@@ -148,15 +139,11 @@ class LinesOffLand:
 
     Parameters
     ----------
-    lines : ArcLines
-        Of the arcs of ``arc``, in that order.
-    arc : int64 ndarray
-        Arcs that have a line.
-    source : int64 ndarray
-        The stretch of track that each line is from.
-    repaired : float64 ndarray
-        Share of the length of each line that is a way over the globe in place of a track over
-        land.
+    lines : Of the arcs of ``arc``, in that order.
+    arc : Arcs that have a line.
+    source : The stretch of track that each line is from.
+    repaired : Share of the length of each line that is a way over the globe in place of a track
+        over land.
     """
 
     lines: ArcLines
@@ -226,23 +213,12 @@ def lines_off_land(
 
     Parameters
     ----------
-    chart : Chart
-    tracks : VoyageTracks
-    stretches : ArcOccurrences
-        Stretches of tracks.
+    stretches : Stretches of tracks.
     candidates : int64 ndarray (A, c)
         Stretches that may become the line of each arc, the medoid first; -1 for none.
-    places : (lat, lon) of ndarray
-        Positions of the nodes [deg].
-    turning : bool ndarray (n,)
-        Positions that are kept as waypoints.
-    radius : float
-        Radius of a junction [m].
-    ways : GlobeWays
-
-    Returns
-    -------
-    LinesOffLand
+    places : Positions of the nodes [deg], (lat, lon).
+    turning : Positions that are kept as waypoints, (n,).
+    radius : Radius of a junction [m].
     """
     count = len(candidates)
     lines: list[list[Position]] = [[] for _ in range(count)]

@@ -28,18 +28,12 @@ class ArcEvidence:
 
     Parameters
     ----------
-    count : int64 ndarray (A,)
-        Voyages.
-    length, duration : float64 ndarray (A, 3)
-        p10, p50 and p90 of the length [m] and of the time under way [s].
-    months : int64 ndarray (A, 12)
-        Voyages by month, January first.
-    open_in : bool ndarray (A, 12)
-        Months in which the arc is open (`open_months`).
-    draught, ship_length : float64 ndarray (A, 3)
-        p10, p90 and greatest of the ships [m]; NaN where unknown.
-    draughts_known : int64 ndarray (A,)
-        Voyages whose draught is known.
+    count : Voyages, (A,).
+    length, duration : p10, p50 and p90 of the length [m] and of the time under way [s], (A, 3).
+    months : Voyages by month, January first, (A, 12).
+    open_in : Months in which the arc is open (`open_months`), (A, 12).
+    draught, ship_length : p10, p90 and greatest of the ships [m], (A, 3); NaN where unknown.
+    draughts_known : Voyages whose draught is known, (A,).
     """
 
     count: IntArray
@@ -58,16 +52,13 @@ class FoundArcs:
 
     Parameters
     ----------
-    tail, head : int64 ndarray (A,)
-        Nodes.
-    evidence : ArcEvidence
-        What was seen on them.
+    tail, head : Nodes, (A,).
+    evidence : What was seen on them.
     candidates : int64 ndarray (A, 4)
         Stretches of tracks by their distance from the mean, the medoid first; -1 for none.
     tube : float64 ndarray (A, 9, 2)
         p5 and p95 of the distance of tracks to starboard of the medoid [m], at `SHARES`.
-    outliers : int
-        Stretches of tracks that belong to no arc.
+    outliers : Stretches of tracks that belong to no arc.
     """
 
     tail: IntArray
@@ -89,13 +80,9 @@ def arcs_of_occurrences(
 
     Parameters
     ----------
-    tracks : VoyageTracks
-    found : ArcOccurrences
-        Stretches, m in total.
-    radius : float
-        Radius of a junction [m].
-    least : int
-        Voyages that make a way believed.
+    found : Stretches, m in total.
+    radius : Radius of a junction [m].
+    least : Voyages that make a way believed.
 
     Returns
     -------
@@ -245,12 +232,9 @@ def group_percentiles(values: FloatArray, ptr: IntArray, percent: tuple[float, .
 
     Parameters
     ----------
-    values : ndarray (m,)
-        Group g is ``values[ptr[g]:ptr[g + 1]]``; NaN are left out.
-    ptr : int ndarray (G + 1,)
-        Where groups begin.
-    percent : tuple of float
-        0 to 100.
+    values : Group g is ``values[ptr[g]:ptr[g + 1]]``, (m,); NaN are left out.
+    ptr : Where groups begin, (G + 1,).
+    percent : 0 to 100.
 
     Returns
     -------

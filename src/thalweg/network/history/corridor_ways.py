@@ -27,14 +27,11 @@ class CorridorWays:
     ----------
     places : (lat, lon) of ndarray (N,)
         Nodes [deg].
-    arcs : HistoryArcs
-        All arcs.
-    kept : int64 ndarray
-        Those of the corridor.
+    arcs : All arcs.
+    kept : Those of the corridor.
     ends : (int, int)
         Nodes of start and goal.
-    weight : float64 ndarray (A,)
-        What arcs count in the choice of the way [m].
+    weight : What arcs count in the choice of the way [m], (A,).
     """
 
     places: tuple[FloatArray, FloatArray]
@@ -60,9 +57,7 @@ class CorridorWays:
 
         Parameters
         ----------
-        arc : int
-        spacing : float
-            Greatest distance between stations [m].
+        spacing : Greatest distance between stations [m].
 
         Returns
         -------

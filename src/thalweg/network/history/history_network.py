@@ -37,12 +37,9 @@ class HistoryNodes:
 
     Parameters
     ----------
-    lat, lon : float64 ndarray (N,)
-        Positions [deg].
-    names : tuple of str
-        Names of corridors and canals; empty for clusters of turning points and for ports.
-    ports : tuple of HistoryPort
-        The last nodes.
+    lat, lon : Positions [deg], (N,).
+    names : Names of corridors and canals; empty for clusters of turning points and for ports.
+    ports : The last nodes.
     """
 
     lat: FloatArray
@@ -65,19 +62,13 @@ class HistoryArcs:
 
     Parameters
     ----------
-    tail, head : int64 ndarray (A,)
-        Nodes.
-    kind : int64 ndarray (A,)
-        Index in `ARC_KINDS`.
-    lines : ArcLines
-        The line of every arc.
-    evidence : ArcEvidence
-        What was seen.
-    tube : float64 ndarray (A, 9, 2)
-        p5 and p95 of the distance of tracks to starboard of the line [m].
-    eca_share, repaired : float64 ndarray (A,)
-        Shares of the line inside emission control areas (NaN: unknown), and of ways over the
-        globe in place of tracks over land.
+    tail, head : Nodes, (A,).
+    kind : Index in `ARC_KINDS`, (A,).
+    lines : The line of every arc.
+    evidence : What was seen.
+    tube : p5 and p95 of the distance of tracks to starboard of the line [m], (A, 9, 2).
+    eca_share, repaired : Shares of the line inside emission control areas (NaN: unknown), and of
+        ways over the globe in place of tracks over land, (A,).
     """
 
     tail: IntArray

@@ -32,12 +32,9 @@ class ArcOccurrences:
 
     Parameters
     ----------
-    voyage : int64 ndarray (m,)
-        Voyage.
-    tail, head : int64 ndarray (m,)
-        Nodes: the junctions, then the ports.
-    begin, end : float64 ndarray (m,)
-        Where the track passes them, as `VoyageTracks.along` [m].
+    voyage : Voyage, (m,).
+    tail, head : Nodes: the junctions, then the ports, (m,).
+    begin, end : Where the track passes them, as `VoyageTracks.along` [m], (m,).
     """
 
     voyage: IntArray
@@ -54,8 +51,7 @@ class ArcOccurrences:
 
         Parameters
         ----------
-        index : int or bool array
-            Which of them.
+        index : Which of them.
 
         Returns
         -------
@@ -85,12 +81,8 @@ def arc_occurrences(
 
     Parameters
     ----------
-    tracks : VoyageTracks
-    junctions : Junctions
-    ports : sequence of HistoryPort
-        Those that ``tracks.start`` and ``tracks.goal`` count; their nodes follow the junctions.
-    radius : float
-        Radius of a junction [m].
+    ports : Those that ``tracks.start`` and ``tracks.goal`` count; their nodes follow the junctions.
+    radius : Radius of a junction [m].
 
     Returns
     -------

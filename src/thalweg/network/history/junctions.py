@@ -42,10 +42,8 @@ class CorridorCrossings:
 
     Parameters
     ----------
-    along : float64 ndarray (c,)
-        Where the track crosses, as `VoyageTracks.along` [m].
-    node : int64 ndarray (c,)
-        Junction at that part of the corridor.
+    along : Where the track crosses, as `VoyageTracks.along` [m], (c,).
+    node : Junction at that part of the corridor, (c,).
     """
 
     along: FloatArray
@@ -58,12 +56,9 @@ class Junctions:
 
     Parameters
     ----------
-    lat, lon : float64 ndarray (J,)
-        Positions [deg].
-    names : tuple of str
-        Name of the corridor or canal of each junction; empty for clusters of turning points.
-    crossings : CorridorCrossings
-        Where tracks cross the corridors.
+    lat, lon : Positions [deg], (J,).
+    names : Name of the corridor or canal of each junction; empty for clusters of turning points.
+    crossings : Where tracks cross the corridors.
     """
 
     lat: FloatArray
@@ -88,17 +83,11 @@ def find_junctions(
 
     Parameters
     ----------
-    chart : Chart
-        Its canals have a junction at either end; other junctions are in its navigable water.
-    tracks : VoyageTracks
-    turning : bool ndarray (n,)
-        Turning points, by `turning_points`.
-    radius : float
-        Radius of a cluster [m]; corridors are divided into parts of twice this length.
-    least : int
-        Turning points of at least this number of voyages make a cluster.
-    corridors : sequence of CorridorLine
-        Lines that are junctions.
+    chart : Its canals have a junction at either end; other junctions are in its navigable water.
+    turning : Turning points, by `turning_points`, (n,).
+    radius : Radius of a cluster [m]; corridors are divided into parts of twice this length.
+    least : Turning points of at least this number of voyages make a cluster.
+    corridors : Lines that are junctions.
 
     Returns
     -------

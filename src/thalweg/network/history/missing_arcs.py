@@ -42,14 +42,9 @@ def connected_arcs(
 
     Parameters
     ----------
-    chart : Chart
-        Gives the emission control areas.
-    arcs : HistoryArcs
-    places : (lat, lon) of ndarray
-        Positions of the nodes [deg].
-    used : sequence of int
-        Nodes that must be connected, such as ports, beside those of the arcs.
-    ways : GlobeWays
+    chart : Gives the emission control areas.
+    places : Positions of the nodes [deg], (lat, lon).
+    used : Nodes that must be connected, such as ports, beside those of the arcs.
 
     Returns
     -------
@@ -172,12 +167,9 @@ def strongly_connected_parts(
 
     Parameters
     ----------
-    count : int
-        Number of nodes.
-    tail, head : int64 ndarray (A,)
-        Arcs.
-    both_ways : bool, optional
-        Whether arcs count in both directions.
+    count : Number of nodes.
+    tail, head : Arcs, (A,).
+    both_ways : Whether arcs count in both directions.
 
     Returns
     -------
@@ -197,8 +189,7 @@ def unknown_evidence(count: int) -> ArcEvidence:
 
     Parameters
     ----------
-    count : int
-        Number of arcs.
+    count : Number of arcs.
 
     Returns
     -------

@@ -24,10 +24,8 @@ def open_months(seen: IntArray, leaving: IntArray) -> BoolArray:
 
     Parameters
     ----------
-    seen : int64 ndarray (A, 12)
-        Voyages on each arc by month.
-    leaving : int64 ndarray (A, 12)
-        Voyages that left its first node by month, on any arc.
+    seen : Voyages on each arc by month, (A, 12).
+    leaving : Voyages that left its first node by month, on any arc, (A, 12).
 
     Returns
     -------

@@ -17,10 +17,8 @@ def turning_points(tracks: VoyageTracks, tolerance: float) -> BoolArray:
 
     Parameters
     ----------
-    tracks : VoyageTracks
-        Tracks of voyages, n positions.
-    tolerance : float
-        Greatest distance of a position from the simplified track [m].
+    tracks : Tracks of voyages, n positions.
+    tolerance : Greatest distance of a position from the simplified track [m].
 
     Returns
     -------

@@ -21,8 +21,7 @@ def ellipsoid_vectors(lat: FloatArray, lon: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    lat, lon : ndarray (n,)
-        Positions [deg].
+    lat, lon : Positions [deg], (n,).
 
     Returns
     -------
@@ -68,14 +67,10 @@ class HistoryPort:
 
     Parameters
     ----------
-    name : str
-        Name and country.
-    locode : str
-        UN/LOCODE, or empty.
-    lat, lon : float
-        Where voyages begin and end at sea: the sea end of its approach [deg].
-    approach_m : float
-        Length from the berth to that position [m].
+    name : Name and country.
+    locode : UN/LOCODE, or empty.
+    lat, lon : Where voyages begin and end at sea: the sea end of its approach [deg].
+    approach_m : Length from the berth to that position [m].
     places : tuple of (lat, lon)
         Berth and approach [deg]: a ship that stops near them calls at this port.
     """
@@ -94,8 +89,7 @@ class TrackShips:
 
     Parameters
     ----------
-    draught, length : float64 ndarray (V,)
-        [m]; NaN where unknown.
+    draught, length : [m], (V,); NaN where unknown.
     """
 
     draught: FloatArray
@@ -108,20 +102,13 @@ class VoyageTracks:
 
     Parameters
     ----------
-    ptr : int64 ndarray (V + 1,)
-        The positions of voyage v are ``ptr[v]:ptr[v + 1]``, at least two.
-    time : float64 ndarray (n,)
-        [s since 1970-01-01T00:00Z].
-    lat, lon : float64 ndarray (n,)
-        [deg].
-    under_way : float64 ndarray (n,)
-        Time under way since the start of the voyage, without stops [s].
-    broken : bool ndarray (n,)
-        Whether the interval after a position is not observed (a gap).
-    start, goal : int64 ndarray (V,)
-        Index of the ports.
-    ships : TrackShips
-        Draught and length of the ship of every voyage.
+    ptr : The positions of voyage v are ``ptr[v]:ptr[v + 1]``, at least two, (V + 1,).
+    time : [s since 1970-01-01T00:00Z], (n,).
+    lat, lon : [deg], (n,).
+    under_way : Time under way since the start of the voyage, without stops [s], (n,).
+    broken : Whether the interval after a position is not observed (a gap), (n,).
+    start, goal : Index of the ports, (V,).
+    ships : Draught and length of the ship of every voyage.
     """
 
     ptr: IntArray
@@ -189,8 +176,7 @@ class VoyageTracks:
 
         Parameters
         ----------
-        values : ndarray (n,)
-            One for each position.
+        values : One for each position, (n,).
         along : ndarray (...)
             Values of the attribute ``along`` [m].
 
@@ -214,8 +200,7 @@ def sphere_vectors(lat: FloatArray, lon: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    lat, lon : ndarray (n,)
-        Positions [deg].
+    lat, lon : Positions [deg], (n,).
 
     Returns
     -------

@@ -172,10 +172,8 @@ def segments_on_paths(
     Parameters
     ----------
     n_nodes : Number of nodes.
-    first, second : int32 array (P,)
-        The nodes that segments join, in the direction of sailing.
-    free : bool array (P,)
-        Segments that may be sailed.
+    first, second : The nodes that segments join, in the direction of sailing, (P,).
+    free : Segments that may be sailed, (P,).
 
     Returns
     -------

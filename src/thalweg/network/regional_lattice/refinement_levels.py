@@ -43,10 +43,8 @@ class Level:
     Parameters
     ----------
     step : Finest units between neighbouring points.
-    i, j : int64 ndarray
-        Coordinates in steps.
-    node : int32 ndarray
-        Node of each point.
+    i, j : Coordinates in steps.
+    node : Node of each point.
     around : Steps right round the globe in a closed frame, else 0.
     """
 

@@ -30,8 +30,7 @@ class Corridor:
     ----------
     frame : Frame of the coarse lattice.
     step : Its spacing in units of the frame.
-    cells : bool ndarray (I, J)
-        Which cells; the first is centred at ``corner`` steps.
+    cells : Which cells, (I, J); the first is centred at ``corner`` steps.
     corner : (int, int)
         Coordinates in steps of the first cell.
     """

@@ -84,10 +84,8 @@ def dimensionless_curl(
 
     Parameters
     ----------
-    lat, lon : ndarray (N,)
-        Nodes [deg].
-    triangles : int ndarray (M, 3)
-        Nodes of the triangles.
+    lat, lon : Nodes [deg], (N,).
+    triangles : Nodes of the triangles, (M, 3).
     east, north : ndarray (T, N) or (N,)
         Current [m/s].
     length, speed : Reference length [m] and speed [m/s].

@@ -24,10 +24,8 @@ class WorkWindows:
 
     Attributes
     ----------
-    times : ndarray (n,)
-        [s since 1970-01-01T00:00Z]; empty where no limit is checked.
-    worked : ndarray (n,)
-        Time that could be worked from the first of `times` on [s].
+    times : [s since 1970-01-01T00:00Z], (n,); empty where no limit is checked.
+    worked : Time that could be worked from the first of `times` on [s], (n,).
     """
 
     times: FloatArray

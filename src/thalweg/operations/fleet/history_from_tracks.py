@@ -156,9 +156,7 @@ def history_port(port: Port, chart: Chart) -> HistoryPort:
 
     Parameters
     ----------
-    port : Port
-    chart : Chart
-        Gives its approach, or the nearest water.
+    chart : Gives its approach, or the nearest water.
 
     Raises
     ------

@@ -60,10 +60,8 @@ class PortCalls:
 
     Attributes
     ----------
-    ship, port : int64 array (c,)
-        Ship of the fleet, and number of the port.
-    first, last : int64 array (c,)
-        Its first and last position.
+    ship, port : Ship of the fleet, and number of the port, (c,).
+    first, last : Its first and last position, (c,).
     stopped : bool array (n,)
         Intervals after positions in which the ship does not move, at ports or elsewhere.
     """
@@ -86,10 +84,8 @@ def find_port_calls(
 
     Parameters
     ----------
-    fleet : FleetTracks
     places : sequence of sequence of (lat, lon)
         Of every port: its berth and the line of its approach [deg].
-    rules : PortCallRules, optional
 
     Returns
     -------
@@ -178,11 +174,6 @@ def voyages_between_calls(fleet: FleetTracks, calls: PortCalls) -> VoyageTracks:
 
     Positions inside stops are left out but for the first and last, and stops do not count as time
     under way.
-
-    Parameters
-    ----------
-    fleet : FleetTracks
-    calls : PortCalls
 
     Returns
     -------

@@ -23,9 +23,8 @@ class AgreementStatistics:
 
     Attributes
     ----------
-    slope, intercept : float
-        Of the straight line ``modelled = slope * measured + intercept`` by least squares; a perfect
-        model has 1 and 0.
+    slope, intercept : Of the straight line ``modelled = slope * measured + intercept`` by least
+        squares; a perfect model has 1 and 0.
     r2 : Square of the correlation.
     rmse : Root of the mean square of modelled minus measured (Schless 2023, eq. 4.2).
     rmse_rel : The same over the mean of the measured values [%] (eq. 4.1).

@@ -149,12 +149,9 @@ def recognised_columns(table: pd.DataFrame, given: dict[str, str], name: str) ->
 
     Parameters
     ----------
-    table : DataFrame
-        Its column names are used.
-    given : dict of str to str
-        Columns by kind that the user states.
-    name : str
-        Of the file, for messages.
+    table : Its column names are used.
+    given : Columns by kind that the user states.
+    name : Of the file, for messages.
 
     Returns
     -------
@@ -229,14 +226,10 @@ def column_in_si(column: pd.Series[Any], kind: str, header: str, notes: list[str
 
     Parameters
     ----------
-    column : Series
-        Numbers or texts.
-    kind : str
-        One of ``UNIT_FACTORS``.
-    header : str
-        Name of the column, with its unit or without.
-    notes : list of str
-        A note is added where the unit is assumed.
+    column : Numbers or texts.
+    kind : One of ``UNIT_FACTORS``.
+    header : Name of the column, with its unit or without.
+    notes : A note is added where the unit is assumed.
 
     Returns
     -------
@@ -269,15 +262,10 @@ def track_times(
 
     Parameters
     ----------
-    table : DataFrame
-    found : dict of str to str
-        Column by kind, by `recognised_columns`.
-    time_format : str or None
-        As in ``strptime``; None to recognise it.
-    name : str
-        Of the file, for messages.
-    notes : list of str
-        A note is added where the order of day and month is found from the rows.
+    found : Column by kind, by `recognised_columns`.
+    time_format : As in ``strptime``; None to recognise it.
+    name : Of the file, for messages.
+    notes : A note is added where the order of day and month is found from the rows.
 
     Returns
     -------

@@ -30,18 +30,12 @@ class MeasuredSegments:
 
     Attributes
     ----------
-    leg : int64 array (p,)
-        Number of the trip of each segment.
-    kind : int64 array (p,)
-        Index into ``SAILING_KINDS`` (sailing full, sailing empty).
-    time, duration : float64 array (p,)
-        Middle [s since 1970-01-01T00:00Z] and length [s].
-    lat, lon : float64 array (p,)
-        Middle [deg].
-    ground : complex128 array (p,)
-        Velocity over ground, east + i north [m/s].
-    current : complex128 array (p,)
-        Current, east + i north [m/s]; NaN where the sea has none.
+    leg : Number of the trip of each segment, (p,).
+    kind : Index into ``SAILING_KINDS`` (sailing full, sailing empty), (p,).
+    time, duration : Middle [s since 1970-01-01T00:00Z] and length [s], (p,).
+    lat, lon : Middle [deg], (p,).
+    ground : Velocity over ground, east + i north [m/s], (p,).
+    current : Current, east + i north [m/s], (p,); NaN where the sea has none.
     """
 
     leg: NDArray[np.int64]

@@ -143,12 +143,7 @@ def trip_table_of_window(
 
 
 def check_depth_available(environment: SailingEnvironment) -> None:
-    """Raise if the depth of the water is unknown and the ship's speed depends on it.
-
-    Raises
-    ------
-    MissingVariableError
-    """
+    """Raise if the depth of the water is unknown and the ship's speed depends on it."""
     if "depth" in environment.ship.reads and not environment.has_depth:
         raise MissingVariableError(
             f"The speed of the ship {environment.ship.name!r} depends on the depth of the water.",

@@ -38,10 +38,9 @@ def pruned_mesh(
     ----------
     sea : With a mesh.
     start, end : Period over which the flow is sampled [s since 1970], as far as the data cover it.
-    largest_spacing : float or None
-        Spacing of the nodes in still water [m]. With the greatest speed of the flow it makes the
-        curl dimensionless: the relative change of the current over one spacing. None uses all
-        nodes.
+    largest_spacing : Spacing of the nodes in still water [m]. With the greatest speed of the flow
+        it makes the curl dimensionless: the relative change of the current over one spacing. None
+        uses all nodes.
     **options
         ``alpha``, ``curl_power``, ``speed_power``, ``rings`` and ``sampling`` of
         `thalweg.network.mesh`.
@@ -81,9 +80,8 @@ def model_mesh_network(
     ----------
     sea : With a mesh.
     period : Period of the voyage [s since 1970]; the flow is sampled in its first 25 h.
-    spacing : float, optional
-        Spacing in still water [m], finer where the flow is strong or turns. By default all nodes
-        are used, or about `MAX_MESH_NODES` of larger models.
+    spacing : Spacing in still water [m], finer where the flow is strong or turns. By default all
+        nodes are used, or about `MAX_MESH_NODES` of larger models.
     """
     model = sea.mesh()
     if spacing is None and (model is None or model.lat.size <= MAX_MESH_NODES):

@@ -72,8 +72,7 @@ def constant_speed_tracks(
     Parameters
     ----------
     tracks : In order of time; up to five of them are taken, the first and the last included.
-    settings : int64 array
-        Speed settings to choose from, ascending.
+    settings : Speed settings to choose from, ascending.
 
     Returns
     -------

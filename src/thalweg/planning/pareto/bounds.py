@@ -82,8 +82,7 @@ def derive_proof(
 
     Parameters
     ----------
-    certain : float64 array (2, m)
-        As `certain_front` returns it.
+    certain : As `certain_front` returns it, (2, m).
     kind : As `strongest_current_of_plan` returns it.
     whole : Whether the whole front is wanted.
     """

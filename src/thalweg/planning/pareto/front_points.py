@@ -49,8 +49,7 @@ def essential_nodes(lat: FloatArray, lon: FloatArray, setting: Any, wait: FloatA
     Parameters
     ----------
     lat, lon : float64 array (points,) [deg]
-    setting : int64 array (points - 1,)
-        Of the legs.
+    setting : Of the legs, (points - 1,).
     wait : float64 array (points,) [s]
 
     Returns

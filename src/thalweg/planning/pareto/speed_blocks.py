@@ -60,13 +60,10 @@ def merged_settings(
     Parameters
     ----------
     setting : int64 array (legs,)
-    hours : float64 array (legs,)
-        Time of sailing of each leg, in any unit.
-    speeds : float64 array (settings,)
-        Calm-water speeds, ascending.
+    hours : Time of sailing of each leg, in any unit, (legs,).
+    speeds : Calm-water speeds, ascending, (settings,).
     least : Least time of a run, in the unit of ``hours``.
-    late : bool
-        Whether the passage may become longer; otherwise short runs are given to the faster
+    late : Whether the passage may become longer; otherwise short runs are given to the faster
         neighbour.
 
     Returns

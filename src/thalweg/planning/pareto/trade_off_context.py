@@ -31,8 +31,7 @@ class TradeOffContext:
     consumption : PerformanceTable
         Consumption that the objective prices (`thalweg.ship.consumption.consumption_table`).
     ends : Start, via points and goal.
-    settings : int64 array
-        Speed settings to choose from, ascending.
+    settings : Speed settings to choose from, ascending.
     limits : Limits along the route, perhaps tightened.
     notes : Notes for the plan; steps add theirs.
     """

@@ -38,17 +38,12 @@ class Closures:
 
     Attributes
     ----------
-    distance : float64 array (S,)
-        Along the track [m].
+    distance : Along the track [m], (S,).
     times : float64 array (T,) [s since 1970-01-01T00:00Z]
-    shallow : bool array (S, T)
-        Too little water.
-    strong : bool array (S, T)
-        Enough water, but the ship cannot hold the course of the track in the current.
-    unknown : bool array (S, T)
-        Depth or current unknown.
-    clearance : float64 array (S, T)
-        Under-keel clearance [m]; +inf without a source of depth, NaN where unknown.
+    shallow : Too little water, (S, T).
+    strong : Enough water, but the ship cannot hold the course of the track in the current, (S, T).
+    unknown : Depth or current unknown, (S, T).
+    clearance : Under-keel clearance [m], (S, T); +inf without a source of depth, NaN where unknown.
     """
 
     distance: FloatArray

@@ -25,8 +25,7 @@ class LabelPlacer:
 
     Attributes
     ----------
-    lines : ndarray (n, 2)
-        Points [display units] that labels should not cover.
+    lines : Points [display units] that labels should not cover, (n, 2).
     """
 
     axes: Any

@@ -35,10 +35,8 @@ def draw_enclosed_water(
 
     Parameters
     ----------
-    on_water : bool array (rows, columns)
-        Where there is water.
-    grid : (ndarray, ndarray)
-        Latitudes and longitudes of the raster [deg].
+    on_water : Where there is water, (rows, columns).
+    grid : Latitudes and longitudes of the raster [deg], (ndarray, ndarray).
 
     Returns
     -------

@@ -93,12 +93,7 @@ def history_corridor(network: object) -> HistoryCorridor | None:
 
     Parameters
     ----------
-    network : object
-        A `HistoryCorridor`, or text such as ``"history:routes.json"``.
-
-    Returns
-    -------
-    HistoryCorridor or None
+    network : A `HistoryCorridor`, or text such as ``"history:routes.json"``.
 
     Raises
     ------

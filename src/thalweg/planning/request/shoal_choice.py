@@ -68,14 +68,10 @@ def shoals_of_draught(
 
     Parameters
     ----------
-    chart : Chart
-        With the passages that may be used.
-    draught : float
-        [m], above 0.
-    least : float
-        Depth that the ship requires [m].
-    ends : sequence of Endpoint
-        Round them the layer does not count.
+    chart : With the passages that may be used.
+    draught : [m], above 0.
+    least : Depth that the ship requires [m].
+    ends : Round them the layer does not count.
     """
     contour = safety_contour(draught)
     lines = tuple(line for passage in chart.passages for line in _channels(chart, passage))

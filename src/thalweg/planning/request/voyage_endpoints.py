@@ -95,10 +95,7 @@ def resolve_port(port: Port, chart: Chart, what: str) -> Endpoint:
 
     Parameters
     ----------
-    port : Port
-    chart : Chart
-    what : str
-        What the port is, for messages.
+    what : What the port is, for messages.
 
     Raises
     ------

@@ -185,8 +185,7 @@ def strongest_current_in_data(context: PlanningContext, route: Route) -> tuple[f
 
     Parameters
     ----------
-    route : Route
-        A route that takes as long as any that counts: water farther away than its time at the
+    route : A route that takes as long as any that counts: water farther away than its time at the
         greatest speed is left out.
 
     Returns

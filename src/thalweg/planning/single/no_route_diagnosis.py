@@ -36,8 +36,7 @@ def no_route_error(
     result : Result of the failed search.
     depart : Earliest departure [s since 1970].
     last : End of the data [s since 1970]; may be infinite.
-    fields : StationFields, optional
-        The sea that was searched; with it and ``required`` the error states where the water is
+    fields : The sea that was searched; with it and ``required`` the error states where the water is
         too shallow at any tide, the greatest depth there and its time.
     required : Required water depth [m].
     """

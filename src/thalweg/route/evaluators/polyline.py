@@ -27,8 +27,7 @@ class Polyline:
 
     Attributes
     ----------
-    lat, lon : float64 array (n,)
-        [deg]; longitudes unwrapped, without jumps.
+    lat, lon : [deg], (n,); longitudes unwrapped, without jumps.
     leave : float64 array (n,)
         The ship leaves a point no earlier [s after the origin]; -inf where it does not wait.
     setting : int64 array (n - 1,)

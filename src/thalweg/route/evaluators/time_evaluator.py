@@ -42,8 +42,7 @@ class TrackBatch:
 
     Attributes
     ----------
-    lat, lon : float64 array (L, n)
-        Points [deg].
+    lat, lon : Points [deg], (L, n).
     leave : float64 array (L, n)
         The ship leaves a point no earlier [s after the origin]; -inf where it does not wait.
     setting : int64 array (L, n - 1)
@@ -68,9 +67,8 @@ class TimeEvaluator:
     origin : [s since 1970-01-01T00:00Z].
     by_length : Whether tracks compare by length instead of time.
     spacing : Longest piece [m].
-    waiting_parameters : float64 array (3,)
-        How the ship waits where a leg is closed, beside the given waits (see
-        `thalweg.kernels.leg.polyline_sailing.sail_polylines`); zeros: it does not.
+    waiting_parameters : How the ship waits where a leg is closed, beside the given waits (see
+        `thalweg.kernels.leg.polyline_sailing.sail_polylines`), (3,); zeros: it does not.
     """
 
     raster: RasterArrays
@@ -243,8 +241,7 @@ def make_time_evaluator(
     limits : Limits along the route (`thalweg.core.limits.Limits`).
     origin : Where times count from [s since 1970-01-01T00:00Z].
     by_length : Whether tracks compare by length instead of time.
-    total : float
-        Rough length of the track [m]. Pieces are half a cell of the raster, at least a 400th of
+    total : Rough length of the track [m]. Pieces are half a cell of the raster, at least a 400th of
         this and at most 100 km.
     wait : Whether the ship may wait where a leg is closed for some time.
     """

@@ -31,8 +31,7 @@ class FileRoute:
 
     Attributes
     ----------
-    rows : list of dict
-        One per waypoint: ``name`` and the columns of `thalweg.route.route.Route.waypoints`, with
+    rows : One per waypoint: ``name`` and the columns of `thalweg.route.route.Route.waypoints`, with
         rhumb-line courses.
     cross_track_m : Greatest distance of the route from the rhumb lines between the waypoints [m].
     """

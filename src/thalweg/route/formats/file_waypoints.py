@@ -39,12 +39,9 @@ class FileVertices:
 
     Attributes
     ----------
-    lat, lon : float64 array (n,)
-        Positions [deg], as written.
-    leg : int64 array (n,)
-        Leg of the route that goes on from the waypoint (the last leg at the last waypoint).
-    at : float64 array (n,)
-        Distance from the start of the route [m], as the referee sailed it.
+    lat, lon : Positions [deg], as written, (n,).
+    leg : Leg of the route that goes on from the waypoint (the last leg at the last waypoint), (n,).
+    at : Distance from the start of the route [m], as the referee sailed it, (n,).
     cross_track : Greatest distance of the route from the rhumb lines between the waypoints [m].
     """
 

@@ -64,8 +64,7 @@ def waypoint_order(values: Mapping[str, object], number: int) -> WaypointOrder:
 
     Parameters
     ----------
-    values : mapping of str to object
-        Values of the file at the waypoint, by name.
+    values : Values of the file at the waypoint, by name.
     number : Number of the waypoint, for messages.
 
     Returns

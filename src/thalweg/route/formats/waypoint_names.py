@@ -19,8 +19,7 @@ def waypoint_names(
 
     Parameters
     ----------
-    distance : float64 array (n,)
-        Distance of the waypoints from the start, along the route [m].
+    distance : Distance of the waypoints from the start, along the route [m], (n,).
     start, goal : Names of the places at both ends; positions are no names.
     speed : float64 array (n - 1,), optional
         Ordered speed of the legs [m/s]. Where it first changes near an end, the approach ends.

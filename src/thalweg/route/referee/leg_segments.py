@@ -29,18 +29,12 @@ class TrackPoints:
 
     Attributes
     ----------
-    lat, lon : float64 array (n,)
-        Positions [deg].
-    course : float64 array (n,)
-        Course over ground along the geodesic there, clockwise from north [rad].
-    setting : int64 array (n,)
-        Speed setting of the leg.
-    leg : int64 array (n,)
-        Index of the leg.
-    along : float64 array (n,)
-        Distance from the start of the leg [m].
-    charted : float64 array (n,)
-        Least charted depth of the piece [m below datum]; +inf without a chart of depth.
+    lat, lon : Positions [deg], (n,).
+    course : Course over ground along the geodesic there, clockwise from north [rad], (n,).
+    setting : Speed setting of the leg, (n,).
+    leg : Index of the leg, (n,).
+    along : Distance from the start of the leg [m], (n,).
+    charted : Least charted depth of the piece [m below datum], (n,); +inf without a chart of depth.
     """
 
     lat: FloatArray
@@ -73,16 +67,11 @@ class TrackPieces:
 
     Attributes
     ----------
-    length, course : float64 array (legs,)
-        Length [m] and course at the start [rad] of each leg.
-    leg : int64 array (p,)
-        Index of the leg of each piece.
-    start : float64 array (p,)
-        Distance of its start from the start of the leg [m].
-    step : float64 array (p,)
-        Its length [m].
-    wait : float64 array (p,)
-        Wait after it [s]: at the end of a leg, else 0.
+    length, course : Length [m] and course at the start [rad] of each leg, (legs,).
+    leg : Index of the leg of each piece, (p,).
+    start : Distance of its start from the start of the leg [m], (p,).
+    step : Its length [m], (p,).
+    wait : Wait after it [s]: at the end of a leg, else 0, (p,).
     canals : Which legs are canals; their length is that of the canal.
     """
 

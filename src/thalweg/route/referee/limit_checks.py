@@ -47,8 +47,7 @@ def limit_violations(
     ----------
     points : In the order of sailing.
     time : [s since 1970-01-01T00:00Z]; NaN beyond a point the ship cannot pass.
-    sampled : mapping of str to ndarray
-        The sea at these points and times.
+    sampled : The sea at these points and times.
     depth : Water depth at these points and times [m].
     min_ukc : Least under-keel clearance [m]; None: depth is not checked.
     """

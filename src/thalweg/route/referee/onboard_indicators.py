@@ -39,8 +39,7 @@ def indicator_columns(
     Parameters
     ----------
     points : All fine samples, in the order of sailing.
-    time : float64 array
-        Their times [s]; NaN where not reached.
+    time : Their times [s]; NaN where not reached.
     motion : What the ship does there.
 
     Returns

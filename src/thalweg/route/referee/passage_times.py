@@ -31,18 +31,13 @@ class PassageTimes:
 
     Attributes
     ----------
-    step, wait : float64 array (p,)
-        Length of each piece [m] and the wait after it [s].
+    step, wait : Length of each piece [m] and the wait after it [s], (p,).
     start : float64 array (p + 1,)
         Departure from the start of each piece, and at last the arrival (after the last wait) [s].
-    inside : float64 array (p, 2)
-        Times at the Gauss points [s].
-    slowness : float64 array (p, 2)
-        Seconds per metre at the Gauss points; guesses from the first bad point on.
-    water : float64 array (p, 2)
-        Speeds through water at the Gauss points [m/s].
-    bad : bool array (p, 2)
-        Where the ship cannot continue, or data are missing.
+    inside : Times at the Gauss points [s], (p, 2).
+    slowness : Seconds per metre at the Gauss points, (p, 2); guesses from the first bad point on.
+    water : Speeds through water at the Gauss points [m/s], (p, 2).
+    bad : Where the ship cannot continue, or data are missing, (p, 2).
     """
 
     step: FloatArray
@@ -72,12 +67,10 @@ def solve_passage_times(
     Parameters
     ----------
     slowness : See `SlownessFunction`.
-    step, wait : ndarray, shape (p,)
-        Length of each piece [m] and the wait after it [s].
+    step, wait : Length of each piece [m] and the wait after it [s], (p,).
     depart : Departure from the start of the first piece [s].
-    guess : ndarray, shape (p, 2)
-        First guess of the slowness [s/m], finite and positive; also used after a bad point, so that
-        all numbers stay finite.
+    guess : First guess of the slowness [s/m], finite and positive, (p, 2); also used after a bad
+        point, so that all numbers stay finite.
 
     Notes
     -----

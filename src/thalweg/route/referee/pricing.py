@@ -29,10 +29,9 @@ class CostBreakdown:
 
     Attributes
     ----------
-    legs : dict of str to float64 array (legs,)
-        ``fuel`` (of sailing) and ``waiting_fuel`` (of waiting before it) [kg], ``fuel_in_eca``
-        (of both) [kg], ``co2`` [kg], ``cost`` [currency] with its parts (`COST_PARTS`),
-        ``energy`` (of sailing) and ``waiting_energy`` [J]; NaN where unknown.
+    legs : ``fuel`` (of sailing) and ``waiting_fuel`` (of waiting before it) [kg], ``fuel_in_eca``
+        (of both) [kg], ``co2`` [kg], ``cost`` [currency] with its parts (`COST_PARTS`), ``energy``
+        (of sailing) and ``waiting_energy`` [J], (legs,); NaN where unknown.
     zones : Fuel [kg] by emission control area, and ``outside`` them; empty where no areas count.
     notes : Assumptions where data are missing.
     """
@@ -48,10 +47,8 @@ class ConsumptionRates:
 
     Attributes
     ----------
-    fuel : float64 array
-        [kg/s], of the fuel burnt outside control areas.
-    power : float64 array
-        Of the brake, without hotel load [W].
+    fuel : [kg/s], of the fuel burnt outside control areas.
+    power : Of the brake, without hotel load [W].
     """
 
     fuel: FloatArray

@@ -322,8 +322,7 @@ def waiting_violations(chart: Chart | None, track: Track, arrive: FloatArray) ->
 
     Parameters
     ----------
-    arrive : float64 array (legs,)
-        When each leg ends [s since 1970]; NaN where the ship does not get.
+    arrive : When each leg ends [s since 1970], (legs,); NaN where the ship does not get.
     """
     waits = np.flatnonzero(track.wait[1:-1]) + 1
     if chart is None or not waits.size:

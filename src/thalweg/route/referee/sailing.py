@@ -110,10 +110,8 @@ def sailing_state_along(
     world : Ship, sea and chart.
     canals : Legs of the track in canals.
     points : Positions and courses.
-    time : ndarray (n,)
-        Times [s since 1970-01-01T00:00Z].
-    guess : ndarray (n,), optional
-        Speeds [m/s] from which an iteration starts.
+    time : Times [s since 1970-01-01T00:00Z], (n,).
+    guess : Speeds [m/s] from which an iteration starts, (n,).
 
     Returns
     -------

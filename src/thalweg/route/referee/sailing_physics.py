@@ -146,8 +146,7 @@ def sample_sea_and_depth(
     ----------
     world : Ship, sea and chart.
     points : Positions and courses.
-    time : ndarray (n,)
-        Times [s since 1970-01-01T00:00Z].
+    time : Times [s since 1970-01-01T00:00Z], (n,).
 
     Returns
     -------
@@ -215,13 +214,10 @@ def conditions_at(
     ----------
     world : Ship, sea and chart.
     points : Positions and courses.
-    time : ndarray (n,)
-        Times [s since 1970-01-01T00:00Z].
+    time : Times [s since 1970-01-01T00:00Z], (n,).
     sampled : Sea variables by CF standard name [SI].
-    depth : ndarray (n,)
-        Water depth [m].
-    heading : ndarray (n,)
-        Headings [rad from north].
+    depth : Water depth [m], (n,).
+    heading : Headings [rad from north], (n,).
     """
     crab = (heading - points.course + math.pi) % (2.0 * math.pi) - math.pi
     more = {"depth": depth, "crab_angle": crab} if world.has_depth else {"crab_angle": crab}

@@ -21,14 +21,11 @@ def accumulated_delay_effects(
 
     Parameters
     ----------
-    growth : float64 array (R, M - 1)
-        Seconds later at the end of each leg, for each second later at its start.
+    growth : Seconds later at the end of each leg, for each second later at its start, (R, M - 1).
     added : float64 array (R, M - 1) or float
         What a second of delay at the start of each leg adds on that leg, such as cost.
-    at_goal : float64 array (R,) or float
-        What a second of delay at the goal counts.
-    absorbed : bool array (R, M), optional
-        Points where the ship waits: a delay there shortens the wait.
+    at_goal : What a second of delay at the goal counts, (R,).
+    absorbed : Points where the ship waits: a delay there shortens the wait, (R, M).
     remaining : What a second of delay counts where it is absorbed.
 
     Returns

@@ -83,10 +83,8 @@ class LateralDerivatives:
     ----------
     gradient, curvature : float64 array (R, M)
         First and second derivative by the offset of each point [value/m, value/m2].
-    coupling : float64 array (R, M)
-        Mixed second derivative of each point and the next [value/m2].
-    known : bool array (R, M)
-        Free points whose differences could all be sailed.
+    coupling : Mixed second derivative of each point and the next [value/m2], (R, M).
+    known : Free points whose differences could all be sailed, (R, M).
     """
 
     gradient: FloatArray
@@ -184,11 +182,9 @@ def solve_newton_step(
 
     Parameters
     ----------
-    free : bool array (R, M)
-        Points that may move; the others get a step of 0.
-    damping : float
-        Share of the curvature added to it. From 1 on the diagonal is raised until the matrix is
-        positive definite, so that the step always leads downhill.
+    free : Points that may move, (R, M); the others get a step of 0.
+    damping : Share of the curvature added to it. From 1 on the diagonal is raised until the matrix
+        is positive definite, so that the step always leads downhill.
 
     Returns
     -------

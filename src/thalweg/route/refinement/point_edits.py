@@ -128,10 +128,8 @@ def points_between(a: FloatArray, b: FloatArray, share: FloatArray) -> FloatArra
 
     Parameters
     ----------
-    a, b : float64 array (n, GENE_COLUMNS)
-        Ends of legs.
-    share : float64 array (n,)
-        Share of the arc from ``a``.
+    a, b : Ends of legs, (n, GENE_COLUMNS).
+    share : Share of the arc from ``a``, (n,).
 
     Returns
     -------

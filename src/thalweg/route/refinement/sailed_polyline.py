@@ -93,8 +93,7 @@ class SailedPolyline:
     Attributes
     ----------
     cost : As the evaluator compares; +inf where the line cannot be sailed.
-    arrive : float64 array (n,)
-        Arrival at every point [s after the origin].
+    arrive : Arrival at every point [s after the origin], (n,).
     """
 
     line: Polyline

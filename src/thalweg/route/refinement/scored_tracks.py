@@ -34,11 +34,9 @@ class ScoredTracks:
     Attributes
     ----------
     population : R tracks; all legs known.
-    price : float64 array (R,)
-        Price of time: cost + price * time is minimised.
+    price : Price of time: cost + price * time is minimised, (R,).
     scores : float64 array (R, 3)
-    arrive : float64 array (R, M)
-        Arrival at every point [s].
+    arrive : Arrival at every point [s], (R, M).
     """
 
     evaluator: Evaluator
@@ -237,8 +235,7 @@ class DelayEffects:
 
     Attributes
     ----------
-    time, cost : float64 array (R, M)
-        Seconds at the goal, and cost, for each second later at a point.
+    time, cost : Seconds at the goal, and cost, for each second later at a point, (R, M).
     """
 
     time: FloatArray
@@ -254,10 +251,8 @@ def scalarised_values(scores: FloatArray, price: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    scores : float64 array (R, 3)
-        Time [s], cost and violation.
-    price : float64 array (R,)
-        Price of time [cost/s].
+    scores : Time [s], cost and violation, (R, 3).
+    price : Price of time [cost/s], (R,).
 
     Returns
     -------
@@ -282,8 +277,7 @@ def legs_as_tracks(
 
     Parameters
     ----------
-    row, place : int64 array (L,)
-        Track and first point of each leg.
+    row, place : Track and first point of each leg, (L,).
 
     Returns
     -------

@@ -157,8 +157,7 @@ def hull_settings(time: FloatArray, cost: FloatArray) -> IntArray:
 
     Parameters
     ----------
-    time, cost : float64 array (settings,)
-        Not finite where the leg cannot be sailed.
+    time, cost : Not finite where the leg cannot be sailed, (settings,).
 
     Returns
     -------
@@ -174,10 +173,8 @@ class SpeedSteps:
 
     Attributes
     ----------
-    leg, before, after : int64 array (n,)
-        Leg, and its setting before and after the step.
-    time, cost : float64 array (n,)
-        Changes of time [s] and cost.
+    leg, before, after : Leg, and its setting before and after the step, (n,).
+    time, cost : Changes of time [s] and cost, (n,).
     """
 
     leg: IntArray
@@ -193,8 +190,7 @@ class SpeedSteps:
         Parameters
         ----------
         times, costs : float64 array (legs, settings)
-        chains : sequence of int64 array
-            For each leg.
+        chains : For each leg.
         """
         pairs = [(k, a, b) for k, chain in enumerate(chains) for a, b in pairwise(chain)]
         leg, before, after = np.array(pairs, np.int64).reshape(-1, 3).T
@@ -285,8 +281,7 @@ def leg_values_by_setting(
 
     Parameters
     ----------
-    row, place : int64 array (L,)
-        Track and first point of each leg.
+    row, place : Track and first point of each leg, (L,).
 
     Returns
     -------
@@ -304,8 +299,7 @@ def leg_times_and_costs_by_setting(
 
     Parameters
     ----------
-    row, place : int64 array (L,)
-        Track and first point of each leg.
+    row, place : Track and first point of each leg, (L,).
 
     Returns
     -------

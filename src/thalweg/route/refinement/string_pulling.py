@@ -20,9 +20,8 @@ def string_pull(line: Polyline, evaluator: PolylineEvaluator, *, penalty: float 
 
     Parameters
     ----------
-    penalty : float
-        Cost of a waypoint [unit of the cost]: a line with fewer waypoints may be worse by this much
-        for each that is removed.
+    penalty : Cost of a waypoint [unit of the cost]: a line with fewer waypoints may be worse by
+        this much for each that is removed.
 
     Returns
     -------

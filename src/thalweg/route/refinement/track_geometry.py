@@ -17,10 +17,8 @@ def starboard_vectors(
 
     Parameters
     ----------
-    lat, lon : float64 array (R, M)
-        Points [deg].
-    count : int64 array (R,)
-        Number of points of each track; the rest of a row is not used.
+    lat, lon : Points [deg], (R, M).
+    count : Number of points of each track, (R,); the rest of a row is not used.
 
     Returns
     -------

@@ -33,11 +33,9 @@ class VerticalLayers:
     Attributes
     ----------
     dim : The dimension.
-    is_sigma : bool
-        Whether edges are fractions of the water depth (0 surface, 1 bed), else depths [m below
-        datum].
-    top, bottom : float64 array (L,)
-        Upper and lower edge of each layer.
+    is_sigma : Whether edges are fractions of the water depth (0 surface, 1 bed), else depths [m
+        below datum].
+    top, bottom : Upper and lower edge of each layer, (L,).
     """
 
     dim: str
@@ -91,8 +89,7 @@ def draught_averaging(
     ----------
     layers : The layers of both components.
     draught : Draught [m].
-    depth : callable
-        ``depth(arrays)`` returns the ``column`` that `VerticalLayers.shares` needs, from all
+    depth : ``depth(arrays)`` returns the ``column`` that `VerticalLayers.shares` needs, from all
         arrays, of which the first two are the components (T, L, Y, X).
 
     Returns

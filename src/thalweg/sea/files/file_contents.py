@@ -52,8 +52,7 @@ def layer_candidates(
 
     Parameters
     ----------
-    mapping : mapping of str to str
-        Given by the user: canonical name to name in the file.
+    mapping : Given by the user: canonical name to name in the file.
     placement_cache : Grids of an earlier file with the same positions.
 
     Raises

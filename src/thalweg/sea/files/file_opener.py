@@ -46,8 +46,7 @@ def open_layers(
     Parameters
     ----------
     sources : Files in order of priority.
-    mapping : mapping of str to str or None
-        Canonical name to name in the file.
+    mapping : Canonical name to name in the file.
     draught : Draught [m] over which currents in layers are averaged.
 
     Raises

@@ -28,8 +28,7 @@ class GridPlacement:
     ----------
     key : Equal for variables on the same grid.
     dims : Dimensions of position, rows first.
-    angle : float64 array or None
-        Angle [rad] from true east to the direction of increasing column number (rows, columns);
+    angle : Angle [rad] from true east to the direction of increasing column number (rows, columns);
         None if that is east.
     flipped : Whether columns must be reversed on reading.
     mesh : For meshes, how values belong to grid points.
@@ -51,8 +50,7 @@ def grid_placement(
     Parameters
     ----------
     dataset, array : The file and one of its variables.
-    mapping : mapping of str to str
-        Given by the user; its key "crs" names the projection.
+    mapping : Given by the user; its key "crs" names the projection.
     source : File name for messages.
     meshes : Meshes of the file.
 

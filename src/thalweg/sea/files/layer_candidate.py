@@ -23,8 +23,7 @@ class OpenedFile:
     ----------
     dataset : Not loaded.
     source : Its name, for messages.
-    facts : mapping
-        Name, size and modification time.
+    facts : Name, size and modification time.
     draught : Draught [m] over which currents in layers are averaged; None for the surface layer.
     """
 
@@ -42,8 +41,7 @@ class PlacedVariable:
     ----------
     chosen : The variable and its role.
     variable : Reads its values.
-    times : float64 array (T,)
-        Its times [s since epoch]; empty without any.
+    times : Its times [s since epoch], (T,); empty without any.
     rotated : Whether GRIB states that components are along the grid.
     layers : Layers over which it is averaged.
     """
@@ -62,8 +60,7 @@ class LayerCandidate:
 
     Attributes
     ----------
-    times : float64 array (T,)
-        Times [s since epoch]; empty for fields that hold at all times.
+    times : Times [s since epoch], (T,); empty for fields that hold at all times.
     quantities : Quantities found so far.
     recognised : How they were recognised.
     """

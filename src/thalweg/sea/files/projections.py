@@ -18,8 +18,7 @@ def projection_of(dataset: Any, array: Any, mapping: Mapping[str, str], source: 
     Parameters
     ----------
     dataset, array : The file and one of its variables.
-    mapping : mapping of str to str
-        Its key "crs" has priority over the file.
+    mapping : Its key "crs" has priority over the file.
     source : File name for messages.
 
     Returns
@@ -84,8 +83,7 @@ def to_degrees(crs: Any, x: FloatArray, y: FloatArray) -> tuple[FloatArray, Floa
     Parameters
     ----------
     crs : Projection, or its EPSG code.
-    x, y : float64 array
-        Projected positions [m], of one shape.
+    x, y : Projected positions [m], of one shape.
 
     Returns
     -------
@@ -108,8 +106,7 @@ def meridian_angle(crs: Any, x: FloatArray, y: FloatArray) -> FloatArray:
     Parameters
     ----------
     crs : Projection.
-    x, y : float64 array
-        Projected positions [m], of one shape.
+    x, y : Projected positions [m], of one shape.
 
     Returns
     -------
@@ -129,8 +126,7 @@ def grid_angle(lat: FloatArray, lon: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    lat, lon : float64 array (Y, X)
-        Positions [deg].
+    lat, lon : Positions [deg], (Y, X).
 
     Returns
     -------

@@ -25,8 +25,7 @@ def join_in_time(
     Parameters
     ----------
     candidates : Candidates of all files, in order of priority.
-    ignored : mapping of str to list of IgnoredVariable
-        Variables that are not used, by file.
+    ignored : Variables that are not used, by file.
     """
     joined: list[list[LayerCandidate]] = []
     for candidate in candidates:

@@ -30,10 +30,8 @@ class FaceAveraging:
 
     Attributes
     ----------
-    start, face : int64 array
-        Faces of node n are ``face[start[n]:start[n + 1]]``.
-    weight : float64 array
-        One per entry of ``face``.
+    start, face : Faces of node n are ``face[start[n]:start[n + 1]]``.
+    weight : One per entry of ``face``.
     """
 
     start: IntArray
@@ -57,8 +55,7 @@ class MeshLayout:
     key : Name of the mesh and of the dimension.
     dim : Dimension of nodes or of faces.
     grid : Grid points and triangles.
-    angle : float64 array or None
-        Angle [rad] of the projection's x axis from east at each value, (1, values).
+    angle : Angle [rad] of the projection's x axis from east at each value, (1, values).
     """
 
     key: tuple[str, ...]
@@ -140,8 +137,7 @@ def mesh_layouts(dataset: Any, mapping: Mapping[str, str], source: str) -> list[
     Parameters
     ----------
     dataset : The file.
-    mapping : mapping of str to str
-        Given by the user; its key "crs" names the projection.
+    mapping : Given by the user; its key "crs" names the projection.
     source : File name for messages.
 
     Raises
@@ -246,8 +242,7 @@ def read_faces(table: Any, nodes: int, source: str) -> IntArray:
 
     Parameters
     ----------
-    table : xarray.DataArray
-        Connectivity (M, largest number of nodes); it may hold floats with NaN or an undecoded
+    table : Connectivity (M, largest number of nodes); it may hold floats with NaN or an undecoded
         fill value, and count from 0 or 1.
     nodes : Number of nodes of the mesh.
     source : File name for messages.

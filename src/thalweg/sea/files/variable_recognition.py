@@ -92,8 +92,7 @@ def recognise_variables(
     Parameters
     ----------
     dataset : The file.
-    mapping : mapping of str to str
-        Given by the user: canonical name (or role) to name in the file.
+    mapping : Given by the user: canonical name (or role) to name in the file.
     source : File name for messages.
     skip : Coordinates and other variables that carry no field.
 
@@ -158,8 +157,7 @@ def check_mapping(mapping: Mapping[str, str], present: frozenset[str]) -> None:
 
     Parameters
     ----------
-    mapping : mapping of str to str
-        Canonical name to name in the file.
+    mapping : Canonical name to name in the file.
     present : Names of the variables in the files.
     """
     for name, variable in mapping.items():

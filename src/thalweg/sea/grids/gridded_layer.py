@@ -37,8 +37,7 @@ class GridLayer:
     axis : Times of the values.
     cache : Values read so far; it changes no result.
     source : File names.
-    facts : mapping
-        Name, size and modification time of the files.
+    facts : Name, size and modification time of the files.
     record : Recognised and ignored variables.
     """
 

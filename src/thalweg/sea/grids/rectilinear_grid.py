@@ -19,10 +19,8 @@ class RectilinearGrid:
 
     Attributes
     ----------
-    lat : float64 array (Y,)
-        Strictly increasing or decreasing [deg].
-    lon : float64 array (X,)
-        Strictly increasing [deg], unwrapped (may pass 180 or 360).
+    lat : Strictly increasing or decreasing [deg], (Y,).
+    lon : Strictly increasing [deg], unwrapped (may pass 180 or 360), (X,).
     """
 
     lat: FloatArray

@@ -82,9 +82,8 @@ class SourceVariable:
     is_mesh : bool
         Whether positions are along one dimension (always read whole) instead of rows and columns.
     source : File names, for messages.
-    shift : tuple of int
-        Offset (rows, columns) of a staggered variable: (0, 1) for velocities on the east side of
-        cells, (1, 0) on the north side; it is averaged to the centre of the cell.
+    shift : Offset (rows, columns) of a staggered variable: (0, 1) for velocities on the east side
+        of cells, (1, 0) on the north side; it is averaged to the centre of the cell.
     """
 
     name: str

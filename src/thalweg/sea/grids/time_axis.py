@@ -26,8 +26,7 @@ class TimeAxis:
 
     Attributes
     ----------
-    times : float64 array (T,)
-        Strictly increasing [s since epoch]; empty for fields that hold at all times.
+    times : Strictly increasing [s since epoch], (T,); empty for fields that hold at all times.
     """
 
     times: FloatArray

@@ -28,10 +28,8 @@ class TriangleGrid:
 
     Attributes
     ----------
-    lat, lon : float64 array (M,)
-        Grid points that hold values [deg].
-    triangles : int64 array (K, 3)
-        Flat indices of grid points.
+    lat, lon : Grid points that hold values [deg], (M,).
+    triangles : Flat indices of grid points, (K, 3).
     shape : Rows and columns of grid points (1 row for a mesh).
     network : Nodes and triangles from which a network can be built.
     """

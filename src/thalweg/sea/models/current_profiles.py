@@ -35,18 +35,12 @@ class WaterColumn:
 
     Attributes
     ----------
-    depth : float
-        Water depth D [m].
-    viscosity : float
-        Vertical eddy viscosity E [m2/s].
-    coriolis : float
-        f [rad/s], positive in the north.
-    frequency : float
-        Angular frequency of the tide [rad/s].
-    speed : float
-        Amplitude of the depth-mean tidal current [m/s] by which its friction is linearised.
-    friction : float
-        Quadratic friction coefficient k of Prandle, and linear one of Heaps [m/s].
+    depth : Water depth D [m].
+    viscosity : Vertical eddy viscosity E [m2/s].
+    coriolis : f [rad/s], positive in the north.
+    frequency : Angular frequency of the tide [rad/s].
+    speed : Amplitude of the depth-mean tidal current [m/s] by which its friction is linearised.
+    friction : Quadratic friction coefficient k of Prandle, and linear one of Heaps [m/s].
     """
 
     depth: float = 25.0
@@ -108,10 +102,8 @@ def tidal_profile(height: ArrayLike, column: WaterColumn) -> tuple[ComplexArray,
 
     Parameters
     ----------
-    height : array_like
-        Height above the bed [m], 0 to depth.
-    column : WaterColumn
-        The water column.
+    height : Height above the bed [m], 0 to depth.
+    column : The water column.
 
     Returns
     -------
@@ -143,10 +135,8 @@ def tidal_mean(draught: float, column: WaterColumn) -> tuple[complex, complex]:
 
     Parameters
     ----------
-    draught : float
-        Draught [m], 0 to depth; 0 for the surface.
-    column : WaterColumn
-        The water column.
+    draught : Draught [m], 0 to depth; 0 for the surface.
+    column : The water column.
 
     Returns
     -------
@@ -291,10 +281,8 @@ def density_mean(draught: float, column: WaterColumn, **density: float) -> tuple
 
     Parameters
     ----------
-    draught : float
-        Draught [m], 0 to depth.
-    column : WaterColumn
-        The water column.
+    draught : Draught [m], 0 to depth.
+    column : The water column.
     **density
         ``density_gradient`` [kg/m4], ``density`` [kg/m3] and ``rise`` [m], as `density_profile`.
 

@@ -33,8 +33,7 @@ def coriolis_parameter(lat_deg: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    lat_deg : array_like
-        Latitude [deg].
+    lat_deg : Latitude [deg].
 
     Returns
     -------
@@ -53,8 +52,7 @@ def holland_b(maximum_gradient_wind: ArrayLike, pressure_deficit: ArrayLike) -> 
 
     Parameters
     ----------
-    maximum_gradient_wind : array_like
-        Maximum gradient wind :math:`V_m` [m/s].
+    maximum_gradient_wind : Maximum gradient wind :math:`V_m` [m/s].
     pressure_deficit : array_like
         Ambient minus central pressure :math:`p_n - p_c` [Pa]; at least 100 Pa is used.
 
@@ -92,16 +90,11 @@ def holland_gradient_wind(
 
     Parameters
     ----------
-    radius : array_like
-        Distance r from the centre [m].
-    radius_of_maximum : array_like
-        Radius of maximum wind :math:`R_m` [m].
-    pressure_deficit : array_like
-        Ambient minus central pressure :math:`\Delta p` [Pa].
-    b : array_like
-        Shape parameter B [-].
-    coriolis : array_like
-        Coriolis parameter f [rad/s].
+    radius : Distance r from the centre [m].
+    radius_of_maximum : Radius of maximum wind :math:`R_m` [m].
+    pressure_deficit : Ambient minus central pressure :math:`\Delta p` [Pa].
+    b : Shape parameter B [-].
+    coriolis : Coriolis parameter f [rad/s].
 
     Returns
     -------
@@ -131,10 +124,8 @@ def radius_of_maximum_wind_willoughby2006(
 
     Parameters
     ----------
-    maximum_wind : array_like
-        Maximum wind :math:`V_m` [m/s].
-    lat_deg : array_like
-        Latitude [deg].
+    maximum_wind : Maximum wind :math:`V_m` [m/s].
+    lat_deg : Latitude [deg].
 
     Returns
     -------
@@ -194,10 +185,8 @@ def translation_wind(
 
     Parameters
     ----------
-    east, north : array_like
-        Forward velocity of the vortex [m/s].
-    lat_deg : array_like
-        Latitude [deg].
+    east, north : Forward velocity of the vortex [m/s].
+    lat_deg : Latitude [deg].
 
     Returns
     -------
@@ -270,10 +259,8 @@ def wave_height_jonswap(wind_speed: ArrayLike, fetch: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    wind_speed : array_like
-        Wind speed U at 10 m [m/s].
-    fetch : array_like
-        Fetch x [m].
+    wind_speed : Wind speed U at 10 m [m/s].
+    fetch : Fetch x [m].
 
     Returns
     -------
@@ -297,10 +284,8 @@ def peak_period_young2006(wave_height: ArrayLike, wind_speed: ArrayLike) -> Floa
 
     Parameters
     ----------
-    wave_height : array_like
-        Significant wave height [m].
-    wind_speed : array_like
-        Wind speed U at 10 m [m/s]; at least 0.1 m/s is used.
+    wave_height : Significant wave height [m].
+    wind_speed : Wind speed U at 10 m [m/s]; at least 0.1 m/s is used.
 
     Returns
     -------

@@ -27,14 +27,10 @@ class BestTrack:
     Attributes
     ----------
     name : Name of the storm.
-    time : float64 array
-        Times [s since epoch].
-    lat, lon : float64 array
-        Centre [deg], longitude unwrapped.
-    wind : float64 array
-        Largest 10-min mean wind at 10 m [m/s].
-    pressure : float64 array
-        Central pressure [Pa].
+    time : Times [s since epoch].
+    lat, lon : Centre [deg], longitude unwrapped.
+    wind : Largest 10-min mean wind at 10 m [m/s].
+    pressure : Central pressure [Pa].
     """
 
     name: str

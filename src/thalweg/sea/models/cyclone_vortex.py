@@ -57,8 +57,7 @@ def vortex_state(track: BestTrack, time: FloatArray) -> VortexState:
 
     Parameters
     ----------
-    time : float64 array (N,)
-        Times [s since epoch].
+    time : Times [s since epoch], (N,).
 
     Returns
     -------
@@ -101,10 +100,8 @@ def vortex_wind(
 
     Parameters
     ----------
-    radius : float64 array
-        Distance from the centre [m].
-    inward : tuple of float64 array
-        Unit vector (east, north) towards the centre.
+    radius : Distance from the centre [m].
+    inward : Unit vector (east, north) towards the centre.
     state : The vortex at the time of each point.
 
     Returns

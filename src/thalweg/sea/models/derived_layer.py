@@ -117,8 +117,7 @@ def inside_layers_with(
     Parameters
     ----------
     names : Canonical names.
-    lat, lon : float64 array
-        Positions [deg].
+    lat, lon : Positions [deg].
     """
     inside = np.zeros(lat.shape, bool)
     for layer in layers:

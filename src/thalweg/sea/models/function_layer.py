@@ -39,11 +39,9 @@ class FormulaLayer:
     label : Origin of the values.
     area : Values are unknown outside.
     period : First and last time [s since epoch]; values are unknown outside.
-    time_step : float or None
-        Step [s] at which the formula is frozen; 0 for a field that never changes; None to
+    time_step : Step [s] at which the formula is frozen; 0 for a field that never changes; None to
         choose it by the length of the window (see `automatic_times`).
-    facts : mapping
-        Further plain facts for the provenance.
+    facts : Further plain facts for the provenance.
     """
 
     variables: frozenset[str]
@@ -132,9 +130,8 @@ def automatic_times(start: float, end: float, time_step: float | None = None) ->
     Parameters
     ----------
     start, end : Window [s since epoch].
-    time_step : float, optional
-        Step [s], reduced so that the last step ends on the window; by default
-        ``min(600 s, window / 200)``, increased where there would be more than 2000 steps.
+    time_step : Step [s], reduced so that the last step ends on the window; by default ``min(600 s,
+        window / 200)``, increased where there would be more than 2000 steps.
 
     Returns
     -------
@@ -153,8 +150,7 @@ def constant_layer(values: Mapping[str, float], label: str) -> FormulaLayer:
 
     Parameters
     ----------
-    values : mapping of str to float
-        Value [SI] by canonical name.
+    values : Value [SI] by canonical name.
     label : Origin of the values.
     """
 
@@ -178,8 +174,7 @@ def layer_of_functions(
 
     Parameters
     ----------
-    functions : mapping of str to callable
-        As for `thalweg.sea.Sea.from_functions`.
+    functions : As for `thalweg.sea.Sea.from_functions`.
     area : (south, north, west, east) [deg]; values are unknown outside.
     period : (start, end); values are unknown outside.
     time_step : Step [s] of frozen times.

@@ -34,8 +34,7 @@ class TidalEllipse:
 
     Attributes
     ----------
-    alongshore, cross_shore : float
-        Amplitudes at the surface [m/s]; the current vector rotates clockwise.
+    alongshore, cross_shore : Amplitudes at the surface [m/s]; the current vector rotates clockwise.
     """
 
     alongshore: float
@@ -152,12 +151,9 @@ def ellipse_phasors(
 
     Parameters
     ----------
-    scenario : str or TidalEllipse
-        Name of a scenario, or an ellipse at the surface.
-    column : WaterColumn
-        The water column.
-    draught : float
-        Draught [m]; 0 for the surface.
+    scenario : Name of a scenario, or an ellipse at the surface.
+    column : The water column.
+    draught : Draught [m]; 0 for the surface.
 
     Returns
     -------

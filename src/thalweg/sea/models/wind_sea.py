@@ -96,9 +96,8 @@ class WindSeaLayer(DerivedLayer):
     ----------
     layers : tuple of Layer
         Layers that hold the wind, in order of priority; waves are unknown where the wind is.
-    fetch : callable, optional
-        ``f(lat, lon, origin)``: fetch [m] at positions [deg] for winds from a direction [rad], such
-        as `thalweg.chart.coastal_fetch.CoastalFetch`; by default 500 km.
+    fetch : ``f(lat, lon, origin)``: fetch [m] at positions [deg] for winds from a direction [rad],
+        such as `thalweg.chart.coastal_fetch.CoastalFetch`; by default 500 km.
     """
 
     fetch: FetchFunction | None = None

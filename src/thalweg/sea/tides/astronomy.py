@@ -38,8 +38,7 @@ def mean_longitudes(times: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    times : float64 array (T,)
-        Seconds since 1970-01-01T00:00Z.
+    times : Seconds since 1970-01-01T00:00Z, (T,).
 
     Returns
     -------

@@ -138,8 +138,7 @@ def from_dict(data: Mapping[str, Any], source: str = "constituents") -> Constitu
 
     Parameters
     ----------
-    data : mapping
-        Plain data.
+    data : Plain data.
     source : File name for messages.
 
     Raises
@@ -181,8 +180,7 @@ def select_station(
 
     Parameters
     ----------
-    stations : sequence of mapping
-        Stations as in the neaps tide database.
+    stations : Stations as in the neaps tide database.
     wanted : Id or name; None if there is one station only.
     source : File name for messages.
 

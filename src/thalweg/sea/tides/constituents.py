@@ -277,10 +277,8 @@ def tidal_signal(coefficient: ComplexArray, wave: ComplexArray) -> FloatArray:
 
     Parameters
     ----------
-    coefficient : complex128 array (N, C)
-        ``A exp(-i g)`` at nodes, in the unit of the variable.
-    wave : complex128 array (C, T)
-        Transposed unit phasors.
+    coefficient : ``A exp(-i g)`` at nodes, in the unit of the variable, (N, C).
+    wave : Transposed unit phasors, (C, T).
 
     Returns
     -------
@@ -306,8 +304,7 @@ def unit_phasors(
     Parameters
     ----------
     names : C constituents.
-    times : float64 array (T,)
-        Seconds since 1970-01-01T00:00Z.
+    times : Seconds since 1970-01-01T00:00Z, (T,).
     latitude : Latitude of the nodal corrections [deg].
     convention : {"foreman", "schureman", "rws"}
         As `Constituents`.

@@ -31,16 +31,12 @@ class ConstituentTable:
     Attributes
     ----------
     index : Row of each name.
-    frequency : float64 array (K,)
-        Cycles per hour.
-    separation : float64 array (K,)
-        Distance [cycles per hour] to the nearest constituent of higher priority.
-    doodson : float64 array (K, 7)
-        Multiples of (tau, s, h, p, N', p1) and phase [cycles]; NaN for compounds.
+    frequency : Cycles per hour, (K,).
+    separation : Distance [cycles per hour] to the nearest constituent of higher priority, (K,).
+    doodson : Multiples of (tau, s, h, p, N', p1) and phase [cycles], (K, 7); NaN for compounds.
     satellites : tuple of arrays
         Constituent, multiples of (p, N', p1), phase, ratio, latitude rule of each satellite.
-    compounds : dict of int to (int64 array, float64 array)
-        Constituents and multiples of each compound, by row.
+    compounds : Constituents and multiples of each compound, by row, (int64 array, float64 array).
     """
 
     index: dict[str, int]
@@ -127,8 +123,7 @@ def equilibrium_arguments(names: tuple[str, ...], times: FloatArray) -> FloatArr
     Parameters
     ----------
     names : C constituents, as UTide spells them.
-    times : float64 array (T,)
-        Seconds since 1970-01-01T00:00Z.
+    times : Seconds since 1970-01-01T00:00Z, (T,).
 
     Returns
     -------
@@ -162,8 +157,7 @@ def nodal_corrections(names: tuple[str, ...], times: FloatArray, latitude: float
     Parameters
     ----------
     names : C constituents, as UTide spells them.
-    times : float64 array (T,)
-        Seconds since 1970-01-01T00:00Z.
+    times : Seconds since 1970-01-01T00:00Z, (T,).
     latitude : Latitude [deg]; within 5 deg of the equator that of 5 deg is used.
 
     Returns

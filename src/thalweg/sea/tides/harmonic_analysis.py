@@ -43,8 +43,7 @@ class TideAnalysis:
     constituents : The constants.
     tidal_share : mapping of str to float64 array (N,)
         Fraction of the variance of the record that the tide explains, by variable and node.
-    variance : mapping of str to float64 array (N,)
-        Variance of the record.
+    variance : Variance of the record, (N,).
     start, end : First and last time of the record [s since epoch].
     """
 
@@ -80,15 +79,12 @@ def analyse(
 
     Parameters
     ----------
-    times : array_like (T,)
-        Strictly increasing [s since 1970-01-01T00:00Z]; steps may differ.
+    times : Strictly increasing [s since 1970-01-01T00:00Z], (T,); steps may differ.
     series : mapping of str to array_like (T,) or (N, T)
         Records by variable, NaN where unknown; nodes known less than half of the time get no tide.
-    lat, lon : array_like (N,)
-        Positions [deg]; their mean latitude is used for nodal corrections.
-    constituents : sequence of str, optional
-        Names as UTide spells them; by default all that the length and step of the record can
-        separate, in the order of priority of Foreman (1977).
+    lat, lon : Positions [deg], (N,); their mean latitude is used for nodal corrections.
+    constituents : Names as UTide spells them; by default all that the length and step of the record
+        can separate, in the order of priority of Foreman (1977).
     rayleigh : Rayleigh criterion: least difference of two constituents [cycles] over the record.
     progress : Called with the number of nodes done and in total.
 
@@ -244,8 +240,7 @@ def select_constituents(
 
     Parameters
     ----------
-    times : float64 array (T,)
-        Times of the record [s since epoch].
+    times : Times of the record [s since epoch], (T,).
     wanted : Constituents to check; None to select them.
     rayleigh : Rayleigh criterion [cycles over the record].
 

@@ -39,10 +39,8 @@ class WaterLevelSeries(NamedTuple):
 
     Attributes
     ----------
-    times : float64 array (T,)
-        Seconds since 1970-01-01T00:00Z.
-    level : float64 array (T,)
-        Water level [m above datum].
+    times : Seconds since 1970-01-01T00:00Z, (T,).
+    level : Water level [m above datum], (T,).
     position : (float, float) or None
         Latitude and longitude [deg], if the file gives them.
     description : Format and location.

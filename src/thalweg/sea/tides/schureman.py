@@ -81,8 +81,7 @@ class ConstituentDefinition:
 
     Attributes
     ----------
-    name : str
-        Canonical name.
+    name : Canonical name.
     parts : tuple of (str, int)
         Basic constituents and multiples; one part for a basic constituent.
     """
@@ -106,12 +105,7 @@ def constituent_definition(name: str) -> ConstituentDefinition:
 
     Parameters
     ----------
-    name : str
-        Such as ``M2``, ``NU2`` or ``3MNS6``.
-
-    Returns
-    -------
-    ConstituentDefinition
+    name : Such as ``M2``, ``NU2`` or ``3MNS6``.
 
     Raises
     ------
@@ -192,10 +186,8 @@ def equilibrium_arguments(names: tuple[str, ...], times: FloatArray) -> FloatArr
 
     Parameters
     ----------
-    names : tuple of str
-        C constituents.
-    times : float64 array (T,)
-        Seconds since 1970-01-01T00:00Z.
+    names : C constituents.
+    times : Seconds since 1970-01-01T00:00Z, (T,).
 
     Returns
     -------
@@ -223,12 +215,9 @@ def nodal_corrections(
 
     Parameters
     ----------
-    names : tuple of str
-        C constituents.
-    times : float64 array (T,)
-        Seconds since 1970-01-01T00:00Z.
-    rws : bool
-        Whether the factors are applied only by the fractions `RWS_NODAL_FRACTIONS`.
+    names : C constituents.
+    times : Seconds since 1970-01-01T00:00Z, (T,).
+    rws : Whether the factors are applied only by the fractions `RWS_NODAL_FRACTIONS`.
 
     Returns
     -------

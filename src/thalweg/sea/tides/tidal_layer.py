@@ -42,8 +42,7 @@ class TidalLayer:
     box : The area, if there is no grid.
     time_step : Step [s] at which kernels receive the tide.
     source : Origin of the constants.
-    facts : mapping
-        Further plain facts for the provenance.
+    facts : Further plain facts for the provenance.
     """
 
     constituents: Constituents

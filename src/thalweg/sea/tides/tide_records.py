@@ -60,8 +60,7 @@ class TideRecord:
 
     Attributes
     ----------
-    times : float64 array (T,)
-        Seconds since 1970-01-01T00:00Z.
+    times : Seconds since 1970-01-01T00:00Z, (T,).
     series : dict of str to float64 array (T,)
         Water level [m above datum] and current [m/s towards] by canonical name, NaN where unknown.
     position : (float, float) or None

@@ -47,14 +47,11 @@ class CheckedBarrier:
 
     Attributes
     ----------
-    phi : float64 array (Y, X)
-        Values at the nodes [s].
-    centre : float64 array (Y - 1, X - 1)
-        Values at the centres of the cells [s].
+    phi : Values at the nodes [s], (Y, X).
+    centre : Values at the centres of the cells [s], (Y - 1, X - 1).
     value : At the position to be bounded [s].
     complete : Whether no checked cell touches the edge of the mesh.
-    factor : float64 array (Y, X)
-        Factors on the times with which it was solved: a start for finer meshes.
+    factor : Factors on the times with which it was solved: a start for finer meshes, (Y, X).
     """
 
     phi: FloatArray
@@ -75,11 +72,9 @@ class BarrierTask:
     own, other : float64 array (Y - 1, X - 1)
         Lower bounds of the time between the source and each cell, and between it and the target.
     forward : Whether the source is the departure.
-    course : float, optional
-        Course [rad from north] on which the barrier should rise at the source; by default that of
-        the geodesic to the target.
-    factor : float64 array (Y, X), optional
-        Factors on the times to begin with (see `finer_factors`); by default 1.
+    course : Course [rad from north] on which the barrier should rise at the source; by default that
+        of the geodesic to the target.
+    factor : Factors on the times to begin with (see `finer_factors`), (Y, X); by default 1.
     """
 
     mesh: BarrierMesh

@@ -30,8 +30,7 @@ class ShipInBarrier:
     Attributes
     ----------
     table : Speed through water.
-    limits : float64 array
-        As kernels read them (`thalweg.core.limits.Limits.array`).
+    limits : As kernels read them (`thalweg.core.limits.Limits.array`).
     top_speed : float
         Upper bound of the speed through water [m/s]; NaN where it follows from ``speed_field``.
     speed_field : Speed through water as a field of the sea, for ships without a table.

@@ -51,13 +51,11 @@ class TimeCertificate:
     ----------
     value : No route is faster [s].
     sampling : How the sea of the proof differs from the data; "" where it does not.
-    cells : int
-        Cells of the mesh along the geodesic; 0 for the bound of the geodesic at the greatest
+    cells : Cells of the mesh along the geodesic; 0 for the bound of the geodesic at the greatest
         speed over ground, which has no mesh, barrier and task.
     seconds : Time used [s].
-    reached : float
-        Value of the barrier at the goal [s]. Where it is clearly above the known time the sea of
-        the proof is not the one of the known route.
+    reached : Value of the barrier at the goal [s]. Where it is clearly above the known time the sea
+        of the proof is not the one of the known route.
     barrier : The barrier: no ship reaches a position before its value there.
     task : What was checked.
     """
@@ -79,10 +77,9 @@ def certify_time(
 
     Parameters
     ----------
-    seconds : float
-        Time that the search for a bound may take [s]; 0 for that of the geodesic alone. A mesh is
-        completed once begun; the next finer one is left out when it would take longer than what
-        is left.
+    seconds : Time that the search for a bound may take [s]; 0 for that of the geodesic alone. A
+        mesh is completed once begun; the next finer one is left out when it would take longer than
+        what is left.
     target : Gap [fraction of the known time] at which the search ends.
 
     Returns
@@ -171,12 +168,9 @@ class _Level:
 
     Attributes
     ----------
-    from_start : float64 ndarray (rows, columns)
-        Lower bound of the time from the start to a cell [s].
-    to_goal : float64 ndarray (rows, columns)
-        Lower bound of the time from a cell to the goal [s].
-    known : float
-        Time of the known route [s].
+    from_start : Lower bound of the time from the start to a cell [s], (rows, columns).
+    to_goal : Lower bound of the time from a cell to the goal [s], (rows, columns).
+    known : Time of the known route [s].
     factors : Of the barriers from the goal and from the start, for a finer mesh; None for none.
     """
 

@@ -104,8 +104,7 @@ def choose_discretisation(
     ----------
     earliest : float64[N]
         Earliest arrival at every state [s].
-    bin_s : float, optional
-        Width of the bins [s]; by default the horizon is divided into at most 2000, into fewer
+    bin_s : Width of the bins [s]; by default the horizon is divided into at most 2000, into fewer
         where the memory does not allow that or the relaxations would be too many.
     memory_limit : [bytes]
 

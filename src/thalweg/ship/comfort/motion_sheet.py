@@ -32,9 +32,8 @@ def motion_sheet(
 
     Parameters
     ----------
-    weather : mapping
-        As of `thalweg.ship.performance_sheet`, with ``wave_height`` [m]; a wind without an angle
-        comes from the direction of the waves.
+    weather : As of `thalweg.ship.performance_sheet`, with ``wave_height`` [m]; a wind without an
+        angle comes from the direction of the waves.
     speed_kn : float, optional
         Speed through water in calm water [kn]; by default the highest of the ship. The motions are
         those at the speed that she attains in these waves with the same power, where it is known.

@@ -38,10 +38,8 @@ class PlaceMotions:
 
     Attributes
     ----------
-    displacement, velocity, acceleration : float64 array
-        [m], [m/s], [m/s2].
-    weighted : float64 array
-        Acceleration weighted by W_f of ISO 2631-1, a_w [m/s2].
+    displacement, velocity, acceleration : [m], [m/s], [m/s2].
+    weighted : Acceleration weighted by W_f of ISO 2631-1, a_w [m/s2].
     """
 
     displacement: FloatArray
@@ -56,11 +54,9 @@ class ShipMotions:
 
     Attributes
     ----------
-    heave : float64 array
-        At midship [m].
+    heave : At midship [m].
     pitch : float64 array [rad]
-    roll : float64 array
-        [rad]; NaN everywhere where the ship has no natural roll period.
+    roll : [rad]; NaN everywhere where the ship has no natural roll period.
     places : By the names of the ship file; on the centre line, so that roll does not move them.
     """
 
@@ -76,11 +72,9 @@ class OnboardMotions:
 
     Attributes
     ----------
-    places : mapping of str to float
-        Distance ahead of midship on the centre line [m], by name; the first is that which the
+    places : Distance ahead of midship on the centre line [m], by name; the first is that which the
         objective comfort counts.
-    tasks : mapping of str to TaskSection
-        Limits of motions by task.
+    tasks : Limits of motions by task.
     roll_period : Natural period [s]; None where the ship file gives neither it nor GM.
     roll_damping : Share of the critical damping.
     """
@@ -108,10 +102,8 @@ class OnboardMotions:
 
         Parameters
         ----------
-        speed : array_like
-            Through the water [m/s].
-        wave_angle : array_like
-            Between the bow and where the waves come from [rad], 0 head to pi following.
+        speed : Through the water [m/s].
+        wave_angle : Between the bow and where the waves come from [rad], 0 head to pi following.
         wave_height, wave_period : array_like
             Significant height [m] and peak period [s]; periods are taken within 2 to 30 s.
 

@@ -51,12 +51,7 @@ def build_known_speed_model(file: ShipFile, hull: Hull, loading: Loading) -> Kno
 
 
 def _check_sea_margin(file: ShipFile) -> None:
-    """Refuse a sea margin where there is no power that it could raise.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a sea margin where there is no power that it could raise."""
     if file.engine.sea_margin_percent > 0.0:
         raise InputError(
             "engine.sea_margin_percent is given for a ship with known speeds.",

@@ -91,12 +91,7 @@ def _assemble_resistance_model(
 
 
 def _check_speed_loss(models: ModelsSection, loss: KwonSpeedLoss | None) -> None:
-    """Refuse Kwon's speed loss together with a method for waves or wind.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse Kwon's speed loss together with a method for waves or wind."""
     weather = {"waves": models.waves, "wind": models.wind}
     twice = [name for name, method in weather.items() if method != "none"]
     if loss is not None and twice:
@@ -110,12 +105,7 @@ def _check_speed_loss(models: ModelsSection, loss: KwonSpeedLoss | None) -> None
 
 
 def _check_squat_and_rudder(file: ShipFile, hull: Hull, loading: Loading) -> None:
-    """Refuse a squat that limits the speed, and unknown rudder methods.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a squat that limits the speed, and unknown rudder methods."""
     models = file.models
     if build_squat_model(file, hull, loading) is not None:
         raise InputError(
@@ -160,12 +150,7 @@ def _force_balance_by_loading(
 
 
 def _check_draught(loading: Loading) -> None:
-    """Refuse a hull without draught.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a hull without draught."""
     if loading.draught_empty <= 0.0:
         raise InputError(
             "The draught is 0 m.",
@@ -184,12 +169,7 @@ def _moderate_speed(balance: ForceBalance) -> NDArray[np.float64]:
 def _check_calm_water_power(
     balance: ForceBalance, speeds: NDArray[np.float64], load_factor: float
 ) -> None:
-    """Refuse a hull for which the chosen methods give no power in calm water.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a hull for which the chosen methods give no power in calm water."""
     calm = {
         "depth": np.full(speeds.shape, np.inf),
         **{name: np.zeros(speeds.shape) for name in ("wind_speed", "wind_angle")},
@@ -270,12 +250,7 @@ def _build_engine_orders(
 
 
 def _check_distinct(values: tuple[float, ...], key: str, words: str) -> None:
-    """Refuse settings that are the same.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse settings that are the same."""
     if len(set(values)) != len(values):
         raise InputError(
             f"{key} has a {words} twice.",

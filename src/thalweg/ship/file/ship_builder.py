@@ -43,8 +43,7 @@ def ship_parts(data: Mapping[str, Any], source: str) -> ShipParts:
 
     Parameters
     ----------
-    data : mapping
-        Keys of a ship file.
+    data : Keys of a ship file.
     source : What messages call the data.
 
     Returns
@@ -96,8 +95,7 @@ def plugin_parts(name: str, offered: Any) -> ShipParts:
     Parameters
     ----------
     name : Name of the ship.
-    offered : mapping, ShipModel or callable
-        Data of a ship file, a model, or a function of conditions that returns speeds [m/s].
+    offered : Data of a ship file, a model, or a function of conditions that returns speeds [m/s].
 
     Raises
     ------
@@ -128,8 +126,7 @@ def simple_data(
     ----------
     name : Name of the ship.
     speeds_kn : Ordered speeds [kn].
-    **sections : mapping
-        Keys and values of each section, such as ``hull``.
+    **sections : Keys and values of each section, such as ``hull``.
 
     Returns
     -------

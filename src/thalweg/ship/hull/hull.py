@@ -29,8 +29,7 @@ class Hull:
 
     Attributes
     ----------
-    values : mapping of str to float or str
-        By key of the ship file.
+    values : By key of the ship file.
     estimated : Those that were not given.
     """
 
@@ -53,8 +52,7 @@ def complete_hull(given: Mapping[str, float | str]) -> Hull:
 
     Parameters
     ----------
-    given : mapping
-        The section ``hull`` of a ship file, checked.
+    given : The section ``hull`` of a ship file, checked.
 
     Raises
     ------

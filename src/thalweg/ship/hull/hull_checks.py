@@ -21,12 +21,7 @@ class _HullNumbers(Protocol):
 
 
 def check_lengths(hull: _HullNumbers) -> None:
-    """Refuse lengths that differ by a third from that between perpendiculars, or less than broad.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse lengths a third off that between perpendiculars, and ships broader than long."""
     lpp, breadth = hull.number("length_between_perpendiculars_m"), hull.number("breadth_m")
     if lpp is not None and breadth is not None and breadth > lpp:
         raise InputError(
@@ -52,12 +47,7 @@ def check_lengths(hull: _HullNumbers) -> None:
 
 
 def check_depth(hull: _HullNumbers, draught: float | None, key: str) -> None:
-    """Refuse a draught [m] that is more than the depth of the hull.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a draught [m] that is more than the depth of the hull."""
     depth = hull.number("depth_m")
     if depth is not None and draught is not None and draught > depth:
         raise InputError(
@@ -73,10 +63,6 @@ def check_prismatic(hull: _HullNumbers) -> None:
 
     It often refers to the length of the waterline, and the block coefficient on that between
     perpendiculars: a difference of a tenth is accepted.
-
-    Raises
-    ------
-    InputError
     """
     prismatic, block = hull.number("prismatic_coefficient"), hull.number("block_coefficient")
     midship = hull.number("midship_coefficient")
@@ -95,12 +81,7 @@ def check_prismatic(hull: _HullNumbers) -> None:
 
 
 def check_ends_and_surface(hull: _HullNumbers) -> None:
-    """Refuse a bulb or transom larger than the midship section, and impossible wetted surfaces.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a bulb or transom larger than the midship section, and impossible wetted surfaces."""
     breadth, draught = hull.number("breadth_m"), hull.number("draught_m")
     if not breadth or not draught:
         return

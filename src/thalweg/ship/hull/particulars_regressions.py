@@ -38,9 +38,8 @@ class Estimator:
     function : Takes the inputs by position, in the order of ``inputs``.
     inputs : Names of the quantities it needs.
     source : Where the regression was published.
-    typical_error : float
-        Relative error to reckon with [-] (absolute, in percent of length, for the centre of
-        buoyancy), our judgement.
+    typical_error : Relative error to reckon with [-] (absolute, in percent of length, for the
+        centre of buoyancy), our judgement.
     """
 
     function: Callable[..., FloatArray]

@@ -13,8 +13,7 @@ def as_float_array(values: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    values : array_like
-        Numbers of any shape.
+    values : Numbers of any shape.
 
     Returns
     -------

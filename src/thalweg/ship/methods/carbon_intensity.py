@@ -23,16 +23,11 @@ class ReferenceBand:
 
     Parameters
     ----------
-    least : float
-        Smallest capacity of the band.
-    a, c : float
-        Constants of the line.
-    fixed_capacity : float
-        Capacity the line is read at, whatever the ship's; NaN for the ship's own.
-    verified : bool
-        Whether the numbers were compared with the source.
-    note : str
-        What else must be known.
+    least : Smallest capacity of the band.
+    a, c : Constants of the line.
+    fixed_capacity : Capacity the line is read at, whatever the ship's; NaN for the ship's own.
+    verified : Whether the numbers were compared with the source.
+    note : What else must be known.
     """
 
     least: float
@@ -49,10 +44,8 @@ class CiiShipType:
 
     Parameters
     ----------
-    capacity : str
-        ``dwt`` or ``gt``.
-    bands : tuple of ReferenceBand
-        By falling capacity.
+    capacity : ``dwt`` or ``gt``.
+    bands : By falling capacity.
     boundaries : tuple of (float, tuple of float)
         Smallest capacity and exp(d1) to exp(d4), by falling capacity.
     """
@@ -98,8 +91,7 @@ def cii_ship_type(name: str) -> CiiShipType:
 
     Parameters
     ----------
-    name : str
-        A key of `SHIP_TYPES`.
+    name : A key of `SHIP_TYPES`.
 
     Returns
     -------
@@ -156,12 +148,9 @@ def eeoi(co2: ArrayLike, *, cargo_t: ArrayLike, distance_nm: ArrayLike) -> Float
 
     Parameters
     ----------
-    co2 : array_like
-        CO2 of each voyage [kg]; ballast voyages count with no cargo.
-    cargo_t : array_like
-        Cargo of each voyage [t].
-    distance_nm : array_like
-        Distance with that cargo [nm].
+    co2 : CO2 of each voyage [kg]; ballast voyages count with no cargo.
+    cargo_t : Cargo of each voyage [t].
+    distance_nm : Distance with that cargo [nm].
 
     Returns
     -------
@@ -185,10 +174,8 @@ def reference_cii(ship_type: str, *, capacity: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    ship_type : str
-        A key of `SHIP_TYPES`.
-    capacity : array_like
-        Deadweight [t] or gross tonnage as `SHIP_TYPES` says.
+    ship_type : A key of `SHIP_TYPES`.
+    capacity : Deadweight [t] or gross tonnage as `SHIP_TYPES` says.
 
     Returns
     -------
@@ -213,8 +200,7 @@ def reduction_factor(year: int) -> float:
 
     Parameters
     ----------
-    year : int
-        2019 to 2030.
+    year : 2019 to 2030.
 
     Returns
     -------
@@ -247,12 +233,9 @@ def required_cii(ship_type: str, *, capacity: ArrayLike, year: int) -> FloatArra
 
     Parameters
     ----------
-    ship_type : str
-        A key of `SHIP_TYPES`.
-    capacity : array_like
-        Deadweight [t] or gross tonnage.
-    year : int
-        2019 to 2030.
+    ship_type : A key of `SHIP_TYPES`.
+    capacity : Deadweight [t] or gross tonnage.
+    year : 2019 to 2030.
 
     Returns
     -------
@@ -273,12 +256,9 @@ def rating_boundaries(ship_type: str, *, capacity: ArrayLike, year: int) -> Floa
 
     Parameters
     ----------
-    ship_type : str
-        A key of `SHIP_TYPES`.
-    capacity : array_like
-        Deadweight [t] or gross tonnage.
-    year : int
-        2019 to 2030.
+    ship_type : A key of `SHIP_TYPES`.
+    capacity : Deadweight [t] or gross tonnage.
+    year : 2019 to 2030.
 
     Returns
     -------
@@ -303,14 +283,10 @@ def cii_rating(
 
     Parameters
     ----------
-    attained : array_like
-        Attained CII [g CO2 per (t nm)].
-    ship_type : str
-        A key of `SHIP_TYPES`.
-    capacity : array_like
-        Deadweight [t] or gross tonnage.
-    year : int
-        2019 to 2030.
+    attained : Attained CII [g CO2 per (t nm)].
+    ship_type : A key of `SHIP_TYPES`.
+    capacity : Deadweight [t] or gross tonnage.
+    year : 2019 to 2030.
 
     Returns
     -------

@@ -25,12 +25,9 @@ class CurrentTriangle:
 
     Attributes
     ----------
-    speed_over_ground : ndarray
-        [m/s]; NaN where the course cannot be held or data are unknown.
-    heading : ndarray
-        Heading [rad], clockwise from north, 0 to 2 pi.
-    crab_angle : ndarray
-        Heading minus course [rad], positive to starboard.
+    speed_over_ground : [m/s]; NaN where the course cannot be held or data are unknown.
+    heading : Heading [rad], clockwise from north, 0 to 2 pi.
+    crab_angle : Heading minus course [rad], positive to starboard.
     possible : ndarray of bool
         Whether the ship can hold the course and make headway; False where anything is unknown.
     """
@@ -48,10 +45,8 @@ def current_along_and_across(
 
     Parameters
     ----------
-    current_east, current_north : array_like
-        Current, towards [m/s].
-    course : array_like
-        Course over ground [rad], clockwise from north.
+    current_east, current_north : Current, towards [m/s].
+    course : Course over ground [rad], clockwise from north.
 
     Returns
     -------
@@ -68,10 +63,8 @@ def crab_angle(across: ArrayLike, speed: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    across : array_like
-        Current across the course, positive to starboard [m/s].
-    speed : array_like
-        Speed through water [m/s].
+    across : Current across the course, positive to starboard [m/s].
+    speed : Speed through water [m/s].
 
     Returns
     -------
@@ -91,10 +84,8 @@ def speed_over_ground(speed: ArrayLike, along: ArrayLike, across: ArrayLike) -> 
 
     Parameters
     ----------
-    speed : array_like
-        Speed through water [m/s].
-    along, across : array_like
-        Current along the course and across it, as in `current_along_and_across` [m/s].
+    speed : Speed through water [m/s].
+    along, across : Current along the course and across it, as in `current_along_and_across` [m/s].
 
     Returns
     -------
@@ -120,12 +111,9 @@ def current_triangle(
 
     Parameters
     ----------
-    speed : array_like
-        Speed through the water [m/s].
-    course : array_like
-        Course over the ground [rad], clockwise from north.
-    current_east, current_north : array_like
-        Current, where it flows to [m/s].
+    speed : Speed through the water [m/s].
+    course : Course over the ground [rad], clockwise from north.
+    current_east, current_north : Current, where it flows to [m/s].
 
     Returns
     -------
@@ -189,8 +177,7 @@ def rudder_drag_coefficient(angle: ArrayLike, *, curve: str = "nodes") -> FloatA
 
     Parameters
     ----------
-    angle : array_like
-        Angle of attack [rad], either side.
+    angle : Angle of attack [rad], either side.
     curve : str
         ``nodes``, a monotone cubic through the points read off Lübke's figure, or ``quadratic``,
         Schless's fit 3.0777e-4 d^2 + 5.5666e-3 d + 6.54e-4 with d in degrees, 0 at d = 0.
@@ -228,15 +215,11 @@ def rudder_drag(
 
     Parameters
     ----------
-    speed : array_like
-        Speed through the water [m/s].
-    crab_angle : array_like
-        Heading minus course [rad].
-    rudder_area : array_like
-        Lateral area of the rudder [m2].
+    speed : Speed through the water [m/s].
+    crab_angle : Heading minus course [rad].
+    rudder_area : Lateral area of the rudder [m2].
     density : array_like [kg/m3]
-    curve : str
-        As in `rudder_drag_coefficient`.
+    curve : As in `rudder_drag_coefficient`.
 
     Returns
     -------

@@ -16,10 +16,8 @@ def interpolate_loading(load_factor: ArrayLike, *, empty: ArrayLike, full: Array
 
     Parameters
     ----------
-    load_factor : array_like
-        r = (W - W_empty) / (W_full - W_empty), 0 empty to 1 full.
-    empty, full : array_like
-        The quantity of the empty and of the full ship, in any unit.
+    load_factor : r = (W - W_empty) / (W_full - W_empty), 0 empty to 1 full.
+    empty, full : The quantity of the empty and of the full ship, in any unit.
 
     Returns
     -------
@@ -42,10 +40,8 @@ def displacement_volume(
 
     Parameters
     ----------
-    length, breadth, draught : array_like
-        Length to which C_B belongs, breadth and mean draught [m].
-    block_coefficient : array_like
-        Block coefficient [-].
+    length, breadth, draught : Length to which C_B belongs, breadth and mean draught [m].
+    block_coefficient : Block coefficient [-].
 
     Returns
     -------
@@ -67,8 +63,7 @@ def block_coefficient_of(
 
     Parameters
     ----------
-    displacement : array_like
-        Displaced volume [m3], not tonnes.
+    displacement : Displaced volume [m3], not tonnes.
     length, breadth, draught : array_like [m]
 
     Returns
@@ -88,10 +83,8 @@ def block_at_draught(
 
     Parameters
     ----------
-    draught, design_draught : array_like
-        Mean draughts [m]; the first 0.4 to 1.1 of the second (our judgement).
-    design_block : array_like
-        Block coefficient at the design draught [-].
+    draught, design_draught : Mean draughts [m]; the first 0.4 to 1.1 of the second (our judgement).
+    design_block : Block coefficient at the design draught [-].
 
     Returns
     -------

@@ -16,8 +16,7 @@ def block_from_froude(froude: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    froude : array_like
-        V / sqrt(g L) at design speed [-].
+    froude : V / sqrt(g L) at design speed [-].
 
     Returns
     -------
@@ -39,8 +38,7 @@ def midship_from_block(block_coefficient: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    block_coefficient : array_like
-        Block coefficient [-].
+    block_coefficient : Block coefficient [-].
 
     Returns
     -------
@@ -59,8 +57,7 @@ def waterplane_from_block(block_coefficient: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    block_coefficient : array_like
-        Block coefficient [-].
+    block_coefficient : Block coefficient [-].
 
     Returns
     -------
@@ -79,8 +76,7 @@ def lcb_from_prismatic(prismatic_coefficient: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    prismatic_coefficient : array_like
-        C_P = C_B / C_M [-], about 0.55 to 0.85.
+    prismatic_coefficient : C_P = C_B / C_M [-], about 0.55 to 0.85.
 
     Returns
     -------
@@ -101,8 +97,7 @@ def lcb_from_froude(froude: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    froude : array_like
-        Froude number at design speed [-], about 0.10 to 0.25.
+    froude : Froude number at design speed [-], about 0.10 to 0.25.
 
     Returns
     -------

@@ -29,12 +29,9 @@ def wetted_surface_denny_mumford(
 
     Parameters
     ----------
-    length : array_like
-        Waterline length [m].
-    draught : array_like
-        Mean draught [m].
-    displacement : array_like
-        Displaced volume [m3].
+    length : Waterline length [m].
+    draught : Mean draught [m].
+    displacement : Displaced volume [m3].
 
     Returns
     -------
@@ -58,8 +55,7 @@ def waterline_from_perpendiculars(
     Parameters
     ----------
     length_between_perpendiculars : array_like [m]
-    kind : str
-        ``tanker`` (also bulk carriers and general cargo), ``container`` or ``ro_ro`` (also
+    kind : ``tanker`` (also bulk carriers and general cargo), ``container`` or ``ro_ro`` (also
         passenger ships).
 
     Returns
@@ -82,8 +78,7 @@ def perpendiculars_from_waterline(
     Parameters
     ----------
     length_waterline : array_like [m]
-    kind : str
-        As in `waterline_from_perpendiculars`.
+    kind : As in `waterline_from_perpendiculars`.
 
     Returns
     -------
@@ -123,10 +118,8 @@ def propeller_diameter_from_draught(draught: ArrayLike, *, kind: str = "tanker")
 
     Parameters
     ----------
-    draught : array_like
-        Largest draught [m].
-    kind : str
-        As in `waterline_from_perpendiculars`.
+    draught : Largest draught [m].
+    kind : As in `waterline_from_perpendiculars`.
 
     Returns
     -------

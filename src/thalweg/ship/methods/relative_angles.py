@@ -17,10 +17,8 @@ def relative_angle(from_east: ArrayLike, from_north: ArrayLike, heading: ArrayLi
 
     Parameters
     ----------
-    from_east, from_north : array_like
-        Components of a vector that points where it comes from; of any length.
-    heading : array_like
-        Heading of the ship [rad], clockwise from north.
+    from_east, from_north : Components of a vector that points where it comes from; of any length.
+    heading : Heading of the ship [rad], clockwise from north.
 
     Returns
     -------
@@ -46,13 +44,10 @@ def relative_wind_from_vectors(
 
     Parameters
     ----------
-    wind_east, wind_north : array_like
-        True wind, towards [m/s].
-    frame_east, frame_north : array_like
-        Velocity over ground [m/s] of the frame: of the water for the wind relative to the water,
-        of the ship for the wind as measured on board.
-    heading : array_like
-        Heading of the ship [rad], clockwise from north.
+    wind_east, wind_north : True wind, towards [m/s].
+    frame_east, frame_north : Velocity over ground [m/s] of the frame: of the water for the wind
+        relative to the water, of the ship for the wind as measured on board.
+    heading : Heading of the ship [rad], clockwise from north.
 
     Returns
     -------
@@ -73,12 +68,9 @@ def relative_wind(
 
     Parameters
     ----------
-    wind_speed : array_like
-        True wind speed [m/s].
-    wind_angle : array_like
-        Between the heading and where the true wind comes from [rad], 0 from ahead.
-    ship_speed : array_like
-        Along the heading, in the same frame as the wind [m/s].
+    wind_speed : True wind speed [m/s].
+    wind_angle : Between the heading and where the true wind comes from [rad], 0 from ahead.
+    ship_speed : Along the heading, in the same frame as the wind [m/s].
 
     Returns
     -------

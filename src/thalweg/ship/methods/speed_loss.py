@@ -67,11 +67,9 @@ def beaufort_number(wind_speed: ArrayLike, *, classes: bool = False) -> FloatArr
 
     Parameters
     ----------
-    wind_speed : array_like
-        [m/s], not negative.
-    classes : bool
-        Whole numbers by the usual class limits, instead of the continuous
-        B = (v / 0.836)^(2/3). Both end at 12.
+    wind_speed : [m/s], not negative.
+    classes : Whole numbers by the usual class limits, instead of the continuous B = (v /
+        0.836)^(2/3). Both end at 12.
 
     Returns
     -------
@@ -94,8 +92,7 @@ def kwon_direction_coefficients(beaufort: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    beaufort : array_like
-        Beaufort number.
+    beaufort : Beaufort number.
 
     Returns
     -------
@@ -118,18 +115,12 @@ def kwon_speed_coefficient(
 
     Parameters
     ----------
-    froude : array_like
-        Froude number of the calm-water speed on the length between perpendiculars.
-    block_coefficient : array_like
-        0.55 to 0.85; beyond, the last row holds.
+    froude : Froude number of the calm-water speed on the length between perpendiculars.
+    block_coefficient : 0.55 to 0.85; beyond, the last row holds.
     loading : {"loaded", "normal", "ballast"}
         Below 0.75 ballast has no rows of its own; those of the normal condition hold.
     sign : {"plus", "printed"}
         Sign of the last term for C_B 0.75 and 0.80; see the module's text.
-
-    Returns
-    -------
-    ndarray
     """
     rows = np.array(_choose({"loaded": _LOADED, "normal": _LOADED, "ballast": _BALLAST}, loading))
     factor = _choose({"plus": 1.0, "printed": -1.0}, sign)
@@ -152,19 +143,13 @@ def kwon_form_coefficient(
 
     Parameters
     ----------
-    beaufort : array_like
-        Beaufort number.
-    displacement_volume : array_like
-        Displaced volume V [m3]. The term was fitted to large ships: below 100,000 m3 it grows out
-        of bounds above Beaufort 6.
+    beaufort : Beaufort number.
+    displacement_volume : Displaced volume V [m3]. The term was fitted to large ships: below 100,000
+        m3 it grows out of bounds above Beaufort 6.
     loading : {"loaded", "normal", "ballast"}
         c = 0.5, in ballast 0.7.
     ship_type : {"other", "container"}
         d = 2.7; for container ships 22.0 with c = 0.5 (Townsin and Kwon 1983 have 0.7).
-
-    Returns
-    -------
-    ndarray
 
     References
     ----------
@@ -199,22 +184,15 @@ def kwon_speed_loss(
 
     Parameters
     ----------
-    wind_speed : array_like
-        Wind at 10 m relative to the water [m/s].
-    wind_angle : array_like
-        Angle off the bow it comes from, 0 to pi [rad].
-    speed : array_like
-        Calm-water speed V [m/s].
-    length : float
-        Between perpendiculars [m].
-    block_coefficient, displacement_volume : array_like
-        C_B, and displaced volume [m3].
+    wind_speed : Wind at 10 m relative to the water [m/s].
+    wind_angle : Angle off the bow it comes from, 0 to pi [rad].
+    speed : Calm-water speed V [m/s].
+    length : Between perpendiculars [m].
+    block_coefficient, displacement_volume : C_B, and displaced volume [m3].
     loading, ship_type, sign
         See `kwon_speed_coefficient` and `kwon_form_coefficient`.
-    classes : bool
-        Whole Beaufort numbers and sectors as printed, instead of continuous ones.
-    hold : bool
-        Never let the loss fall while the wind rises.
+    classes : Whole Beaufort numbers and sectors as printed, instead of continuous ones.
+    hold : Never let the loss fall while the wind rises.
 
     Returns
     -------
@@ -262,12 +240,9 @@ def kwon_notes(
 
     Parameters
     ----------
-    wind_speed : array_like
-        Wind speed at 10 m [m/s].
-    block_coefficient : array_like
-        C_B [-].
-    displacement_volume : array_like
-        Displaced volume [m3].
+    wind_speed : Wind speed at 10 m [m/s].
+    block_coefficient : C_B [-].
+    displacement_volume : Displaced volume [m3].
 
     Returns
     -------

@@ -16,14 +16,10 @@ class RangeNote:
 
     Attributes
     ----------
-    method : str
-        Name of the method.
-    quantity : str
-        What is outside, for example ``"Froude number"``.
-    value : float
-        The value farthest outside.
-    low, high : float
-        The range of the method; infinite where it has no bound.
+    method : Name of the method.
+    quantity : What is outside, for example ``"Froude number"``.
+    value : The value farthest outside.
+    low, high : The range of the method; infinite where it has no bound.
     """
 
     method: str
@@ -48,8 +44,7 @@ def range_notes(
 
     Parameters
     ----------
-    method : str
-        Name of the method.
+    method : Name of the method.
     ranges : mapping of str to (values, low, high)
         Values are scalars or arrays; NaN values are left out.
 

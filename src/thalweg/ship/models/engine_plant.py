@@ -45,9 +45,8 @@ class EnginePlant:
     ----------
     rating : Maximum continuous rating of one engine [W]; infinite when not given.
     sfoc : Least specific consumption [g/kWh]; NaN when unknown.
-    curve : tuple of tuple of float
-        Loads and specific consumptions [g/kWh] of the engine's own curve; empty for the shape of
-        the Fourth IMO GHG Study.
+    curve : Loads and specific consumptions [g/kWh] of the engine's own curve; empty for the shape
+        of the Fourth IMO GHG Study.
     hotel_power, hotel_sfoc : Other power [W] and its consumption [g/kWh].
     loads : Least and largest load of an engine, as shares of its rating.
     """

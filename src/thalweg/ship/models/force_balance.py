@@ -35,11 +35,10 @@ class ForceBalance:
 
     Attributes
     ----------
-    rudder_area : float
-        For the optional rudder drag [m2]; 0 without. It needs the angle between heading and course
-        (``crab_angle``), which depends on the current and on the speed itself: it counts where that
-        is known, on performance sheets and for the referee, and is not in tables, so that no route
-        is chosen by it.
+    rudder_area : For the optional rudder drag [m2]; 0 without. It needs the angle between heading
+        and course (``crab_angle``), which depends on the current and on the speed itself: it counts
+        where that is known, on performance sheets and for the referee, and is not in tables, so
+        that no route is chosen by it.
     """
 
     calm: CalmWaterResistance

@@ -29,8 +29,7 @@ class HeldSpeedModel:
     Attributes
     ----------
     base : With its own settings; the highest is the limit.
-    ordered : float64 array (settings,)
-        Ordered speeds [m/s], ascending, at the load factor.
+    ordered : Ordered speeds [m/s], ascending, at the load factor, (settings,).
     ladder : The base at close settings from the lowest ordered speed to its highest.
     """
 

@@ -91,9 +91,8 @@ class SpeedPowerLaw:
     name : {"none", "cubic", "table"}
     power_to_fuel_rate : callable, optional
         Fuel rate [kg/s] of a power [W], where fuel follows from power and not from the speed.
-    rows : tuple of ndarray, optional
-        Speeds full and empty, fuel rates and powers that the settings were taken from; those of the
-        settings themselves when not given.
+    rows : Speeds full and empty, fuel rates and powers that the settings were taken from; those of
+        the settings themselves when not given.
     """
 
     name: str = "none"
@@ -281,14 +280,8 @@ def check_table_rises(speeds: FloatArray, columns: Mapping[str, Any]) -> None:
 
     Parameters
     ----------
-    speeds : ndarray (n,)
-        Speeds of the table.
-    columns : mapping of str to array_like
-        Power and fuel at the speeds, by name.
-
-    Raises
-    ------
-    InputError
+    speeds : Speeds of the table, (n,).
+    columns : Power and fuel at the speeds, by name.
     """
     if (np.diff(speeds) <= 0).any():
         raise InputError(

@@ -42,16 +42,11 @@ class ResistanceModel:
 
     Attributes
     ----------
-    balance_at : callable
-        Function of a load factor that returns the `ForceBalance`.
-    plant : EnginePlant
-        The engines: greatest power, and fuel by power.
-    orders : EngineOrders
-        What each setting orders: brake powers [W] or calm-water speeds [m/s].
-    facts : mapping
-        The sections of the ship file that the model was built from.
-    limits : ShipLimits
-        Greatest wave height and wind speed of the tables.
+    balance_at : Function of a load factor that returns the `ForceBalance`.
+    plant : The engines: greatest power, and fuel by power.
+    orders : What each setting orders: brake powers [W] or calm-water speeds [m/s].
+    facts : The sections of the ship file that the model was built from.
+    limits : Greatest wave height and wind speed of the tables.
     """
 
     balance_at: Callable[[float], ForceBalance]

@@ -34,9 +34,8 @@ class ResistanceTerm:
 
     Attributes
     ----------
-    force : callable
-        ``f(speed, *axis values)`` [N], arrays that broadcast; over the square of the wave height
-        for waves.
+    force : ``f(speed, *axis values)`` [N], arrays that broadcast; over the square of the wave
+        height for waves.
     squared_height_limit : See `TablePart`.
     """
 

@@ -36,9 +36,8 @@ class SquatModel:
     length, breadth : Between perpendiculars (or of the waterline), and breadth [m].
     loading : Draughts [m] and displacements [m3].
     clearance : Water that shall remain under the ship under way [m].
-    method : str
-        ``van_halem_2019`` sinks as Barrass (1979), ``barrass_2004`` as his later form; both slow
-        as van Halem (2019), eq. 2.5, corrected.
+    method : ``van_halem_2019`` sinks as Barrass (1979), ``barrass_2004`` as his later form; both
+        slow as van Halem (2019), eq. 2.5, corrected.
     """
 
     length: float

@@ -190,8 +190,7 @@ def calm_resistance(balance: ForceBalance, speeds: FloatArray) -> FloatArray:
     Parameters
     ----------
     balance : Forces of the ship at one draught.
-    speeds : ndarray (n,)
-        Speeds through water [m/s].
+    speeds : Speeds through water [m/s], (n,).
 
     Returns
     -------
@@ -209,10 +208,8 @@ def resistance_at_power(
     Parameters
     ----------
     balance : Forces of the ship at one draught.
-    speeds : ndarray (n,)
-        Speeds through water [m/s].
-    powers : ndarray (m,)
-        Brake powers [W].
+    speeds : Speeds through water [m/s], (n,).
+    powers : Brake powers [W], (m,).
 
     Returns
     -------
@@ -232,12 +229,7 @@ def resistance_at_power(
 
 
 def check_power_rises(model: TabulatedResistance, load_factor: float) -> None:
-    """Refuse a ship whose power falls while its speed rises, calm or in weather.
-
-    Raises
-    ------
-    ModelRangeError
-    """
+    """Refuse a ship whose power falls while its speed rises, calm or in weather."""
     balance = model.balance(load_factor)
     ranges = condition_axes(balance, model.limits)
     top = float(model.speeds(load_factor).max())

@@ -326,8 +326,7 @@ class ShipFile(Section):
 
         Parameters
         ----------
-        data : mapping
-            As read from YAML.
+        data : As read from YAML.
         source : Name of the data in errors.
 
         Raises

@@ -42,9 +42,8 @@ class OutputCurve:
     Attributes
     ----------
     kind : {"curve", "crossing"}
-    start, step : ndarray
-        For each setting the first point of its curve and the step, in units of the sum; for a
-        crossing in speed [m/s], `CURVE_REFINEMENT` steps to a column.
+    start, step : For each setting the first point of its curve and the step, in units of the sum;
+        for a crossing in speed [m/s], `CURVE_REFINEMENT` steps to a column.
     points : The curves, shape ``(settings, points)``.
     top : The greatest speed of each setting [m/s]; for a crossing.
     guess : Columns next to the calm-water speeds, where a search begins; for a crossing.
@@ -76,12 +75,7 @@ class OutputCurve:
         return replace(self, **{name: getattr(self, name)[chosen] for name in OUTPUT_CURVE_FIELDS})
 
     def check(self, parts: Sequence[TablePart]) -> None:
-        """Refuse parts that kernels cannot follow with a crossing.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse parts that kernels cannot follow with a crossing."""
         if self.falls and (len(parts) > MAX_PLANES or any(len(part.axes) > 2 for part in parts)):
             raise InputError(
                 "A table with a crossing has too many parts or axes.",

@@ -71,10 +71,8 @@ def log_spaced_nodes(low: float, high: float, *, step: float) -> FloatArray:
 
     Parameters
     ----------
-    low, high : float
-        Ends of the range, above 0.
-    step : float
-        Step of the natural logarithm [-].
+    low, high : Ends of the range, above 0.
+    step : Step of the natural logarithm [-].
 
     Returns
     -------
@@ -92,13 +90,10 @@ def in_blocks(
 
     Parameters
     ----------
-    function : callable
-        Takes as many 1-d arrays as there are arguments and returns one of their length; an
+    function : Takes as many 1-d arrays as there are arguments and returns one of their length; an
         argument of one element comes as one element.
-    *arguments : array_like
-        Broadcast against each other.
-    block : int
-        Elements at a time.
+    *arguments : Broadcast against each other.
+    block : Elements at a time.
 
     Returns
     -------

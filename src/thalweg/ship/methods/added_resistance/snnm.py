@@ -261,10 +261,8 @@ def snnm_validity(speed: ArrayLike, hull: SnnmHull) -> list[RangeNote]:
 
     Parameters
     ----------
-    speed : array_like
-        Speed through water [m/s].
-    hull : SnnmHull
-        Particulars of the hull [SI].
+    speed : Speed through water [m/s].
+    hull : Particulars of the hull [SI].
 
     Returns
     -------

@@ -16,16 +16,11 @@ class SnnmHull:
 
     Attributes
     ----------
-    length, breadth : array_like
-        L_PP and B [m].
-    draught_fore, draught_aft : array_like
-        [m]; the deeper one is T_max.
-    block_coefficient : array_like
-        C_B.
-    pitch_gyration : array_like
-        k_yy as a part of L_PP.
-    entrance_length, run_length : array_like
-        L_E and L_R, on the waterline from the ends to 0.99 B [m].
+    length, breadth : L_PP and B [m].
+    draught_fore, draught_aft : [m]; the deeper one is T_max.
+    block_coefficient : C_B.
+    pitch_gyration : k_yy as a part of L_PP.
+    entrance_length, run_length : L_E and L_R, on the waterline from the ends to 0.99 B [m].
     """
 
     length: ArrayLike
@@ -54,10 +49,8 @@ def entrance_length(breadth: ArrayLike, *, entrance_angle_deg: ArrayLike) -> Flo
 
     Parameters
     ----------
-    breadth : array_like
-        Breadth B [m].
-    entrance_angle_deg : array_like
-        Half angle of entrance [deg].
+    breadth : Breadth B [m].
+    entrance_angle_deg : Half angle of entrance [deg].
 
     Returns
     -------

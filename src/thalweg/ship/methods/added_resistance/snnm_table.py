@@ -53,10 +53,8 @@ class LogTable:
 
     Attributes
     ----------
-    first : float
-        Logarithm of the first node.
-    values : ndarray
-        Shape ``(nodes, ...)``.
+    first : Logarithm of the first node.
+    values : Shape ``(nodes, ...)``.
     """
 
     first: float
@@ -96,17 +94,12 @@ class SnnmTable:
 
     Attributes
     ----------
-    hull : tuple of ndarray
-        Particulars, as `SnnmHull.arrays` gives them.
-    reduced : ndarray
-        Frequencies of the motion in units of the hull's own.
-    shape : ndarray
-        `motion_shape` there.
-    motion : LogTable
-        Over the peak in the same units: sums up to every frequency, times its powers -1, 0, 1.
-    bow, stern : LogTable
-        Over the peak frequency [rad/s]: sums of the reflection, times the powers 0 and 1 of the
-        frequency; at the stern for every draught that may count.
+    hull : Particulars, as `SnnmHull.arrays` gives them.
+    reduced : Frequencies of the motion in units of the hull's own.
+    shape : `motion_shape` there.
+    motion : Over the peak in the same units: sums up to every frequency, times its powers -1, 0, 1.
+    bow, stern : Over the peak frequency [rad/s]: sums of the reflection, times the powers 0 and 1
+        of the frequency; at the stern for every draught that may count.
     """
 
     hull: tuple[FloatArray, ...]
@@ -140,12 +133,9 @@ class SnnmTable:
 
         Parameters
         ----------
-        speed : array_like
-            Speed through the water [m/s].
-        wave_height, wave_period : array_like
-            Significant height [m] and peak period [s].
-        angle : array_like
-            [rad], 0 from ahead, pi from astern.
+        speed : Speed through the water [m/s].
+        wave_height, wave_period : Significant height [m] and peak period [s].
+        angle : [rad], 0 from ahead, pi from astern.
 
         Returns
         -------

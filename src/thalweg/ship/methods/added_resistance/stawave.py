@@ -48,10 +48,8 @@ def head_sector_validity(wave_angle: ArrayLike, *, method: str) -> list[RangeNot
 
     Parameters
     ----------
-    wave_angle : array_like
-        Direction from which waves come, relative to the bow [rad].
-    method : str
-        Name of the method, for the note.
+    wave_angle : Direction from which waves come, relative to the bow [rad].
+    method : Name of the method, for the note.
 
     Returns
     -------
@@ -78,15 +76,11 @@ def stawave1(
 
     Parameters
     ----------
-    wave_height : array_like
-        Significant wave height Hs [m].
-    wave_angle : array_like
-        [rad], 0 from ahead; zero resistance outside the sector of 45 degrees.
+    wave_height : Significant wave height Hs [m].
+    wave_angle : [rad], 0 from ahead; zero resistance outside the sector of 45 degrees.
     breadth : array_like [m]
-    bow_length : array_like
-        L_BWL [m], on the waterline from the bow to 95 % of the largest breadth.
-    density, gravity : float
-        [kg/m3], [m/s2].
+    bow_length : L_BWL [m], on the waterline from the bow to 95 % of the largest breadth.
+    density, gravity : [kg/m3], [m/s2].
 
     Returns
     -------
@@ -261,21 +255,15 @@ def stawave2(
 
     Parameters
     ----------
-    speed : array_like
-        Speed through the water [m/s].
-    wave_height : array_like
-        Significant wave height [m].
-    wave_period : array_like
-        Peak period [s].
-    wave_angle : array_like
-        [rad], 0 from ahead; zero resistance outside the sector of 45 degrees.
+    speed : Speed through the water [m/s].
+    wave_height : Significant wave height [m].
+    wave_period : Peak period [s].
+    wave_angle : [rad], 0 from ahead; zero resistance outside the sector of 45 degrees.
     length_between_perpendiculars, breadth : float [m]
-    draught, block_coefficient, pitch_gyration : array_like
-        T [m], C_B, and k_yy as a part of the length.
+    draught, block_coefficient, pitch_gyration : T [m], C_B, and k_yy as a part of the length.
     spectrum, gamma
         See `thalweg.ship.methods.added_resistance.mean_wave_force.spectral_shape`.
-    density, gravity : float
-        [kg/m3], [m/s2].
+    density, gravity : [kg/m3], [m/s2].
 
     Returns
     -------
@@ -326,14 +314,10 @@ def stawave2_validity(
 
     Parameters
     ----------
-    speed : array_like
-        Speed through water [m/s].
-    length_between_perpendiculars, breadth, draught : array_like
-        L_PP, B and T [m].
-    block_coefficient : array_like
-        C_B [-].
-    gravity : float, optional
-        Acceleration of gravity [m/s2].
+    speed : Speed through water [m/s].
+    length_between_perpendiculars, breadth, draught : L_PP, B and T [m].
+    block_coefficient : C_B [-].
+    gravity : Acceleration of gravity [m/s2].
 
     Returns
     -------
@@ -358,10 +342,8 @@ def stawave1_validity(
 
     Parameters
     ----------
-    wave_height : array_like
-        Significant wave height [m].
-    length_between_perpendiculars : float
-        L_PP [m].
+    wave_height : Significant wave height [m].
+    length_between_perpendiculars : L_PP [m].
 
     Returns
     -------

@@ -35,14 +35,10 @@ def wind_resistance(
 
     Parameters
     ----------
-    relative_speed : array_like
-        Relative wind [m/s].
-    coefficient : array_like
-        C_AA at the angle of the relative wind.
-    frontal_area : array_like
-        A_XV [m2].
-    density : float
-        Of air [kg/m3].
+    relative_speed : Relative wind [m/s].
+    coefficient : C_AA at the angle of the relative wind.
+    frontal_area : A_XV [m2].
+    density : Of air [kg/m3].
 
     Returns
     -------
@@ -71,16 +67,12 @@ class FujiwaraShip:
 
     Attributes
     ----------
-    length_overall, breadth : float
-        L_OA and B [m].
+    length_overall, breadth : L_OA and B [m].
     frontal_area, lateral_area, deck_area : float
         Frontal area A_XV, lateral area A_YV, and lateral area A_OD of superstructures on deck [m2].
-    superstructure_height : float
-        h_BR, top of the superstructure above the water [m].
-    area_centre_forward : float
-        C_MC, centre of A_YV forward of midships [m].
-    area_centre_height : float
-        h_C, centre of A_YV above the water [m].
+    superstructure_height : h_BR, top of the superstructure above the water [m].
+    area_centre_forward : C_MC, centre of A_YV forward of midships [m].
+    area_centre_height : h_C, centre of A_YV above the water [m].
     """
 
     length_overall: float
@@ -169,12 +161,9 @@ class BlendermannType:
 
     Attributes
     ----------
-    transverse : float
-        CD_t.
-    bow, stern : float
-        CD_l on the frontal area, for winds from ahead and from astern.
-    cross_force : float
-        delta.
+    transverse : CD_t.
+    bow, stern : CD_l on the frontal area, for winds from ahead and from astern.
+    cross_force : delta.
     """
 
     transverse: float
@@ -217,16 +206,9 @@ def blendermann_1994(
 
     Parameters
     ----------
-    wind_angle : array_like
-        Angle of the relative wind [rad].
-    frontal_area, lateral_area : array_like
-        A_F and A_L [m2].
-    ship_type : BlendermannType
-        One of `BLENDERMANN`.
-
-    Returns
-    -------
-    ndarray
+    wind_angle : Angle of the relative wind [rad].
+    frontal_area, lateral_area : A_F and A_L [m2].
+    ship_type : One of `BLENDERMANN`.
 
     References
     ----------
@@ -261,16 +243,10 @@ def ittc_curve(wind_angle: ArrayLike, *, curve: str = "tanker_laden") -> FloatAr
 
     Parameters
     ----------
-    wind_angle : array_like
-        Angle of the relative wind [rad].
-    curve : str
-        Key of `ITTC_CURVES`: tanker of 280 kDWT with a conventional bow (laden, in ballast),
+    wind_angle : Angle of the relative wind [rad].
+    curve : Key of `ITTC_CURVES`: tanker of 280 kDWT with a conventional bow (laden, in ballast),
         general cargo, and a container ship of 6800 TEU (laden with boxes, and laden without boxes
         but with lashing bridges).
-
-    Returns
-    -------
-    ndarray
     """
     degrees, values = ITTC_CURVES[curve]
     return np.asarray(np.interp(fold_angle_off_bow(wind_angle), np.radians(degrees), values))
@@ -281,10 +257,8 @@ def yu_2021_area(breadth: ArrayLike, *, draught_aft: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    breadth : array_like
-        Breadth B [m].
-    draught_aft : array_like
-        Draught aft T_A [m].
+    breadth : Breadth B [m].
+    draught_aft : Draught aft T_A [m].
 
     Returns
     -------

@@ -68,8 +68,7 @@ def voyage_share_between(departure: str, destination: str) -> float:
 
     Parameters
     ----------
-    departure, destination : str
-        ISO 3166 codes of the countries of the two ports.
+    departure, destination : ISO 3166 codes of the countries of the two ports.
     """
     return 0.5 * sum(code.upper() in PORTS_IN_SCOPE for code in (departure, destination))
 
@@ -105,11 +104,8 @@ def fueleu_penalty(energy: ArrayLike, *, intensity: float, year: int) -> FloatAr
 
     Parameters
     ----------
-    energy : array_like
-        Energy E in scope [MJ].
-    intensity : float
-        Well-to-wake intensity g [gCO2eq/MJ].
-    year : int
+    energy : Energy E in scope [MJ].
+    intensity : Well-to-wake intensity g [gCO2eq/MJ].
     """
     excess = max(intensity - fueleu_target(year), 0.0) / intensity
     return np.asarray(energy, float) * excess / _VLSFO_HEAT * _PENALTY_EUR_PER_T

@@ -20,20 +20,14 @@ class Fuel:
 
     Parameters
     ----------
-    name : str
-        Short name.
-    label : str
-        Name and grade as the resolution writes them.
-    carbon_factor : float
-        CO2 per fuel [t/t].
-    heating_value : float
-        Lower heating value [J/kg].
+    name : Short name.
+    label : Name and grade as the resolution writes them.
+    carbon_factor : CO2 per fuel [t/t].
+    heating_value : Lower heating value [J/kg].
     kind : str
         ``residual``, ``distillate``, ``lng``, ``methanol`` or ``other``, as the engine tables use.
-    verified : bool
-        True where the carbon factor was compared with ``source``.
-    source : str
-        What it was checked against.
+    verified : True where the carbon factor was compared with ``source``.
+    source : What it was checked against.
     """
 
     name: str
@@ -102,8 +96,7 @@ def fuel_named(name: str) -> Fuel:
 
     Parameters
     ----------
-    name : str
-        A key of `FUELS` or `FUEL_ALIASES`.
+    name : A key of `FUELS` or `FUEL_ALIASES`.
 
     Returns
     -------
@@ -129,10 +122,8 @@ def co2_mass(fuel_mass: ArrayLike, *, carbon_factor: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    fuel_mass : array_like
-        Fuel, or fuel per time.
-    carbon_factor : array_like
-        t CO2 per t fuel.
+    fuel_mass : Fuel, or fuel per time.
+    carbon_factor : t CO2 per t fuel.
 
     Returns
     -------
@@ -151,10 +142,8 @@ def equal_energy_mass(fuel_mass: ArrayLike, *, of: Fuel, to: Fuel) -> FloatArray
 
     Parameters
     ----------
-    fuel_mass : array_like
-        Mass of ``of``.
-    of, to : Fuel
-        The fuels.
+    fuel_mass : Mass of ``of``.
+    of, to : The fuels.
 
     Returns
     -------
@@ -176,12 +165,9 @@ def halem_cost(
     Parameters
     ----------
     time : array_like [s]
-    speed : array_like
-        Speed the ship would make through deep water [m/s].
-    per_second : float
-        Cost of time lambda_t [currency/s]; 700 000 a week.
-    per_cube : float
-        Cost of fuel lambda_f [currency s2/m3].
+    speed : Speed the ship would make through deep water [m/s].
+    per_second : Cost of time lambda_t [currency/s]; 700 000 a week.
+    per_cube : Cost of fuel lambda_f [currency s2/m3].
 
     Returns
     -------

@@ -26,16 +26,12 @@ class BaseSfoc:
 
     Parameters
     ----------
-    before_1984, from_1984, from_2001 : float
-        g/kWh; NaN where the study gives none.
-    pilot : float
-        Pilot fuel on top [g/kWh], independent of load.
-    varies_with_load : bool
-        False for turbines.
+    before_1984, from_1984, from_2001 : g/kWh; NaN where the study gives none.
+    pilot : Pilot fuel on top [g/kWh], independent of load.
+    varies_with_load : False for turbines.
     verified : bool
         True where a second source repeats the numbers; else they were not compared with the source.
-    source : str
-        Where they come from.
+    source : Where they come from.
     """
 
     before_1984: float
@@ -81,14 +77,11 @@ def base_sfoc(engine: str, fuel_kind: str, *, built: int = 2010) -> tuple[float,
 
     Parameters
     ----------
-    engine : str
-        ``slow_speed_diesel``, ``medium_speed_diesel``, ``high_speed_diesel``, ``lng_diesel``,
+    engine : ``slow_speed_diesel``, ``medium_speed_diesel``, ``high_speed_diesel``, ``lng_diesel``,
         ``lng_otto_slow_speed``, ``lng_otto_medium_speed``, ``gas_turbine``, ``steam_turbine``,
         ``auxiliary``.
-    fuel_kind : str
-        ``residual``, ``distillate``, ``lng`` or ``methanol``.
-    built : int
-        Year of build.
+    fuel_kind : ``residual``, ``distillate``, ``lng`` or ``methanol``.
+    built : Year of build.
 
     Returns
     -------
@@ -133,8 +126,7 @@ def sfoc_load_factor(load: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    load : array_like
-        Power over maximum continuous rating [-], 0.2 to 1; also evaluated outside this range.
+    load : Power over maximum continuous rating [-], 0.2 to 1; also evaluated outside this range.
 
     Returns
     -------
@@ -166,14 +158,10 @@ def fuel_rate(
 
     Parameters
     ----------
-    power, mcr : array_like
-        Brake power and maximum continuous rating [W].
-    sfoc_g_kwh : array_like
-        Lowest specific consumption of the engine [g/kWh].
-    pilot_g_kwh : array_like
-        Pilot fuel on top [g/kWh].
-    varies_with_load : bool
-        False for turbines.
+    power, mcr : Brake power and maximum continuous rating [W].
+    sfoc_g_kwh : Lowest specific consumption of the engine [g/kWh].
+    pilot_g_kwh : Pilot fuel on top [g/kWh].
+    varies_with_load : False for turbines.
 
     Returns
     -------
@@ -201,14 +189,10 @@ def engines_needed(
 
     Parameters
     ----------
-    power : array_like
-        Required power [W].
-    engine_mcr : array_like
-        Maximum continuous rating of one engine [W].
-    count : int
-        Engines installed.
-    largest_load : float
-        Largest load of one engine [-].
+    power : Required power [W].
+    engine_mcr : Maximum continuous rating of one engine [W].
+    count : Engines installed.
+    largest_load : Largest load of one engine [-].
 
     Returns
     -------
@@ -234,18 +218,12 @@ def plant_fuel_rate(
 
     Parameters
     ----------
-    power : array_like
-        Required power [W].
-    engine_mcr : array_like
-        Maximum continuous rating of one engine [W].
-    count : int
-        Engines installed, at least 1.
-    sfoc_g_kwh : array_like
-        Lowest specific consumption [g/kWh].
-    largest_load : float
-        Largest load of one engine [-].
-    choice : str
-        ``least_fuel`` or ``fewest`` engines.
+    power : Required power [W].
+    engine_mcr : Maximum continuous rating of one engine [W].
+    count : Engines installed, at least 1.
+    sfoc_g_kwh : Lowest specific consumption [g/kWh].
+    largest_load : Largest load of one engine [-].
+    choice : ``least_fuel`` or ``fewest`` engines.
 
     Returns
     -------
@@ -273,10 +251,8 @@ def hotel_fuel_rate(power: ArrayLike, *, sfoc_g_kwh: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    power : array_like
-        Electric and other power that is not propulsion [W].
-    sfoc_g_kwh : array_like
-        Specific consumption [g/kWh].
+    power : Electric and other power that is not propulsion [W].
+    sfoc_g_kwh : Specific consumption [g/kWh].
 
     Returns
     -------

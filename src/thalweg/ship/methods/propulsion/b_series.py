@@ -30,14 +30,10 @@ class Propeller:
 
     Attributes
     ----------
-    diameter : float
-        D [m].
-    pitch_ratio : float
-        P / D.
-    area_ratio : float
-        Expanded blade area ratio A_E / A_0.
-    blades : int
-        Z.
+    diameter : D [m].
+    pitch_ratio : P / D.
+    area_ratio : Expanded blade area ratio A_E / A_0.
+    blades : Z.
     """
 
     diameter: float
@@ -52,16 +48,12 @@ class PropellerOperatingPoint:
 
     Attributes
     ----------
-    advance : ndarray
-        J = V_A / (n D).
-    rate : ndarray
-        n [1/s].
-    torque : ndarray
-        Open-water torque [N m].
+    advance : J = V_A / (n D).
+    rate : n [1/s].
+    torque : Open-water torque [N m].
     power : ndarray
         2 pi n Q [W], in open water; over the relative rotative efficiency it is the delivered one.
-    efficiency : ndarray
-        Open-water efficiency J K_T / (2 pi K_Q).
+    efficiency : Open-water efficiency J K_T / (2 pi K_Q).
     """
 
     advance: FloatArray
@@ -98,11 +90,9 @@ def b_series_polynomials(
 
     Parameters
     ----------
-    propeller : Propeller
-        Diameter does not matter.
-    reynolds : float, optional
-        Reynolds number of the chord at 0.75 R, above 2e6, for the correction of the source; none
-        by default, which is Rn = 2e6.
+    propeller : Diameter does not matter.
+    reynolds : Reynolds number of the chord at 0.75 R, above 2e6, for the correction of the source;
+        none by default, which is Rn = 2e6.
 
     Returns
     -------
@@ -134,12 +124,9 @@ def b_series(
 
     Parameters
     ----------
-    advance : array_like
-        J, from zero to where the thrust vanishes.
-    propeller : Propeller
-        See `Propeller`.
-    reynolds : float, optional
-        See `b_series_polynomials`.
+    advance : J, from zero to where the thrust vanishes.
+    propeller : See `Propeller`.
+    reynolds : See `b_series_polynomials`.
 
     Returns
     -------
@@ -157,10 +144,8 @@ def largest_advance(propeller: Propeller, *, reynolds: float | None = None) -> f
 
     Parameters
     ----------
-    propeller : Propeller
-        See `Propeller`.
-    reynolds : float, optional
-        See `b_series_polynomials`.
+    propeller : See `Propeller`.
+    reynolds : See `b_series_polynomials`.
 
     Returns
     -------
@@ -210,16 +195,11 @@ def solve_advance(
 
     Parameters
     ----------
-    thrust : array_like
-        T of one propeller [N], not negative.
-    advance_speed : array_like
-        V_A [m/s], not negative.
-    polynomial : ndarray
-        K_T as a cubic in J.
-    largest : float
-        J of no thrust.
-    diameter, density : float
-        [m], [kg/m3].
+    thrust : T of one propeller [N], not negative.
+    advance_speed : V_A [m/s], not negative.
+    polynomial : K_T as a cubic in J.
+    largest : J of no thrust.
+    diameter, density : [m], [kg/m3].
 
     Returns
     -------
@@ -309,15 +289,11 @@ def operating_point(
 
     Parameters
     ----------
-    thrust : array_like
-        Of one propeller [N], not negative.
-    advance_speed : array_like
-        V_A = V (1 - w) [m/s].
-    propeller : Propeller
-        See `Propeller`.
+    thrust : Of one propeller [N], not negative.
+    advance_speed : V_A = V (1 - w) [m/s].
+    propeller : See `Propeller`.
     density : float [kg/m3]
-    reynolds : float, optional
-        See `b_series_polynomials`.
+    reynolds : See `b_series_polynomials`.
 
     Returns
     -------

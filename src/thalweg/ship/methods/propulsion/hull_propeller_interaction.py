@@ -22,12 +22,9 @@ def viscous_coefficient(
 
     Parameters
     ----------
-    friction_coefficient : array_like
-        Friction coefficient C_F [-].
-    form_factor : array_like
-        Form factor 1 + k [-].
-    correlation : array_like
-        Correlation allowance C_A [-].
+    friction_coefficient : Friction coefficient C_F [-].
+    form_factor : Form factor 1 + k [-].
+    correlation : Correlation allowance C_A [-].
 
     Returns
     -------
@@ -130,12 +127,9 @@ def wake_fraction_twin(
 
     Parameters
     ----------
-    hull : HullForm
-        Form of the hull [SI].
-    propeller_diameter : array_like
-        Diameter D [m].
-    viscous : array_like
-        Viscous resistance coefficient C_V [-].
+    hull : Form of the hull [SI].
+    propeller_diameter : Diameter D [m].
+    viscous : Viscous resistance coefficient C_V [-].
 
     Returns
     -------
@@ -202,10 +196,8 @@ def thrust_deduction_twin(hull: HullForm, *, propeller_diameter: ArrayLike) -> F
 
     Parameters
     ----------
-    hull : HullForm
-        Form of the hull [SI].
-    propeller_diameter : array_like
-        Diameter D [m].
+    hull : Form of the hull [SI].
+    propeller_diameter : Diameter D [m].
 
     Returns
     -------
@@ -225,10 +217,8 @@ def relative_rotative_single(hull: HullForm, *, area_ratio: ArrayLike) -> FloatA
 
     Parameters
     ----------
-    hull : HullForm
-        Form of the hull [SI].
-    area_ratio : array_like
-        Expanded blade area ratio A_E/A_0 [-].
+    hull : Form of the hull [SI].
+    area_ratio : Expanded blade area ratio A_E/A_0 [-].
 
     Returns
     -------
@@ -248,10 +238,8 @@ def relative_rotative_twin(hull: HullForm, *, pitch_ratio: ArrayLike) -> FloatAr
 
     Parameters
     ----------
-    hull : HullForm
-        Form of the hull [SI].
-    pitch_ratio : array_like
-        Pitch over diameter P/D [-].
+    hull : Form of the hull [SI].
+    pitch_ratio : Pitch over diameter P/D [-].
 
     Returns
     -------
@@ -271,10 +259,8 @@ def hull_efficiency(wake_fraction: ArrayLike, thrust_deduction: ArrayLike) -> Fl
 
     Parameters
     ----------
-    wake_fraction : array_like
-        Wake fraction w [-].
-    thrust_deduction : array_like
-        Thrust deduction t [-].
+    wake_fraction : Wake fraction w [-].
+    thrust_deduction : Thrust deduction t [-].
 
     Returns
     -------

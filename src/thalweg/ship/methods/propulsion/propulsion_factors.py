@@ -46,12 +46,9 @@ class PropulsionState:
 
     Attributes
     ----------
-    thrust : ndarray
-        Of all propellers [N].
-    rate : ndarray
-        Of the propellers [1/s].
-    open_water_efficiency : ndarray
-        eta_0.
+    thrust : Of all propellers [N].
+    rate : Of the propellers [1/s].
+    open_water_efficiency : eta_0.
     effective_power, delivered_power, brake_power : ndarray
         R V, power at the propellers, power of the engines [W].
     """
@@ -78,8 +75,7 @@ def constant_efficiency_power(
     ----------
     speed : array_like [m/s]
     resistance : array_like [N]
-    efficiencies : Efficiencies, optional
-        `Efficiencies` as it comes by default.
+    efficiencies : `Efficiencies` as it comes by default.
     """
     share = (efficiencies or Efficiencies()).total
     return np.asarray(np.maximum(effective_power(speed, resistance), 0.0) / share)
@@ -107,24 +103,14 @@ def propulsion(
 
     Parameters
     ----------
-    speed, resistance : array_like
-        Speed through the water [m/s] and total resistance [N]. A ship that is pushed (negative
-        resistance) needs no thrust.
-    propeller : Propeller
-        One of them.
-    wake_fraction, thrust_deduction, relative_rotative : array_like
-        w, t and eta_R.
-    shaft_efficiency, gear_efficiency : array_like
-        Of the shaft line and of the gear (1 without one).
-    propellers : int
-        How many share the thrust.
+    speed, resistance : Speed through the water [m/s] and total resistance [N]. A ship that is
+        pushed (negative resistance) needs no thrust.
+    propeller : One of them.
+    wake_fraction, thrust_deduction, relative_rotative : w, t and eta_R.
+    shaft_efficiency, gear_efficiency : Of the shaft line and of the gear (1 without one).
+    propellers : How many share the thrust.
     density : float [kg/m3]
-    reynolds : float, optional
-        See `thalweg.ship.methods.propulsion.b_series.b_series_polynomials`.
-
-    Returns
-    -------
-    PropulsionState
+    reynolds : See `thalweg.ship.methods.propulsion.b_series.b_series_polynomials`.
 
     References
     ----------

@@ -22,8 +22,7 @@ class Water:
     Attributes
     ----------
     density : float [kg/m3]
-    viscosity : float
-        Kinematic viscosity [m2/s].
+    viscosity : Kinematic viscosity [m2/s].
     gravity : float [m/s2]
     """
 
@@ -43,15 +42,9 @@ def froude_number(speed: ArrayLike, *, length: ArrayLike, gravity: float = GRAVI
 
     Parameters
     ----------
-    speed : array_like
-        Speed through the water [m/s].
-    length : array_like
-        Length [m]; the water depth gives the depth Froude number.
+    speed : Speed through the water [m/s].
+    length : Length [m]; the water depth gives the depth Froude number.
     gravity : float [m/s2]
-
-    Returns
-    -------
-    ndarray
     """
     return np.asarray(speed, dtype=float) / np.sqrt(gravity * np.asarray(length, dtype=float))
 
@@ -68,12 +61,7 @@ def reynolds_number(
     ----------
     speed : array_like [m/s]
     length : array_like [m]
-    viscosity : array_like
-        Kinematic viscosity [m2/s].
-
-    Returns
-    -------
-    ndarray
+    viscosity : Kinematic viscosity [m2/s].
     """
     raw = np.asarray(speed, dtype=float) * np.asarray(length, dtype=float) / np.asarray(viscosity)
     return np.asarray(np.maximum(raw, _LEAST_REYNOLDS))
@@ -100,14 +88,10 @@ def dynamic_force(
 
     Parameters
     ----------
-    coefficient : array_like
-        Force coefficient C [-].
-    speed : array_like
-        Speed V [m/s].
-    area : array_like
-        Reference area A [m2].
-    density : array_like
-        Density rho of the fluid [kg/m3].
+    coefficient : Force coefficient C [-].
+    speed : Speed V [m/s].
+    area : Reference area A [m2].
+    density : Density rho of the fluid [kg/m3].
 
     Returns
     -------

@@ -46,14 +46,10 @@ class HollenbachResistance:
 
     Attributes
     ----------
-    friction : ndarray
-        ITTC 1957 friction on the wetted surface.
-    residuary : ndarray
-        The remaining resistance: form, waves, appendages.
-    correlation : ndarray
-        Correlation allowance; zero unless one is given.
-    total : ndarray
-        Sum of the three.
+    friction : ITTC 1957 friction on the wetted surface.
+    residuary : The remaining resistance: form, waves, appendages.
+    correlation : Correlation allowance; zero unless one is given.
+    total : Sum of the three.
     """
 
     friction: FloatArray
@@ -203,19 +199,12 @@ def hollenbach_1998(
 
     Parameters
     ----------
-    speed : array_like
-        Speed through the water V [m/s]; negative gives NaN.
-    hull : HollenbachHull
-    wetted_surface : array_like
-        S [m2], see `hollenbach_wetted_surface`.
-    appendages : AppendageCounts
-    variant : str
-        Key of `RESISTANCE_COEFFICIENTS`; the ``*_minimum`` keys give the minimum line.
+    speed : Speed through the water V [m/s]; negative gives NaN.
+    wetted_surface : S [m2], see `hollenbach_wetted_surface`.
+    variant : Key of `RESISTANCE_COEFFICIENTS`; the ``*_minimum`` keys give the minimum line.
     correlation_allowance : array_like
         C_A on the wetted surface; the method itself has none, see `correlation_allowance`.
-    friction_coefficient : array_like, optional
-        Replaces the ITTC 1957 line, for example by a shallow-water one.
-    water : Water
+    friction_coefficient : Replaces the ITTC 1957 line, for example by a shallow-water one.
 
     Returns
     -------
@@ -348,14 +337,8 @@ def hollenbach_validity(
     Parameters
     ----------
     speed : array_like [m/s]
-    hull : HollenbachHull
-        Of scalars.
-    variant : str
-        Key of `RESISTANCE_COEFFICIENTS`.
-
-    Returns
-    -------
-    list of RangeNote
+    hull : Of scalars.
+    variant : Key of `RESISTANCE_COEFFICIENTS`.
     """
     length = froude_length(
         hull.length_between_perpendiculars, length_over_surface=hull.length_over_surface

@@ -33,20 +33,16 @@ class HollenbachCoefficients:
 
     Attributes
     ----------
-    ratios : tuple of float
-        a1 ... a10, exponents of the hull ratios and appendage counts.
-    residuary : tuple of tuple of float
-        b11 ... b33.
+    ratios : a1 ... a10, exponents of the hull ratios and appendage counts.
+    residuary : b11 ... b33.
     critical : tuple of float or None
         d1, d2, d3 of the critical Froude number; None for the minimum curves, which have none.
     growth : {"ratio", "block", "none"}
         Exponent c1 above the critical Froude number: Fn / Fn_crit, 10 C_B (Fn / Fn_crit - 1), or
         no growth.
-    length : tuple of float
-        e1, e2 of the length factor.
-    lower, upper : tuple of float
-        f1, f2, f3 and g1, g2, g3 of the Froude limits.
-        h1, ratio of the maximum to the mean line (unverified); NaN for the minimum curves.
+    length : e1, e2 of the length factor.
+    lower, upper : f1, f2, f3 and g1, g2, g3 of the Froude limits. h1, ratio of the maximum to the
+        mean line (unverified); NaN for the minimum curves.
     """
 
     ratios: tuple[float, ...]

@@ -16,16 +16,11 @@ class HollenbachHull:
 
     Attributes
     ----------
-    length_between_perpendiculars, length_waterline : array_like
-        L and L_WL [m].
-    length_over_surface : array_like
-        L_OS [m], foremost to aftmost wetted point, bulb included.
-    breadth, draught_fore, draught_aft : array_like
-        B, T_F and T_A [m].
-    block_coefficient : array_like
-        C_B on L, B and the mean draught.
-    propeller_diameter : array_like
-        D_P [m].
+    length_between_perpendiculars, length_waterline : L and L_WL [m].
+    length_over_surface : L_OS [m], foremost to aftmost wetted point, bulb included.
+    breadth, draught_fore, draught_aft : B, T_F and T_A [m].
+    block_coefficient : C_B on L, B and the mean draught.
+    propeller_diameter : D_P [m].
     """
 
     length_between_perpendiculars: ArrayLike
@@ -44,8 +39,7 @@ class AppendageCounts:
 
     Attributes
     ----------
-    rudders, brackets, bosses, thrusters : array_like
-        Counts; thrusters are side thrusters.
+    rudders, brackets, bosses, thrusters : Counts; thrusters are side thrusters.
     """
 
     rudders: ArrayLike = 1
@@ -65,10 +59,8 @@ def froude_length(
 
     Parameters
     ----------
-    length_between_perpendiculars : array_like
-        L [m].
-    length_over_surface : array_like
-        L_OS [m], foremost to aftmost wetted point, bulb included.
+    length_between_perpendiculars : L [m].
+    length_over_surface : L_OS [m], foremost to aftmost wetted point, bulb included.
 
     Returns
     -------

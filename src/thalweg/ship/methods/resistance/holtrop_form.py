@@ -21,20 +21,13 @@ class HullForm:
 
     Attributes
     ----------
-    length : array_like
-        Length of the waterline L [m].
-    breadth : array_like
-        B [m].
-    draught : array_like
-        Mean draught T [m].
-    displacement : array_like
-        Displaced volume [m3].
-    midship_coefficient : array_like
-        C_M.
-    waterplane_coefficient : array_like
-        C_WP.
-    lcb_percent : array_like
-        Centre of buoyancy, percent of L forward (+) of half of L.
+    length : Length of the waterline L [m].
+    breadth : B [m].
+    draught : Mean draught T [m].
+    displacement : Displaced volume [m3].
+    midship_coefficient : C_M.
+    waterplane_coefficient : C_WP.
+    lcb_percent : Centre of buoyancy, percent of L forward (+) of half of L.
     """
 
     length: FloatArray
@@ -70,14 +63,10 @@ def hull_form(
 
     Parameters
     ----------
-    length_waterline, breadth, draught : array_like
-        Length L_WL, breadth B and draught T [m].
-    displacement : array_like
-        Displaced volume [m3].
-    midship_coefficient, waterplane_coefficient : array_like
-        C_M and C_WP [-].
-    lcb_percent : array_like
-        Centre of buoyancy forward of L/2 [% of the length].
+    length_waterline, breadth, draught : Length L_WL, breadth B and draught T [m].
+    displacement : Displaced volume [m3].
+    midship_coefficient, waterplane_coefficient : C_M and C_WP [-].
+    lcb_percent : Centre of buoyancy forward of L/2 [% of the length].
 
     Returns
     -------
@@ -103,10 +92,8 @@ def wetted_surface(hull: HullForm, *, bulb_area: ArrayLike = 0.0) -> FloatArray:
 
     Parameters
     ----------
-    hull : HullForm
-        Form of the hull [SI].
-    bulb_area : array_like, optional
-        Transverse area of the bulb A_BT [m2].
+    hull : Form of the hull [SI].
+    bulb_area : Transverse area of the bulb A_BT [m2].
 
     Returns
     -------

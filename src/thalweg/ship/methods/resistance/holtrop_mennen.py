@@ -51,22 +51,14 @@ class HoltropResistance:
 
     Attributes
     ----------
-    friction : ndarray
-        R_F, flat-plate friction on the wetted surface.
-    form_factor : ndarray
-        k1 R_F, what the form of the hull adds to it.
-    appendage : ndarray
-        R_APP.
-    wave_making : ndarray
-        R_W.
-    bulb : ndarray
-        R_B, pressure resistance of a bulbous bow near the surface.
-    transom : ndarray
-        R_TR, pressure resistance of an immersed transom.
-    correlation : ndarray
-        R_A, model-ship correlation.
-    total : ndarray
-        Sum.
+    friction : R_F, flat-plate friction on the wetted surface.
+    form_factor : k1 R_F, what the form of the hull adds to it.
+    appendage : R_APP.
+    wave_making : R_W.
+    bulb : R_B, pressure resistance of a bulbous bow near the surface.
+    transom : R_TR, pressure resistance of an immersed transom.
+    correlation : R_A, model-ship correlation.
+    total : Sum.
     """
 
     friction: FloatArray
@@ -168,12 +160,10 @@ class BulbTransomAppendages:
     ----------
     bulb_area, bulb_centre_height : array_like
         A_BT [m2] and its height above the keel h_B [m]; at most 0.6 T_F is used.
-    transom_area : array_like
-        Immersed transom A_T [m2].
+    transom_area : Immersed transom A_T [m2].
     appendage_area, appendage_factor : array_like
         Wetted area [m2] and 1 + k2 (1.5 for a rudder behind a skeg up to 4 for bossings).
-    stern_shape : array_like
-        C_stern, see `form_factor_1982`.
+    stern_shape : C_stern, see `form_factor_1982`.
     """
 
     bulb_area: ArrayLike = 0.0
@@ -206,31 +196,23 @@ def holtrop(
 
     Parameters
     ----------
-    speed : array_like
-        Speed through the water [m/s]; negative gives NaN.
-    hull : HullForm
-        Main particulars, from `hull_form`.
+    speed : Speed through the water [m/s]; negative gives NaN.
+    hull : Main particulars, from `hull_form`.
     year : {1982, 1984}
         Holtrop and Mennen (1982), for Fn up to about 0.4, or Holtrop (1984), for all Fn.
-    bulb_transom_appendages : Extremities, optional
-        Bulb, transom and appendages; none by default.
-    draught_fore : array_like, optional
-        T_F [m]; the mean draught by default.
-    wetted_surface_area : array_like, optional
-        S [m2]; by `wetted_surface` by default.
-    entrance_angle_deg : array_like, optional
-        i_E [deg]; by `half_angle_of_entrance` by default.
+    bulb_transom_appendages : Bulb, transom and appendages; none by default.
+    draught_fore : T_F [m]; the mean draught by default.
+    wetted_surface_area : S [m2]; by `wetted_surface` by default.
+    entrance_angle_deg : i_E [deg]; by `half_angle_of_entrance` by default.
     friction_coefficient : array_like, optional
         Replaces the ITTC 1957 line, for example by `shallow_water.zeng_2019_friction`.
-    wave_speed : array_like, optional
-        Speed that enters R_W, R_TR and R_A in place of `speed` [m/s], for Karpov's shallow-water
-        method.
+    wave_speed : Speed that enters R_W, R_TR and R_A in place of `speed` [m/s], for Karpov's
+        shallow-water method.
     correlation_area : {"hull_and_appendages", "hull"}
         Area of R_A. The papers print S; both worked examples come out with S + S_APP: R_A of 1982
         as 222.07 instead of 220.57 (printed 221.98), and the totals of 1984, which are else 0.4 to
         0.5 % low. Schless (2023) uses S.
-    density, viscosity, gravity : float
-        [kg/m3], [m2/s], [m/s2].
+    density, viscosity, gravity : [kg/m3], [m2/s], [m/s2].
 
     Returns
     -------
@@ -337,16 +319,10 @@ def holtrop_validity(
     Parameters
     ----------
     speed : array_like [m/s]
-    hull : HullForm
-        Main particulars.
+    hull : Main particulars.
     year : {1982, 1984}
         Which method.
-    draught_fore, bulb_centre_height : array_like, optional
-        T_F and h_B [m], for the limit h_B <= 0.6 T_F.
-
-    Returns
-    -------
-    list of RangeNote
+    draught_fore, bulb_centre_height : T_F and h_B [m], for the limit h_B <= 0.6 T_F.
     """
     fore = hull.draught if draught_fore is None else np.asarray(draught_fore, dtype=float)
     fastest = 0.45 if year == 1982 else 1.0

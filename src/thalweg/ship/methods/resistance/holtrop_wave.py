@@ -25,10 +25,8 @@ def bulb_height(bulb_centre_height: ArrayLike, draught_fore: ArrayLike) -> Float
 
     Parameters
     ----------
-    bulb_centre_height : array_like
-        Height of the centre of the bulb above the keel h_B [m].
-    draught_fore : array_like
-        Draught forward T_F [m].
+    bulb_centre_height : Height of the centre of the bulb above the keel h_B [m].
+    draught_fore : Draught forward T_F [m].
 
     Returns
     -------
@@ -51,14 +49,10 @@ def bulb_wave_factor(
 
     Parameters
     ----------
-    hull : HullForm
-        Form of the hull [SI].
-    draught_fore : array_like
-        Draught forward T_F [m].
-    bulb_area : array_like
-        Transverse area of the bulb A_BT [m2].
-    bulb_centre_height : array_like
-        Height of its centre above the keel h_B [m].
+    hull : Form of the hull [SI].
+    draught_fore : Draught forward T_F [m].
+    bulb_area : Transverse area of the bulb A_BT [m2].
+    bulb_centre_height : Height of its centre above the keel h_B [m].
 
     Returns
     -------
@@ -81,10 +75,8 @@ def transom_wave_factor(hull: HullForm, *, transom_area: ArrayLike) -> FloatArra
 
     Parameters
     ----------
-    hull : HullForm
-        Form of the hull [SI].
-    transom_area : array_like
-        Immersed transom area A_T [m2].
+    hull : Form of the hull [SI].
+    transom_area : Immersed transom area A_T [m2].
 
     Returns
     -------

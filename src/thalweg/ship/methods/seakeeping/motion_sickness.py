@@ -62,10 +62,8 @@ def weighted_acceleration(parts: ArrayLike, encounter_frequency: ArrayLike) -> F
 
     Parameters
     ----------
-    parts : array_like
-        Variance by frequency on the last axis [m2/s4], as `ShipResponse.acceleration_parts`.
-    encounter_frequency : array_like
-        Encounter frequency of each part [rad/s].
+    parts : Variance by frequency on the last axis [m2/s4], as `ShipResponse.acceleration_parts`.
+    encounter_frequency : Encounter frequency of each part [rad/s].
 
     Returns
     -------
@@ -86,10 +84,8 @@ def motion_sickness_dose(weighted_rms: ArrayLike, *, duration: ArrayLike) -> Flo
 
     Parameters
     ----------
-    weighted_rms : array_like
-        a_w [m/s2].
-    duration : array_like
-        Exposure [s].
+    weighted_rms : a_w [m/s2].
+    duration : Exposure [s].
 
     Returns
     -------
@@ -110,10 +106,8 @@ def motion_sickness_percent_iso(
 
     Parameters
     ----------
-    dose : array_like
-        MSDV_z [m/s^1.5].
-    susceptibility : array_like
-        K_m, 1/3 for a mixed adult population not used to the sea.
+    dose : MSDV_z [m/s^1.5].
+    susceptibility : K_m, 1/3 for a mixed adult population not used to the sea.
 
     Returns
     -------

@@ -38,17 +38,11 @@ def roll_amplitude(
 
     Parameters
     ----------
-    frequency : array_like
-        Wave frequency [rad/s]; the last axis runs over frequency.
-    speed : array_like
-        Speed through the water [m/s].
-    wave_angle : array_like
-        Angle between bow and where the waves come from [rad], 0 head to pi following.
-    hull : MotionHull
-    natural_period : float
-        Natural roll period [s].
-    damping : float
-        Share of the critical damping, nu.
+    frequency : Wave frequency [rad/s]; the last axis runs over frequency.
+    speed : Speed through the water [m/s].
+    wave_angle : Angle between bow and where the waves come from [rad], 0 head to pi following.
+    natural_period : Natural roll period [s].
+    damping : Share of the critical damping, nu.
     gravity : float [m/s2]
 
     Returns
@@ -91,17 +85,11 @@ def roll_rms(
 
     Parameters
     ----------
-    height, period : array_like
-        Significant height [m] and peak period [s].
-    wave_angle : array_like
-        Angle between bow and where the waves come from [rad], 0 head to pi following.
-    speed : array_like
-        Speed through the water [m/s].
-    hull : MotionHull
-    natural_period : float
-        Natural roll period [s].
-    damping : float
-        Share of the critical damping.
+    height, period : Significant height [m] and peak period [s].
+    wave_angle : Angle between bow and where the waves come from [rad], 0 head to pi following.
+    speed : Speed through the water [m/s].
+    natural_period : Natural roll period [s].
+    damping : Share of the critical damping.
 
     Returns
     -------

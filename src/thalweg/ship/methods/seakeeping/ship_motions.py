@@ -34,12 +34,9 @@ class MotionHull:
 
     Parameters
     ----------
-    length : float
-        Waterline length [m].
-    breadth : float
-        Breadth [m].
-    draught : float
-        Mean draught [m].
+    length : Waterline length [m].
+    breadth : Breadth [m].
+    draught : Mean draught [m].
     block_coefficient : float
         Block coefficient [-]; the box of the method is ``block_coefficient * breadth`` wide.
 
@@ -76,13 +73,10 @@ def encounter_ratio(
 
     Parameters
     ----------
-    frequency : array_like
-        Wave frequency [rad/s]; the last axis runs over frequency.
-    speed : array_like
-        Speed through the water [m/s].
-    wave_angle : array_like
-        Angle between bow and where the waves come from [rad], 0 head to pi following; either
-        side.
+    frequency : Wave frequency [rad/s]; the last axis runs over frequency.
+    speed : Speed through the water [m/s].
+    wave_angle : Angle between bow and where the waves come from [rad], 0 head to pi following;
+        either side.
     gravity : float [m/s2]
 
     Returns
@@ -118,16 +112,11 @@ def jensen_motions(
 
     Parameters
     ----------
-    frequency : array_like
-        Wave frequency [rad/s]; the last axis runs over frequency.
-    speed : array_like
-        Speed through the water [m/s]; NaN gives NaN.
-    wave_angle : array_like
-        Angle between bow and where the waves come from [rad], 0 head to pi following.
-    hull : MotionHull
-        Hull.
-    decay : str
-        ``published``: exp(-k_e T) as in the paper. ``strip``: exp(-k T), the same in head and
+    frequency : Wave frequency [rad/s]; the last axis runs over frequency.
+    speed : Speed through the water [m/s]; NaN gives NaN.
+    wave_angle : Angle between bow and where the waves come from [rad], 0 head to pi following.
+    hull : Hull.
+    decay : ``published``: exp(-k_e T) as in the paper. ``strip``: exp(-k T), the same in head and
         following seas; see the notes.
     gravity : float [m/s2]
 
@@ -183,10 +172,8 @@ def vertical_motion(heave: ArrayLike, pitch: ArrayLike, *, forward: ArrayLike) -
 
     Parameters
     ----------
-    heave, pitch : array_like
-        Amplitudes per wave amplitude [m/m] and [rad/m].
-    forward : array_like
-        Distance of the point ahead of midship [m], negative abaft.
+    heave, pitch : Amplitudes per wave amplitude [m/m] and [rad/m].
+    forward : Distance of the point ahead of midship [m], negative abaft.
 
     Returns
     -------
@@ -205,8 +192,7 @@ class SeaResponse:
 
     Parameters
     ----------
-    m0, m2 : ndarray
-        Variance, and second moment over encounter frequency.
+    m0, m2 : Variance, and second moment over encounter frequency.
     """
 
     m0: FloatArray
@@ -228,17 +214,13 @@ class ShipResponse:
 
     Parameters
     ----------
-    heave : SeaResponse
-        At midship [m].
+    heave : At midship [m].
     pitch : SeaResponse [rad]
-    motion : SeaResponse
-        Vertical motion at the requested point [m].
-    acceleration : SeaResponse
-        Vertical acceleration there [m/s2].
+    motion : Vertical motion at the requested point [m].
+    acceleration : Vertical acceleration there [m/s2].
     acceleration_parts : ndarray
         Variance of the acceleration by frequency, last axis [m2/s4]; they add up to its m0.
-    encounter_frequency : ndarray
-        Encounter frequency of each part [rad/s], not negative.
+    encounter_frequency : Encounter frequency of each part [rad/s], not negative.
     """
 
     heave: SeaResponse
@@ -267,21 +249,14 @@ def ship_response(
 
     Parameters
     ----------
-    height, period : array_like
-        Significant height [m] and peak period [s].
-    wave_angle : array_like
-        Angle between bow and where the waves come from [rad], 0 head to pi following.
-    speed : array_like
-        Speed through the water [m/s].
-    hull : MotionHull
-        Hull.
-    forward : array_like
-        Point on the centre line, ahead of midship [m].
-    peak_factor : array_like, optional
-        gamma of the spectrum; without it that of DNV-RP-C205.
-    decay : str
-        As in `jensen_motions`. ``strip`` by default, since with ``published`` the
-        accelerations in beam seas depend on where the spectrum is truncated.
+    height, period : Significant height [m] and peak period [s].
+    wave_angle : Angle between bow and where the waves come from [rad], 0 head to pi following.
+    speed : Speed through the water [m/s].
+    hull : Hull.
+    forward : Point on the centre line, ahead of midship [m].
+    peak_factor : gamma of the spectrum; without it that of DNV-RP-C205.
+    decay : As in `jensen_motions`. ``strip`` by default, since with ``published`` the accelerations
+        in beam seas depend on where the spectrum is truncated.
     gravity : float [m/s2]
 
     Returns
@@ -337,8 +312,7 @@ def motions_validity(speed: ArrayLike, hull: MotionHull) -> list[RangeNote]:
     Parameters
     ----------
     speed : array_like [m/s]
-    hull : MotionHull
-        Hull.
+    hull : Hull.
 
     Returns
     -------

@@ -25,13 +25,10 @@ class DangerousSituationMargins:
 
     Parameters
     ----------
-    surf_riding : ndarray
-        Critical speed minus speed [m/s]; infinite outside following and quartering seas.
-    high_waves : ndarray
-        Largest relative distance from the three limits that must all be passed [-].
-    synchronous_roll, parametric_roll : ndarray
-        Relative distance of the encounter period from resonance, less the tolerance [-]; NaN
-        when no roll period was given.
+    surf_riding : Critical speed minus speed [m/s]; infinite outside following and quartering seas.
+    high_waves : Largest relative distance from the three limits that must all be passed [-].
+    synchronous_roll, parametric_roll : Relative distance of the encounter period from resonance,
+        less the tolerance [-]; NaN when no roll period was given.
     """
 
     surf_riding: FloatArray
@@ -46,20 +43,14 @@ class DangerousSituations:
 
     Parameters
     ----------
-    encounter_period : ndarray
-        [s]; infinite where the ship has the speed of the waves.
-    surf_riding : ndarray of bool
-        Surf-riding and broaching-to may occur.
-    marginal_surging : ndarray of bool
-        Large surging motion, 1.4 to 1.8 times the root of length.
-    successive_high_waves : ndarray of bool
-        Zone of successive high waves.
+    encounter_period : [s]; infinite where the ship has the speed of the waves.
+    surf_riding : Surf-riding and broaching-to may occur.
+    marginal_surging : Large surging motion, 1.4 to 1.8 times the root of length.
+    successive_high_waves : Zone of successive high waves.
     synchronous_roll, parametric_roll : ndarray of bool
         Encounter period near the roll period; near it or half of it. False without roll period.
-    margins : DangerousSituationMargins
-        Distances from the first and the last three.
-    known : ndarray of bool
-        Whether all data were known. Where they were not every flag is False, which is not an
+    margins : Distances from the first and the last three.
+    known : Whether all data were known. Where they were not every flag is False, which is not an
         all-clear: use `safe`.
     """
 
@@ -100,8 +91,7 @@ def roll_period(
     Parameters
     ----------
     breadth, draught, length_waterline : array_like [m]
-    metacentric_height : array_like
-        GM corrected for free surfaces [m].
+    metacentric_height : GM corrected for free surfaces [m].
 
     Returns
     -------
@@ -130,10 +120,8 @@ def encounter_period(
     Parameters
     ----------
     wave_period : array_like [s]
-    speed : array_like
-        Through the water [m/s].
-    wave_angle : array_like
-        Angle between bow and where the waves come from [rad], 0 head to pi following.
+    speed : Through the water [m/s].
+    wave_angle : Angle between bow and where the waves come from [rad], 0 head to pi following.
 
     Returns
     -------
@@ -161,13 +149,10 @@ def surf_riding_speed(
 
     Parameters
     ----------
-    wave_angle : array_like
-        Angle between bow and where the waves come from [rad], 0 head to pi following.
-    length : array_like
-        Ship length [m].
-    factor : float
-        1.8 for surf-riding, 1.4 for the marginal zone of large surging (1.4 was
-        not compared with the source).
+    wave_angle : Angle between bow and where the waves come from [rad], 0 head to pi following.
+    length : Ship length [m].
+    factor : 1.8 for surf-riding, 1.4 for the marginal zone of large surging (1.4 was not compared
+        with the source).
 
     Returns
     -------
@@ -215,24 +200,16 @@ def dangerous_situations(
 
     Parameters
     ----------
-    speed : array_like
-        Through the water [m/s].
-    wave_angle : array_like
-        Angle between bow and where the waves come from [rad], 0 head to pi following; either
-        side.
-    wave_height : array_like
-        Significant height [m].
-    wave_period : array_like
-        Mean wave period [s].
-    length : array_like
-        Ship length [m].
-    roll_period : array_like, optional
-        Natural roll period [s]; without it the roll checks are not made.
-    roll_tolerance : float
-        "Nearly equal" of the circular: relative difference of periods, 0.1 to 0.2.
-    harmless_wave_height : float
-        Waves up to this height raise no flag [m]. The circular sets no height for surf-riding
-        and roll; without one a ripple of the right period counts.
+    speed : Through the water [m/s].
+    wave_angle : Angle between bow and where the waves come from [rad], 0 head to pi following;
+        either side.
+    wave_height : Significant height [m].
+    wave_period : Mean wave period [s].
+    length : Ship length [m].
+    roll_period : Natural roll period [s]; without it the roll checks are not made.
+    roll_tolerance : "Nearly equal" of the circular: relative difference of periods, 0.1 to 0.2.
+    harmless_wave_height : Waves up to this height raise no flag [m]. The circular sets no height
+        for surf-riding and roll; without one a ripple of the right period counts.
 
     Returns
     -------

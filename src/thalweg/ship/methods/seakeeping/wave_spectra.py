@@ -31,8 +31,7 @@ def quadrature(period: ArrayLike) -> tuple[FloatArray, FloatArray]:
 
     Parameters
     ----------
-    period : array_like
-        Peak period [s], any shape.
+    period : Peak period [s], any shape.
 
     Returns
     -------
@@ -53,10 +52,8 @@ def dnv_peak_factor(height: ArrayLike, period: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    height : array_like
-        Significant height [m].
-    period : array_like
-        Peak period [s].
+    height : Significant height [m].
+    period : Peak period [s].
 
     Returns
     -------
@@ -86,14 +83,11 @@ def jonswap(
 
     Parameters
     ----------
-    frequency : array_like
-        Wave frequency [rad/s]; the last axis runs over frequency.
-    height, period : array_like
-        Significant height [m] and peak period [s]; broadcast against the leading axes of
-        ``frequency`` (a scalar sea state takes a vector of frequencies). The spectrum is meant
+    frequency : Wave frequency [rad/s]; the last axis runs over frequency.
+    height, period : Significant height [m] and peak period [s]; broadcast against the leading axes
+        of ``frequency`` (a scalar sea state takes a vector of frequencies). The spectrum is meant
         for 3.6 < Tp / sqrt(Hs) < 5.
-    peak_factor : array_like, optional
-        gamma [-]; without it `dnv_peak_factor`.
+    peak_factor : gamma [-]; without it `dnv_peak_factor`.
 
     Returns
     -------
@@ -139,8 +133,7 @@ def bretschneider(frequency: ArrayLike, *, height: ArrayLike, period: ArrayLike)
 
     Parameters
     ----------
-    frequency, height, period : array_like
-        As in `jonswap`.
+    frequency, height, period : As in `jonswap`.
 
     Returns
     -------
@@ -161,8 +154,7 @@ def pierson_moskowitz_period(height: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    height : array_like
-        Significant height [m].
+    height : Significant height [m].
 
     Returns
     -------
@@ -185,8 +177,7 @@ def pierson_moskowitz_wind(height: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    height : array_like
-        Significant height [m].
+    height : Significant height [m].
 
     Returns
     -------
@@ -212,16 +203,12 @@ def spectral_moment(
 
     Parameters
     ----------
-    density : array_like
-        Spectral density over *wave* frequency; squared response times wave spectrum for a
+    density : Spectral density over *wave* frequency; squared response times wave spectrum for a
         response.
-    weights : array_like
-        Weights of the quadrature [rad/s].
-    frequency : array_like
-        Frequency whose power is taken [rad/s]: the wave's, or the encounter frequency for a ship
-        under way. Integrating over wave frequency avoids the poles of the encounter spectrum.
-    order : float
-        n.
+    weights : Weights of the quadrature [rad/s].
+    frequency : Frequency whose power is taken [rad/s]: the wave's, or the encounter frequency for a
+        ship under way. Integrating over wave frequency avoids the poles of the encounter spectrum.
+    order : n.
 
     Returns
     -------
@@ -244,8 +231,7 @@ def most_probable_maximum(m0: ArrayLike, m2: ArrayLike, *, duration: ArrayLike) 
 
     Parameters
     ----------
-    m0, m2 : array_like
-        Moments of the response over encounter frequency.
+    m0, m2 : Moments of the response over encounter frequency.
     duration : array_like [s]
 
     Returns

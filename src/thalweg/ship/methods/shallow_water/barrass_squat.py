@@ -26,10 +26,8 @@ def waterway_width(breadth: ArrayLike, channel_width: ArrayLike | None) -> Float
 
     Parameters
     ----------
-    breadth : array_like
-        Breadth of the ship [m].
-    channel_width : array_like, optional
-        Width of the waterway [m]; None for open water.
+    breadth : Breadth of the ship [m].
+    channel_width : Width of the waterway [m]; None for open water.
 
     Returns
     -------
@@ -54,10 +52,8 @@ def blockage_ratio(
 
     Parameters
     ----------
-    depth, draught, breadth : array_like
-        Water depth h, draught T and breadth B [m].
-    channel_width : array_like, optional
-        Width b of the waterway [m]; without it 9 B, open water.
+    depth, draught, breadth : Water depth h, draught T and breadth B [m].
+    channel_width : Width b of the waterway [m]; without it 9 B, open water.
 
     Returns
     -------
@@ -89,15 +85,11 @@ def barrass_squat(
 
     Parameters
     ----------
-    speed : array_like
-        Speed through the water [m/s]; the formula takes it in knots, and it is converted here.
-    depth, draught, breadth : array_like
-        Water depth h, draught T and breadth B [m]; depth over draught 1.1 to 1.5. At greater depth
-        the squat tends to zero.
-    block_coefficient : array_like
-        Block coefficient C_B [-], 0.5 to 0.9.
-    channel_width : array_like, optional
-        Width b of the waterway [m]; without it 9 B, open water.
+    speed : Speed through the water [m/s]; the formula takes it in knots, and it is converted here.
+    depth, draught, breadth : Water depth h, draught T and breadth B [m]; depth over draught 1.1 to
+        1.5. At greater depth the squat tends to zero.
+    block_coefficient : Block coefficient C_B [-], 0.5 to 0.9.
+    channel_width : Width b of the waterway [m]; without it 9 B, open water.
 
     Returns
     -------
@@ -134,8 +126,7 @@ def barrass_speed(
 
     Parameters
     ----------
-    squat : array_like
-        Squat s that is allowed [m]; zero or less gives speed zero.
+    squat : Squat s that is allowed [m]; zero or less gives speed zero.
     depth, draught, breadth, block_coefficient, channel_width
         As in `barrass_squat`.
 
@@ -173,13 +164,10 @@ def barrass_2004_squat(
 
     Parameters
     ----------
-    speed : array_like
-        Speed through the water [m/s]; the formula takes it in knots, and it is converted here.
-    depth, draught, breadth : array_like
-        Water depth h, draught T and breadth B [m]; depth over draught 1.1 to 1.4, blockage factor
-        K 0.100 to 0.265.
-    block_coefficient : array_like
-        Block coefficient C_B [-], 0.5 to 0.9.
+    speed : Speed through the water [m/s]; the formula takes it in knots, and it is converted here.
+    depth, draught, breadth : Water depth h, draught T and breadth B [m]; depth over draught 1.1 to
+        1.4, blockage factor K 0.100 to 0.265.
+    block_coefficient : Block coefficient C_B [-], 0.5 to 0.9.
     channel_width : array_like, optional
         Width b of the waterway [m]; without it Barrass's width of influence 7.04 B / C_B^0.85.
 
@@ -225,8 +213,7 @@ def barrass_2004_speed(
 
     Parameters
     ----------
-    squat : array_like
-        Squat s that is allowed [m]; zero or less gives speed zero.
+    squat : Squat s that is allowed [m]; zero or less gives speed zero.
     depth, draught, breadth, block_coefficient, channel_width
         As in `barrass_2004_squat`.
 

@@ -159,14 +159,11 @@ def karpov(
 
     Parameters
     ----------
-    depth_froude : array_like
-        V / sqrt(g D). Above 1.0 the value at 1.0 is used: the fit ends there.
-    depth_to_draught : array_like
-        D / T; above one.
-    raw_bands : bool
-        True gives the printed bands with their steps and their values above one. False, the
-        default, takes each polynomial as the curve of the centre of its band, interpolates
-        linearly in D / T and lets alpha** not exceed one.
+    depth_froude : V / sqrt(g D). Above 1.0 the value at 1.0 is used: the fit ends there.
+    depth_to_draught : D / T; above one.
+    raw_bands : True gives the printed bands with their steps and their values above one. False, the
+        default, takes each polynomial as the curve of the centre of its band, interpolates linearly
+        in D / T and lets alpha** not exceed one.
 
     Returns
     -------
@@ -213,8 +210,7 @@ def karpov_speed(
     ----------
     speed : array_like [m/s]
     depth, draught : array_like [m]
-    raw_bands : bool
-        See `karpov`.
+    raw_bands : See `karpov`.
     gravity : float [m/s2]
 
     Returns
@@ -237,10 +233,8 @@ def karpov_validity(speed: ArrayLike, *, depth: ArrayLike) -> list[RangeNote]:
 
     Parameters
     ----------
-    speed : array_like
-        Speed through water [m/s].
-    depth : array_like
-        Water depth [m].
+    speed : Speed through water [m/s].
+    depth : Water depth [m].
 
     Returns
     -------
@@ -271,12 +265,9 @@ def lackenby_1963_speed_loss(
 
     Parameters
     ----------
-    speed : array_like
-        V [m/s].
-    depth : array_like
-        h [m].
-    midship_area : array_like
-        A_M below the water [m2].
+    speed : V [m/s].
+    depth : h [m].
+    midship_area : A_M below the water [m2].
     gravity : float [m/s2]
 
     Returns
@@ -312,14 +303,10 @@ def lackenby_1963_deep_speed(
 
     Parameters
     ----------
-    speed : array_like
-        Speed in shallow water V [m/s].
-    depth : array_like
-        Water depth [m].
-    midship_area : array_like
-        Submerged area of the midship section [m2].
-    gravity : float, optional
-        Acceleration of gravity [m/s2].
+    speed : Speed in shallow water V [m/s].
+    depth : Water depth [m].
+    midship_area : Submerged area of the midship section [m2].
+    gravity : Acceleration of gravity [m/s2].
 
     Returns
     -------
@@ -344,12 +331,9 @@ def lackenby_1963_validity(
 
     Parameters
     ----------
-    speed : array_like
-        Speed in shallow water [m/s].
-    depth : array_like
-        Water depth [m].
-    midship_area : array_like
-        Submerged area of the midship section [m2].
+    speed : Speed in shallow water [m/s].
+    depth : Water depth [m].
+    midship_area : Submerged area of the midship section [m2].
 
     Returns
     -------

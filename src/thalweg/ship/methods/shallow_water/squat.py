@@ -156,8 +156,7 @@ def dynamic_under_keel_clearance(
 
     Parameters
     ----------
-    depth, draught, squat : array_like
-        Water depth, draught at rest and squat [m].
+    depth, draught, squat : Water depth, draught at rest and squat [m].
 
     Returns
     -------
