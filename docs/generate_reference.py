@@ -42,6 +42,7 @@ MORE_NAMES: dict[str, tuple[str, ...]] = {
         "model_protocol.FuelTableModel",
         "model_protocol.JointPowerAndFuelModel",
         "model_protocol.PowerTableModel",
+        "model_protocol.SpeedHoldingModel",
         "methods.shallow_water.squat.shallow_water_speed_limit",
         "methods.engine.european_charges.EuropeanCharges",
     ),

@@ -9,6 +9,7 @@ from typing import Any, Concatenate, ParamSpec, TypeVar, cast
 
 _Arguments = ParamSpec("_Arguments")
 _Result = TypeVar("_Result")
+_Object = TypeVar("_Object")
 
 
 def delegated(
@@ -40,3 +41,17 @@ def delegated(
         parameters=[first.replace(name="self", annotation=first.empty), *others]
     )
     return cast(Callable[Concatenate[Any, _Arguments], _Result], method)
+
+
+def changed(
+    function: Callable[Concatenate[Any, _Arguments], Any],
+) -> Callable[Concatenate[_Object, _Arguments], _Object]:
+    """Return a `delegated` method whose function returns an object of the same class.
+
+    Parameters
+    ----------
+    function : Takes the object, then the arguments of the method; returns a changed copy.
+    """
+    method: Any = delegated(function)
+    method.__signature__ = method.__signature__.replace(return_annotation="Self")
+    return cast("Callable[Concatenate[_Object, _Arguments], _Object]", method)

@@ -12,7 +12,7 @@ from thalweg.core.objective import Consumption, LegPrices, Objective
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, MEGAWATT_HOUR, TONNE
 from thalweg.ship.conditions import Conditions
-from thalweg.ship.models.held_speed_model import HeldSpeedModel
+from thalweg.ship.model_protocol import SpeedHoldingModel
 from thalweg.ship.tables.tabulate import tabulate_cubed_speed
 
 if TYPE_CHECKING:
@@ -102,10 +102,8 @@ def engine_order(ship: Ship) -> str:
     """
     if ship.speed_field is not None:
         return "speed of the model"
-    if isinstance(ship.model, HeldSpeedModel):
-        return "constant speed"
-    orders = getattr(getattr(ship.model, "base", ship.model), "orders", None)
-    return "constant speed" if orders is not None and orders.kind == "speed" else "constant power"
+    holds_speed = isinstance(ship.model, SpeedHoldingModel) and ship.model.holds_speed
+    return "constant speed" if holds_speed else "constant power"
 
 
 def consumption_table(ship: Ship, consumption: Consumption) -> PerformanceTable:

@@ -231,6 +231,16 @@ class CrabAngleModel(Protocol):
 
 
 @runtime_checkable
+class SpeedHoldingModel(Protocol):
+    """Capability: a model whose settings may be speeds that the engines hold."""
+
+    @property
+    def holds_speed(self) -> bool:
+        """Whether they are; otherwise the power is constant and weather changes the speed."""
+        ...
+
+
+@runtime_checkable
 class JointPowerAndFuelModel(Protocol):
     """Capability: a model that finds brake power and fuel rate in one computation."""
 

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from typing import Final, Protocol
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError, ModelRangeError
-from thalweg.core.given_numbers import float_array
 from thalweg.core.types import FloatArray
 from thalweg.ship.condition_variables import needed_variables
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import (
-    AdjustableModel,
     JointPowerAndFuelModel,
     ShipModel,
 )
@@ -272,33 +269,6 @@ def model_needs(model: ShipModel) -> frozenset[str]:
         CF standard names.
     """
     return model.needs if isinstance(model, FunctionModel) else needed_variables(model.reads)
-
-
-def model_with_speeds(ship: ModelledShip, speeds: ArrayLike) -> ShipModel:
-    """Return the model of a ship with other settings.
-
-    Parameters
-    ----------
-    speeds : Calm-water speeds [m/s] at the load factor, above 0; sorted, each once.
-
-    Returns
-    -------
-    ShipModel
-        With these settings.
-
-    Raises
-    ------
-    InputError
-        If a speed is not positive, is outside the ship's range, or the model has one speed.
-    """
-    wanted = np.unique(np.atleast_1d(float_array(speeds, "speeds")))
-    if not isinstance(ship.model, AdjustableModel):
-        raise InputError(
-            f"The speed of {ship.name!r} follows from its model; no speed can be ordered.",
-            "Only ships with an adjustable speed accept an ordered speed.",
-            "Leave the ordered speed out.",
-        )
-    return ship.model.with_speeds(wanted, ship.loading.load_factor)
 
 
 def _at_loading(ship: ModelledShip, conditions: Conditions) -> Conditions:

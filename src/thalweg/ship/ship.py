@@ -2,32 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from numpy.typing import ArrayLike
-
-from thalweg.core.delegation import delegated
+from thalweg.core.delegation import changed, delegated
+from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
-from thalweg.ship import queries, ship_tabulation
+from thalweg.ship import queries, ship_changes, ship_tabulation
+from thalweg.ship.condition_variables import HEADING_DEPENDENT
 from thalweg.ship.file import ship_builder
 from thalweg.ship.file.ship_file import library_names, read_ship
-from thalweg.ship.fuel_prices import FuelTerms
+from thalweg.ship.fuel_prices import FuelTerms, fuel_terms
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.methods.engine.european_charges import EuropeanCharges
-from thalweg.ship.model_protocol import ShipModel
-from thalweg.ship.models.function_model import SpeedFunction, model_of_function
+from thalweg.ship.model_protocol import CrabAngleModel, ShipModel
+from thalweg.ship.models.function_model import FunctionModel, SpeedFunction, model_of_function
+from thalweg.ship.models.resistance_protocol import ResistanceBased
 from thalweg.ship.plugins import load_plugin
 from thalweg.ship.schema.ship_schema import ShipFile, empty_ship_file
 from thalweg.ship.ship_limits import ShipLimits
-from thalweg.ship.ship_properties import ShipProperties
 
 
 @dataclass(frozen=True, eq=False)
-class Ship(ShipProperties):
+class Ship:
     """A ship: its speed, power and fuel in given conditions, and its limits of weather.
 
     Made by `Ship.load`, `Ship.from_dict`, `Ship.simple` or `Ship.from_speed_function`.
@@ -154,16 +153,17 @@ class Ship(ShipProperties):
         Ship
             Without fuel data its fuel is unknown (NaN), never zero.
         """
+        hull = {
+            "length_between_perpendiculars_m": length_m,
+            "breadth_m": breadth_m,
+            "draught_m": draught_m,
+            "block_coefficient": block_coefficient,
+            "displacement_m3": displacement_m3,
+        }
         data = ship_builder.simple_data(
             name=name,
             speeds_kn=[speed_kn] if speeds_kn is None else list(speeds_kn),
-            hull={
-                "length_between_perpendiculars_m": length_m,
-                "breadth_m": breadth_m,
-                "draught_m": draught_m,
-                "block_coefficient": block_coefficient,
-                "displacement_m3": displacement_m3,
-            },
+            hull=hull,
             limits={
                 "max_significant_wave_height_m": max_wave_height_m,
                 "max_wind_speed_kn": max_wind_speed_kn,
@@ -216,113 +216,11 @@ class Ship(ShipProperties):
         model = model_of_function(function, top_speed=top)
         return cls(*ship_builder.bare_ship_parts(name, model, float(draught_m), limits))
 
-    def with_prices(
-        self,
-        usd_per_t: float | None = None,
-        eca_price_factor: float | None = None,
-        *,
-        time_usd_per_day: float | None = None,
-    ) -> Ship:
-        """Return the ship with other prices of fuel and time.
-
-        Parameters
-        ----------
-        usd_per_t : float, optional
-            Price of fuel outside emission control areas [USD/t], 0 or more.
-        eca_price_factor : float, optional
-            Price of fuel inside them over the price outside [-], above 0.
-        time_usd_per_day : float, optional
-            Price of time [USD/day], 0 or more.
-
-        Returns
-        -------
-        Ship
-            Prices that are not given stay as they are.
-
-        Raises
-        ------
-        InputError
-            For prices that are not possible, or in two currencies.
-        """
-        given = {"usd_per_t": usd_per_t, "eca_price_factor": eca_price_factor}
-        terms = self.fuel_terms.with_prices(**given, time_usd_per_day=time_usd_per_day)
-        return replace(self, terms=terms)
-
-    def with_charges(self, charges: EuropeanCharges | None) -> Ship:
-        """Return the ship with charges of the European Union on its fuel, or without.
-
-        Parameters
-        ----------
-        charges : EuropeanCharges or None
-            Charges by mass of CO2 and greenhouse gases; None removes them.
-
-        Returns
-        -------
-        Ship
-            Its ``fuel_terms`` hold the charges.
-
-        Raises
-        ------
-        InputError
-            If its fuel has no price.
-        """
-        return replace(self, terms=self.fuel_terms.with_charges(charges))
-
-    def with_load_factor(self, load_factor: float) -> Ship:
-        """Return the ship at another load factor.
-
-        Parameters
-        ----------
-        load_factor : float
-            0 empty to 1 full.
-
-        Returns
-        -------
-        Ship
-            With the draught and displacement of that load.
-
-        Raises
-        ------
-        InputError
-            If the load factor is not a number from 0 to 1.
-        """
-        return replace(self, loading=self.loading.at(load_factor))
-
-    def with_limits(self, limits: ShipLimits) -> Ship:
-        """Return the ship with other limits of weather.
-
-        Parameters
-        ----------
-        limits : ShipLimits
-            These replace all limits that the ship has.
-
-        Returns
-        -------
-        Ship
-            Otherwise unchanged.
-        """
-        return replace(self, limits=limits)
-
-    def with_speeds(self, speeds: ArrayLike) -> Ship:
-        """Return the ship with other settings, given by their calm-water speeds.
-
-        Parameters
-        ----------
-        speeds : array_like
-            Calm-water speeds [m/s] at the load factor, above 0; sorted, each once.
-
-        Returns
-        -------
-        Ship
-            With these `speeds`.
-
-        Raises
-        ------
-        InputError
-            If a speed is not positive, is outside the ship's range, or the model has one speed.
-        """
-        return replace(self, model=queries.model_with_speeds(self, speeds))
-
+    with_prices = changed(ship_changes.ship_with_prices)
+    with_charges = changed(ship_changes.ship_with_charges)
+    with_load_factor = changed(ship_changes.ship_with_load_factor)
+    with_limits = changed(ship_changes.ship_with_limits)
+    with_speeds = changed(ship_changes.ship_with_speeds)
     speed_through_water = delegated(queries.ship_speed_through_water)
     power = delegated(queries.ship_power)
     fuel_rate = delegated(queries.ship_fuel_rate)
@@ -335,3 +233,88 @@ class Ship(ShipProperties):
     tabulate_power = delegated(ship_tabulation.ship_power_table)
     top_speed = delegated(queries.ship_top_speed)
     fingerprint = delegated(ship_tabulation.ship_fingerprint)
+
+    @property
+    def speeds(self) -> FloatArray:
+        """Calm-water speed of every setting at the load factor [m/s], ascending."""
+        return self.model.speeds(self.loading.load_factor)
+
+    @property
+    def draught(self) -> float:
+        """Draught at the load factor [m]."""
+        return self.loading.draught
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """Conditions the model reads (names of `Conditions`)."""
+        return self.model.reads
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """The keys of its ship file as plain data, for a changed ship by `Ship.from_dict`."""
+        return self.file.plain()
+
+    @property
+    def breadth(self) -> float | None:
+        """Breadth [m]; None if the ship file does not give it."""
+        return self.file.hull.breadth_m
+
+    @property
+    def length(self) -> float | None:
+        """Length overall, or between perpendiculars or at the waterline [m]; None if unknown."""
+        return self.file.hull.length_m
+
+    @property
+    def min_under_keel_clearance(self) -> float:
+        """Least under-keel clearance of the ship file [m]; 0 if it gives none."""
+        return self.file.limits.min_under_keel_clearance_m
+
+    @property
+    def specific_fuel_consumption(self) -> float:
+        """Specific fuel consumption of the ship file [kg/J]; NaN if it gives none."""
+        return self.file.engine.specific_consumption
+
+    @property
+    def depends_on_crab_angle(self) -> bool:
+        """Whether the speed depends on the angle between heading and course."""
+        return isinstance(self.model, CrabAngleModel) and self.model.depends_on_crab_angle
+
+    @property
+    def heading_matters(self) -> bool:
+        """Whether the speed depends on the heading, or on its angle to the course."""
+        return self.depends_on_crab_angle or bool(self.model.reads & HEADING_DEPENDENT)
+
+    @property
+    def is_resistance_based(self) -> bool:
+        """Whether the model knows the resistance, so that `power_at_speed` is available."""
+        return isinstance(self.model, ResistanceBased)
+
+    @property
+    def needs(self) -> frozenset[str]:
+        """Sea variables (CF standard names) that the model and the limits need."""
+        return queries.model_needs(self.model) | self.limits.needs
+
+    @property
+    def speed_field(self) -> Callable[..., FloatArray] | None:
+        """``f(sampled, time, lat, lon) -> speed [m/s]`` for ships whose speed is a field, or None.
+
+        ``sampled`` maps the variables of `needs` to arrays (m, s, m/s); time in seconds since
+        1970-01-01T00:00Z, positions in degrees.
+        """
+        model = self.model
+        return model.field(self.loading.load_factor) if isinstance(model, FunctionModel) else None
+
+    @property
+    def fuel_terms(self) -> FuelTerms:
+        """Fuels inside and outside emission control areas, their carbon and prices."""
+        return fuel_terms(self.file) if self.terms is None else self.terms
+
+    @property
+    def hotel_power(self) -> float:
+        """Hotel load, under way and at anchor [W]; 0 if the ship file gives none."""
+        return self.file.engine.hotel_power
+
+    @property
+    def waiting_fuel_rate(self) -> float:
+        """Fuel rate at anchor [kg/s]: that of the hotel load; 0 if the ship file gives none."""
+        return self.file.engine.hotel_fuel_rate

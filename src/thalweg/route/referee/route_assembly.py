@@ -31,7 +31,7 @@ from thalweg.route.route import Route, Violation
 from thalweg.route.track import Track
 from thalweg.ship.consumption import engine_order
 from thalweg.ship.fuel_prices import FuelTerms
-from thalweg.ship.models.known_speed_model import speed_loss_notes
+from thalweg.ship.models.known_speed_model import SpeedLossModel
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -220,7 +220,9 @@ def _range_notes(
         heading=motion.heading[known],
     )
     loaded = here.with_default(load_factor=world.ship.loading.load_factor)
-    notes = speed_loss_notes(world.ship.model, loaded)
+    model = world.ship.model
+    loss = model.loss if isinstance(model, SpeedLossModel) else None
+    notes = [] if loss is None else loss.notes(loaded)
     return [f"{OUT_OF_RANGE}: {note}; speeds there are not predictions." for note in notes]
 
 

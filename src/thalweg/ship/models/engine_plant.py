@@ -144,7 +144,7 @@ def build_engine_plant(file: ShipFile) -> EnginePlant:
         count=given.count,
         sfoc=sfoc,
         curve=(tuple(loads), tuple(curve)),
-        hotel_power=given.hotel_load_kw * 1000.0,
+        hotel_power=given.hotel_power,
         hotel_sfoc=given.hotel_sfoc_g_per_kwh,
         estimated=guessed,
         loads=(least, largest),

@@ -12,7 +12,11 @@ from thalweg.core.types import FloatArray
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import setting_index
-from thalweg.ship.models.known_speed_model import KnownSpeedModel, known_speed_axes
+from thalweg.ship.models.known_speed_model import (
+    KnownSpeedModel,
+    KwonSpeedLoss,
+    known_speed_axes,
+)
 from thalweg.ship.tables.table_parts import TableError, TablePart
 from thalweg.ship.tables.tabulate import tabulate_dense
 
@@ -49,6 +53,16 @@ class HeldSpeedModel:
     def reads(self) -> frozenset[str]:
         """Conditions read."""
         return self.base.reads
+
+    @property
+    def holds_speed(self) -> bool:
+        """True: the settings are speeds."""
+        return True
+
+    @property
+    def loss(self) -> KwonSpeedLoss | None:
+        """Involuntary speed loss."""
+        return self.base.loss
 
     @property
     def identity(self) -> Mapping[str, object]:

@@ -2,31 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
 
 from thalweg.core.types import FloatArray
 from thalweg.ship.hull.estimate import Estimate
-from thalweg.ship.methods.engine.specific_consumption import GRAM_PER_KILOWATT_HOUR
 from thalweg.ship.schema.ship_schema import EngineSection, ShipFile
-
-
-def hotel_power(engine: EngineSection) -> float:
-    """Return the hotel load [W]; 0 when the ship file gives none."""
-    return 1000.0 * engine.hotel_load_kw
-
-
-def hotel_load_fuel_rate(engine: EngineSection) -> float:
-    """Return the fuel rate of the hotel load [kg/s]; 0 when the ship file gives none."""
-    return hotel_power(engine) * engine.hotel_sfoc_g_per_kwh / 3.6e9
-
-
-def given_specific_consumption(engine: EngineSection) -> float:
-    """Return the specific fuel consumption [kg/J]; NaN when the ship file gives none."""
-    given = engine.sfoc_g_per_kwh
-    return math.nan if given is None else given * GRAM_PER_KILOWATT_HOUR
 
 
 def fuel_rate_of_power(file: ShipFile) -> Callable[[FloatArray], FloatArray] | None:
@@ -44,7 +26,7 @@ def fuel_rate_of_power(file: ShipFile) -> Callable[[FloatArray], FloatArray] | N
     if in_table or file.fuel.reference_t_per_day is not None:
         return None
     if engine.sfoc_g_per_kwh is not None:
-        sfoc, hotel = engine.sfoc_g_per_kwh, hotel_load_fuel_rate(engine)
+        sfoc, hotel = engine.sfoc_g_per_kwh, engine.hotel_fuel_rate
         return lambda power: np.asarray(power * sfoc / 3.6e9 + hotel)
     if _consumption_follows_load(engine):
         from thalweg.ship.models.engine_plant import (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -66,20 +66,14 @@ class KwonSpeedLoss:
         )
 
 
-def speed_loss_notes(model: object, conditions: Conditions) -> list[RangeNote]:
-    """Return where the speed loss of a ship model is used outside its range.
+@runtime_checkable
+class SpeedLossModel(Protocol):
+    """Capability of a ship model: its speed may be reduced by an involuntary speed loss."""
 
-    Parameters
-    ----------
-    conditions : At the ship, with its load factor.
-
-    Returns
-    -------
-    list of RangeNote
-        Empty for models without a speed loss.
-    """
-    loss = getattr(model, "loss", None)
-    return loss.notes(conditions) if isinstance(loss, KwonSpeedLoss) else []
+    @property
+    def loss(self) -> KwonSpeedLoss | None:
+        """The loss."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)

@@ -61,6 +61,11 @@ class KwonResistanceModel:
         return self.base.depends_on_crab_angle
 
     @property
+    def holds_speed(self) -> bool:
+        """Whether the settings are speeds."""
+        return self.base.holds_speed
+
+    @property
     def plant(self) -> EnginePlant:
         """The engines."""
         return self.base.plant

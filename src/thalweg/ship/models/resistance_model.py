@@ -67,6 +67,11 @@ class ResistanceModel:
         return self.balance(1.0).rudder_area > 0.0
 
     @property
+    def holds_speed(self) -> bool:
+        """Whether the settings are speeds."""
+        return self.orders.kind == "speed"
+
+    @property
     def identity(self) -> Mapping[str, object]:
         """Data that distinguish this model from others."""
         return {

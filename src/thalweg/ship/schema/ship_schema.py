@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Annotated, Any, Literal, Self
@@ -10,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from pydantic_core import PydanticCustomError
 
 from thalweg.core.errors import InputError
+from thalweg.ship.methods.engine.specific_consumption import GRAM_PER_KILOWATT_HOUR
 from thalweg.ship.schema.schema_errors import input_error
 from thalweg.ship.schema.value_types import (
     AppendageCount,
@@ -118,6 +120,14 @@ class HullSection(Section):
     thrusters: AppendageCount | None = None
     type: Text | None = None
 
+    @property
+    def length_m(self) -> float | None:
+        """Length overall, or between perpendiculars or at the waterline [m]; None if not given."""
+        lengths = (
+            self.length_overall_m, self.length_between_perpendiculars_m, self.length_waterline_m,
+        )  # fmt: skip
+        return next((length for length in lengths if length is not None), None)
+
 
 class PropulsionSection(Section):
     """Propellers, and efficiencies from thrust to the engines."""
@@ -156,6 +166,22 @@ class EngineSection(Section):
     reference_power_kw: Power | None = None
     sea_margin_percent: Annotated[Number, Field(ge=0.0, le=100.0)] = 0.0
     year: Annotated[Number, Field(ge=1900, le=2100)] = 2010
+
+    @property
+    def hotel_power(self) -> float:
+        """Hotel load [W]; 0 if not given."""
+        return 1000.0 * self.hotel_load_kw
+
+    @property
+    def hotel_fuel_rate(self) -> float:
+        """Fuel rate of the hotel load [kg/s]; 0 if not given."""
+        return self.hotel_power * self.hotel_sfoc_g_per_kwh / 3.6e9
+
+    @property
+    def specific_consumption(self) -> float:
+        """Specific fuel consumption [kg/J]; NaN if not given."""
+        given = self.sfoc_g_per_kwh
+        return math.nan if given is None else given * GRAM_PER_KILOWATT_HOUR
 
 
 class FuelSection(Section):

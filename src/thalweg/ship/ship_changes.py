@@ -1,0 +1,134 @@
+"""Ships with another load, other settings, limits or prices."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import float_array
+from thalweg.ship.methods.engine.european_charges import EuropeanCharges
+from thalweg.ship.model_protocol import AdjustableModel
+from thalweg.ship.ship_limits import ShipLimits
+
+
+def ship_with_prices(
+    ship: Any,
+    usd_per_t: float | None = None,
+    eca_price_factor: float | None = None,
+    *,
+    time_usd_per_day: float | None = None,
+) -> Any:
+    """Return the ship with other prices of fuel and time.
+
+    Parameters
+    ----------
+    usd_per_t : float, optional
+        Price of fuel outside emission control areas [USD/t], 0 or more.
+    eca_price_factor : float, optional
+        Price of fuel inside them over the price outside [-], above 0.
+    time_usd_per_day : float, optional
+        Price of time [USD/day], 0 or more.
+
+    Returns
+    -------
+    Ship
+        Prices that are not given stay as they are.
+
+    Raises
+    ------
+    InputError
+        For prices that are not possible, or in two currencies.
+    """
+    given = {"usd_per_t": usd_per_t, "eca_price_factor": eca_price_factor}
+    terms = ship.fuel_terms.with_prices(**given, time_usd_per_day=time_usd_per_day)
+    return replace(ship, terms=terms)
+
+
+def ship_with_charges(ship: Any, charges: EuropeanCharges | None) -> Any:
+    """Return the ship with charges of the European Union on its fuel, or without.
+
+    Parameters
+    ----------
+    charges : EuropeanCharges or None
+        Charges by mass of CO2 and greenhouse gases; None removes them.
+
+    Returns
+    -------
+    Ship
+        Its ``fuel_terms`` hold the charges.
+
+    Raises
+    ------
+    InputError
+        If its fuel has no price.
+    """
+    return replace(ship, terms=ship.fuel_terms.with_charges(charges))
+
+
+def ship_with_load_factor(ship: Any, load_factor: float) -> Any:
+    """Return the ship at another load factor.
+
+    Parameters
+    ----------
+    load_factor : float
+        0 empty to 1 full.
+
+    Returns
+    -------
+    Ship
+        With the draught and displacement of that load.
+
+    Raises
+    ------
+    InputError
+        If the load factor is not a number from 0 to 1.
+    """
+    return replace(ship, loading=ship.loading.at(load_factor))
+
+
+def ship_with_limits(ship: Any, limits: ShipLimits) -> Any:
+    """Return the ship with other limits of weather.
+
+    Parameters
+    ----------
+    limits : ShipLimits
+        These replace all limits that the ship has.
+
+    Returns
+    -------
+    Ship
+        Otherwise unchanged.
+    """
+    return replace(ship, limits=limits)
+
+
+def ship_with_speeds(ship: Any, speeds: ArrayLike) -> Any:
+    """Return the ship with other settings, given by their calm-water speeds.
+
+    Parameters
+    ----------
+    speeds : array_like
+        Calm-water speeds [m/s] at the load factor, above 0; sorted, each once.
+
+    Returns
+    -------
+    Ship
+        With these `speeds`.
+
+    Raises
+    ------
+    InputError
+        If a speed is not positive, is outside the ship's range, or the model has one speed.
+    """
+    wanted = np.unique(np.atleast_1d(float_array(speeds, "speeds")))
+    if not isinstance(ship.model, AdjustableModel):
+        raise InputError(
+            f"The speed of {ship.name!r} follows from its model; no speed can be ordered.",
+            "Only ships with an adjustable speed accept an ordered speed.",
+            "Leave the ordered speed out.",
+        )
+    return replace(ship, model=ship.model.with_speeds(wanted, ship.loading.load_factor))
