@@ -62,6 +62,7 @@ def test_prices_of_the_command_count_whatever_is_minimised(capsys, track):
         assert route["cost_usd"] == pytest.approx(expected, rel=1e-9)
         parts = route["cost_parts"]
         assert parts["fuel"] == pytest.approx(1200.0 * route["fuel_t"], rel=1e-9)
+        assert parts.pop("EU charges") is None
         assert sum(parts.values()) == pytest.approx(route["cost_usd"], rel=1e-12)
 
 
@@ -132,3 +133,30 @@ def test_a_held_speed_is_named_and_needs_a_speed(capsys, track):
     assert scored["time_h"] == pytest.approx(scored["distance_nm"] / 12.0, rel=1e-6)
     code, _ = run_json(capsys, "evaluate", track, *SHIP, *DEPART, "--hold", "speed")
     assert code == 2
+
+
+def test_charges_without_prices_are_unknown_and_not_zero(capsys, track):
+    """0.0 would say that the European Union charges nothing."""
+    _, plan = run_json(capsys, "plan", "55,4", "55,5", *SHIP, *DEPART)
+    _, scored = run_json(capsys, "evaluate", track, *SHIP, *DEPART)
+    for route in (plan["routes"][0], scored):
+        parts = route["cost_parts"]
+        assert parts.pop("EU charges") is None
+        assert sum(parts.values()) == pytest.approx(route["cost_usd"], rel=1e-9)
+        reasons = route["prices"]["european_charges"]["not_counted"]
+        assert [text.partition(":")[0] for text in reasons] == [
+            "emission allowances", "FuelEU penalty",
+        ]  # fmt: skip
+    charges = ("--eu-share", "50", "--ets-price", "80")
+    _, scored = run_json(capsys, "evaluate", track, *SHIP, *DEPART, *charges)
+    assert scored["cost_parts"]["EU charges"] > 0.0
+    assert len(scored["prices"]["european_charges"]["not_counted"]) == 1
+
+
+def test_an_evaluated_route_is_printed_in_twelve_lines_at_most(capsys, track, tmp_path):
+    assert main(["evaluate", track, *SHIP, *DEPART, "--out", str(tmp_path / "o")]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) <= 12 and lines[-1].startswith("Files ")
+    assert any("fuel 300 USD/t and 468 in control areas (ship file)" in line for line in lines)
+    assert main(["evaluate", track, *SHIP, *DEPART, "--verbose"]) == 0
+    assert "55.000N   4.000E" in capsys.readouterr().out

@@ -89,6 +89,41 @@ def test_tables_of_shortest_ways_equal_single_distances(files, capsys):
     assert found[0][1] == found[1][0] == pytest.approx(sea_distance(A, B).nm, abs=1e-5)
 
 
+def test_shortest_ways_know_the_draught(files, capsys, monkeypatch):
+    from thalweg.planning import distance_table
+
+    asked = []
+
+    class Found:
+        length = 1852.0
+
+    def ways(*ends, **options):
+        asked.append(options["draught_m"])
+        return Found()
+
+    monkeypatch.setattr(distance_table, "sea_distance", ways)
+    assert main(["distances", str(files / "ports.csv"), "--draught", "9.5", "--quiet"]) == 0
+    assert asked == [9.5] and "Alpha,0.0,1.0" in capsys.readouterr().out
+
+
+def test_tracks_away_from_known_ports_are_refused_with_what_was_found(files, capsys, tmp_path):
+    words = ["history", "build", str(files / "tracks.csv"), "--out", str(tmp_path / "n.json")]
+    assert main([*words, "--quiet"]) == 2
+    message = capsys.readouterr().err
+    assert "4 ships with" in message and "at 0 ports" in message
+    assert "within 5 nm of a port of the World Port Index" in message and "--ports FILE" in message
+
+
+def test_a_voyage_that_passes_no_junction(files, capsys, tmp_path):
+    (tmp_path / "t.csv").write_text(
+        "vessel,time,lat,lon\na,2025-01-01T00:00Z,44.0,-25.0\na,2025-01-01T12:00Z,44.0,-21.0\n"
+    )
+    words = ["history", "build", str(tmp_path / "t.csv"), "--out", str(tmp_path / "n.json")]
+    words += ["--ports", str(files / "ports.csv"), "--longest-gap", "24"]
+    assert main([*words, "--json", "--quiet"]) == 0
+    assert json.loads(capsys.readouterr().out)["arcs"]["sailed"] == 1
+
+
 @pytest.mark.parametrize("words", [
     ["distances", "PORTS", "--month", "3"],
     ["distances", "PORTS", "--network", "mesh"],

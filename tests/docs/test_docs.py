@@ -63,7 +63,7 @@ def test_the_commands_of_the_readme_run_as_they_stand(tmp_path, monkeypatch, cap
     for program, *words in commands:
         assert program == "thalweg" and main(words) == 0
     printed = capsys.readouterr().out
-    assert "No limit is violated." in printed and "nan" not in printed.split()
+    assert "kept: land, zones" in printed and "nan" not in printed.split()
     assert (tmp_path / "out" / "map.png").exists()
 
 

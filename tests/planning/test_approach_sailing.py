@@ -14,7 +14,11 @@ from thalweg.chart.approaches import MAX_APPROACH_SPEED, PORT_APPROACHES
 from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
-from thalweg.planning.request.voyage_endpoints import resolve_endpoint, without_approach
+from thalweg.planning.request.voyage_endpoints import (
+    resolve_endpoint,
+    resolve_places,
+    without_approach,
+)
 from thalweg.route import RouteFileOptions
 from thalweg.route.canal_legs import approach_speed
 from thalweg.route.formats.csv_format import write_csv
@@ -233,3 +237,20 @@ def test_degrees_that_may_be_swapped_are_noted():
     assert "52.0000N 4.1000E is 3 nm from Europoort, NL: latitude comes first." in end.note
     for sound in ("52.0,4.1", "45.0,-30.0", "36.2,14.2"):
         assert "Check" not in resolve_endpoint(sound, chart(), "start").note
+
+
+@pytest.mark.parametrize(("start", "goal"), [
+    ("5.03,61.604", "-3.7645,43.47"),  # both ends swapped
+    ("52.0,4.0", "4.08,51.98"),  # one, far from the other
+    ("Rotterdam", "4.08,51.98"),
+])  # fmt: skip
+def test_swapped_degrees_are_refused(start, goal):
+    with pytest.raises(InputError, match="seem to be swapped") as caught:
+        resolve_places(start, (), goal, chart())
+    assert "write them with letters" in caught.value.remedy
+
+
+def test_degrees_with_letters_are_not_called_swapped():
+    ends = resolve_places("5.03N 61.604E", (), "3.7645S 43.47E", chart())
+    assert [round(end.lat, 3) for end in ends] == [5.03, -3.764]
+    assert len(resolve_places("4.1,52.0", (), "-10.0,60.0", chart())) == 2  # the goal is no port

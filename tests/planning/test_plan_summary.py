@@ -14,8 +14,8 @@ from thalweg.planning.report.plan_summary import (
     limits_text,
     quality_text,
     summary_with_notes,
-    worst_weather,
 )
+from thalweg.planning.report.route_summary import cost_text, prices_text, route_items, weather_text
 from thalweg.route import Violation
 
 WAVES = "sea_surface_wave_significant_height"
@@ -46,7 +46,7 @@ def test_at_most_twelve_lines_with_what_a_master_needs(answer):
     ]  # fmt: skip
     assert "2026-01-01 00:00 UTC" in lines[1]
     assert utc_text(answer.best.arrive) in lines[2]
-    assert "waves 5.0 m, wind 19 kn at 51 30.0N 003 00.0E" in text
+    assert "highest waves 5.0 m with wind of 19 kn, at 51 30.0N 003 00.0E" in text
     assert "least under-keel clearance 13.0 m at 51 " in lines[7]
     assert "not known: the ship file has no fuel" in text
     for jargon in ("network", "kappa", "bound", "fingerprint"):
@@ -118,14 +118,57 @@ def test_limits_that_closed_other_water(answer):
 
 
 def test_weather_is_that_of_the_sea_even_if_the_ship_ignores_it(answer):
-    assert WAVES not in answer.best.samples
-    assert worst_weather(answer).startswith("waves 5.0 m")
-    calm = replace(answer, plot_context=None)
-    assert worst_weather(calm).startswith("calm or not known")
-    wind = {"eastward_wind": np.full(len(answer.best.samples["lat"]), -8.0)}
+    best, sea = answer.best, answer.plot_context.sea
+    assert WAVES not in best.samples
+    assert weather_text(best, sea).startswith("highest waves 5.0 m")
+    assert weather_text(best, None).startswith("calm or not known")
+    wind = {"eastward_wind": np.full(len(best.samples["lat"]), -8.0)}
     wind["northward_wind"] = 0.0 * wind["eastward_wind"]
-    windy = replace(answer.best, samples=dict(answer.best.samples) | wind)
-    assert worst_weather(replace(calm, routes=(windy,))).startswith("wind 16 kn at ")
+    windy = replace(best, samples=dict(best.samples) | wind)
+    assert weather_text(windy, None).startswith("strongest wind 16 kn, at ")
+
+
+def test_the_uniform_sea_around_a_storm_is_named(answer):
+    storm = Sea.storm(start="2026-01-01T00:00Z")
+    text = weather_text(answer.best, storm)
+    assert "the uniform sea assumed around the storm (waves 1.5 m, wind 10 kn)" in text
+    assert text.startswith("highest waves 1.5 m with wind of 10 kn")
+
+
+def test_the_prices_and_their_sources_stand_beside_the_cost(answer):
+    ship = Ship.load("handysize-bulker")
+    assert prices_text(ship.fuel_terms.prices()) == (
+        "fuel 300 USD/t and 468 in control areas (ship file)"
+    )
+    dearer = ship.with_prices(600.0, 1.0, time_usd_per_day=12000.0).fuel_terms.prices()
+    assert prices_text(dearer) == "fuel 600 USD/t (given), time 12,000 USD/day (given)"
+    legs = dict(answer.best.legs) | {"cost": np.full(len(answer.best.legs["length"]), 50.0)}
+    priced = replace(answer.best, legs=legs, prices=dearer)
+    assert cost_text(priced, []).endswith(
+        " USD; fuel 600 USD/t (given), time 12,000 USD/day (given)"
+    )
+    assert cost_text(answer.best, []) == "not known: no price of fuel or time"
+
+
+def test_an_evaluated_route_names_every_limit_that_it_breaks(answer):
+    known = answer.plot_context
+    violation = Violation("wave height above the limit", answer.best.depart, 51.2, 2.5, 4.0, 3.0)
+    broken = replace(answer.best, violations=(violation, violation))
+    rows = route_items(broken, sea=known.sea, chart=known.chart, ship=known.ship)
+    words = [word for word, _ in rows]
+    assert words == [
+        "Depart",
+        "Arrive",
+        "Distance",
+        "Fuel",
+        "Cost",
+        "Weather",
+        "Depth",
+        *2 * ["Limits"],
+    ]
+    assert rows[-1][1].startswith("NOT KEPT: wave height above the limit at 51.2")
+    sound = route_items(answer.best, sea=known.sea, chart=known.chart, ship=known.ship)
+    assert sound[-1] == ("Limits", "all kept")
 
 
 def test_times_and_positions_as_they_are_spoken():

@@ -11,8 +11,10 @@ from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.core.geodesy import densify, distance
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Voyage, plan
+from thalweg.planning.report.provenance import given_route_warnings
 from thalweg.planning.request.shoal_choice import add_shoals
 from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.route import evaluate
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 
@@ -109,3 +111,17 @@ def test_ships_keep_off_the_grounds_between_the_points_of_the_layer(start, goal,
     texel = (lat > 53.0) & (lat < 53.35) & (lon < 5.2)  # Eierlandse Gronden, 3 nm off the land
     shore = WORLD.coastline.shore_distance(lat[texel], lon[texel])
     assert shore.min() > 3.0 * NAUTICAL_MILE
+
+
+def test_a_route_from_a_file_gets_the_same_depth_warnings():
+    line = [(41.0, -70.3), (41.2, -69.9), (41.5, -69.6)]  # across Nantucket Shoals
+    route = evaluate(line, ship=BULKER, sea=Sea.calm(), chart=WORLD, depart=0)
+    found = given_route_warnings(route, chart=WORLD, sea=Sea.calm(), ship=BULKER, min_ukc=None)
+    assert any(note.startswith("Crosses Nantucket Shoals") for note in found)
+    (note,) = (note for note in found if note.startswith("Check the depth: 12.0 m "))
+    assert "leg 1: 12 m near 41 " in note
+    more = given_route_warnings(route, chart=WORLD, sea=Sea.calm(), ship=BULKER, min_ukc=2.0)
+    assert any(note.startswith("Check the depth: 14.0 m are required") for note in more)
+    charted = Chart.open_water().with_depth(lambda lat, lon: 50.0 + 0.0 * lat)
+    checked = evaluate(line, ship=BULKER, sea=Sea.calm(), chart=charted, depart=0)
+    assert not given_route_warnings(checked, chart=WORLD, sea=Sea.calm(), ship=BULKER, min_ukc=None)

@@ -247,6 +247,17 @@ def test_squat_limits_the_speed_as_in_the_corrected_table_of_van_halem(tmp_path)
     assert float(empty.speed_through_water(Conditions(depth=7.6))) > 3.0
 
 
+def test_the_clearance_of_a_voyage_replaces_that_of_the_file_where_squat_limits_the_speed(tmp_path):
+    ship = Ship.load(_write(tmp_path, DREDGER))
+    other = Ship.load(_write(tmp_path, DREDGER.replace("clearance_m: 1.0", "clearance_m: 2.0")))
+    depth = Conditions(depth=[8.0, 9.0, 12.0])
+    given = ship.with_clearance(2.0).speed_through_water(depth)
+    assert given == pytest.approx(other.speed_through_water(depth), rel=1e-12)
+    assert given[0] == 0.0 < ship.speed_through_water(depth)[0]
+    plain = Ship.simple(8.0, 5.0)
+    assert plain.with_clearance(2.0) is plain
+
+
 def test_kwon_takes_the_block_coefficient_from_the_weight(tmp_path):
     text = DREDGER.replace("squat: van_halem_2019", "speed_loss: kwon_2008")
     weight, plain = text.replace("10000", "8500"), {"wind_speed": 9.0, "wind_angle": 0.0}

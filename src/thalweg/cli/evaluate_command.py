@@ -9,7 +9,7 @@ from typing import Any
 from thalweg.cli import option_values, options
 from thalweg.cli.exit_codes import NO_ROUTE, SUCCESS
 from thalweg.cli.first_run import announce_compilation
-from thalweg.cli.tables import print_route, print_written
+from thalweg.cli.tables import print_route
 
 
 def add_command(commands: Any) -> None:
@@ -23,6 +23,7 @@ def add_command(commands: Any) -> None:
     )
     parser.add_argument("route", metavar="ROUTE", help="route file: RTZ, GPX, GeoJSON or CSV")
     options.add_ship_and_chart_options(parser, default_ukc="0")
+    options.add_verbose_option(parser)
     parser.add_argument(
         "--depart", metavar="TIME", help="departure (ISO 8601, UTC); default: that of the file"
     )
@@ -42,6 +43,8 @@ def run(arguments: argparse.Namespace) -> int:
     announce_compilation(quiet=arguments.quiet)
     from thalweg.planning.plan_data import route_dict
     from thalweg.planning.report.output_files import write_route
+    from thalweg.planning.report.provenance import given_route_warnings
+    from thalweg.planning.report.route_summary import route_items
     from thalweg.route import evaluate
 
     option_values.prepare_output_folder(arguments)
@@ -50,6 +53,8 @@ def run(arguments: argparse.Namespace) -> int:
         option_values.with_given_prices(option_values.open_ship(arguments), arguments),
         arguments,
     )
+    if arguments.ukc is not None:
+        ship = ship.with_clearance(arguments.ukc)
     sea, chart = option_values.open_sea(arguments), option_values.open_chart(arguments)
     arguments.progress(f"sailing {arguments.route}")
     route = evaluate(
@@ -62,10 +67,11 @@ def run(arguments: argparse.Namespace) -> int:
         min_ukc=arguments.ukc or 0.0,
     )
     files = write_route(route, arguments.out, files_as) if arguments.out else []
+    notes = given_route_warnings(route, chart=chart, sea=sea, ship=ship, min_ukc=arguments.ukc)
+    notes += route.assumptions
     if arguments.json:
-        found = {**route_dict(route, "given"), "notes": list(route.assumptions)}
-        print(json.dumps(found, indent=2, allow_nan=False))
+        print(json.dumps({**route_dict(route, "given"), "notes": notes}, indent=2, allow_nan=False))
     else:
-        print_route(route)
-        print_written(files)
+        items = route_items(route, sea=sea, chart=chart, ship=ship, notes=notes)
+        print_route(route, items, notes, files, verbose=arguments.verbose)
     return SUCCESS if route.feasible else NO_ROUTE

@@ -176,25 +176,41 @@ def _savings(plan: Plan) -> list[str]:
     return lines
 
 
-def print_route(route: Route) -> None:
-    """Print the waypoints, totals, violated limits and notes of an evaluated route."""
-    from rich.console import Console
-    from rich.markup import escape
+def print_route(
+    route: Route,
+    items: Sequence[tuple[str, str]],
+    notes: Sequence[str],
+    files: Sequence[Path] = (),
+    *,
+    verbose: bool = False,
+) -> None:
+    """Print an evaluated route in at most twelve lines.
 
-    console = Console()
-    print_waypoints(console, route.waypoints(), "the route as given")
-    waits = f" with {route.waiting_h:.2f} h waiting" if route.waiting_h > 0.0 else ""
-    fuel = "" if route.fuel_t is None else f", {route.fuel_t:.1f} t fuel"
-    cost = "" if route.cost is None else f", {route.cost:,.0f} {route.currency}"
-    least = route.min_ukc_m
-    depth = "" if least is None else f", least under-keel clearance {least:.1f} m"
-    totals = f"{route.time_h:.2f} h{waits}, {route.distance_nm:.1f} nm{fuel}{cost}{depth}"
-    console.print(f"[bold]{totals}[/bold]", soft_wrap=True)
-    for violation in route.violations:
-        console.print(f"[red]violation:[/red] {escape(str(violation))}", soft_wrap=True)
-    if route.feasible:
-        console.print("No limit is violated.")
-    print_notes(console, route.assumptions)
+    Parameters
+    ----------
+    items : Its lines (`thalweg.planning.report.route_summary.route_items`).
+    notes : Warnings first.
+    files : The files that were written.
+    verbose : Whether the waypoints, all violated limits and all notes follow.
+    """
+    from rich.console import Console
+
+    from thalweg.planning.report.plan_summary import MAX_LINES, notes_lines
+
+    lines = [f"{name:<9} {text}" for name, text in items]
+    written = [_files_line(files)] if files else []
+    if verbose:
+        print("\n".join(lines))
+        console = Console()
+        print_waypoints(console, route.waypoints(), "the route as given")
+        print_notes(console, notes)
+        print_written(files)
+        return
+    shown, room = lines, max(1, MAX_LINES - len(written) - min(len(notes), 1))
+    if len(lines) > room:
+        shown = [*lines[: room - 1], f"Limits    {len(lines) - room + 1} more: --verbose"]
+    shown += notes_lines(notes, MAX_LINES - len(shown) - len(written))
+    print("\n".join(shown + written))
 
 
 def print_waypoints(console: Any, waypoints: list[dict[str, Any]], title: str) -> None:

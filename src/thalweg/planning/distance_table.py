@@ -73,6 +73,7 @@ def distance_table(
     *,
     avoid: Sequence[str] = SMALL_CANALS,
     offing_nm: float = DEFAULT_OFFING_NM,
+    draught_m: float | None = None,
     chart: Chart | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> DistanceTable:
@@ -86,6 +87,8 @@ def distance_table(
         Canals and passages that are not used.
     offing_nm : float
         Distance from land [nm] that ways keep outside passages.
+    draught_m : float, optional
+        Ways keep out of water shallower than one and a half draughts [m] where they can.
     chart : Chart, optional
         By default the GSHHG coastline at resolution "i".
     progress : callable, optional
@@ -110,8 +113,9 @@ def distance_table(
         for j in range(i + 1, len(ports)):
             try:
                 found = sea_distance(
-                    start, ports[j][1], avoid=avoid, offing_nm=offing_nm, chart=chart
-                ).length
+                    start, ports[j][1], avoid=avoid, offing_nm=offing_nm, draught_m=draught_m,
+                    chart=chart,
+                ).length  # fmt: skip
             except NoRouteError:
                 found = math.nan
                 notes.append(f"No way from {name} to {ports[j][0]}.")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -16,8 +16,7 @@ from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
 from thalweg.planning.plan_data import PlanData
 from thalweg.planning.request.voyage_endpoints import (
     Endpoint,
-    resolve_endpoint,
-    without_approach,
+    resolve_places,
 )
 from thalweg.planning.sea_distance import world_chart
 from thalweg.planning.seaways import Seaways, path_length_and_canals
@@ -162,7 +161,7 @@ def _question(plan: PlanData) -> _Question | None:
     speed = sailed / time if sailed > 0.0 and time > 0.0 else MAX_APPROACH_SPEED
     return _Question(
         _seas_of_ship(chart),
-        _ends(plan, chart),
+        tuple(resolve_places(plan.voyage.start, plan.voyage.via, plan.voyage.goal, chart)),
         chart.offing.distance,
         max(speed, 0.1 * KNOT),
     )
@@ -176,10 +175,3 @@ def _seas_of_ship(chart: Any) -> Seaways:
     open_here = {passage.name for passage in world.chart.passages}
     closed = tuple(p.name for p in chart.closed_passages if p.name in open_here)
     return Seaways(world.chart, shut, closed)
-
-
-def _ends(plan: PlanData, chart: Any) -> tuple[Endpoint, ...]:
-    voyage = plan.voyage
-    places: Sequence[Any] = (voyage.start, *voyage.via, voyage.goal)
-    ends = [resolve_endpoint(place, chart, "place") for place in places]
-    return (ends[0], *map(without_approach, ends[1:-1]), ends[-1])

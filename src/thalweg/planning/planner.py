@@ -50,9 +50,7 @@ from thalweg.planning.request.requirements import derive_requirements
 from thalweg.planning.request.shoal_choice import add_shoals
 from thalweg.planning.request.voyage_endpoints import (
     Endpoint,
-    check_distinct,
-    resolve_endpoint,
-    without_approach,
+    resolve_places,
 )
 from thalweg.planning.request.voyage_objective import with_voyage_prices
 from thalweg.planning.single.certified_bound import certified_total
@@ -129,6 +127,8 @@ def plan(
     chart = Chart.gshhg("i") if chart is None else chart
     check_argument_types(voyage, ship, sea, chart)
     ship = with_voyage_prices(ship, voyage)
+    if voyage.min_ukc_m is not None:
+        ship = ship.with_clearance(voyage.min_ukc_m)
     replan: _Replan = partial(
         plan, network=network, resolution=resolution, proof=proof, progress=progress
     )
@@ -187,7 +187,13 @@ def _plan_in_usual_water(
     def plan_one(open_water: Chart, builder: Any) -> Plan:
         return replan(voyage, ship=ship, sea=sea, chart=open_water, network=builder)
 
-    request = CorridorRequest(voyage, corridor, chart, _endpoints(voyage, chart), plan_one)
+    request = CorridorRequest(
+        voyage,
+        corridor,
+        chart,
+        resolve_places(voyage.start, voyage.via, voyage.goal, chart),
+        plan_one,
+    )
     return plan_in_corridor(request, ship.draught)
 
 
@@ -247,7 +253,7 @@ def _context(
 ) -> tuple[PlanningContext, list[Endpoint]]:
     """Return the context of a voyage and its end points, after all checks of the request."""
     check_request(voyage, ship, sea)
-    ends = _endpoints(voyage, chart)
+    ends = resolve_places(voyage.start, voyage.via, voyage.goal, chart)
     chart, notes = exclude_closed_canals(chart, voyage, ship, ends)
     chart = restrict_passages(chart, voyage, ship, chosen_offing(voyage, ship))
     chart, shoal_notes = add_shoals(chart, voyage, ship, sea, ends)
@@ -268,17 +274,6 @@ def _context(
         choice=choice,
     )
     return context, ends
-
-
-def _endpoints(voyage: Voyage, chart: Chart) -> list[Endpoint]:
-    places = [("start", voyage.start)]
-    places += [(f"via point {i + 1}", place) for i, place in enumerate(voyage.via)]
-    places.append(("goal", voyage.goal))
-    ends = [resolve_endpoint(place, chart, what) for what, place in places]
-    ends = [ends[0], *map(without_approach, ends[1:-1]), ends[-1]]
-    for first, second in itertools.pairwise(ends):
-        check_distinct(first, second)
-    return ends
 
 
 def _plan_passages(context: PlanningContext, ends: list[Endpoint]) -> list[PassageResult]:

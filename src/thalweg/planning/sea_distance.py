@@ -22,9 +22,7 @@ from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
 from thalweg.planning.request.voyage_endpoints import (
     Endpoint,
-    check_distinct,
-    resolve_endpoint,
-    without_approach,
+    resolve_places,
 )
 from thalweg.planning.seaways import Seaways, path_length_and_canals
 from thalweg.planning.voyage_parts import Place
@@ -181,11 +179,7 @@ def sea_distance(
     chart = world_chart() if chart is None else chart
     check_offing(offing_nm)
     closed = (avoid,) if isinstance(avoid, str) else tuple(avoid)
-    places = [("start", start), *((f"via point {k + 1}", p) for k, p in enumerate(via))]
-    ends = [resolve_endpoint(place, chart, what) for what, place in [*places, ("goal", goal)]]
-    ends = [ends[0], *map(without_approach, ends[1:-1]), ends[-1]]
-    for a, b in itertools.pairwise(ends):
-        check_distinct(a, b)
+    ends = resolve_places(start, via, goal, chart)
     notes = tuple(end.note for end in ends if end.note)
     first, last = ends[0].approach, ends[-1].approach
     seas = Seaways.of_chart(chart, closed, opened=open)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from numbers import Real
 from typing import Any, Final
 
@@ -14,7 +14,10 @@ from numpy.typing import ArrayLike
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
 from thalweg.core.units import DAY, TONNE
-from thalweg.ship.methods.engine.european_charges import EuropeanCharges
+from thalweg.ship.methods.engine.european_charges import (
+    EuropeanCharges,
+    european_prices,
+)
 from thalweg.ship.methods.engine.fuel_properties import (
     Fuel,
     co2_mass,
@@ -87,7 +90,8 @@ class FuelTerms:
         -------
         dict
             ``currency``, and ``{"value", "source"}`` of ``fuel_per_t``, ``fuel_in_eca_per_t``,
-            ``time_per_day`` and, where it counts, ``per_second_per_cubed_speed``.
+            ``time_per_day`` and, where it counts, ``per_second_per_cubed_speed``; and
+            ``european_charges``, with what is ``not_counted`` for want of a price.
         """
         values = {
             "fuel_per_t": (self.price_outside * TONNE, "fuel"),
@@ -97,8 +101,7 @@ class FuelTerms:
         if self.by_speed:
             values["per_second_per_cubed_speed"] = (self.cubed_speed_price, "time")
         found: dict[str, Any] = {"currency": self.currency or "USD"}
-        if self.charges is not None:
-            found["european_charges"] = {**asdict(self.charges), "source": "request"}
+        found["european_charges"] = european_prices(self.charges)
         for name, (value, kind) in values.items():
             known = math.isfinite(value)
             source = self.sources.get(kind, "ship file") if known else None

@@ -219,6 +219,7 @@ class Ship:
     with_prices = changed(ship_changes.ship_with_prices)
     with_charges = changed(ship_changes.ship_with_charges)
     with_load_factor = changed(ship_changes.ship_with_load_factor)
+    with_clearance = changed(ship_changes.ship_with_clearance)
     with_limits = changed(ship_changes.ship_with_limits)
     with_speeds = changed(ship_changes.ship_with_speeds)
     speed_through_water = delegated(queries.ship_speed_through_water)

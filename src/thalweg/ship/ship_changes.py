@@ -90,6 +90,25 @@ def ship_with_load_factor(ship: Any, load_factor: float) -> Any:
     return replace(ship, loading=ship.loading.at(load_factor))
 
 
+def ship_with_clearance(ship: Any, clearance: float) -> Any:
+    """Return the ship with another water under the keel that she leaves when she squats.
+
+    Parameters
+    ----------
+    clearance : float
+        [m]
+
+    Returns
+    -------
+    Ship
+        The same where squat does not limit her speed (``models.squat`` of the ship file).
+    """
+    squat = getattr(ship.model, "squat", None)
+    if squat is None:
+        return ship
+    return replace(ship, model=replace(ship.model, squat=replace(squat, clearance=clearance)))
+
+
 def ship_with_limits(ship: Any, limits: ShipLimits) -> Any:
     """Return the ship with other limits of weather.
 

@@ -33,7 +33,13 @@ def add_command(commands: Any) -> None:
         "default: globe",
     )
     parser.add_argument("--month", type=int, metavar="1-12", help="month, with history:NET")
-    parser.add_argument("--draught", type=float, metavar="M", help="draught [m], with history:NET")
+    parser.add_argument(
+        "--draught",
+        type=float,
+        metavar="M",
+        help="draught [m]: shortest ways keep out of water shallower than one and a half of it "
+        "where they can; usual ways leave out arcs on which only smaller ships were seen",
+    )
     parser.add_argument(
         "--avoid", action="append", default=None, metavar="NAME",
         help="canal or passage that shortest ways do not use; may be repeated (default: corinth)",
@@ -66,7 +72,9 @@ def run(arguments: argparse.Namespace) -> int:
         )  # fmt: skip
     else:
         avoid = SMALL_CANALS if arguments.avoid is None else arguments.avoid
-        table = distance_table(places, avoid=avoid, progress=arguments.progress)
+        table = distance_table(
+            places, avoid=avoid, draught_m=arguments.draught, progress=arguments.progress
+        )
     if arguments.out:
         write_text(arguments.out, table.to_csv())
     if arguments.json:
@@ -88,11 +96,11 @@ def _check(arguments: argparse.Namespace, *, history: bool) -> None:
             "It is made on the globe, or on a history network.",
             "Give --network globe or --network history:NET.",
         )
-    wrong = ("avoid",) if history else ("month", "draught")
+    wrong = ("avoid",) if history else ("month",)
     given = [f"--{name}" for name in wrong if getattr(arguments, name) is not None]
     if given:
         raise InputError(
             f"{' and '.join(given)} cannot be used with --network {arguments.network}.",
-            "Month and draught choose among usual ways; --avoid closes water to shortest ways.",
+            "The month chooses among usual ways; --avoid closes water to shortest ways.",
             "Leave it out.",
         )

@@ -172,11 +172,13 @@ def _junction_visits(
     tree = cKDTree(sphere_vectors(junctions.lat, junctions.lon))
     away, node = tree.query(vectors, distance_upper_bound=radius)
     near = np.flatnonzero(np.isfinite(away))
+    if not len(near):
+        return _Visits(near, np.empty(0), near, np.empty(0))
     follows = np.append(False, np.diff(near) == 1)
     same = np.append(False, np.diff(node[near]) == 0) & np.append(False, np.diff(voyage[near]) == 0)
     run = np.cumsum(~(follows & same)) - 1
     order = near[np.lexsort((away[near], run))]
-    best = order[np.unique(run, return_index=True)[1]] if len(near) else near
+    best = order[np.unique(run, return_index=True)[1]]
     return _Visits(voyage[best], along[best], node[best].astype(np.int64), away[best])
 
 

@@ -12,8 +12,9 @@ import numpy as np
 from thalweg.chart.geojson_polygons import read_features
 from thalweg.chart.ports import PORTS, Port
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import Position, check_position
+from thalweg.core.geodesy import Position, check_position, format_position
 from thalweg.core.types import IntArray
+from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.history.history_builder import HistoryRules, build_history
 from thalweg.network.history.history_network import HistoryNetwork
 from thalweg.network.history.junctions import CorridorLine
@@ -21,6 +22,7 @@ from thalweg.network.history.voyage_tracks import HistoryPort
 from thalweg.operations.fleet.fleet_tracks import FleetTracks
 from thalweg.operations.fleet.port_calls import (
     PortCallRules,
+    PortCalls,
     find_port_calls,
     voyages_between_calls,
 )
@@ -85,6 +87,8 @@ def history_from_tracks(
         own, closed = list(ports), []
         found = find_port_calls(fleet, [port.places for port in own], calls)
     tracks = voyages_between_calls(fleet, found)
+    if not len(tracks):
+        raise _no_voyage(fleet, found, calls or PortCallRules(), of_index=ports is None)
     network = build_history(chart, tracks, own, rules=rules, corridors=corridors, progress=progress)
     notes = [*fleet.notes, *network.summary["notes"]]
     notes += [
@@ -94,6 +98,25 @@ def history_from_tracks(
         **network.summary, "ships": len(fleet.ptr) - 1, "port_calls": len(found.port),
         "notes": notes,
     })  # fmt: skip
+
+
+def _no_voyage(
+    fleet: FleetTracks, calls: PortCalls, rules: PortCallRules, *, of_index: bool
+) -> InputError:
+    """Return the error for tracks without a voyage, with what was found in them."""
+    ships, ports = len(fleet.ptr) - 1, len(np.unique(calls.port))
+    known = "the World Port Index" if of_index else "the file of ports"
+    box = (
+        f"{format_position(float(of(fleet.lat)), float(of(fleet.lon)))}" for of in (np.min, np.max)
+    )
+    return InputError(
+        f"No voyage between two ports was found: {ships} ships with {len(fleet.time):,} positions "
+        f"from {' to '.join(box)} call {len(calls.port)} times, at {ports} ports.",
+        f"A call is a stop, or the first or last position, within "
+        f"{rules.reach / NAUTICAL_MILE:g} nm of a port of {known}; a voyage joins two calls.",
+        "Name the ports where these ships stop (--ports FILE), or give a greater --reach or more "
+        "tracks.",
+    )
 
 
 def read_history_ports(path: str | PathLike[str], chart: Chart) -> list[HistoryPort]:

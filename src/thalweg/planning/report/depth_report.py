@@ -6,41 +6,45 @@ from typing import Final
 
 import numpy as np
 
+from thalweg.chart import Chart
 from thalweg.chart.depth.global_depth import NAME, coarse_depth
 from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.core.geodesy import densify, distance, format_position_minutes
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.land_report import passages_used
 from thalweg.route import Route
+from thalweg.ship import Ship
 
 _STEP: Final = 1.0 * NAUTICAL_MILE
 _NOT_JUDGED: Final = 1.0 * NAUTICAL_MILE  # from land, the spacing of the data of the layer
 _NARROW: Final = 3.0 * NAUTICAL_MILE  # half width of passages that the layer does not show
 _ENDS: Final = 12.0 * NAUTICAL_MILE  # from the ends, where ports have dredged channels
 _MOST_LEGS: Final = 5
+CHECK_DEPTH: Final = "Check the depth"  #: a note on legs that may be too shallow begins so
 
 
-def depth_notes(context: PlanningContext, route: Route) -> list[str]:
+def depth_notes(chart: Chart, route: Route, ship: Ship, clearance: float) -> list[str]:
     """Return legs that may be too shallow by the depth layer, and named shoals on the route.
+
+    For routes on which neither chart nor sea provides depth, which is checked everywhere else.
 
     Parameters
     ----------
-    context : Request, data and ship of the plan.
+    chart : Chart of the route.
     route : The evaluated route.
+    ship : With its draught.
+    clearance : Required under the keel [m].
 
     Returns
     -------
     list of str
-        Empty where the chart or the sea provides depth, which is then checked everywhere, for
-        charts that are not of the world, and for ships without a draught.
+        Empty for charts that are not of the world, and for ships without a draught.
     """
-    draught = float(context.ship.draught)
-    of_the_world = bool(context.chart.passages)
-    if context.needs.limits.depth_checked or not of_the_world or not draught > 0.0:
+    draught = float(ship.draught)
+    if not chart.passages or not draught > 0.0:
         return []
-    required = draught + context.min_ukc
+    required = draught + clearance
     lat, lon, leg = densify(route.track.lat, route.track.lon, _STEP)
     leg = np.append(leg, leg[-1:])
     notes = [
@@ -49,19 +53,19 @@ def depth_notes(context: PlanningContext, route: Route) -> list[str]:
         if area.contains(lat, lon).any()
     ]
     depth = np.asarray(coarse_depth(lat, lon))
-    shallow = (depth < required) & _judged(context, route, lat, lon)
+    shallow = (depth < required) & _judged(chart, route, lat, lon)
     if shallow.any():
         notes.append(_shallow_legs(depth, np.flatnonzero(shallow), (lat, lon, leg), required))
     return notes
 
 
-def _judged(context: PlanningContext, route: Route, lat: FloatArray, lon: FloatArray) -> np.ndarray:
+def _judged(chart: Chart, route: Route, lat: FloatArray, lon: FloatArray) -> np.ndarray:
     """Return where the layer says something: off land, the ends and narrow passages."""
-    shore = np.asarray(context.chart.coastline.shore_distance(lat, lon, cap=2.0 * _NOT_JUDGED))
+    shore = np.asarray(chart.coastline.shore_distance(lat, lon, cap=2.0 * _NOT_JUDGED))
     judged = shore >= _NOT_JUDGED
     for end in (0, -1):
         judged &= distance(lat, lon, lat[end], lon[end]) >= _ENDS
-    for passage in passages_used(context.chart, route):
+    for passage in passages_used(chart, route):
         if passage.half_width < _NARROW:
             y, x, _ = densify(*passage.positions, 2.0 * _STEP)
             close = np.flatnonzero(judged & (np.abs(lat - y.mean()) < np.ptp(y) + 0.2))
@@ -83,11 +87,11 @@ def _shallow_legs(
         points = shallow[leg[shallow] == number]
         worst = points[np.argmin(depth[points])]
         place = format_position_minutes(float(lat[worst]), float(lon[worst]))
-        found.append((float(depth[worst]), f"leg {number + 1} {depth[worst]:.0f} m near {place}"))
+        found.append((float(depth[worst]), f"leg {number + 1}: {depth[worst]:.0f} m near {place}"))
     named = [text for _, text in sorted(found)[:_MOST_LEGS]]
     more = f", and {len(found) - _MOST_LEGS} more legs" if len(found) > _MOST_LEGS else ""
     return (
-        f"Check the depth: {required:.1f} m are required, and the {NAME} has {'; '.join(named)}"
+        f"{CHECK_DEPTH}: {required:.1f} m are required, and the {NAME} has {'; '.join(named)}"
         f"{more}. It does not show small shoals and channels, and was not read within 12 nm of the "
         "ends, 1 nm of land and in narrow passages."
     )

@@ -4,34 +4,40 @@ from __future__ import annotations
 
 import html
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thalweg.core.geodesy import format_position_minutes
-from thalweg.core.time import duration_text, utc_text
-from thalweg.core.units import HOUR, KNOT
+from thalweg.core.time import utc_text
 from thalweg.kernels.codes import OUTSIDE_PERIOD, REASONS
 from thalweg.planning.plan_front import knee
+from thalweg.planning.report.depth_report import CHECK_DEPTH
+from thalweg.planning.report.route_summary import (
+    arrival_text,
+    canals_passed,
+    cost_text,
+    distance_text,
+    fuel_text,
+    kept_text,
+    least_clearance_text,
+    sickness_text,
+    weather_on_route,
+    weather_text,
+)
 from thalweg.planning.request.voyage_endpoints import CHECK_POSITION
 
 if TYPE_CHECKING:
-    from thalweg.chart.canals import Canal
     from thalweg.planning.plan_data import PlanData
-    from thalweg.route import Route
+    from thalweg.sea import Sea
 
 MAX_LINES = 12  #: of a summary with its notes
-_WAVES = "sea_surface_wave_significant_height"
-_WIND = ("eastward_wind", "northward_wind")
-_CURRENT = ("eastward_sea_water_velocity", "northward_sea_water_velocity")
-_NAMES = (_WAVES, *_WIND, *_CURRENT)
 #: Notes whose contents the summary states in its own lines.
 _STATED = ("No depth in the data",)
 _HELD = {"speed": "speed through water", "power": "power", "ground": "speed over ground"}
 _LEAST = {"comfort": "least motion sickness"}
 #: Notes on the safety of the ship come first.
-_CHECK_DEPTH = "Check the depth"
-_FIRST = (CHECK_POSITION, _CHECK_DEPTH)
+_FIRST = (CHECK_POSITION, CHECK_DEPTH)
 _ALWAYS = ("land", "no-go zone")  # reasons that every coastal route meets
 
 
@@ -49,26 +55,33 @@ def plan_summary(plan: PlanData) -> list[str]:
 def summary_with_notes(plan: PlanData, lines: int = MAX_LINES) -> list[str]:
     """Return the summary and as many notes as fit into a number of lines."""
     found = plan_summary(plan)
-    notes = [note for note in plan.notes if not note.startswith(_STATED)]
-    notes.sort(key=lambda note: not note.startswith(_FIRST))
-    room = max(1, lines - len(found))
-    shown = notes[:room]
+    notes = sorted(plan.notes, key=lambda note: not note.startswith(_FIRST))
+    return found + notes_lines(notes, lines - len(found), where="--verbose, plan.notes")
+
+
+def notes_lines(notes: Sequence[str], room: int, where: str = "--verbose") -> list[str]:
+    """Return as many notes as fit into a number of lines, one at least, and how many are left."""
+    notes = [note for note in notes if not note.startswith(_STATED)]
+    shown = list(notes[: max(1, room)])
     if len(shown) < len(notes):
-        shown[-1] += f" ({len(notes) - len(shown)} more notes: --verbose, plan.notes)"
-    return found + [f"Note      {note}" for note in shown]
+        shown[-1] += f" ({len(notes) - len(shown)} more notes: {where})"
+    return [f"Note      {note}" for note in shown]
 
 
 def summary_items(plan: PlanData) -> list[tuple[str, str]]:
     """Return the lines of the summary as pairs of a word and a text."""
     best = plan.best
-    items = [("Depart", utc_text(best.depart)), ("Arrive", _arrival(best))]
-    items += [("Distance", _distance(plan)), ("Fuel", _fuel(best)), ("Cost", _cost(plan))]
+    known = plan.plot_context
+    canals = canals_passed(best, None if known is None else known.chart)
+    items = [("Depart", utc_text(best.depart)), ("Arrive", arrival_text(best))]
+    items += [("Distance", distance_text(best, canals)), ("Fuel", fuel_text(best))]
+    items.append(("Cost", cost_text(best, canals)))
     if plan.voyage.objective == "energy" and best.energy_mwh is not None:
         items.append(("Energy", f"{best.energy_mwh:,.2f} MWh"))
     if plan.front is not None and len(plan.routes) > 1:
         items.append(("Choice", _choice(plan)))
     items += [
-        ("Weather", worst_weather(plan) + sickness_text(best)),
+        ("Weather", weather_text(best, _sea(plan)) + sickness_text(best)),
         ("Depth", least_clearance_text(best)),
     ]
     items += [("Limits", limits_text(plan)), ("Quality", quality_text(plan))]
@@ -94,64 +107,6 @@ def one_line(plan: PlanData) -> str:
     return f"<Plan: {_title(plan)}, {totals}{routes}{state}>"
 
 
-def worst_weather(plan: PlanData) -> str:
-    """Return the highest waves, or the strongest wind or current, with place and time."""
-    route, weather = plan.best, _weather_on_route(plan)
-    waves = weather.get(_WAVES)
-    wind, current = (_speed(weather, pair) for pair in (_WIND, _CURRENT))
-    if waves is not None and np.nanmax(waves, initial=0.0) > 0.0:
-        at = int(np.nanargmax(waves))
-        more = "" if wind is None else f", wind {wind[at]:.0f} kn"
-        return f"waves {waves[at]:.1f} m{more} {_place(route, at)}"
-    for values, word in ((wind, "wind"), (current, "current")):
-        if values is not None and np.nanmax(values, initial=0.0) > 0.0:
-            at = int(np.nanargmax(values))
-            return f"{word} {values[at]:.{0 if word == 'wind' else 1}f} kn {_place(route, at)}"
-    return "calm or not known: no wind, waves or currents in the data"
-
-
-def sickness_text(route: Route) -> str:
-    """Return the share of people sick at each place of the ship; empty where it has none."""
-    found = route.indicators
-    places = [
-        f"{name} {row['sick_percent']:.0f} %"
-        for name, row in found["places"].items()
-        if row["sick_percent"] is not None
-    ]
-    roll = found.get("max_roll_rms_deg")
-    rolling = "" if roll is None else f"; roll to {roll:.1f} deg (root mean square)"
-    return f"; sick: {', '.join(places)}{rolling}" if places else ""
-
-
-def _weather_on_route(plan: PlanData) -> dict[str, np.ndarray]:
-    """Return waves, wind and current along the best route, as far as the sea has them.
-
-    The referee samples what the ship model needs; the rest comes from the sea of the plan.
-    """
-    samples = plan.best.samples
-    found = {name: np.asarray(samples[name]) for name in _NAMES if name in samples}
-    sea = plan.plot_context.sea if plan.plot_context is not None else None
-    if sea is None or sea.members:
-        return found
-    more = [name for name in _NAMES if name not in found and name in sea.variables]
-    if more:
-        time = np.where(np.isfinite(samples["time"]), samples["time"], plan.best.depart)
-        found |= sea.sample(more, time, samples["lat"], samples["lon"])
-    return found
-
-
-def least_clearance_text(route: Route) -> str:
-    """Return the least under-keel clearance with place and time, or that depth is not known."""
-    least, clearance = route.min_ukc_m, route.samples["under_keel_clearance"]
-    if least is None:
-        return "not known: no depth in the data"
-    if not np.isfinite(clearance).any():
-        return f"least under-keel clearance {least:.1f} m"
-    at = int(np.nanargmin(clearance))
-    where = f" {_place(route, at)}" if clearance[at] <= least + 0.05 else ""
-    return f"least under-keel clearance {least:.1f} m{where}"
-
-
 def limits_text(plan: PlanData) -> str:
     """Return the limit that the route violates, or the limits that closed other water."""
     if plan.best.violations:
@@ -162,25 +117,12 @@ def limits_text(plan: PlanData) -> str:
     met = [r for r, count in sorted(plan.rejections.items(), key=lambda item: -item[1]) if count]
     ignored = _ALWAYS if _has_weather(plan) else (*_ALWAYS, REASONS[OUTSIDE_PERIOD])
     met = [reason for reason in met if reason not in ignored]
-    kept = _kept_text(plan)
+    known = plan.plot_context
+    kept = kept_text(plan.best, None if known is None else known.ship, plan.notes)
     if not met:
         only = "; nothing but land and zones stood in the way" if plan.rejections else ""
         return kept + only
     return f"{kept}; other water was closed by: {', '.join(met[:3])}"
-
-
-def _kept_text(plan: PlanData) -> str:
-    """Return that all limits are kept, or which, where the depth is not known."""
-    if plan.best.min_ukc_m is not None:
-        return "all kept"
-    checked = ["land", "zones"]
-    limits = plan.plot_context.ship.limits if plan.plot_context is not None else None
-    if limits is not None:
-        named = (("waves", limits.wave_height), ("wind", limits.wind_speed))
-        checked += [what for what, limit in named if math.isfinite(limit)]
-    shallow = any(note.startswith(_CHECK_DEPTH) for note in plan.notes)
-    depth = "TOO SHALLOW by the depth layer, see the note" if shallow else "NOT checked"
-    return f"kept: {', '.join(checked)}; depth under the keel {depth}"
 
 
 def quality_text(plan: PlanData) -> str:
@@ -219,54 +161,6 @@ def _title(plan: PlanData) -> str:
     return f"{start} to {goal}, {what}"
 
 
-def _arrival(route: Route) -> str:
-    if not math.isfinite(route.arrive):
-        return "never: the route cannot be sailed to its end"
-    waits = f", of it waiting {duration_text(route.waiting_h * HOUR)}" if route.waiting_h else ""
-    return f"{utc_text(route.arrive)}, after {duration_text(route.arrive - route.depart)}{waits}"
-
-
-def _distance(plan: PlanData) -> str:
-    route = plan.best
-    sailing = route.time_h - route.waiting_h
-    mean = f", mean speed {route.distance_nm / sailing:.1f} kn" if sailing > 0.0 else ""
-    canals = [canal.title for canal in canals_passed(plan)]
-    return f"{route.distance_nm:,.1f} nm{mean}" + (f", by {' and '.join(canals)}" if canals else "")
-
-
-def canals_passed(plan: PlanData) -> list[Canal]:
-    """Return the canals that the best route passes, in order."""
-    if plan.plot_context is None:
-        return []
-    chart, track = plan.plot_context.chart, plan.best.track
-    lat, lon = np.asarray(track.lat), np.asarray(track.lon)
-    number = np.asarray(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:]))
-    return [chart.canals[k] for k in number[number >= 0].tolist()]
-
-
-def _fuel(route: Route) -> str:
-    if route.fuel_t is None:
-        return "not known: the ship file has no fuel"
-    inside = route.fuel_eca_t
-    areas = f", of it {inside:,.1f} t in emission control areas" if inside else ""
-    return f"{route.fuel_t:,.1f} t{areas}"
-
-
-def _cost(plan: PlanData) -> str:
-    route, canals = plan.best, canals_passed(plan)
-    dues = sum(canal.fee for canal in canals)
-    basis = " and ".join(dict.fromkeys(canal.fee_basis for canal in canals if canal.fee_basis))
-    basis = f" (by {basis})" if basis else ""
-    if route.cost is None:
-        paid = f"; canal dues {dues:,.0f} USD{basis}" if dues else ""
-        return f"not known: no price of fuel or time{paid}"
-    counted = route.currency == "USD"
-    paid = (
-        f", {'of it ' if counted else 'without '}canal dues {dues:,.0f} USD{basis}" if dues else ""
-    )
-    return f"{route.cost:,.0f} {route.currency}{paid}"
-
-
 def _choice(plan: PlanData) -> str:
     """Return the ends of a front and its knee."""
     front = plan.front
@@ -286,19 +180,11 @@ def _choice(plan: PlanData) -> str:
     return "; ".join(texts)
 
 
+def _sea(plan: PlanData) -> Sea | None:
+    return plan.plot_context.sea if plan.plot_context is not None else None
+
+
 def _has_weather(plan: PlanData) -> bool:
     """Return whether the data have wind, waves or currents."""
-    weather = _weather_on_route(plan).values()
+    weather = weather_on_route(plan.best, _sea(plan)).values()
     return any(np.nanmax(np.abs(values), initial=0.0) > 0.0 for values in weather)
-
-
-def _speed(weather: dict[str, np.ndarray], pair: tuple[str, str]) -> np.ndarray | None:
-    if not all(name in weather for name in pair):
-        return None
-    return np.asarray(np.hypot(*(weather[name] for name in pair)) / KNOT)
-
-
-def _place(route: Route, at: int) -> str:
-    samples = route.samples
-    where = format_position_minutes(float(samples["lat"][at]), float(samples["lon"][at]))
-    return f"at {where} on {utc_text(float(samples['time'][at]))}"

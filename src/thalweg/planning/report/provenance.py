@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from thalweg.chart import Chart
 from thalweg.core.geodesy import format_position
 from thalweg.core.time import format_time
 from thalweg.network import Network
@@ -18,7 +19,9 @@ from thalweg.planning.report.lane_report import lane_notes
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
 from thalweg.route.referee.route_assembly import OUT_OF_RANGE
+from thalweg.sea import Sea
 from thalweg.sea.inspection import data_gaps
+from thalweg.ship import Ship
 
 #: Latitude [deg] beyond which a warning about ice is given.
 _ICE_WARNING_LATITUDE = 72.0
@@ -37,19 +40,40 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     list of str
         One sentence for each warning.
     """
-    notes = land_notes(context, route) + ice_warnings(route) + data_gap_warnings(context, route)
+    notes = land_notes(context, route) + ice_warnings(route) + data_gap_warnings(context.sea, route)
     notes += [text for text in route.assumptions if text.startswith(OUT_OF_RANGE)]
-    return notes + lane_notes(context, route) + depth_notes(context, route)
+    notes += lane_notes(context, route)
+    if context.needs.limits.depth_checked:
+        return notes
+    return notes + depth_notes(context.chart, route, context.ship, context.min_ukc)
 
 
-def data_gap_warnings(context: PlanningContext, route: Route) -> list[str]:
+def given_route_warnings(
+    route: Route, *, chart: Chart, sea: Sea, ship: Ship, min_ukc: float | None
+) -> list[str]:
+    """Return the warnings about a route from a file: ice, gaps of data, depth and shoals.
+
+    Parameters
+    ----------
+    route : The evaluated route.
+    chart, sea, ship : With which it was evaluated.
+    min_ukc : Required under the keel [m]; None: by the ship file.
+    """
+    notes = ice_warnings(route) + data_gap_warnings(sea, route)
+    if route.min_ukc_m is not None:
+        return notes
+    clearance = ship.min_under_keel_clearance if min_ukc is None else min_ukc
+    return notes + depth_notes(chart, route, ship, clearance)
+
+
+def data_gap_warnings(sea: Sea, route: Route) -> list[str]:
     """Return warnings about gaps in the time of the data during a voyage."""
     if not math.isfinite(route.arrive):
         return []
     return [
         f"{gap.source} has a gap from {format_time(gap.after)} to {format_time(gap.before)}: legs "
         "in the gap that need its data are not sailed."
-        for gap in data_gaps(context.sea.layers)
+        for gap in data_gaps(sea.layers)
         if gap.before > route.depart and gap.after < route.arrive
     ]
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -9,7 +11,7 @@ from thalweg.chart import Chart
 from thalweg.chart.approaches import PortApproach
 from thalweg.chart.ports import PORTS, Port
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import distance, format_position, parse_position
+from thalweg.core.geodesy import Position, distance, format_position, parse_position
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.voyage_parts import Place
 
@@ -20,6 +22,7 @@ MAX_SNAP_PORT = 60_000.0
 #: A position on land within this distance of a port is taken as that port [m].
 NEAR_PORT: Final = 10.0 * NAUTICAL_MILE
 _FAR_FROM_PORTS: Final = 60.0 * NAUTICAL_MILE
+_FAR_SHORTER: Final = 5.0  # times, where one end is swapped and the other is not
 CHECK_POSITION: Final = "Check the position"  #: a note on swapped degrees begins so
 
 
@@ -213,6 +216,66 @@ def _swap_notice(lat: float, lon: float, chart: Chart) -> str:
         f"{_FAR_FROM_PORTS / NAUTICAL_MILE:.0f} nm from any port. {format_position(lon, lat)} is "
         f"{swapped[1] / NAUTICAL_MILE:.0f} nm from {swapped[0].label}: latitude comes first."
     )
+
+
+def resolve_places(start: Place, via: Sequence[Place], goal: Place, chart: Chart) -> list[Endpoint]:
+    """Resolve the places of a voyage in order to navigable water of a chart.
+
+    Raises
+    ------
+    InputError
+        As of `resolve_endpoint`, if two places in succession are the same, or if latitude and
+        longitude of the ends are swapped.
+    """
+    _check_order_of_degrees(start, goal, chart)
+    places = [("start", start), *((f"via point {k + 1}", place) for k, place in enumerate(via))]
+    ends = [resolve_endpoint(place, chart, what) for what, place in [*places, ("goal", goal)]]
+    ends = [ends[0], *map(without_approach, ends[1:-1]), ends[-1]]
+    for first, second in itertools.pairwise(ends):
+        check_distinct(first, second)
+    return ends
+
+
+def _check_order_of_degrees(start: Place, goal: Place, chart: Chart) -> None:
+    """Raise `InputError` if both ends are ports after swapping degrees, but not before.
+
+    Degrees with letters (5.0N 61.6E) are taken as they are.
+    """
+    if chart.approaches is None:
+        return
+    given = [_degrees_of(place) for place in (start, goal)]
+    swapped = [
+        position is not None and bare and bool(_swap_notice(*position, chart))
+        for position, bare in given
+    ]
+    others = [p for (p, _), is_swapped in zip(given, swapped) if not is_swapped]
+    at_ports = (p is None or chart.approaches.nearest(*p, within=NEAR_PORT) for p in others)
+    if not any(swapped) or not all(at_ports):
+        return
+    as_given = [(PORTS.lookup(str(q)).lat, PORTS.lookup(str(q)).lon) if p is None else p
+                for (p, _), q in zip(given, (start, goal))]  # fmt: skip
+    turned = [p[::-1] if is_swapped else p for p, is_swapped in zip(as_given, swapped)]
+    if not all(swapped) and not (
+        _FAR_SHORTER * float(distance(*turned[0], *turned[1]))
+        < float(distance(*as_given[0], *as_given[1]))
+    ):
+        return
+    wrong = [p for p, is_swapped in zip(as_given, swapped) if is_swapped]
+    read = " and ".join(format_position(*p) for p in wrong)
+    meant = " and ".join(format_position(*p[::-1]) for p in wrong)
+    raise InputError(
+        f"Latitude and longitude seem to be swapped: no port is near {read}.",
+        f"Latitude comes first, and a port is at {meant}.",
+        f"Give {meant}; or, if they are meant as they stand, write them with letters: {read}.",
+        field="start" if swapped[0] else "goal",
+    )
+
+
+def _degrees_of(place: Place) -> tuple[Position | None, bool]:
+    """Return the position that a place states, None for names, and whether it has no letters."""
+    if not isinstance(place, str):
+        return (float(place[0]), float(place[1])), True
+    return parse_position(place), not any(letter.isalpha() for letter in place)
 
 
 def without_approach(end: Endpoint) -> Endpoint:

@@ -100,15 +100,17 @@ def cost_breakdown(sailed: SailedTrack, rates: ConsumptionRates, terms: FuelTerm
         spent = terms.cubed_speed_price * _cubed_speed_time(sailed, parts, time)
     else:
         spent = _weighted_fuel(parts, terms, "cost")[0]
-    charges = np.zeros(len(parts.leg))
+    charges = None
     if terms.charges is not None:
         charges = parts.price * _weighted_fuel(parts, terms, "charges")[0]
-    cost = total(parts.price * spent - charges)
+    cost = total(parts.price * spent - (0.0 if charges is None else charges))
     fee, notes = _canal_dues(sailed, terms, cost)
-    of_parts = {"fuel": cost, "EU charges": total(charges)}
-    of_parts |= {"time": terms.time_price * total(time), "canal dues": fee}
-    legs |= {COST_PARTS[name]: values for name, values in of_parts.items()}
+    of_parts = {"fuel": cost, "time": terms.time_price * total(time), "canal dues": fee}
+    if charges is not None:  # without their prices they are unknown and no part of the cost
+        of_parts["EU charges"] = total(charges)
     legs["cost"] = sum(of_parts.values(), np.zeros(count))
+    unknown = {"EU charges": np.full(count, math.nan)}
+    legs |= {COST_PARTS[name]: values for name, values in (unknown | of_parts).items()}
     return CostBreakdown(legs, _fuel_by_zone(sailed, parts, mass, kept), notes)
 
 

@@ -140,10 +140,12 @@ class SailedPolyline:
         late = np.maximum(DIFFERENCE_STEP * np.diff(arrive), 1e-3)
         spent, durations = self._perturbed_legs(step[0], leave, late)
         with np.errstate(invalid="ignore"):
+            # a leg that cannot be sailed keeps its own value NaN; it only passes delays on unchanged
             growth = np.nan_to_num(1.0 + (durations[-1] - durations[0]) / late, nan=1.0)
         waits = (leave > arrive + 1e-9)[None]
         if isinstance(evaluator, CostEvaluator):
             with np.errstate(invalid="ignore"):
+                # likewise: ``spent`` of that leg stays NaN
                 dearer = np.nan_to_num((spent[-1] - spent[0]) / late)
             delays = accumulated_delay_effects(
                 growth[None], dearer[None], evaluator.per_second, absorbed=waits

@@ -97,4 +97,5 @@ def _current(mesh: BarrierMesh, at: FloatArray, time: float) -> FloatArray:
     block = raster.values[step, j : j + 2, i : i + 2][..., index].astype(float)
     rows = block[0] * (1.0 - y) + block[1] * y
     mixed = rows[0] * (1.0 - x) + rows[1] * x
+    # only the choice of a candidate path, which is scored afterwards with the data as they are
     return np.nan_to_num(mixed)

@@ -121,6 +121,7 @@ def space_time_facts(result: ProjectResult, run: ProjectRun) -> dict[str, Any]:
     """
     from thalweg.planning.plots.channel_closures import find_closures
 
+    # the choice of the leg to draw: one without a known clearance comes last
     cycle = max(run.cycles, key=lambda c: (c.out.waiting, -np.nan_to_num(c.out.clearance, nan=1e9)))
     route = cycle.out.route
     environment = result.environment

@@ -93,6 +93,7 @@ class OutputCurve:
         own = np.take_along_axis(sums, chosen[..., None], axis=-1)[..., 0]
         last = self.points.shape[1] - 1
         x = np.clip((own - self.start[chosen]) / self.step[chosen], 0.0, last)
+        # only the index of an unknown place is made up: its value stays NaN through ``x`` below
         cell = np.minimum(np.nan_to_num(x).astype(np.intp), last - 1)
         low, high = self.points[chosen, cell], self.points[chosen, cell + 1]
         return np.asarray(low + (x - cell) * (high - low))

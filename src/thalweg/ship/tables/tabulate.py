@@ -164,6 +164,7 @@ def table_error(found: FloatArray, truth: FloatArray) -> TableError:
         return TableError(0.0, 0.0, 0.0, 0)
     top = np.where(sound, np.abs(truth), 0.0).reshape(-1, truth.shape[-1]).max(axis=0)
     scale = np.maximum(np.maximum(np.abs(truth), RELATIVE_ERROR_FLOOR * top), 1e-12)
+    # a value that only the model or only the table knows counts as wholly wrong
     relative = np.nan_to_num(np.abs(found - truth) / scale, nan=1.0)[known]
     return TableError(
         mean=float(relative.mean()),

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from types import MappingProxyType
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -180,3 +180,22 @@ class EuropeanCharges:
             penalty = fueleu_penalty(known.heat, intensity=known.intensity, year=self.year)
             charge += self.euro_price * float(penalty)
         return self.voyage_share * charge
+
+
+def european_prices(charges: EuropeanCharges | None) -> dict[str, Any]:
+    """Return the prices of charges as plain data, with what does not count for want of a price.
+
+    Returns
+    -------
+    dict
+        The fields of `EuropeanCharges`, ``source``, and ``not_counted``: a sentence for each charge
+        without a price.
+    """
+    reasons = {
+        "allowance_price": "emission allowances: no price of an allowance was given",
+        "euro_price": "FuelEU penalty: no price of a euro was given",
+    }
+    if charges is None:
+        return {"source": None, "not_counted": list(reasons.values())}
+    missing = [text for name, text in reasons.items() if not getattr(charges, name)]
+    return {**asdict(charges), "source": "request", "not_counted": missing}

@@ -1,0 +1,241 @@
+"""A refereed route in a few lines for the person who sails it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from thalweg.core.geodesy import format_position_minutes
+from thalweg.core.time import duration_text, utc_text
+from thalweg.core.units import HOUR, KNOT
+from thalweg.planning.report.depth_report import CHECK_DEPTH
+from thalweg.sea.models.cyclone_layer import AmbientSea, StormLayer
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.chart.canals import Canal
+    from thalweg.route import Route
+    from thalweg.sea import Sea
+    from thalweg.ship import Ship
+
+_WAVES = "sea_surface_wave_significant_height"
+_WIND = ("eastward_wind", "northward_wind")
+_CURRENT = ("eastward_sea_water_velocity", "northward_sea_water_velocity")
+_NAMES = (_WAVES, *_WIND, *_CURRENT)
+_SOURCES: Final = {"request": "given"}  # other sources of prices by their own name
+
+
+def route_items(
+    route: Route, *, sea: Sea | None, chart: Chart | None, ship: Ship, notes: Sequence[str] = ()
+) -> list[tuple[str, str]]:
+    """Return the lines on an evaluated route as pairs of a word and a text.
+
+    Parameters
+    ----------
+    sea, chart : With which it was evaluated.
+    notes : Warnings about the route; those on depth show among the limits.
+    """
+    canals = canals_passed(route, chart)
+    broken = [str(violation) for violation in route.violations]
+    if not broken and not math.isfinite(route.arrive):
+        broken = ["the route cannot be sailed to its end"]
+    limits = [f"NOT KEPT: {text}" for text in broken] or [kept_text(route, ship, notes)]
+    return [
+        ("Depart", utc_text(route.depart)),
+        ("Arrive", arrival_text(route)),
+        ("Distance", distance_text(route, canals)),
+        ("Fuel", fuel_text(route)),
+        ("Cost", cost_text(route, canals)),
+        ("Weather", weather_text(route, sea) + sickness_text(route)),
+        ("Depth", least_clearance_text(route)),
+        *(("Limits", text) for text in limits),
+    ]
+
+
+def arrival_text(route: Route) -> str:
+    """Return the arrival and the time from departure, waits named."""
+    if not math.isfinite(route.arrive):
+        return "never: the route cannot be sailed to its end"
+    waits = f", of it waiting {duration_text(route.waiting_h * HOUR)}" if route.waiting_h else ""
+    return f"{utc_text(route.arrive)}, after {duration_text(route.arrive - route.depart)}{waits}"
+
+
+def distance_text(route: Route, canals: Sequence[Canal]) -> str:
+    """Return the distance, the mean speed and the canals."""
+    sailing = route.time_h - route.waiting_h
+    mean = f", mean speed {route.distance_nm / sailing:.1f} kn" if sailing > 0.0 else ""
+    by = f", by {' and '.join(canal.title for canal in canals)}" if canals else ""
+    return f"{route.distance_nm:,.1f} nm{mean}{by}"
+
+
+def canals_passed(route: Route, chart: Chart | None) -> list[Canal]:
+    """Return the canals that a route passes, in order."""
+    if chart is None:
+        return []
+    lat, lon = np.asarray(route.track.lat), np.asarray(route.track.lon)
+    number = np.asarray(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:]))
+    return [chart.canals[k] for k in number[number >= 0].tolist()]
+
+
+def fuel_text(route: Route) -> str:
+    """Return the fuel, and how much of it is burnt in emission control areas."""
+    if route.fuel_t is None:
+        return "not known: the ship file has no fuel"
+    inside = route.fuel_eca_t
+    areas = f", of it {inside:,.1f} t in emission control areas" if inside else ""
+    return f"{route.fuel_t:,.1f} t{areas}"
+
+
+def cost_text(route: Route, canals: Sequence[Canal]) -> str:
+    """Return the cost with its prices and their sources, and the canal dues in it."""
+    dues = sum(canal.fee for canal in canals)
+    basis = " and ".join(dict.fromkeys(canal.fee_basis for canal in canals if canal.fee_basis))
+    basis = f" (by {basis})" if basis else ""
+    if route.cost is None:
+        paid = f"; canal dues {dues:,.0f} USD{basis}" if dues else ""
+        return f"not known: no price of fuel or time{paid}"
+    word = "of it " if route.currency == "USD" else "without "
+    paid = f", {word}canal dues {dues:,.0f} USD{basis}" if dues else ""
+    prices = prices_text(route.prices)
+    return f"{route.cost:,.0f} {route.currency}{paid}" + (f"; {prices}" if prices else "")
+
+
+def prices_text(prices: Mapping[str, Any]) -> str:
+    """Return the prices that count, each with its source, such as ``fuel 300 USD/t (ship file)``.
+
+    Parameters
+    ----------
+    prices : As of `thalweg.ship.fuel_prices.FuelTerms.prices`.
+    """
+    currency = prices.get("currency", "USD")
+
+    def value(name: str) -> float | None:
+        known = prices.get(name) or {}
+        return known.get("value") or None  # a price of zero counts nothing
+
+    texts = []
+    fuel, inside, hire = (
+        value(name) for name in ("fuel_per_t", "fuel_in_eca_per_t", "time_per_day")
+    )
+    cubed = value("per_second_per_cubed_speed")
+    if fuel is not None:
+        more = "" if inside in (None, fuel) else f" and {inside:,.0f} in control areas"
+        texts.append(f"fuel {fuel:,.0f} {currency}/t{more} ({_source(prices, 'fuel_per_t')})")
+    if cubed is not None:
+        source = _source(prices, "per_second_per_cubed_speed")
+        texts.append(f"{cubed:g} {currency}/s per cubed speed ({source})")
+    if hire is not None:
+        texts.append(f"time {hire:,.0f} {currency}/day ({_source(prices, 'time_per_day')})")
+    charges = prices.get("european_charges") or {}
+    if charges.get("voyage_share"):
+        texts.append(f"EU charges on {100.0 * charges['voyage_share']:.0f} %")
+    return ", ".join(texts)
+
+
+def _source(prices: Mapping[str, Any], name: str) -> str:
+    source = str(prices[name].get("source"))
+    return _SOURCES.get(source, source)
+
+
+def weather_text(route: Route, sea: Sea | None) -> str:
+    """Return the highest waves, or the strongest wind or current, with place and time.
+
+    Parameters
+    ----------
+    sea : Gives what the ship model does not read; without it only that is named.
+    """
+    weather = weather_on_route(route, sea)
+    waves = weather.get(_WAVES)
+    wind, current = (_speed(weather, pair) for pair in (_WIND, _CURRENT))
+    if waves is not None and np.nanmax(waves, initial=0.0) > 0.0:
+        at = int(np.nanargmax(waves))
+        more = "" if wind is None else f" with wind of {wind[at]:.0f} kn"
+        found = f"highest waves {waves[at]:.1f} m{more}, {_place(route, at)}"
+        return found + _ambient_text(sea, float(waves[at]))
+    for values, word in ((wind, "wind"), (current, "current")):
+        if values is not None and np.nanmax(values, initial=0.0) > 0.0:
+            at = int(np.nanargmax(values))
+            digits = 0 if word == "wind" else 1
+            return f"strongest {word} {values[at]:.{digits}f} kn, {_place(route, at)}"
+    return "calm or not known: no wind, waves or currents in the data"
+
+
+def _ambient_text(sea: Sea | None, highest: float) -> str:
+    """Return the uniform sea that is assumed around a modelled storm; empty without a storm."""
+    storms = [one for one in (sea.layers if sea is not None else ()) if isinstance(one, StormLayer)]
+    if not storms:
+        return ""
+    ambient: AmbientSea = storms[0].ambient
+    wind = math.hypot(*ambient.wind) / KNOT
+    values = f"waves {ambient.wave_height:.1f} m, wind {wind:.0f} kn"
+    text = f"uniform sea assumed around the storm ({values})"
+    return f": the {text}" if highest <= ambient.wave_height + 0.05 else f"; {text}"
+
+
+def weather_on_route(route: Route, sea: Sea | None) -> dict[str, np.ndarray]:
+    """Return waves, wind and current along a route, as far as the sea has them.
+
+    The referee samples what the ship model needs; the rest comes from the sea.
+    """
+    samples = route.samples
+    found = {name: np.asarray(samples[name]) for name in _NAMES if name in samples}
+    if sea is None or sea.members:
+        return found
+    more = [name for name in _NAMES if name not in found and name in sea.variables]
+    if more:
+        time = np.where(np.isfinite(samples["time"]), samples["time"], route.depart)
+        found |= sea.sample(more, time, samples["lat"], samples["lon"])
+    return found
+
+
+def sickness_text(route: Route) -> str:
+    """Return the share of people sick at each place of the ship; empty where it has none."""
+    found = route.indicators
+    places = [
+        f"{name} {row['sick_percent']:.0f} %"
+        for name, row in found["places"].items()
+        if row["sick_percent"] is not None
+    ]
+    roll = found.get("max_roll_rms_deg")
+    rolling = "" if roll is None else f"; roll to {roll:.1f} deg (root mean square)"
+    return f"; sick: {', '.join(places)}{rolling}" if places else ""
+
+
+def least_clearance_text(route: Route) -> str:
+    """Return the least under-keel clearance with place and time, or that depth is not known."""
+    least, clearance = route.min_ukc_m, route.samples["under_keel_clearance"]
+    if least is None:
+        return "not known: no depth in the data"
+    if not np.isfinite(clearance).any():
+        return f"least under-keel clearance {least:.1f} m"
+    at = int(np.nanargmin(clearance))
+    where = f" {_place(route, at)}" if clearance[at] <= least + 0.05 else ""
+    return f"least under-keel clearance {least:.1f} m{where}"
+
+
+def kept_text(route: Route, ship: Ship | None, notes: Sequence[str]) -> str:
+    """Return that all limits are kept, or which, where the depth is not known."""
+    if route.min_ukc_m is not None:
+        return "all kept"
+    checked = ["land", "zones"]
+    if ship is not None:
+        named = (("waves", ship.limits.wave_height), ("wind", ship.limits.wind_speed))
+        checked += [what for what, limit in named if math.isfinite(limit)]
+    shallow = any(note.startswith(CHECK_DEPTH) for note in notes)
+    depth = "TOO SHALLOW by the depth layer, see the note" if shallow else "NOT checked"
+    return f"kept: {', '.join(checked)}; depth under the keel {depth}"
+
+
+def _speed(weather: dict[str, np.ndarray], pair: tuple[str, str]) -> np.ndarray | None:
+    if not all(name in weather for name in pair):
+        return None
+    return np.asarray(np.hypot(*(weather[name] for name in pair)) / KNOT)
+
+
+def _place(route: Route, at: int) -> str:
+    samples = route.samples
+    where = format_position_minutes(float(samples["lat"][at]), float(samples["lon"][at]))
+    return f"at {where} on {utc_text(float(samples['time'][at]))}"
