@@ -140,7 +140,7 @@ class SailedPolyline:
         late = np.maximum(DIFFERENCE_STEP * np.diff(arrive), 1e-3)
         spent, durations = self._perturbed_legs(step[0], leave, late)
         with np.errstate(invalid="ignore"):
-            # a leg that cannot be sailed keeps its own value NaN; it only passes delays on unchanged
+            # a leg that cannot be sailed keeps its own NaN; it passes delays on unchanged
             growth = np.nan_to_num(1.0 + (durations[-1] - durations[0]) / late, nan=1.0)
         waits = (leave > arrive + 1e-9)[None]
         if isinstance(evaluator, CostEvaluator):
