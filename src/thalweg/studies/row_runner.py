@@ -209,7 +209,8 @@ def _sea(request: Mapping[str, Any], folder: Path) -> Sea:
     parts = [request.get(key) for key in ("sea", "map", "fill")]
     sea = _opened_sea(canonical_json(parts), str(folder))
     member = request.get("member")
-    return sea if member is None else sea.member(int(member))
+    sea = sea if member is None else sea.member(int(member))
+    return sea.sampled(str(request.get("sampling", "linear")))
 
 
 @lru_cache(maxsize=4)

@@ -21,8 +21,8 @@ from thalweg.studies.study_axes import MOST_ROWS, axis_values, plain_data, sampl
 
 #: Entries of a row beside those of a voyage.
 SURROUNDINGS: Final = (
-    "ship", "load_factor", "sea", "map", "fill", "member", "coast", "network", "resolution_nm",
-    "track",
+    "ship", "load_factor", "sea", "map", "fill", "member", "sampling", "coast", "network",
+    "resolution_nm", "track",
 )  # fmt: skip
 _ENTRIES: Final = ("name", "voyage", "axes", "sample", "compare", "annual", *SURROUNDINGS)
 COMPARISONS: Final = ("weather_blind",)
