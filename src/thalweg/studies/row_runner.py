@@ -124,6 +124,8 @@ def _figures(request: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         route = _evaluated(read_track(path), ship, sea, chart, voyage)
         return _route_figures(route)
     answer = _planned(voyage, ship, sea, chart, request)
+    if answer.cancelled:  # Ctrl-C: the best plan so far is no result of this row
+        raise KeyboardInterrupt
     figures = _route_figures(answer.best)
     objective = answer.voyage.objective
     figures |= {"objective": objective, "certified_gap": _certified_gap(answer)}

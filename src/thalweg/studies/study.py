@@ -137,7 +137,7 @@ class Study:
         ----------
         rows : sequence of StudyRow
         length : int
-            Most rows of a chunk.
+            Most rows of a chunk; ten times as many with the detail ``network``.
 
         Returns
         -------
@@ -151,7 +151,8 @@ class Study:
         chunks = []
         for group in groups.values():
             group.sort(key=lambda row: str(row.request["voyage"].get("depart", "")))
-            chunks += [group[k : k + length] for k in range(0, len(group), length)]
+            step = 10 * length if group[0].request.get("detail") == "network" else length
+            chunks += [group[k : k + step] for k in range(0, len(group), step)]
         return chunks
 
     def to_dict(self) -> dict[str, Any]:
