@@ -72,6 +72,6 @@ def test_names_of_samplings():
     assert sea.sampled("linear") is sea
     assert _heights(sea.sampled("nearest:12"), [6.1]).tolist() == [12.0]
     for wrong in ("nearest", "nearest:x", "nearest:0.001", "cubic", "linear:3"):
-        with pytest.raises(InputError, match="nearest|Updates"):
+        with pytest.raises(InputError, match=r"nearest|Updates"):
             sea.sampled(wrong)
     assert sea.fingerprint() != sea.sampled("nearest:12").fingerprint()

@@ -148,7 +148,9 @@ def test_a_missing_month_is_rows_that_say_so(folder):
 
 def test_limits_close_departures_in_words(folder):
     library = resources.files("thalweg.ship.library").joinpath("gunnerus-2019.yaml")
-    ship = yaml.safe_load(library.read_text("utf-8")) | {"limits": {"max_significant_wave_height_m": 1.5}}
+    ship = yaml.safe_load(library.read_text("utf-8")) | {
+        "limits": {"max_significant_wave_height_m": 1.5}
+    }
     (folder / "careful.yaml").write_text(yaml.safe_dump(ship))
     departs = ["2026-01-05T00:00Z", "2026-02-10T00:00Z"]
     rows = run_rows(

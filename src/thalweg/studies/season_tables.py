@@ -48,7 +48,9 @@ def departure_windows(frame: pd.DataFrame, usable: pd.Series) -> dict[str, float
 
 def inshore_share(routes: pd.DataFrame) -> float | None:
     """Return the share of routes that are inshore; None where that is not known."""
-    known = routes["inshore_percent"].dropna() if "inshore_percent" in routes else ()
+    if "inshore_percent" not in routes:
+        return None
+    known = routes["inshore_percent"].dropna().to_numpy(float)
     return float((known >= INSHORE_PERCENT).mean()) if len(known) else None
 
 

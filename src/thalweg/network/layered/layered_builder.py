@@ -27,6 +27,7 @@ from thalweg.network.assembly import (
 from thalweg.network.endpoints import check_endpoints
 from thalweg.network.layered.section_shape import PerSection, SectionShape, section_shapes
 from thalweg.network.network import Graph, Network, NetworkMeta, Stations
+from thalweg.network.short_legs import positions_on_short_legs
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -211,7 +212,7 @@ def _assembled(
     first, second = number[draft.first[keep]], number[draft.second[keep]]
     pairs = measured_pairs(stations.lat, stations.lon, first, second)
     stations, samples = evenly_spaced_samples(
-        stations, pairs, _SAMPLE_SPACING, geodesy.positions_on_short_legs
+        stations, pairs, _SAMPLE_SPACING, positions_on_short_legs
     )
     count = len(first)  # the segments are in the order of their first nodes
     leaving = np.bincount(first, minlength=stations.n_nodes)

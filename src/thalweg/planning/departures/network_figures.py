@@ -11,12 +11,12 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import positions_on_short_legs
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import HOUR, NAUTICAL_MILE, TONNE
 from thalweg.network import Network
 from thalweg.network.assembly import measured_pairs
+from thalweg.network.short_legs import positions_on_short_legs
 from thalweg.planning.approach_sailing import ApproachSailing
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.route import Track
