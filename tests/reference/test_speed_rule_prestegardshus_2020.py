@@ -61,7 +61,9 @@ def test_the_table_of_the_rule_is_exact():
 
 def test_what_the_rule_needs_and_what_it_is_not_for():
     with pytest.raises(InputError, match="largest waves"):
-        _ship(largest_wave_height_m=None)
+        alone = {"speed_loss": RULE["speed_loss"]}
+        hull = {"draught_m": 2.8}
+        Ship.from_dict({"name": "x", "hull": hull, "speeds_kn": 10.0, "models": alone})
     with pytest.raises(InputError, match="known speeds"):
         data = Ship.load("gunnerus-2019").file.model_dump(exclude_unset=True, mode="json")
         Ship.from_dict(data | {"models": RULE | {"calm_water": "hollenbach_1998_mean"}})

@@ -82,7 +82,7 @@ class DepartureSeries:
     ends: Sequence[Endpoint]
     networks: tuple[Network, ...]
     approaches: ApproachFigures
-    _windows: dict[tuple[np.datetime64, float], tuple[_Section, ...]] = field(default_factory=dict)
+    _windows: dict[tuple[int, float], tuple[_Section, ...]] = field(default_factory=dict)
 
     @cached_property
     def _land(self) -> LandAlongLegs:
@@ -236,7 +236,7 @@ class DepartureSeries:
         The month, not the departures at hand, sets the window, so that results do not depend on
         how departures are put together.
         """
-        month = to_datetime64(depart).astype("datetime64[M]")
+        month = int(to_datetime64(depart).astype("datetime64[M]").astype(np.int64))
         if (month, horizon) not in self._windows:
             if len(self._windows) > 1:
                 self._windows.clear()
@@ -252,10 +252,10 @@ class DepartureSeries:
             )
         return sections
 
-    def _prepared(self, month: np.datetime64, horizon: float) -> tuple[_Section, ...]:
+    def _prepared(self, month: int, horizon: float) -> tuple[_Section, ...]:
         context = self.context
-        start = float(month.astype("datetime64[s]").astype(np.int64))
-        after = float((month + 1).astype("datetime64[s]").astype(np.int64))
+        months = np.array([month, month + 1], "datetime64[M]")  # since 1970-01
+        start, after = months.astype("datetime64[s]").astype(np.int64).astype(float).tolist()
         end = min(after + self._longest(horizon), context.data_end)
         sections = []
         for network in self.networks:

@@ -75,7 +75,10 @@ class SailedPath:
         passages: Sequence[NetworkPassage],
     ) -> SailedPath:
         """Return the path of passages that follow each other."""
-        lat, lon, reach, leave = [], [], [], []
+        lat: list[FloatArray] = []
+        lon: list[FloatArray] = []
+        reach: list[FloatArray] = []
+        leave: list[FloatArray] = []
         for number, (network, one) in enumerate(zip(networks, passages)):
             new = slice(1 if number else 0, None)
             lat.append(network.stations.lat[one.nodes][new])
@@ -265,7 +268,8 @@ class _PathPoints:
 
     def sums(self, rate: FloatArray, weight: FloatArray) -> FloatArray:
         """Return the sum over the points of each path; NaN where one is unknown."""
-        return np.bincount(self.path, weights=rate * weight, minlength=self.count)
+        total = np.bincount(self.path, weights=rate * weight, minlength=self.count)
+        return np.asarray(total, np.float64)
 
 
 def _greatest(path: IntArray, values: FloatArray | None, count: int) -> FloatArray:

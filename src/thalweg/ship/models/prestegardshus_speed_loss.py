@@ -45,7 +45,7 @@ class PrestegardshusSpeedLoss:
 
     def share(self, conditions: Conditions, speed: FloatArray) -> FloatArray:
         """Share of the calm-water speed that is lost; NaN above the largest weather."""
-        factor = 1.0
+        factor = np.ones(())
         for angle, size, largest in (
             (conditions.wave_angle, conditions.wave_height, self.largest_wave_height),
             (conditions.wind_angle, conditions.wind_speed, self.largest_wind_speed),
