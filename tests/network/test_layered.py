@@ -12,6 +12,7 @@ from thalweg.core.errors import InputError, NoPathError
 from thalweg.network import LayeredRequest, check_network, layered_network, shortest_path
 from thalweg.network.layered.layered_builder import layered_draft
 from thalweg.network.layered.layered_request import layered_section, suggested_shape
+from thalweg.network.short_legs import positions_on_short_legs
 
 SHAPE = {"layers": 9, "fan": 5, "offset": 4000.0}
 #: An island across the line from (65, 0) to (65, 4), open to the north and the south.
@@ -175,3 +176,18 @@ def test_sections_join_at_their_waypoints():
     assert set(at) <= set(path)
     for a, b in itertools.pairwise(places):
         assert a != b
+
+
+def test_positions_on_short_legs_are_those_of_geodesics():
+    draw = np.random.default_rng(1)
+    lat, lon = draw.uniform(-89.0, 89.0, 500), draw.uniform(-180.0, 180.0, 500)
+    for length, tolerance in ((1e4, 0.01), (1e5, 1.0)):
+        course, share = draw.uniform(0.0, 2.0 * np.pi, 500), draw.uniform(0.0, 1.0, 500)
+        ends = geodesy.direct(lat, lon, course, np.full(500, length))
+        first = np.arange(500)
+        found = positions_on_short_legs(
+            np.append(lat, ends[0]), np.append(lon, ends[1]), first, first + 500,
+            np.full(500, length), share,
+        )  # fmt: skip
+        true = geodesy.direct(lat, lon, course, share * length)
+        assert np.max(geodesy.distance(*found, *true)) < tolerance

@@ -94,7 +94,7 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
     sea = _check_ensemble_choice(sea, arguments)
     for one_of_each in _in_turns(policies):
         sea = sea.filled(**_with_fetch(one_of_each, arguments))
-    return sea
+    return sea.sampled(getattr(arguments, "sampling", "linear"))
 
 
 def _in_turns(policies: list[tuple[str, float | str]]) -> list[dict[str, float | str]]:

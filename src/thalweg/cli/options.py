@@ -229,6 +229,13 @@ def add_sea_options(parser: argparse.ArgumentParser) -> None:
         "with 0.8 of the height; waves=fetch_limited: those of the local wind over its fetch to "
         "the coast; the result records it",
     )
+    sea.add_argument(
+        "--sampling",
+        default="linear",
+        metavar="linear|nearest:H",
+        help="weather between its times: linear, or that of the nearest of updates H hours apart "
+        "(quasi-static, to study what coarse updates do)",
+    )
 
 
 def add_mapping_option(parser: Any) -> None:

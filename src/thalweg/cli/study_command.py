@@ -117,6 +117,8 @@ def _summary(arguments: argparse.Namespace) -> int:
                 ("fronts", summary.fronts),
                 ("annual", summary.annual),
                 ("voyages", summary.voyages),
+                ("choices", summary.choices),
+                ("hours", summary.hours),
             )
         }
         print(json.dumps(parts, indent=2, allow_nan=False))
@@ -127,6 +129,8 @@ def _summary(arguments: argparse.Namespace) -> int:
     if not summary.best.empty:
         for _, row in summary.best.iterrows():
             print(f"least median time: month {int(row['month'])}, {row['time_h_p50']:.2f} h")
+    if not summary.choices.empty:
+        print(summary.choices.round(2).to_string(index=False, na_rep="-"))
     if not summary.fronts.empty and "method" in summary.fronts:
         ratios = summary.fronts.groupby("method")["hypervolume_ratio"].median()
         for method, ratio in ratios.sort_values(ascending=False).items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -121,10 +122,33 @@ def measured_pairs(
     return Pairs(first, second, length, course)
 
 
+#: Positions on legs from places, their ends, their lengths [m], and the shares of these.
+LegPositions: TypeAlias = Callable[..., tuple[FloatArray, FloatArray]]
+
+
+def _geodesic_positions(
+    lat: FloatArray, lon: FloatArray, first: Int32Array, second: Int32Array,
+    length: FloatArray, share: FloatArray,
+) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    a, b = lat[first], lon[first]
+    _, course, _ = geodesy.inverse(a, b, lat[second], lon[second])
+    return geodesy.direct(a, b, course, share * length)
+
+
 def evenly_spaced_samples(
-    stations: Stations, pairs: Pairs, spacing: FloatArray | float
+    stations: Stations,
+    pairs: Pairs,
+    spacing: FloatArray | float,
+    positions: LegPositions = _geodesic_positions,
 ) -> tuple[Stations, Samples]:
     """Sample pairs at new stations on their geodesics, at most ``spacing`` [m] apart.
+
+    Parameters
+    ----------
+    stations : Nodes.
+    pairs : Pairs of nodes.
+    spacing : Of samples [m].
+    positions : How positions on legs are computed.
 
     Returns
     -------
@@ -137,10 +161,9 @@ def evenly_spaced_samples(
     ptr = np.concatenate([[0], np.cumsum(pieces - 1)])
     of = np.repeat(np.arange(len(pairs.first)), pieces - 1)
     s = (np.arange(len(of)) - ptr[of] + 1) / pieces[of]
-    a, b = pairs.first[of], pairs.second[of]
     lat, lon = stations.lat, stations.lon
-    _, course, _ = geodesy.inverse(lat[a], lon[a], lat[b], lon[b])
-    new_lat, new_lon = geodesy.direct(lat[a], lon[a], course, s * pairs.length[of])
+    ends = pairs.first[of], pairs.second[of]
+    new_lat, new_lon = positions(lat, lon, *ends, pairs.length[of], s)
     ids = (len(lat) + np.arange(len(of))).astype(np.int32)
     samples = Samples(ptr, ids, ids.copy(), np.zeros(len(of), np.float32), s.astype(np.float32))
     grown = replace(stations, lat=np.append(lat, new_lat), lon=np.append(lon, new_lon))
@@ -227,6 +250,8 @@ def _with_canal_courses(stations: Stations, pairs: Pairs) -> Float32Array:
     """Return the courses of pairs [rad]; of canals that of the line between their ends."""
     canal = np.flatnonzero(np.isnan(pairs.course))
     course = pairs.course.copy()
+    if not len(canal):
+        return course
     first, second = pairs.first[canal], pairs.second[canal]
     course[canal] = measured_pairs(stations.lat, stations.lon, first, second).course
     return course

@@ -145,7 +145,7 @@ def plan(
     choice = NetworkChoice(network, resolution, voyage.layered)
     if choice.layered is not None:
         choice.layered.shapes(len(voyage.via) + 1)  # refuses lists of another length
-    context, ends = _context(voyage, ship, with_wind_speed(ship, sea), chart, choice)
+    context, ends = voyage_context(voyage, ship, with_wind_speed(ship, sea), chart, choice)
     context = replace(
         context, report_progress=progress or context.report_progress, proof_seconds=proof
     )
@@ -248,7 +248,7 @@ def _plan_at_sea(context: PlanningContext, ends: list[Endpoint]) -> Plan:
     return _assemble_plan(context, ends, passages, bound)
 
 
-def _context(
+def voyage_context(
     voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, choice: NetworkChoice
 ) -> tuple[PlanningContext, list[Endpoint]]:
     """Return the context of a voyage and its end points, after all checks of the request."""

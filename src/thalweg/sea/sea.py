@@ -23,6 +23,7 @@ from thalweg.sea.inspection import inspect_layers
 from thalweg.sea.layer import Layer
 from thalweg.sea.models import cyclone_layer
 from thalweg.sea.models.function_layer import FieldFunction, constant_layer, layer_of_functions
+from thalweg.sea.models.quasi_static_layer import quasi_static_sea, sea_sampled
 from thalweg.sea.opening import layers_of_sources
 from thalweg.sea.tides.constituents import Constituents
 from thalweg.sea.tides.harmonic_analysis import TideAnalysis
@@ -119,10 +120,9 @@ class Sea:
     ) -> Sea:
         """Return one sea in several versions, each as likely as the others.
 
-        For a file with a dimension of members use `Sea.open`. An ensemble has no values itself:
-        select `member` 0 to ``members - 1``, or evaluate a route in all of them with
-        `thalweg.route.evaluate_members`. Combined with other seas by ``+``, the members share
-        those.
+        For a file with members use `Sea.open`. An ensemble has no values itself: select `member` 0
+        to ``members - 1``, or evaluate a route in all with `thalweg.route.evaluate_members`.
+        Combined with other seas by ``+``, the members share those.
 
         Parameters
         ----------
@@ -197,8 +197,8 @@ class Sea:
     def calm(cls) -> Sea:
         """Return a sea without wind, waves and currents at all places and times.
 
-        Waves of height zero travel north with a placeholder peak period of 8 s, so that models
-        that use direction and period can be evaluated. Water level and depth are unknown.
+        Waves of height zero travel north with a placeholder peak period of 8 s. Water level and
+        depth are unknown.
 
         Returns
         -------
@@ -230,8 +230,7 @@ class Sea:
         name : str
             Name of an embedded storm.
         start : time, optional
-            First time of the track; its true date by default. Outside the period of the track
-            values are unknown.
+            First time of the track, its true date by default; unknown outside its period.
         ambient : AmbientSea, optional
             The surrounding sea; by default 5.2 m/s of wind and 1.5 m of waves from the west.
         time_step : float, optional
@@ -264,8 +263,7 @@ class Sea:
             such as the depth, are kept); or constants at three nodes or more; or constants at one
             node that apply to ``area``.
         constituents : sequence of str, optional
-            Names to analyse (by default all that the length of the run can separate), or to
-            select from the constants given (by default all).
+            Names to analyse (by default all that the run can separate) or select (by default all).
         area : tuple of float, optional
             (south, north, west, east) [deg] for a single station.
         rayleigh : float
@@ -373,6 +371,8 @@ class Sea:
         return replace(self, layers=select_member(self.layers, index))
 
     check_single = delegated(check_not_ensemble, "layers")
+    quasi_static = delegated(quasi_static_sea)
+    sampled = delegated(sea_sampled)
 
     @property
     def variables(self) -> frozenset[str]:

@@ -16,8 +16,10 @@ from thalweg.core.errors import InputError, ThalwegError
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Plan, Voyage, plan
 from thalweg.route import Route, Track, evaluate, read_track
+from thalweg.route.indicator_columns import INDICATORS, indicator_value
 from thalweg.sea import Sea
 from thalweg.ship import Ship
+from thalweg.studies.series_rows import SeriesInputs, series_figures, series_key
 from thalweg.studies.study import StudyRow, canonical_json
 
 #: Largest values over a route: column and sampled variables.
@@ -26,9 +28,13 @@ _EXTREMES = {
     "max_wind_speed_ms": ("eastward_wind", "northward_wind"),
     "max_current_ms": ("eastward_sea_water_velocity", "northward_sea_water_velocity"),
 }
+#: Indicators whose totals have names of their own.
+_NAMED_OTHERWISE = ("time", "distance", "fuel", "energy", "co2", "cost", "min_ukc")
 #: Entries of a voyage that do not change the route planned in calm weather.
 _OF_WEATHER = ("depart", "depart_window", "arrive", "arrive_by", "ensemble")
 _ANY_DATE = "2000-01-01T00:00Z"
+#: Errors of a row that are faults of Thalweg: the row says so, and the study goes on.
+_OWN_FAULTS = (ArithmeticError, LookupError, TypeError, ValueError, AssertionError)
 
 
 def run_rows(rows: Sequence[StudyRow], folder: str) -> list[dict[str, Any]]:
@@ -44,7 +50,13 @@ def run_rows(rows: Sequence[StudyRow], folder: str) -> list[dict[str, Any]]:
     list of dict
         One per row, as `run_row`.
     """
-    return [run_row(row, folder) for row in rows]
+    together: dict[str, list[StudyRow]] = {}
+    for row in rows:
+        key = series_key(row.request) if row.request.get("detail") == "network" else row.id
+        together.setdefault(key, []).append(row)
+    results = [result for group in together.values() for result in _run_group(group, folder)]
+    order = {row.id: place for place, row in enumerate(rows)}
+    return sorted(results, key=lambda result: order[result["id"]])
 
 
 def run_row(row: StudyRow, folder: str) -> dict[str, Any]:
@@ -60,18 +72,45 @@ def run_row(row: StudyRow, folder: str) -> dict[str, Any]:
         ``id``, the labels, the key figures of the route (None where unknown), ``refusal`` (the kind
         of error, None for a route) with ``reason``, ``seconds`` and ``version``.
     """
+    return _run_group([row], folder)[0]
+
+
+def _run_group(rows: Sequence[StudyRow], folder: str) -> list[dict[str, Any]]:
+    """Return the results of one row, or of rows that differ in their departure only."""
     begin = time.perf_counter()
-    result: dict[str, Any] = {"id": row.id, **row.labels, "refusal": None, "reason": None}
+    found: list[dict[str, Any] | Exception]
     try:
-        result |= _figures(row.request, Path(folder))
-    except ThalwegError as error:
-        result |= {"refusal": type(error).__name__, "reason": str(error)}
-    except (ArithmeticError, LookupError, TypeError, ValueError, AssertionError) as error:
-        result |= {"refusal": "InternalError", "reason": f"{type(error).__name__}: {error}"}
-    return result | {
-        "seconds": round(time.perf_counter() - begin, 4),
-        "version": thalweg.__version__,
-    }
+        if rows[0].request.get("detail") == "network":
+            found = series_figures([row.request for row in rows], _inputs(rows[0].request, folder))
+        else:
+            found = [_figures(rows[0].request, Path(folder))]
+    except (ThalwegError, *_OWN_FAULTS) as error:
+        found = [error] * len(rows)
+    taken = (time.perf_counter() - begin) / len(rows)
+    more = {"seconds": round(taken, 4), "version": thalweg.__version__}
+    none = {"refusal": None, "reason": None}
+    return [
+        {"id": row.id, **row.labels, **none, **_plain(one), **more} for row, one in zip(rows, found)
+    ]
+
+
+def _plain(found: dict[str, Any] | Exception) -> dict[str, Any]:
+    """Return figures as they are, and an error as a refusal."""
+    if isinstance(found, ThalwegError):
+        counts = getattr(found, "reasons", None) or {}
+        refused = ", ".join(f"{name} ({count:,})" for name, count in sorted(counts.items()))
+        reason = f"{found} Legs refused: {refused}." if refused else str(found)
+        return {"refusal": type(found).__name__, "reason": reason}
+    if isinstance(found, Exception):
+        return {"refusal": "InternalError", "reason": f"{type(found).__name__}: {found}"}
+    return found
+
+
+def _inputs(request: Mapping[str, Any], folder: str) -> SeriesInputs:
+    coast = str(request.get("coast", "i"))
+    return SeriesInputs(
+        ship_of_request(request, folder), _sea(request, Path(folder)), _chart(coast), folder
+    )
 
 
 def _figures(request: Mapping[str, Any], folder: Path) -> dict[str, Any]:
@@ -85,10 +124,13 @@ def _figures(request: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         route = _evaluated(read_track(path), ship, sea, chart, voyage)
         return _route_figures(route)
     answer = _planned(voyage, ship, sea, chart, request)
+    if answer.cancelled:  # Ctrl-C: the best plan so far is no result of this row
+        raise KeyboardInterrupt
     figures = _route_figures(answer.best)
     objective = answer.voyage.objective
     figures |= {"objective": objective, "certified_gap": _certified_gap(answer)}
     if answer.front is not None:
+        figures |= _savings(answer)
         figures["front"] = canonical_json(
             [[_known(route.time_h), _known(route.fuel_t)] for route in answer.routes]
         )
@@ -118,6 +160,20 @@ def _certified_gap(answer: Plan) -> float | None:
     return _known((value - certain) / value) if value > 0.0 else None
 
 
+def _savings(answer: Plan) -> dict[str, Any]:
+    """Return what weather and varied speeds save over the weather-blind route of nearly that time.
+
+    In the unit of the objective, at the same time; None where it is not known.
+    """
+    names = ("saved", "saved_by_route", "saved_by_speed")
+    comparison = None if answer.front is None else answer.front.comparison
+    known = [row for row in comparison.rows if row["saved"] is not None] if comparison else []
+    if not known:
+        return dict.fromkeys(names)
+    nearest = min(known, key=lambda row: abs(row["time_h"] - answer.best.time_h))
+    return {name: nearest[name] for name in names}
+
+
 def _route_figures(route: Route) -> dict[str, Any]:
     """Return the totals of a route and the worst weather on it."""
     figures = {
@@ -125,6 +181,9 @@ def _route_figures(route: Route) -> dict[str, Any]:
         for key, value in route.as_dict().items()
         if isinstance(value, (int, float, str, bool)) or value is None
     }
+    for name in INDICATORS:
+        if name not in _NAMED_OTHERWISE:
+            figures[name] = _known(indicator_value(route, name))
     figures["first_violation"] = str(route.violations[0]) if route.violations else None
     for column, variables in _EXTREMES.items():
         parts = [route.samples[name] for name in variables if name in route.samples]
@@ -209,7 +268,8 @@ def _sea(request: Mapping[str, Any], folder: Path) -> Sea:
     parts = [request.get(key) for key in ("sea", "map", "fill")]
     sea = _opened_sea(canonical_json(parts), str(folder))
     member = request.get("member")
-    return sea if member is None else sea.member(int(member))
+    sea = sea if member is None else sea.member(int(member))
+    return sea.sampled(str(request.get("sampling", "linear")))
 
 
 @lru_cache(maxsize=4)

@@ -21,11 +21,12 @@ from thalweg.studies.study_axes import MOST_ROWS, axis_values, plain_data, sampl
 
 #: Entries of a row beside those of a voyage.
 SURROUNDINGS: Final = (
-    "ship", "load_factor", "sea", "map", "fill", "member", "coast", "network", "resolution_nm",
-    "track",
+    "ship", "load_factor", "sea", "map", "fill", "member", "sampling", "coast", "network",
+    "resolution_nm", "detail", "track",
 )  # fmt: skip
 _ENTRIES: Final = ("name", "voyage", "axes", "sample", "compare", "annual", *SURROUNDINGS)
 COMPARISONS: Final = ("weather_blind",)
+DETAILS: Final = ("refined", "network")  #: of routes: as `plan` gives them, or on the network alone
 _DISTRIBUTIONS: Final = {"uniform": 2, "normal": 2, "choice": None}
 
 
@@ -96,6 +97,9 @@ class Study:
         for name in self.compare:
             if name not in COMPARISONS:
                 raise unknown_name_error("comparison", name, COMPARISONS)
+        for name in (self.base.get("detail", DETAILS[0]), *self.axes.get("detail", ())):
+            if not isinstance(name, Mapping) and name not in DETAILS:
+                raise unknown_name_error("detail", str(name), DETAILS)
         if self.size > MOST_ROWS:
             raise InputError(
                 f"The study has {self.size:,} voyages.",
@@ -133,7 +137,7 @@ class Study:
         ----------
         rows : sequence of StudyRow
         length : int
-            Most rows of a chunk.
+            Most rows of a chunk; ten times as many with the detail ``network``.
 
         Returns
         -------
@@ -147,7 +151,8 @@ class Study:
         chunks = []
         for group in groups.values():
             group.sort(key=lambda row: str(row.request["voyage"].get("depart", "")))
-            chunks += [group[k : k + length] for k in range(0, len(group), length)]
+            step = 10 * length if group[0].request.get("detail") == "network" else length
+            chunks += [group[k : k + step] for k in range(0, len(group), step)]
         return chunks
 
     def to_dict(self) -> dict[str, Any]:

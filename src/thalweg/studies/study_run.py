@@ -134,7 +134,22 @@ def _results(
         return _on_cluster(chunks, folder, scheduler)
     if workers > 0:
         return _in_processes(chunks, folder, workers)
-    return (run_rows(chunk, folder) for chunk in chunks)
+    return _in_this_process(chunks, folder)
+
+
+def _in_this_process(chunks: list[Chunk], folder: str) -> Iterator[list[dict[str, Any]]]:
+    """Yield the results of chunks; after Ctrl-C those of the rows of a chunk that are finished."""
+    for chunk in chunks:
+        at_once = all(row.request.get("detail") == "network" for row in chunk)
+        done: list[dict[str, Any]] = []
+        try:
+            for rows in [chunk] if at_once else [[row] for row in chunk]:
+                done += run_rows(rows, folder)
+        except KeyboardInterrupt:
+            if done:
+                yield done
+            raise
+        yield done
 
 
 def _in_processes(chunks: list[Chunk], folder: str, workers: int) -> Iterator[list[dict[str, Any]]]:

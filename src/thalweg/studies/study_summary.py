@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import calendar
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
@@ -12,18 +11,30 @@ import pandas as pd
 from scipy.stats import binom
 
 from thalweg.core.errors import InputError
-from thalweg.core.file_writing import make_folder, save_figure, write_csv_rows
+from thalweg.core.file_writing import make_folder, write_csv_rows
+from thalweg.route.indicator_columns import INDICATORS
 from thalweg.ship import Ship
 from thalweg.studies.annual_figures import annual_figures
 from thalweg.studies.front_statistics import draw_front_statistics, front_statistics
 from thalweg.studies.row_runner import ship_of_request
+from thalweg.studies.season_plots import draw_heat_map, draw_months
+from thalweg.studies.season_tables import (
+    choices_by_axis,
+    departure_windows,
+    inshore_share,
+    month_by_hour,
+)
 from thalweg.studies.study import Study
 from thalweg.studies.study_parts import read_parts, read_study
 
+#: Figures with quantiles, where rows have them; then the indicators and the savings.
 FIGURES: Final = ("time_h", "fuel_t", "co2_t", "distance_nm", "waiting_h")
+_SAVINGS: Final = (
+    "saved_time_h", "saved_fuel_t", "saved_sick_percent", "saved", "saved_by_route",
+    "saved_by_speed",
+)  # fmt: skip
 QUANTILES: Final = (0.1, 0.5, 0.9)
 _CONFIDENCE: Final = 0.9
-_MONTHS: Final = tuple(calendar.month_abbr)[1:]
 
 
 @dataclass(frozen=True)
@@ -34,8 +45,9 @@ class StudySummary:
     ----------
     table : pandas.DataFrame
         One row per group (axes but the departure, and the month): ``voyages``, ``routes``,
-        ``without_route`` (share), and of each key figure ``_p10``, ``_p50``, ``_p90`` and the
-        confidence limits of the median ``_p50_low`` and ``_p50_high``.
+        ``without_route`` (share); ``waiting_days_mean`` and ``waiting_days_max`` until a departure
+        with a route, ``inshore_share`` of routes; and of each key figure and indicator ``_p10``,
+        ``_p50``, ``_p90`` and the confidence limits of the median ``_p50_low`` and ``_p50_high``.
     refusals : pandas.DataFrame
         ``refusal``, ``reason`` and ``voyages``, most frequent first.
     best : pandas.DataFrame
@@ -46,6 +58,10 @@ class StudySummary:
         Figures of a year (`annual_figures`); empty if the study has no entry ``annual``.
     voyages : pandas.DataFrame
         One row per voyage, by its axes: departure, arrival, key figures, and why there is no route.
+    choices : pandas.DataFrame
+        How often each value of an axis is the best of a departure (`choices_by_axis`).
+    hours : pandas.DataFrame
+        Medians by month and hour of the departure (`month_by_hour`).
     """
 
     table: pd.DataFrame
@@ -54,11 +70,14 @@ class StudySummary:
     fronts: pd.DataFrame
     annual: pd.DataFrame
     voyages: pd.DataFrame
+    choices: pd.DataFrame = field(default_factory=pd.DataFrame)
+    hours: pd.DataFrame = field(default_factory=pd.DataFrame)
 
     def write(self, folder: str | Path) -> list[Path]:
         """Write ``summary.csv``, ``voyages.csv``, ``refusals.csv``, and what else there is.
 
-        ``months.png`` with months, ``fronts.csv`` and ``fronts.png`` with fronts, ``annual.csv``.
+        ``months.png``, ``hours.csv`` and ``hours.png`` (heat map of the median time) with months,
+        ``choices.csv``, ``fronts.csv`` and ``fronts.png`` with fronts, ``annual.csv``.
 
         Parameters
         ----------
@@ -72,17 +91,20 @@ class StudySummary:
         files = []
         tables = {
             "summary": self.table, "voyages": self.voyages, "refusals": self.refusals,
-            "fronts": self.fronts, "annual": self.annual,
+            "fronts": self.fronts, "annual": self.annual, "choices": self.choices,
+            "hours": self.hours,
         }  # fmt: skip
         for name, frame in tables.items():
-            if frame.empty and name in ("fronts", "annual"):
+            if frame.empty and name in ("fronts", "annual", "choices", "hours"):
                 continue
             path = folder / f"{name}.csv"
             rows = frame.astype(object).where(frame.notna(), None).to_numpy().tolist()
             write_csv_rows(path, [list(frame.columns), *rows])
             files.append(path)
         if "month" in self.table and self.table["routes"].sum():
-            files.append(_draw_months(self.table, folder / "months.png"))
+            files.append(draw_months(self.table, folder / "months.png"))
+        if not self.hours.empty and "time_h" in self.hours:
+            files.append(draw_heat_map(self.hours, "time_h", folder / "hours.png"))
         if not self.fronts.empty:
             files.append(draw_front_statistics(self.fronts, folder / "fronts.png"))
         return files
@@ -99,8 +121,9 @@ def study_rows(folder: str | Path) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        With ``id``, the axes, the key figures, ``refusal`` and ``reason``; ``saved_time_h`` and
-        ``saved_fuel_t`` against the route that ignores the weather, where it was compared.
+        With ``id``, the axes, the key figures, ``refusal`` and ``reason``; ``saved_time_h``,
+        ``saved_fuel_t`` and ``saved_sick_percent`` against the route that ignores the weather,
+        where it was compared.
 
     Raises
     ------
@@ -117,7 +140,7 @@ def study_rows(folder: str | Path) -> pd.DataFrame:
             "thalweg study run makes them.",
             "Run the study first.",
         )
-    for name in ("time_h", "fuel_t"):
+    for name in ("time_h", "fuel_t", "sick_percent"):
         if f"blind_{name}" in frame and name in frame:
             kept = frame["blind_feasible"].fillna(False).astype(bool)
             frame[f"saved_{name}"] = (frame[f"blind_{name}"] - frame[name]).where(kept)
@@ -162,7 +185,8 @@ def summarise_study(folder: str | Path) -> StudySummary:
         usable = frame["refusal"].isna() & frame["feasible"].fillna(False).astype(bool)
     else:
         usable = pd.Series(False, index=frame.index)
-    figures = [name for name in (*FIGURES, "saved_time_h", "saved_fuel_t") if name in frame]
+    wanted = dict.fromkeys([*FIGURES, *INDICATORS, *_SAVINGS])
+    figures = [name for name in wanted if name in frame and frame[name].notna().any()]
     groups = frame.groupby(by, sort=True, dropna=False) if by else [((), frame)]
     rows = []
     for key, group in groups:
@@ -171,18 +195,24 @@ def summarise_study(folder: str | Path) -> StudySummary:
         row: dict[str, Any] = dict(zip(by, keys))
         row |= {"voyages": len(group), "routes": len(good)}
         row["without_route"] = 1.0 - len(good) / len(group)
+        if "month" in frame:
+            row |= departure_windows(group, usable[group.index])
+        row["inshore_share"] = inshore_share(good)
         for name in figures:
             row |= _quantiles(name, good[name].astype(float).dropna().to_numpy())
         rows.append(row)
     table = pd.DataFrame(rows)
     axes = [name for name in study.axes if name in frame]
+    ways = [name for name in axes if name not in times]
     return StudySummary(
         table,
         _refusals(frame, usable),
         _best(table, by),
         front_statistics(frame[usable], axes),
-        _annual(study, frame[usable], [name for name in axes if name not in times]),
+        _annual(study, frame[usable], ways),
         _voyages(frame, list(study.axes), figures),
+        choices_by_axis(frame, usable, ways),
+        month_by_hour(frame[usable], figures),
     )
 
 
@@ -263,34 +293,3 @@ def _best(table: pd.DataFrame, by: list[str]) -> pd.DataFrame:
     if not others:
         return known.loc[[known["time_h_p50"].idxmin()]]
     return known.loc[known.groupby(others, dropna=False)["time_h_p50"].idxmin()]
-
-
-def _draw_months(table: pd.DataFrame, path: Path) -> Path:
-    """Draw the median time by month with its quantiles, and the share without a route."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(8.0, 4.5), layout="constrained")
-    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
-    others = [
-        name
-        for name in table.columns[: list(table.columns).index("month")]
-        if table[name].nunique() > 1
-    ]
-    groups = table.groupby(others, dropna=False) if others else [((), table)]
-    for key, group in groups:
-        label = ", ".join(map(str, key if isinstance(key, tuple) else (key,)))
-        (line,) = top.plot(group["month"], group["time_h_p50"], marker="o", label=label)
-        if "time_h_p10" in group:
-            low, high = group["time_h_p10"].astype(float), group["time_h_p90"].astype(float)
-            top.fill_between(group["month"], low, high, alpha=0.15, color=line.get_color())
-        bottom.plot(group["month"], 100.0 * group["without_route"], color=line.get_color())
-    top.set_ylabel("passage [h]\nmedian, 10 to 90 %")
-    bottom.set_ylabel("without\nroute [%]")
-    bottom.set_ylim(0.0, 100.0)
-    bottom.set_xticks(range(1, 13), _MONTHS)
-    if others:
-        top.legend(fontsize="small")
-    for axes in (top, bottom):
-        axes.grid(alpha=0.3)
-    save_figure(figure, path, dpi=120)
-    return path

@@ -27,6 +27,7 @@ from thalweg.network.assembly import (
 from thalweg.network.endpoints import check_endpoints
 from thalweg.network.layered.section_shape import PerSection, SectionShape, section_shapes
 from thalweg.network.network import Graph, Network, NetworkMeta, Stations
+from thalweg.network.short_legs import positions_on_short_legs
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -210,7 +211,9 @@ def _assembled(
     stations = Stations(draft.lat[used], draft.lon[used], int(used.sum()))
     first, second = number[draft.first[keep]], number[draft.second[keep]]
     pairs = measured_pairs(stations.lat, stations.lon, first, second)
-    stations, samples = evenly_spaced_samples(stations, pairs, _SAMPLE_SPACING)
+    stations, samples = evenly_spaced_samples(
+        stations, pairs, _SAMPLE_SPACING, positions_on_short_legs
+    )
     count = len(first)  # the segments are in the order of their first nodes
     leaving = np.bincount(first, minlength=stations.n_nodes)
     graph = Graph(np.concatenate([[0], np.cumsum(leaving)]).astype(np.int64), second)

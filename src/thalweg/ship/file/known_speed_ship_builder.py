@@ -63,7 +63,7 @@ def _check_sea_margin(file: ShipFile) -> None:
 
 def estimates_of_known_speeds(file: ShipFile, hull: Hull, loading: Loading) -> tuple[Estimate, ...]:
     """Return the estimated particulars of a ship that gives its speeds."""
-    if file.models.speed_loss != "none":
+    if file.models.speed_loss == "kwon_2008":
         hull = hull_for_kwon(hull, loading)
     light = lightship_estimate(file.loading, loading.displacement_empty)
     return (*hull.estimated, *light, *fuel_estimates(file))

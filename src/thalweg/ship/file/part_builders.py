@@ -13,8 +13,9 @@ from thalweg.ship.hull.hull import Hull, required_particulars, volume_at
 from thalweg.ship.hull.hull_checks import check_depth
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.models.known_speed_model import KwonSpeedLoss
+from thalweg.ship.models.prestegardshus_speed_loss import PrestegardshusSpeedLoss
 from thalweg.ship.models.speed_power_laws import SPEED_POWER_LAWS
-from thalweg.ship.schema.ship_schema import LoadingSection, ShipFile
+from thalweg.ship.schema.ship_schema import LoadingSection, ModelsSection, ShipFile
 from thalweg.ship.ship_limits import ShipLimits
 
 SAFETY_KEYS: Final = frozenset(
@@ -29,7 +30,7 @@ RESISTANCE_MODEL_KEYS: Final = (
     "propulsion",
     "rudder",
 )
-SPEED_LOSSES: Final = ("none", "kwon_2008")
+SPEED_LOSSES: Final = ("none", "kwon_2008", "prestegardshus_2020")
 _KWON_PARTICULARS: Final = ("length_between_perpendiculars_m", "block_coefficient")
 
 
@@ -171,7 +172,9 @@ def resistance_methods(file: ShipFile) -> list[str]:
     return [name for name in RESISTANCE_MODEL_KEYS if given.get(name, "none") != "none"]
 
 
-def build_speed_loss(file: ShipFile, hull: Hull, loading: Loading) -> KwonSpeedLoss | None:
+def build_speed_loss(
+    file: ShipFile, hull: Hull, loading: Loading
+) -> KwonSpeedLoss | PrestegardshusSpeedLoss | None:
     """Return the speed loss chosen under ``models.speed_loss``."""
     models = file.models
     name = models.speed_loss
@@ -179,6 +182,8 @@ def build_speed_loss(file: ShipFile, hull: Hull, loading: Loading) -> KwonSpeedL
         raise unknown_name_error("speed loss", name, SPEED_LOSSES)
     if name == "none":
         return None
+    if name == "prestegardshus_2020":
+        return _rule_of_prestegardshus(models)
     hull = hull_for_kwon(hull, loading)
     length, block = required_particulars(
         hull, _KWON_PARTICULARS, "kwon_2008", instead="speed_loss: none"
@@ -193,6 +198,19 @@ def build_speed_loss(file: ShipFile, hull: Hull, loading: Loading) -> KwonSpeedL
         ship_type=models.kwon_ship_type,
         classes=models.kwon_classes,
     )
+
+
+def _rule_of_prestegardshus(models: ModelsSection) -> PrestegardshusSpeedLoss:
+    height, wind = models.largest_wave_height_m, models.largest_wind_speed_m_s
+    if height is None or wind is None:
+        raise InputError(
+            "speed_loss: prestegardshus_2020 needs the largest waves and the strongest wind.",
+            "It takes both as shares of the largest of the data.",
+            "Add models.largest_wave_height_m and models.largest_wind_speed_m_s, or choose "
+            "kwon_2008.",
+            key="models.speed_loss",
+        )
+    return PrestegardshusSpeedLoss(height, wind, models.nothing_lost_in_calm)
 
 
 def hull_for_kwon(hull: Hull, loading: Loading) -> Hull:

@@ -27,6 +27,7 @@ from thalweg.ship.models.engine_plant import EngineOrders, EnginePlant, build_en
 from thalweg.ship.models.force_balance import ForceBalance
 from thalweg.ship.models.known_speed_model import KwonSpeedLoss
 from thalweg.ship.models.kwon_resistance_model import KwonResistanceModel
+from thalweg.ship.models.prestegardshus_speed_loss import PrestegardshusSpeedLoss
 from thalweg.ship.models.propulsion_model import build_propulsion
 from thalweg.ship.models.resistance_model import ResistanceModel
 from thalweg.ship.models.speed_power_laws import speed_power_law_name
@@ -70,7 +71,7 @@ def _assemble_resistance_model(
 ) -> ResistanceModel | KwonResistanceModel:
     """Return the model of a ship file whose methods go together."""
     loss = build_speed_loss(file, hull, loading)
-    _check_speed_loss(file.models, loss)
+    loss = _checked_speed_loss(file.models, loss)
     _check_squat_and_rudder(file, hull, loading)
     _check_draught(loading)
     full = _full_hull(hull, loading)
@@ -90,10 +91,19 @@ def _assemble_resistance_model(
     return model if loss is None else KwonResistanceModel(model, loss)
 
 
-def _check_speed_loss(models: ModelsSection, loss: KwonSpeedLoss | None) -> None:
-    """Refuse Kwon's speed loss together with a method for waves or wind."""
+def _checked_speed_loss(
+    models: ModelsSection, loss: KwonSpeedLoss | PrestegardshusSpeedLoss | None
+) -> KwonSpeedLoss | None:
+    """Return Kwon's speed loss; refuse it with a method for waves or wind, and other rules."""
     weather = {"waves": models.waves, "wind": models.wind}
     twice = [name for name, method in weather.items() if method != "none"]
+    if isinstance(loss, PrestegardshusSpeedLoss):
+        raise InputError(
+            "speed_loss: prestegardshus_2020 is chosen for a ship with a resistance.",
+            "That rule is for ships with known speeds.",
+            "Choose methods for waves and wind, or kwon_2008.",
+            key="models.speed_loss",
+        )
     if loss is not None and twice:
         raise InputError(
             f"speed_loss: {models.speed_loss} is chosen together with "
@@ -102,6 +112,7 @@ def _check_speed_loss(models: ModelsSection, loss: KwonSpeedLoss | None) -> None
             "Leave out one of them.",
             key="models.speed_loss",
         )
+    return loss
 
 
 def _check_squat_and_rudder(file: ShipFile, hull: Hull, loading: Loading) -> None:

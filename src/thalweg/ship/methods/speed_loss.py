@@ -312,3 +312,41 @@ def _choose(options: dict[str, Any], name: str) -> Any:
     if name not in options:
         raise unknown_name_error("choice in Kwon's method", name, options)
     return options[name]
+
+
+def prestegardshus_speed_factor(
+    angle: ArrayLike, share: ArrayLike, *, consistent: bool = False
+) -> FloatArray:
+    r"""Return the factor on the speed by waves or by wind of Prestegardshus (2020).
+
+    .. math:: r = 1 - 0.8 \, \frac{\theta/\pi + k}{2}
+
+    For comparison with that thesis only. The rule is at fault: in a flat calm, where the direction
+    of waves and wind has no meaning, it still takes up to 40 % of the speed for each of the two, so
+    that a ship heading into no waves and no wind makes 0.36 of her speed; and waves that follow
+    cost as much as they would from ahead with half the height. ``consistent`` has
+    :math:`r = 1 - 0.8\,k\,(1 + \theta/\pi)/2`, which takes nothing in a calm.
+
+    Parameters
+    ----------
+    angle : array_like
+        :math:`\theta` between the heading and where waves or wind go to [rad], 0 following to pi
+        ahead.
+    share : array_like
+        k, wave height or wind speed over the largest of the data, 0 to 1.
+    consistent : bool
+        The variant.
+
+    Returns
+    -------
+    ndarray
+        Of the speed; NaN for a share above 1. The speed is the product of the factors of waves and
+        wind with that in calm water.
+
+    References
+    ----------
+    Prestegardshus (2020), eqs. 3.47 and 3.48. The variant is ours.
+    """
+    turn, k = np.asarray(angle, float) / np.pi, np.asarray(share, float)
+    lost = 0.5 * k * (1.0 + turn) if consistent else 0.5 * (turn + k)
+    return np.where(k <= 1.0 + 1e-9, 1.0 - 0.8 * lost, np.nan)

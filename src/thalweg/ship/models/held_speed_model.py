@@ -17,6 +17,7 @@ from thalweg.ship.models.known_speed_model import (
     KwonSpeedLoss,
     known_speed_axes,
 )
+from thalweg.ship.models.prestegardshus_speed_loss import PrestegardshusSpeedLoss
 from thalweg.ship.tables.table_parts import TableError, TablePart
 from thalweg.ship.tables.tabulate import tabulate_dense
 
@@ -60,7 +61,7 @@ class HeldSpeedModel:
         return True
 
     @property
-    def loss(self) -> KwonSpeedLoss | None:
+    def loss(self) -> KwonSpeedLoss | PrestegardshusSpeedLoss | None:
         """Involuntary speed loss."""
         return self.base.loss
 

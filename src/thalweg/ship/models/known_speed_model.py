@@ -18,6 +18,7 @@ from thalweg.ship.methods.displacement import interpolate_loading
 from thalweg.ship.methods.speed_loss import LastTermSign, ShipType, kwon_notes, kwon_speed_loss
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import setting_index
+from thalweg.ship.models.prestegardshus_speed_loss import PrestegardshusSpeedLoss
 from thalweg.ship.models.squat_model import SquatModel
 from thalweg.ship.tables.table_parts import TableError, TablePart
 from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, constant_part, tabulate_dense
@@ -40,6 +41,15 @@ class KwonSpeedLoss:
     sign: LastTermSign = "plus"
     ship_type: ShipType = "other"
     classes: bool = False
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """Conditions read."""
+        return frozenset({"wind_speed", "wind_angle"})
+
+    def axes(self, size: int) -> list[AxisRange]:
+        """Axes of tables: wind speed and angle."""
+        return [replace(DEFAULT_AXES["wind_speed"], size=size), wind_angle_axis(self)]
 
     def share(self, conditions: Conditions, speed: FloatArray) -> FloatArray:
         """Share of the calm-water speed [m/s] that is lost, 0 to 0.99."""
@@ -114,14 +124,14 @@ class KnownSpeedModel:
     fuel_rates: FloatArray
     powers: FloatArray
     law: SpeedPowerLaw = field(default_factory=SpeedPowerLaw)
-    loss: KwonSpeedLoss | None = None
+    loss: KwonSpeedLoss | PrestegardshusSpeedLoss | None = None
     squat: SquatModel | None = None
 
     @property
     def reads(self) -> frozenset[str]:
-        """Conditions read: the wind with a speed loss, the depth with squat."""
-        wind = frozenset() if self.loss is None else frozenset({"wind_speed", "wind_angle"})
-        return wind if self.squat is None else wind | {"depth"}
+        """Conditions read: the weather with a speed loss, the depth with squat."""
+        weather = frozenset() if self.loss is None else self.loss.reads
+        return weather if self.squat is None else weather | {"depth"}
 
     @property
     def identity(self) -> Mapping[str, object]:
@@ -301,8 +311,7 @@ def known_speed_axes(model: KnownSpeedModel, load_factor: float) -> list[AxisRan
     """Return the axes of the tables of a ship with known speeds: wind speed and angle, depth."""
     axes: list[AxisRange] = []
     if model.loss is not None:
-        size = 257 if model.squat is None else 65
-        axes += [replace(DEFAULT_AXES["wind_speed"], size=size), wind_angle_axis(model.loss)]
+        axes += model.loss.axes(257 if model.squat is None else 65)
     if model.squat is not None:
         axes.append(_depth_axis(model.squat, load_factor, 1025 if model.loss is None else 257))
     return axes

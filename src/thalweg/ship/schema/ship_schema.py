@@ -306,6 +306,9 @@ class ModelsSection(Section):
     squat: Text = "none"
     rudder: Text = "none"
     wind_type: Text = ""
+    largest_wave_height_m: Annotated[Number, Field(gt=0.0, le=40.0)] | None = None
+    largest_wind_speed_m_s: Annotated[Number, Field(gt=0.0, le=150.0)] | None = None
+    nothing_lost_in_calm: Flag = False
     kwon_sign: Annotated[Literal["plus", "printed", "minus"], Word] = "plus"
     kwon_classes: Flag = False
     wave_push: Flag = False

@@ -1,0 +1,1 @@
+"""One voyage for many departures: the least time of each on one network."""

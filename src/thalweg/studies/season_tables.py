@@ -1,0 +1,142 @@
+"""Departures of a study by month and hour: weather windows, waiting days, choices, heat maps."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+import pandas as pd
+
+from thalweg.core.units import HOUR
+
+_DAY: Final = 24.0 * HOUR
+#: A route with at least this share of its length inshore counts as inshore [%].
+INSHORE_PERCENT: Final = 50.0
+#: Figures by which one value of an axis is chosen over another, the first that the rows have.
+_CHOSEN_BY: Final = {
+    "time": "time_h", "distance": "distance_nm", "fuel": "fuel_t", "co2": "co2_t",
+    "energy": "energy_mwh", "comfort": "comfort",
+}  # fmt: skip
+
+
+def departure_windows(frame: pd.DataFrame, usable: pd.Series) -> dict[str, float | None]:
+    """Return how long departures without a route have to wait, of rows that share other axes.
+
+    Parameters
+    ----------
+    frame : pandas.DataFrame
+        With ``depart``.
+    usable : pandas.Series of bool
+        Rows with a route.
+
+    Returns
+    -------
+    dict
+        ``waiting_days_mean`` and ``waiting_days_max``: until the next departure with a route, 0 for
+        those that have one; departures after the last one count in neither. None without any.
+    """
+    times = _seconds(frame["depart"])
+    order = np.argsort(times, kind="stable")
+    times, good = times[order], usable.to_numpy(bool)[order]
+    following = np.searchsorted(times[good], times)
+    known = following < int(good.sum())
+    if not known.any():
+        return {"waiting_days_mean": None, "waiting_days_max": None}
+    days = (times[good][following[known]] - times[known]) / _DAY
+    return {"waiting_days_mean": float(days.mean()), "waiting_days_max": float(days.max())}
+
+
+def inshore_share(routes: pd.DataFrame) -> float | None:
+    """Return the share of routes that are inshore; None where that is not known."""
+    if "inshore_percent" not in routes:
+        return None
+    known = routes["inshore_percent"].dropna().to_numpy(float)
+    return float((known >= INSHORE_PERCENT).mean()) if len(known) else None
+
+
+def choices_by_axis(frame: pd.DataFrame, usable: pd.Series, axes: list[str]) -> pd.DataFrame:
+    """Return how often each value of an axis is the best of its departure.
+
+    Parameters
+    ----------
+    frame : pandas.DataFrame
+        Rows of a study with ``depart`` and, perhaps, ``month``.
+    usable : pandas.Series of bool
+        Rows with a route.
+    axes : list of str
+        Axes other than the departure; those with one value, or that change the objective, are
+        left out.
+
+    Returns
+    -------
+    pandas.DataFrame
+        ``axis``, ``value``, ``month``, ``departures``, ``chosen`` (share of the departures with any
+        route, by the figure of the objective) and ``persistence`` (share of successive departures
+        of the month with the same choice). Empty where departures have no such choice.
+    """
+    objective = str(frame.get("objective", pd.Series(dtype=object)).dropna().iloc[:1].squeeze())
+    figure = _CHOSEN_BY.get(objective, "time_h")
+    if "depart" not in frame or figure not in frame:
+        return pd.DataFrame()
+    found: list[dict[str, Any]] = []
+    good = frame[usable & frame[figure].notna()]
+    for axis in (name for name in axes if good[name].nunique() > 1):
+        others = [name for name in axes if name != axis]
+        rows = good.sort_values([*others, "depart", figure], kind="stable", key=_as_sortable)
+        best = rows.drop_duplicates([*others, "depart"])
+        month = best["month"] if "month" in best else pd.Series(0, index=best.index)
+        first = (best[others] != best[others].shift()).any(axis=1) if others else False
+        same = (best[axis] == best[axis].shift()) & (month == month.shift()) & ~first
+        pairs = (month == month.shift()) & ~first
+        for number in sorted(month.unique()):
+            of_month = month == number
+            count, successive = int(of_month.sum()), int((pairs & of_month).sum())
+            for value, times in best[of_month][axis].astype(str).value_counts().items():
+                found.append(
+                    {
+                        "axis": axis,
+                        "value": value,
+                        "month": int(number) or None,
+                        "departures": count,
+                        "chosen": times / count,
+                        "persistence": (
+                            float((same & of_month).sum() / successive) if successive else None
+                        ),
+                    }
+                )
+    return pd.DataFrame(found)
+
+
+def month_by_hour(frame: pd.DataFrame, figures: list[str]) -> pd.DataFrame:
+    """Return the medians of figures by month and hour (UTC) of the departure.
+
+    Parameters
+    ----------
+    frame : pandas.DataFrame
+        Rows with a route, with ``depart`` and ``month``.
+    figures : list of str
+        Columns.
+
+    Returns
+    -------
+    pandas.DataFrame
+        ``month``, ``hour``, ``routes`` and the figures; empty with a single month or hour.
+    """
+    if "month" not in frame or frame.empty:
+        return pd.DataFrame()
+    hour = pd.to_datetime(frame["depart"], utc=True, format="ISO8601").dt.hour
+    if hour.nunique() < 2 or frame["month"].nunique() < 2:
+        return pd.DataFrame()
+    groups = frame.assign(hour=hour).groupby(["month", "hour"])
+    table = groups[figures].median()
+    table.insert(0, "routes", groups.size())
+    return table.reset_index()
+
+
+def _seconds(departs: pd.Series) -> np.ndarray:
+    stamps = pd.to_datetime(departs, utc=True, format="ISO8601")
+    return (stamps - pd.Timestamp(0, tz="UTC")).dt.total_seconds().to_numpy()
+
+
+def _as_sortable(column: pd.Series) -> pd.Series:
+    return column if pd.api.types.is_numeric_dtype(column) else column.astype(str)

@@ -1,0 +1,63 @@
+"""Weather windows, choices and heat maps of seasons with known answers."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from thalweg.studies.season_plots import draw_heat_map
+from thalweg.studies.season_tables import (
+    choices_by_axis,
+    departure_windows,
+    inshore_share,
+    month_by_hour,
+)
+
+
+def departures(count: int, step_h: float = 12.0) -> list[str]:
+    times = pd.date_range("2026-01-01", periods=count, freq=pd.Timedelta(hours=step_h))
+    return [time.strftime("%Y-%m-%dT%H:%M:%SZ") for time in times]
+
+
+def test_waiting_days_until_a_departure_with_a_route():
+    frame = pd.DataFrame({"depart": departures(6)})
+    good = pd.Series([True, False, False, True, True, False])
+    found = departure_windows(frame, good)  # 0, 1, 0.5, 0 and 0 days; the last one is not known
+    assert found == {"waiting_days_mean": 0.3, "waiting_days_max": 1.0}
+    assert departure_windows(frame, ~good | good) == {
+        "waiting_days_mean": 0.0, "waiting_days_max": 0.0,
+    }  # fmt: skip
+    assert set(departure_windows(frame, good & ~good).values()) == {None}
+
+
+def test_share_of_routes_that_are_inshore():
+    routes = pd.DataFrame({"inshore_percent": [80.0, 20.0, 50.0, np.nan]})
+    assert inshore_share(routes) == pytest.approx(2.0 / 3.0)
+    assert inshore_share(pd.DataFrame({"time_h": [1.0]})) is None
+
+
+def test_choices_and_their_persistence():
+    """Inshore is faster on the 2nd, 3rd and 4th of five departures; offshore has no 4th route."""
+    times = departures(5)
+    inshore = pd.DataFrame({"depart": times, "way": "inshore", "time_h": [9.0, 7, 7, 9, 9]})
+    offshore = pd.DataFrame({"depart": times, "way": "offshore", "time_h": [8.0, 8, 8, 8, 8]})
+    frame = pd.concat([inshore, offshore], ignore_index=True)
+    frame["month"], frame["objective"] = 1, "time"
+    usable = ~((frame["depart"] == times[3]) & (frame["way"] == "offshore"))
+    table = choices_by_axis(frame, usable, ["way"]).set_index("value")
+    assert table["chosen"].to_dict() == {"inshore": 0.6, "offshore": 0.4}
+    assert table["persistence"].tolist() == [0.5, 0.5]  # i i stays, i i stays; o i and i o do not
+    assert table["departures"].tolist() == [5, 5]
+    assert choices_by_axis(inshore.assign(objective="time"), usable[:5], ["way"]).empty
+
+
+def test_heat_map_of_month_and_hour(tmp_path):
+    times = departures(120)
+    frame = pd.DataFrame({"depart": times, "time_h": np.tile([10.0, 12.0], 60)})
+    frame["month"] = pd.to_datetime(frame["depart"]).dt.month
+    table = month_by_hour(frame, ["time_h"])
+    assert table.groupby("hour")["time_h"].median().to_dict() == {0: 10.0, 12: 12.0}
+    assert table["routes"].sum() == 120
+    assert draw_heat_map(table, "time_h", tmp_path / "hours.png").stat().st_size > 5_000
+    assert month_by_hour(frame[frame["month"] == 1], ["time_h"]).empty
