@@ -61,7 +61,7 @@ def _load_libraries(order_read: threading.Event) -> None:
     The voyage that is planned for this is short; it loads the compiled kernels, the control areas
     and the traffic lanes, which take longer than itself.
     """
-    import thalweg.planning  # noqa: F401
+    import thalweg.planning
     import thalweg.service.jobs.job_work  # noqa: F401
     from thalweg.chart import Chart
 
