@@ -1,8 +1,8 @@
 """RWS Matroos: currents, water levels and waves of the North Sea by Rijkswaterstaat.
 
 The server interpolates a model to a grid of latitude and longitude and sends NetCDF
-(https://noos.matroos.rws.nl/direct/). No account is needed. Currents of the model DCSM-FM are to the
-east and north, near the surface; water levels are above its datum, about mean sea level.
+(https://noos.matroos.rws.nl/direct/). No account is needed. Currents of the model DCSM-FM are to
+the east and north, near the surface; water levels are above its datum, about mean sea level.
 """
 
 from __future__ import annotations
