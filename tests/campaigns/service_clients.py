@@ -81,8 +81,8 @@ class Campaign:
     async def stream(self) -> None:
         """Follow the events of the newest jobs, one after the other."""
         while time.monotonic() < self.ends:
+            await asyncio.sleep(PAUSE_S)  # the stream of a job that has ended ends at once
             if not self.goals:
-                await asyncio.sleep(0.1)
                 continue
             async with self.http.stream(
                 "GET", f"/api/v1/plans/{[*self.goals][-1]}/events"

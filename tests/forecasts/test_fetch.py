@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import json
 from dataclasses import replace
+from urllib.parse import parse_qs, urlsplit
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from tests.forecasts.loopback import Recorded, ecmwf_files, gfs_files, messages,
 from thalweg import Sea
 from thalweg.cli.main import main
 from thalweg.core.bounding_box import BoundingBox
-from thalweg.core.errors import CoverageError, InputError
+from thalweg.core.errors import CoverageError, DatasetError, InputError
 from thalweg.core.time import parse_time
 from thalweg.core.units import HOUR
 from thalweg.forecasts import ForecastRequest, estimate_forecast, fetch_forecast
@@ -23,6 +24,7 @@ from thalweg.forecasts.sources.copernicus_marine import CopernicusMarine
 from thalweg.forecasts.sources.ecmwf import EcmwfOpenData
 from thalweg.forecasts.sources.era5 import Era5
 from thalweg.forecasts.sources.gfs import LEAD_HOURS, Gfs, byte_ranges
+from thalweg.forecasts.sources.matroos import Matroos
 from thalweg.forecasts.sources.open_meteo import OpenMeteo
 
 pytestmark = pytest.mark.skipif(  # found, not imported: eccodes and pyproj do not share a process
@@ -202,8 +204,6 @@ def open_meteo_answers(recorded: Recorded, *, gap: bool = False) -> None:
     """Let the server compute the answers of Open-Meteo."""
 
     def answer(handler) -> None:
-        from urllib.parse import parse_qs, urlsplit
-
         query = parse_qs(urlsplit(handler.path).query)
         places = zip(
             map(float, query["latitude"][0].split(",")),
@@ -256,6 +256,103 @@ def test_a_gap_in_a_delivery_is_named_and_nothing_written(tmp_path, client):
         with pytest.raises(CoverageError, match=r"eastward_wind at 1 of .*T03:00:00Z"):
             fetch_forecast(wanted, source, tmp_path / "a.nc", client=client, now=NOW)
     assert list(tmp_path.glob("*.nc")) == []
+
+
+def matroos_answers(recorded: Recorded, *, said: bytes = b"", hours: int = 49) -> list[str]:
+    """Let the server compute fields on the grid of each request; return the paths as they come."""
+    asked: list[str] = []
+
+    def answer(handler) -> None:
+        address = urlsplit(handler.path)
+        query = {name: values[0] for name, values in parse_qs(address.query).items()}
+        asked.append(handler.path)
+        if address.path.endswith("get_anal_times.php"):
+            body = b"202611220000\n202611220600\n"
+        else:
+            body = said or matroos_file(query, hours)
+        handler.send_response(200)
+        handler.send_header("Content-Length", str(len(body)))
+        handler.end_headers()
+        handler.wfile.write(body)
+
+    recorded.answer = answer  # type: ignore[method-assign]
+    return asked
+
+
+def matroos_file(query: dict[str, str], hours: int) -> bytes:
+    """Return fields as the server interpolates them: minutes since 1970, 999 on dry cells."""
+    first, last = (
+        parse_time(f"{text[:4]}-{text[4:6]}-{text[6:8]}T{text[8:10]}:00Z")
+        for text in (query["from"], query["to"])
+    )
+    times = np.arange(first, min(last, RUN + 3600 * hours) + 1, 3600.0)
+    lat = np.linspace(float(query["ymin"]), float(query["ymax"]), int(query["yn"]))
+    lon = np.linspace(float(query["xmin"]), float(query["xmax"]), int(query["xn"]))
+    field = 0.01 * lat[:, None] + 0.001 * lon + (times - RUN)[:, None, None] * 1e-6
+    field[:, 0, 0] = 999.0
+    data = {name: (("time", "y", "x"), field) for name in query["color"].split(",")}
+    coords = {"time": times / 60.0, "y": lat, "x": lon}
+    return xr.Dataset(data, coords).to_netcdf(engine="scipy", format="NETCDF3_64BIT")
+
+
+NORTH_SEA = BoundingBox(51.0, 52.0, 2.0, 4.0)
+
+
+def test_matroos_fields_in_pieces_that_the_server_can_give(tmp_path, client, monkeypatch):
+    monkeypatch.setattr("thalweg.forecasts.sources.matroos._MOST_VALUES", 10_000)
+    recorded, out = Recorded(), tmp_path / "a.nc"
+    asked = matroos_answers(recorded)
+    wanted = request(quantities=("current", "waves"), box=NORTH_SEA, step=3 * HOUR)
+    with serving(recorded) as address:
+        done = fetch_forecast(wanted, Matroos(address), out, client=client, now=NOW)
+    assert done.run == RUN and (done.first, done.last) == (RUN + HOUR, RUN + 8 * HOUR)
+    assert "mean sea level" in done.notes[0]
+    fields = [path for path in asked if "get_matroos" in path]
+    assert len(fields) == 2 * 3 and all("anal=202611220000" in path for path in fields)
+    with xr.open_dataset(out) as found:
+        assert found["time"].size == 4  # hours 1, 4, 7 and 8
+        assert "Rijkswaterstaat" in found.attrs["attribution"]
+        east = found["eastward_sea_water_velocity"]
+        place = {"latitude": 51.5, "longitude": 3.0}
+        value = float(east.sel(place, method="nearest")[1])
+        assert value == pytest.approx(0.515 + 0.003 + 4 * 0.0036, abs=1e-5)
+        assert bool(east[:, 0, 0].isnull().all())  # dry, not still water
+    sea = Sea.open(out)
+    level = sea.sample(["sea_surface_height_above_geopotential_datum"], RUN + 4 * HOUR, 51.5, 3.0)
+    assert next(iter(level.values())) == pytest.approx(0.5324, abs=1e-4)
+
+
+def test_what_matroos_says_instead_of_fields_is_an_error_and_not_kept(tmp_path, client):
+    recorded = Recorded()
+    matroos_answers(recorded, said=b"<pre>ERROR: no data available</pre>")
+    wanted = request(quantities=("current",), box=NORTH_SEA)
+    with serving(recorded) as address:
+        with pytest.raises(DatasetError, match="no data available"):
+            fetch_forecast(wanted, Matroos(address), tmp_path / "a.nc", client=client, now=NOW)
+        asked = matroos_answers(recorded)
+        fetch_forecast(wanted, Matroos(address), tmp_path / "a.nc", client=client, now=NOW)
+    assert any("get_matroos" in path for path in asked)  # the cache has not kept the refusal
+
+
+def test_hours_that_matroos_leaves_out_are_named(tmp_path, client):
+    recorded = Recorded()
+    matroos_answers(recorded, hours=5)
+    wanted = request(quantities=("current",), box=NORTH_SEA, step=HOUR)
+    with serving(recorded) as address, pytest.raises(CoverageError, match="at 3 of 8 times"):
+        fetch_forecast(wanted, Matroos(address), tmp_path / "a.nc", client=client, now=NOW)
+    assert not (tmp_path / "a.nc").exists()
+
+
+def test_matroos_refuses_boxes_and_periods_outside_its_models(client):
+    recorded = Recorded()
+    matroos_answers(recorded)
+    with serving(recorded) as address:
+        source = Matroos(address)
+        with pytest.raises(InputError, match="covers 43 to 64 N"):
+            estimate_forecast(request(quantities=("current",)), source, client=client, now=NOW)
+        long = request(quantities=("waves",), box=NORTH_SEA, end=RUN + 60 * HOUR)
+        with pytest.raises(InputError, match="covers 2026-11-22T00:00:00Z"):
+            estimate_forecast(long, source, client=client, now=NOW)
 
 
 @pytest.mark.slow
@@ -395,4 +492,4 @@ def test_the_command_line_refuses(capsys, words, message):
 def test_the_command_line_lists_the_sources(capsys):
     assert main(["fetch", "--json"]) == 0
     names = [row["source"] for row in json.loads(capsys.readouterr().out)]
-    assert names == ["gfs", "ecmwf", "open-meteo", "copernicus", "era5"]
+    assert names == ["gfs", "ecmwf", "open-meteo", "matroos", "copernicus", "era5"]

@@ -29,7 +29,10 @@ def add_command(commands: Any) -> None:
         "--to 2026-12-02T12:00Z --out forecast.nc",
     )
     parser.add_argument(
-        "source", nargs="?", metavar="SOURCE", help="gfs, ecmwf, open-meteo, copernicus or era5"
+        "source",
+        nargs="?",
+        metavar="SOURCE",
+        help="gfs, ecmwf, open-meteo, matroos, copernicus or era5",
     )
     parser.add_argument(
         "--box", metavar="S,N,W,E", help="area [deg]; an east below west spans the antimeridian"

@@ -9,11 +9,19 @@ from thalweg.forecasts.sources.copernicus_marine import CopernicusMarine
 from thalweg.forecasts.sources.ecmwf import EcmwfOpenData
 from thalweg.forecasts.sources.era5 import Era5
 from thalweg.forecasts.sources.gfs import Gfs
+from thalweg.forecasts.sources.matroos import Matroos
 from thalweg.forecasts.sources.open_meteo import OpenMeteo
 
 SOURCES: Final[Mapping[str, ForecastSource]] = MappingProxyType(
     {
         source.name: source
-        for source in (Gfs(), EcmwfOpenData(), OpenMeteo(), CopernicusMarine(), Era5())
+        for source in (
+            Gfs(),
+            EcmwfOpenData(),
+            OpenMeteo(),
+            Matroos(),
+            CopernicusMarine(),
+            Era5(),
+        )
     }
 )

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import gzip
+import os
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any, Final
 
+from anyio.to_thread import current_default_thread_limiter
 from fastapi import FastAPI
 from fastapi.responses import FileResponse
 from fastapi.staticfiles import StaticFiles
+from starlette.datastructures import Headers
 from starlette.middleware.gzip import GZipMiddleware
+from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from thalweg.service.access_control import AccessControl
@@ -28,6 +33,37 @@ _DESCRIPTION: Final = """Plan voyages of ships. Plans are jobs: `POST /api/v1/pl
 with an id; `GET /api/v1/plans/{id}/events` streams the progress, `GET /api/v1/plans/{id}/result`
 returns `plan.json`. Every request states the token: `Authorization: Bearer TOKEN`. Errors are
 problem details (RFC 9457) with `asked`, `possible`, `remedy` and `field`. Not for navigation."""
+
+
+#: Requests at work at the same time: many may wait for a worker while others are answered.
+_THREADS: Final = 200
+
+
+class CompressedFiles(StaticFiles):
+    """The files of the page, each compressed once."""
+
+    def __init__(self, directory: Path) -> None:
+        super().__init__(directory=directory)
+        self._packed: dict[tuple[str, int], bytes] = {}
+
+    def file_response(
+        self,
+        full_path: str | os.PathLike[str],
+        stat_result: os.stat_result,
+        scope: Scope,
+        status_code: int = 200,
+    ) -> Response:
+        """Return a file, compressed for clients that take it so."""
+        answer = super().file_response(full_path, stat_result, scope, status_code)
+        accepted = Headers(scope=scope).get("accept-encoding", "")
+        if answer.status_code != 200 or scope["method"] != "GET" or "gzip" not in accepted:
+            return answer
+        key = (str(full_path), stat_result.st_mtime_ns)
+        if key not in self._packed:
+            self._packed[key] = gzip.compress(Path(full_path).read_bytes(), 9, mtime=0)
+        headers = {"Content-Encoding": "gzip", "Vary": "Accept-Encoding"}
+        headers |= {name: answer.headers[name] for name in ("etag", "last-modified")}
+        return Response(self._packed[key], media_type=answer.media_type, headers=headers)
 
 
 class BodyLimit:
@@ -88,6 +124,7 @@ def create_application(settings: ServiceSettings) -> FastAPI:
     @asynccontextmanager
     async def lifespan(application: FastAPI) -> AsyncIterator[None]:
         state.changes.attach()
+        current_default_thread_limiter().total_tokens = _THREADS
         state.runner.start()
         try:
             yield
@@ -118,4 +155,4 @@ def _add_pages(application: FastAPI) -> None:
     def first_page() -> FileResponse:
         return FileResponse(STATIC / "index.html", media_type="text/html")
 
-    application.mount("/static", StaticFiles(directory=STATIC), name="static")
+    application.mount("/static", CompressedFiles(STATIC), name="static")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
+from functools import cached_property
 from typing import Annotated, Any, Final
 
 from fastapi import Depends, Request
@@ -81,6 +82,7 @@ class ServiceState:
         self.runner = JobRunner(self.store, settings, self.files_of)
         self.changes = JobChanges()
         self.store.listen(self.changes.notify)
+        self.embedded_facts: dict[str, dict[str, Any]] = {}  # of the seas of the package, by id
         self.map_worker = WorkerClient(limits.worker_seconds)
         self.file_worker = WorkerClient(limits.worker_seconds)
         self.download_worker = WorkerClient(limits.worker_seconds)
@@ -89,18 +91,18 @@ class ServiceState:
         """Return the paths of the uploaded files that a request names, by their ids."""
         named = named_uploads(request)
         found = {name: str(self.seas.get(name).path) for name in named.seas}
-        library = self.library_ships()
+        library = self.library_ships
         for ship in named.ships:
             if ship not in library:
                 found[ship] = str(self.ships.get(ship).path)
         return found | {name: str(self.routes.get(name).path) for name in named.routes}
 
-    @staticmethod
-    def library_ships() -> list[str]:
-        """Return the names of the ships that need no file."""
+    @cached_property
+    def library_ships(self) -> tuple[str, ...]:
+        """The names of the ships that need no file."""
         from thalweg.ship import library_names, plugin_names
 
-        return [*library_names(), *plugin_names()]
+        return (*library_names(), *plugin_names())
 
     def close(self) -> None:
         """End all processes and close the files."""

@@ -10,7 +10,9 @@ import shutil
 from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath, PureWindowsPath
-from typing import Any, Final
+from typing import Any, BinaryIO, Final
+
+from starlette.concurrency import run_in_threadpool
 
 from thalweg.core.file_writing import make_folder, write_text
 from thalweg.service.problem_details import ServiceError, not_found
@@ -102,17 +104,16 @@ class UploadStore:
             )
         part = self.folder / f".part-{secrets.token_hex(8)}{ending}"
         digest, size = hashlib.sha256(), 0
-        room = self.total - self.used_bytes()
+        room = self.total - await run_in_threadpool(self.used_bytes)
         try:
             with part.open("xb") as file:
                 async for chunk in chunks:
                     size += len(chunk)
                     if size > min(self.largest, room):
                         raise self._too_large(room)
-                    digest.update(chunk)
-                    file.write(chunk)
+                    await run_in_threadpool(_write_piece, file, digest, chunk)
                 file.flush()
-                os.fsync(file.fileno())
+                await run_in_threadpool(os.fsync, file.fileno())
             if size == 0:
                 raise ServiceError(422, "The file is empty.", "", "Choose another.", field="file")
         except BaseException:
@@ -184,6 +185,11 @@ class UploadStore:
     def used_bytes(self) -> int:
         """Return the size of all files [bytes]."""
         return sum(path.stat().st_size for path in self.folder.glob("[!.]*/file.*"))
+
+
+def _write_piece(file: BinaryIO, digest: Any, piece: bytes) -> None:
+    digest.update(piece)
+    file.write(piece)
 
 
 def file_identity(path: Path) -> str:

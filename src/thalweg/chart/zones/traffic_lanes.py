@@ -82,11 +82,17 @@ class TrafficLane:
 
 @dataclass(frozen=True, eq=False)
 class LaneGroup:
-    """Lanes ready for legs: a tree of their areas on three turns of longitude, and outlines."""
+    """Lanes ready for legs: a tree of their areas on three turns of longitude, and outlines.
+
+    Attributes
+    ----------
+    cells : Which cells of a degree (from 90 S and 0 E) the boxes of the lanes touch.
+    """
 
     lanes: tuple[TrafficLane, ...]
     tree: Any
     outlines: IndexArrays
+    cells: BoolArray
 
     @classmethod
     def of(cls, lanes: Sequence[TrafficLane]) -> LaneGroup:
@@ -101,7 +107,11 @@ class LaneGroup:
         shapely.prepare(shapes)
         parts = [part for lane in lanes for part in shapely.get_parts(lane.shape)]
         index = build_index(rings_from_polygons(parts), _INDEX_CELLS)
-        return cls(tuple(lanes), shapely.STRtree(shapes), index)
+        cells = np.zeros((180, 360), np.bool_)
+        for west, south, east, north in (np.floor(lane.shape.bounds).astype(int) for lane in lanes):
+            rows = np.clip(np.arange(south, north + 1) + 90, 0, 179)
+            cells[rows[:, None], np.arange(west, east + 1) % 360] = True
+        return cls(tuple(lanes), shapely.STRtree(shapes), index, cells)
 
     def shares_against(
         self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
@@ -163,6 +173,9 @@ class LaneGroup:
         touched = np.empty(len(lat1), np.bool_)
         legs = [np.require(x, float, ("C", "W")) for x in (lat1, lon1, lat2, lon2)]
         outlines_touched(self.outlines, *legs, touched)
-        inside, _ = self.tree.query(shapely.points(lon1, lat1), predicate="intersects")
-        touched[inside] = True
+        row = np.clip(np.nan_to_num(np.floor(lat1)) + 90.0, 0.0, 179.0).astype(np.int64)
+        column = (np.nan_to_num(np.floor(lon1)) % 360.0).astype(np.int64)
+        near = np.flatnonzero(self.cells[row, column] & ~touched)
+        inside, _ = self.tree.query(shapely.points(lon1[near], lat1[near]), predicate="intersects")
+        touched[near[inside]] = True
         return touched

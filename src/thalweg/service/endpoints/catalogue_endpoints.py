@@ -41,7 +41,7 @@ def health(state: State) -> dict[str, Any]:
 def ships(state: State) -> list[dict[str, Any]]:
     """List the ships of the library and the uploaded ones."""
     known = [
-        {"id": name, "name": _ship_title(name), "library": True} for name in state.library_ships()
+        {"id": name, "name": _ship_title(name), "library": True} for name in state.library_ships
     ]
     uploaded = [
         {"id": file.id, "name": file.facts.get("name", file.name), "library": False}
@@ -52,9 +52,12 @@ def ships(state: State) -> list[dict[str, Any]]:
 
 @cache
 def _ship_title(name: str) -> str:
-    from thalweg.ship import Ship
+    from thalweg.ship import Ship, library_names
+    from thalweg.ship.file.ship_file import read_ship
 
     try:
+        if name in library_names():
+            return str(read_ship(name)[0]["name"])
         return Ship.load(name).name
     except (InputError, ValueError):
         return name
@@ -63,7 +66,7 @@ def _ship_title(name: str) -> str:
 @catalogue.get("/ships/{ship_id}")
 def get_ship_sheet(state: State, ship_id: str) -> dict[str, Any]:
     """Return the performance sheet of a ship: power and fuel by speed in calm water, and limits."""
-    name = ship_id if ship_id in state.library_ships() else str(state.ships.get(ship_id).path)
+    name = ship_id if ship_id in state.library_ships else str(state.ships.get(ship_id).path)
     sheet, _ = state.file_worker.do("ship_sheet", ship=name)
     return {"id": ship_id, **sheet}
 

@@ -187,7 +187,7 @@ def _start(
 
 def _check_files(request: dict[str, Any], state: ServiceState) -> None:
     """Raise an error at its field for a ship, sea or route that does not exist."""
-    library = state.library_ships()
+    library = state.library_ships
     for ship in named_uploads(request).ships:
         if ship in library:
             continue

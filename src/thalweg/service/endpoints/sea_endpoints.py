@@ -31,7 +31,11 @@ def seas(state: State) -> list[dict[str, Any]]:
 def sea(state: State, sea_id: str) -> dict[str, Any]:
     """Say what a sea holds: variables, box, period."""
     if sea_id in EMBEDDED_SEAS:
-        facts, _ = state.map_worker.do("inspect", seas=[sea_id], files={})
+        if sea_id not in state.embedded_facts:
+            state.embedded_facts[sea_id], _ = state.map_worker.do(
+                "inspect", seas=[sea_id], files={}
+            )
+        facts = state.embedded_facts[sea_id]
         return {"id": sea_id, "name": _NAMES[sea_id], "embedded": True, **facts}
     return state.seas.get(sea_id).as_dict()
 

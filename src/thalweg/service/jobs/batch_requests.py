@@ -133,7 +133,7 @@ class FetchOrder(BaseModel):
     model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [FORECAST_EXAMPLE]})
 
     title: Annotated[str, Field(max_length=200, description="a name for people")] = ""
-    source: Literal["gfs", "ecmwf", "open-meteo", "copernicus", "era5"]
+    source: Literal["gfs", "ecmwf", "open-meteo", "matroos", "copernicus", "era5"]
     box: Annotated[
         list[float],
         Field(min_length=4, max_length=4, description="south, north, west, east [deg]"),

@@ -6,11 +6,12 @@ Run with ``python -m thalweg.service.jobs.job_child``.
 from __future__ import annotations
 
 import json
+import os
 import sys
 import threading
 import traceback
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from thalweg.core.errors import InputError, ThalwegError
 from thalweg.core.interrupt import SearchInterrupted
@@ -24,23 +25,34 @@ from thalweg.service.problem_details import problem_of
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
+_NICENESS: Final = 5
+
 
 def main() -> int:
     """Read one order from the standard input, do it, and send how it ended."""
     messages = take_over_output()
     order_read = threading.Event()
-    threading.Thread(target=_load_libraries, args=(order_read,), daemon=True).start()
+    _yield_to_the_server()
+    loading = threading.Thread(target=_load_libraries, args=(order_read,), daemon=True)
+    loading.start()
     line = sys.stdin.buffer.readline()
     order_read.set()
     if not line:
         return 0
     end_with_the_server()
     try:
+        loading.join()  # two threads that import the same modules can each find half of one
         end = _ended(json.loads(line), messages)
     except KeyboardInterrupt:
         end = {"state": "cancelled"}
     messages.send("end", end)
     return 0
+
+
+def _yield_to_the_server() -> None:
+    """Leave the processor to the server where both want it: it answers while jobs calculate."""
+    if hasattr(os, "nice"):
+        os.nice(_NICENESS)
 
 
 def _load_libraries(order_read: threading.Event) -> None:
@@ -49,7 +61,8 @@ def _load_libraries(order_read: threading.Event) -> None:
     The voyage that is planned for this is short; it loads the compiled kernels, the control areas
     and the traffic lanes, which take longer than itself.
     """
-    import thalweg.planning  # noqa: F401
+    import thalweg.planning
+    import thalweg.service.jobs.job_work  # noqa: F401
     from thalweg.chart import Chart
 
     if order_read.is_set():

@@ -249,7 +249,7 @@ class JobRunner:
         if end is not None and "summary" in end:
             shutil.rmtree(folder / FIRST_FOLDER, ignore_errors=True)
             self._keep(job, child, folder, end["state"], end["summary"])
-        elif end is not None and end["state"] == "failed":
+        elif end is not None and end["state"] == "failed" and child.stop_asked is None:
             self._keep_log(job, child)
             self._store.finish(job.id, "failed", problem=end["problem"])
         elif child.stopped_why is not None:

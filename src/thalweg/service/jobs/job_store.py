@@ -79,7 +79,7 @@ class JobStore:
     """Jobs and events in SQLite, with a write-ahead log and complete synchronisation.
 
     Every method is one transaction, and can be called from any thread. What a method has returned
-    from is on the disk.
+    from is on the disk. Reading has a connection of its own, and does not wait for the disk.
 
     Parameters
     ----------
@@ -87,17 +87,25 @@ class JobStore:
     """
 
     def __init__(self, path: Path) -> None:
-        self._lock = threading.RLock()
+        self._lock = threading.Lock()
+        self._reading_lock = threading.Lock()
         self._listeners: list[Callable[[str], None]] = []
         self._database = sqlite3.connect(path, check_same_thread=False, isolation_level=None)
         self._database.execute("PRAGMA journal_mode=WAL")
         self._database.execute("PRAGMA synchronous=FULL")
         self._database.executescript(_SCHEMA)
+        self._reader = sqlite3.connect(path, check_same_thread=False, isolation_level=None)
+        self._reader.execute("PRAGMA query_only=ON")
 
     def close(self) -> None:
         """Close the database."""
-        with self._lock:
+        with self._lock, self._reading_lock:
+            self._reader.close()
             self._database.close()
+
+    def _read(self, query: str, values: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+        with self._reading_lock:
+            return self._reader.execute(query, values).fetchall()
 
     def listen(self, listener: Callable[[str], None]) -> None:
         """Call a function with the id of a job after each of its events."""
@@ -190,23 +198,17 @@ class JobStore:
 
     def state_of(self, job_id: str) -> str | None:
         """Return the state of a job; None if there is none of this id."""
-        with self._lock:
-            row = self._database.execute(
-                "SELECT state FROM jobs WHERE id = ?", (job_id,)
-            ).fetchone()
-        return None if row is None else str(row[0])
+        rows = self._read("SELECT state FROM jobs WHERE id = ?", (job_id,))
+        return str(rows[0][0]) if rows else None
 
     def _by_key(self, key: str) -> Job:
         return self._one("key = ?", key)
 
     def _one(self, where: str, value: str) -> Job:
-        with self._lock:
-            row = self._database.execute(
-                f"SELECT {_COLUMNS} FROM jobs WHERE {where}", (value,)
-            ).fetchone()
-        if row is None:
+        rows = self._read(f"SELECT {_COLUMNS} FROM jobs WHERE {where}", (value,))
+        if not rows:
             raise not_found("job", value, "Jobs are listed at /api/v1/plans.")
-        return _job(row)
+        return _job(rows[0])
 
     def page(
         self, *, state: str | None = None, kind: str | None = None, before: int = 0, size: int = 50
@@ -219,38 +221,30 @@ class JobStore:
         before : Only jobs with a smaller number; 0: all.
         size : Most jobs to return.
         """
-        with self._lock:
-            rows = self._database.execute(
-                f"SELECT {_COLUMNS} FROM jobs WHERE (? IS NULL OR state = ?) "
-                "AND (? IS NULL OR kind = ?) AND (? = 0 OR number < ?) "
-                "ORDER BY number DESC LIMIT ?",
-                (state, state, kind, kind, before, before, size),
-            ).fetchall()
+        rows = self._read(
+            f"SELECT {_COLUMNS} FROM jobs WHERE (? IS NULL OR state = ?) "
+            "AND (? IS NULL OR kind = ?) AND (? = 0 OR number < ?) "
+            "ORDER BY number DESC LIMIT ?",
+            (state, state, kind, kind, before, before, size),
+        )
         return [_job(row) for row in rows]
 
     def in_state(self, state: str) -> list[Job]:
         """Return all jobs of a state, the oldest first."""
-        with self._lock:
-            rows = self._database.execute(
-                f"SELECT {_COLUMNS} FROM jobs WHERE state = ? ORDER BY number", (state,)
-            ).fetchall()
-        return [_job(row) for row in rows]
+        query = f"SELECT {_COLUMNS} FROM jobs WHERE state = ? ORDER BY number"
+        return [_job(row) for row in self._read(query, (state,))]
 
     def counts(self) -> dict[str, int]:
         """Return the number of jobs in each state."""
-        with self._lock:
-            rows = self._database.execute(
-                "SELECT state, count(*) FROM jobs GROUP BY state"
-            ).fetchall()
-        return dict.fromkeys(STATES, 0) | dict(rows)
+        rows = self._read("SELECT state, count(*) FROM jobs GROUP BY state")
+        return dict.fromkeys(STATES, 0) | {state: count for state, count in rows}
 
     def events(self, job_id: str, after: int = 0) -> list[JobEvent]:
         """Return the events of a job with a number above ``after``, in order."""
-        with self._lock:
-            rows = self._database.execute(
-                "SELECT n, at, kind, data FROM events WHERE job = ? AND n > ? ORDER BY n",
-                (job_id, after),
-            ).fetchall()
+        rows = self._read(
+            "SELECT n, at, kind, data FROM events WHERE job = ? AND n > ? ORDER BY n",
+            (job_id, after),
+        )
         return [JobEvent(n, at, kind, json.loads(data)) for n, at, kind, data in rows]
 
     def add_event(self, job_id: str, kind: str, data: dict[str, Any]) -> None:

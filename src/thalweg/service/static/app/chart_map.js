@@ -3,6 +3,7 @@
 import { Map as OlMap, View, Overlay, Graticule, ScaleLine, Zoom, Draw, Modify, Snap, Translate, GeoJSON, toLonLat, transformExtent, extent as extents, defaultInteractions } from "../vendor/ol.mjs";
 import { get } from "./api.js";
 import { CoastLayers } from "./coast_layer.js";
+import { ParticleLayer } from "./particle_layer.js";
 import { bandColours, KINDS, WeatherLayer } from "./weather_layer.js";
 import { RouteLayers, layer, stroke, FONT, Feature, Point, Polygon, LineString, Style, Fill, Stroke, Circle, Text, fromLonLat } from "./route_layers.js";
 import { colour, fill, h } from "./elements.js";
@@ -21,12 +22,13 @@ export class Chart extends EventTarget {
     });
     this.coast = new CoastLayers(this.map);
     this.weather = new WeatherLayer(this.map);
+    this.particles = this.weather.particles = new ParticleLayer(this.map, this.weather);
     this.routes = new RouteLayers();
     this.eca = layer(13, { visible: false });
     this.canals = layer(14);
-    this.ports = layer(15, { declutter: true, minZoom: 2.5 });
+    this.ports = layer(15, { declutter: true, minZoom: 2.5, updateWhileInteracting: false, renderBuffer: 300 });
     this.areas = layer(18);
-    [...this.coast.layers, this.weather.layer, this.eca, this.canals, this.ports, this.areas, ...this.routes.layers].forEach((one) => this.map.addLayer(one));
+    [...this.coast.layers, this.weather.layer, this.particles.layer, this.eca, this.canals, this.ports, this.areas, ...this.routes.layers].forEach((one) => this.map.addLayer(one));
     this.graticule = null;
     this.#pointer();
     this.#chooser();
@@ -51,6 +53,7 @@ export class Chart extends EventTarget {
       intervals: [30, 20, 10, 5, 2, 1, 0.5, 0.25, 1 / 6, 1 / 12, 1 / 30, 1 / 60],
     });
     this.map.addLayer(this.graticule);
+    this.portStyles?.splice(0); // of the palette before
     for (const one of [...this.routes.layers, this.eca, this.canals, this.ports, this.areas]) one.changed();
     this.weather.repaint();
     this.showLegend();
@@ -70,13 +73,13 @@ export class Chart extends EventTarget {
       feature.setStyle(() => [stroke(colour("casing"), 4), stroke(colour("imported"), 2)]);
       this.canals.getSource().addFeature(feature);
     }
-    const most = ports.map((port) => port.importance);
+    const most = ports.map((port) => port.importance), styles = this.portStyles = [];
     ports.forEach((port, i) => {
       const feature = new Feature({ geometry: new Point(fromLonLat([port.lon, port.lat])), port });
       feature.setStyle((_, resolution) => {
         const zoom = this.map.getView().getZoomForResolution(resolution);
         if (most[i] < 150 / 2 ** ((zoom - 2) * 1.15)) return null;
-        return new Style({
+        return styles[i] ||= new Style({
           zIndex: port.importance,
           image: new Circle({ radius: 2.2, fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 1 }), declutterMode: "obstacle" }),
           text: new Text({ text: port.name, font: '11px system-ui, "DejaVu Sans", sans-serif', offsetX: 6, textAlign: "left", fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 2.5 }) }),

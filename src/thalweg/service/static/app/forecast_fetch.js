@@ -5,7 +5,7 @@ import { announce, errorBox, fill, h } from "./elements.js";
 import { inputTime, number, seconds, time } from "./format.js";
 import { typedTime } from "./typed_time.js";
 
-const SOURCES = [["gfs", "GFS and GFS-wave (NOAA)", ["wind", "waves"]], ["ecmwf", "ECMWF open data", ["wind", "waves"]], ["open-meteo", "Open-Meteo (small areas)", ["wind", "waves", "current"]], ["copernicus", "Copernicus Marine (account)", ["waves", "current"]], ["era5", "ERA5, past weather (account)", ["wind", "waves"]]];
+const SOURCES = [["gfs", "GFS and GFS-wave (NOAA)", ["wind", "waves"]], ["ecmwf", "ECMWF open data", ["wind", "waves"]], ["open-meteo", "Open-Meteo (small areas)", ["wind", "waves", "current"]], ["matroos", "Rijkswaterstaat, North Sea, 2 days", ["current", "waves"]], ["copernicus", "Copernicus Marine (account)", ["waves", "current"]], ["era5", "ERA5, past weather (account)", ["wind", "waves"]]];
 
 export class ForecastFetch {
   // ends(): [{lat, lon}]; departs(): seconds or null; arrived(seas)
@@ -41,8 +41,9 @@ export class ForecastFetch {
     const lats = ends.map((end) => end.lat), first = ends[0].lon;
     const lons = ends.map((end) => first + ((((end.lon - first + 540) % 360) + 360) % 360) - 180);
     const turned = (lon) => Math.round((((((lon + 180) % 360) + 360) % 360) - 180) * 10) / 10;
-    const box = [Math.max(-80, Math.floor(Math.min(...lats) - 8)), Math.min(85, Math.ceil(Math.max(...lats) + 8)), turned(Math.min(...lons) - 8), turned(Math.max(...lons) + 8)];
+    let box = [Math.max(-80, Math.floor(Math.min(...lats) - 8)), Math.min(85, Math.ceil(Math.max(...lats) + 8)), turned(Math.min(...lons) - 8), turned(Math.max(...lons) + 8)];
     const iso = (t) => `${inputTime(t).replace(" ", "T")}Z`;
+    if (this.source.value === "matroos") box = [Math.max(48, box[0]), Math.min(64, box[1]), Math.max(-12, box[2]), Math.min(9, box[3])]; // the area of its models
     return { source: this.source.value, box, start: iso(from), end: iso(from + days * 86400), step_h: Number(this.step.value), quantities: [...this.quantities.querySelectorAll("input:checked")].map((box_) => box_.value) };
   }
 

@@ -6,6 +6,7 @@ import { CompareView, DASHES, PAINTS } from "./compare_view.js";
 import { Drawer, indexAt, placeAt } from "./diagrams.js";
 import { announce, colour, errorBox, fill, h } from "./elements.js";
 import { duration, known, number, plainPosition, seconds, time } from "./format.js";
+import { lessMotion } from "./particle_layer.js";
 import { DEMO, PlanForm } from "./plan_form.js";
 import { ProgressView } from "./progress_view.js";
 import { ProjectView } from "./project_view.js";
@@ -27,6 +28,7 @@ class Application {
 
   constructor() {
     this.chart = new Chart(document.getElementById("chart"));
+    this.chart.particles.wanted = localStorage.getItem("particles") === "true";
     this.drawer = new Drawer(document.getElementById("drawer"));
     this.form = new PlanForm(this.chart);
     this.compare = new CompareView({ show: (routes, table) => this.#showCompared(routes, table), run: (job, done) => this.#runBeside(job, done) });
@@ -415,9 +417,17 @@ class Application {
     const toggle = (text, checked, act) => h("label.check", {}, h("input", { type: "checkbox", checked, onchange: (event) => act(event.target.checked) }), h("span", {}, text));
     const redraw = () => { if (this.result?.profile) this.#drawRoutes(this.result.profile); };
     fill(box,
-      h("fieldset", {}, h("legend", {}, "Weather"), radio("", "None"), there.filter((kind) => KINDS[kind]).map((kind) => radio(kind, KINDS[kind].title))),
+      h("fieldset", {}, h("legend", {}, "Weather"), radio("", "None"), there.filter((kind) => KINDS[kind]).map((kind) => radio(kind, KINDS[kind].title)),
+        ["wind", "current"].some((kind) => there.includes(kind)) ? this.#particles() : null),
       h("fieldset", {}, h("legend", {}, "Route"), toggle("Colour by speed over ground", this.bySpeed, (on) => { this.bySpeed = on; redraw(); }), toggle("Isochrones", this.showIsochrones !== false, (on) => { this.showIsochrones = on; redraw(); }), toggle("Route that ignores the weather", this.showBeside !== false, (on) => { this.showBeside = on; redraw(); })),
       h("fieldset", {}, h("legend", {}, "Chart"), toggle("Emission control areas", this.chart.eca.getVisible(), (on) => this.chart.eca.setVisible(on)), toggle("Ports", this.chart.ports.getVisible(), (on) => this.chart.ports.setVisible(on)), toggle("Canals", this.chart.canals.getVisible(), (on) => this.chart.canals.setVisible(on))));
+  }
+
+  #particles() {
+    const { particles, weather } = this.chart;
+    const change = (event) => { particles.wanted = event.target.checked; localStorage.setItem("particles", String(particles.wanted)); weather.repaint(); };
+    const why = lessMotion.matches ? " (this computer asks for less motion)" : "";
+    return h("label.check", {}, h("input", { type: "checkbox", id: "particles", checked: particles.wanted, disabled: lessMotion.matches, onchange: change }), h("span", {}, `Wind and current as moving particles${why}`));
   }
 
   // Events

@@ -72,6 +72,7 @@ export class WeatherLayer {
   seas = [];
   time = null;
   step = 3 * 3600;
+  particles = null;
   onState = () => {};
 
   constructor(map) {
@@ -89,6 +90,19 @@ export class WeatherLayer {
 
   repaint() {
     this.layer.getSource().changed();
+    this.particles?.refresh();
+  }
+
+  // Wind or current [m/s] to the east and north at a place of the chart; null where unknown.
+  velocityAt([x, y]) {
+    const { frames } = this.shown;
+    const parts = [0, 1].map((field) => this.#blended(field, this.#turned((x / HALF) * 180, frames[0]), (y / HALF) * Math.PI));
+    return parts.every(Number.isFinite) ? parts : null;
+  }
+
+  #blended(field, lon, y) {
+    const { frames, share } = this.shown;
+    return (1 - share) * frames[0].at(field, lon, y) + (share ? share * frames[1].at(field, lon, y) : 0);
   }
 
   async refresh() {
@@ -176,7 +190,7 @@ export class WeatherLayer {
     const context = canvas.getContext("2d");
     this.#paste(context, image);
     if (holes) this.#hatch(canvas, missing);
-    if (KINDS[kind].marks) this.#marks(context, canvas, extent, resolution / ratio, ratio);
+    if (KINDS[kind].marks && !this.particles?.shown) this.#marks(context, canvas, extent, resolution / ratio, ratio);
     return canvas;
   }
 
@@ -222,7 +236,7 @@ export class WeatherLayer {
   }
 
   #marks(context, canvas, extent, pixel, ratio) {
-    const { frames, share, kind } = this.shown;
+    const { frames, kind } = this.shown;
     const gap = 58 * ratio;
     context.strokeStyle = context.fillStyle = colour("map-ink");
     context.globalAlpha = 0.62;
@@ -234,8 +248,7 @@ export class WeatherLayer {
         const my = ((extent[3] - y * pixel) / HALF) * Math.PI;
         const lon = this.#turned(((extent[0] + x * pixel) / HALF) * 180, frames[0]);
         const first = kind === "waves" ? 1 : 0;
-        const blend = (field) => (1 - share) * frames[0].at(field, lon, my) + (share ? share * frames[1].at(field, lon, my) : 0);
-        const east = blend(first), north = blend(first + 1);
+        const east = this.#blended(first, lon, my), north = this.#blended(first + 1, lon, my);
         if (!Number.isFinite(east) || !Number.isFinite(north) || Math.hypot(east, north) < 1e-3) continue;
         context.save();
         context.translate(x, y);
