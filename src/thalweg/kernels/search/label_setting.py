@@ -136,7 +136,8 @@ def _best_departure(world, query, node, edge, k, time, enough, work):
     cutoff = MarchCutoff(latest, query.slowness)
     quickest = least_time(network, edge, query.slowness)
     may_wait = query.wait and network.can_wait[node]
-    terms = WaitingTerms(may_wait, network.until[node], factor, quickest, enough)
+    until = max(time, min(network.until[node], query.horizon - quickest))
+    terms = WaitingTerms(may_wait, until, factor, quickest, enough)
     return best_edge_passage(world, edge, network.station[node], k, time, cutoff, terms, work)
 
 

@@ -89,6 +89,17 @@ def _share_of_wind(before, after, most):
 
 
 @kernel_only
+def _has_data(network, sea, ship, place, k, work):
+    """Return whether the sea is known at a sample during interval k of the times."""
+    middle = 0.5 * (sea.times[k] + sea.times[k + 1])
+    _sample_at(network, sea, place, k, middle, work[2], work[3])
+    course = course_vector(float(network.course[place[0]]))
+    depth = float(network.depth[place[0]])
+    status = point_speed_from_guess(work[2], sea.channel_index, course, ship, depth, math.inf)[1]
+    return status != NO_DATA
+
+
+@kernel_only
 def _margin(network, sea, ship, place, k, moment, work):
     """Return the speed over ground [m/s] at a sample; not positive where it is closed."""
     _sample_at(network, sea, place, k, moment, work[2], work[3])
@@ -189,7 +200,9 @@ def opening_of_sample(network, sea, ship, place, k, moment, blocked, work):
         if begin >= useless:
             break
         if status == NO_DATA:
-            return end
+            if j + 1 < last and _has_data(network, sea, ship, place, j + 1, work):
+                return end
+            continue
         if status not in (DEPTH, WAVE_HEIGHT, WIND_SPEED):
             found = _first_above(network, sea, ship, place, j, (begin, end), work)
             if found < math.inf:
