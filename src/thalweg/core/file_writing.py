@@ -38,18 +38,15 @@ def replacing_file(path: str | PathLike[str]) -> Iterator[IO[bytes]]:
 
     Parameters
     ----------
-    path : File to write. A link is followed; the permissions of an existing file are kept. A device
-        or a pipe is written directly.
+    path : or a pipe is written directly.
 
     Yields
     ------
-    file
-        Binary file to write to.
+    file : Binary file to write to.
 
     Raises
     ------
-    OSError
-        If the file cannot be written. An existing file is then unchanged.
+    OSError : If the file cannot be written. An existing file is then unchanged.
     """
     target = Path(os.path.realpath(path))
     mode = _existing_mode(target)
@@ -129,8 +126,7 @@ def write_bytes(path: str | PathLike[str], data: bytes) -> None:
 
     Raises
     ------
-    InputError
-        If it cannot be written. An existing file is then unchanged.
+    InputError : If it cannot be written. An existing file is then unchanged.
     """
     try:
         with replacing_file(path) as file:
@@ -149,8 +145,7 @@ def write_csv_rows(path: str | PathLike[str], rows: Iterable[Iterable[Any]]) -> 
 
     Raises
     ------
-    InputError
-        If it cannot be written. An existing file is then unchanged.
+    InputError : If it cannot be written. An existing file is then unchanged.
     """
     text = io.StringIO(newline="")
     csv.writer(text).writerows(rows)
@@ -212,8 +207,7 @@ def make_folder(folder: str | PathLike[str]) -> Path:
 
     Raises
     ------
-    InputError
-        If it cannot be created or written.
+    InputError : If it cannot be created or written.
     """
     folder = Path(folder)
     try:

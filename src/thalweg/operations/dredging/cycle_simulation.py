@@ -115,8 +115,7 @@ class Simulator:
 
         Raises
         ------
-        OutsidePeriodError
-            If it is not moved by the end of the period.
+        OutsidePeriodError : If it is not moved by the end of the period.
         """
         project, work = self.project, self.project.work
         cycles: list[DredgingCycle] = []

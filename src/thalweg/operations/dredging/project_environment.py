@@ -318,8 +318,7 @@ def fixed_route_network(chart: Chart, route: Sequence[Position]) -> Network:
 
     Raises
     ------
-    InputError
-        If the chart does not let it pass.
+    InputError : If the chart does not let it pass.
     """
     lat, lon = _resampled_route(route)
     first = np.arange(len(lat) - 1, dtype=np.int32)

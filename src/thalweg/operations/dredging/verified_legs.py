@@ -70,9 +70,8 @@ class SiteLegPlanner:
 
         Returns
         -------
-        SailedLeg or None
-            None if there is no route before the data end. If no attempt keeps every limit, the
-            first leg is returned; its route lists the violations.
+        SailedLeg or None : None if there is no route before the data end. If no attempt keeps every
+            limit, the first leg is returned; its route lists the violations.
         """
         loaded, best = self.loaded(load_factor), None
         for step in range(len(TIGHTENING)):

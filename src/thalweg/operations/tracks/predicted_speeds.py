@@ -40,13 +40,11 @@ def predicted_speeds_through_water(
     Parameters
     ----------
     ship : Full while sailing full (load factor 1), empty while sailing empty (0).
-    speed_kn : Ordered speed; by default, for each activity, the setting of the ship whose
-        calm-water speed is nearest to the measured speed through water.
+    speed_kn : calm-water speed is nearest to the measured speed through water.
 
     Returns
     -------
-    ndarray
-        NaN where the sea lacks data that the model needs.
+    ndarray : NaN where the sea lacks data that the model needs.
     """
     found = np.full(len(segments), np.nan)
     for kind, (loaded, setting) in ordered_settings(segments, ship, speed_kn=speed_kn).items():
@@ -95,9 +93,8 @@ def speeds_at_measured_power(
 
     Returns
     -------
-    ndarray or None
-        NaN where the power or the sea is unknown or no speed up to 25 m/s takes that power; None if
-        the log has no power or the model of the ship has no resistance.
+    ndarray or None : NaN where the power or the sea is unknown or no speed up to 25 m/s takes that
+        power; None if the log has no power or the model of the ship has no resistance.
 
     Notes
     -----

@@ -26,8 +26,7 @@ def cheapest_blocks(
 
     Returns
     -------
-    int64 array (pieces,) or None
-        None if no choice of blocks is in time.
+    int64 array (pieces,) or None : None if no choice of blocks is in time.
 
     Notes
     -----

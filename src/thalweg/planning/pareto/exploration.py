@@ -51,8 +51,7 @@ def explore_alternative(
 
     Raises
     ------
-    NoRouteError
-        If no route arrives in time; with the earliest arrival if there is a route.
+    NoRouteError : If no route arrives in time; with the earliest arrival if there is a route.
     """
     context = trade_off.context
     horizon, fastest = _fastest_route(trade_off, alternative)
@@ -138,8 +137,7 @@ def network_pareto_front(
 
     Raises
     ------
-    SearchInterrupted
-        If Ctrl-C is pressed before there is a front.
+    SearchInterrupted : If Ctrl-C is pressed before there is a front.
     """
     context = trade_off.context
     share_of_labels = 0.5 if lower else 1.0

@@ -40,8 +40,7 @@ def draw_enclosed_water(
 
     Returns
     -------
-    bool array (rows, columns)
-        Where it was hatched.
+    bool array (rows, columns) : Where it was hatched.
     """
     from scipy.ndimage import label
     from scipy.spatial import cKDTree

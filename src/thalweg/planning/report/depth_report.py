@@ -32,9 +32,8 @@ def depth_notes(context: PlanningContext, route: Route) -> list[str]:
 
     Returns
     -------
-    list of str
-        Empty where the chart or the sea provides depth, which is then checked everywhere, for
-        charts that are not of the world, and for ships without a draught.
+    list of str : Empty where the chart or the sea provides depth, which is then checked everywhere,
+        for charts that are not of the world, and for ships without a draught.
     """
     draught = float(context.ship.draught)
     of_the_world = bool(context.chart.passages)

@@ -71,8 +71,7 @@ def plan_passage(
 
     Raises
     ------
-    NoRouteError
-        If no route exists within the limits, the data and the latest arrival.
+    NoRouteError : If no route exists within the limits, the data and the latest arrival.
     """
     networks: dict[int, Network] = {}
     passage: PassageResult | None = None
@@ -201,8 +200,7 @@ def isochrones(
 
     Returns
     -------
-    ndarray (N,)
-        Arrivals [s since 1970-01-01T00:00Z]; inf where a node is not reached.
+    ndarray (N,) : Arrivals [s since 1970-01-01T00:00Z]; inf where a node is not reached.
     """
     everywhere = earliest_arrival(
         _ship_on_network(context, network, frozen, context.needs.limits),

@@ -39,8 +39,7 @@ def parse_rtz(data: bytes) -> ParsedTrack:
 
     Raises
     ------
-    InputError
-        If it is too large, not XML, declares entities, or is no route.
+    InputError : If it is too large, not XML, declares entities, or is no route.
     """
     if len(data) > LARGEST_RTZ:
         raise InputError(
@@ -76,8 +75,7 @@ def parse_rtzp(data: bytes) -> ParsedTrack:
 
     Raises
     ------
-    InputError
-        If it is not a ZIP with one RTZ file in it, or that is too large.
+    InputError : If it is not a ZIP with one RTZ file in it, or that is too large.
     """
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:

@@ -29,14 +29,12 @@ def parse_s421(data: bytes) -> ParsedTrack:
 
     Returns
     -------
-    ParsedTrack
-        Legs are rhumb lines unless they are orthodromes. The departure is that of the first
-        schedule element of the first waypoint that has one.
+    ParsedTrack : Legs are rhumb lines unless they are orthodromes. The departure is that of the
+        first schedule element of the first waypoint that has one.
 
     Raises
     ------
-    InputError
-        If it is too large, not XML, declares entities, or holds no route or several.
+    InputError : If it is too large, not XML, declares entities, or holds no route or several.
     """
     if len(data) > LARGEST_S421:
         raise InputError(

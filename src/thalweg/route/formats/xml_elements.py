@@ -22,8 +22,7 @@ def parse_xml(data: bytes | str, what: str) -> ElementTree.Element:
 
     Raises
     ------
-    InputError
-        If it is not XML, or declares entities.
+    InputError : If it is not XML, or declares entities.
     """
     from defusedxml import DefusedXmlException
     from defusedxml.ElementTree import fromstring

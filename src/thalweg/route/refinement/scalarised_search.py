@@ -47,8 +47,7 @@ def scalarised_local_search(
 
     Returns
     -------
-    ScoredTracks
-        With costs that are not higher than before.
+    ScoredTracks : With costs that are not higher than before.
 
     Notes
     -----

@@ -281,10 +281,8 @@ def legs_as_tracks(
 
     Returns
     -------
-    pairs : float64 array (L, 2, GENE_COLUMNS)
-        Without the wait at the first point.
-    depart : float64 array (L,)
-        [s after the departure of the evaluator], after that wait.
+    pairs : Without the wait at the first point, (L, 2, GENE_COLUMNS).
+    depart : [s after the departure of the evaluator], after that wait, (L,).
     """
     genes = lines.population.genes
     pairs = np.stack([genes[row, place], genes[row, place + 1]], axis=1)
@@ -315,8 +313,7 @@ def sail_legs_alone(
 
     Returns
     -------
-    time, cost : float64 array (L,)
-        [s] and in the unit of the prices.
+    time, cost : [s] and in the unit of the prices, (L,).
     """
     evaluator = without_latest_arrival(evaluator)
     population = Population(np.full(len(pairs), 2), np.ascontiguousarray(pairs))

@@ -85,8 +85,7 @@ def seed_paths(
 
     Returns
     -------
-    list of FrontPoint
-        Sailed paths.
+    list of FrontPoint : Sailed paths.
     """
     paths = [fastest]
     known = {fastest.states.tobytes()}

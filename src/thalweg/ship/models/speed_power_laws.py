@@ -41,8 +41,7 @@ def calm_speeds(file: ShipFile, law: str) -> tuple[FloatArray, FloatArray]:
 
     Raises
     ------
-    InputError
-        If there is none, or more than one.
+    InputError : If there is none, or more than one.
     """
     places = {
         "speeds_kn": file.speeds_kn,
@@ -163,13 +162,11 @@ def with_settings(model: KnownSpeedModel, file: ShipFile) -> KnownSpeedModel:
 
     Returns
     -------
-    KnownSpeedModel
-        With one setting for each value.
+    KnownSpeedModel : With one setting for each value.
 
     Raises
     ------
-    InputError
-        If powers and speeds are given, or no law ties the powers to speeds in its range.
+    InputError : If powers and speeds are given, or no law ties the powers to speeds in its range.
     """
     speeds, powers = file.speeds_kn, file.powers_kw
     if powers is None:
@@ -211,8 +208,7 @@ def check_table(table: TableSection | None) -> dict[str, tuple[float, ...]]:
 
     Raises
     ------
-    InputError
-        If there is no table, it has no speeds, or its columns differ in length.
+    InputError : If there is no table, it has no speeds, or its columns differ in length.
     """
     if table is None or table.speed_kn is None:
         raise InputError(

@@ -93,8 +93,7 @@ def roll_rms(
 
     Returns
     -------
-    ndarray
-        [rad], in the broadcast shape; zero without waves, NaN where a value is unknown.
+    ndarray : [rad], in the broadcast shape; zero without waves, NaN where a value is unknown.
     """
     hs, tp, angle, v = np.broadcast_arrays(
         *(as_float_array(values) for values in (height, period, wave_angle, speed))

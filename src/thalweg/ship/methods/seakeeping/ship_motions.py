@@ -42,8 +42,7 @@ class MotionHull:
 
     Raises
     ------
-    InputError
-        When a dimension is not positive or the block coefficient is above one.
+    InputError : When a dimension is not positive or the block coefficient is above one.
     """
 
     length: float
@@ -81,8 +80,7 @@ def encounter_ratio(
 
     Returns
     -------
-    ndarray
-        Ratio [-]; negative where the ship overtakes the waves.
+    ndarray : Ratio [-]; negative where the ship overtakes the waves.
 
     References
     ----------
@@ -177,9 +175,8 @@ def vertical_motion(heave: ArrayLike, pitch: ArrayLike, *, forward: ArrayLike) -
 
     Returns
     -------
-    ndarray
-        Amplitude [m/m]: sqrt(heave^2 + (x pitch)^2). Roll is not modelled, so the point is taken
-        on the centre line.
+    ndarray : Amplitude [m/m]: sqrt(heave^2 + (x pitch)^2). Roll is not modelled, so the point is
+        taken on the centre line.
     """
     return np.hypot(
         as_float_array(heave), as_float_array(forward)[..., None] * as_float_array(pitch)
@@ -261,9 +258,8 @@ def ship_response(
 
     Returns
     -------
-    ShipResponse
-        Of the broadcast shape of the conditions. Zero height gives zero, whatever the period
-        and direction; unknown data give NaN.
+    ShipResponse : Of the broadcast shape of the conditions. Zero height gives zero, whatever the
+        period and direction; unknown data give NaN.
 
     Notes
     -----
