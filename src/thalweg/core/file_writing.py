@@ -169,6 +169,16 @@ def new_figure(width: float, height: float, **options: Any) -> Any:
     return figure
 
 
+def style_panels(axes: Iterable[Any]) -> None:
+    """Give the panels of a figure a thin grid and small text."""
+    for panel in axes:
+        panel.grid(alpha=0.3, lw=0.4)
+        panel.tick_params(labelsize=7)
+        panel.title.set_size(9)
+        panel.xaxis.label.set_size(8)
+        panel.yaxis.label.set_size(8)
+
+
 def save_figure(figure: Any, path: str | PathLike[str] | IO[bytes], **options: Any) -> None:
     """Write a matplotlib figure, completely or not at all.
 

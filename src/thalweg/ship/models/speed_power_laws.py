@@ -173,13 +173,7 @@ def with_settings(model: KnownSpeedModel, file: ShipFile) -> KnownSpeedModel:
         if speeds is None or model.law.name != "table":
             return model
         return model.with_speeds(np.unique(speeds) * KNOT, 1.0)
-    if speeds is not None:
-        raise InputError(
-            "The ship file gives both powers_kw and speeds_kn.",
-            "Orders are either powers or speeds.",
-            "Leave one of them out.",
-            key="powers_kw",
-        )
+    file.check_one_kind_of_order()
     watts = np.unique(powers) * 1000.0
     known = np.isfinite(model.powers).all() and (np.diff(model.powers) > 0.0).all()
     if model.law.name == "none" or not known:

@@ -17,6 +17,7 @@ from thalweg.ship.methods.seakeeping.wave_spectra import (
     most_probable_maximum,
     quadrature,
     spectral_moment,
+    with_flat_seas,
 )
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
@@ -274,9 +275,7 @@ def ship_response(
     hs, tp, angle, v, x = np.broadcast_arrays(
         *(as_float_array(values) for values in (height, period, wave_angle, speed, forward))
     )
-    flat = hs == 0.0  # a flat sea has neither period nor direction
-    tp = np.where(flat & ~(tp > 0.0), 10.0, tp)
-    angle = np.where(flat & np.isnan(angle), 0.0, angle)
+    tp, angle = with_flat_seas(hs, period=tp, wave_angle=angle)
     w, weights = quadrature(tp)
     waves = jonswap(w, height=hs, period=tp, peak_factor=peak_factor)
     heave, pitch = jensen_motions(

@@ -44,6 +44,15 @@ def quadrature(period: ArrayLike) -> tuple[FloatArray, FloatArray]:
     return peak[..., None] * _NODES, peak[..., None] * _WEIGHTS
 
 
+def with_flat_seas(
+    height: FloatArray, *, period: FloatArray, wave_angle: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return period and wave angle with some value where a flat sea has none."""
+    flat = height == 0.0
+    angle = np.where(flat & np.isnan(wave_angle), 0.0, wave_angle)
+    return np.where(flat & ~(period > 0.0), 10.0, period), angle
+
+
 def dnv_peak_factor(height: ArrayLike, period: ArrayLike) -> FloatArray:
     """Return the peak factor gamma of a JONSWAP spectrum by DNV-RP-C205.
 
