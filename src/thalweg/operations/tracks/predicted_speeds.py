@@ -49,11 +49,11 @@ def predicted_speeds_through_water(
     found = np.full(len(segments), np.nan)
     for kind, (loaded, setting) in ordered_settings(segments, ship, speed_kn=speed_kn).items():
         own = segments.kind == SAILING_KINDS.index(kind)
-        world = make_sailing_environment(loaded, with_wind_speed(loaded, sea), None)
-        check_depth_available(world)
+        environment = make_sailing_environment(loaded, with_wind_speed(loaded, sea), None)
+        check_depth_available(environment)
         here = segments.part(own)
         found[own] = solve_sailing_state(
-            world, _segment_points(here, setting), here.time
+            environment, _segment_points(here, setting), here.time
         ).speed_through_water
     return found
 
@@ -104,10 +104,10 @@ def speeds_at_measured_power(
     if "power" not in log.values or not ship.is_resistance_based:
         return None
     power = segment_means(log, segments, "power")
-    world = make_sailing_environment(ship, with_wind_speed(ship, sea), None)
-    check_depth_available(world)
+    environment = make_sailing_environment(ship, with_wind_speed(ship, sea), None)
+    check_depth_available(environment)
     points = _segment_points(segments, 0)
-    met = _conditions(world, points, segments.time)
+    met = _conditions(environment, points, segments.time)
     met = met.with_values(load_factor=_load_factors(log, segments, ship))
     low, high = np.zeros(len(segments)), np.full(len(segments), _MAX_SPEED)
     with np.errstate(invalid="ignore"):
@@ -147,9 +147,13 @@ def _segment_points(segments: MeasuredSegments, setting: int) -> TrackPoints:
     )
 
 
-def _conditions(world: SailingEnvironment, points: TrackPoints, time: FloatArray) -> Conditions:
-    sampled, depth = sample_sea_and_depth(world, points, time)
-    return conditions_at(world, points, time, sampled=sampled, depth=depth, heading=points.course)
+def _conditions(
+    environment: SailingEnvironment, points: TrackPoints, time: FloatArray
+) -> Conditions:
+    sampled, depth = sample_sea_and_depth(environment, points, time)
+    return conditions_at(
+        environment, points, time, sampled=sampled, depth=depth, heading=points.course
+    )
 
 
 def _load_factors(log: TrackLog, segments: MeasuredSegments, ship: Ship) -> FloatArray:

@@ -18,8 +18,8 @@ from thalweg.planning.pareto.search_horizon import SearchHorizon, extend_horizon
 from thalweg.planning.pareto.trade_off_context import ExploredAlternative, TradeOffContext
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
-from thalweg.planning.single.passage import isochrones
 from thalweg.planning.single.route_candidates import refine_track, track_from_result
+from thalweg.planning.single.stretch import isochrones
 from thalweg.planning.single.weather_gaps import (
     MAX_GAPS,
     check_times_known,

@@ -1,4 +1,4 @@
-"""A population of scored tracks that is refined, each track for its own price of time.
+"""A population of scored tracks that is refined, each track for its own shadow price of time.
 
 Legs are compared alone: their own cost, and what the delay they cause costs until the goal.
 """
@@ -29,12 +29,12 @@ _DELAY_SHARE = 0.02  # delay of differences, as a share of the time of a leg
 
 @dataclass(frozen=True)
 class ScoredTracks:
-    """Tracks with their scores, each minimised for its own price of time.
+    """Tracks with their scores, each minimised for its own shadow price of time.
 
     Attributes
     ----------
     population : R tracks; all legs known.
-    price : Price of time: cost + price * time is minimised, (R,).
+    price : Shadow price of time: cost + price * time is minimised, (R,).
     scores : float64 array (R, 3)
     arrive : Arrival at every point [s], (R, M).
     """
@@ -252,7 +252,7 @@ def scalarised_values(scores: FloatArray, price: FloatArray) -> FloatArray:
     Parameters
     ----------
     scores : Time [s], cost and violation, (R, 3).
-    price : Price of time [cost/s], (R,).
+    price : Shadow price of time [cost/s], (R,).
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Speed settings of the legs: the cheapest that arrive in time, or for a price of time."""
+"""Speed settings of the legs: the cheapest that arrive in time, or for a shadow price of time."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def times_and_costs_by_setting(
 
     Returns
     -------
-    time, cost : [s] and in the unit of the prices, with the price of time, (legs, settings); +inf
+    time, cost : [s] and in the unit of the prices, with the shadow price, (legs, settings); +inf
         where a leg cannot be sailed.
     """
     legs, settings = len(line) - 1, evaluator.settings
