@@ -1,7 +1,7 @@
 """Local search on a scalarised objective: tracks refined for shadow prices of time; fronts filled.
 
-For a shadow price of time p, the value of a track is cost + p * time; its minimum is a point on the lower
-convex hull of the front.
+For a shadow price of time p, the value of a track is cost + p * time; its minimum is a point on the
+lower convex hull of the front.
 """
 
 from __future__ import annotations
