@@ -111,9 +111,9 @@ def main() -> None:
     runs = []
     for start, goal in pairs[: options.places]:
         began = time.process_time()
-        passages = prepare_profile_search(prepared, steady(), start=start, goal=goal, **given)
+        search = prepare_profile_search(prepared, steady(), start=start, goal=goal, **given)
         print(f"preparing a pair of places {1e3 * (time.process_time() - began):.0f} ms")
-        runs += [timed(lambda t=t, p=passages: p.sail(t)) for t in departs]
+        runs += [timed(lambda t=t, p=search: p.sail(t)) for t in departs]
     print_times("prepared query", runs)
 
 

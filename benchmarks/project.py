@@ -100,7 +100,7 @@ def single_queries(spacing: float) -> None:
     for load in (1.0, 0.5, 0.0):
         loaded = ship.with_load_factor(load)
         limits = Limits(required_depth=loaded.draught + 1.0)
-        passages = prepare_profile_search(
+        search = prepare_profile_search(
             prepared, loaded.tabulate(), start=0, goal=1, setting=0, limits=limits,
             top_speed=loaded.top_speed(0),
         )  # fmt: skip
@@ -108,7 +108,7 @@ def single_queries(spacing: float) -> None:
             times = []
             for depart in project.start + 1800.0 * np.arange(48):
                 first = time.thread_time()
-                passages.sail(depart)
+                search.sail(depart)
                 times.append(1000.0 * (time.thread_time() - first))
             print(
                 f"load {load:.1f}, {turn}: median {statistics.median(times):.1f} ms of CPU, "

@@ -132,7 +132,8 @@ RENAMED: Final[Mapping[str, Mapping[str, tuple[str, str]]]] = {
     "thalweg.search": {
         "Bound": ("thalweg.search.lower_bounds", "LowerBound"),
         "Front": ("thalweg.search.pareto.front_result", "NetworkFront"),
-        "Passage": ("thalweg.search.network_passage", "NetworkPassage"),
+        "NetworkPassage": ("thalweg.search.timed_path", "TimedPath"),
+        "Passage": ("thalweg.search.timed_path", "TimedPath"),
         "Passages": ("thalweg.search.profile_search", "ProfileSearch"),
         "Waters": ("thalweg.search.prepared_network", "PreparedNetwork"),
         "extreme": ("thalweg.ship.tables.table_bounds", "table_bounds"),

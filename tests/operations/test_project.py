@@ -35,7 +35,7 @@ from thalweg.operations.dredging.run_project import run_project
 from thalweg.operations.dredging.verified_legs import (
     SiteLegPlanner,
     _essential_nodes,
-    track_from_passage,
+    track_of_path,
 )
 from thalweg.operations.dredging.work_windows import WorkWindows
 from thalweg.operations.examples.estuary import bed_depth
@@ -199,14 +199,14 @@ def test_a_leg_that_breaks_a_limit_between_the_nodes_is_planned_with_more_water(
     ways = freeze_site_network(world, project_network(world), lambda text: None)
     sailor = SiteLegPlanner(world, ways)
     depart = project.start + 11 * 1800.0
-    found = sailor.passages(0.8, outward=True).sail(depart)
-    track = track_from_passage(ways, found, sailor.loaded(0.8).setting)
+    found = sailor.profile_search(0.8, outward=True).sail(depart)
+    track = track_of_path(ways, found, sailor.loaded(0.8).setting)
     by_nodes = evaluate(
         track, ship=sailor.loaded(0.8).ship, sea=sea, chart=chart, min_ukc=1.0, strict=False
     )
     assert {v.reason for v in by_nodes.violations} == {"under-keel clearance"}
     for given in (None, found):
-        leg = sailor.sail(0.8, depart, outward=True, passage=given)
+        leg = sailor.sail(0.8, depart, outward=True, path=given)
         assert leg.route.feasible and leg.clearance >= 1.0
         assert found.arrive < leg.arrive < found.arrive + 600.0
 

@@ -73,12 +73,12 @@ def test_every_departure_has_the_answer_of_a_separate_search(
 ):
     asked = ask(dredger, load_factor, start=start, goal=goal)
     table = asked.pop("table")
-    passages = prepare_profile_search(PreparedNetwork.prepare(*world), table, **asked)
+    search = prepare_profile_search(PreparedNetwork.prepare(*world), table, **asked)
     departures = T0 + 3600.0 * np.array([0.5, 3.0, 5.25, 7.0, 9.1, 11.0, 13.3, 16.0, 19.0, 22.0])
     waited = 0
     for depart in departures:
         one = separately(world, depart, table=table, **asked)
-        found = passages.sail(depart)
+        found = search.sail(depart)
         assert found.found == one.found
         assert found.arrive == pytest.approx(one.arrive, abs=1e-6)
         # the path arrives when it says, by its own waits
@@ -90,10 +90,10 @@ def test_every_departure_has_the_answer_of_a_separate_search(
 
 def test_all_departures_at_once_are_those_one_by_one(world, dredger):
     asked = ask(dredger, 1.0, start=0, goal=1)
-    passages = prepare_profile_search(PreparedNetwork.prepare(*world), asked.pop("table"), **asked)
+    search = prepare_profile_search(PreparedNetwork.prepare(*world), asked.pop("table"), **asked)
     departures = T0 + 600.0 * np.arange(0, 150)
-    profile = passages.profile(departures)
-    one_by_one = np.array([passages.sail(t).arrive for t in departures])
+    profile = search.profile(departures)
+    one_by_one = np.array([search.sail(t).arrive for t in departures])
     assert np.array_equal(profile.departures, departures)
     # who waits for the same opening arrives together, and openings are found to 0.1 s
     assert profile.arrivals == pytest.approx(one_by_one, abs=0.26)
@@ -101,18 +101,18 @@ def test_all_departures_at_once_are_those_one_by_one(world, dredger):
     # ship that waits leaves (see `wait_for_edge`)
     assert np.all(np.diff(profile.arrivals) >= -30.0)
     assert profile.searched < len(departures)  # plateaus of waiting are not searched
-    for passage in profile.passages:
-        assert passage.node_arrive[0] == passage.depart
-        assert passage.arrive == passage.node_arrive[-1]
+    for path in profile.paths:
+        assert path.node_arrive[0] == path.depart
+        assert path.arrive == path.node_arrive[-1]
 
 
 def test_waiting_forbidden_is_never_waited(world, dredger):
     asked = ask(dredger, 0.6, start=0, goal=1, wait=False)
     table = asked.pop("table")
-    passages = prepare_profile_search(PreparedNetwork.prepare(*world), table, **asked)
+    search = prepare_profile_search(PreparedNetwork.prepare(*world), table, **asked)
     for depart in T0 + 3600.0 * np.array([1.0, 6.0, 12.0]):
         one = separately(world, depart, table=table, **asked)
-        found = passages.sail(depart)
+        found = search.sail(depart)
         assert found.arrive == pytest.approx(one.arrive, abs=1e-6)
         assert found.waiting == 0.0
 
@@ -125,10 +125,10 @@ def test_waiting_at_anchorages_only(world, dredger):
     anchored = replace(network, can_wait=waiting)
     asked = ask(dredger, 1.0, start=0, goal=1)
     table = asked.pop("table")
-    passages = prepare_profile_search(PreparedNetwork.prepare(anchored, fields), table, **asked)
+    search = prepare_profile_search(PreparedNetwork.prepare(anchored, fields), table, **asked)
     for depart in T0 + 3600.0 * np.array([1.0, 8.0]):
         one = separately((anchored, fields), depart, table=table, **asked)
-        found = passages.sail(depart)
+        found = search.sail(depart)
         assert found.found == one.found
         assert found.arrive == pytest.approx(one.arrive, abs=600.0)
         waits = found.node_depart - found.node_arrive
@@ -137,22 +137,22 @@ def test_waiting_at_anchorages_only(world, dredger):
 
 def test_a_known_arrival_does_not_change_the_result(world, dredger):
     asked = ask(dredger, 1.0, start=0, goal=1)
-    passages = prepare_profile_search(PreparedNetwork.prepare(*world), asked.pop("table"), **asked)
+    search = prepare_profile_search(PreparedNetwork.prepare(*world), asked.pop("table"), **asked)
     depart = T0 + 4.0 * 3600.0
-    free = passages.sail(depart)
+    free = search.sail(depart)
     for known in (free.arrive, free.arrive + 3600.0, free.arrive - 1200.0):  # even a wrong one
-        assert passages.sail(depart, known=known).arrive == free.arrive
+        assert search.sail(depart, known=known).arrive == free.arrive
 
 
 def test_bounds_are_below_every_passage(world, dredger):
     prepared = PreparedNetwork.prepare(*world)
     for load_factor in (0.0, 1.0):
         asked = ask(dredger, load_factor, start=0, goal=1)
-        passages = prepare_profile_search(prepared, asked.pop("table"), **asked)
+        search = prepare_profile_search(prepared, asked.pop("table"), **asked)
         for depart in T0 + 3600.0 * np.array([2.0, 8.0, 14.0]):
-            found = passages.sail(depart)
+            found = search.sail(depart)
             to_go = found.arrive - found.node_arrive
-            assert np.all(passages.to_goal.node[found.nodes] <= to_go + 1e-6)
+            assert np.all(search.to_goal.node[found.nodes] <= to_go + 1e-6)
 
 
 def test_strongest_currents_bound_every_direction(world):
@@ -201,11 +201,11 @@ def test_bad_questions():
     fields = make_fields(network, T0 + 600.0 * np.arange(20), CURRENT_EAST=0.0, CURRENT_NORTH=0.0)
     prepared = PreparedNetwork.prepare(network, fields)
     asked = {"setting": 0, "limits": NO_LIMITS, "top_speed": 4.0}
-    with pytest.raises(InputError, match="no passages from node 0 to node 0"):
+    with pytest.raises(InputError, match="no search from node 0 to node 0"):
         prepare_profile_search(prepared, steady(4.0), start=0, goal=0, **asked)
-    passages = prepare_profile_search(prepared, steady(4.0), start=0, goal=1, **asked)
+    search = prepare_profile_search(prepared, steady(4.0), start=0, goal=1, **asked)
     with pytest.raises(InputError, match="do not ascend"):
-        passages.profile([T0 + 60.0, T0])
+        search.profile([T0 + 60.0, T0])
     other = make_network([0.0, 0.0, 0.0], [0.0, 0.1, 0.2], [(0, 1)])
     with pytest.raises(InputError, match="stations"):
         PreparedNetwork.prepare(other, fields)
@@ -214,12 +214,10 @@ def test_bad_questions():
 HOUR = 3600.0
 
 
-def passages_on(network, fields, table, **asked):
+def search_on(network, fields, table, **asked):
     asked = {"setting": 0, "limits": NO_LIMITS, "top_speed": 5.0, "start": 0, **asked}
-    passages = prepare_profile_search(PreparedNetwork.prepare(network, fields), table, **asked)
-    return passages, lambda t, **more: separately(
-        (network, fields), t, table=table, **asked, **more
-    )
+    search = prepare_profile_search(PreparedNetwork.prepare(network, fields), table, **asked)
+    return search, lambda t, **more: separately((network, fields), t, table=table, **asked, **more)
 
 
 @pytest.mark.parametrize("by_depth", [False, True])
@@ -231,9 +229,9 @@ def test_water_of_no_charted_depth_is_deep_enough(by_depth):
     grid = np.linspace(5.0, 25.0, 21)
     speeds = 3.0 + np.linspace(0.0, 1.0, 21)[:, None] ** 0.5
     table = make_table(((codes.AXIS_DEPTH,), (grid,), speeds)) if by_depth else steady(4.0)
-    passages, alone = passages_on(network, fields, table, goal=4, limits=limits(depth=6.0))
-    assert passages.sail(0.0).arrive == alone(0.0).arrive == pytest.approx(1000.0)
-    assert 799.0 < passages.shortest <= 1000.0  # 4 km at the top speed named
+    search, alone = search_on(network, fields, table, goal=4, limits=limits(depth=6.0))
+    assert search.sail(0.0).arrive == alone(0.0).arrive == pytest.approx(1000.0)
+    assert 799.0 < search.shortest <= 1000.0  # 4 km at the top speed named
 
 
 def between_two_stations(bed, east):
@@ -269,22 +267,22 @@ def test_bounds_hold_for_mixtures_of_two_stations(bed, east):
     grid = np.linspace(5.0, 25.0, 21)
     speeds = 3.0 + 2.0 * np.linspace(0.0, 1.0, 21)[:, None] ** 0.2
     table = make_table(((codes.AXIS_DEPTH,), (grid,), speeds))
-    passages, alone = passages_on(network, fields, table, goal=1, limits=limits(depth=6.0))
+    search, alone = search_on(network, fields, table, goal=1, limits=limits(depth=6.0))
     truth = alone(0.0).arrive
-    assert passages.shortest <= truth
-    assert passages.sail(0.0).arrive == truth
+    assert search.shortest <= truth
+    assert search.sail(0.0).arrive == truth
 
 
 def test_penalties_weigh_but_do_not_shorten_the_period():
     """30 km at 4 m/s in 3 hours of data; a penalty of 2 makes a cost of over four hours of it."""
     network = line(4, 10_000.0, factor=2.0)
     fields = make_fields(network, [0.0, 3 * HOUR], current_east=0.0, current_north=0.0)
-    passages, alone = passages_on(network, fields, steady(4.0), goal=3)
-    assert passages.sail(0.0).arrive == alone(0.0).arrive == pytest.approx(7500.0)
-    assert passages.sail(0.0, known=7500.0).arrive == pytest.approx(7500.0)
-    assert not passages.sail(3400.0).found  # after the data
-    assert passages.sail(0.0, arrive_by=7501.0).found
-    assert not passages.sail(0.0, arrive_by=7499.0).found
-    profile = passages.profile([0.0, 1000.0, 3200.0, 3400.0])
+    search, alone = search_on(network, fields, steady(4.0), goal=3)
+    assert search.sail(0.0).arrive == alone(0.0).arrive == pytest.approx(7500.0)
+    assert search.sail(0.0, known=7500.0).arrive == pytest.approx(7500.0)
+    assert not search.sail(3400.0).found  # after the data
+    assert search.sail(0.0, arrive_by=7501.0).found
+    assert not search.sail(0.0, arrive_by=7499.0).found
+    profile = search.profile([0.0, 1000.0, 3200.0, 3400.0])
     assert profile.arrivals == pytest.approx([7500.0, 8500.0, 10_700.0, np.inf])
     assert profile.searched == 4

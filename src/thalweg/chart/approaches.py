@@ -224,8 +224,7 @@ def line_between(
 
     Returns
     -------
-    tuple of (lat, lon), or None
-        None where the two approaches do not meet before the open sea.
+    tuple of (lat, lon), or None : None where the two approaches do not meet before the open sea.
     """
     first, second = _dense(start.line), _dense(goal.line)
     north = first[:, None, 0] - second[None, :, 0]

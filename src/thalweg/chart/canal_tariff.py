@@ -123,10 +123,8 @@ def known_gross_tonnage(hull: HullSection) -> tuple[float | None, str]:
 
     Returns
     -------
-    tonnage : float or None
-        None where the size of the hull is not known.
-    assumption : str
-        How it was estimated; empty where the file gives it.
+    tonnage : None where the size of the hull is not known.
+    assumption : How it was estimated; empty where the file gives it.
 
     Notes
     -----

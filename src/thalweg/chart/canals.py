@@ -52,8 +52,7 @@ class Canal:
 
     Raises
     ------
-    InputError
-        If the path has fewer than two points, or a value is negative or not a number.
+    InputError : If the path has fewer than two points, or a value is negative or not a number.
     """
 
     name: str
@@ -150,8 +149,7 @@ def canals_with_dues(canals: Sequence[Canal], hull: HullSection) -> tuple[Canal,
 
     Returns
     -------
-    tuple of Canal
-        ``fee_basis`` says how the dues were found.
+    tuple of Canal : ``fee_basis`` says how the dues were found.
     """
     return tuple(_with_dues(canal, hull) for canal in canals)
 
@@ -179,8 +177,7 @@ def exclude_canals(canals: Sequence[Canal], names: Sequence[str]) -> tuple[Canal
 
     Raises
     ------
-    InputError
-        If a name is unknown; the message lists similar names.
+    InputError : If a name is unknown; the message lists similar names.
     """
     known = {canal.name for canal in canals} | {canal.name for canal in CANALS}
     plain = [normalised_canal_name(name) for name in names]
@@ -207,9 +204,8 @@ def canal_index_of_legs(
 
     Returns
     -------
-    int64 ndarray
-        Index into ``canals`` where both ends lie within 2 m of the two ends of a canal, in either
-        direction.
+    int64 ndarray : Index into ``canals`` where both ends lie within 2 m of the two ends of a canal,
+        in either direction.
     """
     ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
     number = np.full(ends[0].shape, -1, np.int64)

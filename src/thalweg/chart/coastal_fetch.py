@@ -53,8 +53,7 @@ class CoastalFetch:
 
         Returns
         -------
-        float64 array
-            Fetch [m], of the shape of ``origin``; NaN where the direction is NaN.
+        float64 array : Fetch [m], of the shape of ``origin``; NaN where the direction is NaN.
         """
         table = self._tables(np.asarray(lat, float), np.asarray(lon, float))
         place = np.asarray(origin, float) / (2.0 * math.pi) * DIRECTIONS % DIRECTIONS

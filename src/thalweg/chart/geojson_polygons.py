@@ -38,13 +38,11 @@ def read_features(
 
     Returns
     -------
-    list of (mapping, mapping)
-        Geometry and properties.
+    list of (mapping, mapping) : Geometry and properties.
 
     Raises
     ------
-    InputError
-        If the file cannot be read or is not GeoJSON.
+    InputError : If the file cannot be read or is not GeoJSON.
     """
     data: Any = source
     if isinstance(source, (str, PathLike)):
@@ -116,14 +114,12 @@ def parse_polygons(geometry: Mapping[str, Any], what: str, *, repair: bool = Tru
 
     Returns
     -------
-    list of shapely polygons
-        Coordinates (lon, lat) [deg].
+    list of shapely polygons : Coordinates (lon, lat) [deg].
 
     Raises
     ------
-    InputError
-        If the coordinates are not positions (lon, lat) of closed rings; without ``repair`` also
-        if an outline crosses or touches itself.
+    InputError : If the coordinates are not positions (lon, lat) of closed rings; without ``repair``
+        also if an outline crosses or touches itself.
     """
     import shapely
 
@@ -205,8 +201,7 @@ def _unwrapped_ring(ring: NDArray[np.float64], what: str, *, hole: bool) -> NDAr
 
     Raises
     ------
-    InputError
-        If it is ambiguous, or encloses a pole.
+    InputError : If it is ambiguous, or encloses a pole.
     """
     step = np.diff(ring[:, 0])
     long = (np.abs(step) > 180.0) & (np.abs(step) <= 360.0)

@@ -181,8 +181,7 @@ def split_avoided(names: Sequence[str]) -> tuple[list[str], list[Passage]]:
 
     Raises
     ------
-    InputError
-        If a name is neither; the message lists similar names.
+    InputError : If a name is neither; the message lists similar names.
     """
     canals, passages = [], []
     known = {canal.name for canal in CANALS}

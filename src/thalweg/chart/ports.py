@@ -142,9 +142,8 @@ class Ports:
 
         Raises
         ------
-        InputError
-            If the port is unknown (the message lists similar names), or ports of comparable size
-            have the name (the message lists them and how to write each).
+        InputError : If the port is unknown (the message lists similar names), or ports of
+            comparable size have the name (the message lists them and how to write each).
         """
         named = self._named(text)
         code = "".join(text.split())

@@ -29,8 +29,7 @@ def layered_request(arguments: argparse.Namespace) -> dict[str, Any] | None:
 
     Raises
     ------
-    InputError
-        If only some of the three options are given, or one is no list of numbers.
+    InputError : If only some of the three options are given, or one is no list of numbers.
     """
     given = {
         "layers": arguments.layers,

@@ -117,8 +117,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
     Returns
     -------
-    int
-        0 done, 2 bad input, 3 no coverage, 4 no route.
+    int : 0 done, 2 bad input, 3 no coverage, 4 no route.
     """
     as_json = "--json" in (sys.argv[1:] if argv is None else argv)
     _prepare_streams()

@@ -32,8 +32,7 @@ def parse_pairs(option: str, texts: Sequence[str], form: str, example: str) -> d
 
     Raises
     ------
-    InputError
-        If one of them is not a pair.
+    InputError : If one of them is not a pair.
     """
     pairs = [text.partition("=") for text in texts]
     for name, equals, value in pairs:
@@ -51,8 +50,7 @@ def variable_mapping(arguments: argparse.Namespace) -> dict[str, str]:
 
     Raises
     ------
-    InputError
-        If a part of it is not NAME=VARIABLE.
+    InputError : If a part of it is not NAME=VARIABLE.
     """
     example = "eastward_wind=u or crs=EPSG:32611"
     return parse_pairs("--map", arguments.map, "NAME=VARIABLE", example)
@@ -63,8 +61,7 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
 
     Raises
     ------
-    InputError
-        If no sea is named, or options contradict each other.
+    InputError : If no sea is named, or options contradict each other.
     """
     from thalweg.sea import Sea
 
@@ -215,8 +212,7 @@ def with_given_prices(ship: Ship, arguments: argparse.Namespace) -> Ship:
 
     Raises
     ------
-    InputError
-        For prices that are not possible, or in two currencies.
+    InputError : For prices that are not possible, or in two currencies.
     """
     hourly = arguments.time_price
     priced = ship.with_prices(
@@ -233,8 +229,7 @@ def with_held_order(ship: Ship, arguments: argparse.Namespace) -> Ship:
 
     Raises
     ------
-    InputError
-        If there is no speed to hold, or the ship cannot hold it.
+    InputError : If there is no speed to hold, or the ship cannot hold it.
     """
     from thalweg.ship.held_speed import with_held_power, with_held_speed
 
@@ -292,8 +287,7 @@ def position_from_text(text: str) -> Position:
 
     Raises
     ------
-    InputError
-        If it is not a position; names of ports are not accepted here.
+    InputError : If it is not a position; names of ports are not accepted here.
     """
     from thalweg.core.geodesy import parse_position
 
@@ -313,8 +307,7 @@ def resolution_m(value_nm: float | None) -> float | None:
 
     Raises
     ------
-    InputError
-        If it is not between 0.001 and 300 nm.
+    InputError : If it is not between 0.001 and 300 nm.
     """
     if value_nm is None:
         return None
@@ -332,8 +325,7 @@ def route_file_options(arguments: argparse.Namespace) -> RouteFileOptions:
 
     Raises
     ------
-    InputError
-        If a number is impossible, or an option is given without ``--out``.
+    InputError : If a number is impossible, or an option is given without ``--out``.
     """
     from thalweg.route import RouteFileOptions
     from thalweg.route.formats import ROUTE_FORMATS
@@ -363,8 +355,7 @@ def prepare_output_folder(arguments: argparse.Namespace) -> None:
 
     Raises
     ------
-    InputError
-        If it cannot be created or written.
+    InputError : If it cannot be created or written.
     """
     if arguments.out:
         from thalweg.core.file_writing import make_folder
@@ -377,8 +368,7 @@ def prepare_output_file(path: str) -> Path:
 
     Raises
     ------
-    InputError
-        If the path is a folder, or its folder cannot be created or written.
+    InputError : If the path is a folder, or its folder cannot be created or written.
     """
     from thalweg.core.file_writing import make_folder
 

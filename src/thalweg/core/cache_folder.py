@@ -24,8 +24,7 @@ def cache_folder(name: str = "") -> Path:
 
     Returns
     -------
-    Path
-        In the folder that ``THALWEG_CACHE`` names, or else the user's cache folder. If that
+    Path : In the folder that ``THALWEG_CACHE`` names, or else the user's cache folder. If that
         cannot be written or the disk is full, in a private folder for temporary files.
     """
     base = _cache_root()

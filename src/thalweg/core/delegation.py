@@ -27,8 +27,7 @@ def delegated(
 
     Returns
     -------
-    callable
-        A method, to be assigned in the body of a class.
+    callable : A method, to be assigned in the body of a class.
     """
 
     @functools.wraps(function)

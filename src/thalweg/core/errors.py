@@ -122,8 +122,7 @@ def close_matches(word: str, known: Iterable[str], count: int = 3) -> list[str]:
 
     Returns
     -------
-    list of str
-        Best match first.
+    list of str : Best match first.
     """
     by_lower = {name.casefold(): name for name in known}
     found = difflib.get_close_matches(word.casefold(), list(by_lower), n=count, cutoff=0.55)
@@ -141,8 +140,7 @@ def unknown_name_error(kind: str, word: str, known: Iterable[str]) -> InputError
 
     Returns
     -------
-    InputError
-        With the known names that are nearest in spelling.
+    InputError : With the known names that are nearest in spelling.
     """
     names = sorted(known)
     near = close_matches(word, names)

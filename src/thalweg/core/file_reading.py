@@ -20,8 +20,7 @@ def read_text_file(path: str | PathLike[str], kind: str, largest: int = 1_000_00
 
     Raises
     ------
-    InputError
-        If the path is not a path, or the file is missing, too large or not text in UTF-8.
+    InputError : If the path is not a path, or the file is missing, too large or not text in UTF-8.
     """
     if not isinstance(path, (str, PathLike)):
         raise InputError(

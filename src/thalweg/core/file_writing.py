@@ -38,18 +38,15 @@ def replacing_file(path: str | PathLike[str]) -> Iterator[IO[bytes]]:
 
     Parameters
     ----------
-    path : File to write. A link is followed; the permissions of an existing file are kept. A device
-        or a pipe is written directly.
+    path : or a pipe is written directly.
 
     Yields
     ------
-    file
-        Binary file to write to.
+    file : Binary file to write to.
 
     Raises
     ------
-    OSError
-        If the file cannot be written. An existing file is then unchanged.
+    OSError : If the file cannot be written. An existing file is then unchanged.
     """
     target = Path(os.path.realpath(path))
     mode = _existing_mode(target)
@@ -129,8 +126,7 @@ def write_bytes(path: str | PathLike[str], data: bytes) -> None:
 
     Raises
     ------
-    InputError
-        If it cannot be written. An existing file is then unchanged.
+    InputError : If it cannot be written. An existing file is then unchanged.
     """
     try:
         with replacing_file(path) as file:
@@ -149,8 +145,7 @@ def write_csv_rows(path: str | PathLike[str], rows: Iterable[Iterable[Any]]) -> 
 
     Raises
     ------
-    InputError
-        If it cannot be written. An existing file is then unchanged.
+    InputError : If it cannot be written. An existing file is then unchanged.
     """
     text = io.StringIO(newline="")
     csv.writer(text).writerows(rows)
@@ -172,6 +167,16 @@ def new_figure(width: float, height: float, **options: Any) -> Any:
     figure = Figure(figsize=(width, height), **options)
     FigureCanvasAgg(figure)
     return figure
+
+
+def style_panels(axes: Iterable[Any]) -> None:
+    """Give the panels of a figure a thin grid and small text."""
+    for panel in axes:
+        panel.grid(alpha=0.3, lw=0.4)
+        panel.tick_params(labelsize=7)
+        panel.title.set_size(9)
+        panel.xaxis.label.set_size(8)
+        panel.yaxis.label.set_size(8)
 
 
 def save_figure(figure: Any, path: str | PathLike[str] | IO[bytes], **options: Any) -> None:
@@ -212,8 +217,7 @@ def make_folder(folder: str | PathLike[str]) -> Path:
 
     Raises
     ------
-    InputError
-        If it cannot be created or written.
+    InputError : If it cannot be created or written.
     """
     folder = Path(folder)
     try:

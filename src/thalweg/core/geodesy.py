@@ -58,8 +58,7 @@ def unit_vectors(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray (..., 3)
-        Unit vectors [-].
+    ndarray (..., 3) : Unit vectors [-].
     """
     phi, lam = np.radians(np.asarray(lat, float)), np.radians(np.asarray(lon, float))
     return np.stack([np.cos(phi) * np.cos(lam), np.cos(phi) * np.sin(lam), np.sin(phi)], axis=-1)
@@ -102,8 +101,7 @@ def geocentric_unit_vectors(lat: FloatArray, lon: FloatArray) -> FloatArray:
 
     Returns
     -------
-    ndarray (..., 3)
-        Unit vectors [-].
+    ndarray (..., 3) : Unit vectors [-].
     """
     phi, lam = np.radians(lat), np.radians(lon)
     c, s = np.cos(phi), AXIS_RATIO_SQUARED * np.sin(phi)
@@ -133,8 +131,7 @@ def rough_lengths(lat: FloatArray, lon: FloatArray) -> FloatArray:
 
     Returns
     -------
-    ndarray (..., n - 1)
-        Lengths [m].
+    ndarray (..., n - 1) : Lengths [m].
     """
     phi = np.radians(np.asarray(lat, float))
     half = 0.5 * np.radians(np.diff(lon, axis=-1))
@@ -154,8 +151,7 @@ def inverse(
 
     Returns
     -------
-    distance : ndarray
-        Length of the geodesic [m].
+    distance : Length of the geodesic [m].
     course_start, course_end : ndarray
         Course at the start and at the end, clockwise from north [rad], in [0, 2 pi).
     """
@@ -178,8 +174,7 @@ def distance(lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike)
 
     Returns
     -------
-    ndarray
-        Lengths [m], of the broadcast shape.
+    ndarray : Lengths [m], of the broadcast shape.
     """
     return inverse(lat1, lon1, lat2, lon2)[0]
 
@@ -220,8 +215,7 @@ def positions_along(
 
     Returns
     -------
-    lat, lon : ndarray
-        Positions [deg], in the shape of the fractions.
+    lat, lon : Positions [deg], in the shape of the fractions.
     """
     length, course, _ = inverse(lat1, lon1, lat2, lon2)
     return direct(lat1, lon1, course, np.asarray(fractions, float) * length)
@@ -239,10 +233,8 @@ def densify(
 
     Returns
     -------
-    lat, lon : ndarray
-        Positions [deg], original vertices included.
-    leg : ndarray of int
-        For each position but the last, the index of its leg.
+    lat, lon : Positions [deg], original vertices included.
+    leg : For each position but the last, the index of its leg.
     """
     lat, lon = np.asarray(lat, float), np.asarray(lon, float)
     lengths, courses, _ = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
@@ -267,8 +259,7 @@ def check_position(lat: float, lon: float, what: str = "position") -> Position:
 
     Returns
     -------
-    lat, lon : float
-        Position with the longitude in -180 to 180 [deg].
+    lat, lon : Position with the longitude in -180 to 180 [deg].
     """
     lat, lon = to_number(lat), to_number(lon)
     if not (math.isfinite(lat) and math.isfinite(lon)):
@@ -314,8 +305,7 @@ def parse_position(text: str) -> Position | None:
 
     Raises
     ------
-    InputError
-        If it reads as a position that cannot exist, or is written in another way.
+    InputError : If it reads as a position that cannot exist, or is written in another way.
     """
     pair = _PAIR.match(text)
     if pair:
@@ -355,8 +345,7 @@ def format_position(lat: float, lon: float) -> str:
 
     Returns
     -------
-    str
-        Latitude and longitude to four decimals, with hemispheres.
+    str : Latitude and longitude to four decimals, with hemispheres.
     """
     return f"{abs(lat):.4f}{'N' if lat >= 0 else 'S'} {abs(lon):.4f}{'E' if lon >= 0 else 'W'}"
 
@@ -370,8 +359,7 @@ def format_position_minutes(lat: float, lon: float) -> str:
 
     Returns
     -------
-    str
-        Latitude and longitude to a tenth of a minute; `parse_position` reads it.
+    str : Latitude and longitude to a tenth of a minute; `parse_position` reads it.
     """
     north, east = round(abs(lat) * 600.0), round(abs(lon) * 600.0)
     return (

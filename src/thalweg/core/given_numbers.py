@@ -39,8 +39,7 @@ def float_array(values: ArrayLike, what: str) -> FloatArray:
 
     Raises
     ------
-    InputError
-        If they are not numbers, or not in rows of one length.
+    InputError : If they are not numbers, or not in rows of one length.
     """
     try:
         given = np.array(values)

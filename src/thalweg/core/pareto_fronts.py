@@ -23,8 +23,7 @@ def non_dominated_indices(
 
     Returns
     -------
-    int64 array
-        Of equal points only the first.
+    int64 array : Of equal points only the first.
 
     Notes
     -----
@@ -100,8 +99,7 @@ def evenly_spaced_subset(first: ArrayLike, second: ArrayLike, count: int) -> Int
 
     Returns
     -------
-    int64 array
-        By ascending first objective; all points where there are no more than ``count``.
+    int64 array : By ascending first objective; all points where there are no more than ``count``.
     """
     x, y = np.asarray(first, float), np.asarray(second, float)
     order = np.argsort(x, kind="stable")

@@ -48,10 +48,8 @@ def inverse_rhumb(
 
     Returns
     -------
-    distance : ndarray
-        Length of the rhumb line [m].
-    course : ndarray
-        Its course, clockwise from north [rad], in [0, 2 pi).
+    distance : Length of the rhumb line [m].
+    course : Its course, clockwise from north [rad], in [0, 2 pi).
     """
     a, b, c, d = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
     turn = np.radians(wrap_longitude(d - b))
@@ -73,8 +71,7 @@ def direct_rhumb(
 
     Returns
     -------
-    lat, lon : ndarray
-        Positions [deg]; NaN where the line would pass a pole.
+    lat, lon : Positions [deg]; NaN where the line would pass a pole.
     """
     a, b, c, d = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat, lon, course, distance)))
     zero = np.zeros(a.shape)
@@ -102,8 +99,7 @@ def positions_along_rhumb(
 
     Returns
     -------
-    lat, lon : ndarray
-        Positions [deg], in the shape of the fractions.
+    lat, lon : Positions [deg], in the shape of the fractions.
     """
     length, course = inverse_rhumb(lat1, lon1, lat2, lon2)
     return direct_rhumb(lat1, lon1, course, np.asarray(fractions, float) * length)
@@ -121,8 +117,7 @@ def rhumb_deviation(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray (n - 1,)
-        Greatest distance in each leg [m].
+    ndarray (n - 1,) : Greatest distance in each leg [m].
     """
     lat, lon = np.asarray(lat, float), np.asarray(lon, float)
     start, end = (lat[:-1, None], lon[:-1, None]), (lat[1:, None], lon[1:, None])
@@ -148,8 +143,7 @@ def rhumb_cross_track(
 
     Returns
     -------
-    ndarray (n,)
-        Distances [m], positive.
+    ndarray (n,) : Distances [m], positive.
     """
     lat, lon = np.asarray(lat, float), np.asarray(lon, float)
     psi, _ = _isometric_step(np.array([start[0]]), np.array([end[0]]))
@@ -180,10 +174,8 @@ def densify_for_rhumb(
 
     Returns
     -------
-    lat, lon : ndarray
-        Positions [deg], original vertices included.
-    leg : ndarray of int
-        For each position but the last, the index of its leg.
+    lat, lon : Positions [deg], original vertices included.
+    leg : For each position but the last, the index of its leg.
     """
     lat, lon = np.asarray(lat, float), np.asarray(lon, float)
     pieces = []
@@ -208,10 +200,8 @@ def rhumb_pieces(
 
     Returns
     -------
-    lat, lon : ndarray
-        Positions [deg], original vertices included.
-    leg : ndarray of int
-        For each position but the last, the index of its leg.
+    lat, lon : Positions [deg], original vertices included.
+    leg : For each position but the last, the index of its leg.
     """
     lat, lon = np.asarray(lat, float), np.asarray(lon, float)
     parts_lat, parts_lon, counts = [], [], []

@@ -96,8 +96,7 @@ def parse_yaml(text: str, kind: str, source: str) -> Any:
 
     Returns
     -------
-    object
-        Mappings, lists, text, numbers, dates, true and false.
+    object : Mappings, lists, text, numbers, dates, true and false.
 
     Raises
     ------

@@ -121,8 +121,7 @@ def to_datetime64(seconds: float | np.ndarray) -> np.ndarray:
 
     Raises
     ------
-    InputError
-        If a time is outside the years 1 to 9999.
+    InputError : If a time is outside the years 1 to 9999.
     """
     given = np.asarray(seconds, float)
     known = given[~np.isnan(given)]

@@ -22,8 +22,7 @@ def non_dominated(points: ArrayLike) -> NDArray[np.bool_]:
 
     Returns
     -------
-    ndarray of bool, shape (n,)
-        Of equal points only the first counts.
+    ndarray of bool, shape (n,) : Of equal points only the first counts.
     """
     points = _checked(points)
     mask = np.zeros(len(points), dtype=bool)
@@ -67,8 +66,7 @@ def hypervolume_ratio(points: ArrayLike, *others: ArrayLike, reference: ArrayLik
 
     Raises
     ------
-    InputError
-        If no point is below the reference.
+    InputError : If no point is below the reference.
     """
     union = np.concatenate([_checked(points), *(_checked(other) for other in others)])
     union_volume = hypervolume(union, reference)
@@ -93,13 +91,11 @@ def c_metric(first: ArrayLike, second: ArrayLike) -> float:
 
     Returns
     -------
-    float
-        0 to 1.
+    float : 0 to 1.
 
     Raises
     ------
-    InputError
-        If the second front is empty.
+    InputError : If the second front is empty.
     """
     a, b = _checked(first), _checked(second)
     if not len(b):

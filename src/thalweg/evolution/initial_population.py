@@ -57,8 +57,7 @@ def initial_population(
 
     Returns
     -------
-    Population
-        Seeds first, then mutants.
+    Population : Seeds first, then mutants.
     """
     genomes = as_genomes(evaluator, seeds)
     top, economical = evaluator.settings - 1, least_cost_setting(evaluator)

@@ -1,4 +1,4 @@
-"""Memetic refinement of a front: exploration, local search for many prices of time, evolution."""
+"""Memetic refinement of a front: exploration, local search for shadow prices of time, evolution."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from thalweg.route.refinement.scalarised_search import (
 from thalweg.route.refinement.scored_tracks import feasible_front
 from thalweg.route.track import Track
 
-TIME_PRICES = 48  #: prices of time of the local search
+TIME_PRICES = 48  #: shadow prices of time of the local search
 FRONT_SIZE = 300  #: tracks on the front
 DEFAULT_GENERATIONS = 50  #: of evolution after the local search, if no limit is given
 _LOCAL_SEARCH_SHARE = 0.6  # share of the seconds that the local search may take
@@ -56,7 +56,7 @@ class FrontRefinementSettings:
     size : int
         Tracks on the front, about; at least 4.
     time_prices : int
-        Prices of time for which a track is refined, in addition to every seed at its own.
+        Shadow prices of time for which a track is refined, in addition to every seed at its own.
     seed : int
         Of the random numbers.
     operators : VariationSettings
@@ -117,7 +117,7 @@ def refine_front(
     A memetic algorithm: evolution combined with local search (Moscato 1989).
 
     1. A short run of NSGA-II (200 tracks, 60 generations) explores from the seeds.
-    2. Local search. A track that is best for some price of time is on the lower convex hull of the
+    2. Local search. A track that is best for some shadow price is on the lower convex hull of the
        front. For one price the problem is smooth except for the settings: Newton's method moves the
        points sideways (`thalweg.route.refinement.newton_offsets`), settings are chosen per leg,
        points are removed or added, and a compass search moves points at coasts and limits.

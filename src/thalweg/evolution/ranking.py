@@ -111,8 +111,7 @@ def dominates(a: FloatArray, b: FloatArray) -> BoolArray:
 
     Returns
     -------
-    bool array (...)
-        Where ``a`` dominates ``b``.
+    bool array (...) : Where ``a`` dominates ``b``.
     """
     less = a[..., VIOLATION] < b[..., VIOLATION]
     same = a[..., VIOLATION] == b[..., VIOLATION]

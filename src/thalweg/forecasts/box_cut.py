@@ -125,8 +125,7 @@ def join_pieces(pieces: list[Any]) -> list[Any]:
 
     Returns
     -------
-    list of xarray.Dataset
-        One per grid; times ascend.
+    list of xarray.Dataset : One per grid; times ascend.
     """
     import xarray as xr
 

@@ -60,8 +60,7 @@ class DownloadClient:
 
     Raises
     ------
-    InputError
-        If the package ``requests`` is not installed.
+    InputError : If the package ``requests`` is not installed.
     """
 
     def __init__(
@@ -90,13 +89,11 @@ class DownloadClient:
 
         Returns
         -------
-        str or None
-            None for the statuses 403, 404 and 410.
+        str or None : None for the statuses 403, 404 and 410.
 
         Raises
         ------
-        TransferError
-            If the server cannot be reached or refuses.
+        TransferError : If the server cannot be reached or refuses.
         """
 
         def read(answer: Any) -> bytes:
@@ -110,13 +107,11 @@ class DownloadClient:
 
         Returns
         -------
-        Path
-            The ranges of the part, joined.
+        Path : The ranges of the part, joined.
 
         Raises
         ------
-        TransferError
-            If it is not there, or the server does not deliver all of it.
+        TransferError : If it is not there, or the server does not deliver all of it.
         """
         key = hashlib.blake2b(repr((part.url, part.ranges)).encode(), digest_size=16).hexdigest()
         target = self.folder / key

@@ -68,8 +68,7 @@ class ForecastSource(Protocol):
 
         Raises
         ------
-        InputError
-            If the source does not have what is requested.
+        InputError : If the source does not have what is requested.
         """
         ...
 

@@ -56,8 +56,7 @@ def source_named(source: str | ForecastSource) -> ForecastSource:
 
     Raises
     ------
-    InputError
-        If there is no such source.
+    InputError : If there is no such source.
     """
     if not isinstance(source, str):
         return source

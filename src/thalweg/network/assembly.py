@@ -60,10 +60,8 @@ def allowed_legs(
 
     Returns
     -------
-    allowed : bool array (P,)
-        Legs that the chart allows.
-    counts : dict
-        Number of refused legs by reason.
+    allowed : Legs that the chart allows, (P,).
+    counts : Number of refused legs by reason.
     """
     chart = chart.without_canals("all")
     free = np.empty(len(first), bool)
@@ -110,8 +108,7 @@ def measured_pairs(
 
     Returns
     -------
-    Pairs
-        With lengths [m] and courses at the middle [rad].
+    Pairs : With lengths [m] and courses at the middle [rad].
     """
     length, course = np.empty(len(first)), np.empty(len(first), np.float32)
     graph_building.fill_lengths_and_courses(lat, lon, first, second, length, course)
@@ -152,10 +149,8 @@ def evenly_spaced_samples(
 
     Returns
     -------
-    stations : Stations
-        With the new stations appended.
-    samples : Samples
-        Evenly spaced samples of every pair.
+    stations : With the new stations appended.
+    samples : Evenly spaced samples of every pair.
     """
     pieces = np.maximum(1, np.ceil(pairs.length / spacing - 1e-9)).astype(np.int64)
     ptr = np.concatenate([[0], np.cumsum(pieces - 1)])

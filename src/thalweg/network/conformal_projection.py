@@ -40,8 +40,7 @@ def conformal_unit_vectors(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray (..., 3)
-        Unit vectors [-].
+    ndarray (..., 3) : Unit vectors [-].
     """
     phi, lam = np.radians(np.asarray(lat, float)), np.radians(np.asarray(lon, float))
     sine = np.clip(np.sin(phi), -1.0 + 1e-15, 1.0 - 1e-15)
@@ -69,8 +68,7 @@ def angle_to_point(vectors: FloatArray, point: FloatArray) -> FloatArray:
 
     Returns
     -------
-    ndarray (...)
-        Angles [rad].
+    ndarray (...) : Angles [rad].
     """
     difference = vectors - point
     chord = np.sqrt(np.einsum("...k,...k->...", difference, difference))

@@ -53,13 +53,11 @@ def check_endpoints(chart: Chart, start: Position, goal: Position) -> tuple[Posi
 
     Returns
     -------
-    start, goal : tuple of float
-        Positions [deg] with longitudes in -180 to 180.
+    start, goal : Positions [deg] with longitudes in -180 to 180.
 
     Raises
     ------
-    InputError
-        Otherwise.
+    InputError : Otherwise.
     """
     start = geodesy.check_position(*start, what="start")
     goal = geodesy.check_position(*goal, what="goal")
@@ -102,10 +100,8 @@ def links_to_nodes(
 
     Returns
     -------
-    pairs : Pairs
-        From the position to nodes: the nearest ones, and the nearest in every sector and ring.
-    rejected : dict
-        Counts of refused links by reason.
+    pairs : From the position to nodes: the nearest ones, and the nearest in every sector and ring.
+    rejected : Counts of refused links by reason.
     """
     vectors = conformal_unit_vectors(lat[:n_nodes], lon[:n_nodes])
     separation = (

@@ -36,18 +36,15 @@ def concatenate_networks(networks: Sequence[Network], links: Sequence[CanalLink 
     Parameters
     ----------
     networks : Each with its start and goal.
-    links : Canal from each network to the next; None where the goal of the one is the start of the
-        other.
+    links : other.
 
     Returns
     -------
-    Network
-        From the start of the first to the goal of the last.
+    Network : From the start of the first to the goal of the last.
 
     Raises
     ------
-    InputError
-        If the numbers do not fit, or a network lacks its start or goal.
+    InputError : If the numbers do not fit, or a network lacks its start or goal.
     """
     if not networks or len(links) != len(networks) - 1:
         raise InputError(

@@ -27,8 +27,7 @@ def write_project_files(result: ProjectResult, folder: str | Path) -> list[Path]
 
     Raises
     ------
-    InputError
-        If the folder cannot be written.
+    InputError : If the folder cannot be written.
     """
     folder = make_folder(folder)
     result.to_json(folder / "project.json")
@@ -52,8 +51,7 @@ def write_waiting_files(study: WaitingStudy, folder: str | Path, *, title: str =
 
     Raises
     ------
-    InputError
-        If the folder cannot be written.
+    InputError : If the folder cannot be written.
     """
     folder = make_folder(folder)
     write_text(folder / "waiting.csv", study.to_frame().to_csv(index=False))
@@ -72,8 +70,7 @@ def write_track_files(analysis: TrackAnalysis, folder: str | Path) -> list[Path]
 
     Raises
     ------
-    InputError
-        If the folder cannot be written.
+    InputError : If the folder cannot be written.
     """
     folder = make_folder(folder)
     frames = {

@@ -58,8 +58,7 @@ class ApproachSailing:
 
         Raises
         ------
-        NoRouteError
-            If the approaches alone take longer than the latest arrival allows.
+        NoRouteError : If the approaches alone take longer than the latest arrival allows.
         """
         first, last = self._duration(self.outward), self._duration(self.inward)
         if not first + last:
@@ -226,10 +225,8 @@ def plan_along_approaches(
 
     Raises
     ------
-    NoRouteError
-        If it does not arrive in time.
-    InputError
-        If the two berths are the same place.
+    NoRouteError : If it does not arrive in time.
+    InputError : If the two berths are the same place.
     """
     voyage = context.voyage
     if line_length(line) < 1.0:

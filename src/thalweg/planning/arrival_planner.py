@@ -75,17 +75,13 @@ def plan_arrival(request: ArrivalRequest) -> Plan:
 
     Returns
     -------
-    Plan
-        Its notes state what is held.
+    Plan : Its notes state what is held.
 
     Raises
     ------
-    InputError
-        If the sea is an ensemble, or the ship cannot hold what is asked.
-    NoRouteError
-        If the ship cannot arrive at this time; the error says when it can.
-    OutsidePeriodError
-        If the data do not cover the voyage.
+    InputError : If the sea is an ensemble, or the ship cannot hold what is asked.
+    NoRouteError : If the ship cannot arrive at this time; the error says when it can.
+    OutsidePeriodError : If the data do not cover the voyage.
     """
     if request.sea.members:
         raise InputError(

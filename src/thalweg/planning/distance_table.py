@@ -185,8 +185,7 @@ def read_places(path: str | PathLike[str]) -> list[tuple[str, Place]]:
 
     Raises
     ------
-    InputError
-        If the file cannot be read or has no such column.
+    InputError : If the file cannot be read or has no such column.
     """
     try:
         with open(path, encoding="utf-8-sig", newline="") as file:

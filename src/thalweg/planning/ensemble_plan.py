@@ -75,14 +75,12 @@ def plan_ensemble(
 
     Returns
     -------
-    Plan
-        Plan of the member of the chosen route (or of the first one of the front), with the
+    Plan : Plan of the member of the chosen route (or of the first one of the front), with the
         distributions of its routes in ``ensemble``.
 
     Raises
     ------
-    NoRouteError
-        If no member has a route.
+    NoRouteError : If no member has a route.
     """
     measure = voyage.ensemble or "mean"
     planned = np.unique(
@@ -231,8 +229,7 @@ def _best_candidates(voyage: Voyage, sailed: list[EnsembleCandidate]) -> list[En
 
     Raises
     ------
-    NoRouteError
-        If no candidate has a time and a value.
+    NoRouteError : If no candidate has a time and a value.
     """
     time = np.array([item.time for item in sailed])
     value = np.array([item.value for item in sailed])

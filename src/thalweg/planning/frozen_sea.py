@@ -37,8 +37,7 @@ def freeze_at_stations(
 
     Raises
     ------
-    InputError
-        If the fields exceed `MEMORY_LIMIT`.
+    InputError : If the fields exceed `MEMORY_LIMIT`.
     """
     lat, lon = network.stations.lat, network.stations.lon
     steps = len(context.sea.times(start, end))

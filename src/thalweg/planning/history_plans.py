@@ -49,13 +49,11 @@ def plan_in_corridor(request: CorridorRequest, draught: float | None) -> Plan:
 
     Returns
     -------
-    Plan
-        With notes on both.
+    Plan : With notes on both.
 
     Raises
     ------
-    NoRouteError
-        If there is no route inside, and the plan may not leave.
+    NoRouteError : If there is no route inside, and the plan may not leave.
     """
     corridor = request.corridor
     if corridor.month is None:

@@ -34,8 +34,7 @@ def plan_off_land(
 
     Raises
     ------
-    NoRouteError
-        If no route exists without an offing either.
+    NoRouteError : If no route exists without an offing either.
     """
     if offing <= 0.0:
         return run(context)

@@ -99,9 +99,8 @@ def passage_alternatives(plan: PlanData) -> tuple[PassageAlternative, ...]:
 
     Returns
     -------
-    tuple of PassageAlternative
-        The shortest first; empty where the plan passes no canal and no named passage, or the chart
-        is of the user's own.
+    tuple of PassageAlternative : The shortest first; empty where the plan passes no canal and no
+        named passage, or the chart is of the user's own.
 
     Notes
     -----

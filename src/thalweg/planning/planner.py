@@ -54,8 +54,8 @@ from thalweg.planning.request.voyage_endpoints import (
 )
 from thalweg.planning.request.voyage_objective import with_voyage_prices
 from thalweg.planning.single.certified_bound import certified_total
-from thalweg.planning.single.passage import plan_passage
-from thalweg.planning.single.passage_result import PassageResult
+from thalweg.planning.single.stretch import plan_stretch
+from thalweg.planning.single.stretch_result import StretchResult
 from thalweg.planning.voyage import Voyage
 from thalweg.route import join as join_routes
 from thalweg.route import with_wind_speed
@@ -238,14 +238,14 @@ def _plan_at_sea(context: PlanningContext, ends: list[Endpoint]) -> Plan:
 
         return plan_trade_off(context, ends)
     began = clock.perf_counter()
-    passages = _plan_passages(context, ends)
+    stretches = _plan_stretches(context, ends)
     seconds = context.proof_seconds
     if seconds is None:
         seconds = min(clock.perf_counter() - began, _LONGEST_DEFAULT_PROOF)
     window = context.voyage.earliest_departure, context.voyage.latest_departure
-    routes = [passage.route for passage in passages]
+    routes = [stretch.route for stretch in stretches]
     bound = certified_total(context, routes, window, seconds=seconds)
-    return _assemble_plan(context, ends, passages, bound)
+    return _assemble_plan(context, ends, stretches, bound)
 
 
 def voyage_context(
@@ -276,38 +276,38 @@ def voyage_context(
     return context, ends
 
 
-def _plan_passages(context: PlanningContext, ends: list[Endpoint]) -> list[PassageResult]:
+def _plan_stretches(context: PlanningContext, ends: list[Endpoint]) -> list[StretchResult]:
     window = (context.voyage.earliest_departure, context.voyage.latest_departure)
-    passages: list[PassageResult] = []
+    stretches: list[StretchResult] = []
     for number, (start, goal) in enumerate(itertools.pairwise(ends)):
         choice = context.choice.of_section(number, len(ends) - 1)
-        passage = plan_passage(replace(context, choice=choice), start, goal, window)
-        passages.append(passage)
-        window = (passage.route.arrive, passage.route.arrive)
-    return passages
+        stretch = plan_stretch(replace(context, choice=choice), start, goal, window)
+        stretches.append(stretch)
+        window = (stretch.route.arrive, stretch.route.arrive)
+    return stretches
 
 
 def _assemble_plan(
     context: PlanningContext,
     ends: list[Endpoint],
-    passages: list[PassageResult],
+    stretches: list[StretchResult],
     bound: LowerBound,
 ) -> Plan:
     voyage = context.voyage
-    routes = [passage.route for passage in passages]
+    routes = [stretch.route for stretch in stretches]
     route = routes[0] if len(routes) == 1 else join_routes(routes)
     refused: Counter[str] = Counter()
-    for passage in passages:
-        refused.update(passage.network.meta.rejected)
-        refused.update(passage.result.refused)
-    total = sum(passage.result.cost for passage in passages)
+    for stretch in stretches:
+        refused.update(stretch.network.meta.rejected)
+        refused.update(stretch.result.refused)
+    total = sum(stretch.result.cost for stretch in stretches)
     proof = Proof(
         certain=in_objective_unit(bound.value, voyage.objective),
         kind=bound.kind,
         solver_total=in_objective_unit(total, voyage.objective),
     )
     notes = [end.note for end in ends if end.note] + list(context.needs.notes)
-    notes += [note for passage in passages for note in passage.notes]
+    notes += [note for stretch in stretches for note in stretch.notes]
     notes += route_warnings(context, route)
     return Plan(
         voyage=voyage,
@@ -315,15 +315,15 @@ def _assemble_plan(
         proof=proof,
         rejections={reason: count for reason, count in refused.items() if count},
         notes=tuple(dict.fromkeys(notes)),
-        provenance=provenance(context, ends, _network_summaries(passages), [_speed_kn(context)]),
-        plot_context=_plot_context(context, passages),
+        provenance=provenance(context, ends, _network_summaries(stretches), [_speed_kn(context)]),
+        plot_context=_plot_context(context, stretches),
     )
 
 
-def _network_summaries(passages: list[PassageResult]) -> list[dict[str, Any]]:
+def _network_summaries(stretches: list[StretchResult]) -> list[dict[str, Any]]:
     return [
         network_summary(p.network, settled=int(p.result.settled), depart=p.route.depart)
-        for p in passages
+        for p in stretches
     ]
 
 
@@ -331,12 +331,12 @@ def _speed_kn(context: PlanningContext) -> float | None:
     return finite_or_none(float(context.ship.speeds[context.setting]) / KNOT)
 
 
-def _plot_context(context: PlanningContext, passages: list[PassageResult]) -> PlotContext:
-    nodes = [passage.network.n_nodes for passage in passages]
+def _plot_context(context: PlanningContext, stretches: list[StretchResult]) -> PlotContext:
+    nodes = [stretch.network.n_nodes for stretch in stretches]
     return PlotContext(
-        lat=np.concatenate([p.network.stations.lat[:n] for p, n in zip(passages, nodes)]),
-        lon=np.concatenate([p.network.stations.lon[:n] for p, n in zip(passages, nodes)]),
-        arrival=np.concatenate([p.isochrones[:n] for p, n in zip(passages, nodes)]),
+        lat=np.concatenate([p.network.stations.lat[:n] for p, n in zip(stretches, nodes)]),
+        lon=np.concatenate([p.network.stations.lon[:n] for p, n in zip(stretches, nodes)]),
+        arrival=np.concatenate([p.isochrones[:n] for p, n in zip(stretches, nodes)]),
         chart=context.chart,
         sea=context.sea,
         ship=context.ship,

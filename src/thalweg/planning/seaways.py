@@ -61,8 +61,7 @@ class Seaways:
 
         Raises
         ------
-        InputError
-            If a name is unknown; the message lists similar names.
+        InputError : If a name is unknown; the message lists similar names.
         """
         every = [name for name in avoid if name.strip().casefold() == "all"]
         canals, passages = split_avoided([name for name in avoid if name not in every])
@@ -90,8 +89,7 @@ class Seaways:
 
         Raises
         ------
-        NoRouteError
-            If there is no way.
+        NoRouteError : If there is no way.
         """
         ends = (start.lat, start.lon), (goal.lat, goal.lon)
         if float(distance(*ends[0], *ends[1])) < 1.0:

@@ -126,8 +126,7 @@ def canal_legs(track: Track, chart: Chart | None, ship: Ship | None = None) -> C
 
     Parameters
     ----------
-    ship : With a ship, canals have its dues, and legs along approaches of the chart are included:
-        they are sailed at `thalweg.chart.approaches.MAX_APPROACH_SPEED`, or the ordered speed if
+    ship : they are sailed at `thalweg.chart.approaches.MAX_APPROACH_SPEED`, or the ordered speed if
         that is lower.
     """
     none = np.full(len(track) - 1, -1, np.int64)
@@ -164,8 +163,7 @@ def approach_speed(ship: Ship, setting: int) -> float:
 
     Returns
     -------
-    float
-        `MAX_APPROACH_SPEED`, or the calm-water speed of the setting if that is lower.
+    float : `MAX_APPROACH_SPEED`, or the calm-water speed of the setting if that is lower.
     """
     return float(np.fmin(MAX_APPROACH_SPEED, np.asarray(ship.speeds, float)[setting]))
 
@@ -219,8 +217,7 @@ def canal_setting(ship: Ship, canal: Canal) -> int:
 
     Returns
     -------
-    int
-        From 0.
+    int : From 0.
     """
     speeds = np.asarray(ship.speeds, float)
     fast = np.flatnonzero(speeds >= canal.length / canal.transit_time * (1.0 - 1e-9))

@@ -38,20 +38,17 @@ def at_constant_ground_speed(
     ----------
     route : As sailed at other speeds.
     speed : Over ground [m/s].
-    evaluate_track : Scores a track with ordered speeds (the referee with a ship whose speeds can be
-        ordered at will, the sea and the chart).
+    evaluate_track : ordered at will, the sea and the chart).
     ordered_range : (float, float)
         Lowest and highest speed that can be ordered [m/s].
 
     Returns
     -------
-    Route
-        With `engine_order` "constant speed over ground".
+    Route : With `engine_order` "constant speed over ground".
 
     Raises
     ------
-    NoRouteError
-        If the ship cannot make this speed somewhere.
+    NoRouteError : If the ship cannot make this speed somewhere.
     """
     track, at_sea = _divided(route, speed * HOUR)
     low, top = ordered_range

@@ -106,13 +106,11 @@ def indicator_value(route: RefereedRoute, name: str, at: str | None = None) -> f
 
     Returns
     -------
-    float
-        In the unit of `INDICATORS`.
+    float : In the unit of `INDICATORS`.
 
     Raises
     ------
-    InputError
-        If there is no such indicator, place or task.
+    InputError : If there is no such indicator, place or task.
     """
     if name not in INDICATORS:
         raise unknown_name_error("indicator", name, INDICATORS)
@@ -218,8 +216,7 @@ def indicator_table(route: RefereedRoute) -> dict[str, Any]:
 
     Returns
     -------
-    dict
-        ``places`` and ``tasks`` by name; None where a value is not known.
+    dict : ``places`` and ``tasks`` by name; None where a value is not known.
     """
 
     def plain(name: str, at: str | None = None) -> float | None:

@@ -21,13 +21,11 @@ def parse_area(area: tuple[float, float, float, float] | BoundingBox | None) -> 
 
     Returns
     -------
-    BoundingBox
-        With ``east`` above ``west``; it may exceed 180.
+    BoundingBox : With ``east`` above ``west``; it may exceed 180.
 
     Raises
     ------
-    InputError
-        If the values are not four finite numbers with south below north.
+    InputError : If the values are not four finite numbers with south below north.
     """
     if area is None:
         return WORLD
@@ -55,8 +53,7 @@ def parse_period(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float
 
     Raises
     ------
-    InputError
-        If there are not two times, or the end is before the start.
+    InputError : If there are not two times, or the end is before the start.
     """
     if period is None:
         return None
@@ -85,8 +82,7 @@ def parse_time_step(time_step: float | None, *, least: float = 0.0) -> float | N
 
     Raises
     ------
-    InputError
-        If the step is not finite or too small.
+    InputError : If the step is not finite or too small.
     """
     if time_step is not None and not (is_number(time_step) and time_step >= least):
         raise InputError(

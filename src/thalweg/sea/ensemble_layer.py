@@ -89,8 +89,7 @@ def member_count(layers: Sequence[Layer]) -> int:
 
     Raises
     ------
-    InputError
-        If there are ensembles of different sizes.
+    InputError : If there are ensembles of different sizes.
     """
     sizes = {len(x.member_layers) for x in layers if isinstance(x, EnsembleLayer)}
     if len(sizes) > 1:
@@ -136,8 +135,7 @@ def select_member(layers: Sequence[Layer], index: int) -> tuple[Layer, ...]:
 
     Raises
     ------
-    InputError
-        If there is no ensemble, or it has no such member.
+    InputError : If there is no ensemble, or it has no such member.
     """
     count = member_count(layers)
     if count == 0:
@@ -172,8 +170,7 @@ def ensemble_layers(seas: Sequence[Sequence[Layer]]) -> tuple[Layer, ...]:
 
     Raises
     ------
-    InputError
-        If there are fewer than two, or they differ in variables, grid, times or area.
+    InputError : If there are fewer than two, or they differ in variables, grid, times or area.
     """
     if len(seas) < 2:
         raise InputError(
@@ -206,8 +203,7 @@ def combine_member_layers(layers: Sequence[Layer]) -> Layer:
 
     Raises
     ------
-    InputError
-        If they differ in variables, grid, times or area.
+    InputError : If they differ in variables, grid, times or area.
     """
     first = layers[0]
     if all(layer is first for layer in layers):

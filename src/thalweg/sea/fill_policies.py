@@ -62,8 +62,7 @@ def layers_filled(
 
     Raises
     ------
-    InputError
-        If a policy is unknown or its value is impossible.
+    InputError : If a policy is unknown or its value is impossible.
     """
     values: dict[str, float] = {}
     assumptions: list[str] = []
@@ -200,8 +199,7 @@ def fill_values(policy: str, value: float | tuple[float, float] | str) -> dict[s
 
     Raises
     ------
-    InputError
-        If the policy is unknown, or the value is impossible or has no direction.
+    InputError : If the policy is unknown, or the value is impossible or has no direction.
     """
     _check_name(policy)
     names = FILLABLE_VARIABLES[policy]

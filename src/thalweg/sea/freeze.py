@@ -223,10 +223,8 @@ def times_to_freeze(
 
     Raises
     ------
-    InputError
-        If the window ends before it starts.
-    OutsidePeriodError
-        If the data have no time in the window.
+    InputError : If the window ends before it starts.
+    OutsidePeriodError : If the data have no time in the window.
     """
     start, end = window
     if not (np.isfinite(start) and np.isfinite(end) and end >= start):

@@ -77,8 +77,7 @@ def nan_pairs(samples: Samples, pairs: Sequence[tuple[str, str]]) -> Samples:
 
     Returns
     -------
-    dict of str to ndarray
-        The samples.
+    dict of str to ndarray : The samples.
     """
     for east, north in pairs:
         if east in samples and north in samples:

@@ -33,8 +33,7 @@ def stack_variables(layers: Sequence[Layer]) -> frozenset[str]:
 
     Returns
     -------
-    frozenset of str
-        CF standard names; vectors as components.
+    frozenset of str : CF standard names; vectors as components.
     """
     return frozenset().union(*(layer.variables for layer in layers))
 

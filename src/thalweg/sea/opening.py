@@ -31,10 +31,8 @@ def layers_of_sources(
 
     Raises
     ------
-    InputError
-        If a file holds the series or the constituents of a single station.
-    DatasetError
-        If a file cannot be used.
+    InputError : If a file holds the series or the constituents of a single station.
+    DatasetError : If a file cannot be used.
     """
     groups = [(is_tide, list(group)) for is_tide, group in groupby(sources, _is_tidal)]
     if mapping and sum(not is_tide for is_tide, _ in groups) > 1:

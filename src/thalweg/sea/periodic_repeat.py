@@ -41,8 +41,7 @@ def drift_deg(period_h: float, name: str) -> float:
 
     Returns
     -------
-    float
-        Phase difference [deg], -180 to 180.
+    float : Phase difference [deg], -180 to 180.
 
     Examples
     --------

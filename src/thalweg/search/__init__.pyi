@@ -2,7 +2,6 @@ from thalweg.search.departure_window import DepartureWindow, best_departure
 from thalweg.search.earliest_arrival import earliest_arrival
 from thalweg.search.fifo import FifoReport, earliest_arrivals_with_waiting, fifo_report
 from thalweg.search.lower_bounds import LowerBound, direction_factor, lower_bound
-from thalweg.search.network_passage import NetworkPassage, Profile
 from thalweg.search.pareto.front_problem import FrontQuery, MultiSettingShipOnNetwork
 from thalweg.search.pareto.front_result import FrontPoint, FrontWork, NetworkFront, cheapest
 from thalweg.search.pareto.pareto_search import pareto_front
@@ -10,6 +9,7 @@ from thalweg.search.prepared_network import PreparedNetwork
 from thalweg.search.profile_search import ProfileSearch, prepare_profile_search
 from thalweg.search.search_problem import ShipOnNetwork
 from thalweg.search.search_result import SearchResult, SearchWork
+from thalweg.search.timed_path import Profile, TimedPath
 from thalweg.ship.tables.table_bounds import table_bounds
 
 __all__ = [
@@ -21,13 +21,13 @@ __all__ = [
     "LowerBound",
     "MultiSettingShipOnNetwork",
     "NetworkFront",
-    "NetworkPassage",
     "PreparedNetwork",
     "Profile",
     "ProfileSearch",
     "SearchResult",
     "SearchWork",
     "ShipOnNetwork",
+    "TimedPath",
     "best_departure",
     "cheapest",
     "direction_factor",

@@ -79,10 +79,8 @@ def sampled_arrivals(
 
     Returns
     -------
-    arrivals : ndarray (E, D)
-        [s]; inf where blocked.
-    statuses : ndarray (E, D)
-        Codes of `thalweg.kernels.codes`.
+    arrivals : [s], (E, D); inf where blocked.
+    statuses : Codes of `thalweg.kernels.codes`, (E, D).
     """
     given = make_search_problem(ship_on_network)
     count = len(given.network.target)

@@ -25,13 +25,6 @@ from thalweg.kernels.leg.point_speed import ShipArrays
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.search import repeated_search as kernel
 from thalweg.kernels.search.tidal_intervals import TidalStates
-from thalweg.search.network_passage import (
-    NetworkPassage,
-    Profile,
-    arrive_together,
-    passage_not_found,
-    with_earlier_departure,
-)
 from thalweg.search.prepared_network import PreparedNetwork
 from thalweg.search.restricted_waiting import (
     earliest_arrival_with_restricted_waiting,
@@ -42,6 +35,13 @@ from thalweg.search.search_problem import (
     SearchProblem,
     ship_arrays,
     top_speed_through_water,
+)
+from thalweg.search.timed_path import (
+    Profile,
+    TimedPath,
+    arrive_together,
+    path_not_found,
+    with_earlier_departure,
 )
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ _FIRST_SLACK = 3600.0  # beyond the bound, when nothing is known yet [s]
 
 @dataclass(frozen=True, eq=False)
 class ProfileSearch:
-    """All passages of one ship between two nodes, each searched when it is first needed.
+    """All paths of one ship between two nodes, each searched when it is first needed.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class ProfileSearch:
 
     @property
     def shortest(self) -> float:
-        """Lower bound of the time of any passage [s]; inf if no tide ever opens a path."""
+        """Lower bound of the time of any path [s]; inf if no tide ever opens one."""
         return float(self.to_goal.node[self.ends[0]])
 
     @cached_property
@@ -103,7 +103,7 @@ class ProfileSearch:
 
     def sail(
         self, depart: float, *, known: float = math.inf, arrive_by: float = math.inf
-    ) -> NetworkPassage:
+    ) -> TimedPath:
         """Find the earliest arrival of one departure.
 
         Parameters
@@ -116,7 +116,7 @@ class ProfileSearch:
 
         Returns
         -------
-        NetworkPassage
+        TimedPath
             The same as that of `earliest_arrival`, to within ties (where the ship may wait at some
             nodes only, to within a wave of `thalweg.search.restricted_waiting`).
         """
@@ -124,7 +124,7 @@ class ProfileSearch:
         latest = min(float(arrive_by), float(self.prepared.sea.times[-1]))
         longest = (latest - depart) * self._largest_penalty
         if not (math.isfinite(depart) and self.shortest <= longest):
-            return passage_not_found(depart)
+            return path_not_found(depart)
         limit = (
             (known - depart) * self._largest_penalty + _ARRIVAL_SLACK if known < math.inf else 0.0
         )
@@ -159,7 +159,7 @@ class ProfileSearch:
 
     def _search_with_restricted_waiting(
         self, depart: float, limit: float, latest: float
-    ) -> NetworkPassage:
+    ) -> TimedPath:
         """Search with waiting at some nodes only (`thalweg.search.restricted_waiting`)."""
         prepared = self.prepared
         top = ROUNDING_FACTOR / self.slowness - prepared.top_current
@@ -168,22 +168,22 @@ class ProfileSearch:
             prepared.source, given, start=self.ends[0], goal=self.ends[1], depart=depart,
             arrive_by=min(depart + limit, latest),
         )  # fmt: skip
-        return NetworkPassage(
+        return TimedPath(
             depart, found.arrive, found.path, found.path_arrive, found.path_depart, found.settled
         )
 
-    def _search(self, depart: float, limit: float, latest: float) -> NetworkPassage:
+    def _search(self, depart: float, limit: float, latest: float) -> TimedPath:
         trip, cost = self._labelled(depart, limit, latest)
         marks = self._workspace
         settled = int(marks.counts[kernel.SETTLED])
         if cost == math.inf:
             kernel.reset_workspace(marks)
-            return replace(passage_not_found(depart), settled=settled)
+            return replace(path_not_found(depart), settled=settled)
         nodes, arrive, leave = self._path_arrays
         count = kernel.trace_departure(self.states, marks, trip, nodes, arrive, leave)
         kernel.reset_workspace(marks)
         path, when, out = nodes[-count:], arrive[-count:].copy(), leave[-count:].copy()
-        return NetworkPassage(depart, float(when[-1]), path.astype(np.int64), when, out, settled)
+        return TimedPath(depart, float(when[-1]), path.astype(np.int64), when, out, settled)
 
     def _labelled(
         self,
@@ -214,7 +214,7 @@ class ProfileSearch:
         return trip, float(cost)
 
     def profile(self, departures: ArrayLike, *, arrive_by: float = math.inf) -> Profile:
-        """Find the passages of many departures.
+        """Find the paths of many departures.
 
         Parameters
         ----------
@@ -237,7 +237,7 @@ class ProfileSearch:
         times = np.asarray(departures, float).ravel()
         if times.size == 0 or not np.all(np.isfinite(times)) or np.any(np.diff(times) <= 0.0):
             raise InputError("The departures do not ascend.", "Times in order [s].", "Sort them.")
-        found: dict[int, NetworkPassage] = {}
+        found: dict[int, TimedPath] = {}
         waits = self.wait and bool(self.prepared.network.can_wait[self.ends[0]])
         if waits and self._largest_penalty == 1.0:
             self._halve(times, found, arrive_by)
@@ -253,7 +253,7 @@ class ProfileSearch:
                 found[k] = with_earlier_departure(found[following], float(times[k]))
         return Profile(tuple(found[k] for k in range(len(times))), searched)
 
-    def _halve(self, times: FloatArray, found: dict[int, NetworkPassage], arrive_by: float) -> None:
+    def _halve(self, times: FloatArray, found: dict[int, TimedPath], arrive_by: float) -> None:
         last = len(times) - 1
         for k in {0, last}:
             found[k] = self.sail(times[k], arrive_by=arrive_by)
@@ -266,7 +266,7 @@ class ProfileSearch:
             later = found[high]
             known = (
                 later.arrive
-                if later.arrive - times[middle] < _longest_useful_passage(self)
+                if later.arrive - times[middle] < _longest_useful_time(self)
                 else math.inf
             )
             found[middle] = self.sail(times[middle], known=known, arrive_by=arrive_by)
@@ -284,7 +284,7 @@ def prepare_profile_search(
     top_speed: float,
     wait: bool = True,
 ) -> ProfileSearch:
-    """Prepare the passages of a ship between two nodes.
+    """Prepare the paths of a ship between two nodes.
 
     Parameters
     ----------
@@ -312,7 +312,7 @@ def prepare_profile_search(
     count = len(prepared.network.can_wait)
     if not (0 <= start < count and 0 <= goal < count and start != goal):
         raise InputError(
-            f"There are no passages from node {start} to node {goal}.",
+            f"There are no paths from node {start} to node {goal}.",
             f"The network has nodes 0 to {count - 1}; start and goal must differ.",
             "Give two nodes of this network.",
         )
@@ -329,6 +329,6 @@ def prepare_profile_search(
     )
 
 
-def _longest_useful_passage(passages: ProfileSearch) -> float:
-    """Return how long a passage may take for its arrival to bound an earlier one [s]."""
-    return 3.0 * passages.shortest + _FIRST_SLACK
+def _longest_useful_time(search: ProfileSearch) -> float:
+    """Return how long a path may take for its arrival to bound an earlier one [s]."""
+    return 3.0 * search.shortest + _FIRST_SLACK

@@ -141,8 +141,7 @@ def sea_arrays(fields: StationFields, *, tides: bool = False) -> SeaArrays:
 
     Raises
     ------
-    InputError
-        If there are fewer than two times, or times that do not increase.
+    InputError : If there are fewer than two times, or times that do not increase.
     """
     times = contiguous_array(fields.times, np.float64)
     if len(times) < 2 or not np.all(np.diff(times) > 0.0):
@@ -186,8 +185,7 @@ def ship_arrays(table: PerformanceTable | TableArrays, setting: int, limits: Lim
 
     Raises
     ------
-    InputError
-        If the setting is not one of the table's, or the limits are not `Limits`.
+    InputError : If the setting is not one of the table's, or the limits are not `Limits`.
     """
     if not isinstance(limits, Limits):
         raise InputError(
@@ -220,8 +218,7 @@ def top_speed_through_water(sea: SeaArrays, top_speed: float) -> tuple[float, bo
 
     Raises
     ------
-    InputError
-        If the bound is not a positive number.
+    InputError : If the bound is not a positive number.
     """
     field_top = float(largest_speed_field(sea))
     fastest = field_top if field_top >= 0.0 else float(top_speed)
@@ -248,13 +245,11 @@ def make_search_problem(
 
     Returns
     -------
-    SearchProblem
-        Arrays for the kernels.
+    SearchProblem : Arrays for the kernels.
 
     Raises
     ------
-    InputError
-        If the parts do not fit together or the ship has no speed.
+    InputError : If the parts do not fit together or the ship has no speed.
     """
     network, limits = ship_on_network.network, ship_on_network.limits
     ship = ship_arrays(ship_on_network.table, ship_on_network.setting, limits)

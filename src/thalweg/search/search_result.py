@@ -64,8 +64,7 @@ def counts_by_reason(refused: NDArray[np.int64]) -> dict[str, int]:
 
     Returns
     -------
-    dict of str to int
-        Without the reasons that do not occur.
+    dict of str to int : Without the reasons that do not occur.
     """
     return {REASONS[code]: int(n) for code, n in enumerate(refused) if n > 0 and code > 0}
 

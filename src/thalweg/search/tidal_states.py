@@ -42,9 +42,8 @@ def tidal_states(
 
     Returns
     -------
-    NetworkArrays
-        The same if no depth is required or no depth varies. The first states are those of the
-        nodes, in order.
+    NetworkArrays : The same if no depth is required or no depth varies. The first states are those
+        of the nodes, in order.
     """
     varies = sea.channel_index[WATER_LEVEL] >= 0 or sea.channel_index[BED_DEPTH] >= 0
     if required == -np.inf or not varies:

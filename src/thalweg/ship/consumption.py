@@ -46,15 +46,13 @@ def leg_prices(objective: Objective, ship: Ship, terms: FuelTerms | None = None)
 
     Returns
     -------
-    LegPrices
-        Prices [`Objective.unit`] of fuel [kg], energy [J] or, where fuel has no price, of the cube
-        of the ordered speed times time [m3/s2] (van Halem 2019).
+    LegPrices : Prices [`Objective.unit`] of fuel [kg], energy [J] or, where fuel has no price, of
+        the cube of the ordered speed times time [m3/s2] (van Halem 2019).
 
     Raises
     ------
-    InputError
-        If the objective prices none or several of these, or if a price of fuel or a carbon factor
-        that it needs is not known.
+    InputError : If the objective prices none or several of these, or if a price of fuel or a carbon
+        factor that it needs is not known.
     """
     terms = ship.fuel_terms if terms is None else terms
     prices = objective.prices
@@ -115,14 +113,12 @@ def consumption_table(ship: Ship, consumption: Consumption) -> PerformanceTable:
 
     Returns
     -------
-    PerformanceTable
-        Fuel rate [kg/s], power of brake and hotel load [W], cubed ordered speed [m3/s3], or
-        squared weighted acceleration [m2/s4].
+    PerformanceTable : Fuel rate [kg/s], power of brake and hotel load [W], cubed ordered speed
+        [m3/s3], or squared weighted acceleration [m2/s4].
 
     Raises
     ------
-    InputError
-        If the ship's fuel, or its power, is not known.
+    InputError : If the ship's fuel, or its power, is not known.
     """
     if consumption == "cubed_speed":
         return tabulate_cubed_speed(ship.speeds)
@@ -142,8 +138,7 @@ def calm_water_consumption(ship: Ship, consumption: Consumption) -> FloatArray:
 
     Returns
     -------
-    float64 array (settings,)
-        In the units of `consumption_table`.
+    float64 array (settings,) : In the units of `consumption_table`.
     """
     if consumption == "cubed_speed":
         return np.asarray(ship.speeds, float) ** 3
@@ -161,8 +156,7 @@ def _of_settings(ship: Ship, values: object, shape: tuple[int, ...]) -> FloatArr
 
     Raises
     ------
-    InputError
-        If a model of a plug-in returns another shape.
+    InputError : If a model of a plug-in returns another shape.
     """
     array = np.asarray(values, float)
     if array.shape not in ((), shape):

@@ -88,8 +88,7 @@ class FuelTerms:
 
         Returns
         -------
-        dict
-            ``currency``, and ``{"value", "source"}`` of ``fuel_per_t``, ``fuel_in_eca_per_t``,
+        dict : ``currency``, and ``{"value", "source"}`` of ``fuel_per_t``, ``fuel_in_eca_per_t``,
             ``time_per_day`` and, where it counts, ``per_second_per_cubed_speed``; and
             ``european_charges``, with what is ``not_counted`` for want of a price.
         """
@@ -145,8 +144,7 @@ class FuelTerms:
 
         Raises
         ------
-        InputError
-            If ``what`` is not one of the four.
+        InputError : If ``what`` is not one of the four.
         """
         if what not in FUEL_QUANTITIES:
             raise unknown_name_error("sum of fuel", str(what), FUEL_QUANTITIES)
@@ -174,8 +172,7 @@ class FuelTerms:
 
         Raises
         ------
-        InputError
-            If fuel has no price, to which they could be added.
+        InputError : If fuel has no price, to which they could be added.
         """
         if charges is not None and math.isnan(self.price_outside):
             raise InputError(
@@ -201,14 +198,12 @@ class FuelTerms:
 
         Returns
         -------
-        total, inside : ndarray
-            The whole sum, and its part inside; NaN where unknown. A price or a factor that is
-            unknown does not matter where nothing is burnt by it.
+        total, inside : The whole sum, and its part inside; NaN where unknown. A price or a factor
+            that is unknown does not matter where nothing is burnt by it.
 
         Raises
         ------
-        InputError
-            If a share is outside 0 to 1.
+        InputError : If a share is outside 0 to 1.
 
         Notes
         -----
@@ -245,9 +240,8 @@ class FuelTerms:
 
         Raises
         ------
-        InputError
-            For a price below zero, a factor not above zero, numbers that are not finite, a factor
-            without any price, or US dollars beside prices in another currency.
+        InputError : For a price below zero, a factor not above zero, numbers that are not finite, a
+            factor without any price, or US dollars beside prices in another currency.
         """
         _check_price("price of fuel", usd_per_t, "USD/t", zero=True)
         _check_price("price factor inside control areas", eca_price_factor, "", zero=False)
@@ -311,8 +305,7 @@ def fuel_terms(file: ShipFile) -> FuelTerms:
 
     Raises
     ------
-    InputError
-        For unknown fuels, two prices for the same thing, and two currencies.
+    InputError : For unknown fuels, two prices for the same thing, and two currencies.
     """
     given, costs = file.fuel, file.costs
     outside = None if given.type is None else fuel_named(given.type)

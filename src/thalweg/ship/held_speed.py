@@ -25,13 +25,11 @@ def with_held_speed(ship: Ship, speed_kn: float) -> Ship:
 
     Returns
     -------
-    Ship
-        With this speed as its only setting.
+    Ship : With this speed as its only setting.
 
     Raises
     ------
-    InputError
-        If the ship does not reach the speed, or its power at other speeds is not known.
+    InputError : If the ship does not reach the speed, or its power at other speeds is not known.
     """
     model, load_factor = ship.model, ship.loading.load_factor
     speed = np.array([speed_kn * KNOT])
@@ -69,13 +67,11 @@ def with_held_power(ship: Ship, speed_kn: float) -> Ship:
 
     Returns
     -------
-    Ship
-        With this as its only setting.
+    Ship : With this as its only setting.
 
     Raises
     ------
-    InputError
-        If the ship does not reach the speed.
+    InputError : If the ship does not reach the speed.
     """
     model, load_factor = ship.model, ship.loading.load_factor
     if not isinstance(model, ResistanceModel):

@@ -318,8 +318,7 @@ def setting_index(setting: ArrayLike, count: int) -> NDArray[np.intp]:
 
     Returns
     -------
-    int array
-        In the shape of ``setting``.
+    int array : In the shape of ``setting``.
     """
     index = np.asarray(setting)
     if not np.issubdtype(index.dtype, np.integer):

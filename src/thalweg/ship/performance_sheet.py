@@ -52,22 +52,19 @@ def performance_sheet(
 
     Returns
     -------
-    dict
-        Plain data: ``name``, ``conditions[]`` (``speed_kn``, ``resistance_n`` by component, which
-        add up to its ``total``; the remainder of Hollenbach's method, all of it pressure,
-        is part of ``wave_making``; with Kwon's speed loss the resistance is that of calm water at
-        the speed, the power that of the unreduced calm-water speed;
-        ``effective_power_kw``, ``brake_power_kw``, ``fuel_kg_per_h``, ``co2_kg_per_h``,
-        ``fuel_kg_per_nm``, ``cii``, ``squat``, ``motions``, ``warnings``), ``assumed[]`` (period
-        and directions of weather that were not given), ``warnings[]`` (speeds
-        left out, weather without a model of the ship), ``missing[]`` (unknown results and the keys
-        that would give them), ``settings[]`` (the speed of each setting in
-        this weather), ``estimated[]`` and ``sources``. Unknown numbers are None.
+    dict : Plain data: ``name``, ``conditions[]`` (``speed_kn``, ``resistance_n`` by component,
+        which add up to its ``total``; the remainder of Hollenbach's method, all of it pressure, is
+        part of ``wave_making``; with Kwon's speed loss the resistance is that of calm water at the
+        speed, the power that of the unreduced calm-water speed; ``effective_power_kw``,
+        ``brake_power_kw``, ``fuel_kg_per_h``, ``co2_kg_per_h``, ``fuel_kg_per_nm``, ``cii``,
+        ``squat``, ``motions``, ``warnings``), ``assumed[]`` (period and directions of weather that
+        were not given), ``warnings[]`` (speeds left out, weather without a model of the ship),
+        ``missing[]`` (unknown results and the keys that would give them), ``settings[]`` (the speed
+        of each setting in this weather), ``estimated[]`` and ``sources``. Unknown numbers are None.
 
     Raises
     ------
-    InputError
-        If the ship can sail none of the speeds, or its speed is a field.
+    InputError : If the ship can sail none of the speeds, or its speed is a field.
     """
     if ship.speed_field is not None:
         raise InputError(
@@ -124,8 +121,7 @@ def _admissible_speeds(ship: Ship, speeds: FloatArray) -> tuple[FloatArray, list
 
     Raises
     ------
-    InputError
-        If there is none.
+    InputError : If there is none.
     """
     if np.array_equal(speeds, ship.speeds):
         return speeds, []
@@ -259,10 +255,9 @@ def carbon_intensity_of(ship: Ship, co2: float, *, year: int) -> dict[str, Any] 
 
     Returns
     -------
-    dict or None
-        ``attained`` [g/(t nm)], or [g/(GT nm)] where the type of ship is rated by gross tonnage;
-        ``required``, ``boundaries`` and ``rating``, None for types that the regulation does not
-        know. None without a capacity in the ship file.
+    dict or None : ``attained`` [g/(t nm)], or [g/(GT nm)] where the type of ship is rated by gross
+        tonnage; ``required``, ``boundaries`` and ``rating``, None for types that the regulation
+        does not know. None without a capacity in the ship file.
     """
     hull = ship.file.hull
     kind = (hull.type or "").casefold().replace(" ", "_").replace("-", "_")

@@ -33,8 +33,7 @@ def load_plugin(name: str) -> Any:
 
     Raises
     ------
-    InputError
-        If its package cannot be imported, or does not hold it.
+    InputError : If its package cannot be imported, or does not hold it.
     """
     from importlib.metadata import entry_points
 

@@ -265,8 +265,7 @@ def model_needs(model: ShipModel) -> frozenset[str]:
 
     Returns
     -------
-    frozenset of str
-        CF standard names.
+    frozenset of str : CF standard names.
     """
     return model.needs if isinstance(model, FunctionModel) else needed_variables(model.reads)
 

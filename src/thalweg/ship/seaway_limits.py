@@ -159,8 +159,7 @@ class SafetyLimits:
 
         Returns
         -------
-        ndarray of bool
-            False where something is unknown.
+        ndarray of bool : False where something is unknown.
         """
         arrays = (np.asarray(x, float) for x in (speed, wave_angle, wave_height, wave_period))
         v, angle, height, period = np.broadcast_arrays(*arrays)
@@ -270,13 +269,11 @@ def build_safety_limits(given: LimitsSection, hull: Hull, loading: Loading) -> S
 
     Returns
     -------
-    SafetyLimits or None
-        Limits in waves.
+    SafetyLimits or None : Limits in waves.
 
     Raises
     ------
-    InputError
-        For unknown dangers, and particulars that are missing.
+    InputError : For unknown dangers, and particulars that are missing.
     """
     dangers = tuple(dict.fromkeys(given.msc_circ_1228))
     limits = _acceleration_limits(given)
@@ -367,8 +364,7 @@ def make_motion_hull(hull: Hull, loading: Loading) -> MotionHull:
 
     Raises
     ------
-    InputError
-        If the particulars do not suffice.
+    InputError : If the particulars do not suffice.
     """
     wanted: tuple[str, ...] = ("breadth_m", "block_coefficient")
     length = hull.number("length_waterline_m") or hull.number("length_between_perpendiculars_m")

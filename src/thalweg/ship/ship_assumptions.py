@@ -18,8 +18,7 @@ def stated_assumptions(ship: Ship) -> list[str]:
 
     Returns
     -------
-    list of str
-        Sentences; empty for most ships.
+    list of str : Sentences; empty for most ships.
     """
     idle = [f"{text[0].upper()}{text[1:]}." for text in load_factor_without_effect(ship)]
     charges = ship.fuel_terms.charges
@@ -33,8 +32,7 @@ def load_factor_without_effect(ship: Ship) -> list[str]:
 
     Returns
     -------
-    list of str
-        One text, or none.
+    list of str : One text, or none.
     """
     own = ship.loading
     described = ship.file.loading.gives(*_KEYS_OF_THE_EMPTY_SHIP)

@@ -56,8 +56,7 @@ def data_files(resolution: str) -> tuple[Path, Path]:
 
     Raises
     ------
-    InputError
-        If the resolution is unknown, or its files are not installed.
+    InputError : If the resolution is unknown, or its files are not installed.
     """
     if resolution not in RESOLUTIONS:
         raise InputError(
@@ -102,10 +101,8 @@ def read_land_rings(resolution: str, *, narrows_closed: bool = True) -> Rings:
 
     Raises
     ------
-    InputError
-        If the resolution is unknown or not installed.
-    DatasetError
-        If the files do not belong together.
+    InputError : If the resolution is unknown or not installed.
+    DatasetError : If the files do not belong together.
     """
     meta, points = data_files(resolution)
     words = meta.read_text(encoding="ascii").split()

@@ -30,8 +30,7 @@ def leg_status(
 
     Returns
     -------
-    int8 array
-        Status codes (`thalweg.kernels.codes`) in the broadcast shape.
+    int8 array : Status codes (`thalweg.kernels.codes`) in the broadcast shape.
     """
     ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
     # writeable arrays all, so that the kernel is compiled for one kind only

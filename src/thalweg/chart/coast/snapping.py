@@ -153,8 +153,7 @@ def joined_positions(
 
     Returns
     -------
-    lat, lon : ndarray (n,)
-        Positions [deg].
+    lat, lon : Positions [deg], (n,).
     """
     lats, lons = _search_grid(lat, lon, half)
     free = is_navigable(lats, lons)

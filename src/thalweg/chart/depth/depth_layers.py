@@ -43,8 +43,7 @@ class DepthLayers:
 
         Raises
         ------
-        InputError
-            If that is too much to hold in memory.
+        InputError : If that is too much to hold in memory.
         """
         cached = self._kept.get(only)
         if cached is not None and _covers(cached[0], box):

@@ -27,8 +27,7 @@ def global_depth_codes() -> NDArray[np.uint8]:
 
     Returns
     -------
-    uint8 array (1801, 3600)
-        Depth [m] plus 1 from 90 S and 180 W on; 0 on land.
+    uint8 array (1801, 3600) : Depth [m] plus 1 from 90 S and 180 W on; 0 on land.
     """
     place = resources.files("thalweg.chart").joinpath("data/depth_6min.npz")
     with place.open("rb") as file, np.load(file, allow_pickle=False) as data:
@@ -44,9 +43,8 @@ def coarse_depth(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        Depth [m below mean sea level], 0 to 254; NaN where the four points round a position are
-        land.
+    ndarray : Depth [m below mean sea level], 0 to 254; NaN where the four points round a position
+        are land.
     """
     a, b = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
     depth = np.full(a.size, np.nan)

@@ -48,9 +48,8 @@ def safety_contour(draught: float) -> float:
 
     Returns
     -------
-    float
-        The first of `CONTOURS` that is at least `DRAUGHTS` times the draught [m]; that depth itself
-        above the last.
+    float : The first of `CONTOURS` that is at least `DRAUGHTS` times the draught [m]; that depth
+        itself above the last.
     """
     deep = DRAUGHTS * draught
     return next((contour for contour in CONTOURS if contour >= deep), deep)
@@ -92,8 +91,7 @@ class Shoals:
 
         Returns
         -------
-        ndarray
-            0 or more; NaN where a position is not a number.
+        ndarray : 0 or more; NaN where a position is not a number.
         """
         ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
         found = np.empty(ends[0].size)

@@ -73,8 +73,7 @@ class EmissionControlArea:
 
         Raises
         ------
-        InputError
-            If the limits are unknown.
+        InputError : If the limits are unknown.
         """
         return _outline(self.name)
 
@@ -178,14 +177,12 @@ def select_emission_control_areas(
 
     Raises
     ------
-    InputError
-        If the area is unknown, its limits are unknown, or it is not yet in force.
+    InputError : If the area is unknown, its limits are unknown, or it is not yet in force.
 
     Warns
     -----
-    ThalwegWarning
-        If an area counts on the date but its limits are unknown, or the date is later than what
-        was looked up.
+    ThalwegWarning : If an area counts on the date but its limits are unknown, or the date is later
+        than what was looked up.
     """
     day = DATA_DATE if date is None else _iso_date(date)
     known = {area.name: area for area in emission_control_areas()}

@@ -37,8 +37,7 @@ def points_inside(index: IndexArrays, lat: FloatArray, lon: FloatArray) -> NDArr
 
     Returns
     -------
-    bool array (n,)
-        Whether each is inside.
+    bool array (n,) : Whether each is inside.
     """
     code = np.empty(len(lat), np.int8)
     flat = [np.require(x, float, ("C", "W")) for x in (lat, lon)]

@@ -54,8 +54,7 @@ class TrafficLane:
 
         Raises
         ------
-        InputError
-            If the direction, the tolerance or the factor is missing or not possible.
+        InputError : If the direction, the tolerance or the factor is missing or not possible.
         """
         name = str(properties.get("name") or "lane")
         given = properties.get("factor")
@@ -120,10 +119,8 @@ class LaneGroup:
 
         Returns
         -------
-        leg, lane : int64 ndarray
-            A leg and a lane that it is against.
-        share : ndarray
-            The share of the length of the leg that is inside the lane and against it.
+        leg, lane : A leg and a lane that it is against.
+        share : The share of the length of the leg that is inside the lane and against it.
         """
         import shapely
 

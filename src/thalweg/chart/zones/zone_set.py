@@ -138,9 +138,8 @@ class Zones:
 
         Raises
         ------
-        InputError
-            If it is not GeoJSON of areas, an outline crosses itself, or a kind or factor is
-            missing or not possible.
+        InputError : If it is not GeoJSON of areas, an outline crosses itself, or a kind or factor
+            is missing or not possible.
         """
         found: dict[str, list[tuple[Any, float]]] = {
             kind: [] for kind in (*KINDS_WITHOUT_FACTOR, "penalty", "price")

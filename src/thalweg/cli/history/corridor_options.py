@@ -27,8 +27,7 @@ def requested_network(arguments: argparse.Namespace) -> str | HistoryCorridor:
 
     Raises
     ------
-    InputError
-        If a gain is given without a history network.
+    InputError : If a gain is given without a history network.
     """
     from dataclasses import replace
 

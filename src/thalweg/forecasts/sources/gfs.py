@@ -195,14 +195,12 @@ def byte_ranges(index: str, wanted: list[str]) -> tuple[tuple[int, int], ...]:
 
     Returns
     -------
-    tuple of (int, int)
-        First byte and number of bytes; adjacent ranges are joined. The last field of a file has
-        no stated end; its range is -1.
+    tuple of (int, int) : First byte and number of bytes; adjacent ranges are joined. The last field
+        of a file has no stated end; its range is -1.
 
     Raises
     ------
-    InputError
-        If a field is not listed.
+    InputError : If a field is not listed.
     """
     lines = [line.split(":") for line in index.splitlines() if line.count(":") >= 5]
     starts = sorted({int(line[1]) for line in lines} | {0})

@@ -119,8 +119,7 @@ def without_each_set_of_canals(
 
     Yields
     ------
-    object
-        As returned by ``find``; up to ``2**n - 1`` for n canals.
+    object : As returned by ``find``; up to ``2**n - 1`` for n canals.
     """
     for count in range(1, len(canals) + 1):
         for closed in combinations(canals, count):

@@ -74,14 +74,12 @@ def string_pull_path(
     lat, lon : Path of allowed legs [deg].
     leg_cost : Cost of legs; by default their length [m]. With a cost, waypoints are also moved
         sideways, because the cost differs from place to place.
-    sides : Meridian crossings of legs, so that islands stay on the same side (see
-        `thalweg.network.alternatives.homotopy`).
+    sides : `thalweg.network.alternatives.homotopy`).
     rounds : Largest number of passes that cut corners; with 0, waypoints are only removed.
 
     Returns
     -------
-    lat, lon : ndarray
-        The path [deg]; it costs no more than the given one.
+    lat, lon : The path [deg]; it costs no more than the given one.
 
     Notes
     -----
@@ -111,8 +109,7 @@ def total_cost(line: PolylineCoordinates, leg_cost: LegCost | None = None) -> fl
 
     Returns
     -------
-    float
-        Sum over all legs.
+    float : Sum over all legs.
     """
     lat, lon = line
     return float(np.sum((leg_cost or leg_lengths)(lat[:-1], lon[:-1], lat[1:], lon[1:])))

@@ -116,14 +116,12 @@ def attach(
 
     Returns
     -------
-    Attachment
-        Links to the largest water within reach; where that is small, an approach to the largest
-        of all is added, found on a fine lattice.
+    Attachment : Links to the largest water within reach; where that is small, an approach to the
+        largest of all is added, found on a fine lattice.
 
     Raises
     ------
-    NoRouteError
-        If no node can be reached.
+    NoRouteError : If no node can be reached.
     """
     near = _candidates(waters, place, np.ones(len(waters.lat), bool), waters.reach)
     seen = _reachable_nodes(chart, place, waters, near)

@@ -102,8 +102,7 @@ class SeaGraph:
 
         Raises
         ------
-        NoRouteError
-            If there is no way.
+        NoRouteError : If there is no way.
         """
         sea = chart.without_canals("all")
         ends = [

@@ -65,8 +65,7 @@ class ArcLines:
 
         Returns
         -------
-        lat, lon : ndarray
-            [deg].
+        lat, lon : [deg].
         """
         part = slice(int(self.ptr[arc]), int(self.ptr[arc + 1]))
         return self.lat[part], self.lon[part]
@@ -104,8 +103,7 @@ class ArcLines:
 
         Returns
         -------
-        bool ndarray
-            One for each of ``legs``.
+        bool ndarray : One for each of ``legs``.
         """
         at = self.legs
         return np.asarray(
@@ -121,8 +119,7 @@ class ArcLines:
 
         Returns
         -------
-        float64 ndarray (A,)
-            0 to 1; NaN where the chart counts no areas.
+        float64 ndarray (A,) : 0 to 1; NaN where the chart counts no areas.
         """
         areas = chart.control_areas
         if areas is None:
@@ -142,8 +139,7 @@ class LinesOffLand:
     lines : Of the arcs of ``arc``, in that order.
     arc : Arcs that have a line.
     source : The stretch of track that each line is from.
-    repaired : Share of the length of each line that is a way over the globe in place of a track
-        over land.
+    repaired : over land.
     """
 
     lines: ArcLines

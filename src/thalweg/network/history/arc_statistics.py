@@ -86,8 +86,7 @@ def arcs_of_occurrences(
 
     Returns
     -------
-    FoundArcs
-        In order of tail and head, the way of most voyages first.
+    FoundArcs : In order of tail and head, the way of most voyages first.
     """
     begin, step = found.begin, found.end - found.begin
     shape = np.stack([tracks.vectors_at(begin + share * step) for share in SHARES], axis=1).astype(
@@ -238,8 +237,7 @@ def group_percentiles(values: FloatArray, ptr: IntArray, percent: tuple[float, .
 
     Returns
     -------
-    float64 ndarray (G, len(percent))
-        NaN for groups without a value.
+    float64 ndarray (G, len(percent)) : NaN for groups without a value.
     """
     group = np.repeat(np.arange(len(ptr) - 1), np.diff(ptr))
     known = np.isfinite(values)

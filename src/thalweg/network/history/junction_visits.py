@@ -55,8 +55,7 @@ class ArcOccurrences:
 
         Returns
         -------
-        ArcOccurrences
-            In the order of the index.
+        ArcOccurrences : In the order of the index.
         """
         return ArcOccurrences(*(getattr(self, column.name)[index] for column in fields(self)))
 
@@ -86,8 +85,7 @@ def arc_occurrences(
 
     Returns
     -------
-    ArcOccurrences
-        In order of voyages and along them; without stretches from a node to itself.
+    ArcOccurrences : In order of voyages and along them; without stretches from a node to itself.
     """
     along, voyage = _samples(tracks, radius / _SAMPLES_PER_RADIUS)
     vectors = tracks.vectors_at(along)

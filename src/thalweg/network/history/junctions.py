@@ -91,8 +91,7 @@ def find_junctions(
 
     Returns
     -------
-    Junctions
-        Ends of canals first, two each; then corridors; then clusters.
+    Junctions : Ends of canals first, two each; then corridors; then clusters.
     """
     ends = [end for canal in chart.canals for end in canal.ends]
     names = [canal.name for canal in chart.canals for _ in range(2)]

@@ -48,10 +48,8 @@ def connected_arcs(
 
     Returns
     -------
-    arcs : HistoryArcs
-        The given arcs and those that were missing.
-    alone : list of int
-        Nodes in use that no way by sea joins to the others.
+    arcs : The given arcs and those that were missing.
+    alone : Nodes in use that no way by sea joins to the others.
     """
     count = len(places[0])
     part = strongly_connected_parts(count, arcs.tail, arcs.head)
@@ -173,8 +171,7 @@ def strongly_connected_parts(
 
     Returns
     -------
-    int64 ndarray (N,)
-        Numbers of parts in which every node reaches every other.
+    int64 ndarray (N,) : Numbers of parts in which every node reaches every other.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -193,8 +190,7 @@ def unknown_evidence(count: int) -> ArcEvidence:
 
     Returns
     -------
-    ArcEvidence
-        No voyages, unknown values NaN, open all year.
+    ArcEvidence : No voyages, unknown values NaN, open all year.
     """
     none, months = np.zeros(count, np.int64), np.zeros((count, 12), np.int64)
     lengths, times, draughts, sizes = (np.full((count, 3), np.nan) for _ in range(4))

@@ -29,8 +29,7 @@ def open_months(seen: IntArray, leaving: IntArray) -> BoolArray:
 
     Returns
     -------
-    bool ndarray (A, 12)
-        True where the arc is open or nothing is known.
+    bool ndarray (A, 12) : True where the arc is open or nothing is known.
     """
     from scipy.special import pdtr
 

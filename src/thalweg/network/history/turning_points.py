@@ -22,8 +22,7 @@ def turning_points(tracks: VoyageTracks, tolerance: float) -> BoolArray:
 
     Returns
     -------
-    bool ndarray (n,)
-        The first and last position of every track, and its turning points.
+    bool ndarray (n,) : The first and last position of every track, and its turning points.
 
     References
     ----------

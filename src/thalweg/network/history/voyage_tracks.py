@@ -25,8 +25,7 @@ def ellipsoid_vectors(lat: FloatArray, lon: FloatArray) -> FloatArray:
 
     Returns
     -------
-    float64 ndarray (n, 3)
-        Earth-centred coordinates [m].
+    float64 ndarray (n, 3) : Earth-centred coordinates [m].
     """
     phi, lam = np.radians(lat), np.radians(lon)
     sine, cosine = np.sin(phi), np.cos(phi)
@@ -54,8 +53,7 @@ def lengths_between(first: FloatArray, second: FloatArray) -> FloatArray:
 
     Returns
     -------
-    ndarray (...)
-        Lengths [m].
+    ndarray (...) : Lengths [m].
     """
     chord = np.sqrt(np.sum((second - first) ** 2, axis=-1))
     return 2.0 * MEAN_RADIUS * np.arcsin(np.minimum(chord / (2.0 * MEAN_RADIUS), 1.0))
@@ -182,8 +180,7 @@ class VoyageTracks:
 
         Returns
         -------
-        float64 ndarray (...)
-            In the unit of the values.
+        float64 ndarray (...) : In the unit of the values.
         """
         return np.asarray(np.interp(along, self.along, values))
 
@@ -204,8 +201,7 @@ def sphere_vectors(lat: FloatArray, lon: FloatArray) -> FloatArray:
 
     Returns
     -------
-    float64 ndarray (n, 3)
-        From the centre of the ellipsoid [m].
+    float64 ndarray (n, 3) : From the centre of the ellipsoid [m].
     """
     found = ellipsoid_vectors(np.asarray(lat, float), np.asarray(lon, float))
     return found * (MEAN_RADIUS / np.sqrt(np.sum(found**2, axis=-1, keepdims=True)))

@@ -178,10 +178,8 @@ def segments_on_paths(
 
     Returns
     -------
-    used : bool array (n_nodes,)
-        Nodes that the start reaches and that reach the goal.
-    keep : bool array (P,)
-        Free segments between such nodes.
+    used : Nodes that the start reaches and that reach the goal, (n_nodes,).
+    keep : Free segments between such nodes, (P,).
     """
     tails, heads = first[free], second[free]
     used = _reached(n_nodes, tails, heads, 0) & _reached(n_nodes, heads, tails, n_nodes - 1)

@@ -26,8 +26,7 @@ class SectionShape:
     Attributes
     ----------
     layers : S, the number of layers between the two waypoints, 1 or more.
-    fan : H, the number of segments that leave a node towards the next layer, 2 or more. An odd
-        number has a segment straight ahead.
+    fan : number has a segment straight ahead.
     offset : d, by how much a layer is wider than the one before, to either side [m].
     """
 
@@ -140,8 +139,7 @@ def section_shapes(
 
     Raises
     ------
-    InputError
-        If a sequence has another length, or a value is not possible.
+    InputError : If a sequence has another length, or a value is not possible.
     """
     columns = [
         _of_sections(sections, name, given)

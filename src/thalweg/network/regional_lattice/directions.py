@@ -24,8 +24,7 @@ def unique_offsets(directions: int) -> tuple[IntArray, IntArray]:
 
     Raises
     ------
-    InputError
-        For a number that is not 8, 16, 32, 48, 80 or 96.
+    InputError : For a number that is not 8, 16, 32, 48, 80 or 96.
     """
     if directions not in LARGEST_OFFSETS:
         raise InputError(

@@ -114,8 +114,7 @@ def _coarser(
 
     Raises
     ------
-    InputError
-        If the requested spacing or number of levels is too fine.
+    InputError : If the requested spacing or number of levels is too fine.
     """
     spacing, coast, ends = sizes
     level = refusal.level

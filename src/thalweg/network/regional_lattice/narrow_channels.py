@@ -40,13 +40,11 @@ def channel_nodes(ground: LatticeSpecification) -> tuple[FloatArray, FloatArray]
 
     Parameters
     ----------
-    ground : Only land larger than half its open-sea spacing counts, or larger land if there would
-        be too many nodes, in channels narrower than twice its spacing at coasts.
+    ground : be too many nodes, in channels narrower than twice its spacing at coasts.
 
     Returns
     -------
-    lat, lon : ndarray
-        On navigable water in the region, about as far apart as the channel is wide.
+    lat, lon : On navigable water in the region, about as far apart as the channel is wide.
     """
     widest = _MAX_WIDTH * ground.frame.largest_unit * ground.step(ground.coast_levels)
     island = _MIN_LAND_SIZE * ground.frame.largest_unit * ground.step(0)

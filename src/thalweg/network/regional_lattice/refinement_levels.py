@@ -116,8 +116,7 @@ def grow_levels(ground: LatticeSpecification) -> tuple[list[Level], FloatArray, 
 
     Raises
     ------
-    TooManyPoints
-        When the budget is exceeded.
+    TooManyPoints : When the budget is exceeded.
     """
     i, j, shore = _open_sea(ground)
     points: list[Points] = [(i, j)]

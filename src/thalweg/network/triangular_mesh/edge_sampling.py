@@ -25,8 +25,7 @@ def sampled_on_triangle_sides(network: Network) -> Network:
 
     Returns
     -------
-    Network
-        The same nodes and edges; its stations are its nodes.
+    Network : The same nodes and edges; its stations are its nodes.
     """
     from scipy.spatial import Delaunay
 

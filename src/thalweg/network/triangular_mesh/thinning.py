@@ -57,8 +57,7 @@ def thin_by_spacing(x: ArrayLike, y: ArrayLike, spacing: ArrayLike) -> BoolArray
 
     Raises
     ------
-    InputError
-        If a spacing is negative or not finite.
+    InputError : If a spacing is negative or not finite.
     """
     x, y, gap = np.broadcast_arrays(
         np.asarray(x, float), np.asarray(y, float), np.asarray(spacing, float)

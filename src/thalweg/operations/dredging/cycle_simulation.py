@@ -22,7 +22,7 @@ from thalweg.operations.dredging.verified_legs import SiteLegPlanner
 from thalweg.operations.dredging.work_windows import WorkWindows
 from thalweg.sea import standard_names as nm
 from thalweg.sea.inspection import data_gaps
-from thalweg.search import NetworkPassage, ProfileSearch
+from thalweg.search import ProfileSearch, TimedPath
 
 CycleCallback = Callable[[str, DredgingCycle], None]
 _MIN_VOLUME_SHARE = 1e-6  # share of a hopper below which the remaining volume is ignored
@@ -30,18 +30,18 @@ _MIN_VOLUME_SHARE = 1e-6  # share of a hopper below which the remaining volume i
 
 @dataclass(frozen=True, eq=False)
 class RoundTrip:
-    """The passages of one load: out with the load, and back empty."""
+    """The searches of one load: out with the load, and back empty."""
 
     load_factor: float
     full: ProfileSearch
     empty: ProfileSearch
     last_duration: dict[str, float] = field(default_factory=dict)
 
-    def sail(self, which: str, depart: float, arrive_by: float) -> NetworkPassage:
-        """Return a passage, "full" or "empty"; the duration of the last one is the first guess."""
-        passages: ProfileSearch = getattr(self, which)
+    def sail(self, which: str, depart: float, arrive_by: float) -> TimedPath:
+        """Return a path, "full" or "empty"; the duration of the last one is the first guess."""
+        search: ProfileSearch = getattr(self, which)
         guess = self.last_duration.get(which, math.inf)
-        found = passages.sail(depart, known=depart + 1.15 * guess + 300.0, arrive_by=arrive_by)
+        found = search.sail(depart, known=depart + 1.15 * guess + 300.0, arrive_by=arrive_by)
         if found.found:
             self.last_duration[which] = found.arrive - depart
         return found
@@ -57,11 +57,11 @@ class LoadOption(NamedTuple):
 
 
 class LoadChoice(NamedTuple):
-    """An evaluated load: production [m3/s], its option, the passage with it."""
+    """An evaluated load: production [m3/s], its option, the path with it."""
 
     production: float
     option: LoadOption
-    full: NetworkPassage
+    full: TimedPath
 
 
 class Simulator:
@@ -78,7 +78,7 @@ class Simulator:
     def __init__(
         self,
         project: Project,
-        world: ProjectEnvironment,
+        environment: ProjectEnvironment,
         site_network: SiteNetwork,
         *,
         factors: Sequence[float] | None = None,
@@ -88,17 +88,17 @@ class Simulator:
     ) -> None:
         self.project, self.report, self.name = project, report, name
         self.on_cycle = on_cycle
-        self.leg_planner = SiteLegPlanner(world, site_network)
-        back = self.leg_planner.passages(0.0, outward=False)
+        self.leg_planner = SiteLegPlanner(environment, site_network)
+        back = self.leg_planner.profile_search(0.0, outward=False)
         chosen = project.work.load_factors if factors is None else factors
         self.both = [
-            RoundTrip(x, self.leg_planner.passages(x, outward=True), replace(back))
+            RoundTrip(x, self.leg_planner.profile_search(x, outward=True), replace(back))
             for x in sorted(set(chosen))
             if x > 0.0
         ]
-        sites, period = world.sites, world.period
+        sites, period = environment.sites, environment.period
         self.at_load, self.at_unload = (
-            WorkWindows.at_site(place, period, ship=world.ship, sea=world.sea)
+            WorkWindows.at_site(place, period, ship=environment.ship, sea=environment.sea)
             for place in (sites.load, sites.unload)
         )
         self.workers = max(1, min(os.cpu_count() or 1, len(self.both)))
@@ -115,8 +115,7 @@ class Simulator:
 
         Raises
         ------
-        OutsidePeriodError
-            If it is not moved by the end of the period.
+        OutsidePeriodError : If it is not moved by the end of the period.
         """
         project, work = self.project, self.project.work
         cycles: list[DredgingCycle] = []
@@ -190,7 +189,7 @@ class Simulator:
         load_factor = option.both.load_factor
         leg_planner = self.leg_planner
         loaded = self.at_load.end(time, loading)
-        out = leg_planner.sail(load_factor, loaded, outward=True, passage=choice.full)
+        out = leg_planner.sail(load_factor, loaded, outward=True, path=choice.full)
         if out is None:
             return None
         unloaded = self.at_unload.end(out.arrive, unloading)
@@ -218,16 +217,16 @@ class Simulator:
             f"By {format_time(project.end)} only {moved:,.0f} of {project.work.volume:,.0f} m3 "
             f"can be moved{which}.",
             f"The last complete cycle ends {format_time(time)}."
-            + data_gap_text(self.leg_planner.world, (project.start, project.end)),
+            + data_gap_text(self.leg_planner.environment, (project.start, project.end)),
             "Give more days (and data for them), or a smaller volume.",
             moved_m3=moved,
         )
 
 
-def data_gap_text(world: ProjectEnvironment, period: tuple[float, float]) -> str:
+def data_gap_text(environment: ProjectEnvironment, period: tuple[float, float]) -> str:
     """Return sentences on the end of the data and their gaps in a period; may be empty."""
-    sea = world.sea
-    needed = {nm.CHANNEL_VARIABLES[channel] for channel in world.needs.channels}
+    sea = environment.sea
+    needed = {nm.CHANNEL_VARIABLES[channel] for channel in environment.needs.channels}
     ends = [r.end for r in sea.coverage() if r.end is not None and r.variable in needed]
     last = min(ends, default=math.inf)
     sentences = [f" The data end {format_time(last)}."] if last < period[1] else []

@@ -16,6 +16,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, direct, distance, inverse, positions_along
 from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray
+from thalweg.deprecated_names import renamed_attributes
 from thalweg.kernels import codes
 from thalweg.network import Network, NetworkMeta, Samples, Stations, lattice, mesh
 from thalweg.network.assembly import assemble, measured_pairs
@@ -171,10 +172,13 @@ class SiteNetwork:
     network: Network
     waters: PreparedNetwork
 
-    def passages(
+    if not TYPE_CHECKING:
+        __getattr__ = renamed_attributes(passages="profile_search")
+
+    def profile_search(
         self, loaded: LoadedShip, *, full: bool, limits: Limits | None = None
     ) -> ProfileSearch:
-        """Prepare the passages from loading to unloading site (full), or back.
+        """Prepare the search from loading to unloading site (full), or back.
 
         ``limits`` replaces those of the loaded ship.
         """
@@ -198,13 +202,13 @@ class SiteNetwork:
 
 
 def freeze_site_network(
-    world: ProjectEnvironment, network: Network, report: MessageCallback
+    environment: ProjectEnvironment, network: Network, report: MessageCallback
 ) -> SiteNetwork:
     """Freeze the sea at a network for the whole period.
 
     Parameters
     ----------
-    world : ProjectEnvironment
+    environment : ProjectEnvironment
         Ship, sea, chart and period.
     network : Network
         Network between the sites.
@@ -221,13 +225,13 @@ def freeze_site_network(
     InputError
         If it would take more memory than is allowed.
     """
-    channels = list(world.needs.channels)
-    if world.bed_is_static and codes.BED_DEPTH in channels:
+    channels = list(environment.needs.channels)
+    if environment.bed_is_static and codes.BED_DEPTH in channels:
         channels.remove(codes.BED_DEPTH)
-        network = with_bed_depth(world, network)
+        network = with_bed_depth(environment, network)
     lat, lon = network.stations.lat, network.stations.lon
-    steps = len(world.sea.times(*world.period))
-    field = world.ship.speed_field
+    steps = len(environment.sea.times(*environment.period))
+    field = environment.ship.speed_field
     extra = None if field is None else {codes.SPEED_FIELD: field}
     size = 4 * len(lat) * steps * (len(channels) + bool(extra))
     if size > MEMORY_LIMIT:
@@ -237,16 +241,16 @@ def freeze_site_network(
             "Give fewer days, a coarser spacing_m or a smaller detour.",
         )
     report(f"freezing the sea at {len(lat):,} places and {steps:,} times")
-    fields = world.sea.freeze_stations(lat, lon, *world.period, channels, extra=extra)
+    fields = environment.sea.freeze_stations(lat, lon, *environment.period, channels, extra=extra)
     return SiteNetwork(network, PreparedNetwork.prepare(network, fields))
 
 
-def project_network(world: ProjectEnvironment) -> Network:
+def project_network(environment: ProjectEnvironment) -> Network:
     """Return the network between the sites: the mesh of the sea if it has one, else a lattice.
 
     Parameters
     ----------
-    world : ProjectEnvironment
+    environment : ProjectEnvironment
         Sites, sea and chart.
 
     Returns
@@ -254,8 +258,8 @@ def project_network(world: ProjectEnvironment) -> Network:
     Network
         ``meta.start`` and ``meta.goal`` are the nodes at the sites.
     """
-    sites, chart = world.sites, world.chart
-    model = world.sea.mesh()
+    sites, chart = environment.sites, environment.chart
+    model = environment.sea.mesh()
     if model is None:
         spacing = sites.network.spacing
         return lattice(chart, sites.load, sites.unload, spacing=spacing, directions=32)
@@ -318,8 +322,7 @@ def fixed_route_network(chart: Chart, route: Sequence[Position]) -> Network:
 
     Raises
     ------
-    InputError
-        If the chart does not let it pass.
+    InputError : If the chart does not let it pass.
     """
     lat, lon = _resampled_route(route)
     first = np.arange(len(lat) - 1, dtype=np.int32)
@@ -347,7 +350,7 @@ def _resampled_route(route: Sequence[Position]) -> tuple[FloatArray, FloatArray]
     return np.concatenate(lats), np.concatenate(lons)
 
 
-def with_bed_depth(world: ProjectEnvironment, network: Network) -> Network:
+def with_bed_depth(environment: ProjectEnvironment, network: Network) -> Network:
     """Return the network with the least depth of the bed of the sea along every edge."""
     tails, heads = network.tails(), network.graph.target
     once = tails < heads
@@ -359,7 +362,7 @@ def with_bed_depth(world: ProjectEnvironment, network: Network) -> Network:
     for first, last in itertools.pairwise(bounds):
         part = slice(int(first), int(last) + 1)
         least[part] = _minimum_bed_depth(
-            world, network, (tails[once][part], heads[once][part]), count[part]
+            environment, network, (tails[once][part], heads[once][part]), count[part]
         )
     key = np.minimum(tails, heads).astype(np.int64) * network.n_nodes + np.maximum(tails, heads)
     order = np.argsort(pair)
@@ -369,7 +372,10 @@ def with_bed_depth(world: ProjectEnvironment, network: Network) -> Network:
 
 
 def _minimum_bed_depth(
-    world: ProjectEnvironment, network: Network, ends: tuple[Any, Any], count: NDArray[np.int64]
+    environment: ProjectEnvironment,
+    network: Network,
+    ends: tuple[Any, Any],
+    count: NDArray[np.int64],
 ) -> FloatArray:
     a, b = ends
     lat, lon = network.lat, network.lon
@@ -380,6 +386,6 @@ def _minimum_bed_depth(
     first = np.cumsum(count) - count
     share = (np.arange(len(of)) - first[of]) / (count[of] - 1)
     at = direct(lat[a][of], lon[a][of], np.asarray(course)[of], share * np.asarray(length)[of])
-    time = np.full(len(of), world.period[0])
-    bed = world.sea.sample([nm.BED_DEPTH], time, *at)[nm.BED_DEPTH]
+    time = np.full(len(of), environment.period[0])
+    bed = environment.sea.sample([nm.BED_DEPTH], time, *at)[nm.BED_DEPTH]
     return np.asarray(np.minimum.reduceat(bed, first))

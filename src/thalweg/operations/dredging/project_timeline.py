@@ -18,8 +18,7 @@ def activity_periods(run: ProjectRun) -> dict[str, list[tuple[float, float]]]:
 
     Returns
     -------
-    dict of str to list of (float, float)
-        By `ACTIVITIES`, in this order [s since 1970].
+    dict of str to list of (float, float) : By `ACTIVITIES`, in this order [s since 1970].
     """
     spans: dict[str, list[tuple[float, float]]] = {name: [] for name in ACTIVITIES}
     for cycle in run.cycles:
@@ -43,8 +42,7 @@ def site_water_level(result: ProjectResult, times: FloatArray) -> FloatArray:
 
     Returns
     -------
-    float array (n,)
-        [m above datum]; NaN where unknown.
+    float array (n,) : [m above datum]; NaN where unknown.
     """
     sea, (lat, lon) = result.environment.sea, result.project.sites.unload
     if nm.WATER_LEVEL not in sea.variables:

@@ -86,8 +86,7 @@ def positive_number(data: Mapping[str, Any], name: str, default: float | None = 
 
     Raises
     ------
-    InputError
-        If it is missing without a default, or not a positive finite number.
+    InputError : If it is missing without a default, or not a positive finite number.
     """
     value = data.get(name, default)
     number = isinstance(value, (int, float)) and not isinstance(value, bool)

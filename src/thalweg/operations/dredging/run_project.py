@@ -99,25 +99,31 @@ def run_project(
     check_argument_types(voyage, ship, sea, chart)
     _check_hopper(project.work.hopper, ship)
     period = (project.start, project.end)
-    world = ProjectEnvironment.open(project.sites, period, ship=ship, sea=sea, chart=chart)
-    check_sites(world)
+    environment = ProjectEnvironment.open(project.sites, period, ship=ship, sea=sea, chart=chart)
+    check_sites(environment)
     report("building the network")
-    site_network = freeze_site_network(world, project_network(world), report)
+    site_network = freeze_site_network(environment, project_network(environment), report)
     factors = project.work.load_factors
     watch = _Watch(report, on_cycle)
-    optimised = _simulate_run(project, world, site_network, factors, name=OPTIMISED, watch=watch)
+    optimised = _simulate_run(
+        project, environment, site_network, factors, name=OPTIMISED, watch=watch
+    )
     base = None
     if project.base is not None:
         given = project.base.load_factor
-        line = freeze_site_network(world, fixed_route_network(chart, project.base.route), report)
+        line = freeze_site_network(
+            environment, fixed_route_network(chart, project.base.route), report
+        )
         chosen = factors if given == BEST_LOAD_FACTOR else (float(given),)
-        base = _simulate_run(project, world, line, chosen, name=BASE_CASE, watch=watch)
-    return ProjectResult(project, world, optimised, base, _provenance(world, site_network))
+        base = _simulate_run(project, environment, line, chosen, name=BASE_CASE, watch=watch)
+    return ProjectResult(
+        project, environment, optimised, base, _provenance(environment, site_network)
+    )
 
 
 def _simulate_run(
     project: Project,
-    world: ProjectEnvironment,
+    environment: ProjectEnvironment,
     site_network: SiteNetwork,
     factors: tuple[float, ...],
     *,
@@ -126,18 +132,18 @@ def _simulate_run(
 ) -> ProjectRun:
     watch.report(f"{name}: preparing {len(factors)} loads")
     simulator = Simulator(
-        project, world, site_network, factors=factors, report=watch.report,
+        project, environment, site_network, factors=factors, report=watch.report,
         on_cycle=watch.on_cycle, name=name,
     )  # fmt: skip
     possible = simulator.possible
     if not possible:
-        raise no_passage_error(world, site_network, min(x for x in factors if x > 0.0), name)
+        raise no_path_error(environment, site_network, min(x for x in factors if x > 0.0), name)
     notes: tuple[str, ...] = ()
     impassable = [x for x in factors if x > max(possible)]
     if impassable:
         notes = (f"Load factors above {max(possible):g} have no route at any tide.",)
     cycles = simulator.run()
-    return summarise_run(name, cycles, project=project, ship=world.ship, notes=notes)
+    return summarise_run(name, cycles, project=project, ship=environment.ship, notes=notes)
 
 
 def _check_hopper(hopper: float, ship: Ship) -> None:
@@ -151,9 +157,9 @@ def _check_hopper(hopper: float, ship: Ship) -> None:
         )
 
 
-def check_sites(world: ProjectEnvironment) -> None:
+def check_sites(environment: ProjectEnvironment) -> None:
     """Raise `InputError` for sites on land, or too shallow for the empty ship at every tide."""
-    sites, chart = world.sites, world.chart
+    sites, chart = environment.sites, environment.chart
     for what, place in (("loading", sites.load), ("unloading", sites.unload)):
         if not bool(np.all(chart.is_navigable(np.array([place[0]]), np.array([place[1]])))):
             raise InputError(
@@ -162,14 +168,14 @@ def check_sites(world: ProjectEnvironment) -> None:
                 "Move it.",
                 field=what,
             )
-        _check_depth(world, what, place)
+        _check_depth(environment, what, place)
 
 
-def _check_depth(world: ProjectEnvironment, what: str, place: Position) -> None:
-    empty = world.loaded(0.0).required_depth
+def _check_depth(environment: ProjectEnvironment, what: str, place: Position) -> None:
+    empty = environment.loaded(0.0).required_depth
     if not math.isfinite(empty):
         return
-    times, depth = _depth_at(world, place)
+    times, depth = _depth_at(environment, place)
     if not np.isfinite(depth).any():
         raise InputError(
             f"The depth at the {what} site {format_position(*place)} is not known.",
@@ -189,16 +195,16 @@ def _check_depth(world: ProjectEnvironment, what: str, place: Position) -> None:
         )
 
 
-def _depth_at(world: ProjectEnvironment, place: Position) -> tuple[np.ndarray, np.ndarray]:
+def _depth_at(environment: ProjectEnvironment, place: Position) -> tuple[np.ndarray, np.ndarray]:
     """Return (times, water depth [m]) at a place over the period."""
     from thalweg.sea import standard_names as nm
 
-    (start, end), sea = world.period, world.sea
+    (start, end), sea = environment.period, environment.sea
     times = sea.times(start, end)
     times = times[(times >= start) & (times <= end)]
     depth = np.full(times.shape, np.inf)
-    if world.chart.has_depth:
-        depth = np.minimum(depth, np.asarray(world.chart.depths.at(*place), float))
+    if environment.chart.has_depth:
+        depth = np.minimum(depth, np.asarray(environment.chart.depths.at(*place), float))
     channels = [n for n in (nm.BED_DEPTH, nm.WATER_LEVEL) if n in sea.variables]
     lat, lon = np.full(times.shape, place[0]), np.full(times.shape, place[1])
     samples = sea.sample(channels, times, lat, lon) if channels else {}
@@ -207,15 +213,15 @@ def _depth_at(world: ProjectEnvironment, place: Position) -> tuple[np.ndarray, n
     return times, depth + samples.get(nm.WATER_LEVEL, 0.0)
 
 
-def no_passage_error(
-    world: ProjectEnvironment, site_network: SiteNetwork, load_factor: float, name: str
+def no_path_error(
+    environment: ProjectEnvironment, site_network: SiteNetwork, load_factor: float, name: str
 ) -> NoRouteError:
     """Return the error for a project without a route at any tide for its lightest load.
 
     It states the shallowest place that every route must pass, when the water is highest there, and
     the missing depth.
     """
-    loaded = world.loaded(load_factor)
+    loaded = environment.loaded(load_factor)
     required = loaded.required_depth
     open_to = _passable_depth(site_network, loaded) if math.isfinite(required) else -math.inf
     summary = f"There is no route at any tide with load factor {load_factor:g} ({name})."
@@ -257,7 +263,7 @@ def _passable_depth(site_network: SiteNetwork, loaded: Any) -> float:
 
     def passable(depth: float) -> bool:
         tried = limits.with_required_depth(depth)
-        return site_network.passages(loaded, full=True, limits=tried).shortest < math.inf
+        return site_network.profile_search(loaded, full=True, limits=tried).shortest < math.inf
 
     if not passable(low):
         return -math.inf
@@ -290,20 +296,20 @@ def _bottleneck(site_network: SiteNetwork, depth: float) -> tuple[Position, floa
     return (float(network.lat[node]), float(network.lon[node])), when
 
 
-def _provenance(world: ProjectEnvironment, site_network: SiteNetwork) -> dict[str, Any]:
+def _provenance(environment: ProjectEnvironment, site_network: SiteNetwork) -> dict[str, Any]:
     from importlib.metadata import version
 
     network = site_network.network
     return {
         "thalweg": version("thalweg"),
-        "ship": {"name": world.ship.name, "fingerprint": world.ship.fingerprint()},
-        "sea": world.sea.provenance() | {"fingerprint": world.sea.fingerprint()},
-        "chart": world.chart.fingerprint(),
+        "ship": {"name": environment.ship.name, "fingerprint": environment.ship.fingerprint()},
+        "sea": environment.sea.provenance() | {"fingerprint": environment.sea.fingerprint()},
+        "chart": environment.chart.fingerprint(),
         "network": {
             "kind": network.meta.kind,
             "nodes": int(network.n_nodes),
             "edges": int(network.n_edges),
-            "rings": world.sites.network.rings,
+            "rings": environment.sites.network.rings,
         },
-        "assumptions": list(world.needs.notes),
+        "assumptions": list(environment.needs.notes),
     }

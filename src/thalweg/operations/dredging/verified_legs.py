@@ -19,7 +19,7 @@ from thalweg.operations.dredging.project_environment import (
 )
 from thalweg.route import Route, Track, evaluate
 from thalweg.route.referee.limit_checks import is_data_gap
-from thalweg.search import NetworkPassage, ProfileSearch
+from thalweg.search import ProfileSearch, TimedPath
 
 LARGEST_STEP = 600.0  #: twice the longest step of the referee [m]
 _CROSS_TRACK_TOLERANCE = 0.5  # nodes nearer to the line between waypoints are left out [m]
@@ -28,29 +28,31 @@ _CROSS_TRACK_TOLERANCE = 0.5  # nodes nearer to the line between waypoints are l
 class SiteLegPlanner:
     """Plans legs on one network and evaluates them with the referee."""
 
-    def __init__(self, world: ProjectEnvironment, site_network: SiteNetwork) -> None:
-        self.world, self.site_network = world, site_network
+    def __init__(self, environment: ProjectEnvironment, site_network: SiteNetwork) -> None:
+        self.environment, self.site_network = environment, site_network
         self.step = 0.5 * min(site_network.network.meta.spacing_m, LARGEST_STEP)
         self._loaded: dict[float, LoadedShip] = {}
-        self._passages: dict[tuple[float, bool, int], ProfileSearch] = {}
+        self._searches: dict[tuple[float, bool, int], ProfileSearch] = {}
 
     def loaded(self, load_factor: float) -> LoadedShip:
         """Return the ship at a load."""
         if load_factor not in self._loaded:
-            self._loaded[load_factor] = self.world.loaded(load_factor)
+            self._loaded[load_factor] = self.environment.loaded(load_factor)
         return self._loaded[load_factor]
 
-    def passages(self, load_factor: float, *, outward: bool, step: int = 0) -> ProfileSearch:
-        """Return the passages of a load to the unloading site (outward) or back.
+    def profile_search(self, load_factor: float, *, outward: bool, step: int = 0) -> ProfileSearch:
+        """Return the search for a load to the unloading site (outward) or back.
 
         ``step`` is the step of `TIGHTENING`.
         """
         key = (load_factor, outward, step)
-        if key not in self._passages:
+        if key not in self._searches:
             loaded = self.loaded(load_factor)
             limits = loaded.limits.tightened(TIGHTENING[step])
-            self._passages[key] = self.site_network.passages(loaded, full=outward, limits=limits)
-        return self._passages[key]
+            self._searches[key] = self.site_network.profile_search(
+                loaded, full=outward, limits=limits
+            )
+        return self._searches[key]
 
     def sail(
         self,
@@ -58,7 +60,7 @@ class SiteLegPlanner:
         depart: float,
         *,
         outward: bool,
-        passage: NetworkPassage | None = None,
+        path: TimedPath | None = None,
     ) -> SailedLeg | None:
         """Return one leg; with more depth required while the referee finds a limit broken.
 
@@ -66,63 +68,62 @@ class SiteLegPlanner:
         ----------
         depart : Time at which the ship is ready [s since 1970-01-01T00:00Z].
         outward : From the loading site to the unloading site, or back.
-        passage : The result of a search already made.
+        path : The result of a search already made.
 
         Returns
         -------
-        SailedLeg or None
-            None if there is no route before the data end. If no attempt keeps every limit, the
-            first leg is returned; its route lists the violations.
+        SailedLeg or None : None if there is no route before the data end. If no attempt keeps every
+            limit, the first leg is returned; its route lists the violations.
         """
         loaded, best = self.loaded(load_factor), None
         for step in range(len(TIGHTENING)):
-            if passage is None:
-                passage = self.passages(load_factor, outward=outward, step=step).sail(depart)
-            if passage.found:
-                route = self._evaluated_passage(passage, loaded)
+            if path is None:
+                path = self.profile_search(load_factor, outward=outward, step=step).sail(depart)
+            if path.found:
+                route = self._evaluated_path(path, loaded)
                 best = route if best is None or route.feasible else best
                 if route.feasible:
                     break
-            passage = None
+            path = None
         if best is None or not math.isfinite(best.arrive):
             return None
         return SailedLeg(best, leg_energy(best))
 
-    def _evaluated_passage(self, passage: NetworkPassage, loaded: LoadedShip) -> Route:
-        """Return the route by the corners of a passage; by all nodes where these leave the data."""
+    def _evaluated_path(self, path: TimedPath, loaded: LoadedShip) -> Route:
+        """Return the route by the corners of a path; by all nodes where these leave the data."""
         route = self._evaluated_track(
-            track_from_passage(self.site_network, passage, loaded.setting), loaded
+            track_of_path(self.site_network, path, loaded.setting), loaded
         )
         if any(is_data_gap(violation) for violation in route.violations):
-            track = track_from_passage(self.site_network, passage, loaded.setting, corners=False)
+            track = track_of_path(self.site_network, path, loaded.setting, corners=False)
             return self._evaluated_track(track, loaded)
         return route
 
     def _evaluated_track(self, track: Track, loaded: LoadedShip) -> Route:
-        world = self.world
+        environment = self.environment
         return evaluate(
             track,
             ship=loaded.ship,
-            sea=world.sea,
-            chart=world.chart,
-            min_ukc=world.min_ukc if math.isfinite(loaded.required_depth) else None,
+            sea=environment.sea,
+            chart=environment.chart,
+            min_ukc=environment.min_ukc if math.isfinite(loaded.required_depth) else None,
             step=self.step,
             strict=False,
         )
 
 
-def track_from_passage(
-    site_network: SiteNetwork, passage: NetworkPassage, setting: int, *, corners: bool = True
+def track_of_path(
+    site_network: SiteNetwork, path: TimedPath, setting: int, *, corners: bool = True
 ) -> Track:
-    """Return the track of a passage by its corners or all its nodes, without waits below 1 s."""
-    wait = np.maximum(0.0, passage.node_depart - passage.node_arrive)
+    """Return the track of a path by its corners or all its nodes, without waits below 1 s."""
+    wait = np.maximum(0.0, path.node_depart - path.node_arrive)
     wait[-1] = 0.0
     wait = np.where(wait < 1.0, 0.0, wait)
     network = site_network.network
-    lat, lon = network.lat[passage.nodes], network.lon[passage.nodes]
+    lat, lon = network.lat[path.nodes], network.lon[path.nodes]
     keep = _essential_nodes(lat, lon) | (wait > 0.0) if corners else np.ones(len(lat), bool)
     count = int(keep.sum())
-    return Track(lat[keep], lon[keep], passage.depart, wait[keep], np.full(count - 1, setting))
+    return Track(lat[keep], lon[keep], path.depart, wait[keep], np.full(count - 1, setting))
 
 
 def _essential_nodes(lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:

@@ -76,8 +76,7 @@ class WorkWindows:
 
         Returns
         -------
-        float
-            Infinite where the work is not done by the end of the period.
+        float : Infinite where the work is not done by the end of the period.
         """
         if not len(self.times) or duration <= 0.0:
             return start + duration

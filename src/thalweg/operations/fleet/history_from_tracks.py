@@ -183,8 +183,7 @@ def history_port(port: Port, chart: Chart) -> HistoryPort:
 
     Raises
     ------
-    InputError
-        If the port cannot be reached on this chart.
+    InputError : If the port cannot be reached on this chart.
     """
     end = resolve_port(port, chart, "port")
     line = end.approach.line if end.approach else ()

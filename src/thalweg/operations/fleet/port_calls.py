@@ -89,8 +89,7 @@ def find_port_calls(
 
     Returns
     -------
-    PortCalls
-        Consecutive calls at one port are one.
+    PortCalls : Consecutive calls at one port are one.
     """
     rules = rules or PortCallRules()
     vectors = ellipsoid_vectors(fleet.lat, fleet.lon)
@@ -177,8 +176,7 @@ def voyages_between_calls(fleet: FleetTracks, calls: PortCalls) -> VoyageTracks:
 
     Returns
     -------
-    VoyageTracks
-        ``start`` and ``goal`` are the numbers of the ports.
+    VoyageTracks : ``start`` and ``goal`` are the numbers of the ports.
     """
     at = np.flatnonzero((np.diff(calls.ship) == 0) & (calls.last[:-1] < calls.first[1:]))
     first, last = calls.last[at], calls.first[at + 1]

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from thalweg.core.file_writing import new_figure, save_figure
+from thalweg.core.file_writing import new_figure, save_figure, style_panels
 from thalweg.core.units import HOUR, KNOT
 from thalweg.operations.tracks.activities import (
     AWAY,
@@ -52,12 +52,7 @@ def draw_tracks(analysis: TrackAnalysis, path: str | Path | None = None) -> Any:
     _draw_durations(analysis, axes[0, 1])
     _draw_speeds(analysis, axes[1, 0])
     _draw_agreement(analysis, axes[1, 1])
-    for one in axes.flat:
-        one.grid(alpha=0.3, lw=0.4)
-        one.tick_params(labelsize=7)
-        one.title.set_size(9)
-        one.xaxis.label.set_size(8)
-        one.yaxis.label.set_size(8)
+    style_panels(axes.flat)
     if path is not None:
         save_figure(figure, path)
     return figure

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from thalweg.core.file_writing import new_figure, save_figure
+from thalweg.core.file_writing import new_figure, save_figure, style_panels
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR
 from thalweg.operations.waiting.waiting_optimisation import WaitingPlan
@@ -40,12 +40,7 @@ def draw_waiting(study: WaitingStudy, path: str | Path | None = None, *, title: 
     _draw_energy(study, axes[0, 1])
     _draw_space_time_lines(study, axes[1, 0])
     _draw_trips(study, axes[1, 1])
-    for one in axes.flat:
-        one.grid(alpha=0.3, lw=0.4)
-        one.tick_params(labelsize=7)
-        one.title.set_size(9)
-        one.xaxis.label.set_size(8)
-        one.yaxis.label.set_size(8)
+    style_panels(axes.flat)
     hotel = f"hotel power {study.hotel_power / 1000.0:g} kW, {len(study.trips)} trips"
     figure.suptitle(f"{title} ({hotel})" if title else hotel.capitalize(), fontsize=10)
     if path is not None:

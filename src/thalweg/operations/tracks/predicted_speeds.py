@@ -40,22 +40,20 @@ def predicted_speeds_through_water(
     Parameters
     ----------
     ship : Full while sailing full (load factor 1), empty while sailing empty (0).
-    speed_kn : Ordered speed; by default, for each activity, the setting of the ship whose
-        calm-water speed is nearest to the measured speed through water.
+    speed_kn : calm-water speed is nearest to the measured speed through water.
 
     Returns
     -------
-    ndarray
-        NaN where the sea lacks data that the model needs.
+    ndarray : NaN where the sea lacks data that the model needs.
     """
     found = np.full(len(segments), np.nan)
     for kind, (loaded, setting) in ordered_settings(segments, ship, speed_kn=speed_kn).items():
         own = segments.kind == SAILING_KINDS.index(kind)
-        world = make_sailing_environment(loaded, with_wind_speed(loaded, sea), None)
-        check_depth_available(world)
+        environment = make_sailing_environment(loaded, with_wind_speed(loaded, sea), None)
+        check_depth_available(environment)
         here = segments.part(own)
         found[own] = solve_sailing_state(
-            world, _segment_points(here, setting), here.time
+            environment, _segment_points(here, setting), here.time
         ).speed_through_water
     return found
 
@@ -95,9 +93,8 @@ def speeds_at_measured_power(
 
     Returns
     -------
-    ndarray or None
-        NaN where the power or the sea is unknown or no speed up to 25 m/s takes that power; None if
-        the log has no power or the model of the ship has no resistance.
+    ndarray or None : NaN where the power or the sea is unknown or no speed up to 25 m/s takes that
+        power; None if the log has no power or the model of the ship has no resistance.
 
     Notes
     -----
@@ -107,10 +104,10 @@ def speeds_at_measured_power(
     if "power" not in log.values or not ship.is_resistance_based:
         return None
     power = segment_means(log, segments, "power")
-    world = make_sailing_environment(ship, with_wind_speed(ship, sea), None)
-    check_depth_available(world)
+    environment = make_sailing_environment(ship, with_wind_speed(ship, sea), None)
+    check_depth_available(environment)
     points = _segment_points(segments, 0)
-    met = _conditions(world, points, segments.time)
+    met = _conditions(environment, points, segments.time)
     met = met.with_values(load_factor=_load_factors(log, segments, ship))
     low, high = np.zeros(len(segments)), np.full(len(segments), _MAX_SPEED)
     with np.errstate(invalid="ignore"):
@@ -150,9 +147,13 @@ def _segment_points(segments: MeasuredSegments, setting: int) -> TrackPoints:
     )
 
 
-def _conditions(world: SailingEnvironment, points: TrackPoints, time: FloatArray) -> Conditions:
-    sampled, depth = sample_sea_and_depth(world, points, time)
-    return conditions_at(world, points, time, sampled=sampled, depth=depth, heading=points.course)
+def _conditions(
+    environment: SailingEnvironment, points: TrackPoints, time: FloatArray
+) -> Conditions:
+    sampled, depth = sample_sea_and_depth(environment, points, time)
+    return conditions_at(
+        environment, points, time, sampled=sampled, depth=depth, heading=points.course
+    )
 
 
 def _load_factors(log: TrackLog, segments: MeasuredSegments, ship: Ship) -> FloatArray:

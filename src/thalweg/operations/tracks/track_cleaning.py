@@ -133,8 +133,7 @@ def clean_track(
 
     Raises
     ------
-    InputError
-        If fewer than two positions remain.
+    InputError : If fewer than two positions remain.
     """
     remarks, removed = list(notes or ()), {}
     for reason, step in (

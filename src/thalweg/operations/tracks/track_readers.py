@@ -155,13 +155,11 @@ def recognised_columns(table: pd.DataFrame, given: dict[str, str], name: str) ->
 
     Returns
     -------
-    dict of str to str
-        Column by kind; see ``COLUMN_NAMES``.
+    dict of str to str : Column by kind; see ``COLUMN_NAMES``.
 
     Raises
     ------
-    InputError
-        If a kind or a stated column is unknown, or time or position are missing.
+    InputError : If a kind or a stated column is unknown, or time or position are missing.
     """
     unknown = sorted(set(given) - set(COLUMN_NAMES))
     absent = sorted(column for column in given.values() if column not in table.columns)
@@ -200,8 +198,7 @@ def _one_vessel(
 
     Raises
     ------
-    InputError
-        If there are several ships and none is chosen, or the chosen one is not there.
+    InputError : If there are several ships and none is chosen, or the chosen one is not there.
     """
     every = np.ones(len(table), dtype=bool)
     column = found.get("vessel")
@@ -233,8 +230,7 @@ def column_in_si(column: pd.Series[Any], kind: str, header: str, notes: list[str
 
     Returns
     -------
-    float64 array
-        [m/s], [W], [m], [rad] or [deg].
+    float64 array : [m/s], [W], [m], [rad] or [deg].
     """
     import pandas as pd
 
@@ -269,13 +265,11 @@ def track_times(
 
     Returns
     -------
-    float64 array
-        One for each row.
+    float64 array : One for each row.
 
     Raises
     ------
-    InputError
-        If times cannot be read or are ambiguous.
+    InputError : If times cannot be read or are ambiguous.
     """
     import pandas as pd
 

@@ -91,9 +91,8 @@ def cut_segments(
 
     Returns
     -------
-    MeasuredSegments
-        With the mean velocities. Legs with fewer than two positions have no segments, and segments
-        that end where they began (without a course) are left out.
+    MeasuredSegments : With the mean velocities. Legs with fewer than two positions have no
+        segments, and segments that end where they began (without a course) are left out.
     """
     speeds = log.speeds()
     rows = [

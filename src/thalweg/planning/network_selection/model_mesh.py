@@ -47,13 +47,11 @@ def pruned_mesh(
 
     Returns
     -------
-    Network
-        Without start and goal (see `thalweg.network.with_endpoints`).
+    Network : Without start and goal (see `thalweg.network.with_endpoints`).
 
     Raises
     ------
-    InputError
-        If the sea has no mesh.
+    InputError : If the sea has no mesh.
     """
     model = sea.mesh()
     if model is None:

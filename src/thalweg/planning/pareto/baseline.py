@@ -76,8 +76,7 @@ def constant_speed_tracks(
 
     Returns
     -------
-    list of (int, Track)
-        With the number of the track given.
+    list of (int, Track) : With the number of the track given.
     """
     selected = np.unique(np.linspace(0, len(tracks) - 1, min(_MAX_ROUTES, len(tracks))).round())
     chosen = settings[np.unique(np.linspace(0, len(settings) - 1, _MAX_SPEEDS).round().astype(int))]

@@ -8,7 +8,7 @@ import numpy as np
 
 from thalweg.core.types import FloatArray, IntArray
 
-_PRICES = 24  # prices of time that are tried, from the least to the greatest useful one
+_PRICES = 24  # shadow prices that are tried, from the least to the greatest useful one
 _ROUNDING = 1.0 - 1e-9  # of the least time of a block
 
 
@@ -26,12 +26,11 @@ def cheapest_blocks(
 
     Returns
     -------
-    int64 array (pieces,) or None
-        None if no choice of blocks is in time.
+    int64 array (pieces,) or None : None if no choice of blocks is in time.
 
     Notes
     -----
-    For a price of time, the cheapest blocks are found by dynamic programming over their ends.
+    For a shadow price, the cheapest blocks are found by dynamic programming over their ends.
     Between the two prices next to the available time, one choice is followed up to some piece and
     the other from there: the best such pair is taken.
     """
@@ -125,7 +124,7 @@ def _blocks_by_price(
 
 
 def _prices_of_time(time: FloatArray, cost: FloatArray) -> FloatArray:
-    """Return prices of time from zero to one at which only the time counts."""
+    """Return shadow prices from zero to one at which only the time counts."""
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = -(cost[:, 1:] - cost[:, :-1]) / (time[:, 1:] - time[:, :-1])
     slope = slope[np.isfinite(slope) & (slope > 0.0)]

@@ -18,8 +18,8 @@ from thalweg.planning.pareto.search_horizon import SearchHorizon, extend_horizon
 from thalweg.planning.pareto.trade_off_context import ExploredAlternative, TradeOffContext
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
-from thalweg.planning.single.passage import isochrones
 from thalweg.planning.single.route_candidates import refine_track, track_from_result
+from thalweg.planning.single.stretch import isochrones
 from thalweg.planning.single.weather_gaps import (
     MAX_GAPS,
     check_times_known,
@@ -51,8 +51,7 @@ def explore_alternative(
 
     Raises
     ------
-    NoRouteError
-        If no route arrives in time; with the earliest arrival if there is a route.
+    NoRouteError : If no route arrives in time; with the earliest arrival if there is a route.
     """
     context = trade_off.context
     horizon, fastest = _fastest_route(trade_off, alternative)
@@ -138,8 +137,7 @@ def network_pareto_front(
 
     Raises
     ------
-    SearchInterrupted
-        If Ctrl-C is pressed before there is a front.
+    SearchInterrupted : If Ctrl-C is pressed before there is a front.
     """
     context = trade_off.context
     share_of_labels = 0.5 if lower else 1.0

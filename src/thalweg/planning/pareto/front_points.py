@@ -24,8 +24,7 @@ def track_from_front_point(network: Network, point: Any) -> Track:
 
     Returns
     -------
-    Track
-        With waits and settings.
+    Track : With waits and settings.
     """
     path = np.asarray(point.path)
     wait = np.maximum(0.0, np.asarray(point.path_depart) - np.asarray(point.path_arrive))
@@ -54,8 +53,7 @@ def essential_nodes(lat: FloatArray, lon: FloatArray, setting: Any, wait: FloatA
 
     Returns
     -------
-    bool array (points,)
-        The ends included.
+    bool array (points,) : The ends included.
     """
     keep = np.ones(len(lat), bool)
     _, course, back = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])

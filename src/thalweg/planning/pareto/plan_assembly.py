@@ -66,8 +66,7 @@ def assemble_trade_off_plan(
 
     Raises
     ------
-    NoRouteError
-        If no candidate reaches the goal.
+    NoRouteError : If no candidate reaches the goal.
     """
     context = trade_off.context
     blind = _weather_blind_routes(trade_off, explored)

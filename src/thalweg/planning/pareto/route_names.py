@@ -52,15 +52,13 @@ def route_labels(
     Parameters
     ----------
     alternatives : Name of the route alternative of each route, by its canals.
-    networks : Network of each alternative from start to goal; land near it counts. The first one is
-        used where an alternative has none.
+    networks : used where an alternative has none.
 
     Returns
     -------
-    tuple of str
-        As ``alternatives`` where all routes of that name pass all land on the same sides. Else with
-        the sides that differ: ``"west of Great Britain, east of Ireland"``. Land narrower (square
-        root of its area) than 1 % of the distance does not count.
+    tuple of str : As ``alternatives`` where all routes of that name pass all land on the same
+        sides. Else with the sides that differ: ``"west of Great Britain, east of Ireland"``. Land
+        narrower (square root of its area) than 1 % of the distance does not count.
     """
     names = list(alternatives)
     default = next(iter(networks.values()))

@@ -58,13 +58,11 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
 
     Returns
     -------
-    SearchHorizon
-        The frozen sea, the fastest path and the latest arrival.
+    SearchHorizon : The frozen sea, the fastest path and the latest arrival.
 
     Raises
     ------
-    InputError
-        If the sea over the shortest period exceeds the memory limit.
+    InputError : If the sea over the shortest period exceeds the memory limit.
     """
     context, depart = trade_off.context, trade_off.context.voyage.earliest_departure
     has_deadline = math.isfinite(context.latest_arrival)

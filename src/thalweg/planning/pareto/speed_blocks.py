@@ -37,10 +37,9 @@ def in_speed_blocks(
 
     Returns
     -------
-    list of RefereedCandidate
-        At the cheapest blocks that take no longer, or with short blocks merged where these exceed
-        a limit. A route keeps its own speeds where neither keeps every limit and the latest
-        arrival. The notes of the trade-off state what the blocks cost.
+    list of RefereedCandidate : At the cheapest blocks that take no longer, or with short blocks
+        merged where these exceed a limit. A route keeps its own speeds where neither keeps every
+        limit and the latest arrival. The notes of the trade-off state what the blocks cost.
     """
     context = trade_off.context
     block_duration = context.voyage.least_speed_block_h * HOUR
@@ -63,13 +62,11 @@ def merged_settings(
     hours : Time of sailing of each leg, in any unit, (legs,).
     speeds : Calm-water speeds, ascending, (settings,).
     least : Least time of a run, in the unit of ``hours``.
-    late : Whether the passage may become longer; otherwise short runs are given to the faster
-        neighbour.
+    late : neighbour.
 
     Returns
     -------
-    int64 array (legs,)
-        With one setting where the passage is shorter than two runs.
+    int64 array (legs,) : With one setting where the passage is shorter than two runs.
     """
     setting, time_change = np.array(setting), 0.0
     while True:

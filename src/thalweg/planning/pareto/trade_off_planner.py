@@ -49,10 +49,8 @@ def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
 
     Raises
     ------
-    InputError
-        If the ship's fuel, its price or its power is not known.
-    NoRouteError
-        If no route exists within the limits and in time.
+    InputError : If the ship's fuel, its price or its power is not known.
+    NoRouteError : If no route exists within the limits and in time.
     """
     objective = priced_objective(context.voyage, context.ship)
     consumption = consumption_table(context.ship, objective.prices.consumption)

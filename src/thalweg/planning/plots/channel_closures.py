@@ -89,21 +89,21 @@ def find_closures(
     -------
     Closures
     """
-    world = make_sailing_environment(ship, sea, chart)
+    environment = make_sailing_environment(ship, sea, chart)
     pieces = cut_into_pieces(
         route.track, float(route.track.lengths.sum()) / max(places, 2), 1, chart
     )
-    points = _segment_ends(world, pieces)
+    points = _segment_ends(environment, pieces)
     start = np.concatenate([[0.0], np.cumsum(pieces.length)])
     order = np.lexsort((points.along, points.leg))
     points = points.part(order)
     times = default_times(route) if times is None else np.asarray(times, float)
     shape = (len(points), len(times))
     wide = points.part(np.repeat(np.arange(shape[0]), shape[1]))
-    motion = sailing_state_along(world, pieces.canals, wide, np.tile(times, shape[0]))
-    clearance = (motion.depth - world.ship.draught).reshape(shape)
+    motion = sailing_state_along(environment, pieces.canals, wide, np.tile(times, shape[0]))
+    clearance = (motion.depth - environment.ship.draught).reshape(shape)
     lost = np.zeros(shape, bool)
-    if world.has_current:
+    if environment.has_current:
         for name in CURRENTS:
             lost |= np.isnan(motion.sampled[name]).reshape(shape)
     sailed = (pieces.canals.number[points.leg] < 0)[:, None]  # canals are always open
@@ -121,10 +121,10 @@ def default_times(route: Route, count: int = TIME_COUNT) -> FloatArray:
     return np.linspace(route.depart - 0.05 * length, end + 0.25 * length, count)
 
 
-def _segment_ends(world: SailingEnvironment, pieces: TrackPieces) -> TrackPoints:
+def _segment_ends(environment: SailingEnvironment, pieces: TrackPieces) -> TrackPoints:
     """Return the ends of all pieces, with the charted depth at them."""
     points = pieces.ends()
-    if world.chart is None or not world.charted:
+    if environment.chart is None or not environment.charted:
         return points
-    charted = np.asarray(world.chart.depths.at(points.lat, points.lon), float)
+    charted = np.asarray(environment.chart.depths.at(points.lat, points.lon), float)
     return replace(points, charted=charted)

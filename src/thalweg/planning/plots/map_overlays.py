@@ -29,7 +29,7 @@ def draw_land(axes: Any, chart: Chart, box: MapExtent) -> None:
 
 
 def draw_enclosed_water(
-    axes: Any, world: PlotContext, box: MapExtent, on_water: np.ndarray, grid: tuple[Any, Any]
+    axes: Any, context: PlotContext, box: MapExtent, on_water: np.ndarray, grid: tuple[Any, Any]
 ) -> np.ndarray:
     """Hatch water inside the map that the search did not reach, such as lakes behind dams.
 
@@ -40,15 +40,14 @@ def draw_enclosed_water(
 
     Returns
     -------
-    bool array (rows, columns)
-        Where it was hatched.
+    bool array (rows, columns) : Where it was hatched.
     """
     from scipy.ndimage import label
     from scipy.spatial import cKDTree
 
     lat, lon = grid
-    reached = np.isfinite(world.arrival)
-    places = np.column_stack([world.lat, box.unwrapped(world.lon) / box_stretch(box)])[reached]
+    reached = np.isfinite(context.arrival)
+    places = np.column_stack([context.lat, box.unwrapped(context.lon) / box_stretch(box)])[reached]
     none = np.zeros(lat.shape, bool)
     if len(places) < 10:
         return none
@@ -125,9 +124,9 @@ def _draw_control_areas(axes: Any, chart: Chart, box: MapExtent) -> list[tuple[s
     return list({name: (name, x, y) for name, x, y in labels}.values())
 
 
-def storm_track(world: PlotContext) -> BestTrack | None:
+def storm_track(context: PlotContext) -> BestTrack | None:
     """Return the track of the modelled storm of a sea; None if there is none."""
-    tracks = [layer.track for layer in world.sea.layers if isinstance(layer, StormLayer)]
+    tracks = [layer.track for layer in context.sea.layers if isinstance(layer, StormLayer)]
     return tracks[0] if tracks else None
 
 

@@ -34,8 +34,7 @@ def draw_pareto_front(plan: PlanData, path: str | Path | None = None) -> Any:
 
     Raises
     ------
-    ValueError
-        If the plan has no front.
+    ValueError : If the plan has no front.
     """
     front = plan.front
     if front is None:

@@ -26,9 +26,8 @@ def draw_profile(route: Route, path: str | Path | None = None) -> Any:
 
     Returns
     -------
-    matplotlib.figure.Figure
-        One panel each for speeds, weather and depth, as far as they are known; the clearance
-        panel states if no depth is known.
+    matplotlib.figure.Figure : One panel each for speeds, weather and depth, as far as they are
+        known; the clearance panel states if no depth is known.
     """
     panels = [panel for panel in (_speeds, _weather, _waves, _depths) if panel(route, None)]
     known = bool(np.isfinite(route.samples["under_keel_clearance"]).any())

@@ -46,8 +46,7 @@ def draw_map(plan: PlanData, path: str | Path | None = None, *, beside: Route | 
     ----------
     plan : A plan with its plot context (as `thalweg.plan` returns it).
     path : Where to save it (PNG).
-    beside : A route to draw beside that of the plan, such as one that ignores the weather; by
-        default that of the comparison of a front.
+    beside : default that of the comparison of a front.
     """
     beside = beside or _weather_blind(plan)
     box = _map_extent(plan, beside)
@@ -98,90 +97,90 @@ def _map_extent(plan: PlanData, beside: Route | None) -> MapExtent:
     )
 
 
-def _draw_sea(figure: Any, axes: Any, plan: PlanData, world: PlotContext, box: MapExtent) -> None:
+def _draw_sea(figure: Any, axes: Any, plan: PlanData, context: PlotContext, box: MapExtent) -> None:
     lat, lon = box.grid(240, 180)
-    reached = _passage_times(plan, world, box, lat, lon)
+    reached = _passage_times(plan, context, box, lat, lon)
     moment = np.where(np.isfinite(reached), reached, plan.best.depart)
-    on_water = _water_mask(world, moment, lat, wrap_longitude(lon))
-    shown = _shading_field(world, moment, lat, lon)
+    on_water = _water_mask(context, moment, lat, wrap_longitude(lon))
+    shown = _shading_field(context, moment, lat, lon)
     if shown is not None:
         values, label, colours = shown
         filled = axes.contourf(lon, lat, values, levels=14, cmap=_colours(colours), zorder=1)
         bar = figure.colorbar(filled, ax=axes, shrink=0.9, pad=0.01, aspect=30)
         bar.set_label(label, fontsize=8)
         bar.ax.tick_params(labelsize=7)
-    enclosed = draw_enclosed_water(axes, world, box, on_water, (lat, lon))
+    enclosed = draw_enclosed_water(axes, context, box, on_water, (lat, lon))
     on_water &= ~enclosed
-    _draw_arrows(axes, world, moment, lat, lon)
+    _draw_arrows(axes, context, moment, lat, lon)
     _draw_isochrones(axes, plan, reached, (lat, lon), on_water)
 
 
 def _water_mask(
-    world: PlotContext, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
+    context: PlotContext, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
 ) -> np.ndarray:
     """Return where there is water: not land of the chart, not dry, not a hole of a mesh."""
-    wet = np.asarray(world.chart.is_navigable(lat, lon), bool)
-    depth = _depth(world, moment, lat, lon)
+    wet = np.asarray(context.chart.is_navigable(lat, lon), bool)
+    depth = _depth(context, moment, lat, lon)
     if depth is None:
         return wet
-    hole = np.isnan(depth) if world.sea.mesh() is not None else False
+    hole = np.isnan(depth) if context.sea.mesh() is not None else False
     return np.asarray(wet & ~hole & ~(depth <= 0.0))
 
 
 def _passage_times(
-    plan: PlanData, world: PlotContext, box: MapExtent, lat: np.ndarray, lon: np.ndarray
+    plan: PlanData, context: PlotContext, box: MapExtent, lat: np.ndarray, lon: np.ndarray
 ) -> np.ndarray:
     """Return the earliest arrival at each point; NaN where not reached."""
     from scipy.interpolate import LinearNDInterpolator
 
-    node_lon = box.unwrapped(world.lon)
-    use = np.isfinite(world.arrival)
-    use &= (world.lat > box.south - 2) & (world.lat < box.north + 2)
+    node_lon = box.unwrapped(context.lon)
+    use = np.isfinite(context.arrival)
+    use &= (context.lat > box.south - 2) & (context.lat < box.north + 2)
     use &= (node_lon > box.west - 4) & (node_lon < box.east + 4)
     index = np.flatnonzero(use)
-    if len(index) < 4 or np.ptp(world.lat[index]) == 0 or np.ptp(node_lon[index]) == 0:
+    if len(index) < 4 or np.ptp(context.lat[index]) == 0 or np.ptp(node_lon[index]) == 0:
         return np.full(lat.shape, np.nan)
     index = index[:: max(1, len(index) // 30_000)]
-    points = np.column_stack([node_lon[index], world.lat[index]])
-    return np.asarray(LinearNDInterpolator(points, world.arrival[index])(lon, lat))
+    points = np.column_stack([node_lon[index], context.lat[index]])
+    return np.asarray(LinearNDInterpolator(points, context.arrival[index])(lon, lat))
 
 
 def _shading_field(
-    world: PlotContext, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
+    context: PlotContext, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
 ) -> tuple[np.ndarray, str, str] | None:
     """Return the field of the sea to shade (waves, current, wind or depth), label and colours."""
     at = (moment, lat, wrap_longitude(lon))
-    names = world.sea.variables
+    names = context.sea.variables
     if _WAVES in names:
-        waves = world.sea.sample([_WAVES], *at)[_WAVES]
+        waves = context.sea.sample([_WAVES], *at)[_WAVES]
         if _varies(waves):
             return waves, "significant wave height at passage [m]", "waves"
     for pair, word, colours in ((_CURRENT, "current", "PuBu"), (_WIND, "wind", "BuPu")):
         if all(name in names for name in pair):
-            samples = world.sea.sample(list(pair), *at)
+            samples = context.sea.sample(list(pair), *at)
             speed = np.hypot(samples[pair[0]], samples[pair[1]]) / KNOT
             if _varies(speed):
                 return speed, f"{word} speed at passage [kn]", colours
-    depth = _depth(world, *at)
+    depth = _depth(context, *at)
     if depth is not None and _varies(depth):
         return np.maximum(depth, 0.0), "water depth at passage [m]", "Blues"
     return None
 
 
 def _depth(
-    world: PlotContext, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
+    context: PlotContext, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
 ) -> np.ndarray | None:
     """Return the water depth [m] of chart and sea; None if neither provides it."""
-    names, depths = world.sea.variables, []
-    if world.chart.has_depth:
-        depths.append(np.asarray(world.chart.depths.at(lat, lon), float))
+    names, depths = context.sea.variables, []
+    if context.chart.has_depth:
+        depths.append(np.asarray(context.chart.depths.at(lat, lon), float))
     if _DEPTH in names:
-        depths.append(world.sea.sample([_DEPTH], moment, lat, lon)[_DEPTH])
+        depths.append(context.sea.sample([_DEPTH], moment, lat, lon)[_DEPTH])
     if not depths:
         return None
     depth = np.fmin.reduce(depths)
     if _LEVEL in names:
-        depth = depth + world.sea.sample([_LEVEL], moment, lat, lon)[_LEVEL]
+        depth = depth + context.sea.sample([_LEVEL], moment, lat, lon)[_LEVEL]
     return np.asarray(depth)
 
 
@@ -191,14 +190,14 @@ def _varies(values: np.ndarray) -> bool:
 
 
 def _draw_arrows(
-    axes: Any, world: PlotContext, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
+    axes: Any, context: PlotContext, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
 ) -> None:
     pick = (slice(6, None, 12), slice(6, None, 12))
     lat, lon, moment = lat[pick], lon[pick], moment[pick]
     for pair in (_CURRENT, _WIND):
-        if not all(name in world.sea.variables for name in pair):
+        if not all(name in context.sea.variables for name in pair):
             continue
-        samples = world.sea.sample(list(pair), moment, lat, wrap_longitude(lon))
+        samples = context.sea.sample(list(pair), moment, lat, wrap_longitude(lon))
         east, north = samples[pair[0]], samples[pair[1]]
         if _varies(np.hypot(east, north)):
             axes.quiver(lon, lat, east, north, color=_INK, alpha=0.45, width=0.0013)

@@ -38,8 +38,7 @@ def depth_notes(chart: Chart, route: Route, ship: Ship, clearance: float) -> lis
 
     Returns
     -------
-    list of str
-        Empty for charts that are not of the world, and for ships without a draught.
+    list of str : Empty for charts that are not of the world, and for ships without a draught.
     """
     draught = float(ship.draught)
     if not chart.passages or not draught > 0.0:

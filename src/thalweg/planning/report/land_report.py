@@ -67,8 +67,7 @@ def saved_length(route: Route, passage: Passage) -> float:
 
     Returns
     -------
-    float
-        Negative if the passage is out of the way.
+    float : Negative if the passage is out of the way.
     """
     lat, lon, _leg = densify(np.asarray(route.track.lat), np.asarray(route.track.lon), _PIECE)
     sailed = np.append(0.0, np.cumsum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))

@@ -25,8 +25,7 @@ def lane_notes(context: PlanningContext, route: Route) -> list[str]:
 
     Returns
     -------
-    list of str
-        Empty where the route meets none, and for charts with lanes of their own.
+    list of str : Empty where the route meets none, and for charts with lanes of their own.
     """
     names = [scheme.name for scheme in TRAFFIC_SCHEMES]
     lanes = context.chart.zones.lanes

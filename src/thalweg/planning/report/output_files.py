@@ -51,8 +51,7 @@ def write_plan(
 
     Returns
     -------
-    list of Path
-        The files written.
+    list of Path : The files written.
     """
     folder = make_folder(folder)
     options = _of_plan(plan, options or RouteFileOptions())
@@ -81,9 +80,8 @@ def keeping_limits(plan: PlanData, route: Route, options: RouteFileOptions) -> R
 
     Returns
     -------
-    RouteFileOptions
-        The options given where no finer ones help, the route has no known clearance or has legs in
-        canals or port approaches, or a number of waypoints was given.
+    RouteFileOptions : The options given where no finer ones help, the route has no known clearance
+        or has legs in canals or port approaches, or a number of waypoints was given.
     """
     context, voyage = plan.plot_context, plan.voyage
     clearance = route.legs["under_keel_clearance"]

@@ -46,8 +46,7 @@ def plan_summary(plan: PlanData) -> list[str]:
 
     Returns
     -------
-    list of str
-        The first line names the places, the others begin with a word on their contents.
+    list of str : The first line names the places, the others begin with a word on their contents.
     """
     return [_title(plan), *(f"{name:<9} {text}" for name, text in summary_items(plan))]
 

@@ -37,8 +37,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
 
     Returns
     -------
-    list of str
-        One sentence for each warning.
+    list of str : One sentence for each warning.
     """
     notes = land_notes(context, route) + ice_warnings(route) + data_gap_warnings(context.sea, route)
     notes += [text for text in route.assumptions if text.startswith(OUT_OF_RANGE)]
@@ -108,8 +107,7 @@ def provenance(
 
     Returns
     -------
-    dict
-        Plain data for a JSON file.
+    dict : Plain data for a JSON file.
     """
     from importlib.metadata import version
 
@@ -147,8 +145,7 @@ def network_summary(
 
     Returns
     -------
-    dict
-        Plain data for a JSON file.
+    dict : Plain data for a JSON file.
     """
     facts = {
         "kind": network.meta.kind,

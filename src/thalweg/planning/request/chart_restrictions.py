@@ -34,8 +34,7 @@ def exclude_closed_canals(
 
     Raises
     ------
-    InputError
-        If a forbidden canal does not exist (with near matches).
+    InputError : If a forbidden canal does not exist (with near matches).
     """
     if voyage.forbid:
         chart = chart.without_canals(*voyage.forbid)

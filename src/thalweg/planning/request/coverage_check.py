@@ -66,10 +66,8 @@ def endpoints_within_coverage(
 
     Raises
     ------
-    OutsideAreaError
-        If the data do not cover all required variables at an end point at any time.
-    NoRouteError
-        If the water at an end point is too shallow at any tide.
+    OutsideAreaError : If the data do not cover all required variables at an end point at any time.
+    NoRouteError : If the water at an end point is too shallow at any tide.
     """
     coverage_probe = _CoverageProbe(voyage=voyage, ship=ship, sea=sea, chart=chart, needs=needs)
     return [_moved_into_coverage(end, coverage_probe, chart) for end in ends]

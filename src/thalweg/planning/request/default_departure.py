@@ -39,8 +39,7 @@ def default_departure(
     Returns
     -------
     departure : float
-    reason : str
-        A sentence for the user.
+    reason : A sentence for the user.
     """
     starts = [row.start for row in sea.coverage() if row.start is not None]
     if not starts:

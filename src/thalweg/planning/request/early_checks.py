@@ -21,12 +21,9 @@ def check_request(voyage: Voyage, ship: Ship, sea: Sea) -> None:
 
     Raises
     ------
-    InputError
-        If the ship does not have the speed.
-    MissingVariableError
-        If the ship needs variables that the sea does not have.
-    OutsidePeriodError
-        If the departure is outside the period of the data.
+    InputError : If the ship does not have the speed.
+    MissingVariableError : If the ship needs variables that the sea does not have.
+    OutsidePeriodError : If the departure is outside the period of the data.
     """
     with_order(ship, voyage)
     check_variables(ship, sea)

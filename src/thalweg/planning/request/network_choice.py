@@ -97,8 +97,7 @@ def history_corridor(network: object) -> HistoryCorridor | None:
 
     Raises
     ------
-    InputError
-        If the file cannot be read.
+    InputError : If the file cannot be read.
     """
     if isinstance(network, HistoryCorridor):
         return network

@@ -58,8 +58,7 @@ def restrict_passages(chart: Chart, voyage: Voyage, ship: Ship, offing: float) -
 
     Raises
     ------
-    InputError
-        If a passage or canal is unknown (with near matches), or both opened and avoided.
+    InputError : If a passage or canal is unknown (with near matches), or both opened and avoided.
     """
     opened = find_passages(voyage.open)
     canals, avoided = split_avoided(voyage.avoid)

@@ -22,14 +22,12 @@ def with_ordered_speed(ship: Ship, speed_kn: float | None) -> Ship:
 
     Returns
     -------
-    Ship
-        The ship itself where it has the setting or no speed is ordered; otherwise with this speed
-        alone, by its own law of power and fuel.
+    Ship : The ship itself where it has the setting or no speed is ordered; otherwise with this
+        speed alone, by its own law of power and fuel.
 
     Raises
     ------
-    InputError
-        If the ship does not reach the speed, or no speed can be ordered.
+    InputError : If the ship does not reach the speed, or no speed can be ordered.
     """
     if speed_kn is None or _misses(ship, speed_kn).min() <= _SAME_SPEED_KN:
         return ship
@@ -56,13 +54,11 @@ def with_exact_speed(ship: Ship, speed_kn: float, hold: str | None) -> Ship:
 
     Returns
     -------
-    Ship
-        With this speed as its only setting.
+    Ship : With this speed as its only setting.
 
     Raises
     ------
-    InputError
-        If the ship does not reach the speed, or cannot hold it.
+    InputError : If the ship does not reach the speed, or cannot hold it.
     """
     if hold == "speed":
         return with_held_speed(ship, speed_kn)
@@ -80,8 +76,7 @@ def with_order(ship: Ship, voyage: Voyage) -> Ship:
 
     Raises
     ------
-    InputError
-        If the ship does not reach the speed, or cannot hold it.
+    InputError : If the ship does not reach the speed, or cannot hold it.
     """
     if voyage.hold is None or voyage.speed_kn is None:
         return with_ordered_speed(ship, voyage.speed_kn)

@@ -51,16 +51,13 @@ def derive_requirements(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -
 
     Returns
     -------
-    Requirements
-        Required variables, and the assumptions where data are absent.
+    Requirements : Required variables, and the assumptions where data are absent.
 
     Raises
     ------
-    MissingVariableError
-        If a model or a limit of the ship needs a variable that no data hold, or a clearance is
-        required and there is no depth.
-    OutsidePeriodError
-        If the departure is outside the period of the data.
+    MissingVariableError : If a model or a limit of the ship needs a variable that no data hold, or
+        a clearance is required and there is no depth.
+    OutsidePeriodError : If the departure is outside the period of the data.
     """
     needed = variables_of_request(voyage, ship)
     check_variables(ship, sea, needed)
@@ -88,8 +85,7 @@ def variables_of_request(voyage: Voyage, ship: Ship) -> frozenset[str]:
 
     Returns
     -------
-    frozenset of str
-        CF standard names; for comfort those of the waves as well.
+    frozenset of str : CF standard names; for comfort those of the waves as well.
     """
     return ship.needs | (WAVES if voyage.objective == "comfort" else frozenset())
 
@@ -146,8 +142,7 @@ def required_under_keel_clearance(voyage: Voyage, ship: Ship) -> float:
 
     Returns
     -------
-    float
-        Clearance [m]; `Ship.min_under_keel_clearance` if the voyage gives none.
+    float : Clearance [m]; `Ship.min_under_keel_clearance` if the voyage gives none.
     """
     if voyage.min_ukc_m is not None:
         return voyage.min_ukc_m
@@ -163,8 +158,7 @@ def period_of_data(ship: Ship, sea: Sea) -> tuple[float, float]:
 
     Returns
     -------
-    first, last : float
-        Infinite where the sea does not change with time.
+    first, last : Infinite where the sea does not change with time.
     """
     names = {name for name in standard_names.CHANNEL_VARIABLES.values() if name in ship.needs}
     if all(name in sea.variables for name in standard_names.CURRENT.pair):

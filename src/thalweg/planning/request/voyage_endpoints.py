@@ -80,9 +80,8 @@ def resolve_endpoint(place: Place, chart: Chart, what: str) -> Endpoint:
 
     Raises
     ------
-    InputError
-        If the port is unknown (with near matches) or cannot be reached, or the place is on land or
-        in enclosed water and too far from the sea.
+    InputError : If the port is unknown (with near matches) or cannot be reached, or the place is on
+        land or in enclosed water and too far from the sea.
     """
     if isinstance(place, str):
         position = parse_position(place)
@@ -102,8 +101,7 @@ def resolve_port(port: Port, chart: Chart, what: str) -> Endpoint:
 
     Raises
     ------
-    InputError
-        If the port cannot be reached on the chart.
+    InputError : If the port cannot be reached on the chart.
     """
     approach = _usable_approach(port, chart)
     if approach is not None:

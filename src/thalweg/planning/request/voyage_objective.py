@@ -47,8 +47,7 @@ def with_voyage_prices(ship: Ship, voyage: Voyage) -> Ship:
 
     Raises
     ------
-    InputError
-        For prices in two currencies, or a factor without a price.
+    InputError : For prices in two currencies, or a factor without a price.
     """
     if not voyage.any_price:
         return ship
@@ -72,8 +71,7 @@ def priced_objective(voyage: Voyage, ship: Ship) -> PricedObjective:
 
     Raises
     ------
-    InputError
-        If a price or a carbon factor is needed and not known.
+    InputError : If a price or a carbon factor is needed and not known.
     """
     terms = with_voyage_prices(ship, voyage).fuel_terms
     name: str = voyage.objective

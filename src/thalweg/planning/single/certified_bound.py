@@ -66,8 +66,7 @@ def certified_bound(
 
     Returns
     -------
-    LowerBound
-        In seconds or metres; NaN where there is none, with the reason.
+    LowerBound : In seconds or metres; NaN where there is none, with the reason.
     """
     if not route.feasible:
         return no_bound(_NOT_SAILED)
@@ -122,8 +121,7 @@ def certified_distance(context: PlanningContext, route: Route, *, seconds: float
 
     Returns
     -------
-    LowerBound
-        NaN where a canal may shorten the way, and near a pole.
+    LowerBound : NaN where a canal may shorten the way, and near a pole.
     """
     passage = _still_water(context, route)
     if passage.canal_speed(1.0) > 0.0:
@@ -149,8 +147,7 @@ def certified_total(
 
     Returns
     -------
-    LowerBound
-        In seconds or metres; NaN where there is none, with the reason.
+    LowerBound : In seconds or metres; NaN where there is none, with the reason.
 
     Notes
     -----
@@ -185,14 +182,12 @@ def strongest_current_in_data(context: PlanningContext, route: Route) -> tuple[f
 
     Parameters
     ----------
-    route : A route that takes as long as any that counts: water farther away than its time at the
-        greatest speed is left out.
+    route : greatest speed is left out.
 
     Returns
     -------
-    tuple of float and str, or None
-        The text is empty where the data themselves were read. None where no box holds the water,
-        as near a pole.
+    tuple of float and str, or None : The text is empty where the data themselves were read. None
+        where no box holds the water, as near a pole.
     """
     currents = tuple(c for c in context.needs.channels if c in (CURRENT_EAST, CURRENT_NORTH))
     if len(currents) < 2:

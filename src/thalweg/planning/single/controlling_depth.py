@@ -41,8 +41,7 @@ def find_controlling_depth(network: Network, fields: StationFields) -> Controlli
 
     Returns
     -------
-    ControllingDepth or None
-        None if the network does not connect start and goal.
+    ControllingDepth or None : None if the network does not connect start and goal.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components

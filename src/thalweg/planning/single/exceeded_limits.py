@@ -61,8 +61,7 @@ def without_exceeding_edges(
 
     Returns
     -------
-    Network
-        The same one where no edge is left out.
+    Network : The same one where no edge is left out.
     """
     keep = np.ones(network.n_edges, bool)
     sailed = np.isnan(network.edges.fixed_time)

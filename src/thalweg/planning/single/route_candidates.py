@@ -29,7 +29,7 @@ def refined_bound_path(
     In weather that passes quickly the best path depends on delays along the network; the path of
     the bound has the times of a ship in open water.
     """
-    value = passage_value(context, route)
+    value = route_value(context, route)
     if len(bound.path) < 2 or not value - bound.value > _WIDE_GAP * value:
         return route
     lat, lon = network.stations.lat[bound.path], network.stations.lon[bound.path]
@@ -62,7 +62,7 @@ def through_narrow_features(context: PlanningContext, route: Route, limits: Limi
     return route
 
 
-def passage_value(context: PlanningContext, route: Route) -> float:
+def route_value(context: PlanningContext, route: Route) -> float:
     """Return the value by which routes are compared: length [m] or time [s]."""
     if context.voyage.objective == "distance":
         return float(route.legs["length"].sum())

@@ -132,8 +132,7 @@ def edges_where_all(
 
     Returns
     -------
-    bool ndarray
-        One value for each of `rows`.
+    bool ndarray : One value for each of `rows`.
     """
     tails, target = network.tails(), network.graph.target
     low, high = np.minimum(tails, target)[rows], np.maximum(tails, target)[rows]

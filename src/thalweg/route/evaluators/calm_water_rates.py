@@ -19,8 +19,7 @@ def calm_water_value(table: TableArrays, setting: int) -> float:
 
     Returns
     -------
-    float
-        In the unit of the table.
+    float : In the unit of the table.
     """
     value, ok = table_value(table, _calm_axis_values(table), setting)
     return float(value) if ok else float("nan")

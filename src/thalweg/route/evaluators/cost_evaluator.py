@@ -179,8 +179,7 @@ def make_cost_evaluator(
 
     Raises
     ------
-    InputError
-        If the tables differ in their settings.
+    InputError : If the tables differ in their settings.
     """
     passed = canal_legs(track, chart)  # if there are none, canals are not looked up again
 

@@ -105,11 +105,9 @@ class TimeEvaluator:
 
         Returns
         -------
-        arrive : float64 array (L, n)
-            Arrival at every point [s after the origin]; +inf from the first leg that cannot be
-            sailed.
-        cost : float64 array (L,)
-            Last arrival [s] or length [m], with the additions of penalty zones; +inf for a
+        arrive : Arrival at every point [s after the origin], (L, n); +inf from the first leg that
+            cannot be sailed.
+        cost : Last arrival [s] or length [m], with the additions of penalty zones, (L,); +inf for a
             polyline that cannot be sailed.
         """
         arrive, _, cost = self.sail_and_wait(batch, pieces=pieces, check=check)

@@ -39,8 +39,7 @@ def parse_csv(text: str) -> ParsedTrack:
 
     Raises
     ------
-    InputError
-        If there is no such header, or a row is not a position.
+    InputError : If there is no such header, or a row is not a position.
     """
     header_line = text.lstrip().partition("\n")[0]
     separator = max(",;\t", key=header_line.count)

@@ -56,8 +56,7 @@ def file_route(route: Route, options: RouteFileOptions | None = None) -> FileRou
 
     Raises
     ------
-    InputError
-        If the route needs more waypoints than the options allow.
+    InputError : If the route needs more waypoints than the options allow.
     """
     return _cut_at_waypoints(route, options or RouteFileOptions())
 
@@ -87,8 +86,7 @@ def file_track(route: Route, options: RouteFileOptions | None = None) -> Track:
 
     Raises
     ------
-    InputError
-        If the route needs more waypoints than the options allow.
+    InputError : If the route needs more waypoints than the options allow.
     """
     cut = _cut(route, file_vertices(route, options or RouteFileOptions()))
     return replace(cut.track, speed=cut.legs["ordered_speed"])

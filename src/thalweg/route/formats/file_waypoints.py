@@ -57,8 +57,7 @@ def file_vertices(route: Route, options: RouteFileOptions) -> FileVertices:
 
     Raises
     ------
-    InputError
-        If the route needs more waypoints than are allowed.
+    InputError : If the route needs more waypoints than are allowed.
     """
     most, limit = options.max_waypoints, options.limit
     options = _with_room(options)

@@ -32,8 +32,7 @@ def parse_geojson(text: str) -> ParsedTrack:
 
     Raises
     ------
-    InputError
-        If it is not GeoJSON or holds no line and no points.
+    InputError : If it is not GeoJSON or holds no line and no points.
     """
     try:
         data = json.loads(text)

@@ -32,8 +32,7 @@ def parse_gpx(text: str) -> ParsedTrack:
 
     Raises
     ------
-    InputError
-        If it is not XML, declares entities, or holds neither.
+    InputError : If it is not XML, declares entities, or holds neither.
     """
     root = parse_xml(text, "GPX")
     points = _points(root, "rte", "rtept") or _points(root, "trk", "trkpt")

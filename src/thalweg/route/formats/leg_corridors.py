@@ -28,8 +28,7 @@ def corridor_notes(parsed: ParsedTrack, chart: Chart) -> list[str]:
 
     Returns
     -------
-    list of str
-        Empty where the file has no limits.
+    list of str : Empty where the file has no limits.
     """
     if not parsed.corridors:
         return []

@@ -69,14 +69,12 @@ def waypoint_order(values: Mapping[str, object], number: int) -> WaypointOrder:
 
     Returns
     -------
-    WaypointOrder
-        Wait, setting and speed.
+    WaypointOrder : Wait, setting and speed.
 
     Raises
     ------
-    InputError
-        If a value is not a number, a wait negative or longer than a year, or a speed not above
-        zero.
+    InputError : If a value is not a number, a wait negative or longer than a year, or a speed not
+        above zero.
     """
     wait = _first_value(values, WAITS, f"wait at waypoint {number}")
     speed = _first_value(values, SPEEDS, f"ordered speed at waypoint {number}")
@@ -100,8 +98,7 @@ def is_rhumb_line(text: object, number: int) -> bool:
 
     Raises
     ------
-    InputError
-        For another text.
+    InputError : For another text.
     """
     word = str(text if text is not None else "").strip().casefold().replace("_", " ")
     if word in _RHUMB_WORDS or word in _GREAT_CIRCLE_WORDS:
@@ -147,8 +144,7 @@ def position_of(lat: object, lon: object, number: int) -> Position:
 
     Returns
     -------
-    (lat, lon)
-        Position [deg].
+    (lat, lon) : Position [deg].
     """
     what = f"waypoint {number}"
     return check_position(
@@ -166,8 +162,7 @@ def track_of(parsed: ParsedTrack, depart: TimeLike | None, name: str) -> Track:
 
     Raises
     ------
-    InputError
-        For fewer than two different positions, or without any departure.
+    InputError : For fewer than two different positions, or without any departure.
     """
     if len(set(parsed.positions)) < 2:
         raise InputError(

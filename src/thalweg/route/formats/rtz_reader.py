@@ -39,16 +39,9 @@ def parse_rtz(data: bytes) -> ParsedTrack:
 
     Raises
     ------
-    InputError
-        If it is too large, not XML, declares entities, or is no route.
+    InputError : If it is too large, not XML, declares entities, or is no route.
     """
-    if len(data) > LARGEST_RTZ:
-        raise InputError(
-            f"The RTZ has {len(data) / 1e6:.1f} MB.",
-            f"RTZ files up to {LARGEST_RTZ / 1e6:.0f} MB are read.",
-            "Remove what is not the route.",
-        )
-    root = parse_xml(data, "RTZ")
+    root = parse_xml(data, "RTZ", largest=LARGEST_RTZ)
     notes = _version_notes(root)
     waypoints = [e for group in children(root, "waypoints") for e in children(group, "waypoint")]
     if local_name(root) != "route" or len(waypoints) < 2:
@@ -60,10 +53,7 @@ def parse_rtz(data: bytes) -> ParsedTrack:
     positions = [_position(waypoint, i, notes) for i, waypoint in enumerate(waypoints, start=1)]
     notes += _waypoint_notes(root, waypoints)
     first_time, stays = _schedule(root, waypoints, notes)
-    orders = [
-        _order(waypoint, number, stay)
-        for number, (waypoint, stay) in enumerate(zip(waypoints, stays), start=1)
-    ]
+    orders = [_order(w, i, stay) for i, (w, stay) in enumerate(zip(waypoints, stays), start=1)]
     if first_time is not None:
         first_time -= orders[0].wait  # the departure of the schedule comes after the wait
     rhumb = [_is_rhumb(root, waypoint, notes) for waypoint in waypoints[1:]]
@@ -76,8 +66,7 @@ def parse_rtzp(data: bytes) -> ParsedTrack:
 
     Raises
     ------
-    InputError
-        If it is not a ZIP with one RTZ file in it, or that is too large.
+    InputError : If it is not a ZIP with one RTZ file in it, or that is too large.
     """
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:

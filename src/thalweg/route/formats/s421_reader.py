@@ -29,22 +29,14 @@ def parse_s421(data: bytes) -> ParsedTrack:
 
     Returns
     -------
-    ParsedTrack
-        Legs are rhumb lines unless they are orthodromes. The departure is that of the first
-        schedule element of the first waypoint that has one.
+    ParsedTrack : Legs are rhumb lines unless they are orthodromes. The departure is that of the
+        first schedule element of the first waypoint that has one.
 
     Raises
     ------
-    InputError
-        If it is too large, not XML, declares entities, or holds no route or several.
+    InputError : If it is too large, not XML, declares entities, or holds no route or several.
     """
-    if len(data) > LARGEST_S421:
-        raise InputError(
-            f"The S-421 file has {len(data) / 1e6:.1f} MB.",
-            f"S-421 files up to {LARGEST_S421 / 1e6:.0f} MB are read.",
-            "Remove what is not the route.",
-        )
-    root = parse_xml(data, "S-421 file")
+    root = parse_xml(data, "S-421 file", largest=LARGEST_S421)
     found = _found(root)
     by_name = {name: e for e in root.iter() if (name := _attribute(e, "id"))}
     waypoints = _in_order(found, by_name)
@@ -58,10 +50,7 @@ def parse_s421(data: bytes) -> ParsedTrack:
     notes: list[str] = []
     positions = [_position(waypoint, i) for i, waypoint in enumerate(waypoints, start=1)]
     stays, first_time = _schedule(found, waypoints)
-    orders = [
-        _order(waypoint, number, stay)
-        for number, (waypoint, stay) in enumerate(zip(waypoints, stays), start=1)
-    ]
+    orders = [_order(w, i, stay) for i, (w, stay) in enumerate(zip(waypoints, stays), start=1)]
     if first_time is not None:
         first_time -= orders[0].wait  # the departure of the schedule comes after the wait
     rhumb = [_is_rhumb(waypoint, by_name, notes) for waypoint in waypoints[1:]]

@@ -26,8 +26,7 @@ def waypoint_names(
 
     Returns
     -------
-    list of str
-        No two are the same.
+    list of str : No two are the same.
     """
     count = len(distance)
     names = [f"WP {number}" for number in range(1, count + 1)]

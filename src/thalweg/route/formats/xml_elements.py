@@ -13,21 +13,27 @@ from thalweg.core.errors import InputError
 from thalweg.core.file_writing import write_bytes
 
 
-def parse_xml(data: bytes | str, what: str) -> ElementTree.Element:
+def parse_xml(data: bytes | str, what: str, *, largest: int | None = None) -> ElementTree.Element:
     """Return the root element of an XML text that declares no entities.
 
     Parameters
     ----------
     what : The format, for messages.
+    largest : Bytes that are read at most.
 
     Raises
     ------
-    InputError
-        If it is not XML, or declares entities.
+    InputError : If it is too large, not XML, or declares entities.
     """
     from defusedxml import DefusedXmlException
     from defusedxml.ElementTree import fromstring
 
+    if largest is not None and len(data) > largest:
+        raise InputError(
+            f"The {what} has {len(data) / 1e6:.1f} MB.",
+            f"It may have {largest / 1e6:.0f} MB at most.",
+            "Remove what is not the route.",
+        )
     try:
         root: ElementTree.Element = fromstring(data)
     except (ElementTree.ParseError, DefusedXmlException, ValueError, LookupError) as error:

@@ -154,8 +154,7 @@ def as_track(route: RouteLike, depart: TimeLike | None = None) -> Track:
 
     Raises
     ------
-    InputError
-        If it cannot be read, or no departure is given.
+    InputError : If it cannot be read, or no departure is given.
     """
     if isinstance(route, Route):
         route = route.track
@@ -187,13 +186,11 @@ def resolve_settings(ship: Ship, track: Track, speed_kn: float | None = None) ->
     Returns
     -------
     ship : Ship
-    track : Track
-        With a setting for every leg and no speeds.
+    track : With a setting for every leg and no speeds.
 
     Raises
     ------
-    InputError
-        If a setting does not exist, or the ship cannot sail at a speed.
+    InputError : If a setting does not exist, or the ship cannot sail at a speed.
     """
     if speed_kn is not None:
         if not is_number(speed_kn):

@@ -44,8 +44,7 @@ def indicator_columns(
 
     Returns
     -------
-    legs : dict of str to float64 array (legs,)
-        See `thalweg.route.indicator_columns`; NaN where unknown.
+    legs : See `thalweg.route.indicator_columns`, (legs,); NaN where unknown.
     samples : dict of str to float64 array
         ``weighted_acceleration:NAME`` and ``acceleration:NAME`` [m/s2] by place, where the
         ship has places.

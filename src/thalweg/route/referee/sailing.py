@@ -115,8 +115,7 @@ def sailing_state_along(
 
     Returns
     -------
-    SailingState
-        Speeds, headings and conditions at the points.
+    SailingState : Speeds, headings and conditions at the points.
     """
     fixed = canals.speed[points.leg]
     free = np.flatnonzero(np.isnan(fixed))
@@ -178,8 +177,7 @@ def data_spacings(world: SailingEnvironment, share: float) -> list[float]:
 
     Returns
     -------
-    list of float
-        Lengths [m].
+    list of float : Lengths [m].
     """
     return [
         row.spacing_deg * METRES_PER_DEGREE * share

@@ -102,8 +102,7 @@ def make_sailing_environment(ship: Ship, sea: Sea, chart: Chart | None) -> Saili
 
     Raises
     ------
-    MissingVariableError
-        If a model or a limit of the ship needs a variable that no source has.
+    MissingVariableError : If a model or a limit of the ship needs a variable that no source has.
     """
     missing = sorted(name for name in ship.needs if name not in sea.variables)
     if missing:
@@ -150,10 +149,8 @@ def sample_sea_and_depth(
 
     Returns
     -------
-    sampled : dict of str to ndarray
-        Sea variables by CF standard name [SI].
-    depth : ndarray (n,)
-        Water depth [m]; NaN where unknown.
+    sampled : Sea variables by CF standard name [SI].
+    depth : Water depth [m], (n,); NaN where unknown.
     """
     sampled = world.sea.sample(world.names, time, points.lat, points.lon)
     if WAVE_HEIGHT in sampled and WAVE_NORTH in sampled:  # no waves have no direction

@@ -271,10 +271,8 @@ def comparison_key(route: Route, objective: str, chart: Chart | None) -> tuple[i
 
     Returns
     -------
-    violations : int
-        Number of exceeded limits; 0 for feasible routes.
-    objective : float
-        [m] or [s], with the additions of penalty zones.
+    violations : Number of exceeded limits; 0 for feasible routes.
+    objective : [m] or [s], with the additions of penalty zones.
     arrive : float [s since 1970-01-01T00:00Z]
     """
     if not math.isfinite(route.arrive):
@@ -300,8 +298,7 @@ def penalty_excess(route: Route, objective: str, chart: Chart | None) -> float:
 
     Returns
     -------
-    float
-        [m] or [s]; 0 for a route that breaks a limit.
+    float : [m] or [s]; 0 for a route that breaks a limit.
     """
     if not route.feasible or chart is None or not chart.zones.has_penalty:
         return 0.0

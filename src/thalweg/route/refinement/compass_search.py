@@ -23,8 +23,7 @@ class CompassSchedule:
 
     Attributes
     ----------
-    shares : First step of each round as a share of `CompassProblem.point_spacing`; one number:
-        steps grow and shrink with the success of each point instead.
+    shares : steps grow and shrink with the success of each point instead.
     rounds : Rounds over all points at most.
     growth, shrinkage : Factors of the step of a point after a gain and without one.
     turn : By which the directions turn every round [rad].
@@ -87,8 +86,7 @@ def compass_search(tracks: AnyCompassProblem, schedule: CompassSchedule) -> AnyC
 
     Returns
     -------
-    CompassProblem
-        With costs that are not higher than before.
+    CompassProblem : With costs that are not higher than before.
 
     Notes
     -----

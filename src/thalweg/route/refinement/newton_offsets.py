@@ -106,8 +106,7 @@ def optimise_lateral_offsets(
 
     Returns
     -------
-    LateralProblem
-        Tracks with costs that are not higher than before.
+    LateralProblem : Tracks with costs that are not higher than before.
 
     Notes
     -----
@@ -183,13 +182,11 @@ def solve_newton_step(
     Parameters
     ----------
     free : Points that may move, (R, M); the others get a step of 0.
-    damping : Share of the curvature added to it. From 1 on the diagonal is raised until the matrix
-        is positive definite, so that the step always leads downhill.
+    damping : is positive definite, so that the step always leads downhill.
 
     Returns
     -------
-    float64 array (R, M)
-        0 for tracks whose matrix is not positive definite.
+    float64 array (R, M) : 0 for tracks whose matrix is not positive definite.
 
     Notes
     -----

@@ -133,8 +133,7 @@ def points_between(a: FloatArray, b: FloatArray, share: FloatArray) -> FloatArra
 
     Returns
     -------
-    float64 array (n, GENE_COLUMNS)
-        With the leg of ``a``.
+    float64 array (n, GENE_COLUMNS) : With the leg of ``a``.
     """
     u, v = unit_vectors(a[:, LAT], a[:, LON]), unit_vectors(b[:, LAT], b[:, LON])
     arc = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(u - v, axis=1), 1.0))

@@ -56,8 +56,7 @@ def optimise_line_offsets(
 
     Returns
     -------
-    Polyline
-        With a cost that is not higher; see `optimise_lateral_offsets`.
+    Polyline : With a cost that is not higher; see `optimise_lateral_offsets`.
     """
     tracks = SailedPolyline.of(line, evaluator)
     if not np.isfinite(tracks.value).all() or len(line) < 3:
@@ -77,8 +76,7 @@ def search_line_positions(
 
     Returns
     -------
-    Polyline
-        With a cost that is not higher.
+    Polyline : With a cost that is not higher.
     """
     tracks = SailedPolyline.of(line, evaluator)
     if not np.isfinite(tracks.value).all() or len(line) < 3:

@@ -1,7 +1,7 @@
-"""Local search on a scalarised objective: tracks refined for a price of time, and a front filled.
+"""Local search on a scalarised objective: tracks refined for shadow prices of time; fronts filled.
 
-For a price of time p the value of a track is cost + p * time; its minimum is a point on the lower
-convex hull of the front.
+For a shadow price of time p, the value of a track is cost + p * time; its minimum is a point on the
+lower convex hull of the front.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ REFINEMENT_LEVELS = (12, 24, 40)  #: least number of legs of a track, level by l
 _REMOVAL_PASSES = 8  # passes at most that remove points at first
 _REMOVAL_LOSS = 2e-4  # share of the value that may be lost with a removed point
 _COMPASS_SCHEDULE = CompassSchedule(shares=(0.3, 0.08, 0.02), rounds=3)
-_PRICE_RANGE_FACTOR = 4.0  # by which prices of time exceed those of calm water, on both sides
+_PRICE_RANGE_FACTOR = 4.0  # by which shadow prices exceed those of calm water, on both sides
 
 
 def scalarised_local_search(
@@ -39,7 +39,7 @@ def scalarised_local_search(
     *,
     stop: Callable[[], bool] = lambda: False,
 ) -> ScoredTracks:
-    """Return tracks refined for their prices of time.
+    """Return tracks refined for their shadow prices.
 
     Parameters
     ----------
@@ -47,8 +47,7 @@ def scalarised_local_search(
 
     Returns
     -------
-    ScoredTracks
-        With costs that are not higher than before.
+    ScoredTracks : With costs that are not higher than before.
 
     Notes
     -----
@@ -72,7 +71,7 @@ def scalarised_local_search(
 
 
 def time_prices(evaluator: Evaluator, count: int) -> FloatArray:
-    """Return prices of time [cost/s] (count,) that lead from the cheapest to the fastest passage.
+    """Return shadow prices [cost/s] (count,) that lead from the cheapest to the fastest passage.
 
     They cover those at which the ship would change its setting in calm water, with a margin on
     both sides, evenly in the logarithm.
@@ -101,14 +100,14 @@ def hull_slopes(points: FloatArray) -> list[float]:
 
 
 def seeds_with_time_prices(evaluator: Evaluator, seeds: Population, *, count: int) -> ScoredTracks:
-    """Return the tracks to refine, with their prices of time.
+    """Return the tracks to refine, with their shadow prices.
 
-    Each seed at the price of time that follows from its neighbours on the front, and for each of
+    Each seed at the shadow price that follows from its neighbours on the front, and for each of
     ``count`` prices the best seed at that price.
 
     Parameters
     ----------
-    count : Number of prices of time.
+    count : Number of shadow prices.
     """
     scores = evaluator.score(seeds)
     good = np.flatnonzero(scores[:, 2] == 0.0)
@@ -123,7 +122,7 @@ def seeds_with_time_prices(evaluator: Evaluator, seeds: Population, *, count: in
 
 
 def _own_prices(scores: FloatArray, prices: FloatArray) -> FloatArray:
-    """Return the price of time at which each of several tracks would be the best."""
+    """Return the shadow price at which each of several tracks would be the best."""
     order = np.argsort(scores[:, 0], kind="stable")
     time, cost = scores[order, 0], scores[order, 1]
     own = np.full(len(order), float(np.median(prices)))

@@ -1,4 +1,4 @@
-"""A population of scored tracks that is refined, each track for its own price of time.
+"""A population of scored tracks that is refined, each track for its own shadow price of time.
 
 Legs are compared alone: their own cost, and what the delay they cause costs until the goal.
 """
@@ -29,12 +29,12 @@ _DELAY_SHARE = 0.02  # delay of differences, as a share of the time of a leg
 
 @dataclass(frozen=True)
 class ScoredTracks:
-    """Tracks with their scores, each minimised for its own price of time.
+    """Tracks with their scores, each minimised for its own shadow price of time.
 
     Attributes
     ----------
     population : R tracks; all legs known.
-    price : Price of time: cost + price * time is minimised, (R,).
+    price : Shadow price of time: cost + price * time is minimised, (R,).
     scores : float64 array (R, 3)
     arrive : Arrival at every point [s], (R, M).
     """
@@ -252,7 +252,7 @@ def scalarised_values(scores: FloatArray, price: FloatArray) -> FloatArray:
     Parameters
     ----------
     scores : Time [s], cost and violation, (R, 3).
-    price : Price of time [cost/s], (R,).
+    price : Shadow price of time [cost/s], (R,).
 
     Returns
     -------
@@ -281,10 +281,8 @@ def legs_as_tracks(
 
     Returns
     -------
-    pairs : float64 array (L, 2, GENE_COLUMNS)
-        Without the wait at the first point.
-    depart : float64 array (L,)
-        [s after the departure of the evaluator], after that wait.
+    pairs : Without the wait at the first point, (L, 2, GENE_COLUMNS).
+    depart : [s after the departure of the evaluator], after that wait, (L,).
     """
     genes = lines.population.genes
     pairs = np.stack([genes[row, place], genes[row, place + 1]], axis=1)
@@ -315,8 +313,7 @@ def sail_legs_alone(
 
     Returns
     -------
-    time, cost : float64 array (L,)
-        [s] and in the unit of the prices.
+    time, cost : [s] and in the unit of the prices, (L,).
     """
     evaluator = without_latest_arrival(evaluator)
     population = Population(np.full(len(pairs), 2), np.ascontiguousarray(pairs))

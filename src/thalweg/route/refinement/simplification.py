@@ -38,8 +38,7 @@ def simplified_route(
 
     Returns
     -------
-    Route
-        The given one, or one through some of its waypoints that violates no limit and costs at
+    Route : The given one, or one through some of its waypoints that violates no limit and costs at
         most 6e-5 more. Waypoints where the ship waits or changes its setting are not removed.
     """
     track = route.track

@@ -1,4 +1,4 @@
-"""Speed settings of the legs: the cheapest that arrive in time, or for a price of time."""
+"""Speed settings of the legs: the cheapest that arrive in time, or for a shadow price of time."""
 
 from __future__ import annotations
 
@@ -46,12 +46,10 @@ def choose_speeds(
 
     Returns
     -------
-    line : Polyline
-        With one more waypoint if a setting changes within a leg. At the fastest settings if even
+    line : With one more waypoint if a setting changes within a leg. At the fastest settings if even
         those are late.
-    per_second : float
-        Cost of the next second saved (the slope of cost over time); 0 if all legs are at their
-        cheapest setting.
+    per_second : Cost of the next second saved (the slope of cost over time); 0 if all legs are at
+        their cheapest setting.
 
     Notes
     -----
@@ -93,9 +91,8 @@ def times_and_costs_by_setting(
 
     Returns
     -------
-    time, cost : float64 array (legs, settings)
-        [s] and in the unit of the prices, with the price of time; +inf where a leg cannot be
-        sailed.
+    time, cost : [s] and in the unit of the prices, with the shadow price, (legs, settings); +inf
+        where a leg cannot be sailed.
     """
     legs, settings = len(line) - 1, evaluator.settings
     arrive = evaluator.sail(line.batch(), check=False)[0][0]
@@ -243,8 +240,7 @@ def choose_speeds_of_tracks(lines: ScoredTracks, *, rounds: int = 3) -> ScoredTr
 
     Returns
     -------
-    ScoredTracks
-        With costs that are not higher than before.
+    ScoredTracks : With costs that are not higher than before.
     """
     for _ in range(rounds):
         before = lines.value

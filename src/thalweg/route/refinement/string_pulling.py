@@ -25,8 +25,7 @@ def string_pull(line: Polyline, evaluator: PolylineEvaluator, *, penalty: float 
 
     Returns
     -------
-    Polyline
-        Through the points where the setting changes, unless the evaluator chooses settings.
+    Polyline : Through the points where the setting changes, unless the evaluator chooses settings.
         Not worse than the line, except for the penalty; the line itself if it cannot be sailed.
 
     Notes

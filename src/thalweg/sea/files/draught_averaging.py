@@ -94,8 +94,7 @@ def draught_averaging(
 
     Returns
     -------
-    callable
-        ``combine(arrays)`` returns the two means (T, Y, X).
+    callable : ``combine(arrays)`` returns the two means (T, Y, X).
     """
 
     def combine(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
@@ -127,8 +126,7 @@ def find_vertical_layers(
 
     Raises
     ------
-    DatasetError
-        If its layers are given neither as fractions of the depth nor as depths.
+    DatasetError : If its layers are given neither as fractions of the depth nor as depths.
     """
     dims = [str(d) for d in array.dims if d not in keep and array.sizes[d] > 1]
     if len(dims) != 1:

@@ -30,8 +30,7 @@ def ensemble_file(file: OpenedFile) -> EnsembleFile | None:
 
     Raises
     ------
-    DatasetError
-        If there are two such dimensions.
+    DatasetError : If there are two such dimensions.
     """
     dataset = file.dataset
     found = [
@@ -105,8 +104,7 @@ def check_member_counts(files: Sequence[EnsembleFile]) -> int:
 
     Raises
     ------
-    DatasetError
-        If the numbers differ.
+    DatasetError : If the numbers differ.
     """
     sizes = {one.size for one in files}
     if len(sizes) > 1:

@@ -57,8 +57,7 @@ def layer_candidates(
 
     Raises
     ------
-    DatasetError
-        If no variable is recognised, or a recognised one has no usable grid or times.
+    DatasetError : If no variable is recognised, or a recognised one has no usable grid or times.
     """
     skip = _coordinates(file.dataset)
     chosen, ignored = recognise_variables(

@@ -51,10 +51,8 @@ def open_layers(
 
     Raises
     ------
-    InputError
-        If no file is given, or the mapping names variables that are in none of the files.
-    DatasetError
-        If a file is missing, damaged, ambiguous, or holds no usable variable.
+    InputError : If no file is given, or the mapping names variables that are in none of the files.
+    DatasetError : If a file is missing, damaged, ambiguous, or holds no usable variable.
     """
     if not sources:
         raise InputError(
@@ -150,10 +148,8 @@ def open_file(source: Any) -> list[OpenedFile]:
 
     Raises
     ------
-    InputError
-        If the file does not exist or the source is of another type.
-    DatasetError
-        If the file is empty, damaged, compressed or in an unknown format.
+    InputError : If the file does not exist or the source is of another type.
+    DatasetError : If the file is empty, damaged, compressed or in an unknown format.
     """
     if hasattr(source, "data_vars"):
         return [

@@ -35,13 +35,11 @@ def open_grib(path: Path) -> list[Any]:
 
     Returns
     -------
-    list of xarray.Dataset
-        Memory-mapped, not loaded.
+    list of xarray.Dataset : Memory-mapped, not loaded.
 
     Raises
     ------
-    DatasetError
-        If the file is truncated, damaged, or cfgrib is not installed.
+    DatasetError : If the file is truncated, damaged, or cfgrib is not installed.
     """
     check_messages(path)
     folder = Path(tempfile.mkdtemp(prefix="thalweg-grib-"))

@@ -56,8 +56,7 @@ def grid_placement(
 
     Raises
     ------
-    DatasetError
-        If its positions are not those of a grid or mesh; the message gives the reason.
+    DatasetError : If its positions are not those of a grid or mesh; the message gives the reason.
     """
     for mesh in meshes:
         if mesh.dim in array.dims:

@@ -59,8 +59,7 @@ def expected_length(path: Path) -> int:
 
     Raises
     ------
-    EOFError, KeyError
-        If the header itself is truncated or damaged.
+    EOFError, KeyError : If the header itself is truncated or damaged.
     """
     with path.open("rb") as stream:
         header = _Header(stream)

@@ -23,13 +23,11 @@ def projection_of(dataset: Any, array: Any, mapping: Mapping[str, str], source: 
 
     Returns
     -------
-    pyproj.CRS or None
-        None if the file names no projection.
+    pyproj.CRS or None : None if the file names no projection.
 
     Raises
     ------
-    DatasetError
-        If the projection is not valid.
+    DatasetError : If the projection is not valid.
     """
     from pyproj import CRS
     from pyproj.exceptions import CRSError
@@ -87,8 +85,7 @@ def to_degrees(crs: Any, x: FloatArray, y: FloatArray) -> tuple[FloatArray, Floa
 
     Returns
     -------
-    lat, lon : float64 array
-        Positions [deg]; NaN where unknown.
+    lat, lon : Positions [deg]; NaN where unknown.
     """
     from pyproj import Transformer
 
@@ -110,8 +107,7 @@ def meridian_angle(crs: Any, x: FloatArray, y: FloatArray) -> FloatArray:
 
     Returns
     -------
-    float64 array
-        Angle [rad], the negative of the meridian convergence for north-up projections.
+    float64 array : Angle [rad], the negative of the meridian convergence for north-up projections.
     """
     lat, lon = to_degrees(crs, x, y)
     lat2, lon2 = to_degrees(crs, x + 100.0, y)
@@ -130,8 +126,7 @@ def grid_angle(lat: FloatArray, lon: FloatArray) -> FloatArray:
 
     Returns
     -------
-    float64 array (Y, X)
-        Angle [rad], counter-clockwise.
+    float64 array (Y, X) : Angle [rad], counter-clockwise.
     """
     up, east, north = local_axes(lat, lon)
     along = np.empty_like(up)

@@ -34,13 +34,11 @@ def read_times(array: Any, source: str) -> FloatArray:
 
     Returns
     -------
-    float64 array (T,)
-        Seconds since 1970-01-01T00:00Z, strictly increasing.
+    float64 array (T,) : Seconds since 1970-01-01T00:00Z, strictly increasing.
 
     Raises
     ------
-    DatasetError
-        If the calendar has no real dates, a time is missing, or times do not increase.
+    DatasetError : If the calendar has no real dates, a time is missing, or times do not increase.
     """
     import xarray as xr
 
@@ -109,8 +107,7 @@ def time_coordinate(dataset: Any, array: Any) -> Any:
 
     Returns
     -------
-    xarray.DataArray or None
-        One-dimensional; a scalar time has the dimension ``one_time``.
+    xarray.DataArray or None : One-dimensional; a scalar time has the dimension ``one_time``.
     """
     along = [
         dataset[n]

@@ -142,8 +142,7 @@ def mesh_layouts(dataset: Any, mapping: Mapping[str, str], source: str) -> list[
 
     Raises
     ------
-    DatasetError
-        If the topology is incomplete or positions are impossible.
+    DatasetError : If the topology is incomplete or positions are impossible.
     """
     return [
         layout
@@ -249,13 +248,11 @@ def read_faces(table: Any, nodes: int, source: str) -> IntArray:
 
     Returns
     -------
-    int64 array (M, largest number of nodes)
-        -1 after the last node of a face.
+    int64 array (M, largest number of nodes) : -1 after the last node of a face.
 
     Raises
     ------
-    DatasetError
-        If a face refers to a node that does not exist.
+    DatasetError : If a face refers to a node that does not exist.
     """
     raw = np.asarray(table.values, np.float64)
     fill = table.attrs.get("_FillValue", table.encoding.get("_FillValue"))

@@ -71,8 +71,7 @@ def si_factor(text: str, dimension: str) -> float | None:
 
     Returns
     -------
-    float or None
-        None if the unit does not fit the dimension.
+    float or None : None if the unit does not fit the dimension.
 
     Examples
     --------
@@ -99,9 +98,8 @@ def valid_limits(array: Any) -> tuple[float, float] | None:
 
     Returns
     -------
-    (float, float) or None
-        Infinite where one side is not limited; None without limits, or where they contradict each
-        other.
+    (float, float) or None : Infinite where one side is not limited; None without limits, or where
+        they contradict each other.
     """
     attributes = array.attrs
     both = attributes.get("valid_range", (None, None))

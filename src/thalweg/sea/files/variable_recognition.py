@@ -98,9 +98,8 @@ def recognise_variables(
 
     Raises
     ------
-    DatasetError
-        If two variables have the same role and no rule decides between them, or a unit does not
-        fit the role.
+    DatasetError : If two variables have the same role and no rule decides between them, or a unit
+        does not fit the role.
     """
     fields = [str(n) for n in dataset.data_vars if str(n) not in skip and dataset[n].ndim > 0]
     fields = [n for n in fields if dataset[n].dtype.kind in "fiu"]

@@ -37,8 +37,7 @@ def pick_surface(dataset: Any, array: Any, keep: frozenset[str], role: str, sour
 
     Raises
     ------
-    DatasetError
-        If a dimension is not a vertical axis, or wind is given at pressure levels.
+    DatasetError : If a dimension is not a vertical axis, or wind is given at pressure levels.
     """
     for dim in [d for d in array.dims if d not in keep]:
         size = array.sizes[dim]

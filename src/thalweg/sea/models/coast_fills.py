@@ -209,8 +209,7 @@ def head_seas_layer(layers: Sequence[Layer]) -> HeadSeasLayer:
 
     Raises
     ------
-    InputError
-        If the layers hold no wave height.
+    InputError : If the layers hold no wave height.
     """
     variables = stack_variables(layers)
     if nm.WAVE_HEIGHT not in variables:
@@ -236,8 +235,7 @@ def nearest_layer(
 
     Raises
     ------
-    InputError
-        If no layer that was read from a file holds one of them.
+    InputError : If no layer that was read from a file holds one of them.
     """
     wanted = frozenset(names)
     if not any(isinstance(x, GridLayer) and wanted & x.variables for x in layers):

@@ -107,14 +107,12 @@ def tidal_profile(height: ArrayLike, column: WaterColumn) -> tuple[ComplexArray,
 
     Returns
     -------
-    plus, minus : complex128 array
-        ``u + i v = W+ plus exp(i w t) + W- minus exp(-i w t)`` with the phasors W of the
+    plus, minus : ``u + i v = W+ plus exp(i w t) + W- minus exp(-i w t)`` with the phasors W of the
         depth-mean current (Schless, 2023, eq. 2.26); of the shape of ``height``.
 
     Raises
     ------
-    InputError
-        If a height is outside the water column.
+    InputError : If a height is outside the water column.
 
     References
     ----------
@@ -140,8 +138,7 @@ def tidal_mean(draught: float, column: WaterColumn) -> tuple[complex, complex]:
 
     Returns
     -------
-    plus, minus : complex
-        Means relative to the depth means.
+    plus, minus : Means relative to the depth means.
 
     References
     ----------
@@ -288,8 +285,7 @@ def density_mean(draught: float, column: WaterColumn, **density: float) -> tuple
 
     Returns
     -------
-    u, v : float
-        Towards the coast and along it [m/s].
+    u, v : Towards the coast and along it [m/s].
 
     References
     ----------

@@ -37,8 +37,7 @@ def coriolis_parameter(lat_deg: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    float64 array
-        f [rad/s]; negative in the southern hemisphere.
+    float64 array : f [rad/s]; negative in the southern hemisphere.
     """
     return np.asarray(2.0 * EARTH_ROTATION * np.sin(np.radians(lat_deg)))
 
@@ -58,8 +57,7 @@ def holland_b(maximum_gradient_wind: ArrayLike, pressure_deficit: ArrayLike) -> 
 
     Returns
     -------
-    float64 array
-        B [-].
+    float64 array : B [-].
 
     References
     ----------
@@ -98,8 +96,7 @@ def holland_gradient_wind(
 
     Returns
     -------
-    float64 array
-        Gradient wind speed [m/s].
+    float64 array : Gradient wind speed [m/s].
 
     References
     ----------
@@ -129,8 +126,7 @@ def radius_of_maximum_wind_willoughby2006(
 
     Returns
     -------
-    float64 array
-        Radius [m].
+    float64 array : Radius [m].
 
     References
     ----------
@@ -190,8 +186,7 @@ def translation_wind(
 
     Returns
     -------
-    east, north : float64 array
-        Wind added [m/s].
+    east, north : Wind added [m/s].
 
     References
     ----------
@@ -264,8 +259,7 @@ def wave_height_jonswap(wind_speed: ArrayLike, fetch: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    float64 array
-        Significant wave height [m].
+    float64 array : Significant wave height [m].
 
     References
     ----------
@@ -289,8 +283,7 @@ def peak_period_young2006(wave_height: ArrayLike, wind_speed: ArrayLike) -> Floa
 
     Returns
     -------
-    float64 array
-        Peak period [s].
+    float64 array : Peak period [s].
 
     References
     ----------

@@ -226,8 +226,7 @@ def storm_layer(
 
     Raises
     ------
-    InputError
-        If there is no storm of that name, or the step is too small.
+    InputError : If there is no storm of that name, or the step is too small.
     """
     step = parse_time_step(time_step, least=1.0) or TIME_STEP
     track = load_best_track(name)

@@ -68,8 +68,7 @@ def load_best_track(name: str) -> BestTrack:
 
     Raises
     ------
-    InputError
-        If there is no storm of that name.
+    InputError : If there is no storm of that name.
 
     References
     ----------

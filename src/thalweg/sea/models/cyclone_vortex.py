@@ -61,8 +61,7 @@ def vortex_state(track: BestTrack, time: FloatArray) -> VortexState:
 
     Returns
     -------
-    VortexState
-        Arrays (N,).
+    VortexState : Arrays (N,).
 
     References
     ----------
@@ -106,10 +105,8 @@ def vortex_wind(
 
     Returns
     -------
-    wind : tuple of float64 array
-        (east, north) towards [m/s].
-    share : float64 array
-        Local over maximum symmetric wind, 0 to 1; where it is 1 there is no ambient wind.
+    wind : (east, north) towards [m/s].
+    share : Local over maximum symmetric wind, 0 to 1; where it is 1 there is no ambient wind.
 
     References
     ----------

@@ -135,8 +135,7 @@ def automatic_times(start: float, end: float, time_step: float | None = None) ->
 
     Returns
     -------
-    float64 array (T,)
-        Times [s since epoch], both ends included.
+    float64 array (T,) : Times [s since epoch], both ends included.
     """
     window = end - start
     if time_step is None:
@@ -181,9 +180,8 @@ def layer_of_functions(
 
     Raises
     ------
-    InputError
-        If the functions are no mapping, one half of a vector is missing, or a variable is given
-        twice; or the area, period or time step is not valid.
+    InputError : If the functions are no mapping, one half of a vector is missing, or a variable is
+        given twice; or the area, period or time step is not valid.
     """
     if not isinstance(functions, Mapping):
         raise InputError(

@@ -157,8 +157,7 @@ def ellipse_phasors(
 
     Returns
     -------
-    plus, minus : complex
-        Phasors [m/s].
+    plus, minus : Phasors [m/s].
 
     References
     ----------

@@ -140,8 +140,7 @@ def wind_sea_layer(layers: Sequence[Layer], fetch: FetchFunction | None = None) 
 
     Raises
     ------
-    InputError
-        If the layers hold no wind components.
+    InputError : If the layers hold no wind components.
     """
     variables = stack_variables(layers)
     if not set(nm.WIND.pair) <= variables:

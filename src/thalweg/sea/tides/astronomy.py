@@ -42,9 +42,8 @@ def mean_longitudes(times: FloatArray) -> FloatArray:
 
     Returns
     -------
-    float64 array (6, T)
-        In cycles: T (solar time, 0 at midnight), s (moon), h (sun), p (lunar perigee), N' (minus
-        the longitude of the moon's ascending node) and p1 (perihelion).
+    float64 array (6, T) : In cycles: T (solar time, 0 at midnight), s (moon), h (sun), p (lunar
+        perigee), N' (minus the longitude of the moon's ascending node) and p1 (perihelion).
 
     References
     ----------

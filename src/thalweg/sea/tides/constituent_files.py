@@ -143,8 +143,7 @@ def from_dict(data: Mapping[str, Any], source: str = "constituents") -> Constitu
 
     Raises
     ------
-    DatasetError
-        If the format is another, or a key or array is missing or invalid.
+    DatasetError : If the format is another, or a key or array is missing or invalid.
     """
     if data.get("format") != FILE_FORMAT:
         raise _constituent_file_error(source, f"is not of the format {FILE_FORMAT}")
@@ -186,10 +185,8 @@ def select_station(
 
     Raises
     ------
-    DatasetError
-        If the data are not those of stations.
-    InputError
-        If the station is not in the set, or none is named.
+    DatasetError : If the data are not those of stations.
+    InputError : If the station is not in the set, or none is named.
     """
     try:
         names = {str(s["id"]): s for s in stations}

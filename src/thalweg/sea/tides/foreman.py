@@ -53,8 +53,7 @@ def constituent_table() -> ConstituentTable:
 
     Raises
     ------
-    InputError
-        If ``utide`` is not installed.
+    InputError : If ``utide`` is not installed.
     """
     data = _utide_constants()
     const, sat, shallow = data.const, data.sat, data.shallow
@@ -127,8 +126,7 @@ def equilibrium_arguments(names: tuple[str, ...], times: FloatArray) -> FloatArr
 
     Returns
     -------
-    float64 array (T, C)
-        V [cycles].
+    float64 array (T, C) : V [cycles].
     """
     table, longitude = constituent_table(), mean_longitudes(times)
     longitude[0] = longitude[0] + longitude[2] - longitude[1]
@@ -162,8 +160,7 @@ def nodal_corrections(names: tuple[str, ...], times: FloatArray, latitude: float
 
     Returns
     -------
-    complex128 array (T, C)
-        f exp(i u).
+    complex128 array (T, C) : f exp(i u).
     """
     table = constituent_table()
     columns = []

@@ -83,16 +83,14 @@ def analyse(
     series : mapping of str to array_like (T,) or (N, T)
         Records by variable, NaN where unknown; nodes known less than half of the time get no tide.
     lat, lon : Positions [deg], (N,); their mean latitude is used for nodal corrections.
-    constituents : Names as UTide spells them; by default all that the length and step of the record
-        can separate, in the order of priority of Foreman (1977).
+    constituents : can separate, in the order of priority of Foreman (1977).
     rayleigh : Rayleigh criterion: least difference of two constituents [cycles] over the record.
     progress : Called with the number of nodes done and in total.
 
     Raises
     ------
-    InputError
-        If the record is too short or too coarse for the constituents named (the message gives
-        the pairs and the lengths needed), or if times do not increase.
+    InputError : If the record is too short or too coarse for the constituents named (the message
+        gives the pairs and the lengths needed), or if times do not increase.
 
     References
     ----------
@@ -246,8 +244,7 @@ def select_constituents(
 
     Raises
     ------
-    InputError
-        If the record is too short or too coarse.
+    InputError : If the record is too short or too coarse.
     """
     if times.size < 3:
         raise InputError(
@@ -299,8 +296,7 @@ def check_rayleigh(names: Sequence[str], length_h: float, rayleigh: float = RAYL
 
     Raises
     ------
-    InputError
-        If it is not; the message gives the pairs and the length of record they need.
+    InputError : If it is not; the message gives the pairs and the length of record they need.
     """
     known = [(n, foreman.frequency(n)) for n in names]
     known = sorted([("the mean", 0.0), *known], key=lambda pair: pair[1])

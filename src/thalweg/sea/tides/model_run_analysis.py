@@ -53,8 +53,7 @@ def tidal_analysis(
 
     Warns
     -----
-    ThalwegWarning
-        If other layers hold currents or levels too.
+    ThalwegWarning : If other layers hold currents or levels too.
     """
     check_not_ensemble(layers)
     tidal = [x for x in layers if isinstance(x, GridLayer) and has_tides(x)]

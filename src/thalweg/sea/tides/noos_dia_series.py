@@ -142,8 +142,7 @@ def read_dia(text: str, source: str) -> WaterLevelSeries:
 
     Raises
     ------
-    DatasetError
-        If it holds another quantity, several series or uneven times, or is truncated.
+    DatasetError : If it holds another quantity, several series or uneven times, or is truncated.
     """
     heads, *bodies = text.split("[WRD]")
     if len(bodies) != 1:

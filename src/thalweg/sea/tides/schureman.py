@@ -109,8 +109,7 @@ def constituent_definition(name: str) -> ConstituentDefinition:
 
     Raises
     ------
-    InputError
-        If the name is neither in the tables nor that of a compound tide.
+    InputError : If the name is neither in the tables nor that of a compound tide.
     """
     plain = name.strip().upper().removesuffix("_KV")
     plain = _ALIASES.get(plain, plain)
@@ -191,8 +190,7 @@ def equilibrium_arguments(names: tuple[str, ...], times: FloatArray) -> FloatArr
 
     Returns
     -------
-    float64 array (T, C)
-        V [cycles], 0 to 1.
+    float64 array (T, C) : V [cycles], 0 to 1.
 
     References
     ----------
@@ -221,8 +219,7 @@ def nodal_corrections(
 
     Returns
     -------
-    complex128 array (T, C)
-        f exp(i u).
+    complex128 array (T, C) : f exp(i u).
 
     References
     ----------

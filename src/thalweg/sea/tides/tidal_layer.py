@@ -203,8 +203,7 @@ def tidal_layers(
 
     Raises
     ------
-    InputError
-        If the source has no tides, or the area does not fit the source.
+    InputError : If the source has no tides, or the area does not fit the source.
     """
     if isinstance(source, harmonic_analysis.TideAnalysis):
         source = source.constituents

@@ -102,11 +102,9 @@ def read_record(
 
     Raises
     ------
-    InputError
-        If columns without a header have no unit and first day, or another format has them.
-    DatasetError
-        If the file cannot be read, has none of these formats, lacks a column, or holds an invalid
-        time, number or level.
+    InputError : If columns without a header have no unit and first day, or another format has them.
+    DatasetError : If the file cannot be read, has none of these formats, lacks a column, or holds
+        an invalid time, number or level.
     """
     path = Path(path)
     source = path.name

@@ -98,8 +98,7 @@ def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
 
     Returns
     -------
-    CheckedBarrier or None
-        None where no function passed the check.
+    CheckedBarrier or None : None where no function passed the check.
     """
     mesh, known = task.mesh, task.known
     shape = mesh.shape
@@ -155,8 +154,7 @@ def first_arrivals(task: BarrierTask) -> FloatArray:
 
     Returns
     -------
-    float64 array (Y, X)
-        Since departure; a multiple of the known time where they are later.
+    float64 array (Y, X) : Since departure; a multiple of the known time where they are later.
     """
     mesh, shape = task.mesh, task.mesh.shape
     solvable = _nodes_of(task.band & ~mesh.world.closed, shape)

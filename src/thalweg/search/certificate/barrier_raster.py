@@ -33,8 +33,7 @@ class BarrierRaster:
     Attributes
     ----------
     arrays : Times since departure [s].
-    sampling : "" where the raster has the values and the interpolation of the data; otherwise a
-        note on how it differs.
+    sampling : note on how it differs.
     """
 
     arrays: RasterArrays

@@ -37,9 +37,8 @@ def certify_departures(
 
     Returns
     -------
-    TimeCertificate or None
-        The least bound of all pieces of the window. None near a pole and across more than half
-        of the globe.
+    TimeCertificate or None : The least bound of all pieces of the window. None near a pole and
+        across more than half of the globe.
     """
     if passage.departures <= 0.0:
         return certify_time(passage, seconds=seconds, target=target)

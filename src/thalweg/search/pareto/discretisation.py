@@ -110,8 +110,7 @@ def choose_discretisation(
 
     Raises
     ------
-    InputError
-        If the bins do not fit the memory; it says what they would take.
+    InputError : If the bins do not fit the memory; it says what they would take.
     """
     width = _round_bin_width(request.horizon / _MAX_BINS) if bin_s is None else float(bin_s)
     while True:

@@ -73,7 +73,7 @@ class BackwardSearch:
         )
 
     def floor(self, rate: float) -> FloatArray:
-        """Return the least cost plus price of time to the goal."""
+        """Return the least cost plus shadow price to the goal."""
         return self._least(self._costs(rate)) * (1.0 - 1e-6)
 
     def path_to_goal(self, start: int, rate: float) -> IntArray:
@@ -88,7 +88,7 @@ class BackwardSearch:
         return np.array(states, np.int64)
 
     def _costs(self, rate: float) -> FloatArray:
-        """Return the least cost plus price of time of every edge."""
+        """Return the least cost plus shadow price of every edge."""
         prices = self._got.world.prices
         second = prices.time_price + rate
         least = np.full(len(prices.fee), math.inf)
@@ -119,7 +119,7 @@ def bounds_to_goal(front_problem: FrontProblem, goal: int) -> BoundsToGoal:
 
 
 def _time_prices(front_problem: FrontProblem, weight: float) -> FloatArray:
-    """Return prices of time at which the thriftiest setting in still water changes, and 0."""
+    """Return shadow prices at which the thriftiest setting in still water changes, and 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
         pace = 1.0 / front_problem.fastest
         spent = front_problem.least_rate * pace * weight

@@ -72,7 +72,7 @@ def seed_paths(
 ) -> list[FrontPoint]:
     """Return paths that are likely to be near the front, the fastest first.
 
-    They are the fastest path, and the best for each price of time in the most favourable weather,
+    They are the fastest path, and the best for each shadow price in the most favourable weather,
     at every setting and at two settings one after the other. Those that take too long are left out.
     A dense front known from the beginning avoids most labels.
 
@@ -85,8 +85,7 @@ def seed_paths(
 
     Returns
     -------
-    list of FrontPoint
-        Sailed paths.
+    list of FrontPoint : Sailed paths.
     """
     paths = [fastest]
     known = {fastest.states.tobytes()}

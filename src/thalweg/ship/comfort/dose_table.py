@@ -42,14 +42,12 @@ def squared_dose_table(ship: Ship) -> PerformanceTable:
 
     Returns
     -------
-    PerformanceTable
-        [m2/s4] by wave height, angle and period, for every setting. Its error is measured at
-        random conditions between 0.2 and 8 m and 3 and 20 s.
+    PerformanceTable : [m2/s4] by wave height, angle and period, for every setting. Its error is
+        measured at random conditions between 0.2 and 8 m and 3 and 20 s.
 
     Raises
     ------
-    InputError
-        If the ship has no places, or not the particulars for her motions.
+    InputError : If the ship has no places, or not the particulars for her motions.
     """
     own = required_motions(ship)
     own = replace(own, places={own.first_place: own.places[own.first_place]}, tasks={})

@@ -40,17 +40,14 @@ def motion_sheet(
 
     Returns
     -------
-    dict or None
-        ``headings_deg`` between bow and waves; ``attained_speed_kn``, ``heave_rms_m``,
-        ``pitch_rms_deg``, ``roll_rms_deg`` by heading;
-        ``places``: for each name root mean squares by heading and the percentage of people sick
-        after `EXPOSURE_H`; ``tasks``: by heading whether each can be done. None where the ship
-        file has no places.
+    dict or None : ``headings_deg`` between bow and waves; ``attained_speed_kn``, ``heave_rms_m``,
+        ``pitch_rms_deg``, ``roll_rms_deg`` by heading; ``places``: for each name root mean squares
+        by heading and the percentage of people sick after `EXPOSURE_H`; ``tasks``: by heading
+        whether each can be done. None where the ship file has no places.
 
     Raises
     ------
-    InputError
-        If a place is off the ship.
+    InputError : If a place is off the ship.
     """
     own = onboard_motions(ship)
     if own is None:

@@ -109,8 +109,7 @@ class OnboardMotions:
 
         Returns
         -------
-        ShipMotions
-            In the broadcast shape; zero without waves, NaN where a value is unknown.
+        ShipMotions : In the broadcast shape; zero without waves, NaN where a value is unknown.
 
         References
         ----------
@@ -179,13 +178,11 @@ class OnboardMotions:
 
         Returns
         -------
-        workable, known : bool array
-            A limit that is exceeded decides, even where another motion is unknown.
+        workable, known : A limit that is exceeded decides, even where another motion is unknown.
 
         Raises
         ------
-        InputError
-            If the ship file has no such task.
+        InputError : If the ship file has no such task.
         """
         if task not in self.tasks:
             raise unknown_name_error("task of the ship", task, self.tasks)
@@ -212,8 +209,7 @@ def onboard_motions(ship: Ship) -> OnboardMotions | None:
 
     Raises
     ------
-    InputError
-        If a place is off the ship, or a task names a place that the file does not have.
+    InputError : If a place is off the ship, or a task names a place that the file does not have.
     """
     file = ship.file
     if not file.places:

@@ -86,8 +86,7 @@ def _reference_power(file: ShipFile) -> tuple[float, float]:
 
     Raises
     ------
-    InputError
-        If the ship file does not give them.
+    InputError : If the ship file does not give them.
     """
     point = reference_point(file)
     if point.power_kw is None or point.speed_kn is None:

@@ -30,8 +30,7 @@ def build_known_speed_model(file: ShipFile, hull: Hull, loading: Loading) -> Kno
 
     Raises
     ------
-    InputError
-        If there are no speeds, several kinds of them, or they contradict each other.
+    InputError : If there are no speeds, several kinds of them, or they contradict each other.
     """
     law = speed_power_law_name(file)
     _check_sea_margin(file)

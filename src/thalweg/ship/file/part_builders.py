@@ -39,8 +39,7 @@ def build_limits(file: ShipFile) -> ShipLimits:
 
     Raises
     ------
-    InputError
-        If the wind limit is given in two units.
+    InputError : If the wind limit is given in two units.
     """
     given = file.limits
     wind = math.inf if given.max_wind_speed_m_s is None else given.max_wind_speed_m_s
@@ -84,13 +83,11 @@ def build_loading(file: ShipFile, hull: Hull) -> Loading:
 
     Returns
     -------
-    Loading
-        Draughts and displacements.
+    Loading : Draughts and displacements.
 
     Raises
     ------
-    InputError
-        If there is no draught.
+    InputError : If there is no draught.
     """
     given = file.loading
     full = hull.number("draught_m") if given.draught_full_m is None else given.draught_full_m
@@ -218,8 +215,7 @@ def hull_for_kwon(hull: Hull, loading: Loading) -> Hull:
 
     Returns
     -------
-    Hull
-        With a block coefficient, length and displaced volume if possible.
+    Hull : With a block coefficient, length and displaced volume if possible.
     """
     if hull.number("displacement_m3") is None and not math.isnan(loading.displacement_full):
         deep = {"displacement_m3": loading.displacement_full, "draught_m": loading.draught_full}

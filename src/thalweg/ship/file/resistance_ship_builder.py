@@ -235,13 +235,7 @@ def _build_engine_orders(
 ) -> tuple[EngineOrders, tuple[Estimate, ...]]:
     """Return the powers or speeds that can be ordered, and estimates if none are given."""
     powers, speeds = file.powers_kw, file.speeds_kn
-    if powers is not None and speeds is not None:
-        raise InputError(
-            "The ship file gives both powers_kw and speeds_kn.",
-            "Orders are either powers or speeds.",
-            "Leave one of them out.",
-            key="powers_kw",
-        )
+    file.check_one_kind_of_order()
     if powers is not None:
         _check_powers(powers, plant)
         return EngineOrders("power", tuple(sorted(p * 1000.0 for p in powers))), ()

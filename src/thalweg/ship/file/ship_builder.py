@@ -48,13 +48,11 @@ def ship_parts(data: Mapping[str, Any], source: str) -> ShipParts:
 
     Returns
     -------
-    ShipParts
-        At the load factor of the data.
+    ShipParts : At the load factor of the data.
 
     Raises
     ------
-    InputError
-        For unknown or missing keys, numbers out of range and impossible hulls.
+    InputError : For unknown or missing keys, numbers out of range and impossible hulls.
     """
     file = ShipFile.of(data, source)
     hull = complete_hull(file.hull.plain())
@@ -82,8 +80,7 @@ def bare_ship_parts(
 
     Returns
     -------
-    ShipParts
-        With an empty ship file.
+    ShipParts : With an empty ship file.
     """
     loading = Loading(draught, draught)
     return ShipParts(name, model, loading, limits or ShipLimits(), empty_ship_file(), ())
@@ -99,8 +96,7 @@ def plugin_parts(name: str, offered: Any) -> ShipParts:
 
     Raises
     ------
-    InputError
-        If it is none of these.
+    InputError : If it is none of these.
     """
     if isinstance(offered, Mapping):
         return ship_parts(offered, f"plug-in ship {name!r}")
@@ -130,8 +126,7 @@ def simple_data(
 
     Returns
     -------
-    dict
-        Without the keys whose value is None.
+    dict : Without the keys whose value is None.
     """
     given = {
         section: {key: value for key, value in values.items() if value is not None}
@@ -145,8 +140,7 @@ def build_model(file: ShipFile, hull: Hull, loading: Loading) -> ShipModel:
 
     Raises
     ------
-    InputError
-        For unknown methods, methods that do not go together, and missing data.
+    InputError : For unknown methods, methods that do not go together, and missing data.
     """
     fuel_terms(file)  # refuses unknown fuels and two prices for one thing
     if (file.models.calm_water or "none") in SPEED_POWER_LAWS and not resistance_methods(file):

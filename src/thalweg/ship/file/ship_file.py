@@ -32,8 +32,7 @@ def read_ship(name_or_path: str | Path) -> tuple[Any, str]:
 
     Raises
     ------
-    InputError
-        If there is no such ship or file, or the file is not readable YAML.
+    InputError : If there is no such ship or file, or the file is not readable YAML.
     """
     text = str(name_or_path)
     path = Path(text)
@@ -98,8 +97,7 @@ def parse_ship(text: str, source: str) -> Any:
 
     Raises
     ------
-    InputError
-        With the line of the fault.
+    InputError : With the line of the fault.
     """
     from thalweg.core.strict_yaml import parse_yaml  # reads a library that few calls need
 

@@ -56,9 +56,8 @@ def complete_hull(given: Mapping[str, float | str]) -> Hull:
 
     Raises
     ------
-    InputError
-        For hulls that cannot be: deeper than their depth, fuller than a box, particulars that
-        contradict each other.
+    InputError : For hulls that cannot be: deeper than their depth, fuller than a box, particulars
+        that contradict each other.
     """
     values = dict(given)
     _complete_draughts(values)
@@ -209,8 +208,7 @@ def volume_at(hull: Hull, volume: float, *, at: float, draught: float) -> float:
 
     Raises
     ------
-    InputError
-        If nothing would be displaced.
+    InputError : If nothing would be displaced.
     """
     length = hull.number("length_between_perpendiculars_m") or hull.number("length_waterline_m")
     area = (length or 0.0) * (hull.number("breadth_m") or 0.0)
@@ -241,8 +239,7 @@ def required_particulars(
 
     Returns
     -------
-    list of float
-        Values in the units of the keys.
+    list of float : Values in the units of the keys.
 
     Raises
     ------

@@ -41,8 +41,7 @@ def estimate_particulars(hull: Hull, keys: tuple[str, ...]) -> Hull:
 
     Returns
     -------
-    Hull
-        Its ``estimated`` lists the estimates with their sources.
+    Hull : Its ``estimated`` lists the estimates with their sources.
     """
     for key in keys:
         hull = _estimate_particular(hull, key, ())
@@ -84,8 +83,7 @@ def estimate_or_raise(hull: Hull, keys: tuple[str, ...], method: str, *, instead
 
     Returns
     -------
-    Hull
-        With estimates of missing keys.
+    Hull : With estimates of missing keys.
 
     Raises
     ------
@@ -107,14 +105,12 @@ def hull_at_load_factor(hull: Hull, loading: Loading, load_factor: float) -> Hul
 
     Returns
     -------
-    Hull
-        Trim kept; displaced volume from the loading, or by the block coefficient there; midship
+    Hull : Trim kept; displaced volume from the loading, or by the block coefficient there; midship
         coefficient from the same bilge; wetted surface with the draught by Denny and Mumford.
 
     Raises
     ------
-    InputError
-        If the displacement would not be positive.
+    InputError : If the displacement would not be positive.
     """
     full, draught = hull.number("draught_m"), float(loading.draught_at(load_factor))
     if full is None or np.isnan(draught) or abs(draught - full) < 1e-9:

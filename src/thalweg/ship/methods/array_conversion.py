@@ -17,7 +17,6 @@ def as_float_array(values: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        The same numbers.
+    ndarray : The same numbers.
     """
     return np.asarray(values, dtype=float)

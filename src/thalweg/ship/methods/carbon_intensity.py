@@ -95,13 +95,11 @@ def cii_ship_type(name: str) -> CiiShipType:
 
     Returns
     -------
-    CiiShipType
-        Its lines.
+    CiiShipType : Its lines.
 
     Raises
     ------
-    InputError
-        For an unknown name, with near matches.
+    InputError : For an unknown name, with near matches.
     """
     if name not in SHIP_TYPES:
         raise unknown_name_error("CII ship type", name, SHIP_TYPES)
@@ -154,8 +152,7 @@ def eeoi(co2: ArrayLike, *, cargo_t: ArrayLike, distance_nm: ArrayLike) -> Float
 
     Returns
     -------
-    ndarray
-        g CO2 per (t nm), summed over the last axis; NaN where no cargo was moved.
+    ndarray : g CO2 per (t nm), summed over the last axis; NaN where no cargo was moved.
 
     References
     ----------
@@ -179,8 +176,7 @@ def reference_cii(ship_type: str, *, capacity: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        g CO2 per (t nm); NaN where the capacity is not positive.
+    ndarray : g CO2 per (t nm); NaN where the capacity is not positive.
 
     References
     ----------
@@ -204,13 +200,11 @@ def reduction_factor(year: int) -> float:
 
     Returns
     -------
-    float
-        Percent below the 2019 line.
+    float : Percent below the 2019 line.
 
     Raises
     ------
-    InputError
-        For a year without an adopted factor.
+    InputError : For a year without an adopted factor.
 
     References
     ----------
@@ -239,8 +233,7 @@ def required_cii(ship_type: str, *, capacity: ArrayLike, year: int) -> FloatArra
 
     Returns
     -------
-    ndarray
-        g CO2 per (t nm).
+    ndarray : g CO2 per (t nm).
 
     References
     ----------
@@ -262,8 +255,7 @@ def rating_boundaries(ship_type: str, *, capacity: ArrayLike, year: int) -> Floa
 
     Returns
     -------
-    ndarray
-        g CO2 per (t nm); the four boundaries are the last axis.
+    ndarray : g CO2 per (t nm); the four boundaries are the last axis.
 
     References
     ----------
@@ -290,9 +282,8 @@ def cii_rating(
 
     Returns
     -------
-    ndarray of str
-        ``A`` to ``E``; ``-`` where the attained CII is unknown. A value on a boundary has the
-        better rating.
+    ndarray of str : ``A`` to ``E``; ``-`` where the attained CII is unknown. A value on a boundary
+        has the better rating.
 
     References
     ----------

@@ -50,8 +50,7 @@ def current_along_and_across(
 
     Returns
     -------
-    along, across : ndarray
-        c = u sin C + v cos C, and s = u cos C - v sin C, positive to starboard [m/s].
+    along, across : c = u sin C + v cos C, and s = u cos C - v sin C, positive to starboard [m/s].
     """
     east, north = np.sin(course), np.cos(course)
     u, v = as_float_array(current_east), as_float_array(current_north)
@@ -68,8 +67,7 @@ def crab_angle(across: ArrayLike, speed: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        [rad], positive where the bow points to starboard of the course; 0 where the speed is
+    ndarray : [rad], positive where the bow points to starboard of the course; 0 where the speed is
         unknown or not positive, and -pi/2 or pi/2 where the current across is stronger than the
         ship.
     """
@@ -89,9 +87,8 @@ def speed_over_ground(speed: ArrayLike, along: ArrayLike, across: ArrayLike) -> 
 
     Returns
     -------
-    ndarray
-        [m/s]; NaN where the current across is not weaker than the ship, where the ship makes no
-        headway, and where anything is unknown.
+    ndarray : [m/s]; NaN where the current across is not weaker than the ship, where the ship makes
+        no headway, and where anything is unknown.
     """
     v, c, s = as_float_array(speed), as_float_array(along), as_float_array(across)
     with np.errstate(invalid="ignore"):
@@ -184,8 +181,7 @@ def rudder_drag_coefficient(angle: ArrayLike, *, curve: str = "nodes") -> FloatA
 
     Returns
     -------
-    ndarray
-        C_D [-]; NaN beyond 35 degrees.
+    ndarray : C_D [-]; NaN beyond 35 degrees.
 
     References
     ----------
@@ -223,8 +219,7 @@ def rudder_drag(
 
     Returns
     -------
-    ndarray
-        Resistance [N].
+    ndarray : Resistance [N].
 
     Notes
     -----

@@ -21,8 +21,7 @@ def interpolate_loading(load_factor: ArrayLike, *, empty: ArrayLike, full: Array
 
     Returns
     -------
-    ndarray
-        The quantity, NaN outside 0 <= r <= 1.
+    ndarray : The quantity, NaN outside 0 <= r <= 1.
 
     References
     ----------
@@ -45,8 +44,7 @@ def displacement_volume(
 
     Returns
     -------
-    ndarray
-        Volume [m3].
+    ndarray : Volume [m3].
     """
     return (
         as_float_array(block_coefficient)
@@ -68,8 +66,7 @@ def block_coefficient_of(
 
     Returns
     -------
-    ndarray
-        Block coefficient [-].
+    ndarray : Block coefficient [-].
     """
     return as_float_array(displacement) / (
         as_float_array(length) * as_float_array(breadth) * as_float_array(draught)
@@ -88,8 +85,7 @@ def block_at_draught(
 
     Returns
     -------
-    ndarray
-        Block coefficient [-].
+    ndarray : Block coefficient [-].
 
     References
     ----------

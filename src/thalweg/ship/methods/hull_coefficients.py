@@ -20,8 +20,7 @@ def block_from_froude(froude: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        Block coefficient [-], NaN outside the range.
+    ndarray : Block coefficient [-], NaN outside the range.
 
     References
     ----------
@@ -42,8 +41,7 @@ def midship_from_block(block_coefficient: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        Midship section coefficient [-].
+    ndarray : Midship section coefficient [-].
 
     References
     ----------
@@ -61,8 +59,7 @@ def waterplane_from_block(block_coefficient: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        Waterplane coefficient [-].
+    ndarray : Waterplane coefficient [-].
 
     References
     ----------
@@ -80,8 +77,7 @@ def lcb_from_prismatic(prismatic_coefficient: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        Longitudinal centre of buoyancy [% of length, + forward].
+    ndarray : Longitudinal centre of buoyancy [% of length, + forward].
 
     References
     ----------
@@ -101,8 +97,7 @@ def lcb_from_froude(froude: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        Longitudinal centre of buoyancy [% of length, + forward].
+    ndarray : Longitudinal centre of buoyancy [% of length, + forward].
 
     References
     ----------

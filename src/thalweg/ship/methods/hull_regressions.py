@@ -35,8 +35,7 @@ def wetted_surface_denny_mumford(
 
     Returns
     -------
-    ndarray
-        Wetted surface [m2].
+    ndarray : Wetted surface [m2].
 
     References
     ----------
@@ -60,8 +59,7 @@ def waterline_from_perpendiculars(
 
     Returns
     -------
-    ndarray
-        Waterline length [m].
+    ndarray : Waterline length [m].
 
     References
     ----------
@@ -82,8 +80,7 @@ def perpendiculars_from_waterline(
 
     Returns
     -------
-    ndarray
-        Length between perpendiculars [m].
+    ndarray : Length between perpendiculars [m].
 
     References
     ----------
@@ -123,8 +120,7 @@ def propeller_diameter_from_draught(draught: ArrayLike, *, kind: str = "tanker")
 
     Returns
     -------
-    ndarray
-        Diameter [m].
+    ndarray : Diameter [m].
 
     References
     ----------
@@ -146,8 +142,7 @@ def bulb_area_rakke(
 
     Returns
     -------
-    ndarray
-        Area [m2]. For a ship known to have a bulb; do not invent one.
+    ndarray : Area [m2]. For a ship known to have a bulb; do not invent one.
 
     References
     ----------
@@ -165,8 +160,7 @@ def bulb_height_rakke(draught: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        Height [m].
+    ndarray : Height [m].
 
     References
     ----------
@@ -187,8 +181,7 @@ def transom_area_rakke(
 
     Returns
     -------
-    ndarray
-        Area [m2].
+    ndarray : Area [m2].
 
     References
     ----------

@@ -22,8 +22,7 @@ def relative_angle(from_east: ArrayLike, from_north: ArrayLike, heading: ArrayLi
 
     Returns
     -------
-    ndarray
-        atan2(abs(e cos h - n sin h), e sin h + n cos h) [rad], 0 to pi.
+    ndarray : atan2(abs(e cos h - n sin h), e sin h + n cos h) [rad], 0 to pi.
     """
     east, north = np.asarray(from_east, float), np.asarray(from_north, float)
     sine, cosine = np.sin(heading), np.cos(heading)
@@ -51,8 +50,7 @@ def relative_wind_from_vectors(
 
     Returns
     -------
-    speed, angle : ndarray
-        Speed [m/s], and angle [rad] as in `relative_angle`.
+    speed, angle : Speed [m/s], and angle [rad] as in `relative_angle`.
     """
     east = np.asarray(wind_east, dtype=float) - frame_east
     north = np.asarray(wind_north, dtype=float) - frame_north

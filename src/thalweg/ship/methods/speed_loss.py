@@ -68,13 +68,11 @@ def beaufort_number(wind_speed: ArrayLike, *, classes: bool = False) -> FloatArr
     Parameters
     ----------
     wind_speed : [m/s], not negative.
-    classes : Whole numbers by the usual class limits, instead of the continuous B = (v /
-        0.836)^(2/3). Both end at 12.
+    classes : 0.836)^(2/3). Both end at 12.
 
     Returns
     -------
-    ndarray
-        0 to 12; NaN for NaN.
+    ndarray : 0 to 12; NaN for NaN.
 
     References
     ----------
@@ -246,8 +244,7 @@ def kwon_notes(
 
     Returns
     -------
-    list of RangeNote
-        Empty inside the range.
+    list of RangeNote : Empty inside the range.
     """
     highest = 6.0 if np.nanmin(np.asarray(displacement_volume, float)) < 1e5 else 8.0
     return range_notes(

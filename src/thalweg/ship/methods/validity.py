@@ -50,9 +50,8 @@ def range_notes(
 
     Returns
     -------
-    list of RangeNote
-        At most two notes for each quantity: the lowest value below its range and the highest
-        value above it.
+    list of RangeNote : At most two notes for each quantity: the lowest value below its range and
+        the highest value above it.
     """
     notes = []
     for quantity, (values, low, high) in ranges.items():

@@ -305,8 +305,7 @@ def build_wave_resistance(models: ModelsSection, hull: Hull) -> AddedWaveResista
 
     Returns
     -------
-    AddedWaveResistance or None
-        The resistance model.
+    AddedWaveResistance or None : The resistance model.
 
     Raises
     ------
@@ -337,8 +336,7 @@ def build_wind_resistance(models: ModelsSection, hull: Hull) -> WindResistance |
 
     Returns
     -------
-    WindResistance or None
-        The resistance model.
+    WindResistance or None : The resistance model.
 
     Raises
     ------

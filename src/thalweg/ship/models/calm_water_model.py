@@ -349,13 +349,11 @@ def build_calm_water(file: ShipFile, hull: Hull) -> CalmWaterResistance:
 
     Returns
     -------
-    CalmWaterResistance
-        The resistance model.
+    CalmWaterResistance : The resistance model.
 
     Raises
     ------
-    InputError
-        For unknown names, and particulars that are missing and cannot be estimated.
+    InputError : For unknown names, and particulars that are missing and cannot be estimated.
     """
     shallow, friction = file.models.shallow_water, file.models.friction
     if shallow not in SHALLOW_WATER_METHODS:

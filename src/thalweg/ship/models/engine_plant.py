@@ -109,8 +109,7 @@ def build_engine_plant(file: ShipFile) -> EnginePlant:
 
     Raises
     ------
-    InputError
-        For unknown engine types or fuels, and curves that do not fit.
+    InputError : For unknown engine types or fuels, and curves that do not fit.
     """
     given = file.engine
     loads, curve = given.sfoc_load, given.sfoc_curve_g_per_kwh

@@ -178,8 +178,7 @@ class FunctionModel:
 
         Raises
         ------
-        InputError
-            For a speed field, which has no table.
+        InputError : For a speed field, which has no table.
         """
         if self.table is None:
             raise InputError(
@@ -207,9 +206,8 @@ def model_of_function(function: SpeedFunction, *, top_speed: float | None = None
 
     Raises
     ------
-    InputError
-        If it fails on plausible conditions, gives other than one speed per condition, or mixes
-        place, time or plain variables with what depends on the heading.
+    InputError : If it fails on plausible conditions, gives other than one speed per condition, or
+        mixes place, time or plain variables with what depends on the heading.
     """
     if top_speed is not None and not 0.0 < top_speed < math.inf:
         raise InputError(

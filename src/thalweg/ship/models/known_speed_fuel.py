@@ -16,10 +16,9 @@ def fuel_rate_of_power(file: ShipFile) -> Callable[[FloatArray], FloatArray] | N
 
     Returns
     -------
-    callable or None
-        None when the file gives fuel itself, which is the whole ship's, or nothing to burn by.
-        A single ``engine.sfoc_g_per_kwh`` holds at every power; by ``engine.type`` or a curve
-        consumption follows the load.
+    callable or None : None when the file gives fuel itself, which is the whole ship's, or nothing
+        to burn by. A single ``engine.sfoc_g_per_kwh`` holds at every power; by ``engine.type`` or a
+        curve consumption follows the load.
     """
     engine = file.engine
     in_table = file.table is not None and file.table.fuel_t_per_day is not None

@@ -95,8 +95,7 @@ class SpeedPowerLaw:
     name : {"none", "cubic", "table"}
     power_to_fuel_rate : callable, optional
         Fuel rate [kg/s] of a power [W], where fuel follows from power and not from the speed.
-    rows : Speeds full and empty, fuel rates and powers that the settings were taken from; those of
-        the settings themselves when not given.
+    rows : the settings themselves when not given.
     """
 
     name: str = "none"
@@ -268,8 +267,7 @@ def cubic_law(speed: ArrayLike, *, reference_speed: float, reference_value: floa
 
     Returns
     -------
-    ndarray
-        In the unit of the reference value.
+    ndarray : In the unit of the reference value.
 
     Notes
     -----

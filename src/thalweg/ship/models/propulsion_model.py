@@ -106,8 +106,7 @@ def unused_efficiencies(given: PropulsionSection, method: str = "efficiencies") 
 
     Returns
     -------
-    tuple of str
-        Keys without effect.
+    tuple of str : Keys without effect.
     """
     idle: tuple[str, ...] = ()
     if method == "wageningen_b":
@@ -152,8 +151,7 @@ def _propeller(given: PropulsionSection) -> Propeller:
 
     Raises
     ------
-    InputError
-        If the file does not give all that the B-series needs.
+    InputError : If the file does not give all that the B-series needs.
     """
     diameter, pitch = given.propeller_diameter_m, given.propeller_pitch_ratio
     area, blades = given.propeller_area_ratio, given.propeller_blades
@@ -256,8 +254,7 @@ def build_propulsion(file: ShipFile, hull: Hull) -> PropulsionModel:
 
     Returns
     -------
-    PropulsionModel
-        From resistance to brake power.
+    PropulsionModel : From resistance to brake power.
 
     Raises
     ------

@@ -165,8 +165,7 @@ class ResistanceModel:
 
         Raises
         ------
-        ModelRangeError
-            If power does not rise with speed.
+        ModelRangeError : If power does not rise with speed.
         """
         table, _ = self._table(load_factor, tolerance)
         return table.parts, table.error, table.finish
@@ -226,8 +225,7 @@ class ResistanceModel:
 
         Raises
         ------
-        InputError
-            If the engine cannot reach a speed in calm water, or it is not positive.
+        InputError : If the engine cannot reach a speed in calm water, or it is not positive.
         """
         flat = calm_conditions(len(speeds))
         balance = self.balance(load_factor)

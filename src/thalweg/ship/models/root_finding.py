@@ -32,9 +32,8 @@ def bracketed_root(
 
     Returns
     -------
-    ndarray
-        The root; ``low`` where the function is positive there already, ``high`` where it is still
-        negative there, NaN where it is unknown.
+    ndarray : The root; ``low`` where the function is positive there already, ``high`` where it is
+        still negative there, NaN where it is unknown.
 
     Notes
     -----

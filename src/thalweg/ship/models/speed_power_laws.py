@@ -41,8 +41,7 @@ def calm_speeds(file: ShipFile, law: str) -> tuple[FloatArray, FloatArray]:
 
     Raises
     ------
-    InputError
-        If there is none, or more than one.
+    InputError : If there is none, or more than one.
     """
     places = {
         "speeds_kn": file.speeds_kn,
@@ -163,26 +162,18 @@ def with_settings(model: KnownSpeedModel, file: ShipFile) -> KnownSpeedModel:
 
     Returns
     -------
-    KnownSpeedModel
-        With one setting for each value.
+    KnownSpeedModel : With one setting for each value.
 
     Raises
     ------
-    InputError
-        If powers and speeds are given, or no law ties the powers to speeds in its range.
+    InputError : If powers and speeds are given, or no law ties the powers to speeds in its range.
     """
     speeds, powers = file.speeds_kn, file.powers_kw
     if powers is None:
         if speeds is None or model.law.name != "table":
             return model
         return model.with_speeds(np.unique(speeds) * KNOT, 1.0)
-    if speeds is not None:
-        raise InputError(
-            "The ship file gives both powers_kw and speeds_kn.",
-            "Orders are either powers or speeds.",
-            "Leave one of them out.",
-            key="powers_kw",
-        )
+    file.check_one_kind_of_order()
     watts = np.unique(powers) * 1000.0
     known = np.isfinite(model.powers).all() and (np.diff(model.powers) > 0.0).all()
     if model.law.name == "none" or not known:
@@ -211,8 +202,7 @@ def check_table(table: TableSection | None) -> dict[str, tuple[float, ...]]:
 
     Raises
     ------
-    InputError
-        If there is no table, it has no speeds, or its columns differ in length.
+    InputError : If there is no table, it has no speeds, or its columns differ in length.
     """
     if table is None or table.speed_kn is None:
         raise InputError(

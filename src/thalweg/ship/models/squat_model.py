@@ -100,8 +100,7 @@ def build_squat_model(file: ShipFile, hull: Hull, loading: Loading) -> SquatMode
 
     Raises
     ------
-    InputError
-        For unknown names, and particulars that are missing.
+    InputError : For unknown names, and particulars that are missing.
     """
     name = file.models.squat
     if name not in SQUAT_METHODS:

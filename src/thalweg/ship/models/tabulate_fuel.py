@@ -59,13 +59,11 @@ def fuel_table(
 
     Returns
     -------
-    PerformanceTable
-        Fuel rate [kg/s], hotel load included; without a fingerprint.
+    PerformanceTable : Fuel rate [kg/s], hotel load included; without a fingerprint.
 
     Raises
     ------
-    InputError
-        If the fuel is unknown, or the speed is a field.
+    InputError : If the fuel is unknown, or the speed is a field.
     """
     own = model.tabulate_fuel if isinstance(model, FuelTableModel) else None
     found = _table_of_rate(model, (load_factor, tolerance), own, model.fuel_rate)
@@ -83,13 +81,11 @@ def power_table(
 
     Returns
     -------
-    PerformanceTable
-        Power [W]; without a fingerprint.
+    PerformanceTable : Power [W]; without a fingerprint.
 
     Raises
     ------
-    InputError
-        If the power is unknown, or the speed is a field.
+    InputError : If the power is unknown, or the speed is a field.
     """
     own = model.tabulate_power if isinstance(model, PowerTableModel) else None
     table = _table_of_rate(model, (load_factor, tolerance), own, model.power)
@@ -189,10 +185,8 @@ def _tabulate_rate_of_power(
 
     Returns
     -------
-    table : PerformanceTable
-        Its error is against the methods themselves, at random conditions.
-    top : ndarray
-        Greatest rate of every setting.
+    table : Its error is against the methods themselves, at random conditions.
+    top : Greatest rate of every setting.
     """
     balance, speeds = model.balance(load_factor), model.speeds(load_factor)
     terms = resistance_terms(balance, model.limits)

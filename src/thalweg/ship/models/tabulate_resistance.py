@@ -52,15 +52,12 @@ def tabulate_balance(
 
     Returns
     -------
-    table : PerformanceTable
-        Its error is against the methods themselves, at random conditions.
-    top : ndarray
-        Greatest speed of every setting [m/s]: no condition in the table's ranges gives more.
+    table : Its error is against the methods themselves, at random conditions.
+    top : Greatest speed of every setting [m/s]: no condition in the table's ranges gives more.
 
     Raises
     ------
-    ModelRangeError
-        If power does not rise with speed somewhere.
+    ModelRangeError : If power does not rise with speed somewhere.
     """
     balance, calm = model.balance(load_factor), model.speeds(load_factor)
     check_power_rises(model, load_factor)
@@ -194,8 +191,7 @@ def calm_resistance(balance: ForceBalance, speeds: FloatArray) -> FloatArray:
 
     Returns
     -------
-    ndarray (n, 1)
-        Resistance [N].
+    ndarray (n, 1) : Resistance [N].
     """
     return balance.resistance(calm_conditions(len(speeds)), speeds)[:, None]
 
@@ -213,8 +209,7 @@ def resistance_at_power(
 
     Returns
     -------
-    ndarray (n, m)
-        Resistance [N].
+    ndarray (n, m) : Resistance [N].
     """
     top = 200.0 * float(np.max(balance.calm.total(speeds[-1:], np.array([np.inf]))))
     v, p = (grid.ravel() for grid in np.meshgrid(speeds, powers, indexing="ij"))

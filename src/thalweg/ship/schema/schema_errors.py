@@ -29,8 +29,7 @@ def input_error(
 
     Returns
     -------
-    InputError
-        Unknown keys come first: a misspelt key is often the cause of the other faults.
+    InputError : Unknown keys come first: a misspelt key is often the cause of the other faults.
     """
     faults = problem.errors(include_url=False)
     fault = next((f for f in faults if f["type"] in _UNKNOWN_KEY), faults[0])

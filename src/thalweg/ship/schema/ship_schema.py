@@ -368,6 +368,16 @@ class ShipFile(Section):
         except ValidationError as problem:
             raise input_error(problem, cls, data, source) from None
 
+    def check_one_kind_of_order(self) -> None:
+        """Refuse a file that gives both powers and speeds."""
+        if self.powers_kw is not None and self.speeds_kn is not None:
+            raise InputError(
+                "The ship file gives both powers_kw and speeds_kn.",
+                "Orders are either powers or speeds.",
+                "Leave one of them out.",
+                key="powers_kw",
+            )
+
     @property
     def is_empty(self) -> bool:
         """Whether the ship was made without a ship file."""

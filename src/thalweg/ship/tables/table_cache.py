@@ -36,8 +36,7 @@ def cached_table(facts: Any, build: Callable[[], TableWithMaxima]) -> TableWithM
 
     Returns
     -------
-    table, top
-        The same numbers as built.
+    table, top : The same numbers as built.
     """
     text = json.dumps([facts, _source_stamps()], sort_keys=True, default=str)
     name = hashlib.sha256(text.encode()).hexdigest()[:32]

@@ -135,8 +135,7 @@ def random_conditions(axes: Sequence[AxisRange], count: int, seed: int) -> dict[
 
     Returns
     -------
-    dict of str to ndarray (count,)
-        Values in SI units, by condition.
+    dict of str to ndarray (count,) : Values in SI units, by condition.
     """
     draw = np.random.default_rng(seed)
     return {a.name: draw.uniform(a.start, a.stop, count) for a in axes}
@@ -156,8 +155,7 @@ def table_error(found: FloatArray, truth: FloatArray) -> TableError:
 
     Returns
     -------
-    TableError
-        Errors relative to the greatest value of each setting.
+    TableError : Errors relative to the greatest value of each setting.
     """
     sound, known = np.isfinite(truth), np.isfinite(truth) | np.isfinite(found)
     if not known.any():

@@ -76,8 +76,7 @@ def log_spaced_nodes(low: float, high: float, *, step: float) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        Ascending values from ``low`` to ``high``.
+    ndarray : Ascending values from ``low`` to ``high``.
     """
     first, last = np.floor(np.log(low) / step), np.ceil(np.log(high) / step)
     return np.asarray(np.exp(step * np.arange(first, last + 1.0)))
@@ -90,15 +89,13 @@ def in_blocks(
 
     Parameters
     ----------
-    function : Takes as many 1-d arrays as there are arguments and returns one of their length; an
-        argument of one element comes as one element.
+    function : argument of one element comes as one element.
     *arguments : Broadcast against each other.
     block : Elements at a time.
 
     Returns
     -------
-    ndarray
-        Result in the broadcast shape.
+    ndarray : Result in the broadcast shape.
     """
     arrays = [np.asarray(value, dtype=float) for value in arguments]
     shape = np.broadcast_shapes(*(array.shape for array in arrays))

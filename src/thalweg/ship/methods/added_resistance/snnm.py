@@ -266,8 +266,7 @@ def snnm_validity(speed: ArrayLike, hull: SnnmHull) -> list[RangeNote]:
 
     Returns
     -------
-    list of RangeNote
-        Empty inside the range.
+    list of RangeNote : Empty inside the range.
     """
     length, breadth, draught, trim, block, _, _, _ = hull.arrays()
     ranges: dict[str, tuple[ArrayLike, float, float]] = {

@@ -54,7 +54,6 @@ def entrance_length(breadth: ArrayLike, *, entrance_angle_deg: ArrayLike) -> Flo
 
     Returns
     -------
-    ndarray
-        Length of entrance L_E [m].
+    ndarray : Length of entrance L_E [m].
     """
     return np.asarray(0.495 * np.asarray(breadth) / np.tan(np.radians(entrance_angle_deg)))

@@ -139,8 +139,7 @@ class SnnmTable:
 
         Returns
         -------
-        ndarray
-            May be negative for following waves; zero where the wave height is zero, NaN where
+        ndarray : May be negative for following waves; zero where the wave height is zero, NaN where
             something is unknown.
         """
         velocity, turned = ship_speed(speed), fold_angle(angle)

@@ -53,8 +53,7 @@ def head_sector_validity(wave_angle: ArrayLike, *, method: str) -> list[RangeNot
 
     Returns
     -------
-    list of RangeNote
-        Empty inside the sector.
+    list of RangeNote : Empty inside the sector.
     """
     degrees = np.degrees(np.abs(np.asarray(wave_angle, dtype=float)))
     outside = np.where(in_head_sector(wave_angle) == 1.0, 0.0, degrees)
@@ -84,8 +83,7 @@ def stawave1(
 
     Returns
     -------
-    ndarray
-        [N]; zero where the wave height is zero, NaN where height or angle is unknown.
+    ndarray : [N]; zero where the wave height is zero, NaN where height or angle is unknown.
 
     Notes
     -----
@@ -267,8 +265,7 @@ def stawave2(
 
     Returns
     -------
-    ndarray
-        [N]; zero where the wave height is zero, NaN where something is unknown.
+    ndarray : [N]; zero where the wave height is zero, NaN where something is unknown.
 
     Notes
     -----
@@ -321,8 +318,7 @@ def stawave2_validity(
 
     Returns
     -------
-    list of RangeNote
-        Empty inside the range.
+    list of RangeNote : Empty inside the range.
     """
     length, wide = np.asarray(length_between_perpendiculars), np.asarray(breadth)
     ranges: dict[str, tuple[ArrayLike, float, float]] = {
@@ -347,8 +343,7 @@ def stawave1_validity(
 
     Returns
     -------
-    list of RangeNote
-        Empty inside the range.
+    list of RangeNote : Empty inside the range.
     """
     highest = 2.25 * float(np.sqrt(length_between_perpendiculars / 100.0))
     return range_notes("stawave1", {"wave height": (wave_height, 0.0, highest)})

@@ -262,8 +262,7 @@ def yu_2021_area(breadth: ArrayLike, *, draught_aft: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        Area [m2].
+    ndarray : Area [m2].
     """
     return np.asarray(0.8 * np.asarray(breadth, dtype=float) * np.asarray(draught_aft))
 

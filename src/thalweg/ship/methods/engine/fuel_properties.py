@@ -100,13 +100,11 @@ def fuel_named(name: str) -> Fuel:
 
     Returns
     -------
-    Fuel
-        The fuel.
+    Fuel : The fuel.
 
     Raises
     ------
-    InputError
-        For an unknown name, with near matches.
+    InputError : For an unknown name, with near matches.
     """
     key = name.casefold().replace(" ", "_").replace("-", "_")
     key = FUEL_ALIASES.get(key, key)
@@ -127,8 +125,7 @@ def co2_mass(fuel_mass: ArrayLike, *, carbon_factor: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        CO2.
+    ndarray : CO2.
 
     References
     ----------
@@ -147,8 +144,7 @@ def equal_energy_mass(fuel_mass: ArrayLike, *, of: Fuel, to: Fuel) -> FloatArray
 
     Returns
     -------
-    ndarray
-        Mass of ``to``, in the unit of ``fuel_mass``.
+    ndarray : Mass of ``to``, in the unit of ``fuel_mass``.
     """
     return as_float_array(fuel_mass) * of.heating_value / to.heating_value
 
@@ -171,8 +167,7 @@ def halem_cost(
 
     Returns
     -------
-    ndarray
-        Cost [currency].
+    ndarray : Cost [currency].
 
     References
     ----------

@@ -90,8 +90,7 @@ def base_sfoc(engine: str, fuel_kind: str, *, built: int = 2010) -> tuple[float,
 
     Raises
     ------
-    InputError
-        For an unknown engine, or a pair or year the study has no number for.
+    InputError : For an unknown engine, or a pair or year the study has no number for.
     """
     engines = {pair[0] for pair in BASE_SFOC}
     named, engine = engine, engine.casefold().replace(" ", "_").replace("-", "_")
@@ -130,8 +129,7 @@ def sfoc_load_factor(load: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        Factor [-]; least 1.003 at a load of 0.78.
+    ndarray : Factor [-]; least 1.003 at a load of 0.78.
 
     References
     ----------
@@ -165,8 +163,7 @@ def fuel_rate(
 
     Returns
     -------
-    ndarray
-        Fuel [kg/s]; 0 at zero power; NaN for negative power. Overload is not limited.
+    ndarray : Fuel [kg/s]; 0 at zero power; NaN for negative power. Overload is not limited.
 
     References
     ----------
@@ -196,8 +193,7 @@ def engines_needed(
 
     Returns
     -------
-    ndarray
-        Number of engines, 0 at zero power; NaN where all of them do not suffice.
+    ndarray : Number of engines, 0 at zero power; NaN where all of them do not suffice.
     """
     p = as_float_array(power)
     with np.errstate(invalid="ignore"):
@@ -256,8 +252,7 @@ def hotel_fuel_rate(power: ArrayLike, *, sfoc_g_kwh: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        Fuel [kg/s].
+    ndarray : Fuel [kg/s].
 
     References
     ----------

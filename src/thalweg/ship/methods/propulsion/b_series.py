@@ -91,13 +91,11 @@ def b_series_polynomials(
     Parameters
     ----------
     propeller : Diameter does not matter.
-    reynolds : Reynolds number of the chord at 0.75 R, above 2e6, for the correction of the source;
-        none by default, which is Rn = 2e6.
+    reynolds : none by default, which is Rn = 2e6.
 
     Returns
     -------
-    thrust, torque : ndarray
-        Four coefficients each.
+    thrust, torque : Four coefficients each.
 
     References
     ----------
@@ -130,8 +128,7 @@ def b_series(
 
     Returns
     -------
-    thrust, torque, efficiency : ndarray
-        K_T, K_Q and eta_0.
+    thrust, torque, efficiency : K_T, K_Q and eta_0.
     """
     ratio = np.asarray(advance, dtype=float)
     thrust, torque = b_series_polynomials(propeller, reynolds=reynolds)
@@ -149,14 +146,12 @@ def largest_advance(propeller: Propeller, *, reynolds: float | None = None) -> f
 
     Returns
     -------
-    float
-        The lowest J above zero at which K_T is zero.
+    float : The lowest J above zero at which K_T is zero.
 
     Raises
     ------
-    InputError
-        For a propeller so far outside the series that its polynomial has no such J, or no thrust
-        at the bollard.
+    InputError : For a propeller so far outside the series that its polynomial has no such J, or no
+        thrust at the bollard.
     """
     thrust, _ = b_series_polynomials(propeller, reynolds=reynolds)
     roots = np.roots(thrust[::-1])
@@ -203,8 +198,7 @@ def solve_advance(
 
     Returns
     -------
-    ndarray
-        J; NaN for a negative thrust or speed.
+    ndarray : J; NaN for a negative thrust or speed.
 
     References
     ----------
@@ -297,8 +291,7 @@ def operating_point(
 
     Returns
     -------
-    OperatingPoint
-        NaN for a negative thrust or speed.
+    OperatingPoint : NaN for a negative thrust or speed.
 
     References
     ----------
@@ -350,8 +343,7 @@ def polynomial_terms(quantity: SeriesQuantity) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        Shape ``(terms, 6)``: the coefficient, and the powers of J, P/D, A_E/A_0, Z and
+    ndarray : Shape ``(terms, 6)``: the coefficient, and the powers of J, P/D, A_E/A_0, Z and
         log10(Rn) - 0.301; read-only.
     """
     file = resources.files("thalweg.ship.methods").joinpath("data", "b_series_coefficients.csv")

@@ -28,8 +28,7 @@ def viscous_coefficient(
 
     Returns
     -------
-    ndarray
-        Viscous resistance coefficient [-].
+    ndarray : Viscous resistance coefficient [-].
     """
     line = np.asarray(friction_coefficient, dtype=float)
     return np.asarray(np.asarray(form_factor) * line + np.asarray(correlation))
@@ -133,8 +132,7 @@ def wake_fraction_twin(
 
     Returns
     -------
-    ndarray
-        Wake fraction [-].
+    ndarray : Wake fraction [-].
 
     References
     ----------
@@ -201,8 +199,7 @@ def thrust_deduction_twin(hull: HullForm, *, propeller_diameter: ArrayLike) -> F
 
     Returns
     -------
-    ndarray
-        Thrust deduction [-].
+    ndarray : Thrust deduction [-].
 
     References
     ----------
@@ -222,8 +219,7 @@ def relative_rotative_single(hull: HullForm, *, area_ratio: ArrayLike) -> FloatA
 
     Returns
     -------
-    ndarray
-        Relative rotative efficiency [-].
+    ndarray : Relative rotative efficiency [-].
 
     References
     ----------
@@ -243,8 +239,7 @@ def relative_rotative_twin(hull: HullForm, *, pitch_ratio: ArrayLike) -> FloatAr
 
     Returns
     -------
-    ndarray
-        Relative rotative efficiency [-].
+    ndarray : Relative rotative efficiency [-].
 
     References
     ----------
@@ -264,8 +259,7 @@ def hull_efficiency(wake_fraction: ArrayLike, thrust_deduction: ArrayLike) -> Fl
 
     Returns
     -------
-    ndarray
-        Hull efficiency [-].
+    ndarray : Hull efficiency [-].
     """
     deduction = np.asarray(thrust_deduction, dtype=float)
     return np.asarray((1.0 - deduction) / (1.0 - np.asarray(wake_fraction, dtype=float)))

@@ -95,8 +95,7 @@ def dynamic_force(
 
     Returns
     -------
-    ndarray
-        Force [N].
+    ndarray : Force [N].
 
     References
     ----------

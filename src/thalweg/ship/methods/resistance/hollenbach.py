@@ -208,9 +208,8 @@ def hollenbach_1998(
 
     Returns
     -------
-    HollenbachResistance
-        Components [N]. Outside the Froude range (`hollenbach_validity`) the curve is still
-        evaluated; the caller decides.
+    HollenbachResistance : Components [N]. Outside the Froude range (`hollenbach_validity`) the
+        curve is still evaluated; the caller decides.
 
     References
     ----------

@@ -64,8 +64,7 @@ def froude_length(
 
     Returns
     -------
-    ndarray
-        L_OS below L_OS / L = 1; L + 2/3 (L_OS - L) up to 1.1; 1.0667 L from there on [m].
+    ndarray : L_OS below L_OS / L = 1; L + 2/3 (L_OS - L) up to 1.1; 1.0667 L from there on [m].
 
     References
     ----------

@@ -70,8 +70,7 @@ def hull_form(
 
     Returns
     -------
-    HullForm
-        Of float arrays.
+    HullForm : Of float arrays.
     """
     given = (
         *(length_waterline, breadth, draught, displacement),
@@ -97,8 +96,7 @@ def wetted_surface(hull: HullForm, *, bulb_area: ArrayLike = 0.0) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        Wetted surface [m2].
+    ndarray : Wetted surface [m2].
 
     References
     ----------

@@ -216,8 +216,7 @@ def holtrop(
 
     Returns
     -------
-    HoltropResistance
-        Components [N].
+    HoltropResistance : Components [N].
 
     References
     ----------

@@ -30,8 +30,7 @@ def bulb_height(bulb_centre_height: ArrayLike, draught_fore: ArrayLike) -> Float
 
     Returns
     -------
-    ndarray
-        Height [m].
+    ndarray : Height [m].
     """
     return np.asarray(
         np.minimum(bulb_centre_height, HIGHEST_BULB_CENTRE * np.asarray(draught_fore))
@@ -56,8 +55,7 @@ def bulb_wave_factor(
 
     Returns
     -------
-    ndarray
-        Factor c2 [-].
+    ndarray : Factor c2 [-].
 
     References
     ----------
@@ -80,8 +78,7 @@ def transom_wave_factor(hull: HullForm, *, transom_area: ArrayLike) -> FloatArra
 
     Returns
     -------
-    ndarray
-        Factor c5 [-].
+    ndarray : Factor c5 [-].
     """
     section = hull.breadth * hull.draught * hull.midship_coefficient
     return 1.0 - 0.8 * np.asarray(transom_area, dtype=float) / section

@@ -67,8 +67,7 @@ def weighted_acceleration(parts: ArrayLike, encounter_frequency: ArrayLike) -> F
 
     Returns
     -------
-    ndarray
-        a_w [m/s2].
+    ndarray : a_w [m/s2].
 
     References
     ----------
@@ -111,8 +110,7 @@ def motion_sickness_percent_iso(
 
     Returns
     -------
-    ndarray
-        Percent, at most 100. Fitted for exposures of 20 minutes to 6 hours and up to 70 %.
+    ndarray : Percent, at most 100. Fitted for exposures of 20 minutes to 6 hours and up to 70 %.
 
     References
     ----------

@@ -11,7 +11,12 @@ from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY
 from thalweg.ship.methods.array_conversion import as_float_array
 from thalweg.ship.methods.seakeeping.ship_motions import MotionHull, encounter_ratio
-from thalweg.ship.methods.seakeeping.wave_spectra import jonswap, quadrature, spectral_moment
+from thalweg.ship.methods.seakeeping.wave_spectra import (
+    jonswap,
+    quadrature,
+    spectral_moment,
+    with_flat_seas,
+)
 
 #: r of the IS Code for a centre of gravity at the waterline.
 EFFECTIVE_WAVE_SLOPE: Final = 0.73
@@ -93,15 +98,12 @@ def roll_rms(
 
     Returns
     -------
-    ndarray
-        [rad], in the broadcast shape; zero without waves, NaN where a value is unknown.
+    ndarray : [rad], in the broadcast shape; zero without waves, NaN where a value is unknown.
     """
     hs, tp, angle, v = np.broadcast_arrays(
         *(as_float_array(values) for values in (height, period, wave_angle, speed))
     )
-    flat = hs == 0.0  # a flat sea has neither period nor direction
-    tp = np.where(flat & ~(tp > 0.0), 10.0, tp)
-    angle = np.where(flat & np.isnan(angle), 0.0, angle)
+    tp, angle = with_flat_seas(hs, period=tp, wave_angle=angle)
     w, weights = quadrature(tp)
     waves = jonswap(w, height=hs, period=tp)
     amplitude = roll_amplitude(

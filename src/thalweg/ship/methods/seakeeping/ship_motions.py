@@ -17,6 +17,7 @@ from thalweg.ship.methods.seakeeping.wave_spectra import (
     most_probable_maximum,
     quadrature,
     spectral_moment,
+    with_flat_seas,
 )
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
@@ -42,8 +43,7 @@ class MotionHull:
 
     Raises
     ------
-    InputError
-        When a dimension is not positive or the block coefficient is above one.
+    InputError : When a dimension is not positive or the block coefficient is above one.
     """
 
     length: float
@@ -81,8 +81,7 @@ def encounter_ratio(
 
     Returns
     -------
-    ndarray
-        Ratio [-]; negative where the ship overtakes the waves.
+    ndarray : Ratio [-]; negative where the ship overtakes the waves.
 
     References
     ----------
@@ -177,9 +176,8 @@ def vertical_motion(heave: ArrayLike, pitch: ArrayLike, *, forward: ArrayLike) -
 
     Returns
     -------
-    ndarray
-        Amplitude [m/m]: sqrt(heave^2 + (x pitch)^2). Roll is not modelled, so the point is taken
-        on the centre line.
+    ndarray : Amplitude [m/m]: sqrt(heave^2 + (x pitch)^2). Roll is not modelled, so the point is
+        taken on the centre line.
     """
     return np.hypot(
         as_float_array(heave), as_float_array(forward)[..., None] * as_float_array(pitch)
@@ -261,9 +259,8 @@ def ship_response(
 
     Returns
     -------
-    ShipResponse
-        Of the broadcast shape of the conditions. Zero height gives zero, whatever the period
-        and direction; unknown data give NaN.
+    ShipResponse : Of the broadcast shape of the conditions. Zero height gives zero, whatever the
+        period and direction; unknown data give NaN.
 
     Notes
     -----
@@ -278,9 +275,7 @@ def ship_response(
     hs, tp, angle, v, x = np.broadcast_arrays(
         *(as_float_array(values) for values in (height, period, wave_angle, speed, forward))
     )
-    flat = hs == 0.0  # a flat sea has neither period nor direction
-    tp = np.where(flat & ~(tp > 0.0), 10.0, tp)
-    angle = np.where(flat & np.isnan(angle), 0.0, angle)
+    tp, angle = with_flat_seas(hs, period=tp, wave_angle=angle)
     w, weights = quadrature(tp)
     waves = jonswap(w, height=hs, period=tp, peak_factor=peak_factor)
     heave, pitch = jensen_motions(

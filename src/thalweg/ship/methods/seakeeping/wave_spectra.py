@@ -35,14 +35,22 @@ def quadrature(period: ArrayLike) -> tuple[FloatArray, FloatArray]:
 
     Returns
     -------
-    tuple of ndarray
-        Frequencies [rad/s] and weights [rad/s], 48 on a new last axis, from 0.35 to 8 times the
-        peak frequency. Gauss-Legendre panels that end at the peak, where the spectrum has a
-        kink. NaN where the period is not positive.
+    tuple of ndarray : Frequencies [rad/s] and weights [rad/s], 48 on a new last axis, from 0.35 to
+        8 times the peak frequency. Gauss-Legendre panels that end at the peak, where the spectrum
+        has a kink. NaN where the period is not positive.
     """
     t = as_float_array(period)
     peak = 2.0 * np.pi / np.where(t > 0.0, t, np.nan)
     return peak[..., None] * _NODES, peak[..., None] * _WEIGHTS
+
+
+def with_flat_seas(
+    height: FloatArray, *, period: FloatArray, wave_angle: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return period and wave angle with some value where a flat sea has none."""
+    flat = height == 0.0
+    angle = np.where(flat & np.isnan(wave_angle), 0.0, wave_angle)
+    return np.where(flat & ~(period > 0.0), 10.0, period), angle
 
 
 def dnv_peak_factor(height: ArrayLike, period: ArrayLike) -> FloatArray:
@@ -57,8 +65,7 @@ def dnv_peak_factor(height: ArrayLike, period: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        gamma [-].
+    ndarray : gamma [-].
 
     References
     ----------
@@ -91,9 +98,8 @@ def jonswap(
 
     Returns
     -------
-    ndarray
-        S(w) [m2 s/rad]; 0 at zero frequency and for zero height, NaN where data are unknown or
-        the height is negative.
+    ndarray : S(w) [m2 s/rad]; 0 at zero frequency and for zero height, NaN where data are unknown
+        or the height is negative.
 
     Notes
     -----
@@ -137,8 +143,7 @@ def bretschneider(frequency: ArrayLike, *, height: ArrayLike, period: ArrayLike)
 
     Returns
     -------
-    ndarray
-        S(w) [m2 s/rad].
+    ndarray : S(w) [m2 s/rad].
 
     References
     ----------
@@ -158,8 +163,7 @@ def pierson_moskowitz_period(height: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        Peak period [s], for `bretschneider`.
+    ndarray : Peak period [s], for `bretschneider`.
 
     References
     ----------
@@ -181,8 +185,7 @@ def pierson_moskowitz_wind(height: ArrayLike) -> FloatArray:
 
     Returns
     -------
-    ndarray
-        Wind speed [m/s].
+    ndarray : Wind speed [m/s].
 
     References
     ----------
@@ -203,8 +206,7 @@ def spectral_moment(
 
     Parameters
     ----------
-    density : Spectral density over *wave* frequency; squared response times wave spectrum for a
-        response.
+    density : response.
     weights : Weights of the quadrature [rad/s].
     frequency : Frequency whose power is taken [rad/s]: the wave's, or the encounter frequency for a
         ship under way. Integrating over wave frequency avoids the poles of the encounter spectrum.
@@ -212,8 +214,7 @@ def spectral_moment(
 
     Returns
     -------
-    ndarray
-        m_n.
+    ndarray : m_n.
 
     References
     ----------
@@ -236,8 +237,7 @@ def most_probable_maximum(m0: ArrayLike, m2: ArrayLike, *, duration: ArrayLike) 
 
     Returns
     -------
-    ndarray
-        Amplitude in the unit of the response; 0 without response.
+    ndarray : Amplitude in the unit of the response; 0 without response.
 
     References
     ----------

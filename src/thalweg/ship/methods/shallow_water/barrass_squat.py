@@ -31,8 +31,7 @@ def waterway_width(breadth: ArrayLike, channel_width: ArrayLike | None) -> Float
 
     Returns
     -------
-    ndarray
-        Width [m].
+    ndarray : Width [m].
     """
     if channel_width is None:
         return OPEN_WATER_BREADTHS * as_float_array(breadth)
@@ -57,8 +56,7 @@ def blockage_ratio(
 
     Returns
     -------
-    ndarray
-        Blockage [-]; infinite where the ship fills the waterway.
+    ndarray : Blockage [-]; infinite where the ship fills the waterway.
 
     References
     ----------
@@ -93,8 +91,7 @@ def barrass_squat(
 
     Returns
     -------
-    ndarray
-        Squat s [m], 0 at rest; infinite where the ship fills the waterway.
+    ndarray : Squat s [m], 0 at rest; infinite where the ship fills the waterway.
 
     References
     ----------
@@ -132,8 +129,7 @@ def barrass_speed(
 
     Returns
     -------
-    ndarray
-        Speed through the water [m/s], the inverse of `barrass_squat`.
+    ndarray : Speed through the water [m/s], the inverse of `barrass_squat`.
 
     Notes
     -----
@@ -173,8 +169,7 @@ def barrass_2004_squat(
 
     Returns
     -------
-    ndarray
-        Squat s [m]; NaN where the depth is not positive.
+    ndarray : Squat s [m]; NaN where the depth is not positive.
 
     Notes
     -----
@@ -219,8 +214,7 @@ def barrass_2004_speed(
 
     Returns
     -------
-    ndarray
-        Speed through the water [m/s], the inverse of `barrass_2004_squat`.
+    ndarray : Speed through the water [m/s], the inverse of `barrass_2004_squat`.
 
     References
     ----------
@@ -258,8 +252,7 @@ def squat_validity(
 
     Returns
     -------
-    list of RangeNote
-        Empty when all are inside.
+    list of RangeNote : Empty when all are inside.
     """
     ratio = as_float_array(depth) / as_float_array(draught)
     return range_notes(

@@ -161,14 +161,12 @@ def karpov(
     ----------
     depth_froude : V / sqrt(g D). Above 1.0 the value at 1.0 is used: the fit ends there.
     depth_to_draught : D / T; above one.
-    raw_bands : True gives the printed bands with their steps and their values above one. False, the
-        default, takes each polynomial as the curve of the centre of its band, interpolates linearly
-        in D / T and lets alpha** not exceed one.
+    raw_bands : default, takes each polynomial as the curve of the centre of its band, interpolates
+        linearly in D / T and lets alpha** not exceed one.
 
     Returns
     -------
-    ndarray
-        NaN where D / T is not above one.
+    ndarray : NaN where D / T is not above one.
 
     References
     ----------
@@ -215,8 +213,7 @@ def karpov_speed(
 
     Returns
     -------
-    ndarray
-        NaN where the depth does not exceed the draught.
+    ndarray : NaN where the depth does not exceed the draught.
 
     References
     ----------
@@ -238,8 +235,7 @@ def karpov_validity(speed: ArrayLike, *, depth: ArrayLike) -> list[RangeNote]:
 
     Returns
     -------
-    list of RangeNote
-        Empty inside the range.
+    list of RangeNote : Empty inside the range.
     """
     froude = froude_number(speed, length=_positive(depth))
     return range_notes(
@@ -310,8 +306,7 @@ def lackenby_1963_deep_speed(
 
     Returns
     -------
-    ndarray
-        Speed in deep water [m/s].
+    ndarray : Speed in deep water [m/s].
 
     References
     ----------
@@ -337,8 +332,7 @@ def lackenby_1963_validity(
 
     Returns
     -------
-    list of RangeNote
-        Empty inside the range.
+    list of RangeNote : Empty inside the range.
     """
     loss = lackenby_1963_speed_loss(speed, depth=depth, midship_area=midship_area)
     return range_notes("lackenby_1963", {"speed loss": (loss, 0.0, 0.30)})

@@ -160,7 +160,6 @@ def dynamic_under_keel_clearance(
 
     Returns
     -------
-    ndarray
-        Clearance [m], negative where the ship would touch the bed.
+    ndarray : Clearance [m], negative where the ship would touch the bed.
     """
     return as_float_array(depth) - as_float_array(draught) - as_float_array(squat)

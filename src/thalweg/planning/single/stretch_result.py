@@ -1,4 +1,4 @@
-"""The result of planning one passage."""
+"""The result of planning one stretch."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from thalweg.search import SearchResult
 
 
 @dataclass(frozen=True)
-class PassageResult:
-    """Result of one passage.
+class StretchResult:
+    """Result of one stretch.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""One passage between two places: network, frozen sea, exact search, refinement, referee."""
+"""One stretch between two places: network, frozen sea, exact search, refinement, referee."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from thalweg.planning.single.exceeded_limits import (
     without_exceeding_edges,
 )
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
-from thalweg.planning.single.passage_result import PassageResult
 from thalweg.planning.single.route_candidates import (
-    passage_value,
     refine_track,
     refined_bound_path,
+    route_value,
     through_narrow_features,
     track_from_result,
 )
+from thalweg.planning.single.stretch_result import StretchResult
 from thalweg.planning.single.weather_gaps import (
     MAX_GAPS,
     check_times_known,
@@ -56,7 +56,7 @@ from thalweg.search.lower_bounds import Penalties
 
 #: Periods for which the sea is frozen, in multiples of the time along the geodesic.
 _HORIZONS = (2.5, 8.0, 30.0)
-#: Isochrones are drawn until this multiple of the passage's time.
+#: Isochrones are drawn until this multiple of the stretch's time.
 _ISOCHRONE_TIME_RATIO = 1.5
 _TWO_TIDES = 25 * HOUR
 #: Attempts while the referee finds a limit exceeded between the stations: how many times finer the
@@ -64,18 +64,17 @@ _TWO_TIDES = 25 * HOUR
 _ATTEMPTS = ((1, 0), (1, 2), (2, 0), (2, 3), (4, 0), (4, 4))
 
 
-def plan_passage(
+def plan_stretch(
     context: PlanningContext, start: Endpoint, goal: Endpoint, window: tuple[float, float]
-) -> PassageResult:
+) -> StretchResult:
     """Find the best route between two places, departing in a window of times.
 
     Raises
     ------
-    NoRouteError
-        If no route exists within the limits, the data and the latest arrival.
+    NoRouteError : If no route exists within the limits, the data and the latest arrival.
     """
     networks: dict[int, Network] = {}
-    passage: PassageResult | None = None
+    stretch: StretchResult | None = None
     refusal: NoRouteError | None = None
     gaps: tuple[Violation, ...] = ()
     rounds = 0
@@ -98,14 +97,14 @@ def plan_passage(
             denser = _lattice_fallback_allowed(context, networks[finer]) or _mesh_is_thinned(
                 context, networks[finer]
             )
-            if passage is None and not denser:
+            if stretch is None and not denser:
                 raise refusal from None
             if gaps:  # no way through known water: one finer network may find one
                 attempts = deque([(2, 0)] if finer == 1 else [])
             continue
-        if passage is None or tried.route.feasible:
-            passage = tried
-        if passage.route.feasible:
+        if stretch is None or tried.route.feasible:
+            stretch = tried
+        if stretch.route.feasible:
             break
         seen, gaps = gaps, (*gaps, *data_gaps_on_route(tried.route))
         if len(seen) < len(gaps) <= MAX_GAPS:
@@ -118,13 +117,13 @@ def plan_passage(
             if left is not networks[finer]:
                 rounds, networks[finer] = rounds + 1, left
                 attempts.appendleft((finer, step))
-    assert passage is not None  # raised above otherwise
-    if not passage.route.feasible:
-        check_times_known(passage.route, start, goal)
-    arrive, latest = passage.route.arrive, context.latest_arrival
+    assert stretch is not None  # raised above otherwise
+    if not stretch.route.feasible:
+        check_times_known(stretch.route, start, goal)
+    arrive, latest = stretch.route.arrive, context.latest_arrival
     if latest + 1.0 < arrive < math.inf:
         raise late_arrival_error(latest, arrive, window=window[1] > window[0])
-    return passage
+    return stretch
 
 
 def _lattice_fallback_allowed(context: PlanningContext, network: Network) -> bool:
@@ -165,8 +164,8 @@ def _search_and_refine(
     ends: tuple[Endpoint, Endpoint],
     window: tuple[float, float],
     limits: Limits,
-) -> PassageResult:
-    """Search, refine and bound the passage on one network with one set of limits."""
+) -> StretchResult:
+    """Search, refine and bound the stretch on one network with one set of limits."""
     frozen, result = _search(context, network, limits, window, ends)
     route = refine_track(context, track_from_result(network, result, context.setting), limits)
     if context.voyage.depart_window is None:
@@ -179,7 +178,7 @@ def _search_and_refine(
     notes += tuple(f"The referee finds a limit exceeded: {v}." for v in route.violations[:5])
     until = route.depart + _ISOCHRONE_TIME_RATIO * route.time_h * HOUR if route.feasible else None
     arrival = isochrones(context, network, frozen, route.depart, until)
-    return PassageResult(route, result, network, arrival, notes)
+    return StretchResult(route, result, network, arrival, notes)
 
 
 def isochrones(
@@ -201,8 +200,7 @@ def isochrones(
 
     Returns
     -------
-    ndarray (N,)
-        Arrivals [s since 1970-01-01T00:00Z]; inf where a node is not reached.
+    ndarray (N,) : Arrivals [s since 1970-01-01T00:00Z]; inf where a node is not reached.
     """
     everywhere = earliest_arrival(
         _ship_on_network(context, network, frozen, context.needs.limits),
@@ -316,7 +314,7 @@ def _bound(
     """Return the bound of the network, for its path: it is evidence and not proof."""
     known, penalties = None, None
     if route.feasible:
-        known = passage_value(context, route)
+        known = route_value(context, route)
         zones = context.chart.zones
         if zones.has_penalty:
             added = penalty_excess(route, context.voyage.objective, context.chart)
