@@ -44,12 +44,12 @@ from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, with_wind_speed
 from thalweg.sea import Sea
 from thalweg.search import ShipOnNetwork, earliest_arrival
-from thalweg.search.network_passage import NetworkPassage
 from thalweg.search.prepared_network import PreparedNetwork
 from thalweg.search.profile_search import ProfileSearch, prepare_profile_search
+from thalweg.search.timed_path import TimedPath
 from thalweg.ship import Ship
 
-#: Longest passages, in multiples of the time on the geodesic; the last with two tides more.
+#: Longest voyages, in multiples of the time on the geodesic; the last with two tides more.
 _HORIZONS: Final = (2.5, 8.0)
 _TWO_TIDES: Final = 25 * HOUR
 
@@ -179,30 +179,30 @@ class DepartureSeries:
         refusal: NoRouteError | None = None
         for horizon in _HORIZONS:
             sections = self._sections(at_sea, horizon)
-            passages, refusal = self._passages(sections, at_sea, at_sea + self._longest(horizon))
+            paths, refusal = self._timed_paths(sections, at_sea, at_sea + self._longest(horizon))
             last = float(sections[-1].frozen.stations.times[-1])
             if refusal is None or last >= self.context.data_end:
                 break
         if refusal is not None:
             raise refusal
-        arrive = passages[-1].arrive + self.approaches.inward_s
+        arrive = paths[-1].arrive + self.approaches.inward_s
         latest = self.context.latest_arrival
         if arrive > latest + 1.0:
             raise late_arrival_error(latest, arrive, window=False)
-        return SailedPath.of_passages(depart, arrive, self.networks, passages)
+        return SailedPath.of_paths(depart, arrive, self.networks, paths)
 
-    def _passages(
+    def _timed_paths(
         self, sections: Sequence[_Section], depart: float, latest: float
-    ) -> tuple[list[NetworkPassage], NoRouteError | None]:
-        """Return the passages of all sections, or the refusal of the one that has none."""
-        passages: list[NetworkPassage] = []
+    ) -> tuple[list[TimedPath], NoRouteError | None]:
+        """Return the paths of all sections, or the refusal of the one that has none."""
+        paths: list[TimedPath] = []
         for number, section in enumerate(sections):
-            passage = section.search.sail(depart, arrive_by=latest)
-            if not passage.found:
+            path = section.search.sail(depart, arrive_by=latest)
+            if not path.found:
                 return [], self._refusal(section, number, depart)
-            passages.append(passage)
-            depart = passage.arrive
-        return passages, None
+            paths.append(path)
+            depart = path.arrive
+        return paths, None
 
     def _refusal(self, section: _Section, number: int, depart: float) -> NoRouteError:
         """Return why a section has no route for a departure."""
@@ -224,7 +224,7 @@ class DepartureSeries:
         )  # fmt: skip
 
     def _longest(self, horizon: float) -> float:
-        """Return the longest passage that is searched [s]."""
+        """Return the longest path that is searched [s]."""
         lat, lon = np.array([(end.lat, end.lon) for end in self.ends]).T
         way = float(distance(lat[:-1], lon[:-1], lat[1:], lon[1:]).sum())
         usual = way / float(self.context.ship.speeds[self.context.setting])
@@ -285,13 +285,13 @@ class DepartureSeries:
         calm = replace(context, sea=Sea.layered(Sea.calm(), context.sea))
         in_calm = replace(self, context=calm, _windows={})
         depart = context.voyage.earliest_departure
-        passages, refusal = in_calm._passages(
+        paths, refusal = in_calm._timed_paths(
             in_calm._sections(depart, _HORIZONS[0]), depart, math.inf
         )
         if refusal is not None:
             raise refusal
         lines = []
-        for network, one in zip(self.networks, passages):
+        for network, one in zip(self.networks, paths):
             lat, lon = network.stations.lat[one.nodes], network.stations.lon[one.nodes]
             places = list(zip(lat.tolist(), lon.tolist()))
             lines.append(fixed_route(context.chart, places, spacing=math.inf))

@@ -25,7 +25,7 @@ from thalweg.route.indicator_columns import (
     LAND_DISTANCE_CAP,
     PERCENT_PER_DOSE,
 )
-from thalweg.search.network_passage import NetworkPassage
+from thalweg.search.timed_path import TimedPath
 from thalweg.ship import Ship
 from thalweg.ship.comfort.onboard_motions import onboard_motions
 from thalweg.ship.condition_variables import (
@@ -67,19 +67,19 @@ class SailedPath:
     leave: FloatArray
 
     @classmethod
-    def of_passages(
+    def of_paths(
         cls,
         depart: float,
         arrive: float,
         networks: Sequence[Network],
-        passages: Sequence[NetworkPassage],
+        paths: Sequence[TimedPath],
     ) -> SailedPath:
-        """Return the path of passages that follow each other."""
+        """Return the path of several that follow each other."""
         lat: list[FloatArray] = []
         lon: list[FloatArray] = []
         reach: list[FloatArray] = []
         leave: list[FloatArray] = []
-        for number, (network, one) in enumerate(zip(networks, passages)):
+        for number, (network, one) in enumerate(zip(networks, paths)):
             new = slice(1 if number else 0, None)
             lat.append(network.stations.lat[one.nodes][new])
             lon.append(network.stations.lon[one.nodes][new])
