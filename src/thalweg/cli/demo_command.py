@@ -47,24 +47,24 @@ def run(arguments: argparse.Namespace) -> int:
     folder = make_folder(arguments.out)
     arguments.progress("reading the ship, the storm and the coastline")
     ship, sea, chart = Ship.load("handysize-bulker"), Sea.storm(), Chart.gshhg("i")
-    found = make_plan(demo_voyage(), ship=ship, sea=sea, chart=chart, progress=arguments.progress)
+    plan = make_plan(demo_voyage(), ship=ship, sea=sea, chart=chart, progress=arguments.progress)
     arguments.progress("evaluating the route that ignores the weather")
-    blind = weather_blind(found, ship=ship, sea=sea, chart=chart)
+    blind = weather_blind(plan, ship=ship, sea=sea, chart=chart)
     arguments.progress("writing the files and drawing the plots")
-    files = found.write(folder, beside=blind)
+    files = plan.write(folder, beside=blind)
     if arguments.json:
-        print(found.to_json())
+        print(plan.to_json())
         return 0
-    print_plan(found, files, verbose=arguments.verbose)
-    _print_comparison(found, blind)
+    print_plan(plan, files, verbose=arguments.verbose)
+    _print_comparison(plan, blind)
     return 0
 
 
-def _print_comparison(found: Plan, blind: Route) -> None:
+def _print_comparison(plan: Plan, blind: Route) -> None:
     waves = "sea_surface_wave_significant_height"
     # the approach from the berth has no waves
-    worst, worst_blind = (float(np.nanmax(route.samples[waves])) for route in (found.best, blind))
+    worst, worst_blind = (float(np.nanmax(route.samples[waves])) for route in (plan.best, blind))
     print(
         f"The route that ignores the storm takes {blind.time_h:.1f} h in the same weather and "
-        f"meets waves of {worst_blind:.1f} m; this one {found.best.time_h:.1f} h and {worst:.1f} m."
+        f"meets waves of {worst_blind:.1f} m; this one {plan.best.time_h:.1f} h and {worst:.1f} m."
     )

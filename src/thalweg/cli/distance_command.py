@@ -76,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
         names = [name.strip() for text in arguments.avoid for name in text.split(",")]
         avoid = tuple(name for name in names if name and name != "none")
     arguments.progress("finding the shortest way")
-    found = sea_distance(
+    way = sea_distance(
         arguments.start,
         arguments.goal,
         via=arguments.via,
@@ -85,26 +85,26 @@ def run(arguments: argparse.Namespace) -> int:
         offing_nm=arguments.offing,
         draught_m=arguments.draught,
     )
-    days = None if arguments.speed is None else found.days(arguments.speed)
+    days = None if arguments.speed is None else way.days(arguments.speed)
     if arguments.json:
         more = {} if days is None else {"speed_kn": arguments.speed, "days": days}
-        print(json.dumps(found.to_dict() | more, indent=2, allow_nan=False))
+        print(json.dumps(way.to_dict() | more, indent=2, allow_nan=False))
     else:
-        _print_distance(found, arguments.speed, days)
+        _print_distance(way, arguments.speed, days)
         if arguments.draught is None:
             print("  shoals and draught were not considered: give --draught for a ship")
     return SUCCESS
 
 
-def _print_distance(found: SeaDistance, speed: float | None, days: float | None) -> None:
-    print(f"{found.start} to {found.goal}: {found.nm:,.0f} nm")
+def _print_distance(way: SeaDistance, speed: float | None, days: float | None) -> None:
+    print(f"{way.start} to {way.goal}: {way.nm:,.0f} nm")
     if days is not None:
         print(f"  {days:.1f} days ({24.0 * days:.1f} h) at {speed:g} kn, canals at that speed")
-    if found.canals:
-        print(f"  canals: {', '.join(found.canals)}")
-    if found.straits:
-        print(f"  passes: {', '.join(found.straits)}")
-    for name, length in found.approaches:
+    if way.canals:
+        print(f"  canals: {', '.join(way.canals)}")
+    if way.straits:
+        print(f"  passes: {', '.join(way.straits)}")
+    for name, length in way.approaches:
         print(f"  approach of {name}: {length / NAUTICAL_MILE:.1f} nm, part of the distance")
-    for note in found.notes:
+    for note in way.notes:
         print(f"  note: {note}")

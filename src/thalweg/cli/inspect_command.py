@@ -62,27 +62,27 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _print_inspection(found: dict[str, Any]) -> None:
-    if found["members"]:
-        print(f"Ensemble of {found['members']} members; the first is shown")
+def _print_inspection(inspection: dict[str, Any]) -> None:
+    if inspection["members"]:
+        print(f"Ensemble of {inspection['members']} members; the first is shown")
     print("Recognised")
-    for row in _merged(found["recognised"], ("file_variables", "units", "how")):
+    for row in _merged(inspection["recognised"], ("file_variables", "units", "how")):
         names = ", ".join(row["file_variables"])
         print(f"  {names} [{row['units']}]: {row['how']}")
         for variable in row["variables"]:
             print(f"    {variable}")
     print("Coverage, and values in SI at up to 8 times")
-    for row in _merged(found["coverage"], _EXTENT_KEYS):
+    for row in _merged(inspection["coverage"], _EXTENT_KEYS):
         print(f"  {row['source']}: {_extent_text(row)}")
         for variable in row["variables"]:
-            missing = found["missing_fraction"].get(f"{row['source']}: {variable}", 0.0)
+            missing = inspection["missing_fraction"].get(f"{row['source']}: {variable}", 0.0)
             share = f", no value at {100 * missing:.1f} % of the positions" if missing else ""
-            pair = found["ranges"].get(f"{row['source']}: {variable}")
+            pair = inspection["ranges"].get(f"{row['source']}: {variable}")
             values = f" {pair[0]:.4g} to {pair[1]:.4g}" if pair else ""
             print(f"    {variable}{values}{share}")
-    for gap in found["gaps"]:
+    for gap in inspection["gaps"]:
         print(f"Gap: no data from {gap['after']} to {gap['before']}")
-    for row in found["ignored"]:
+    for row in inspection["ignored"]:
         print(f"Ignored {row['variable']}: {row['reason']}")
 
 

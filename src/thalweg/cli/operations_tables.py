@@ -73,22 +73,22 @@ def print_track_analysis(analysis: TrackAnalysis) -> None:
     """Print the activities, cycles and speeds of a track, and the models compared with it."""
     from rich.console import Console
 
-    found, console = analysis.as_dict(), Console(markup=False)  # names may contain brackets
+    data, console = analysis.as_dict(), Console(markup=False)  # names may contain brackets
     console.print(
-        f"{found['vessel'] or 'ship'}: {found['start']} to {found['end']}, "
-        f"{found['positions']} positions, {found['cycles']['count']} complete cycles "
-        f"({found['cycles']['per_week']:.1f} per week)"
+        f"{data['vessel'] or 'ship'}: {data['start']} to {data['end']}, "
+        f"{data['positions']} positions, {data['cycles']['count']} complete cycles "
+        f"({data['cycles']['per_week']:.1f} per week)"
     )
-    for note in found["notes"]:
+    for note in data["notes"]:
         console.print(f"note: {note}", soft_wrap=True, highlight=False)
-    _print_activities(console, found)
-    _print_models(console, found)
+    _print_activities(console, data)
+    _print_models(console, data)
 
 
-def _print_activities(console: Any, found: dict[str, Any]) -> None:
+def _print_activities(console: Any, analysis: dict[str, Any]) -> None:
     columns = ("activity", "count", "mean, h", "std, h", "sum, h", "share")
     table = new_table("activities", columns, left=("activity",))
-    for row in found["activities"]:
+    for row in analysis["activities"]:
         table.add_row(
             row["activity"],
             str(row["count"]),
@@ -96,21 +96,21 @@ def _print_activities(console: Any, found: dict[str, Any]) -> None:
             f"{100.0 * row['share']:.1f} %",
         )
     console.print(table)
-    for kind, row in found["speeds"].items():
+    for kind, row in analysis["speeds"].items():
         deviation = _two_digits(row["std_kn"])
         console.print(f"{kind}: {row['mean_kn']:.2f} ± {deviation} kn over {row['legs']} legs")
 
 
-def _print_models(console: Any, found: dict[str, Any]) -> None:
+def _print_models(console: Any, analysis: dict[str, Any]) -> None:
     title = "modelled against measured speeds of the legs"
     columns = ("model", "legs", "slope", "intercept, kn", "r2", "RMSE_rel, %")
     table = new_table(title, columns, left=("model",))
-    for name, row in found["models"].items():
+    for name, row in analysis["models"].items():
         intercept = None if row["intercept"] is None else row["intercept"] / KNOT
         values = (row["slope"], intercept, row["r2"], row["rmse_rel"])
         table.add_row(name, str(row["count"]), *(_two_digits(v) for v in values))
     console.print(table)
-    fit = found["calibration"]
+    fit = analysis["calibration"]
     if fit is not None:
         speeds = ", ".join(f"{kind} {v / KNOT:.2f} kn" for kind, v in fit["speeds"].items())
         console.print(

@@ -225,7 +225,7 @@ def run(arguments: argparse.Namespace) -> int:
     announce_compilation(search=True, quiet=arguments.quiet)
     warm_up.start_compiling("thalweg.planning.compile_kernels")
     try:
-        found = plan(
+        made = plan(
             voyage,
             ship=ship,
             sea=sea,
@@ -240,15 +240,15 @@ def run(arguments: argparse.Namespace) -> int:
         return INTERRUPTED
     if arguments.verbose or arguments.json:
         arguments.progress("finding other ways")
-        found = found.with_alternatives()
+        made = made.with_alternatives()
     if arguments.out:
         arguments.progress("writing the files and drawing the plots")
-    files = found.write(arguments.out, files_as) if arguments.out else []
+    files = made.write(arguments.out, files_as) if arguments.out else []
     if arguments.json:
-        print(found.to_json())
+        print(made.to_json())
     else:
-        print_plan(found, files, verbose=arguments.verbose)
-    return SUCCESS if found.best.feasible else NO_ROUTE
+        print_plan(made, files, verbose=arguments.verbose)
+    return SUCCESS if made.best.feasible else NO_ROUTE
 
 
 def _voyage(arguments: argparse.Namespace, sea: Sea, ship: Ship) -> Voyage:

@@ -105,20 +105,16 @@ def parse_yaml(text: str, kind: str, source: str) -> Any:
     """
     try:
         return yaml.load(text, Loader=StrictLoader)
-    except yaml.YAMLError as problem:
-        mark = problem.problem_mark if isinstance(problem, yaml.MarkedYAMLError) else None
-        what = problem.problem if isinstance(problem, yaml.MarkedYAMLError) else None
-        line = f" (line {mark.line + 1})" if mark else ""
+    except (yaml.YAMLError, RecursionError, ValueError) as problem:
+        line, what = "", str(problem)[:120]
+        if isinstance(problem, yaml.YAMLError):
+            what = "it is not YAML"
+        if isinstance(problem, yaml.MarkedYAMLError):
+            line = f" (line {problem.problem_mark.line + 1})" if problem.problem_mark else ""
+            what = problem.problem or what
         raise InputError(
-            f"The {kind} file {source} cannot be read{line}: {what or 'it is not YAML'}.",
+            f"The {kind} file {source} cannot be read{line}: {what}.",
             f"{kind.capitalize()} files are YAML: 'key: value' lines, sections indented by spaces.",
-            "Correct that line.",
-            file=source,
-        ) from None
-    except (RecursionError, ValueError) as problem:
-        raise InputError(
-            f"The {kind} file {source} cannot be read: {str(problem)[:120]}.",
-            f"{kind.capitalize()} files are YAML: 'key: value' lines, sections indented by spaces.",
-            "Correct it.",
+            "Correct that line." if line else "Correct it.",
             file=source,
         ) from None

@@ -119,7 +119,7 @@ def _evaluate_in_all_members(
 ) -> list[EnsembleCandidate]:
     """Evaluate the routes of a plan in all members."""
     terms = priced_objective(voyage, ship).terms if voyage.chooses_speeds else None
-    found = []
+    results = []
     for index in _routes_to_evaluate(plan):
         route = plan.routes[index]
         distribution = evaluate_members(
@@ -131,7 +131,7 @@ def _evaluate_in_all_members(
             min_ukc=required_under_keel_clearance(voyage, ship),
         )
         figure = _chosen_figure(plan)
-        found.append(
+        results.append(
             EnsembleCandidate(
                 member,
                 plan,
@@ -144,7 +144,7 @@ def _evaluate_in_all_members(
                 _over_all_members(distribution, figure, measure),
             )
         )
-    return found
+    return results
 
 
 def _routes_to_evaluate(plan: Plan) -> list[int]:

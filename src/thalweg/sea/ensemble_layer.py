@@ -145,15 +145,10 @@ def select_member(layers: Sequence[Layer], index: int) -> tuple[Layer, ...]:
             "Sea.ensemble.",
             "Use the sea as it is.",
         )
-    if isinstance(index, bool) or not isinstance(index, (int, np.integer)):
+    whole = isinstance(index, (int, np.integer)) and not isinstance(index, bool)
+    if not (whole and 0 <= index < count):
         raise InputError(
-            f"The member number {index!r} is not an integer.",
-            f"Members are numbered 0 to {count - 1}.",
-            "Give an integer.",
-        )
-    if not 0 <= index < count:
-        raise InputError(
-            f"There is no member {index}.",
+            f"There is no member {index!r}.",
             f"Members are numbered 0 to {count - 1}.",
             "Choose one of them.",
         )

@@ -134,16 +134,16 @@ def _value_ranges(layer: GridLayer) -> dict[str, tuple[float, float, float]]:
     rows, columns = layer.grid.shape
     count = max(1, layer.axis.times.size)
     levels = np.unique(np.linspace(0, count - 1, SAMPLED_TIMES).round().astype(int))
-    found: dict[str, list[tuple[float, float, float]]] = {}
+    ranges: dict[str, list[tuple[float, float, float]]] = {}
     for level in levels:
         window = GridWindow(int(level), int(level) + 1, 0, rows, 0, columns)
         for quantity in layer.quantities:
             for name, values in quantity.read(window, columns).items():
                 low, high = np.nanmin(values, initial=np.inf), np.nanmax(values, initial=-np.inf)
                 share = float(np.isnan(values).mean())
-                found.setdefault(name, []).append((share, float(low), float(high)))
+                ranges.setdefault(name, []).append((share, float(low), float(high)))
     return {
         name: (float(np.mean(shares)), min(lows), max(highs))
-        for name, values in found.items()
+        for name, values in ranges.items()
         for shares, lows, highs in [tuple(zip(*values))]
     }

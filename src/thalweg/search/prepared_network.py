@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import AXIS_DEPTH, BED_DEPTH, LIMIT_REQUIRED_DEPTH, WATER_LEVEL
 from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays
@@ -19,7 +18,7 @@ from thalweg.kernels.leg.table_lookup import TableArrays, table_value
 from thalweg.kernels.search import repeated_search as kernel
 from thalweg.kernels.search import tidal_intervals
 from thalweg.kernels.search.field_bounds import largest_current
-from thalweg.search.search_problem import network_arrays, sea_arrays
+from thalweg.search.search_problem import check_fields_of_network, network_arrays, sea_arrays
 
 if TYPE_CHECKING:
     from thalweg.network.network import Network
@@ -73,13 +72,7 @@ class PreparedNetwork:
         InputError
             If the fields do not belong to the network.
         """
-        stations = len(network.stations.lat)
-        if fields.values.shape[0] != stations:
-            raise InputError(
-                f"The fields have {fields.values.shape[0]} stations, the network {stations}.",
-                "Fields belong to the network they were frozen for.",
-                "Freeze the sea at the stations of this network.",
-            )
+        check_fields_of_network(network, len(fields.values))
         order = np.argsort(network.graph.target, kind="stable").astype(np.int32)
         ptr = np.concatenate(
             [[0], np.cumsum(np.bincount(network.graph.target, minlength=network.n_nodes))]

@@ -33,6 +33,7 @@ from thalweg.search.restricted_waiting import (
 from thalweg.search.search_problem import (
     ROUNDING_FACTOR,
     SearchProblem,
+    check_two_nodes,
     ship_arrays,
     top_speed_through_water,
 )
@@ -237,39 +238,39 @@ class ProfileSearch:
         times = np.asarray(departures, float).ravel()
         if times.size == 0 or not np.all(np.isfinite(times)) or np.any(np.diff(times) <= 0.0):
             raise InputError("The departures do not ascend.", "Times in order [s].", "Sort them.")
-        found: dict[int, TimedPath] = {}
+        paths: dict[int, TimedPath] = {}
         waits = self.wait and bool(self.prepared.network.can_wait[self.ends[0]])
         if waits and self._largest_penalty == 1.0:
-            self._halve(times, found, arrive_by)
+            self._halve(times, paths, arrive_by)
         else:
             for k, t in enumerate(times):
-                found[k] = self.sail(t, arrive_by=arrive_by)
-        searched = len(found)
+                paths[k] = self.sail(t, arrive_by=arrive_by)
+        searched = len(paths)
         following = len(times) - 1
         for k in range(len(times) - 1, -1, -1):
-            if k in found:
+            if k in paths:
                 following = k
             else:
-                found[k] = with_earlier_departure(found[following], float(times[k]))
-        return Profile(tuple(found[k] for k in range(len(times))), searched)
+                paths[k] = with_earlier_departure(paths[following], float(times[k]))
+        return Profile(tuple(paths[k] for k in range(len(times))), searched)
 
-    def _halve(self, times: FloatArray, found: dict[int, TimedPath], arrive_by: float) -> None:
+    def _halve(self, times: FloatArray, paths: dict[int, TimedPath], arrive_by: float) -> None:
         last = len(times) - 1
         for k in {0, last}:
-            found[k] = self.sail(times[k], arrive_by=arrive_by)
+            paths[k] = self.sail(times[k], arrive_by=arrive_by)
         open_ranges = [(0, last)] if last > 0 else []
         while open_ranges:
             low, high = open_ranges.pop()
-            if high - low < 2 or arrive_together(found[low], found[high]):
+            if high - low < 2 or arrive_together(paths[low], paths[high]):
                 continue
             middle = (low + high) // 2
-            later = found[high]
+            later = paths[high]
             known = (
                 later.arrive
                 if later.arrive - times[middle] < _longest_useful_time(self)
                 else math.inf
             )
-            found[middle] = self.sail(times[middle], known=known, arrive_by=arrive_by)
+            paths[middle] = self.sail(times[middle], known=known, arrive_by=arrive_by)
             open_ranges += [(low, middle), (middle, high)]
 
 
@@ -309,13 +310,7 @@ def prepare_profile_search(
     InputError
         If a node or the setting does not exist, or the ship has no speed.
     """
-    count = len(prepared.network.can_wait)
-    if not (0 <= start < count and 0 <= goal < count and start != goal):
-        raise InputError(
-            f"There are no paths from node {start} to node {goal}.",
-            f"The network has nodes 0 to {count - 1}; start and goal must differ.",
-            "Give two nodes of this network.",
-        )
+    check_two_nodes(len(prepared.network.can_wait), start, goal)
     ship = ship_arrays(table, setting, limits)
     fastest, from_field = top_speed_through_water(prepared.sea, top_speed)
     return ProfileSearch(

@@ -254,13 +254,7 @@ def make_search_problem(
     network, limits = ship_on_network.network, ship_on_network.limits
     ship = ship_arrays(ship_on_network.table, ship_on_network.setting, limits)
     sea = sea_arrays(ship_on_network.fields, tides=limits.depth_checked)
-    stations = len(network.stations.lat)
-    if sea.values.shape[0] != stations:
-        raise InputError(
-            f"The fields have {sea.values.shape[0]} stations, the network {stations}.",
-            "Fields belong to the network they were frozen for.",
-            "Freeze the sea at the stations of this network.",
-        )
+    check_fields_of_network(network, len(sea.values))
     fastest, _ = top_speed_through_water(sea, ship_on_network.top_speed)
     arrays = network_arrays(network)
     if ends is not None:
@@ -282,3 +276,23 @@ def canal_speed(network: Network) -> float:
     lat, lon = network.stations.lat, network.stations.lon
     away = distance(lat[tail], lon[tail], lat[head], lon[head])
     return float(np.max(away / network.edges.fixed_time[edge]))
+
+
+def check_fields_of_network(network: Network, stations: int) -> None:
+    """Raise `InputError` unless frozen fields have as many stations as a network."""
+    if stations != len(network.stations.lat):
+        raise InputError(
+            f"The fields have {stations} stations, the network {len(network.stations.lat)}.",
+            "Fields belong to the network they were frozen for.",
+            "Freeze the sea at the stations of this network.",
+        )
+
+
+def check_two_nodes(n_nodes: int, start: int, goal: int) -> None:
+    """Raise `InputError` unless start and goal are two nodes of a network."""
+    if not (0 <= start < n_nodes and 0 <= goal < n_nodes and start != goal):
+        raise InputError(
+            f"A search from node {start} to node {goal} is not possible.",
+            f"The network has nodes 0 to {n_nodes - 1}; start and goal must differ.",
+            "Give two nodes of this network.",
+        )

@@ -231,20 +231,20 @@ def _wind(raw: Mapping[str, FloatArray], heading: ArrayLike | None) -> dict[str,
 
 
 def _waves(raw: Mapping[str, FloatArray], heading: ArrayLike | None) -> dict[str, ArrayLike]:
-    found: dict[str, ArrayLike] = {}
+    waves: dict[str, ArrayLike] = {}
     if WAVE_HEIGHT in raw:
-        found["wave_height"] = raw[WAVE_HEIGHT]
+        waves["wave_height"] = raw[WAVE_HEIGHT]
     if WAVE_PERIOD in raw:
-        found["wave_period"] = raw[WAVE_PERIOD]
+        waves["wave_period"] = raw[WAVE_PERIOD]
     if heading is None:
-        return found
+        return waves
     if WAVE_EAST in raw and WAVE_NORTH in raw:
-        found["wave_angle"] = relative_angle(-raw[WAVE_EAST], -raw[WAVE_NORTH], heading)
+        waves["wave_angle"] = relative_angle(-raw[WAVE_EAST], -raw[WAVE_NORTH], heading)
     elif WAVE_FROM in raw or WAVE_TO in raw:
         degrees = raw[WAVE_FROM] if WAVE_FROM in raw else raw[WAVE_TO] + 180.0
         angle = np.radians(degrees)
-        found["wave_angle"] = relative_angle(np.sin(angle), np.cos(angle), heading)
-    return found
+        waves["wave_angle"] = relative_angle(np.sin(angle), np.cos(angle), heading)
+    return waves
 
 
 def _depth(raw: Mapping[str, FloatArray]) -> dict[str, ArrayLike]:

@@ -307,21 +307,21 @@ def _missing_results(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]
 
     if ship.file.is_empty:
         return []
-    found: list[str] = []
+    missing: list[str] = []
     if ship.is_resistance_based and not known("brake_power_kw"):
-        return found  # it is the water or the weather that leaves no number
+        return missing  # it is the water or the weather that leaves no number
     if not known("brake_power_kw"):
-        found.append("power: models.calm_water with a hull, table.power_kw, or the cubic law")
+        missing.append("power: models.calm_water with a hull, table.power_kw, or the cubic law")
     if not known("fuel_kg_per_h"):
         keys = "engine.type with fuel.type, engine.sfoc_g_per_kwh, or table.fuel_t_per_day"
-        found.append(f"fuel: {keys}" if known("brake_power_kw") else "fuel: power, or a table")
+        missing.append(f"fuel: {keys}" if known("brake_power_kw") else "fuel: power, or a table")
     elif not known("co2_kg_per_h"):
-        found.append("CO2: fuel.type or fuel.carbon_factor")
+        missing.append("CO2: fuel.type or fuel.carbon_factor")
     elif not known("cii"):
-        found.append("CII: hull.deadweight_t, or hull.gross_tonnage for some types of ship")
+        missing.append("CII: hull.deadweight_t, or hull.gross_tonnage for some types of ship")
     elif all(row["cii"] is None or row["cii"]["rating_2026"] is None for row in rows):
-        found.append("rating of the CII: hull.type as the regulation has it")
-    return found
+        missing.append("rating of the CII: hull.type as the regulation has it")
+    return missing
 
 
 def _settings(ship: Ship, conditions: Conditions) -> list[dict[str, Any]]:

@@ -100,7 +100,7 @@ class ShipInSeaway:
         )
         weighted = weighted_acceleration(middle.acceleration_parts, middle.encounter_frequency)
         dose = motion_sickness_dose(weighted, duration=EXPOSURE_TIME)
-        found: Mapping[str, Any] = {
+        values: Mapping[str, Any] = {
             "significant_heave_m": middle.heave.significant_amplitude,
             "significant_pitch_deg": np.degrees(middle.pitch.significant_amplitude),
             "largest_heave_3h_m": middle.heave.most_probable_maximum(),
@@ -109,7 +109,7 @@ class ShipInSeaway:
             "motion_sickness_2h_percent": motion_sickness_percent_iso(dose),
         }
         notes = [str(note) for note in motions_validity(speed, hull)]
-        return {k: _number(v) for k, v in found.items()}, [*notes, *self._dangers(speed, hull)]
+        return {k: _number(v) for k, v in values.items()}, [*notes, *self._dangers(speed, hull)]
 
     def _dangers(self, speed: float, hull: MotionHull) -> list[str]:
         """The warnings of MSC.1/Circ.1228 at a speed [m/s]."""

@@ -49,24 +49,24 @@ def assumed_peak_period(height: float) -> float:
 
 def weather_assumptions(ship: Ship, weather: Mapping[str, float]) -> list[str]:
     """Return what was assumed for weather that was given in part."""
-    height, found = weather.get("wave_height", 0.0), []
+    height, assumptions = weather.get("wave_height", 0.0), []
     if height > 0.0 and "wave_period" not in weather:
         period = assumed_peak_period(height)
-        found.append(f"a peak period of {period:.3g} s, of a fully developed sea")
+        assumptions.append(f"a peak period of {period:.3g} s, of a fully developed sea")
     wind = _wind_of_waves(ship, weather)
     if wind:
-        found.append(
+        assumptions.append(
             f"a wind of {wind['wind_speed']:.3g} m/s with the waves, that of a fully developed "
             "sea: this ship's speed loss reads the wind alone"
         )
     for size, angle, words in _DIRECTIONAL_WEATHER:
         if weather.get(size, 0.0) > 0.0 and angle not in weather:
-            found.append(f"{words} from ahead")
+            assumptions.append(f"{words} from ahead")
         if size not in weather and angle in weather and not (wind and words == "wind"):
-            found.append(f"no {words}, since only a direction is given")
+            assumptions.append(f"no {words}, since only a direction is given")
     if "wave_height" not in weather and "wave_period" in weather:
-        found.append("no waves, since only a period is given")
-    return found
+        assumptions.append("no waves, since only a period is given")
+    return assumptions
 
 
 #: names of weather, and the conditions of a ship model that depend on it

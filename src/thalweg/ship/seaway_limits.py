@@ -14,6 +14,7 @@ from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
 from thalweg.kernels.leg import wave_limits as places
 from thalweg.ship.hull.hull import Hull, required_particulars
+from thalweg.ship.hull.hull_checks import check_aboard
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.seakeeping.motion_sickness import (
     MIXED_ADULT_SUSCEPTIBILITY,
@@ -287,13 +288,9 @@ def build_safety_limits(given: LimitsSection, hull: Hull, loading: Loading) -> S
         for limit in limits
     ]
     for limit in middle:
-        if abs(limit.forward) > 0.75 * size.length:
-            raise InputError(
-                f"A limit is set {limit.forward:g} m ahead of midship, off the ship.",
-                f"Half of its length is {0.5 * size.length:g} m; abaft midship is negative.",
-                "Correct limits.acceleration_at_m or limits.motion_sickness_at_m.",
-                key="limits.acceleration_at_m",
-            )
+        remedy = "Correct limits.acceleration_at_m or limits.motion_sickness_at_m."
+        key = "limits.acceleration_at_m"
+        check_aboard("A limit is set", limit.forward, size.length, remedy=remedy, key=key)
     situation_limits = _dangerous_situation_limits(given, dangers, hull, size) if dangers else None
     return SafetyLimits(size, situation_limits, tuple(middle))
 

@@ -194,18 +194,18 @@ def _route(arguments: argparse.Namespace) -> int:
     return SUCCESS
 
 
-def _print_route(found: HistoryRoute) -> None:
-    print(f"{found.start.name} to {found.goal.name}: {found.nm:,.0f} nm")
-    p10, p50, p90 = (time / HOUR for time in found.duration)
+def _print_route(route: HistoryRoute) -> None:
+    print(f"{route.start.name} to {route.goal.name}: {route.nm:,.0f} nm")
+    p10, p50, p90 = (time / HOUR for time in route.duration)
     if p50 == p50:  # known
         print(f"  {p50:.1f} h under way at sea (p10 {p10:.1f}, p90 {p90:.1f})")
-    print(f"  confidence {found.confidence}: at least {found.voyages} voyages on every arc")
-    if found.globe_share > 0.0:
-        print(f"  {100.0 * found.globe_share:.0f} % of the length without tracks")
-    if found.eca_share == found.eca_share:
-        print(f"  {100.0 * found.eca_share:.0f} % of the length in emission control areas")
-    if found.passes:
-        print(f"  passes: {', '.join(found.passes)}")
+    print(f"  confidence {route.confidence}: at least {route.voyages} voyages on every arc")
+    if route.globe_share > 0.0:
+        print(f"  {100.0 * route.globe_share:.0f} % of the length without tracks")
+    if route.eca_share == route.eca_share:
+        print(f"  {100.0 * route.eca_share:.0f} % of the length in emission control areas")
+    if route.passes:
+        print(f"  passes: {', '.join(route.passes)}")
 
 
 def _compare(arguments: argparse.Namespace) -> int:
@@ -222,25 +222,25 @@ def _compare(arguments: argparse.Namespace) -> int:
         speed_kn=arguments.speed,
     )  # fmt: skip
     chart = Chart.gshhg("i")
-    found = usual_against_optimal(
+    comparison = usual_against_optimal(
         voyage, network, ship=ship, sea=sea, chart=chart,
         plan_one=lambda request: plan(
             request, ship=ship, sea=sea, chart=chart, proof=0.0, progress=arguments.progress
         ),
     ).to_dict()  # fmt: skip
     if arguments.json:
-        print(json.dumps(found, indent=2, allow_nan=False))
+        print(json.dumps(comparison, indent=2, allow_nan=False))
         return SUCCESS
-    print(f"{found['from']} to {found['to']}, confidence {found['confidence']} "
-          f"({found['voyages']} voyages)")  # fmt: skip
+    print(f"{comparison['from']} to {comparison['to']}, confidence {comparison['confidence']} "
+          f"({comparison['voyages']} voyages)")  # fmt: skip
     for name, title in (("distance_nm", "distance [nm]"), ("time_h", "time [h]"),
                         ("fuel_t", "fuel [t]")):  # fmt: skip
-        row = found[name]
+        row = comparison[name]
         if row["usual"] is None:
             print(f"  {title:14} not known")
         else:
             print(f"  {title:14} usual {row['usual']:,.1f}, optimal {row['optimal']:,.1f}: "
                   f"{row['saving_percent']:+.1f} % saved")  # fmt: skip
-    if not found["usual_within_limits"]:
+    if not comparison["usual_within_limits"]:
         print("  the usual route exceeds a limit of this ship on this day")
     return SUCCESS

@@ -146,8 +146,8 @@ def _weather(arguments: argparse.Namespace) -> dict[str, float]:
         "wind_speed": arguments.wind,
         "depth": arguments.water_depth,
     }
-    found = {name: value for name, value in given.items() if value is not None}
-    for name, value in found.items():
+    weather = {name: value for name, value in given.items() if value is not None}
+    for name, value in weather.items():
         option, most, above = _RANGES[name]
         if not (0.0 <= value <= most) or (above and value == 0.0):
             quantity = name.replace("_", " ")
@@ -166,7 +166,7 @@ def _weather(arguments: argparse.Namespace) -> dict[str, float]:
                 raise InputError(
                     f"{option} is {degrees:g}.", "It is an angle in degrees.", f"Correct {option}."
                 )
-            found[name] = math.radians(abs((degrees + 180.0) % 360.0 - 180.0))
+            weather[name] = math.radians(abs((degrees + 180.0) % 360.0 - 180.0))
     if arguments.crab is not None:
         if not abs(arguments.crab) <= 35.0:
             raise InputError(
@@ -174,8 +174,8 @@ def _weather(arguments: argparse.Namespace) -> dict[str, float]:
                 "The lift of the rudder is known up to 35 degrees.",
                 "Give a smaller angle.",
             )
-        found["crab_angle"] = math.radians(arguments.crab)
-    return found
+        weather["crab_angle"] = math.radians(arguments.crab)
+    return weather
 
 
 def _check_ranges(sheet: dict[str, Any], strict: bool) -> None:

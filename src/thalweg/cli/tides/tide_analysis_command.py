@@ -194,13 +194,13 @@ def _rows(constants: Constituents, name: str, known: Any) -> list[dict[str, Any]
     return sorted(rows, key=lambda r: -(r["amplitude_median"] or 0.0))
 
 
-def _print_analysis(found: dict[str, Any]) -> None:
-    print(found["source"])
-    print(f"{found['start']} to {found['end']}, {found['nodes']} nodes")
-    for name, rows in found["variables"].items():
-        share = found["tidal_share"][name]
+def _print_analysis(analysis: dict[str, Any]) -> None:
+    print(analysis["source"])
+    print(f"{analysis['start']} to {analysis['end']}, {analysis['nodes']} nodes")
+    for name, rows in analysis["variables"].items():
+        share = analysis["tidal_share"][name]
         variance = "constant" if share is None else f"{100 * share:.1f} % of the variance is tidal"
-        dry = found["nodes_without_tide"][name]
+        dry = analysis["nodes_without_tide"][name]
         print(f"{name}: {variance}" + (f", {dry} nodes without tide" if dry else ""))
         for row in rows[:MAX_ROWS_SHOWN]:
             size = row.get("amplitude", row.get("amplitude_median"))
@@ -208,5 +208,5 @@ def _print_analysis(found: dict[str, Any]) -> None:
             print(f"  {row['name']:>6}  {row['period_h']:9.4f} h  {size:8.4f}{phase}")
         if len(rows) > MAX_ROWS_SHOWN:
             print(f"  and {len(rows) - MAX_ROWS_SHOWN} more")
-    if found["wrote"]:
-        print(f"wrote {found['wrote']}")
+    if analysis["wrote"]:
+        print(f"wrote {analysis['wrote']}")

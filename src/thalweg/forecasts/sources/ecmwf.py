@@ -123,7 +123,7 @@ def _ranges(
     """Return the ranges of bytes of the fields that an ``.index`` file lists."""
     numbers = {str(number) for number in range(1, members + 1)} or {"0"}
     wanted = {(name, number) for name in names for number in numbers}
-    found: dict[tuple[str, str], tuple[int, int]] = {}
+    ranges: dict[tuple[str, str], tuple[int, int]] = {}
     for line in (index or "").splitlines():
         try:
             entry = json.loads(line)
@@ -132,8 +132,8 @@ def _ranges(
         except (ValueError, KeyError, TypeError):
             continue
         if key in wanted and entry.get("levtype", "sfc") == "sfc":
-            found[key] = place
-    missing = sorted(wanted - set(found))
+            ranges[key] = place
+    missing = sorted(wanted - set(ranges))
     if missing:
         which = ", ".join(f"{name} of member {number}" for name, number in missing[:5])
         raise InputError(
@@ -142,4 +142,4 @@ def _ranges(
             "A run is complete about 8 hours after its start.",
             "Choose an earlier run, other quantities or fewer members.",
         )
-    return joined_ranges(list(found.values()))
+    return joined_ranges(list(ranges.values()))

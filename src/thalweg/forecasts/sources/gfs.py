@@ -204,21 +204,21 @@ def byte_ranges(index: str, wanted: list[str]) -> tuple[tuple[int, int], ...]:
     """
     lines = [line.split(":") for line in index.splitlines() if line.count(":") >= 5]
     starts = sorted({int(line[1]) for line in lines} | {0})
-    found: dict[str, tuple[int, int]] = {}
+    ranges: dict[str, tuple[int, int]] = {}
     for line in lines:
         key = f"{line[3]}:{line[4]}"
-        if key in wanted and key not in found:
+        if key in wanted and key not in ranges:
             first = int(line[1])
             after = [start for start in starts if start > first]
-            found[key] = (first, after[0] - first if after else -1)
-    missing = [key for key in wanted if key not in found]
+            ranges[key] = (first, after[0] - first if after else -1)
+    missing = [key for key in wanted if key not in ranges]
     if missing:
         raise InputError(
             f"The index of the file does not list {', '.join(missing)}.",
             "It lists " + ", ".join(sorted({f"{line[3]}" for line in lines})[:20]) + ".",
             "Choose other quantities or another run.",
         )
-    return joined_ranges(list(found.values()))
+    return joined_ranges(list(ranges.values()))
 
 
 def joined_ranges(ranges: list[tuple[int, int]]) -> tuple[tuple[int, int], ...]:

@@ -70,7 +70,7 @@ class FoundArcs:
 
 
 def arcs_of_occurrences(
-    tracks: VoyageTracks, found: ArcOccurrences, *, radius: float, least: int
+    tracks: VoyageTracks, occurrences: ArcOccurrences, *, radius: float, least: int
 ) -> FoundArcs:
     """Return the arcs of stretches of tracks.
 
@@ -80,7 +80,7 @@ def arcs_of_occurrences(
 
     Parameters
     ----------
-    found : Stretches, m in total.
+    occurrences : Stretches, m in total.
     radius : Radius of a junction [m].
     least : Voyages that make a way believed.
 
@@ -88,30 +88,30 @@ def arcs_of_occurrences(
     -------
     FoundArcs : In order of tail and head, the way of most voyages first.
     """
-    begin, step = found.begin, found.end - found.begin
+    begin, step = occurrences.begin, occurrences.end - occurrences.begin
     shape = np.stack([tracks.vectors_at(begin + share * step) for share in SHARES], axis=1).astype(
         np.float32
     )
-    way = _ways(found, shape, step, radius)
-    arc, tail, head, kept = _arcs(found, way, least)
+    way = _ways(occurrences, shape, step, radius)
+    arc, tail, head, kept = _arcs(occurrences, way, least)
     inside = np.flatnonzero(arc >= 0)
     inside = inside[np.argsort(arc[inside], kind="stable")]
     ptr = np.searchsorted(arc[inside], np.arange(len(tail) + 1))
-    candidates = _candidates(tracks, found.take(inside), shape[inside], ptr)
+    candidates = _candidates(tracks, occurrences.take(inside), shape[inside], ptr)
     candidates = np.where(candidates >= 0, inside[candidates], -1)
-    evidence = _evidence(tracks, found, inside, ptr, tail)
+    evidence = _evidence(tracks, occurrences, inside, ptr, tail)
     tube = _tubes(shape, inside, ptr, candidates[:, 0])
-    return FoundArcs(tail, head, evidence, candidates, tube, int(len(found) - kept))
+    return FoundArcs(tail, head, evidence, candidates, tube, int(len(occurrences) - kept))
 
 
 def _ways(
-    found: ArcOccurrences, shape: Float32Array, length: FloatArray, radius: float
+    occurrences: ArcOccurrences, shape: Float32Array, length: FloatArray, radius: float
 ) -> IntArray:
     """Return the way of every stretch among those of its two nodes: 0, 1, ...; -1 for none."""
-    way = np.full(len(found), -1, np.int64)
-    n = int(max(found.tail.max(initial=0), found.head.max(initial=0))) + 1
-    pair = found.tail * n + found.head
-    left = np.arange(len(found))
+    way = np.full(len(occurrences), -1, np.int64)
+    n = int(max(occurrences.tail.max(initial=0), occurrences.head.max(initial=0))) + 1
+    pair = occurrences.tail * n + occurrences.head
+    left = np.arange(len(occurrences))
     for number in range(_VARIANTS):
         if not len(left):
             break
@@ -144,11 +144,11 @@ def _largest_distance(shape: Float32Array, centre: FloatArray, group: IntArray) 
 
 
 def _arcs(
-    found: ArcOccurrences, way: IntArray, least: int
+    occurrences: ArcOccurrences, way: IntArray, least: int
 ) -> tuple[IntArray, IntArray, IntArray, int]:
     """Return the arc of every stretch (-1: outlier), tails and heads, and how many have one."""
     known = np.flatnonzero(way >= 0)
-    keys = np.stack([found.tail[known], found.head[known], way[known]], axis=1)
+    keys = np.stack([occurrences.tail[known], occurrences.head[known], way[known]], axis=1)
     table, number, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
     number = number.reshape(-1)
     pair = np.unique(table[:, :2], axis=0, return_inverse=True)[1].reshape(-1)
@@ -162,13 +162,13 @@ def _arcs(
     order = order[np.lexsort((-count[order], pair[order]))]
     new = np.full(len(table), -1, np.int64)
     new[order] = np.arange(len(order))
-    arc = np.full(len(found), -1, np.int64)
+    arc = np.full(len(occurrences), -1, np.int64)
     arc[known] = new[number]
     return arc, table[order, 0], table[order, 1], int((arc >= 0).sum())
 
 
 def _candidates(
-    tracks: VoyageTracks, found: ArcOccurrences, shape: Float32Array, ptr: IntArray
+    tracks: VoyageTracks, occurrences: ArcOccurrences, shape: Float32Array, ptr: IntArray
 ) -> IntArray:
     """Return the stretches of every arc nearest to its mean, in order; -1 where there are fewer.
 
@@ -177,12 +177,12 @@ def _candidates(
     count = np.diff(ptr)
     arc = np.repeat(np.arange(len(count)), count)
     mean = np.add.reduceat(shape.astype(float), ptr[:-1], axis=0) / count[:, None, None]
-    score = np.zeros(len(found))
+    score = np.zeros(len(occurrences))
     for k in range(shape.shape[1]):
         score += np.sum((shape[:, k] - mean[arc, k]) ** 2, axis=1)
     score = np.sqrt(score / shape.shape[1])
-    unseen = tracks.values_at(tracks.unobserved, found.end)
-    unseen -= tracks.values_at(tracks.unobserved, found.begin)
+    unseen = tracks.values_at(tracks.unobserved, occurrences.end)
+    unseen -= tracks.values_at(tracks.unobserved, occurrences.begin)
     order = np.lexsort((score + unseen, arc))
     candidates = np.full((len(count), CANDIDATES), -1, np.int64)
     for k in range(CANDIDATES):
@@ -192,19 +192,23 @@ def _candidates(
 
 
 def _evidence(
-    tracks: VoyageTracks, found: ArcOccurrences, inside: IntArray, ptr: IntArray, tail: IntArray
+    tracks: VoyageTracks,
+    occurrences: ArcOccurrences,
+    inside: IntArray,
+    ptr: IntArray,
+    tail: IntArray,
 ) -> ArcEvidence:
     """Return what was seen on arcs; ``inside[ptr[a]:ptr[a + 1]]`` are the stretches of arc a."""
-    one = found.take(inside)
+    one = occurrences.take(inside)
     time = tracks.values_at(tracks.under_way, one.end)
     time -= tracks.values_at(tracks.under_way, one.begin)
-    month = _months(tracks, found)
+    month = _months(tracks, occurrences)
     count = np.diff(ptr)
     arc = np.repeat(np.arange(len(count)), count)
     seen = np.zeros((len(count), MONTHS), np.int64)
     np.add.at(seen, (arc, month[inside]), 1)
-    leaving = np.zeros((int(found.tail.max(initial=0)) + 1, MONTHS), np.int64)
-    np.add.at(leaving, (found.tail, month), 1)
+    leaving = np.zeros((int(occurrences.tail.max(initial=0)) + 1, MONTHS), np.int64)
+    np.add.at(leaving, (occurrences.tail, month), 1)
     draught, size = (column[one.voyage] for column in (tracks.ships.draught, tracks.ships.length))
     ends = (10.0, 90.0, 100.0)
     return ArcEvidence(
@@ -219,9 +223,9 @@ def _evidence(
     )
 
 
-def _months(tracks: VoyageTracks, found: ArcOccurrences) -> IntArray:
+def _months(tracks: VoyageTracks, occurrences: ArcOccurrences) -> IntArray:
     """Return the month of the middle of every stretch, 0 for January."""
-    time = tracks.values_at(tracks.time, 0.5 * (found.begin + found.end))
+    time = tracks.values_at(tracks.time, 0.5 * (occurrences.begin + occurrences.end))
     moments = time.astype("datetime64[s]").astype("datetime64[M]")
     return np.asarray(moments.astype(np.int64) % MONTHS)
 

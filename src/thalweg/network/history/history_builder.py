@@ -122,7 +122,7 @@ def build_history(
     )
     report("dividing the tracks at the junctions")
     occurrences = arc_occurrences(tracks, junctions, ports, radius=rules.radius)
-    found = arcs_of_occurrences(tracks, occurrences, radius=rules.radius, least=rules.least)
+    sailed = arcs_of_occurrences(tracks, occurrences, radius=rules.radius, least=rules.least)
     report("testing the arcs against land")
     places = (
         np.append(junctions.lat, [port.lat for port in ports]),
@@ -130,40 +130,40 @@ def build_history(
     )
     ways = GlobeWays(chart)
     tested = lines_off_land(
-        chart, tracks, occurrences, found.candidates, places=places, turning=turning,
+        chart, tracks, occurrences, sailed.candidates, places=places, turning=turning,
         radius=rules.radius, ways=ways,
     )  # fmt: skip
-    arcs = _sailed_arcs(chart, found, tested)
+    arcs = _sailed_arcs(chart, sailed, tested)
     report("connecting the network")
     nodes = HistoryNodes(*places, (*junctions.names, *([""] * len(ports))), tuple(ports))
     used = range(nodes.first_port, len(nodes))
     arcs, alone = connected_arcs(chart, arcs, places, used, ways)
     notes = [f"{ports[k - nodes.first_port].name} cannot be reached by sea."
              for k in alone if k >= nodes.first_port]  # fmt: skip
-    summary = _summary(tracks, found, tested, junctions) | {"notes": notes}
+    summary = _summary(tracks, sailed, tested, junctions) | {"notes": notes}
     return _without_unused(HistoryNetwork(nodes, arcs, rules.radius, rules.least, summary))
 
 
-def _sailed_arcs(chart: Chart, found: FoundArcs, tested: LinesOffLand) -> HistoryArcs:
+def _sailed_arcs(chart: Chart, sailed: FoundArcs, tested: LinesOffLand) -> HistoryArcs:
     """Return the arcs whose lines are allowed."""
     arc = tested.arc
     evidence = ArcEvidence(
-        *(getattr(found.evidence, column.name)[arc] for column in fields(ArcEvidence))
+        *(getattr(sailed.evidence, column.name)[arc] for column in fields(ArcEvidence))
     )
     return HistoryArcs(
-        found.tail[arc],
-        found.head[arc],
+        sailed.tail[arc],
+        sailed.head[arc],
         np.full(len(arc), SAILED, np.int64),
         tested.lines,
         evidence,
-        found.tube[arc],
+        sailed.tube[arc],
         tested.lines.control_area_shares(chart),
         tested.repaired,
     )
 
 
 def _summary(
-    tracks: VoyageTracks, found: FoundArcs, tested: LinesOffLand, junctions: Junctions
+    tracks: VoyageTracks, sailed: FoundArcs, tested: LinesOffLand, junctions: Junctions
 ) -> dict[str, Any]:
     return {
         "voyages": len(tracks),
@@ -171,9 +171,9 @@ def _summary(
         "first": format_time(float(tracks.time.min())),
         "last": format_time(float(tracks.time.max())),
         "junctions": len(junctions),
-        "outliers": found.outliers,
+        "outliers": sailed.outliers,
         "arcs_repaired": int((tested.repaired > 0.0).sum()),
-        "arcs_without_a_line": int(len(found.tail) - len(tested.arc)),
+        "arcs_without_a_line": int(len(sailed.tail) - len(tested.arc)),
     }
 
 

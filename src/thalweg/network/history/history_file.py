@@ -120,7 +120,7 @@ def read_history(path: str | PathLike[str]) -> HistoryNetwork:
 def _arc_to_dict(arcs: HistoryArcs, arc: int) -> dict[str, Any]:
     lat, lon = arcs.lines.of(arc)
     evidence = arcs.evidence
-    found: dict[str, Any] = {
+    entry: dict[str, Any] = {
         "from": int(arcs.tail[arc]),
         "to": int(arcs.head[arc]),
         "kind": ARC_KINDS[arcs.kind[arc]],
@@ -129,7 +129,7 @@ def _arc_to_dict(arcs: HistoryArcs, arc: int) -> dict[str, Any]:
         "repaired_share": round(float(arcs.repaired[arc]), _SHARES_OF_ONE),
     }
     if evidence.count[arc]:
-        found |= {
+        entry |= {
             "voyages": int(evidence.count[arc]),
             "length_m": _rounded(evidence.length[arc], _METRES),
             "duration_s": _rounded(evidence.duration[arc], _METRES),
@@ -140,7 +140,7 @@ def _arc_to_dict(arcs: HistoryArcs, arc: int) -> dict[str, Any]:
             "ship_length_m": _rounded(evidence.ship_length[arc], _METRES),
             "tube_m": [_rounded(pair, _METRES) for pair in arcs.tube[arc]],
         }
-    return found
+    return entry
 
 
 def _network_of(data: dict[str, Any]) -> HistoryNetwork:

@@ -135,7 +135,7 @@ def _port_passages(
     reach = 1.5 * np.array([port.approach_m for port in ports]) + _HARBOUR
     begin, end = tracks.along[tracks.ptr[:-1]], tracks.along[tracks.ptr[1:] - 1]
     middle = 0.5 * (begin + end)
-    found = []
+    visits = []
     for port, outer, inner in (
         (tracks.start, begin, np.minimum(begin + reach[tracks.start], middle)),
         (tracks.goal, np.maximum(end - reach[tracks.goal], middle), end),
@@ -144,8 +144,8 @@ def _port_passages(
         away = np.sum((vectors[near] - where[port[voyage[near]]]) ** 2, axis=1)
         order = near[np.lexsort((away, voyage[near]))]
         first = np.unique(voyage[order], return_index=True)[1]
-        found.append(_nearest_between(tracks, along[order[first]], outer, inner, where[port]))
-    return found[0], found[1]
+        visits.append(_nearest_between(tracks, along[order[first]], outer, inner, where[port]))
+    return visits[0], visits[1]
 
 
 def _nearest_between(

@@ -126,7 +126,7 @@ def _ways_between_parts(
 
     vectors = sphere_vectors(*places)
     label = part.copy()
-    found: list[tuple[int, int, list[Position]]] = []
+    ways_found: list[tuple[int, int, list[Position]]] = []
     alone: list[int] = []
     numbers, counts = np.unique(label[nodes], return_counts=True)
     main = numbers[np.argmax(counts)] if len(numbers) else 0
@@ -149,9 +149,9 @@ def _ways_between_parts(
         if best is None:
             alone += own.tolist()
             continue
-        found.append(best[1:])
+        ways_found.append(best[1:])
         inside = np.concatenate([inside, own])
-    return found, alone
+    return ways_found, alone
 
 
 def _place(places: tuple[FloatArray, FloatArray], node: int) -> Position:

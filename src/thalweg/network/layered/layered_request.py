@@ -234,7 +234,7 @@ def suggested_shape(
         If none of them has a path, or none passes all these places.
     """
     length = float(geodesy.distance(*start, *goal))
-    found: list[tuple[SectionShape, float]] = []
+    fitting: list[tuple[SectionShape, float]] = []
     refusal: NoPathError | None = None
     for layers, half_width in itertools.product(_LADDER, _HALF_WIDTHS):
         offset = max(2.0 * half_width * length / (layers + 1), 1.0)
@@ -252,12 +252,12 @@ def suggested_shape(
             continue
         distance, _ = shortest_path(network, network.meta.start, network.meta.goal)
         shape = SectionShape(layers, _LADDER_FAN, offset)
-        found.append((shape, float(distance[network.meta.goal])))
-    if not found:
+        fitting.append((shape, float(distance[network.meta.goal])))
+    if not fitting:
         assert refusal is not None  # one of the two happened
         raise refusal
-    best = (1.0 + tolerance) * min(value for _, value in found)
-    return next(shape for shape, value in found if value <= best)
+    best = (1.0 + tolerance) * min(value for _, value in fitting)
+    return next(shape for shape, value in fitting if value <= best)
 
 
 def _passes(network: Network, place: Position) -> bool:

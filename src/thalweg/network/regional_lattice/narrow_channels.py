@@ -127,20 +127,20 @@ def _channel_midpoints(shores: ShoreEdges, land: IntArray, widest: float) -> Flo
     Shores are divided further where others are near, so that places along them are closer together
     than the channel is wide.
     """
-    found, width = [np.empty((0, 3))], widest
+    midpoints, width = [np.empty((0, 3))], widest
     while len(land):
         places = _normalised(shores[0])
         separation, middle = _facing_shore(places, land, width)
         last = width <= _MIN_WIDTH
         here = (separation <= width) & (last | (separation > 0.5 * width))
-        found.append(_one_per_cell(middle[here], _THINNING_CELL * width))
+        midpoints.append(_one_per_cell(middle[here], _THINNING_CELL * width))
         if last:
             break
         width *= 0.5
         near = separation <= (1.0 + 2.0 * _SHORE_SPACING) * width
         shores, edge = _split_edges((shores[0][near], shores[1][near]), _SHORE_SPACING * width)
         land = land[near][edge]
-    return np.concatenate(found)
+    return np.concatenate(midpoints)
 
 
 def _facing_shore(

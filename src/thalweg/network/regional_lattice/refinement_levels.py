@@ -239,13 +239,13 @@ def _flood(
         raise TooManyPoints(level, width * height)
     seen = np.zeros(width * height, bool)
     flat = np.unique(((i - i0) % height) * width + j - j0)
-    found: list[tuple[IntArray, FloatArray]] = []
+    flooded: list[tuple[IntArray, FloatArray]] = []
     count = 0
     for _ in range(_FLOOD_STEPS):
         seen[flat] = True
         ok, shore = accept(_row(flat // width + i0, around), flat % width + j0)
         flat = flat[ok]
-        found.append((flat, shore))
+        flooded.append((flat, shore))
         count += len(flat)
         if len(flat) == 0 or count > budget:
             break
@@ -253,7 +253,7 @@ def _flood(
         row = row % height if around else np.clip(row, 0, height - 1)
         flat = (row * width + np.clip(flat[:, None] % width + _AROUND_J, 0, width - 1)).ravel()
         flat = np.unique(flat[~seen[flat]])
-    flat, shore = (np.concatenate(part) for part in zip(*found))
+    flat, shore = (np.concatenate(part) for part in zip(*flooded))
     row, column = _row(flat // width + i0, around), flat % width + j0
     order = np.lexsort((column, row))
     return row[order], column[order], shore[order]

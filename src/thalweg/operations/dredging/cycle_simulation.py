@@ -137,18 +137,18 @@ class Simulator:
     def _options(self, left: float) -> list[LoadOption]:
         """Return the loads for the next cycle, by descending upper bound of production."""
         work = self.project.work
-        found = []
+        options = []
         for both in self.both:
             volume = min(left, both.load_factor * work.hopper)
             share = volume / work.hopper
             fastest = both.full.shortest + both.empty.shortest
             fastest += work.loading.time(share) + work.unloading.time(share)
             if fastest < math.inf:
-                found.append(LoadOption(volume / fastest, volume, share, both))
+                options.append(LoadOption(volume / fastest, volume, share, both))
         # of the loads that hold the remaining volume, the lightest
-        enough = [o for o in found if o.volume >= left]
-        found = [o for o in found if o.volume < left] + enough[:1]
-        return sorted(found, key=lambda o: -o.bound)
+        enough = [o for o in options if o.volume >= left]
+        options = [o for o in options if o.volume < left] + enough[:1]
+        return sorted(options, key=lambda o: -o.bound)
 
     def _choose(self, pool: ThreadPoolExecutor, time: float, left: float) -> LoadChoice | None:
         """Return the load with the highest production of its whole cycle."""

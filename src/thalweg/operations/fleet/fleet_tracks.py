@@ -136,15 +136,15 @@ def _columns_of(
     notes: list[str],
 ) -> tuple[NDArray[Any], RawTrack]:
     """Return the names of the ships and the columns of one source."""
-    table, found, name = _fleet_table(source, dict(columns or {}))
-    time = track_times(table, found, time_format, name, notes)
+    table, named, name = _fleet_table(source, dict(columns or {}))
+    time = track_times(table, named, time_format, name, notes)
     unknown = np.full(len(table), np.nan)
     values = {
-        kind: column_in_si(table[found[kind]], kind, found[kind], notes) if kind in found
+        kind: column_in_si(table[named[kind]], kind, named[kind], notes) if kind in named
         else unknown
         for kind in ("lat", "lon", *_OPTIONAL)
     }  # fmt: skip
-    ships = table[found["vessel"]].to_numpy() if "vessel" in found else np.full(len(table), name)
+    ships = table[named["vessel"]].to_numpy() if "vessel" in named else np.full(len(table), name)
     return ships, RawTrack(time, values.pop("lat"), values.pop("lon"), values)
 
 

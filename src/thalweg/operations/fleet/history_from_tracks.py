@@ -73,29 +73,31 @@ def history_from_tracks(
     report("finding port calls and voyages")
     if ports is None:
         known, places = _index_ports(chart)
-        found = find_port_calls(fleet, places, calls)
-        at_sea = {k: _at_sea(chart, known[k], places[k]) for k in np.unique(found.port).tolist()}
+        port_calls = find_port_calls(fleet, places, calls)
+        at_sea = {
+            k: _at_sea(chart, known[k], places[k]) for k in np.unique(port_calls.port).tolist()
+        }
         number = _numbers(len(known), [k for k, port in at_sea.items() if port is not None])
         own = [port for port in at_sea.values() if port is not None]
-        reachable = number[found.port] >= 0
-        found = replace(
-            found, ship=found.ship[reachable], port=number[found.port[reachable]],
-            first=found.first[reachable], last=found.last[reachable],
+        reachable = number[port_calls.port] >= 0
+        port_calls = replace(
+            port_calls, ship=port_calls.ship[reachable], port=number[port_calls.port[reachable]],
+            first=port_calls.first[reachable], last=port_calls.last[reachable],
         )  # fmt: skip
         closed = [str(known[k]) for k, port in at_sea.items() if port is None]
     else:
         own, closed = list(ports), []
-        found = find_port_calls(fleet, [port.places for port in own], calls)
-    tracks = voyages_between_calls(fleet, found)
+        port_calls = find_port_calls(fleet, [port.places for port in own], calls)
+    tracks = voyages_between_calls(fleet, port_calls)
     if not len(tracks):
-        raise _no_voyage(fleet, found, calls or PortCallRules(), of_index=ports is None)
+        raise _no_voyage(fleet, port_calls, calls or PortCallRules(), of_index=ports is None)
     network = build_history(chart, tracks, own, rules=rules, corridors=corridors, progress=progress)
     notes = [*fleet.notes, *network.summary["notes"]]
     notes += [
         f"Calls at {name} are left out: no water of the chart leads there." for name in closed
     ]
     return replace(network, summary={
-        **network.summary, "ships": len(fleet.ptr) - 1, "port_calls": len(found.port),
+        **network.summary, "ships": len(fleet.ptr) - 1, "port_calls": len(port_calls.port),
         "notes": notes,
     })  # fmt: skip
 

@@ -206,13 +206,13 @@ def _activities(
     """
     segment = np.concatenate([[0], np.cumsum(_unobserved_intervals(log, kinds))]).tolist()
     edges = _interval_boundaries(log)
-    found: list[Activity] = []
+    activities: list[Activity] = []
     for first, last in _constant_runs(list(zip(kinds, trips, segment))):
         start, end = float(edges[first]), float(edges[last + 1])
         if first > 0 and segment[first] != segment[first - 1]:
             start = float(log.time[first])
-            ended = found[-1].end
-            found.append(Activity(UNSEEN, ended, start, first - 1, first, -1, False))
+            ended = activities[-1].end
+            activities.append(Activity(UNSEEN, ended, start, first - 1, first, -1, False))
         if last + 1 < len(kinds) and segment[last + 1] != segment[last]:
             end = float(log.time[last])
         inside = first > 0 and last + 1 < len(kinds)
@@ -220,8 +220,8 @@ def _activities(
             inside and segment[first] == segment[first - 1] and segment[last] == segment[last + 1]
         )
         complete = observed and all(whole[first : last + 1]) and not away[first:last].any()
-        found.append(Activity(kinds[first], start, end, first, last, trips[first], complete))
-    return found
+        activities.append(Activity(kinds[first], start, end, first, last, trips[first], complete))
+    return activities
 
 
 def _unobserved_intervals(log: TrackLog, kinds: list[str]) -> NDArray[np.bool_]:

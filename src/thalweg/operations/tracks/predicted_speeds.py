@@ -46,16 +46,16 @@ def predicted_speeds_through_water(
     -------
     ndarray : NaN where the sea lacks data that the model needs.
     """
-    found = np.full(len(segments), np.nan)
+    speeds = np.full(len(segments), np.nan)
     for kind, (loaded, setting) in ordered_settings(segments, ship, speed_kn=speed_kn).items():
         own = segments.kind == SAILING_KINDS.index(kind)
         environment = make_sailing_environment(loaded, with_wind_speed(loaded, sea), None)
         check_depth_available(environment)
         here = segments.part(own)
-        found[own] = solve_sailing_state(
+        speeds[own] = solve_sailing_state(
             environment, _segment_points(here, setting), here.time
         ).speed_through_water
-    return found
+    return speeds
 
 
 def ordered_settings(
@@ -65,7 +65,7 @@ def ordered_settings(
 
     Parameters as in `predicted_speeds_through_water`.
     """
-    found = {}
+    settings = {}
     wanted = mean_speeds(segments, 1.0)
     wanted = np.where(np.isfinite(wanted), wanted, mean_speeds(segments, 0.0))
     for index, load_factor in ((0, 1.0), (1, 0.0)):
@@ -76,8 +76,8 @@ def ordered_settings(
         if speed_kn is not None:
             loaded = loaded.with_speeds([speed_kn * KNOT])
         setting = int(np.argmin(np.abs(loaded.speeds - wanted[own][0])))
-        found[SAILING_KINDS[index]] = (loaded, setting)
-    return found
+        settings[SAILING_KINDS[index]] = (loaded, setting)
+    return settings
 
 
 def speeds_at_measured_power(

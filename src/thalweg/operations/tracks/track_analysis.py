@@ -221,7 +221,7 @@ class TrackAnalysis:
             kind: {"legs": len(part), "mean_kn": part.mean(), "std_kn": part.std()}
             for kind, part in (legs.groupby("activity").speed_kn if len(legs) else ())
         }
-        found = {
+        data = {
             "vessel": self.log.vessel,
             "start": format_time(float(self.log.time[0])),
             "end": format_time(float(self.log.time[-1])),
@@ -237,7 +237,7 @@ class TrackAnalysis:
             "calibration": None if self.calibration is None else asdict(self.calibration),
             "models": {name: asdict(s) for name, s in self.spreads().items()},
         }
-        return dict(_json_value(found))
+        return dict(_json_value(data))
 
 
 def analyse_tracks(

@@ -169,16 +169,16 @@ def recognised_columns(table: pd.DataFrame, given: dict[str, str], name: str) ->
             f"Kinds: {', '.join(COLUMN_NAMES)}; columns: {', '.join(map(str, table.columns))}.",
             "Correct them.",
         )
-    found = dict(given)
+    columns = dict(given)
     for kind, names in COLUMN_NAMES.items():
         stems = {_split_unit(c, kind)[0]: str(c) for c in reversed(list(table.columns))}
         match = next((stems[n] for n in names if n in stems), None)
-        if kind not in found and match is not None:
-            found[kind] = match
+        if kind not in columns and match is not None:
+            columns[kind] = match
     dates = {_normalised_name(c): str(c) for c in table.columns}
-    if "date" in dates and found.get("time") != dates["date"] and "time" not in given:
-        found["date"] = dates["date"]
-    missing = [kind for kind in ("time", "lat", "lon") if kind not in found]
+    if "date" in dates and columns.get("time") != dates["date"] and "time" not in given:
+        columns["date"] = dates["date"]
+    missing = [kind for kind in ("time", "lat", "lon") if kind not in columns]
     if missing:
         raise InputError(
             f"{name} has no column for {' or '.join(missing)}.",
@@ -188,11 +188,11 @@ def recognised_columns(table: pd.DataFrame, given: dict[str, str], name: str) ->
             "Rename the columns, or name them (columns, or --column lat=NAME).",
             missing=missing,
         )
-    return found
+    return columns
 
 
 def _one_vessel(
-    table: pd.DataFrame, found: dict[str, str], vessel: str | int | None
+    table: pd.DataFrame, columns: dict[str, str], vessel: str | int | None
 ) -> tuple[str | None, Any]:
     """Return the ship and its rows.
 
@@ -201,7 +201,7 @@ def _one_vessel(
     InputError : If there are several ships and none is chosen, or the chosen one is not there.
     """
     every = np.ones(len(table), dtype=bool)
-    column = found.get("vessel")
+    column = columns.get("vessel")
     names = None if column is None else table[column].astype(str).str.strip()
     known = [] if names is None else sorted(set(names[table[column].notna()]))
     if vessel is None and len(known) <= 1:
@@ -249,7 +249,7 @@ def column_in_si(column: pd.Series[Any], kind: str, header: str, notes: list[str
 
 def track_times(
     table: pd.DataFrame,
-    found: dict[str, str],
+    columns: dict[str, str],
     time_format: str | None,
     name: str,
     notes: list[str],
@@ -258,7 +258,7 @@ def track_times(
 
     Parameters
     ----------
-    found : Column by kind, by `recognised_columns`.
+    columns : Column by kind, by `recognised_columns`.
     time_format : As in ``strptime``; None to recognise it.
     name : Of the file, for messages.
     notes : A note is added where the order of day and month is found from the rows.
@@ -273,14 +273,14 @@ def track_times(
     """
     import pandas as pd
 
-    column = table[found["time"]]
-    if "date" in found:
-        column = table[found["date"]].astype(str) + " " + column.astype(str)
+    column = table[columns["time"]]
+    if "date" in columns:
+        column = table[columns["date"]].astype(str) + " " + column.astype(str)
     if isinstance(column.dtype, pd.DatetimeTZDtype) or column.dtype.kind == "M":
         return _seconds(pd.to_datetime(column, utc=True))
     numbers = pd.to_numeric(column, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan)
     if time_format is None and 2 * np.isfinite(numbers).sum() > len(numbers):
-        return _epoch_seconds(numbers, found["time"])
+        return _epoch_seconds(numbers, columns["time"])
     if time_format is not None:
         return _by_format(column, time_format)
     parsed = pd.to_datetime(column, format="ISO8601", utc=True, errors="coerce")

@@ -205,16 +205,16 @@ class _DepartureGrid:
         count = len(self.first)
         reach = 2 * count + self.width if self.first.periodic else count
         at = np.arange(reach, dtype=np.int64)
-        found: list[FloatArray] = []
+        per_trip: list[FloatArray] = []
         later = None
         for k in range(len(self.trips) - 1, -1, -1):
             trip = self.trips[k]
             total = self.cost(trip, at, later is None)
             if later is not None:
                 total = total + self._energy_after_arrival(trip, at, later)
-            found.append(np.where(np.isfinite(total), total + self.hotel * at, np.inf))
-            later = self.best_from(found[-1], trip)
-        return found[::-1]
+            per_trip.append(np.where(np.isfinite(total), total + self.hotel * at, np.inf))
+            later = self.best_from(per_trip[-1], trip)
+        return per_trip[::-1]
 
     def _energy_after_arrival(
         self, trip: TripTable, at: NDArray[np.int64], later: FloatArray

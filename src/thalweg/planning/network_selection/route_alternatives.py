@@ -49,7 +49,7 @@ def find_route_alternatives(
     """
     context.report_progress(f"building the network from {ends[0].name} to {ends[-1].name}")
     first = _route_alternative(context, ends, context.chart)
-    found, used = {first.name: first}, canals_used(first.network, context.chart)
+    alternatives, used = {first.name: first}, canals_used(first.network, context.chart)
     longest = MAX_LENGTH_RATIO * _shortest_length(first.network)
 
     def find(closed: tuple[str, ...]) -> RouteAlternative | None:
@@ -61,8 +61,8 @@ def find_route_alternatives(
 
     for other in without_each_set_of_canals(used, find):
         if _shortest_length(other.network) <= longest:
-            found.setdefault(other.name, other)
-    return list(found.values())
+            alternatives.setdefault(other.name, other)
+    return list(alternatives.values())
 
 
 def canals_used(network: Network, chart: Chart) -> tuple[str, ...]:

@@ -49,11 +49,11 @@ _RASTER_SIZE = RasterSize(margin=0.15, min_cells=24, max_cells=240, largest=24_0
 
 
 def evolutionary_candidates(
-    trade_off: TradeOffContext, explored: ExploredAlternative, found: list[TrackCandidate]
+    trade_off: TradeOffContext, explored: ExploredAlternative, candidates: list[TrackCandidate]
 ) -> list[TrackCandidate]:
     """Return the candidates that evolutionary search finds for one alternative, from seeds."""
     context, method = trade_off.context, trade_off.context.voyage.method
-    seeds = _seeds(trade_off, explored, found)
+    seeds = _seeds(trade_off, explored, candidates)
     evaluator = _evaluator(trade_off, explored, seeds)
     genomes = [_genome(trade_off, seed) for seed in seeds]
     seed = context.voyage.seed
@@ -78,16 +78,16 @@ def evolutionary_candidates(
 
 
 def _seeds(
-    trade_off: TradeOffContext, explored: ExploredAlternative, found: list[TrackCandidate]
+    trade_off: TradeOffContext, explored: ExploredAlternative, candidates: list[TrackCandidate]
 ) -> list[Track]:
     """Return the fastest refined track and a selection of those found, by ascending time.
 
     Some are dominated: refinement may improve these more.
     """
-    time = np.array([item.time for item in found])
-    value = np.array([item.value for item in found])
+    time = np.array([item.time for item in candidates])
+    value = np.array([item.value for item in candidates])
     non_dominated = non_dominated_indices(time, value, tolerance=ROUNDING_TOLERANCE)
-    dominated = np.setdiff1d(np.arange(len(found)), non_dominated)
+    dominated = np.setdiff1d(np.arange(len(candidates)), non_dominated)
     chosen = non_dominated[
         evenly_spaced_subset(time[non_dominated], value[non_dominated], _MAX_SEEDS)
     ]
@@ -100,7 +100,7 @@ def _seeds(
         )
     chosen = chosen[np.argsort(time[chosen], kind="stable")]
     fastest = explored.fastest
-    tracks = [found[index].track for index in chosen]
+    tracks = [candidates[index].track for index in chosen]
     return [fastest.track, *tracks] if fastest.feasible else tracks
 
 
@@ -180,12 +180,14 @@ def _unwrapped_positions(seeds: list[Track]) -> tuple[FloatArray, FloatArray]:
 
 
 def _candidates(
-    found: EvolutionResult, explored: ExploredAlternative, depart: float
+    evolution: EvolutionResult, explored: ExploredAlternative, depart: float
 ) -> list[TrackCandidate]:
     return [
         TrackCandidate(
             genome.to_track(depart), origin, explored.alternative.name, float(time), float(cost)
         )
-        for genome, origin, time, cost in zip(found.genomes, found.origin, found.time, found.cost)
+        for genome, origin, time, cost in zip(
+            evolution.genomes, evolution.origin, evolution.time, evolution.cost
+        )
         if origin != "seed"
     ]

@@ -42,7 +42,7 @@ def fixed_route_candidates(trade_off: TradeOffContext) -> list[TrackCandidate]:
     context.report_progress("finding alternative routes around land and control areas")
     start, goal = ((end.lat, end.lon) for end in (trade_off.ends[0], trade_off.ends[-1]))
     network = lattice_between(context.chart, start, goal)
-    found: list[TrackCandidate] = []
+    candidates: list[TrackCandidate] = []
     for path in alternative_paths(
         network,
         context.chart,
@@ -51,10 +51,10 @@ def fixed_route_candidates(trade_off: TradeOffContext) -> list[TrackCandidate]:
         stretch=_MAX_DETOUR,
     ):
         try:
-            found += _speed_optimised(trade_off, path)
+            candidates += _speed_optimised(trade_off, path)
         except SearchInterrupted:
             break
-    return found
+    return candidates
 
 
 def _edge_weights(trade_off: TradeOffContext, network: Network) -> list[EdgeWeights]:

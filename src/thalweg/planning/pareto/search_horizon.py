@@ -75,26 +75,26 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
     slow = depart + _SLOWEST_TIME_RATIO * still + (_TWO_TIDES if tides else 0.0)
     final = min(context.data_end, depart + _MAX_TIME_RATIO * still + _TWO_TIDES)
     latest = min(context.latest_arrival, context.data_end) if has_deadline else min(slow, final)
-    found: SearchHorizon | None = None
+    horizon: SearchHorizon | None = None
     while True:
         until = latest if has_deadline else min(latest + _HORIZON_MARGIN * (latest - depart), final)
         until = max(until, min(slow, final))
         try:
             frozen = freeze_at_stations(context, network, depart, until)
         except InputError:
-            if found is None:
+            if horizon is None:
                 raise
-            return found  # the longest period that fits into memory
+            return horizon  # the longest period that fits into memory
         warm_up.wait_until_compiled()
         first, setting = fastest_at_highest_feasible_setting(trade_off, network, frozen)
-        found = SearchHorizon(frozen, first, setting, latest)
+        horizon = SearchHorizon(frozen, first, setting, latest)
         need = (
             first.arrive
             if has_deadline
             else _latest_useful_arrival(trade_off, network, frozen, until)
         )
         if need <= until or until >= final:
-            return found
+            return horizon
         slow = depart + _HORIZON_GROWTH * (until - depart) if math.isinf(need) else need
         latest = latest if has_deadline else min(slow, final)
 

@@ -121,19 +121,21 @@ def _candidates(
         )
         for one in explored
     ]
-    found = [candidate for one in explored for candidate in _exact_candidates(one)]
-    if not found:  # interrupted before there was a front
+    candidates = [candidate for one in explored for candidate in _exact_candidates(one)]
+    if not candidates:  # interrupted before there was a front
         return fastest
-    found += _refined_candidates(trade_off, explored, found)
-    non_dominated = non_dominated_indices(*_times_and_values(found), tolerance=ROUNDING_TOLERANCE)
-    time, value = _times_and_values([found[index] for index in non_dominated])
+    candidates += _refined_candidates(trade_off, explored, candidates)
+    non_dominated = non_dominated_indices(
+        *_times_and_values(candidates), tolerance=ROUNDING_TOLERANCE
+    )
+    time, value = _times_and_values([candidates[index] for index in non_dominated])
     steps = max(len(one.fastest.samples["time"]) for one in explored)
     most = min(max(_MAX_STEPS // max(steps, 1), _MIN_ROUTES), _MAX_ROUTES)
     if trade_off.interrupt_guard.stopped():
         most = min(most, _MAX_ROUTES_INTERRUPTED)
     return [
         *fastest,
-        *(found[non_dominated[index]] for index in evenly_spaced_subset(time, value, most)),
+        *(candidates[non_dominated[index]] for index in evenly_spaced_subset(time, value, most)),
     ]
 
 
@@ -169,16 +171,18 @@ def _refined_candidates(
     return found
 
 
-def _show(trade_off: TradeOffContext, found: list[TrackCandidate]) -> None:
+def _show(trade_off: TradeOffContext, candidates: list[TrackCandidate]) -> None:
     """Pass the front of candidates to ``show_front`` of the caller's progress."""
-    if found:
-        kept = non_dominated_indices(*_times_and_values(found), tolerance=ROUNDING_TOLERANCE)
-        points = [(found[index].time, found[index].value) for index in kept]
+    if candidates:
+        kept = non_dominated_indices(*_times_and_values(candidates), tolerance=ROUNDING_TOLERANCE)
+        points = [(candidates[index].time, candidates[index].value) for index in kept]
         trade_off.context.show_front(points, trade_off.objective.unit)
 
 
-def _times_and_values(found: list[TrackCandidate]) -> tuple[np.ndarray, np.ndarray]:
-    return np.array([item.time for item in found]), np.array([item.value for item in found])
+def _times_and_values(candidates: list[TrackCandidate]) -> tuple[np.ndarray, np.ndarray]:
+    return np.array([item.time for item in candidates]), np.array(
+        [item.value for item in candidates]
+    )
 
 
 def _refereed(

@@ -137,19 +137,21 @@ def _without_short_legs(
 ) -> list[int]:
     """Return the waypoints without those beside short legs that may go, the nearest first."""
     lat, lon = route.track.lat, route.track.lon
-    found, stays = list(kept), set(held)
+    waypoints, stays = list(kept), set(held)
     while True:
-        lengths = distance(lat[found[:-1]], lon[found[:-1]], lat[found[1:]], lon[found[1:]])
-        inner = [k for k in range(1, len(found) - 1) if found[k] not in stays]
+        lengths = distance(
+            lat[waypoints[:-1]], lon[waypoints[:-1]], lat[waypoints[1:]], lon[waypoints[1:]]
+        )
+        inner = [k for k in range(1, len(waypoints) - 1) if waypoints[k] not in stays]
         shortest = {k: float(min(lengths[k - 1], lengths[k])) for k in inner}
         k = min(shortest, key=shortest.__getitem__, default=0)
         if k == 0 or shortest[k] >= _SHORT_LEG:
-            return found
-        before, after = found[k - 1], found[k + 1]
+            return waypoints
+        before, after = waypoints[k - 1], waypoints[k + 1]
         if _may_join(route, options, before, after, tolerance):
-            del found[k]
+            del waypoints[k]
         else:
-            stays.add(found[k])
+            stays.add(waypoints[k])
 
 
 def _may_join(
@@ -189,18 +191,18 @@ def _approach_legs(route: Route) -> NDArray[np.bool_]:
 def _without_repeats(route: Route, kept: list[int]) -> list[int]:
     """Return the waypoints without those that are too close to the one before, if they may go."""
     track, canal = route.track, _canal_legs(route)
-    found = [kept[0]]
+    waypoints = [kept[0]]
     for index in kept[1:]:
-        before = found[-1]
+        before = waypoints[-1]
         place = track.lat[before], track.lon[before], track.lat[index], track.lon[index]
         if float(distance(*place)) < _SAME_PLACE and not canal[before:index].any():
             if index == kept[-1] and before != kept[0] and track.wait[before] == 0.0:
-                found[-1] = index
+                waypoints[-1] = index
                 continue
             if index != kept[-1] and track.wait[index] == 0.0 and not canal[index]:
                 continue
-        found.append(index)
-    return found
+        waypoints.append(index)
+    return waypoints
 
 
 def _between(

@@ -70,9 +70,9 @@ def parse_rtzp(data: bytes) -> ParsedTrack:
     """
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            found = [i for i in archive.infolist() if i.filename.casefold().endswith(".rtz")]
-            if len(found) == 1 and found[0].file_size <= LARGEST_RTZ:
-                with archive.open(found[0]) as file:
+            members = [i for i in archive.infolist() if i.filename.casefold().endswith(".rtz")]
+            if len(members) == 1 and members[0].file_size <= LARGEST_RTZ:
+                with archive.open(members[0]) as file:
                     return parse_rtz(file.read(LARGEST_RTZ + 1))
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, OSError) as error:
         raise InputError(
@@ -81,7 +81,7 @@ def parse_rtzp(data: bytes) -> ParsedTrack:
             "Give the RTZ file itself.",
         ) from None
     raise InputError(
-        f"The RTZP holds {len(found)} RTZ files" + (", too large." if len(found) == 1 else "."),
+        f"The RTZP holds {len(members)} RTZ files" + (", too large." if len(members) == 1 else "."),
         f"It holds one, of {LARGEST_RTZ / 1e6:.0f} MB at most.",
         "Give the RTZ file itself.",
     )

@@ -127,16 +127,16 @@ def waypoint_times(row: Mapping[str, Any], first: bool, last: bool, version: str
     """Return the arrival, the stay and the departure at a waypoint."""
     wait = round(3600.0 * (row.get("waiting_h") or 0.0))
     arrival = np.datetime64(str(row["time"]).removesuffix("Z"))
-    found = {} if first else {"eta": str(row["time"])}
+    times = {} if first else {"eta": str(row["time"])}
     if first or (wait and not last):
-        found["etd"] = f"{arrival + np.timedelta64(wait, 's')}Z"
+        times["etd"] = f"{arrival + np.timedelta64(wait, 's')}Z"
     if wait and not first:
         hours, minutes, seconds = wait // 3600, wait // 60 % 60, wait % 60
         if version != "1.0":
-            found["stay"] = f"PT{hours}H{minutes}M{seconds}S"
+            times["stay"] = f"PT{hours}H{minutes}M{seconds}S"
         elif hours < 24:
-            found["stay"] = f"{hours:02d}:{minutes:02d}:{seconds:02d}"
-    return found
+            times["stay"] = f"{hours:02d}:{minutes:02d}:{seconds:02d}"
+    return times
 
 
 def _calculated(row: Mapping[str, Any], before: Mapping[str, Any] | None) -> dict[str, str]:

@@ -37,19 +37,19 @@ def parse_s421(data: bytes) -> ParsedTrack:
     InputError : If it is too large, not XML, declares entities, or holds no route or several.
     """
     root = parse_xml(data, "S-421 file", largest=LARGEST_S421)
-    found = _found(root)
+    features = _features_of(root)
     by_name = {name: e for e in root.iter() if (name := _attribute(e, "id"))}
-    waypoints = _in_order(found, by_name)
-    if len(waypoints) < 2 or len(found.get("route", [])) > 1:
+    waypoints = _in_order(features, by_name)
+    if len(waypoints) < 2 or len(features.get("route", [])) > 1:
         raise InputError(
-            f"The GML holds {len(found.get('route', []))} S-421 routes and {len(waypoints)} "
+            f"The GML holds {len(features.get('route', []))} S-421 routes and {len(waypoints)} "
             "waypoints.",
             "One route of S-421 with two or more waypoints is read.",
             "Export one route as S-421, or as RTZ.",
         )
     notes: list[str] = []
     positions = [_position(waypoint, i) for i, waypoint in enumerate(waypoints, start=1)]
-    stays, first_time = _schedule(found, waypoints)
+    stays, first_time = _schedule(features, waypoints)
     orders = [_order(w, i, stay) for i, (w, stay) in enumerate(zip(waypoints, stays), start=1)]
     if first_time is not None:
         first_time -= orders[0].wait  # the departure of the schedule comes after the wait
@@ -57,21 +57,21 @@ def parse_s421(data: bytes) -> ParsedTrack:
     return ParsedTrack(positions, first_time, orders, rhumb, list(dict.fromkeys(notes)))
 
 
-def _found(root: ElementTree.Element) -> dict[str, list[ElementTree.Element]]:
+def _features_of(root: ElementTree.Element) -> dict[str, list[ElementTree.Element]]:
     """Return the features and information types by name in lower case; references are none."""
-    found: dict[str, list[ElementTree.Element]] = {}
+    features: dict[str, list[ElementTree.Element]] = {}
     for element in root.iter():
         if _attribute(element, "href") is None:
-            found.setdefault(local_name(element).casefold(), []).append(element)
-    return found
+            features.setdefault(local_name(element).casefold(), []).append(element)
+    return features
 
 
 def _in_order(
-    found: Mapping[str, list[ElementTree.Element]], by_name: Mapping[str, ElementTree.Element]
+    features: Mapping[str, list[ElementTree.Element]], by_name: Mapping[str, ElementTree.Element]
 ) -> list[ElementTree.Element]:
     """Return the waypoints as the route lists them, or as they stand in the file."""
-    waypoints = found.get("routewaypoint", [])
-    groups = found.get("routewaypoints", [])
+    waypoints = features.get("routewaypoint", [])
+    groups = features.get("routewaypoints", [])
     listed = [e for group in groups for e in children(group, "routeWaypoint")]
     names = [(_attribute(e, "href") or "").lstrip("#") for e in listed]
     if names and all(name in by_name for name in names) and len(set(names)) == len(waypoints):
@@ -102,7 +102,7 @@ def _is_rhumb(
 
 
 def _schedule(
-    found: Mapping[str, list[ElementTree.Element]], waypoints: list[ElementTree.Element]
+    features: Mapping[str, list[ElementTree.Element]], waypoints: list[ElementTree.Element]
 ) -> tuple[list[float], float | None]:
     """Return the stays at the waypoints [s] and the departure, of the first schedule with one."""
     number_of = {
@@ -111,7 +111,7 @@ def _schedule(
     }
     inside = {id(e): n for n, w in enumerate(waypoints) for e in w.iter()}
     stays, first_time = [0.0] * len(waypoints), None
-    for element in found.get("routescheduleelement", []):
+    for element in features.get("routescheduleelement", []):
         key = _value(element, "routeWaypointId") or _value(element, "routeWaypointID")
         number = inside.get(id(element), number_of.get(key))
         eta, etd = (_value(element, f"routeScheduleElement{end}") for end in ("ETA", "ETD"))

@@ -33,19 +33,19 @@ def ensemble_file(file: OpenedFile) -> EnsembleFile | None:
     DatasetError : If there are two such dimensions.
     """
     dataset = file.dataset
-    found = [
+    members = [
         str(dim)
         for dim, size in dataset.sizes.items()
         if size > 1 and _is_member_dimension(dataset, str(dim)) and _has_fields(dataset, dim)
     ]
-    if len(found) > 1:
+    if len(members) > 1:
         raise DatasetError(
-            f"{file.source} holds an ensemble along {' and along '.join(found)}.",
+            f"{file.source} holds an ensemble along {' and along '.join(members)}.",
             "The members must be along one dimension.",
             "Stack them into one dimension, or select one index along one of them.",
             file=file.source,
         )
-    return EnsembleFile(file, found[0], PlacementCache(), []) if found else None
+    return EnsembleFile(file, members[0], PlacementCache(), []) if members else None
 
 
 def _is_member_dimension(dataset: Any, dim: str) -> bool:

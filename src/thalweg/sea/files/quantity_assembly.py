@@ -73,26 +73,26 @@ class QuantityAssembler:
         parts = list(components)
         if vector is nm.CURRENT:
             parts += [vector.speed, vector.origin, vector.towards]
-        found = {
+        halves = {
             role: self.remaining[role].chosen.variable for role in parts if role in self.remaining
         }
-        if not found:
+        if not halves:
             return
-        names = " and ".join(repr(name) for name in found.values())
-        if len(found) == 1:
+        names = " and ".join(repr(name) for name in halves.values())
+        if len(halves) == 1:
             fault = "the other part of this vector is not in the file"
             remedy = "Add it to the file (cdo merge, or xarray.merge), or remove this part"
         else:
             fault = "they do not make a vector on one grid and one time axis"
             remedy = "Interpolate them to the same positions (for example to the centres of cells)"
         raise DatasetError(
-            f"{self.file.source}: {names} ({', '.join(found)}): {fault}.",
+            f"{self.file.source}: {names} ({', '.join(halves)}): {fault}.",
             "A vector is read from both components, or from speed and direction, at the same "
             "positions and times (of ROMS and NEMO on the sides of cells, with the positions of "
             "the centres).",
             f"{remedy}; variables with other names are named with a mapping (--map NAME=VARIABLE).",
             file=self.file.source,
-            variables=list(found.values()),
+            variables=list(halves.values()),
         )
 
     def _both_present(self, roles: Sequence[str]) -> bool:

@@ -109,7 +109,7 @@ class NearestLayer:
         """Return for each grid its variables, and the known positions near its unknown ones."""
         from scipy.spatial import cKDTree
 
-        found = []
+        grids = []
         for layer in self.layers:
             held = self.names & layer.variables
             if not isinstance(layer, GridLayer) or not held:
@@ -117,8 +117,8 @@ class NearestLayer:
             lat, lon = _known_near_unknown(layer, held)
             if lat.size:
                 tree = cKDTree(geocentric_unit_vectors(lat, lon))
-                found.append((held, lat, lon, tree))
-        return found
+                grids.append((held, lat, lon, tree))
+        return grids
 
     def sample(
         self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray

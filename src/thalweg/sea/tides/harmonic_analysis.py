@@ -110,29 +110,29 @@ def analyse(
     wave = unit_phasors(names, moments, empty.latitude, "foreman")
     design = np.column_stack([np.ones(moments.size), wave.real, -wave.imag])
     done, total = 0, nodes * len(records)
-    found = {}
+    components = {}
     for name, values in records.items():
 
         def report(count: int, before: int = done) -> None:
             if progress is not None:
                 progress(before + count, total)
 
-        found[name] = _fit(design, values, report)
+        components[name] = _fit(design, values, report)
         done += nodes
-    return _analysis(empty, found, moments)
+    return _analysis(empty, components, moments)
 
 
 def _analysis(
-    empty: Constituents, found: Mapping[str, tuple[FloatArray, FloatArray, FloatArray]],
+    empty: Constituents, components: Mapping[str, tuple[FloatArray, FloatArray, FloatArray]],
     times: FloatArray,
 ) -> TideAnalysis:  # fmt: skip
     count = len(empty.names)
-    waves = {n: f[0][1 : count + 1] + 1j * f[0][count + 1 :] for n, f in found.items()}
+    waves = {n: f[0][1 : count + 1] + 1j * f[0][count + 1 :] for n, f in components.items()}
     constants = Constituents(
         empty.names,
         {n: np.abs(w) for n, w in waves.items()},
         {n: np.degrees(-np.angle(w)) % 360.0 for n, w in waves.items()},
-        {n: f[0][0] for n, f in found.items()},
+        {n: f[0][0] for n, f in components.items()},
         empty.lat,
         empty.lon,
         "foreman",
@@ -140,8 +140,8 @@ def _analysis(
     )
     return TideAnalysis(
         constants,
-        {n: f[1] for n, f in found.items()},
-        {n: f[2] for n, f in found.items()},
+        {n: f[1] for n, f in components.items()},
+        {n: f[2] for n, f in components.items()},
         float(times[0]),
         float(times[-1]),
     )

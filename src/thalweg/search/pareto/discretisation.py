@@ -262,17 +262,17 @@ def _table_error(
     when = (windows.first[nodes] + rng.random(_SAMPLED_EDGES) * span) * time_bins.width
     k = np.clip(np.searchsorted(slices, when, side="right") - 1, 0, len(slices) - 2)
     begin, end = slices[k], slices[k + 1]
-    found = []
+    errors = []
     for t in (begin, 0.5 * (begin + end), end):
         out = np.empty((_SAMPLED_EDGES, 2))
         departures = np.ascontiguousarray(request.depart + t)
         sail_departures(
             front_problem.world, edges, nodes, choices, departures, out, new_edge_workspace()
         )
-        found.append(out)
+        errors.append(out)
     with np.errstate(divide="ignore", invalid="ignore"):
-        off = np.abs(0.5 * (found[0] + found[2]) / found[1] - 1.0)
-    open_ = [np.isfinite(out[:, 0]) for out in found]
+        off = np.abs(0.5 * (errors[0] + errors[2]) / errors[1] - 1.0)
+    open_ = [np.isfinite(out[:, 0]) for out in errors]
     closes = bool(((open_[0] | open_[1] | open_[2]) & ~(open_[0] & open_[1] & open_[2])).any())
     off = off[np.isfinite(off).all(axis=1)]
     return (float(np.quantile(off, 0.95)) if off.size else 0.0), closes

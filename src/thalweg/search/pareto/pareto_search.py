@@ -50,7 +50,7 @@ from thalweg.search.restricted_waiting import (
     earliest_arrival_with_restricted_waiting,
     waiting_is_restricted,
 )
-from thalweg.search.search_problem import distance_bounds
+from thalweg.search.search_problem import check_two_nodes, distance_bounds
 from thalweg.search.search_result import counts_by_reason
 
 if TYPE_CHECKING:
@@ -329,12 +329,7 @@ def _request(ship_on_network: MultiSettingShipOnNetwork, query: FrontQuery) -> F
             f"It has settings 0 to {count - 1}.",
             "Give settings of the ship.",
         )
-    if not (0 <= start < network.n_nodes and 0 <= goal < network.n_nodes and start != goal):
-        raise InputError(
-            f"A search from node {start} to node {goal} is not possible.",
-            f"The network has nodes 0 to {network.n_nodes - 1}; start and goal must differ.",
-            "Give two nodes of this network.",
-        )
+    check_two_nodes(network.n_nodes, start, goal)
     if not (math.isfinite(depart) and math.isfinite(latest) and latest > depart):
         raise InputError(
             f"The latest arrival {latest} is not after the departure {depart}.",

@@ -136,20 +136,20 @@ def earliest_arrival_path(
     return path._replace(leave=np.where(waited, departed, -math.inf))
 
 
-def path_of_search_result(front_problem: FrontProblem, found: SearchResult) -> PlannedPath:
+def path_of_search_result(front_problem: FrontProblem, result: SearchResult) -> PlannedPath:
     """Return the path of a search on a network with one state for each node."""
     net = front_problem.world.network
-    states = [int(found.path[0])]
-    for node, time in zip(found.path[1:].tolist(), found.path_arrive[1:].tolist()):
+    states = [int(result.path[0])]
+    for node, time in zip(result.path[1:].tolist(), result.path_arrive[1:].tolist()):
         leaving = np.arange(net.indptr[states[-1]], net.indptr[states[-1] + 1])
         heads = net.target[leaving]
         there = (
             (net.station[heads] == node) & (net.opens[heads] <= time) & (time < net.closes[heads])
         )
         states.append(int(heads[there][0]))
-    waited = found.path_depart[:-1] > found.path_arrive[:-1]
+    waited = result.path_depart[:-1] > result.path_arrive[:-1]
     path = _path_through(front_problem, np.array(states, np.int64))
-    return path._replace(leave=np.where(waited, found.path_depart[:-1], -math.inf))
+    return path._replace(leave=np.where(waited, result.path_depart[:-1], -math.inf))
 
 
 def _path_through(front_problem: FrontProblem, path: IntArray) -> PlannedPath:
@@ -190,7 +190,7 @@ def paths_of_goal_labels(
     cost = labels.cost[start : start + last - first + 1]
     best = np.minimum.accumulate(np.concatenate(([np.inf], cost[:-1])))
     slots = np.empty(len(front_problem.world.network.station) * 4 + 16, np.int64)
-    found, dropped = [], 0
+    paths, dropped = [], 0
     for slot in start + np.flatnonzero(cost < best):
         n = int(trace_labels(labels, int(slot), slots))
         while n < 0:  # ships that may not wait can circle
@@ -201,8 +201,8 @@ def paths_of_goal_labels(
         if point is None:
             dropped += 1
         elif point.time <= request.horizon * (1.0 + 1e-12):
-            found.append(point)
-    return found, dropped
+            paths.append(point)
+    return paths, dropped
 
 
 def _path_of_label(

@@ -57,9 +57,9 @@ def motion_sheet(
     height = weather["wave_height"]
     period = weather.get("wave_period") or assumed_peak_period(height)
     speed = _attained_speed(ship, {**weather, "wave_period": period}, ordered)
-    found = own.at(speed, wave_angle=angles, wave_height=height, wave_period=period)
+    motions = own.at(speed, wave_angle=angles, wave_height=height, wave_period=period)
     places = {}
-    for name, at in found.places.items():
+    for name, at in motions.places.items():
         dose = motion_sickness_dose(at.weighted, duration=EXPOSURE_H * HOUR)
         places[name] = {
             "ahead_of_midship_m": float(own.places[name]),
@@ -71,7 +71,7 @@ def motion_sheet(
         }
     tasks = {}
     for task in own.tasks:
-        good, known = own.workable(task, found)
+        good, known = own.workable(task, motions)
         tasks[task] = [bool(g) if k else None for g, k in zip(good, known)]
     return {
         "ordered_speed_kn": ordered / KNOT,
@@ -80,9 +80,9 @@ def motion_sheet(
         "exposure_h": EXPOSURE_H,
         "headings_deg": list(HEADINGS_DEG),
         "attained_speed_kn": _plain(speed / KNOT),
-        "heave_rms_m": _plain(found.heave),
-        "pitch_rms_deg": _plain(np.degrees(found.pitch)),
-        "roll_rms_deg": _plain(np.degrees(found.roll)),
+        "heave_rms_m": _plain(motions.heave),
+        "pitch_rms_deg": _plain(np.degrees(motions.pitch)),
+        "roll_rms_deg": _plain(np.degrees(motions.roll)),
         "places": places,
         "tasks": tasks,
         "warnings": [

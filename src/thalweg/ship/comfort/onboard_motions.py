@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.ship.hull.hull import complete_hull
+from thalweg.ship.hull.hull_checks import check_aboard
 from thalweg.ship.methods.seakeeping.motion_sickness import weighted_acceleration
 from thalweg.ship.methods.seakeeping.roll_motion import ROLL_DAMPING, roll_rms
 from thalweg.ship.methods.seakeeping.ship_motions import MotionHull, ship_response
@@ -224,13 +225,10 @@ def onboard_motions(ship: Ship) -> OnboardMotions | None:
     complete = complete_hull(file.hull.plain())
     hull = make_motion_hull(complete, ship.loading)
     for name, forward in file.places.items():
-        if abs(forward) > 0.75 * hull.length:
-            raise InputError(
-                f"The place {name!r} is {forward:g} m ahead of midship, off the ship.",
-                f"Half of its length is {0.5 * hull.length:g} m; abaft midship is negative.",
-                f"Correct places.{name}.",
-                key=f"places.{name}",
-            )
+        key = f"places.{name}"
+        check_aboard(
+            f"The place {name!r} is", forward, hull.length, remedy=f"Correct {key}.", key=key
+        )
     for name, task in file.tasks.items():
         if task.place not in file.places:
             raise unknown_name_error(f"place for the task {name!r}", task.place, file.places)
@@ -246,8 +244,8 @@ def onboard_motions(ship: Ship) -> OnboardMotions | None:
 
 def required_motions(ship: Ship) -> OnboardMotions:
     """Return `onboard_motions`, or raise `InputError` where the ship has no places."""
-    found = onboard_motions(ship)
-    if found is None:
+    motions = onboard_motions(ship)
+    if motions is None:
         raise InputError(
             f"The comfort on board of {ship.name!r} is not known: she has no named places.",
             "Motions are computed at places of the ship file, such as places: {bridge: 10.0, "
@@ -255,4 +253,4 @@ def required_motions(ship: Ship) -> OnboardMotions:
             "Add places, or choose a ship that has them, such as gunnerus-2019.",
             key="places",
         )
-    return found
+    return motions

@@ -106,6 +106,23 @@ def check_ends_and_surface(hull: _HullNumbers) -> None:
     _check_wetted_surface(hull, breadth, draught)
 
 
+def check_aboard(what: str, forward: float, length: float, *, remedy: str, key: str) -> None:
+    """Raise `InputError` for a place further from midship [m] than the ends of the ship.
+
+    Parameters
+    ----------
+    what : Beginning of the message, such as "A limit is set".
+    remedy, key : What to correct, and its key in the ship file.
+    """
+    if abs(forward) > 0.75 * length:
+        raise InputError(
+            f"{what} {forward:g} m ahead of midship, off the ship.",
+            f"Half of its length is {0.5 * length:g} m; abaft midship is negative.",
+            remedy,
+            key=key,
+        )
+
+
 def _check_wetted_surface(hull: _HullNumbers, breadth: float, draught: float) -> None:
     """Check that the wetted surface is between that of a hemisphere and that of a box."""
     surface, volume = hull.number("wetted_surface_m2"), hull.number("displacement_m3")

@@ -226,9 +226,9 @@ def _wake(
         line = ittc_1957(reynolds_number(speed, length=form.length))
         viscous = viscous_coefficient(line, form_factor=factor, correlation=0.0004)
         if not single:
-            found = wake_fraction_twin(form, propeller_diameter=size, viscous=viscous)
+            fraction = wake_fraction_twin(form, propeller_diameter=size, viscous=viscous)
         else:
-            found = wake_fraction_single(
+            fraction = wake_fraction_single(
                 form,
                 draught_aft=aft,
                 propeller_diameter=size,
@@ -237,7 +237,7 @@ def _wake(
                 stern_shape=stern,
                 year=1984,
             )
-        return np.clip(found, 0.0, 0.6)
+        return np.clip(fraction, 0.0, 0.6)
 
     return wake
 

@@ -77,7 +77,7 @@ def resistance_terms(balance: ForceBalance, limits: ShipLimits) -> list[Resistan
     balance : Forces of the ship at one draught.
     limits : Greatest wave height and wind speed.
     """
-    axes, found = condition_axes(balance, limits), []
+    axes, terms = condition_axes(balance, limits), []
     wind, waves, calm = balance.wind, balance.waves, balance.calm
     if wind is not None:
 
@@ -85,16 +85,16 @@ def resistance_terms(balance: ForceBalance, limits: ShipLimits) -> list[Resistan
             still = wind.force(v, np.zeros(()), np.zeros(()))
             return wind.force(v, speed, angle) - still
 
-        found.append(ResistanceTerm((axes["wind_speed"], axes["wind_angle"]), wind_force))
+        terms.append(ResistanceTerm((axes["wind_speed"], axes["wind_angle"]), wind_force))
     if waves is not None:
-        found.append(_wave_term(waves, axes))
+        terms.append(_wave_term(waves, axes))
     if "depth" in axes:
 
         def depth_force(v: FloatArray, depth: FloatArray) -> FloatArray:
             return calm.total(v, depth) - calm.total(v, np.asarray(np.inf))
 
-        found.append(ResistanceTerm((axes["depth"],), depth_force))
-    return found
+        terms.append(ResistanceTerm((axes["depth"],), depth_force))
+    return terms
 
 
 def _wave_term(waves: AddedWaveResistance, axes: Mapping[str, AxisRange]) -> ResistanceTerm:
@@ -122,16 +122,16 @@ def condition_axes(balance: ForceBalance, limits: ShipLimits) -> dict[str, AxisR
     balance : Forces of the ship at one draught.
     limits : Greatest wave height and wind speed.
     """
-    found = {name: axis for name, axis in _INITIAL_AXES.items() if name in balance.reads}
+    axes = {name: axis for name, axis in _INITIAL_AXES.items() if name in balance.reads}
     for name, limit in (("wind_speed", limits.wind_speed), ("wave_height", limits.wave_height)):
-        if name in found:
-            found[name] = replace(found[name], stop=min(found[name].stop, 1.0001 * limit))
+        if name in axes:
+            axes[name] = replace(axes[name], stop=min(axes[name].stop, 1.0001 * limit))
     if "depth" in balance.reads:
         draught = float(balance.calm.hull.values["draught_m"])
         length = float(balance.calm.hull.values["length_waterline_m"])
         stop = draught + 1.1 * length
-        found["depth"] = AxisRange(codes.AXIS_DEPTH, 1.05 * draught, stop, _DEPTH_POINTS)
-    return found
+        axes["depth"] = AxisRange(codes.AXIS_DEPTH, 1.05 * draught, stop, _DEPTH_POINTS)
+    return axes
 
 
 def random_term_conditions(

@@ -141,14 +141,14 @@ def random_conditions(axes: Sequence[AxisRange], count: int, seed: int) -> dict[
     return {a.name: draw.uniform(a.start, a.stop, count) for a in axes}
 
 
-def table_error(found: FloatArray, truth: FloatArray) -> TableError:
+def table_error(tabulated: FloatArray, truth: FloatArray) -> TableError:
     """Measure how far looked-up values are from the model's.
 
     Where one of the two is unknown, the error is the whole value; where both are, it is ignored.
 
     Parameters
     ----------
-    found : ndarray (..., settings)
+    tabulated : ndarray (..., settings)
         Values from the table.
     truth : ndarray (..., settings)
         Values of the model.
@@ -157,13 +157,13 @@ def table_error(found: FloatArray, truth: FloatArray) -> TableError:
     -------
     TableError : Errors relative to the greatest value of each setting.
     """
-    sound, known = np.isfinite(truth), np.isfinite(truth) | np.isfinite(found)
+    sound, known = np.isfinite(truth), np.isfinite(truth) | np.isfinite(tabulated)
     if not known.any():
         return TableError(0.0, 0.0, 0.0, 0)
     top = np.where(sound, np.abs(truth), 0.0).reshape(-1, truth.shape[-1]).max(axis=0)
     scale = np.maximum(np.maximum(np.abs(truth), RELATIVE_ERROR_FLOOR * top), 1e-12)
     # a value that only the model or only the table knows counts as wholly wrong
-    relative = np.nan_to_num(np.abs(found - truth) / scale, nan=1.0)[known]
+    relative = np.nan_to_num(np.abs(tabulated - truth) / scale, nan=1.0)[known]
     return TableError(
         mean=float(relative.mean()),
         p99=float(np.quantile(relative, 0.99)),
