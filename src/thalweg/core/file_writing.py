@@ -38,7 +38,8 @@ def replacing_file(path: str | PathLike[str]) -> Iterator[IO[bytes]]:
 
     Parameters
     ----------
-    path : or a pipe is written directly.
+    path : File to write. A link is followed; the permissions of an existing file are kept. A device
+        or a pipe is written directly.
 
     Yields
     ------

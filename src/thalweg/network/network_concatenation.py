@@ -36,7 +36,8 @@ def concatenate_networks(networks: Sequence[Network], links: Sequence[CanalLink 
     Parameters
     ----------
     networks : Each with its start and goal.
-    links : other.
+    links : Canal from each network to the next; None where the goal of the one is the start of the
+        other.
 
     Returns
     -------

@@ -126,7 +126,8 @@ def canal_legs(track: Track, chart: Chart | None, ship: Ship | None = None) -> C
 
     Parameters
     ----------
-    ship : they are sailed at `thalweg.chart.approaches.MAX_APPROACH_SPEED`, or the ordered speed if
+    ship : With a ship, canals have its dues, and legs along approaches of the chart are included:
+        they are sailed at `thalweg.chart.approaches.MAX_APPROACH_SPEED`, or the ordered speed if
         that is lower.
     """
     none = np.full(len(track) - 1, -1, np.int64)

@@ -38,7 +38,8 @@ def at_constant_ground_speed(
     ----------
     route : As sailed at other speeds.
     speed : Over ground [m/s].
-    evaluate_track : ordered at will, the sea and the chart).
+    evaluate_track : Scores a track with ordered speeds (the referee with a ship whose speeds can be
+        ordered at will, the sea and the chart).
     ordered_range : (float, float)
         Lowest and highest speed that can be ordered [m/s].
 

@@ -132,7 +132,8 @@ class Penalties:
     ----------
     added : Added to the time [s] or distance [m] of the known route.
     factors : Factors of the zones.
-    graded : which it follows the course: then those of all edges count as they are.
+    graded : Whether there are shoals, in which the factor follows the depth, or traffic lanes, in
+        which it follows the course: then those of all edges count as they are.
     """
 
     added: float

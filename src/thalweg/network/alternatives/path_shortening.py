@@ -74,7 +74,8 @@ def string_pull_path(
     lat, lon : Path of allowed legs [deg].
     leg_cost : Cost of legs; by default their length [m]. With a cost, waypoints are also moved
         sideways, because the cost differs from place to place.
-    sides : `thalweg.network.alternatives.homotopy`).
+    sides : Meridian crossings of legs, so that islands stay on the same side (see
+        `thalweg.network.alternatives.homotopy`).
     rounds : Largest number of passes that cut corners; with 0, waypoints are only removed.
 
     Returns

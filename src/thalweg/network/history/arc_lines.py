@@ -139,7 +139,8 @@ class LinesOffLand:
     lines : Of the arcs of ``arc``, in that order.
     arc : Arcs that have a line.
     source : The stretch of track that each line is from.
-    repaired : over land.
+    repaired : Share of the length of each line that is a way over the globe in place of a track
+        over land.
     """
 
     lines: ArcLines

@@ -26,7 +26,8 @@ class SectionShape:
     Attributes
     ----------
     layers : S, the number of layers between the two waypoints, 1 or more.
-    fan : number has a segment straight ahead.
+    fan : H, the number of segments that leave a node towards the next layer, 2 or more. An odd
+        number has a segment straight ahead.
     offset : d, by how much a layer is wider than the one before, to either side [m].
     """
 

@@ -40,7 +40,8 @@ def channel_nodes(ground: LatticeSpecification) -> tuple[FloatArray, FloatArray]
 
     Parameters
     ----------
-    ground : be too many nodes, in channels narrower than twice its spacing at coasts.
+    ground : Only land larger than half its open-sea spacing counts, or larger land if there would
+        be too many nodes, in channels narrower than twice its spacing at coasts.
 
     Returns
     -------

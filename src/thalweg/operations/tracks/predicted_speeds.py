@@ -40,7 +40,8 @@ def predicted_speeds_through_water(
     Parameters
     ----------
     ship : Full while sailing full (load factor 1), empty while sailing empty (0).
-    speed_kn : calm-water speed is nearest to the measured speed through water.
+    speed_kn : Ordered speed; by default, for each activity, the setting of the ship whose
+        calm-water speed is nearest to the measured speed through water.
 
     Returns
     -------

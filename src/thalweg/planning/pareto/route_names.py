@@ -52,7 +52,8 @@ def route_labels(
     Parameters
     ----------
     alternatives : Name of the route alternative of each route, by its canals.
-    networks : used where an alternative has none.
+    networks : Network of each alternative from start to goal; land near it counts. The first one is
+        used where an alternative has none.
 
     Returns
     -------

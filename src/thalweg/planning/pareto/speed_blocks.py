@@ -62,7 +62,8 @@ def merged_settings(
     hours : Time of sailing of each leg, in any unit, (legs,).
     speeds : Calm-water speeds, ascending, (settings,).
     least : Least time of a run, in the unit of ``hours``.
-    late : neighbour.
+    late : Whether the passage may become longer; otherwise short runs are given to the faster
+        neighbour.
 
     Returns
     -------

@@ -46,7 +46,8 @@ def draw_map(plan: PlanData, path: str | Path | None = None, *, beside: Route | 
     ----------
     plan : A plan with its plot context (as `thalweg.plan` returns it).
     path : Where to save it (PNG).
-    beside : default that of the comparison of a front.
+    beside : A route to draw beside that of the plan, such as one that ignores the weather; by
+        default that of the comparison of a front.
     """
     beside = beside or _weather_blind(plan)
     box = _map_extent(plan, beside)

@@ -1,4 +1,4 @@
-"""The offing of a voyage: how far a ship stays from land, and which passages she may use."""
+"""The offing of a voyage: how far a ship stays from land, and which passages it may use."""
 
 from __future__ import annotations
 

@@ -182,7 +182,8 @@ def strongest_current_in_data(context: PlanningContext, route: Route) -> tuple[f
 
     Parameters
     ----------
-    route : greatest speed is left out.
+    route : A route that takes as long as any that counts: water farther away than its time at the
+        greatest speed is left out.
 
     Returns
     -------

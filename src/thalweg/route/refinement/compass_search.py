@@ -23,7 +23,8 @@ class CompassSchedule:
 
     Attributes
     ----------
-    shares : steps grow and shrink with the success of each point instead.
+    shares : First step of each round as a share of `CompassProblem.point_spacing`; one number:
+        steps grow and shrink with the success of each point instead.
     rounds : Rounds over all points at most.
     growth, shrinkage : Factors of the step of a point after a gain and without one.
     turn : By which the directions turn every round [rad].

@@ -182,7 +182,8 @@ def solve_newton_step(
     Parameters
     ----------
     free : Points that may move, (R, M); the others get a step of 0.
-    damping : is positive definite, so that the step always leads downhill.
+    damping : Share of the curvature added to it. From 1 on the diagonal is raised until the matrix
+        is positive definite, so that the step always leads downhill.
 
     Returns
     -------

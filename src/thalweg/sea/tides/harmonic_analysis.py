@@ -83,7 +83,8 @@ def analyse(
     series : mapping of str to array_like (T,) or (N, T)
         Records by variable, NaN where unknown; nodes known less than half of the time get no tide.
     lat, lon : Positions [deg], (N,); their mean latitude is used for nodal corrections.
-    constituents : can separate, in the order of priority of Foreman (1977).
+    constituents : Names as UTide spells them; by default all that the length and step of the record
+        can separate, in the order of priority of Foreman (1977).
     rayleigh : Rayleigh criterion: least difference of two constituents [cycles] over the record.
     progress : Called with the number of nodes done and in total.
 

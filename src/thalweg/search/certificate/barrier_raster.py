@@ -33,7 +33,8 @@ class BarrierRaster:
     Attributes
     ----------
     arrays : Times since departure [s].
-    sampling : note on how it differs.
+    sampling : "" where the raster has the values and the interpolation of the data; otherwise a
+        note on how it differs.
     """
 
     arrays: RasterArrays

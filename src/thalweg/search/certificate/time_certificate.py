@@ -51,7 +51,8 @@ class TimeCertificate:
     ----------
     value : No route is faster [s].
     sampling : How the sea of the proof differs from the data; "" where it does not.
-    cells : speed over ground, which has no mesh, barrier and task.
+    cells : Cells of the mesh along the geodesic; 0 for the bound of the geodesic at the greatest
+        speed over ground, which has no mesh, barrier and task.
     seconds : Time used [s].
     reached : Value of the barrier at the goal [s]. Where it is clearly above the known time the sea
         of the proof is not the one of the known route.

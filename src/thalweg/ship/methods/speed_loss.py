@@ -68,7 +68,8 @@ def beaufort_number(wind_speed: ArrayLike, *, classes: bool = False) -> FloatArr
     Parameters
     ----------
     wind_speed : [m/s], not negative.
-    classes : 0.836)^(2/3). Both end at 12.
+    classes : Whole numbers by the usual class limits, instead of the continuous B = (v /
+        0.836)^(2/3). Both end at 12.
 
     Returns
     -------

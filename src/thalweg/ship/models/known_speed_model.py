@@ -95,7 +95,8 @@ class SpeedPowerLaw:
     name : {"none", "cubic", "table"}
     power_to_fuel_rate : callable, optional
         Fuel rate [kg/s] of a power [W], where fuel follows from power and not from the speed.
-    rows : the settings themselves when not given.
+    rows : Speeds full and empty, fuel rates and powers that the settings were taken from; those of
+        the settings themselves when not given.
     """
 
     name: str = "none"

@@ -42,7 +42,8 @@ class OutputCurve:
     Attributes
     ----------
     kind : {"curve", "crossing"}
-    start, step : for a crossing in speed [m/s], `CURVE_REFINEMENT` steps to a column.
+    start, step : For each setting the first point of its curve and the step, in units of the sum;
+        for a crossing in speed [m/s], `CURVE_REFINEMENT` steps to a column.
     points : The curves, shape ``(settings, points)``.
     top : The greatest speed of each setting [m/s]; for a crossing.
     guess : Columns next to the calm-water speeds, where a search begins; for a crossing.

@@ -89,7 +89,8 @@ def in_blocks(
 
     Parameters
     ----------
-    function : argument of one element comes as one element.
+    function : Takes as many 1-d arrays as there are arguments and returns one of their length; an
+        argument of one element comes as one element.
     *arguments : Broadcast against each other.
     block : Elements at a time.
 

@@ -91,7 +91,8 @@ def b_series_polynomials(
     Parameters
     ----------
     propeller : Diameter does not matter.
-    reynolds : none by default, which is Rn = 2e6.
+    reynolds : Reynolds number of the chord at 0.75 R, above 2e6, for the correction of the source;
+        none by default, which is Rn = 2e6.
 
     Returns
     -------

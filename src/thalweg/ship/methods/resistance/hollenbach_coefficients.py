@@ -41,7 +41,8 @@ class HollenbachCoefficients:
         Exponent c1 above the critical Froude number: Fn / Fn_crit, 10 C_B (Fn / Fn_crit - 1), or
         no growth.
     length : e1, e2 of the length factor.
-    lower, upper : mean line (unverified); NaN for the minimum curves.
+    lower, upper : f1, f2, f3 and g1, g2, g3 of the Froude limits. h1, ratio of the maximum to the
+        mean line (unverified); NaN for the minimum curves.
     """
 
     ratios: tuple[float, ...]

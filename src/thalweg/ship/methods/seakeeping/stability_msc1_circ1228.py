@@ -27,7 +27,8 @@ class DangerousSituationMargins:
     ----------
     surf_riding : Critical speed minus speed [m/s]; infinite outside following and quartering seas.
     high_waves : Largest relative distance from the three limits that must all be passed [-].
-    synchronous_roll, parametric_roll : less the tolerance [-]; NaN when no roll period was given.
+    synchronous_roll, parametric_roll : Relative distance of the encounter period from resonance,
+        less the tolerance [-]; NaN when no roll period was given.
     """
 
     surf_riding: FloatArray
@@ -49,7 +50,8 @@ class DangerousSituations:
     synchronous_roll, parametric_roll : ndarray of bool
         Encounter period near the roll period; near it or half of it. False without roll period.
     margins : Distances from the first and the last three.
-    known : all-clear: use `safe`.
+    known : Whether all data were known. Where they were not every flag is False, which is not an
+        all-clear: use `safe`.
     """
 
     encounter_period: FloatArray
@@ -147,7 +149,8 @@ def surf_riding_speed(
     ----------
     wave_angle : Angle between bow and where the waves come from [rad], 0 head to pi following.
     length : Ship length [m].
-    factor : with the source).
+    factor : 1.8 for surf-riding, 1.4 for the marginal zone of large surging (1.4 was not compared
+        with the source).
 
     Returns
     -------

@@ -206,7 +206,8 @@ def spectral_moment(
 
     Parameters
     ----------
-    density : response.
+    density : Spectral density over *wave* frequency; squared response times wave spectrum for a
+        response.
     weights : Weights of the quadrature [rad/s].
     frequency : Frequency whose power is taken [rad/s]: the wave's, or the encounter frequency for a
         ship under way. Integrating over wave frequency avoids the poles of the encounter spectrum.

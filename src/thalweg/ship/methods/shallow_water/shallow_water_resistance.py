@@ -161,8 +161,9 @@ def karpov(
     ----------
     depth_froude : V / sqrt(g D). Above 1.0 the value at 1.0 is used: the fit ends there.
     depth_to_draught : D / T; above one.
-    raw_bands : default, takes each polynomial as the curve of the centre of its band, interpolates
-        linearly in D / T and lets alpha** not exceed one.
+    raw_bands : True gives the printed bands with their steps and their values above one. False, the
+        default, takes each polynomial as the curve of the centre of its band, interpolates linearly
+        in D / T and lets alpha** not exceed one.
 
     Returns
     -------
