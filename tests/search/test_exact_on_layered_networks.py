@@ -78,6 +78,7 @@ def exact(ship, network, wait=False):
     return earliest_arrival(ship, start=meta.start, goal=meta.goal, depart=START, wait=wait).arrive
 
 
+@pytest.mark.slow
 def test_dynamic_programming_is_brute_force():
     small = layered_network(Chart.open_water(), PLACES, layers=3, fan=3, offset=8000.0)
     for number in range(3):
