@@ -1,5 +1,7 @@
 """Traffic lanes: what sailing against them costs, who finds it, and what is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -124,3 +126,22 @@ def test_lanes_count_in_the_fingerprint(water):
         water.with_zones(collection(lane(direction_deg=direction))) for direction in (90, 91)
     )
     assert one.fingerprint() != other.fingerprint() != water.fingerprint()
+
+
+def test_only_pieces_near_a_lane_are_compared_and_none_is_missed():
+    """Against all pieces: lanes in high latitude, at the antimeridian, and long legs."""
+    rng = np.random.default_rng(5)
+    places = [(50.5, 2.0), (78.5, 15.0), (80.0, 20.0), (10.0, 180.0), (-33.0, -72.0)]
+    lanes = []
+    for y, x in places:
+        ring = [[x - 1, y - 0.2], [x + 1, y - 0.2], [x + 1, y + 0.2], [x - 1, y + 0.2]]
+        lanes.append(lane([*ring, ring[0]], factor=2.0, direction_deg=float(rng.uniform(0, 360))))
+    group = Zones.read(collection(*lanes)).lane_group
+    every = replace(group, cells=np.ones_like(group.cells))
+    at = np.array(places)[rng.integers(0, len(places), 400)]
+    spread = np.where(rng.uniform(size=400) < 0.5, 1.5, 20.0)[:, None]
+    begin = np.clip(at + spread * rng.normal(size=(400, 2)), -85.0, 85.0)
+    end = np.clip(at + spread * rng.normal(size=(400, 2)), -85.0, 85.0)
+    legs = (*begin.T, *end.T)
+    assert group.excess(*legs) == pytest.approx(every.excess(*legs), abs=1e-12)
+    assert np.count_nonzero(every.excess(*legs)) > 25

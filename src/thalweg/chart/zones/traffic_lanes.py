@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from thalweg.chart.coast.coast_index_builder import build_index
 from thalweg.chart.geojson_polygons import rings_from_polygons
@@ -28,6 +28,9 @@ FORBIDDEN_FACTOR: Final = 1000.0
 DEFAULT_TOLERANCE: Final = 100.0  # [deg]
 _PIECE: Final = 20_000.0  # legs are split into straight lines of at most this [m]
 _INDEX_CELLS: Final = 128
+_CELL: Final = 0.5  # [deg]; more than a piece in latitude
+_REACH: Final = 2  # cells; more than a piece in longitude up to the latitude ``_POLAR``
+_POLAR: Final = 79.0  # [deg]
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,9 +86,7 @@ class TrafficLane:
 class LaneGroup:
     """Lanes ready for legs: a tree of their areas on three turns of longitude, and outlines.
 
-    Attributes
-    ----------
-    cells : Which cells of a degree (from 90 S and 0 E) the boxes of the lanes touch.
+    ``cells`` marks the cells of half a degree from which a piece of a leg can reach a lane.
     """
 
     lanes: tuple[TrafficLane, ...]
@@ -106,11 +107,7 @@ class LaneGroup:
         shapely.prepare(shapes)
         parts = [part for lane in lanes for part in shapely.get_parts(lane.shape)]
         index = build_index(rings_from_polygons(parts), _INDEX_CELLS)
-        cells = np.zeros((180, 360), np.bool_)
-        for west, south, east, north in (np.floor(lane.shape.bounds).astype(int) for lane in lanes):
-            rows = np.clip(np.arange(south, north + 1) + 90, 0, 179)
-            cells[rows[:, None], np.arange(west, east + 1) % 360] = True
-        return cls(tuple(lanes), shapely.STRtree(shapes), index, cells)
+        return cls(tuple(lanes), shapely.STRtree(shapes), index, _cells_around(lanes))
 
     def shares_against(
         self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
@@ -131,13 +128,12 @@ class LaneGroup:
         ends = [x[near] for x in (lat1, lon1, lat2, lon2)]
         length, course, _ = inverse(*ends)
         pieces = np.maximum(np.ceil(length / _PIECE), 1.0).astype(np.int64)
-        of = np.repeat(np.arange(len(near)), pieces)
-        number = np.arange(len(of)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-        sides = [
-            direct(ends[0][of], ends[1][of], course[of], share * length[of])
-            for share in (number / pieces[of], (number + 1) / pieces[of])
-        ]
-        (y0, x0), (y1, x1) = sides
+        leg = np.repeat(np.arange(len(near)), pieces + 1)
+        number = np.arange(len(leg)) - np.repeat(np.cumsum(pieces + 1) - pieces - 1, pieces + 1)
+        y, x = direct(ends[0][leg], ends[1][leg], course[leg], number / pieces[leg] * length[leg])
+        reach = self._within_reach(y, x)
+        first = np.flatnonzero((number < pieces[leg]) & (reach | np.roll(reach, -1)))
+        of, y0, x0, y1, x1 = leg[first], y[first], x[first], y[first + 1], x[first + 1]
         x1 = x0 + wrap_longitude(x1 - x0)
         lines = shapely.linestrings(np.stack([np.stack([x0, y0], -1), np.stack([x1, y1], -1)], 1))
         which, zone = self.tree.query(lines, predicate="intersects")
@@ -170,9 +166,37 @@ class LaneGroup:
         touched = np.empty(len(lat1), np.bool_)
         legs = [np.require(x, float, ("C", "W")) for x in (lat1, lon1, lat2, lon2)]
         outlines_touched(self.outlines, *legs, touched)
-        row = np.clip(np.nan_to_num(np.floor(lat1)) + 90.0, 0.0, 179.0).astype(np.int64)
-        column = (np.nan_to_num(np.floor(lon1)) % 360.0).astype(np.int64)
-        near = np.flatnonzero(self.cells[row, column] & ~touched)
-        inside, _ = self.tree.query(shapely.points(lon1[near], lat1[near]), predicate="intersects")
-        touched[near[inside]] = True
+        beside = np.flatnonzero(self._within_reach(lat1, lon1) & ~touched)
+        points = shapely.points(lon1[beside], lat1[beside])
+        inside, _ = self.tree.query(points, predicate="intersects")
+        touched[beside[inside]] = True
         return touched
+
+    def _within_reach(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
+        """Return from which positions [deg] a piece of a leg can reach a lane."""
+        rows, columns = _cells_of(lat, lon)
+        found = self.cells[np.clip(rows, 0, len(self.cells) - 1), columns % self.cells.shape[1]]
+        return np.asarray(found | (np.abs(lat) > _POLAR))
+
+
+def _cells_around(lanes: Sequence[TrafficLane]) -> BoolArray:
+    """Return the cells within the length of a piece of the bounds of lanes."""
+    rows, columns = round(180.0 / _CELL), round(360.0 / _CELL)
+    found = np.zeros((rows, columns), np.bool_)
+    for lane in lanes:
+        west, south, east, north = lane.shape.bounds
+        low, left = _cells_of(south, west)
+        high, right = _cells_of(north, east)
+        across = np.arange(left - _REACH, min(right + _REACH + 1, left - _REACH + columns))
+        found[max(low - 1, 0) : high + 2, across % columns] = True
+    return found
+
+
+def _cells_of(lat: ArrayLike, lon: ArrayLike) -> tuple[Any, Any]:
+    """Return row and column of positions [deg]; columns go on beyond a turn.
+
+    An unknown position gets any cell: what is computed with it stays NaN.
+    """
+    rows = np.floor((np.nan_to_num(lat) + 90.0) / _CELL)
+    columns = np.floor((np.nan_to_num(lon) + 180.0) / _CELL)
+    return rows.astype(np.int64), columns.astype(np.int64)
