@@ -102,3 +102,16 @@ def test_names_that_are_not_utf_8(tmp_path):
     words = ["evaluate", os.fsdecode(route), "--ship", "handysize-bulker", "--calm"]
     done = _run([*words, "--depart", "2026-01-01"], PYTHONIOENCODING="ascii")
     assert done.returncode == 2 and b"holds 0 waypoints" in done.stderr
+
+
+@pytest.mark.parametrize("words", [
+    ["plan", "Atlantis", "London", "--ship", "handysize-bulker", "--calm"],
+    ["distance", "Rotterdam", "95.0,3.0"],
+])  # fmt: skip
+def test_unknown_places_are_refused_before_the_numerical_libraries_are_loaded(words):
+    code = (
+        "import sys; from thalweg.cli.main import main; "
+        f"code = main({words!r}); sys.exit(10 * code + ('numba' in sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    assert done.returncode == 20, done.stderr.decode()[-400:]

@@ -18,7 +18,7 @@ from typing import Final
 
 from thalweg.chart.port_names import normalised_port_name, place_name, written_names
 from thalweg.core.errors import InputError, close_matches
-from thalweg.core.geodesy import distance, format_position
+from thalweg.core.geodesy import Position, distance, format_position, parse_position
 from thalweg.core.units import NAUTICAL_MILE
 
 #: Points for the harbour size of the World Port Index ("" is unknown). Each linked country adds
@@ -289,6 +289,24 @@ def _port_from_row(row: dict[str, str]) -> Port:
 
 
 PORTS = Ports()
+
+
+def place_positions(texts: Iterable[str]) -> list[Position]:
+    """Return the positions (lat, lon) [deg] of places given as text; of ports that of the berth.
+
+    Raises
+    ------
+    InputError
+        For names that are no ports, and positions that cannot exist.
+    """
+    found = []
+    for text in texts:
+        position = parse_position(text)
+        if position is None:
+            port = PORTS.lookup(text)
+            position = (port.lat, port.lon)
+        found.append(position)
+    return found
 
 
 def country_code_of(text: str) -> str:

@@ -69,6 +69,9 @@ def add_command(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the distance."""
+    from thalweg.chart.ports import place_positions
+
+    place_positions([arguments.start, arguments.goal, *arguments.via])  # refuses unknown ports
     from thalweg.planning.sea_distance import SMALL_CANALS, sea_distance
 
     avoid: tuple[str, ...] = SMALL_CANALS

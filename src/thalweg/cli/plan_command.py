@@ -203,16 +203,20 @@ def _add_passage_options(group: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Plan the voyage, print it and write its files."""
+    from thalweg.chart.ports import place_positions
+
+    option_values.prepare_output_folder(arguments)
+    place_positions([arguments.start, arguments.goal, *arguments.via])  # refuses unknown ports
+    files_as = option_values.route_file_options(arguments)
+    resolution = option_values.resolution_m(arguments.resolution)
+    option_values.check_chart_files(arguments)
+    ship = option_values.with_given_prices(option_values.open_ship(arguments), arguments)
+    # the packages of planning are imported after what can be refused without them
     from thalweg.planning import plan
     from thalweg.planning.request.early_checks import check_request
     from thalweg.planning.request.ordered_speed import with_exact_speed, with_ordered_speed
     from thalweg.route import with_wind_speed
 
-    option_values.prepare_output_folder(arguments)
-    files_as = option_values.route_file_options(arguments)
-    resolution = option_values.resolution_m(arguments.resolution)
-    option_values.check_chart_files(arguments)
-    ship = option_values.with_given_prices(option_values.open_ship(arguments), arguments)
     if arguments.speed is not None:  # a speed is refused before data are opened
         if arguments.hold is None:
             with_ordered_speed(ship, arguments.speed)
@@ -289,18 +293,11 @@ def _voyage(arguments: argparse.Namespace, sea: Sea, ship: Ship) -> Voyage:
 
 def _default_departure(arguments: argparse.Namespace, sea: Sea, ship: Ship) -> float:
     """Return the departure of a command that states none, and print why."""
-    from thalweg.chart.ports import PORTS
-    from thalweg.core.geodesy import parse_position
+    from thalweg.chart.ports import place_positions
     from thalweg.core.units import KNOT
     from thalweg.planning.request.default_departure import default_departure
 
-    places = []
-    for text in (arguments.start, arguments.goal):
-        position = parse_position(text)
-        if position is None:
-            port = PORTS.lookup(text)
-            position = (port.lat, port.lon)
-        places.append(position)
+    places = place_positions([arguments.start, arguments.goal])
     speed = None if arguments.speed is None else arguments.speed * KNOT
     departure, reason = default_departure(sea, places[0], places[1], ship, speed)
     if not arguments.quiet:
