@@ -19,7 +19,7 @@ from thalweg.route.evaluators.polyline import polyline_of_track, track_of_polyli
 from thalweg.route.evaluators.population_evaluator import make_evaluator
 from thalweg.route.refinement.speed_profile import times_and_costs_by_setting
 
-#: A block is at least this share of the voyage where that is less than the asked duration.
+#: A block is at least this share of the voyage where that is less than the requested duration.
 _SHARE_OF_PASSAGE = 0.25
 _PIECE_SHARE = 0.25  # of a block: the longest piece whose setting is chosen
 _ROUNDS = 2  # choices of blocks, each at the times of passage of the one before
@@ -29,7 +29,7 @@ _LATER = 0.1  # share of the voyage by which blocks may arrive later within the 
 def in_speed_blocks(
     trade_off: TradeOffContext, scored: list[RefereedCandidate]
 ) -> list[RefereedCandidate]:
-    """Return routes whose speed settings last for the asked duration, scored by the referee.
+    """Return routes whose speed settings last for the requested duration, scored by the referee.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def _note_costs(
 
 
 def _has_short_blocks(trade_off: TradeOffContext, route: Route) -> bool:
-    """Return whether a route holds a setting for less than the asked duration."""
+    """Return whether a route holds a setting for less than the requested duration."""
     hours = route.legs["arrive"] - route.legs["depart"]
     block_duration = trade_off.context.voyage.least_speed_block_h * HOUR
     least = min(block_duration, _SHARE_OF_PASSAGE * float(hours.sum()))
