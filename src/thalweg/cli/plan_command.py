@@ -86,7 +86,7 @@ def _add_time_options(parser: argparse.ArgumentParser) -> None:
         type=float,
         metavar="H",
         help="least time that a speed is held where speeds are chosen leg by leg [h], or a quarter "
-        "of the passage where that is less; 0: none (default: 6; 0 with --method exact)",
+        "of the voyage where that is less; 0: none (default: 6; 0 with --method exact)",
     )
     parser.add_argument(
         "--wait",

@@ -26,7 +26,7 @@ from thalweg.ship import Ship
 
 #: A plan that arrives this much too early or too late arrives on time [s].
 _EARLY, _LATE = MINUTE, 1.0
-_AIM = 20.0  # before the time asked [s]
+_AIM = 20.0  # before the requested time [s]
 _MOST_PLANS = 8
 _LONGEST_RATIO = 10.0  # of the time before the arrival that is searched, over the passage
 _LEAST_SPEED_RATIO = 0.5  # of the slowest setting of the ship file
@@ -79,13 +79,13 @@ def plan_arrival(request: ArrivalRequest) -> Plan:
 
     Raises
     ------
-    InputError : If the sea is an ensemble, or the ship cannot hold what is asked.
+    InputError : If the sea is an ensemble, or the ship cannot hold what is ordered.
     NoRouteError : If the ship cannot arrive at this time; the error says when it can.
     OutsidePeriodError : If the data do not cover the voyage.
     """
     if request.sea.members:
         raise InputError(
-            "A time of arrival is asked for an ensemble of forecasts.",
+            "A time of arrival was requested for an ensemble of forecasts.",
             "Each member of it gives another arrival.",
             "Use one member, or give the latest arrival with arrive_by.",
             field="arrive",
@@ -95,7 +95,9 @@ def plan_arrival(request: ArrivalRequest) -> Plan:
     if voyage.chooses_speeds:
         limited = replace(voyage, arrive=None, arrive_by=request.arrive)
         found = request.plan_one(limited, request.ship)
-        note = "The speeds are chosen leg by leg; the ship arrives at the time asked or before it."
+        note = (
+            "The speeds are chosen leg by leg; the ship arrives at the requested time or before it."
+        )
     elif voyage.depart is None:
         found, note = _latest_departure(request)
     else:
@@ -162,7 +164,7 @@ def _lowest_speed(request: ArrivalRequest) -> float:
 def _check_possible(
     request: ArrivalRequest, fastest: Plan, speeds: tuple[float, float], slow_arrival: float
 ) -> None:
-    """Raise `NoRouteError` unless the time asked is between the fastest and slowest arrival."""
+    """Raise `NoRouteError` unless the requested time is between the fastest and slowest arrival."""
     low, top = speeds
     arrive = fastest.best.arrive
     if not fastest.best.feasible or not math.isfinite(arrive):
@@ -334,8 +336,8 @@ def _ground_speed(route: Route) -> float:
 def _on_time(plan: Plan, request: ArrivalRequest) -> str:
     early = request.arrive - plan.best.arrive
     if early <= 2.0 * _EARLY:
-        return "the ship arrives at the time asked"
+        return "the ship arrives at the requested time"
     return (
-        f"the ship arrives {duration_text(early)} before the time asked; the next later arrival "
-        f"is after it ({early / HOUR:.1f} h are left)"
+        f"the ship arrives {duration_text(early)} before the requested time; the next later "
+        f"arrival is after it ({early / HOUR:.1f} h are left)"
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -32,6 +33,24 @@ class ShipTables:
     setting: int
 
 
+@runtime_checkable
+class RouteProgress(Protocol):
+    """Capability of a progress callback: it receives each better route."""
+
+    def show_route(self, route: Route) -> None:
+        """Receive a route that was found so far."""
+        ...
+
+
+@runtime_checkable
+class FrontProgress(Protocol):
+    """Capability of a progress callback: it receives each better front."""
+
+    def show_front(self, points: Sequence[tuple[float, float]], unit: str) -> None:
+        """Receive times [s] and values of the front so far."""
+        ...
+
+
 @dataclass(frozen=True)
 class PlanningContext:
     """What stays the same for every passage of a voyage.
@@ -55,9 +74,8 @@ class PlanningContext:
 
     def show_route(self, route: Route) -> None:
         """Give a route that was found so far to a progress callback with ``show_route``."""
-        show = getattr(self.report_progress, "show_route", None)
-        if show is not None and route.feasible:
-            show(route)
+        if isinstance(self.report_progress, RouteProgress) and route.feasible:
+            self.report_progress.show_route(route)
 
     def show_front(self, points: Sequence[tuple[float, float]], unit: str) -> None:
         """Give the front so far to a progress callback with ``show_front``.
@@ -68,9 +86,8 @@ class PlanningContext:
             Time [s] and value.
         unit : Of the value.
         """
-        show = getattr(self.report_progress, "show_front", None)
-        if show is not None:
-            show(points, unit)
+        if isinstance(self.report_progress, FrontProgress):
+            self.report_progress.show_front(points, unit)
 
     @property
     def table(self) -> PerformanceTable:

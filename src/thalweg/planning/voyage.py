@@ -139,7 +139,7 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
             )
         if self.arrive is not None and self.depart is None and self.chooses_speeds:
             raise InputError(
-                f"The latest departure is asked with the objective {self.objective!r}.",
+                f"The latest departure was requested with the objective {self.objective!r}.",
                 "It is found at one speed, for the objectives 'time' and 'distance'.",
                 "Add the departure, or change the objective.",
                 field="arrive",

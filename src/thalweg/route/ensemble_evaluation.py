@@ -344,9 +344,8 @@ def evaluate_members(
 
 def _checked_member_count(sea: Sea, alpha: float) -> int:
     cvar((), alpha)
-    count = int(getattr(sea, "members", 0))
-    if count:
-        return count
+    if sea.members:
+        return sea.members
     raise InputError(
         "The sea is not an ensemble: it has one member only.",
         "Ensembles come from files with a dimension such as number or realization, or from "

@@ -30,6 +30,8 @@ from thalweg.route.referee.sailing_physics import (
     solve_sailing_state,
 )
 from thalweg.route.referee.wind_speed_only import with_wind_speed
+from thalweg.route.route import Route
+from thalweg.route.track import Track
 from thalweg.ship.condition_variables import (
     EASTWARD_CURRENT,
     EASTWARD_WIND,
@@ -101,7 +103,7 @@ def trip_table(
     Midpoint rule over at least 100 equal steps: the error is of second order in their length.
     """
     track = as_track(route, departures.first)
-    if not hasattr(route, "setting") and not hasattr(route, "track"):
+    if not isinstance(route, (Track, Route)):
         settings = np.full(len(track) - 1, setting)
         track = track.replaced(setting=settings, speed=None, wait=None)
     ship, track = resolve_settings(ship, track)

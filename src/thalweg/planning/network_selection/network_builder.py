@@ -1,4 +1,4 @@
-"""The network on which a passage is searched."""
+"""The network on which a stretch is searched."""
 
 from __future__ import annotations
 

@@ -19,17 +19,17 @@ from thalweg.route.evaluators.polyline import polyline_of_track, track_of_polyli
 from thalweg.route.evaluators.population_evaluator import make_evaluator
 from thalweg.route.refinement.speed_profile import times_and_costs_by_setting
 
-#: A block is at least this share of the passage where that is less than the asked duration.
+#: A block is at least this share of the voyage where that is less than the requested duration.
 _SHARE_OF_PASSAGE = 0.25
 _PIECE_SHARE = 0.25  # of a block: the longest piece whose setting is chosen
 _ROUNDS = 2  # choices of blocks, each at the times of passage of the one before
-_LATER = 0.1  # share of the passage by which blocks may arrive later within the frozen sea
+_LATER = 0.1  # share of the voyage by which blocks may arrive later within the frozen sea
 
 
 def in_speed_blocks(
     trade_off: TradeOffContext, scored: list[RefereedCandidate]
 ) -> list[RefereedCandidate]:
-    """Return routes whose speed settings last for the asked duration, scored by the referee.
+    """Return routes whose speed settings last for the requested duration, scored by the referee.
 
     Parameters
     ----------
@@ -62,12 +62,12 @@ def merged_settings(
     hours : Time of sailing of each leg, in any unit, (legs,).
     speeds : Calm-water speeds, ascending, (settings,).
     least : Least time of a run, in the unit of ``hours``.
-    late : Whether the passage may become longer; otherwise short runs are given to the faster
+    late : Whether the voyage may become longer; otherwise short runs are given to the faster
         neighbour.
 
     Returns
     -------
-    int64 array (legs,) : With one setting where the passage is shorter than two runs.
+    int64 array (legs,) : With one setting where the voyage is shorter than two runs.
     """
     setting, time_change = np.array(setting), 0.0
     while True:
@@ -182,7 +182,7 @@ def _note_costs(
         return
     extra = [one.value / float(np.interp(one.route.time_h, time, value)) - 1.0 for one in changed]
     hours = trade_off.context.voyage.least_speed_block_h
-    note = f"Speeds are ordered in blocks of at least {hours:g} h or a quarter of the passage"
+    note = f"Speeds are ordered in blocks of at least {hours:g} h or a quarter of the voyage"
     if extra:
         note += f", at a cost of up to {max(0.0, *extra):.1%} {trade_off.objective.name}"
     if kept:
@@ -191,7 +191,7 @@ def _note_costs(
 
 
 def _has_short_blocks(trade_off: TradeOffContext, route: Route) -> bool:
-    """Return whether a route holds a setting for less than the asked duration."""
+    """Return whether a route holds a setting for less than the requested duration."""
     hours = route.legs["arrive"] - route.legs["depart"]
     block_duration = trade_off.context.voyage.least_speed_block_h * HOUR
     least = min(block_duration, _SHARE_OF_PASSAGE * float(hours.sum()))

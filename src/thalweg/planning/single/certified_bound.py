@@ -56,11 +56,11 @@ def certified_bound(
     departures: tuple[float, float],
     seconds: float,
 ) -> LowerBound:
-    """Return a lower bound of the time, or the distance, of every route of a passage.
+    """Return a lower bound of the time, or the distance, of every route of a stretch.
 
     Parameters
     ----------
-    route : A feasible route of the passage.
+    route : A feasible route of the stretch.
     departures : First and last departure that the bound holds for [s since 1970-01-01T00:00Z].
     seconds : Time that the search for the bound may take [s]; 0 for that of the geodesic alone.
 
@@ -93,7 +93,7 @@ def path_through_data(
 
     Parameters
     ----------
-    route : A feasible route of the passage.
+    route : A feasible route of the stretch.
 
     Returns
     -------
@@ -237,7 +237,7 @@ def _passage(context: PlanningContext, route: Route) -> PassageToBound:
 
 
 def _still_water(context: PlanningContext, route: Route) -> PassageToBound:
-    """Return the passage of a ship of 1 m/s in still water, whose time is the distance."""
+    """Return the stretch for a ship of 1 m/s in still water, whose time is the distance."""
     part = TablePart((), (), np.ones(1, np.float32))
     table = PerformanceTable((part,), np.ones(1), "", TableError(0.0, 0.0, 0.0))
     ship = ShipInBarrier(table.kernel_arrays(), 0, Limits().array, 1.0)

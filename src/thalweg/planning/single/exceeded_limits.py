@@ -2,7 +2,7 @@
 
 The search checks depth, waves and wind at stations, so that a bank or a squall that is narrower
 than their distance is seen by the referee alone. Stricter limits do not help there: the edges that
-cross it are left out, and the passage is searched again.
+cross it are left out, and the stretch is searched again.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Routes of a passage to choose from: by the network, by its bound and by the data themselves."""
+"""Routes of a stretch to choose from: by the network, by its bound and by the data themselves."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 The search samples the sea at stations, the referee along every leg, so that a masked cell between
 two stations is seen by the referee alone. Where that happens, the edges that cross unknown water
-are left out, sampled as closely as the data, and the passage is searched again.
+are left out, sampled as closely as the data, and the stretch is searched again.
 """
 
 from __future__ import annotations

@@ -37,7 +37,7 @@ class CostEvaluator:
     Attributes
     ----------
     evaluator : Its departure is the origin of times.
-    per_second : Additional price of a second of the passage; compared costs include it.
+    per_second : Additional price of a second of the voyage; compared costs include it.
     """
 
     evaluator: Evaluator

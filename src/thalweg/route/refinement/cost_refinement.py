@@ -48,7 +48,7 @@ _COARSE_START_TOLERANCE = (
     1.02  # a coarse start is refined too if it costs no more than this times the line itself
 )
 _MAX_ARRIVAL_CORRECTIONS = 4  # evaluations by the referee until the arrival fits
-_ARRIVAL_TOLERANCE = 2e-6  # share of the passage by which it may come early
+_ARRIVAL_TOLERANCE = 2e-6  # share of the time by which it may come early
 _MIN_ZONE_SHARE = (
     0.02  # least share of a leg inside and outside a control area that gets a waypoint
 )
@@ -103,7 +103,7 @@ def refine_cost(
     Level by level legs are halved, settings are chosen (`choose_speeds`) and the waypoints move
     sideways by Newton's method on cost plus the value of time, which is the slope of cost over time
     at the chosen settings. All this uses frozen fields; the referee evaluates the result, and
-    settings are chosen again until its time of arrival is met to a few millionths of the passage.
+    settings are chosen again until its time of arrival is met to a few millionths of the time.
     """
     ship, sea, chart = conditions.ship, conditions.sea, conditions.chart
     terms = ship.fuel_terms if terms is None else terms
