@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from thalweg.chart import Chart
+from thalweg.chart.coast.coast_index_builder import build_index
 from thalweg.chart.coast.coastline import Coastline
 from thalweg.chart.coast.gshhg import read_land_rings
 from thalweg.chart.coast.islets import islet_rings
 from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.chart.passages import PASSAGES
+from thalweg.chart.rings import Rings
 from thalweg.core.geodesy import densify
 
 # General knowledge (positions of lighthouses), to half a minute.
@@ -49,8 +51,6 @@ def test_islets_are_small_boxes_that_the_coarser_scale_lacks():
 
 def test_lines_of_passages_are_clear_of_islets(world):
     bare = read_land_rings("i", islets=False)
-    from thalweg.chart.coast.coast_index_builder import build_index
-
     before = Coastline("bare", build_index(bare, 256), lambda: bare)
     for passage in PASSAGES:
         lat, lon, _ = densify(*passage.positions, 200.0)
@@ -68,3 +68,14 @@ def test_legs_over_an_islet_are_blocked(world):
 
 def test_named_shoal_areas_need_not_repeat_islets():
     assert not {"Farilhoes", "Casquets rocks"} & {area.name for area in SHOAL_AREAS}
+
+
+def test_boxes_one_above_the_other_leave_no_sea_closed():
+    corners = [((0.0, 10.0), (0.0, 10.5), (1.0, 10.5), (1.0, 10.0))]
+    corners += [tuple((lat + 1.0, lon) for lat, lon in corners[0])]
+    # the step from the first ring to the second runs along the western side of the first
+    rings = Rings.from_lists([(box, False) for box in corners])
+    coast = Coastline("boxes", build_index(rings, 64), lambda: rings)
+    lat = np.array([0.5, 1.5, 0.5, 1.5, 0.5, 1.5])
+    lon = np.array([10.2, 10.2, 9.0, 9.0, 30.0, 30.0])
+    assert (coast.shore_distance(lat, lon) > 0.0).tolist() == [False, False, True, True, True, True]

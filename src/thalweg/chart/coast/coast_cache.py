@@ -19,7 +19,7 @@ from thalweg.core.cache_folder import cache_folder
 from thalweg.core.file_writing import replacing_file
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
 
-CACHE_FORMAT: Final = 2  # increase when the arrays or their construction change
+CACHE_FORMAT: Final = 3  # increase when the arrays or their construction change
 CELLS_BY_RESOLUTION: Final = {"c": 256, "l": 512, "i": 512, "h": 1024, "f": 1024}
 
 
