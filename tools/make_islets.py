@@ -13,6 +13,7 @@ import csv
 from pathlib import Path
 
 import numpy as np
+
 from thalweg.chart.coast.coast_index_builder import build_index
 from thalweg.chart.coast.coastline import Coastline
 from thalweg.chart.coast.gshhg import LAND_LEVELS, data_files, read_land_rings

@@ -91,9 +91,7 @@ def _folders() -> list[Path]:
     return folders
 
 
-def read_land_rings(
-    resolution: str, *, narrows_closed: bool = True, islets: bool = True
-) -> Rings:
+def read_land_rings(resolution: str, *, narrows_closed: bool = True, islets: bool = True) -> Rings:
     """Return the land rings of a resolution, with the strips that close canals and narrows.
 
     Parameters
