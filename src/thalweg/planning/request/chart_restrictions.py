@@ -43,7 +43,8 @@ def exclude_closed_canals(
     currency = _foreign_currency(voyage, ship)
     notes, closed = [], []
     for canal in chart.canals:
-        why = canal.transit_restriction(draught=float(ship.draught) or None, beam=beam)
+        draught = float(ship.draught) or None
+        why = canal.transit_restriction(draught=draught, beam=beam, length=ship.length)
         if not why and currency and canal.fee > 0.0:
             why = f"{canal.title}: its dues are in USD, the prices in {currency}"
         if why:
