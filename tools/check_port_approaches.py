@@ -77,8 +77,8 @@ def main() -> None:
         flagged += bool(flags)
         if flags:
             print(
-                f"{approach.port.label:32s} {approach.quality:9s} land {land:5.1f} nm  depth at the "
-                f"end {end:4.0f} m, least {least:4.0f} m  {' '.join(flags)}"
+                f"{approach.port.label:32s} {approach.quality:9s} land {land:5.1f} nm  depth "
+                f"at the end {end:4.0f} m, least {least:4.0f} m  {' '.join(flags)}"
             )
     print(f"{flagged} of {len(found)} approaches have flags")
 
