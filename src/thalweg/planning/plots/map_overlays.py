@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 _LAND, _SHORE, _STORM = "#e2d6b5", "#6f6650", "#4a148c"
 _NO_GO, _PENALTY, _CONTROL, _LANE = "#c62828", "#ef6c00", "#00796b", "#ad1457"
 _LEAST_CELLS, _OPENING = 4, 0.15  # of enclosed water; part of its outline that may be open
+_ARROWS = 15.0  # height of maps [deg] from which on arrows of lanes would cover them
 _NEAR = 2.5  # spacings of the network within which water counts as searched
 
 
@@ -96,11 +97,11 @@ def draw_zones(axes: Any, chart: Chart, box: MapExtent) -> list[tuple[str, float
             for turn in (-360.0, 0.0, 360.0):
                 style = {"fc": "none", "ec": colour, "hatch": hatch, "lw": 0.9, "zorder": 4}
                 axes.add_patch(_patch(shape, turn, **style))
-    _draw_lanes(axes, chart)
+    _draw_lanes(axes, chart, box)
     return _draw_control_areas(axes, chart, box)
 
 
-def _draw_lanes(axes: Any, chart: Chart) -> None:
+def _draw_lanes(axes: Any, chart: Chart, box: MapExtent) -> None:
     """Draw separation zones with arrows along their lanes, and the outlines of a user's lanes."""
     names = {lane.name.partition(",")[0] for lane in chart.zones.lanes}
     schemes = [scheme for scheme in TRAFFIC_SCHEMES if scheme.name in names]
@@ -110,7 +111,8 @@ def _draw_lanes(axes: Any, chart: Chart) -> None:
         for scheme in schemes:
             band = _patch(scheme.separation, turn, fc=_LANE, ec="none", alpha=0.35, zorder=2.6)
             axes.add_patch(band)
-            for start, end in scheme.arrows:
+            arrows = scheme.arrows if box.north - box.south < _ARROWS else ()
+            for start, end in arrows:
                 _draw_arrow(axes, start, end, turn)
         for lane in own:
             for part in getattr(lane.shape, "geoms", [lane.shape]):
