@@ -182,11 +182,12 @@ def _read_schemes() -> tuple[TrafficScheme, ...]:
     for row in csv.DictReader(text.splitlines()):
         points = [point.split(",") for point in row["line"].split()]
         line = tuple((float(lat), float(lon)) for lat, lon in points)
-        widths = (
+        zone, lane, starboard, port = (
             float(row[f"{part}_nm"]) * NAUTICAL_MILE
             for part in ("zone", "lane", "starboard", "port")
         )
-        schemes.append(TrafficScheme(row["name"], line, *widths, row["inshore"], row["source"]))
+        more = row["inshore"], row["source"]
+        schemes.append(TrafficScheme(row["name"], line, zone, lane, starboard, port, *more))
     return tuple(schemes)
 
 

@@ -122,8 +122,8 @@ def _draw_lanes(axes: Any, chart: Chart, box: MapExtent) -> None:
             half = 0.2 * float(np.sqrt(lane.shape.area))
             north, east = half * np.cos(course), half * np.sin(course)
             east /= max(0.05, float(np.cos(np.radians(centre.y))))
-            ends = ((centre.y + sign * north, centre.x + sign * east) for sign in (-1.0, 1.0))
-            _draw_arrow(axes, *ends, turn)
+            start, end = (centre.y - north, centre.x - east), (centre.y + north, centre.x + east)
+            _draw_arrow(axes, start, end, turn)
 
 
 def _draw_arrow(axes: Any, start: Position, end: Position, turn: float) -> None:
