@@ -1,6 +1,7 @@
 """Make the table of port approaches, ``src/thalweg/chart/data/port_approaches.csv.gz``.
 
-Run it after a change of the ports or of ``tools/port_approaches_by_hand.csv``::
+Run it after a change of the ports, the islets, or a file by hand (with ``--keep`` of the old table
+only the lines that this changes are searched again)::
 
     pip install "thalweg[hires]"
     python tools/make_port_approaches.py --world-port-index UpdatedPub150.csv
@@ -10,7 +11,8 @@ miles from land (`OFFING`) in a basin of more than 1,500 square miles at that di
 the one with the least sum of length times min(20, 1 mile / distance to land) on a grid of 0.1 miles
 over the coastline GSHHG h, so it keeps to the middle of channels. Land between the port and the
 first water counts 10 per mile. Ports whose water is not charted, or where the path takes the wrong
-water, have a line by hand with its source.
+water, have a line by hand with its source. Where the sea at the end of a path is shoal, the line
+follows one of ``tools/sea_fairways_by_hand.csv`` from there: a dredged channel, to its sea buoy.
 """
 
 from __future__ import annotations
@@ -32,7 +34,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from thalweg.chart import Chart
 from thalweg.chart.ports import PORTS, Port
-from thalweg.core.geodesy import distance
+from thalweg.core.geodesy import densify, distance
 from thalweg.core.units import NAUTICAL_MILE
 
 OFFING = 2.0  #: distance from land of the sea end [nm]
@@ -41,6 +43,7 @@ REACHES = (3.0, 12.0, 25.0)  #: charted water is looked for within these distanc
 GRIDS = ((12.0, 0.1), (35.0, 0.1), (130.0, 0.25))  #: half width and spacing of grids [nm]
 ROOT = Path(__file__).resolve().parents[1]
 BY_HAND = ROOT / "tools" / "port_approaches_by_hand.csv"
+FAIRWAYS = ROOT / "tools" / "sea_fairways_by_hand.csv"
 TABLE = ROOT / "src" / "thalweg" / "chart" / "data" / "port_approaches.csv.gz"
 COLUMNS = (
     "unlocode", "name", "country_code", "quality", "half_width_nm", "max_draught_m", "max_length_m",
@@ -88,6 +91,7 @@ class Charts:
     fine: Chart
     usual: Chart
     sea: np.ndarray
+    fairways: list[Fairway]
 
     def is_open_sea(self, lat: np.ndarray, lon: np.ndarray) -> np.ndarray:
         """Return which positions are in a basin of the sea, by the nearest minutes of arc."""
@@ -260,6 +264,40 @@ def by_hand() -> dict[str, dict[str, str]]:
         return {row["port"]: row for row in csv.DictReader(file)}
 
 
+@dataclass(frozen=True)
+class Fairway:
+    """A line from inner waters to sea by hand, and how near a path joins it [nm]."""
+
+    name: str
+    within: float
+    line: np.ndarray
+    source: str
+
+
+def fairways() -> list[Fairway]:
+    """Return the fairways to sea by hand."""
+    with FAIRWAYS.open(encoding="utf-8", newline="") as file:
+        return [
+            Fairway(row["name"], float(row["within_nm"]), read_line(row["line"]), row["source"])
+            for row in csv.DictReader(file)
+        ]
+
+
+def fairway_joined(line: np.ndarray, known: list[Fairway]) -> tuple[np.ndarray, Fairway | None]:
+    """Return a line that follows the fairway it comes near, from the first vertex in reach."""
+    lat, lon, leg = densify(line[:, 0], line[:, 1], 0.05 * NAUTICAL_MILE)
+    for fairway in known:
+        if abs(line[-1] - fairway.line[0]).max() > 4.0:
+            continue
+        for first, vertex in enumerate(fairway.line):
+            apart = np.asarray(distance(*vertex, lat, lon)) / NAUTICAL_MILE
+            at = int(np.argmin(apart))
+            if apart[at] <= fairway.within:
+                kept = line[: int(leg[min(at, len(leg) - 1)]) + 1]
+                return np.concatenate([kept, fairway.line[first:]]), fairway
+    return line, None
+
+
 def read_table(path: Path) -> dict[tuple[str, str, str], dict[str, str]]:
     """Return the rows of a table of approaches by UN/LOCODE, name and country."""
     data = path.read_bytes()
@@ -330,9 +368,22 @@ def approach_row(charts: Charts, port: Port, hand: dict[str, str] | None) -> dic
         line = simplified(charts, path, 1.0)
         if distance(port.lat, port.lon, *line[0]) > 200.0:
             line = np.concatenate([[[port.lat, port.lon]], line])
+    line, fairway = fairway_joined(line, charts.fairways)
+    if fairway is not None:
+        row["quality"] = "by hand"
+        row["source"] += f"; from the fairway {fairway.name} on: {fairway.source}"
     row["line"] = written(line)
     row["half_width_nm"] = f"{half_width(charts, line):.2f}"
     return row
+
+
+def is_kept(charts: Charts, row: dict[str, str]) -> bool:
+    """Return whether a row of an old table still holds: off land, and near no fairway."""
+    if row["quality"] not in ("computed", "none") or not row["line"]:
+        return row["quality"] == "none"
+    line = read_line(row["line"])
+    off = float(shore_miles(charts.usual, *line[-1]))
+    return off >= OFFING - 0.1 and fairway_joined(line, charts.fairways)[1] is None
 
 
 def main() -> None:
@@ -345,7 +396,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=TABLE)
     args = parser.parse_args()
     fine, usual = Chart.gshhg("h"), Chart.gshhg("i")
-    charts = Charts(fine, usual, open_sea(usual))
+    charts = Charts(fine, usual, open_sea(usual), fairways())
     hands = by_hand()
     ports = PORTS.all
     if args.only:
@@ -358,7 +409,7 @@ def main() -> None:
         key = port.locode, port.name, port.country_code
         hand = hands.get(port.locode) if port.locode else hands.get(port.label)
         old = kept.get(key)
-        row = old if old and not hand and old["quality"] in ("computed", "none") else None
+        row = old if old and not hand and is_kept(charts, old) else None
         row = row or approach_row(charts, port, hand)
         if row["quality"] == "none" and not hand:
             row["source"] = _GREAT_LAKES if _on_great_lakes(port) else _NO_WATER

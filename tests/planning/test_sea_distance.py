@@ -165,3 +165,10 @@ def test_with_a_draught_shallow_canals_are_closed_and_shoals_avoided_or_named():
     for wrong in (0.0, -1.0, 40.0, float("nan"), "deep"):
         with pytest.raises(InputError, match="draught"):
             sea_distance("USNYC", "USBOS", draught_m=wrong)
+
+
+def test_deep_ships_pass_outside_nantucket_sound():
+    # tables of distances have 379 nm round the shoals, and the canal is 9.75 m deep
+    deep = sea_distance("New York City, US", "Boston, US", draught_m=10.0)
+    assert deep.nm == pytest.approx(379.0, rel=0.02)
+    assert not deep.canals and not deep.notes

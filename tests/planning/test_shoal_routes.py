@@ -125,3 +125,18 @@ def test_a_route_from_a_file_gets_the_same_depth_warnings():
     charted = Chart.open_water().with_depth(lambda lat, lon: 50.0 + 0.0 * lat)
     checked = evaluate(line, ship=BULKER, sea=Sea.calm(), chart=charted, depart=0)
     assert not given_route_warnings(checked, chart=WORLD, sea=Sea.calm(), ship=BULKER, min_ukc=None)
+
+
+@pytest.mark.slow
+def test_ships_that_fit_take_the_kiel_canal_and_others_are_told_why_not():
+    def planned(draught, length):
+        ship = Ship.simple(14.0, draught, length_m=length, breadth_m=22.0)
+        request = voyage((53.9, 5.2), (54.65, 18.9), objective="distance")
+        return plan(request, ship=ship, sea=Sea.calm(), proof=0.0)
+
+    small, large = planned(6.5, 140.0), planned(9.0, 180.0)
+    # the shoals of the outer Elbe in the depth layer do not close the way to the canal
+    assert small.best.distance_nm < 600.0
+    assert any("Elbe (Brunsbuttel to sea)" in note for note in small.notes)
+    assert large.best.distance_nm > 750.0
+    assert any("Kiel Canal" in note and "above 160 m of length" in note for note in large.notes)

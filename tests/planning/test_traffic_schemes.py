@@ -9,6 +9,7 @@ import shapely
 from thalweg.chart import Chart
 from thalweg.chart.zones.traffic_schemes import (
     AGAINST_FACTOR,
+    INSHORE,
     TRAFFIC_SCHEMES,
     lanes_of_schemes,
 )
@@ -37,8 +38,9 @@ def test_ships_with_the_separation_line_to_port_are_with_the_traffic(scheme):
     lat, lon = np.array(scheme.line).T
     course = np.asarray(inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])[1])
     middle = 0.5 * (lat[:-1] + lat[1:]), 0.5 * (lon[:-1] + lon[1:])
-    for side, off in ((1.0, scheme.starboard), (-1.0, scheme.port)):
-        place = direct(*middle, course + side * np.pi / 2, 0.6 * off)
+    off = scheme.zone + 0.5 * scheme.lane
+    for side in (1.0, -1.0):
+        place = direct(*middle, course + side * np.pi / 2, off)
         ahead = direct(*place, course, 500.0)
         along, back = (*place, *ahead), (*ahead, *place)
         with_traffic, against = (along, back) if side > 0.0 else (back, along)
@@ -46,6 +48,47 @@ def test_ships_with_the_separation_line_to_port_are_with_the_traffic(scheme):
         assert np.all(zones.factors(*against)[0] > AGAINST_FACTOR - 0.01)
     across = direct(*middle, course + np.pi / 2, 300.0)
     assert np.allclose(zones.factors(*middle, *across)[0], 1.0)
+
+
+@pytest.mark.parametrize("scheme", [s for s in TRAFFIC_SCHEMES if s.inshore], ids=lambda s: s.name)
+def test_inshore_traffic_zones_count_for_every_course(scheme):
+    zones = Zones(lanes=scheme.lanes)
+    lat, lon = np.array(scheme.line).T
+    course = float(inverse(lat[0], lon[0], lat[1], lon[1])[1])
+    middle = 0.5 * (lat[0] + lat[1]), 0.5 * (lon[0] + lon[1])
+    for side, reach in (("starboard", scheme.starboard), ("port", scheme.port)):
+        if scheme.inshore not in (side, "both"):
+            continue
+        sign = 1.0 if side == "starboard" else -1.0
+        off = 0.5 * (scheme.zone + scheme.lane + reach)
+        place = direct(*middle, course + sign * np.pi / 2, off)
+        ahead = direct(*place, course, 300.0)
+        for leg in ((*place, *ahead), (*ahead, *place)):
+            assert float(zones.factors(*leg)[0]) > AGAINST_FACTOR - 0.01
+    small = lanes_of_schemes([(lat[0] + 1.0, lon[0]), (lat[0] - 1.0, lon[0])], inshore=False)
+    assert small and not any(lane.name.endswith(INSHORE) for lane in small)
+
+
+def test_separation_zones_and_arrows_for_maps():
+    for scheme in TRAFFIC_SCHEMES:
+        assert scheme.separation.is_valid
+        assert len(scheme.arrows) == 2 * (len(scheme.line) - 1)
+        assert not any(
+            scheme.separation.contains(shapely.Point(b[1], b[0])) for _, b in scheme.arrows
+        )
+    names = {scheme.name for scheme in TRAFFIC_SCHEMES}
+    assert {"Terschelling-German Bight", "German Bight Western Approach"} <= names
+
+
+@pytest.mark.slow
+def test_plans_round_ushant_and_along_the_frisian_islands_keep_off_the_inshore_zones():
+    voyages = (((47.3, -5.6), (49.6, -4.0), "Off Ushant"),
+               ((53.4, 4.2), (54.0, 7.75), "Terschelling-German Bight"))  # fmt: skip
+    for start, goal, name in voyages:
+        found = plan(voyage(start, goal), ship=SHIP, sea=Sea.calm(), proof=0.0)
+        assert found.best.feasible
+        assert not any("inshore" in note or "Runs against" in note for note in found.notes), name
+        assert any(name in note for note in found.notes if note.startswith("Keeps to starboard"))
 
 
 def test_light_vessels_of_the_dover_strait_lie_in_the_separation_zone():

@@ -49,6 +49,8 @@ class Canal:
     source : Sources of the figures, with dates.
     tariff : Dues by the size of the ship; it counts as long as ``fee`` is its mean.
     fee_basis : How the fee of a ship was found.
+    max_length : Largest length allowed [m].
+    long_ship_limit : Length [m] from which on a smaller draught [m] is allowed, and that draught.
 
     Raises
     ------
@@ -65,6 +67,8 @@ class Canal:
     source: str = ""
     tariff: CanalTariff | None = None
     fee_basis: str = ""
+    max_length: float = np.inf
+    long_ship_limit: tuple[float, float] = (np.inf, np.inf)
 
     if not TYPE_CHECKING:
         __getattr__ = renamed_attributes(
@@ -102,16 +106,25 @@ class Canal:
         return float(np.sum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
 
     def transit_restriction(
-        self, *, draught: float | None = None, beam: float | None = None
+        self,
+        *,
+        draught: float | None = None,
+        beam: float | None = None,
+        length: float | None = None,
     ) -> str:
-        """Return why a ship of a draught and beam [m] may not pass, as text; empty if it may."""
+        """Return why a ship of these sizes [m] may not pass, as text; empty if it may."""
+        is_long = length is not None and length > self.long_ship_limit[0]
+        deepest = min(self.max_draught, self.long_ship_limit[1] if is_long else np.inf)
         reasons = []
         for what, value, limit in (
-            ("draught", draught, self.max_draught),
+            ("draught", draught, deepest),
             ("beam", beam, self.max_beam),
+            ("length", length, self.max_length),
         ):
             if value is not None and value > limit:
                 reasons.append(f"its {what} of {value:g} m is over the {limit:g} m allowed")
+                if what == "draught" and is_long:
+                    reasons[-1] += f" above {self.long_ship_limit[0]:g} m of length"
         return f"{self.title}: " + " and ".join(reasons) if reasons else ""
 
 
@@ -126,6 +139,8 @@ def _read_canals() -> tuple[Canal, ...]:
             fee=row["fee_usd"],
             max_draught=row["max_draught_m"],
             max_beam=np.inf if row["max_beam_m"] is None else row["max_beam_m"],
+            max_length=row.get("max_length_m", np.inf),
+            long_ship_limit=tuple(row.get("long_ship_limit_m", (np.inf, np.inf))),
             source=row["source"],
             tariff=(
                 CanalTariff.from_row(row["tariff"], row["fee_usd"]) if "tariff" in row else None

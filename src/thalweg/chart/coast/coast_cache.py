@@ -14,11 +14,12 @@ import numpy as np
 
 from thalweg.chart.coast.coast_index_builder import build_index
 from thalweg.chart.coast.gshhg import CLOSED_CANALS, CLOSED_NARROWS, data_files, read_land_rings
+from thalweg.chart.coast.islets import islet_rings
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.file_writing import replacing_file
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
 
-CACHE_FORMAT: Final = 2  # increase when the arrays or their construction change
+CACHE_FORMAT: Final = 3  # increase when the arrays or their construction change
 CELLS_BY_RESOLUTION: Final = {"c": 256, "l": 512, "i": 512, "h": 1024, "f": 1024}
 
 
@@ -26,7 +27,8 @@ def gshhg_index(resolution: str, *, narrows_closed: bool = True) -> IndexArrays:
     """Return the index of a GSHHG resolution, from disk if it was made before."""
     size = data_files(resolution)[1].stat().st_size
     strips = (CLOSED_CANALS, CLOSED_NARROWS if narrows_closed else {})
-    closed = hashlib.sha256(repr(strips).encode()).hexdigest()[:8]
+    added = islet_rings().fingerprint() if resolution in "ih" else ""
+    closed = hashlib.sha256((repr(strips) + added).encode()).hexdigest()[:8]
     side = CELLS_BY_RESOLUTION[resolution]
     rings = partial(read_land_rings, resolution, narrows_closed=narrows_closed)
     path = cache_folder("coast") / f"gshhg-{resolution}-{size}-{side}-{closed}-v{CACHE_FORMAT}.npz"

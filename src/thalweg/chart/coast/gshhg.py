@@ -17,6 +17,7 @@ from typing import Final
 
 import numpy as np
 
+from thalweg.chart.coast.islets import islet_rings
 from thalweg.chart.rings import Rings
 from thalweg.core.errors import DatasetError, InputError
 
@@ -90,7 +91,7 @@ def _folders() -> list[Path]:
     return folders
 
 
-def read_land_rings(resolution: str, *, narrows_closed: bool = True) -> Rings:
+def read_land_rings(resolution: str, *, narrows_closed: bool = True, islets: bool = True) -> Rings:
     """Return the land rings of a resolution, with the strips that close canals and narrows.
 
     Parameters
@@ -98,6 +99,8 @@ def read_land_rings(resolution: str, *, narrows_closed: bool = True) -> Rings:
     resolution : 'c', 'l', 'i', 'h' or 'f'.
     narrows_closed : bool
         Whether narrows that no ship should use, and dams, are closed as well as canals.
+    islets : bool
+        Whether resolutions i and h have the islets that they lack (`thalweg.chart.coast.islets`).
 
     Raises
     ------
@@ -122,7 +125,8 @@ def read_land_rings(resolution: str, *, narrows_closed: bool = True) -> Rings:
     take = np.arange(start[-1]) + np.repeat(firsts - start[:-1], counts)
     land = Rings(lat=raw[take, 1], lon=raw[take, 0], start=start)
     strips = [*CLOSED_CANALS.values(), *(_narrow_strips() if narrows_closed else ())]
-    return land.oriented().joined(Rings.from_lists([(corners, False) for corners in strips]))
+    land = land.oriented().joined(Rings.from_lists([(corners, False) for corners in strips]))
+    return land.joined(islet_rings()) if islets and resolution in "ih" else land
 
 
 def _narrow_strips() -> list[tuple[tuple[float, float], ...]]:

@@ -3,9 +3,10 @@
 The table is ``data/traffic_schemes.csv``, one row a scheme. Ships keep a separation line or zone to
 port (the general direction of traffic of all schemes in the table; Rule 10 (b) of the Collision
 Regulations, 1972). The lines are rounded to about half a mile and are not charted: they decide on
-which side of a strait a plan passes, not where the lanes are. Lanes among the zones of
-a user (`thalweg.chart.zones.traffic_lanes`) take their
-place.
+which side of a strait a plan passes, not where the lanes are. Beyond the lane on a landward side
+lies the inshore traffic zone, which ships of 20 m and more do not use unless their port is there
+(Rule 10 (d)). Lanes among the zones of a user (`thalweg.chart.zones.traffic_lanes`) take their
+place. Schemes that are not in the table are not known.
 """
 
 from __future__ import annotations
@@ -25,10 +26,15 @@ from thalweg.core.geodesy import Position, distance, inverse
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 
-#: What a mile against the traffic of a scheme counts: more than the detour to its other side.
+#: What a mile against the traffic of a scheme, or in its inshore traffic zone, counts: more than
+#: the detour to the lane.
 AGAINST_FACTOR: Final = 3.0
 #: Round the ends of a voyage ships use the inshore traffic zones of ports [m].
 PORT_RADIUS: Final = 12.0 * NAUTICAL_MILE
+INSHORE: Final = "inshore traffic zone"
+SMALL: Final = 20.0  #: length [m] below which ships may use inshore traffic zones
+_CLEAR: Final = 0.25  # of the width of a lane that plans keep off the separation zone
+_ANY_COURSE: Final = -1.0  # tolerance of an area in which every course is against
 _LONGEST_DETOUR: Final = 4.0  # times the geodesic: farther schemes are left out
 _LEAST_DETOUR: Final = 600.0 * NAUTICAL_MILE
 _DEGREE: Final = 60.0 * NAUTICAL_MILE  # of latitude [m], to a third of a percent
@@ -44,34 +50,71 @@ class TrafficScheme:
     line : tuple of (lat, lon)
         Middle of the separation zone [deg], in the direction of the traffic on its starboard side.
     zone : Half the width of the separation zone [m].
+    lane : Width of each lane [m].
     starboard, port : float
-        Distance from the line within which its direction counts [m], on the side of the traffic
-        along the line and on that of the traffic against it: the lane and the inshore traffic zone.
+        Distance from the line within which it counts [m], on the side of the traffic along the
+        line and on that of the traffic against it.
+    inshore : "starboard", "port", "both" or "": sides where an inshore zone follows the lane.
     """
 
     name: str
     line: tuple[Position, ...]
     zone: float
+    lane: float
     starboard: float
     port: float
+    inshore: str = ""
     source: str = ""
 
     @cached_property
     def lanes(self) -> tuple[TrafficLane, ...]:
-        """A lane for each side and each part of the line; the separation zone belongs to both."""
+        """A lane for each side and part of the line, and the inshore traffic zones.
+
+        The separation zone and `_CLEAR` of the other lane beside it belong to the lanes of both
+        sides, so that plans keep clear of it (Rule 10 (b)).
+        """
         lat, lon = np.array(self.line, float).T
         course = np.degrees(np.asarray(inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])[1]))
-        lanes = []
-        for inner, outer, turn in (
-            (-self.zone, self.starboard, 0.0),
-            (self.zone, -self.port, 180.0),
+        lanes, inner = [], self.zone + _CLEAR * self.lane
+        for side, reach, sign, turn in (
+            ("starboard", self.starboard, 1.0, 0.0),
+            ("port", self.port, -1.0, 180.0),
         ):
-            near, far = self._shifted(inner), self._shifted(outer)
+            has_zone = self.inshore in (side, "both")
+            edge = min(self.zone + self.lane, reach) if has_zone else reach
             for k, heading in enumerate((course + turn) % 360.0):
-                shape = _quadrangle(near[k], near[k + 1], far[k + 1], far[k])
                 name = f"{self.name}, {_POINTS[round(heading / 45.0) % 8]}-bound"
+                shape = self._part(k, -sign * inner, sign * edge)
                 lanes.append(TrafficLane(name, shape, float(heading), factor=AGAINST_FACTOR))
+                if edge < reach:
+                    shape = self._part(k, sign * edge, sign * reach)
+                    name = f"{self.name}, {INSHORE}"
+                    lanes.append(TrafficLane(name, shape, 0.0, _ANY_COURSE, AGAINST_FACTOR))
         return tuple(lanes)
+
+    @cached_property
+    def separation(self) -> Any:
+        """The separation zone as a shapely polygon of longitude and latitude."""
+        return _quadrangle(*self._shifted(-self.zone), *self._shifted(self.zone)[::-1])
+
+    @cached_property
+    def arrows(self) -> tuple[tuple[Position, Position], ...]:
+        """For drawing: the middle of each lane along each part, from start to end (lat, lon)."""
+        sides = (
+            self._shifted(self.zone + 0.5 * self.lane),
+            self._shifted(-self.zone - 0.5 * self.lane)[::-1],
+        )
+        return tuple(
+            ((float(a[1]), float(a[0])), (float(b[1]), float(b[0])))
+            for side in sides
+            for a, b in itertools.pairwise(side)
+        )
+
+    def _part(self, k: int, inner: float, outer: float) -> Any:
+        """Return the area between two distances [m] to starboard, along one part of the line."""
+        near, far = self._shifted(inner), self._shifted(outer)
+        shape = _quadrangle(near[k], near[k + 1], far[k + 1], far[k])
+        return shape if shape.is_valid else shape.convex_hull  # where the line turns sharply
 
     def _shifted(self, metres: float) -> FloatArray:
         """Return the line (n, 2) as (lon, lat) [deg], so far to starboard."""
@@ -92,13 +135,15 @@ def _quadrangle(*corners: FloatArray) -> Any:
     return shapely.Polygon([tuple(corner) for corner in corners])
 
 
-def lanes_of_schemes(ends: Sequence[Position]) -> tuple[TrafficLane, ...]:
+def lanes_of_schemes(ends: Sequence[Position], *, inshore: bool = True) -> tuple[TrafficLane, ...]:
     """Return the lanes of the schemes that a voyage may meet, without the water near its ends.
 
     Parameters
     ----------
     ends : sequence of (lat, lon)
         Start, via points and goal [deg].
+    inshore : bool
+        Whether the inshore traffic zones count.
     """
     import shapely
 
@@ -108,6 +153,8 @@ def lanes_of_schemes(ends: Sequence[Position]) -> tuple[TrafficLane, ...]:
         if not any(_may_meet(scheme, *pair) for pair in itertools.pairwise(ends)):
             continue
         for lane in scheme.lanes:
+            if not inshore and lane.name.endswith(INSHORE):
+                continue
             shape = lane.shape.difference(near) if lane.shape.intersects(near) else lane.shape
             lanes += [replace(lane, shape=part) for part in shapely.get_parts(shape)]
     return tuple(lane for lane in lanes if not lane.shape.is_empty)
@@ -135,10 +182,12 @@ def _read_schemes() -> tuple[TrafficScheme, ...]:
     for row in csv.DictReader(text.splitlines()):
         points = [point.split(",") for point in row["line"].split()]
         line = tuple((float(lat), float(lon)) for lat, lon in points)
-        zone, starboard, port = (
-            float(row[f"{part}_nm"]) * NAUTICAL_MILE for part in ("zone", "starboard", "port")
+        zone, lane, starboard, port = (
+            float(row[f"{part}_nm"]) * NAUTICAL_MILE
+            for part in ("zone", "lane", "starboard", "port")
         )
-        schemes.append(TrafficScheme(row["name"], line, zone, starboard, port, row["source"]))
+        more = row["inshore"], row["source"]
+        schemes.append(TrafficScheme(row["name"], line, zone, lane, starboard, port, *more))
     return tuple(schemes)
 
 

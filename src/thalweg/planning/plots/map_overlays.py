@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thalweg.chart.zones.traffic_schemes import TRAFFIC_SCHEMES
+from thalweg.core.geodesy import Position
 from thalweg.core.units import DAY
 from thalweg.planning.plots.map_extent import MapExtent
 from thalweg.planning.plots.map_labels import LabelPlacer, marked_times, time_label
@@ -17,8 +19,9 @@ if TYPE_CHECKING:
     from thalweg.sea.models.cyclone_track import BestTrack
 
 _LAND, _SHORE, _STORM = "#e2d6b5", "#6f6650", "#4a148c"
-_NO_GO, _PENALTY, _CONTROL = "#c62828", "#ef6c00", "#00796b"
+_NO_GO, _PENALTY, _CONTROL, _LANE = "#c62828", "#ef6c00", "#00796b", "#ad1457"
 _LEAST_CELLS, _OPENING = 4, 0.15  # of enclosed water; part of its outline that may be open
+_ARROWS = 15.0  # height of maps [deg] from which on arrows of lanes would cover them
 _NEAR = 2.5  # spacings of the network within which water counts as searched
 
 
@@ -88,14 +91,47 @@ def draw_zones(axes: Any, chart: Chart, box: MapExtent) -> list[tuple[str, float
     for shapes, colour, hatch in (
         (chart.zones.no_go, _NO_GO, "xxx"),
         ([shape for shape, _ in chart.zones.penalty], _PENALTY, "..."),
-        ([lane.shape for lane in chart.zones.lanes], _PENALTY, ""),
         ([shape for shape, _ in chart.zones.price], _CONTROL, ""),
     ):
         for shape in shapes:
             for turn in (-360.0, 0.0, 360.0):
                 style = {"fc": "none", "ec": colour, "hatch": hatch, "lw": 0.9, "zorder": 4}
                 axes.add_patch(_patch(shape, turn, **style))
+    _draw_lanes(axes, chart, box)
     return _draw_control_areas(axes, chart, box)
+
+
+def _draw_lanes(axes: Any, chart: Chart, box: MapExtent) -> None:
+    """Draw separation zones with arrows along their lanes, and the outlines of a user's lanes."""
+    names = {lane.name.partition(",")[0] for lane in chart.zones.lanes}
+    schemes = [scheme for scheme in TRAFFIC_SCHEMES if scheme.name in names]
+    known = {scheme.name for scheme in schemes}
+    own = [lane for lane in chart.zones.lanes if lane.name.partition(",")[0] not in known]
+    for turn in (-360.0, 0.0, 360.0):
+        for scheme in schemes:
+            band = _patch(scheme.separation, turn, fc=_LANE, ec="none", alpha=0.35, zorder=2.6)
+            axes.add_patch(band)
+            arrows = scheme.arrows if box.north - box.south < _ARROWS else ()
+            for start, end in arrows:
+                _draw_arrow(axes, start, end, turn)
+        for lane in own:
+            for part in getattr(lane.shape, "geoms", [lane.shape]):
+                style = {"fc": "none", "ec": _LANE, "ls": (0, (4, 3)), "lw": 0.7, "zorder": 2.6}
+                axes.add_patch(_patch(part, turn, **style))
+            centre, course = lane.shape.centroid, np.radians(lane.direction)
+            half = 0.2 * float(np.sqrt(lane.shape.area))
+            north, east = half * np.cos(course), half * np.sin(course)
+            east /= max(0.05, float(np.cos(np.radians(centre.y))))
+            start, end = (centre.y - north, centre.x - east), (centre.y + north, centre.x + east)
+            _draw_arrow(axes, start, end, turn)
+
+
+def _draw_arrow(axes: Any, start: Position, end: Position, turn: float) -> None:
+    """Draw an arrow between two positions (lat, lon) on the map."""
+    axes.annotate(
+        "", (end[1] + turn, end[0]), (start[1] + turn, start[0]), annotation_clip=True, zorder=2.7,
+        arrowprops={"arrowstyle": "->", "color": _LANE, "lw": 0.7, "shrinkA": 2, "shrinkB": 2},
+    )  # fmt: skip
 
 
 def _draw_control_areas(axes: Any, chart: Chart, box: MapExtent) -> list[tuple[str, float, float]]:

@@ -18,6 +18,7 @@ from thalweg.route.referee.land_clearance import least_land_clearance
 
 _PIECE: Final = 20.0 * NAUTICAL_MILE  # routes are split so to find where a passage would leave them
 _LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE  # closed passages that save less are not mentioned
+_FARTHEST: Final = 120.0 * NAUTICAL_MILE  # nor are those farther from the route
 _NEAR: Final = 30.0 * NAUTICAL_MILE  # land farther from the route is not mentioned
 
 
@@ -54,9 +55,16 @@ def closed_passage_notes(context: PlanningContext, route: Route) -> list[str]:
     notes = []
     for passage in context.chart.closed_passages:
         why = "" if passage in avoided else size_restriction(passage, context.ship)
-        if why and saved_length(route, passage) >= _LEAST_SAVED:
+        if why and _is_near(route, passage) and saved_length(route, passage) >= _LEAST_SAVED:
             notes.append(f"Passage closed: {why} (open it with open = {passage.name!r}).")
     return notes
+
+
+def _is_near(route: Route, passage: Passage) -> bool:
+    """Return whether a passage is so near to a route that little land can be between."""
+    lat, lon, _leg = densify(np.asarray(route.track.lat), np.asarray(route.track.lon), _PIECE)
+    ends = passage.line[0], passage.line[-1]
+    return all(float(np.min(distance(lat, lon, *end))) <= _FARTHEST for end in ends)
 
 
 def saved_length(route: Route, passage: Passage) -> float:

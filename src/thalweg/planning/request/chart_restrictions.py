@@ -11,6 +11,7 @@ from thalweg.chart import Chart
 from thalweg.chart.canals import Canal, canals_with_dues
 from thalweg.core.errors import ThalwegWarning
 from thalweg.core.geodesy import distance
+from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import priced_objective
 from thalweg.planning.voyage import Voyage
@@ -19,7 +20,8 @@ from thalweg.ship import Ship
 #: Water beyond these latitudes [deg] is excluded unless the voyage goes there: sea ice is not
 #: modelled, and the Northwest and Northeast Passages are north of the first.
 ICE_LIMIT_NORTH, ICE_LIMIT_SOUTH = 71.9, -65.0
-_DETOUR_RATIO = 1.3  # canals are mentioned if the route through them is at most so much longer
+#: Canals are mentioned if the geodesics through them are at most so much longer, in all and [m].
+_DETOUR_RATIO, _DETOUR = 1.3, 500.0 * NAUTICAL_MILE
 _ICE_LIMIT_MARGIN = 3.0  # [deg] beyond the places of the voyage that remain open
 
 
@@ -43,7 +45,8 @@ def exclude_closed_canals(
     currency = _foreign_currency(voyage, ship)
     notes, closed = [], []
     for canal in chart.canals:
-        why = canal.transit_restriction(draught=float(ship.draught) or None, beam=beam)
+        draught = float(ship.draught) or None
+        why = canal.transit_restriction(draught=draught, beam=beam, length=ship.length)
         if not why and currency and canal.fee > 0.0:
             why = f"{canal.title}: its dues are in USD, the prices in {currency}"
         if why:
@@ -68,7 +71,8 @@ def _near_geodesic(canal: Canal, start: Endpoint, goal: Endpoint) -> bool:
     lengths = (
         distance(*a, *p) + canal.length + distance(*q, *b) for p, q in ((one, other), (other, one))
     )
-    return float(min(lengths)) < _DETOUR_RATIO * float(distance(*a, *b))
+    straight = float(distance(*a, *b))
+    return float(min(lengths)) < min(_DETOUR_RATIO * straight, straight + _DETOUR)
 
 
 def exclude_ice_latitudes(chart: Chart, ends: list[Endpoint]) -> Chart:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from thalweg.chart import Chart
-from thalweg.chart.zones.traffic_schemes import lanes_of_schemes
+from thalweg.chart.zones.traffic_schemes import SMALL, lanes_of_schemes
 from thalweg.planning.request.offing_choice import chosen_offing
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.voyage import Voyage
@@ -28,5 +28,6 @@ def add_traffic_schemes(
     near_land = chosen_offing(voyage, ship) <= 0.0
     if voyage.ignore_lanes or near_land or chart.approaches is None or chart.zones.lanes:
         return chart
-    lanes = lanes_of_schemes([(float(end.lat), float(end.lon)) for end in ends])
+    places = [(float(end.lat), float(end.lon)) for end in ends]
+    lanes = lanes_of_schemes(places, inshore=ship.length is None or ship.length >= SMALL)
     return replace(chart, zones=replace(chart.zones, lanes=lanes)) if lanes else chart

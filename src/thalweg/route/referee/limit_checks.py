@@ -140,7 +140,9 @@ def canal_violations(
     beam = world.ship.breadth
     found = []
     for leg in pieces.canals.legs:
-        why = pieces.canals.of(leg).transit_restriction(draught=world.ship.draught, beam=beam)
+        why = pieces.canals.of(leg).transit_restriction(
+            draught=world.ship.draught, beam=beam, length=world.ship.length
+        )
         if why:
             place = (float(pieces.track.lat[leg]), float(pieces.track.lon[leg]))
             found.append(Violation(f"canal: {why}", float(times[leg]), *place))
