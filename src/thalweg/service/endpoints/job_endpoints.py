@@ -334,9 +334,11 @@ def job_table(
 
 @jobs_router.get("/plans/{job_id}/{part}.json")
 def job_part(
-    state: State, part: Literal["isochrones", "beside", "diagrams"], job_id: JobId
+    state: State, part: Literal["isochrones", "beside", "space_time", "diagrams"], job_id: JobId
 ) -> FileResponse:
-    """Return the isochrones, the route that ignores the weather, or the diagrams of a project."""
+    """Return a further file of a result: isochrones, the route that ignores the weather, place and
+    time (where and when the track is closed by the tide), or the diagrams of a project.
+    """
     return FileResponse(result_file(job_id, f"{part}.json", state), media_type="application/json")
 
 

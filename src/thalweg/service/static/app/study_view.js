@@ -1,12 +1,14 @@
 // Studies: the voyage of the plan form over departures, speeds and ships, as a heat map.
 
-import { follow, get, post, remove, resultAddress, tableAddress } from "./api.js";
+import { follow, get, hasEnded, resultAddress, start, tableAddress } from "./api.js";
 import { announce, errorBox, fill, h, unit } from "./elements.js";
 import { duration, inputTime, known, number, seconds, time } from "./format.js";
 import { HeatMap } from "./heat_map.js";
 import { typedTime } from "./typed_time.js";
 
 const SECONDS_EACH = 6; // of an ocean voyage, about
+
+import { jobFoot } from "./progress_view.js";
 
 export class StudyView {
   // handlers: sheet(element, tall), panel(elements), link(id), leave(), plan(), ends(voyage), voyage(request)
@@ -111,7 +113,7 @@ export class StudyView {
 
   async #start(request) {
     try {
-      const job = await post("/studies", request, { "Idempotency-Key": crypto.randomUUID?.() || String(Math.random()) });
+      const job = await start("/studies", request);
       await this.openJob(job.id);
     } catch (problem) {
       this.fail(problem);
@@ -127,7 +129,7 @@ export class StudyView {
     this.handlers.sheet(this.map.element, true);
     this.cellBox = h("div.block", {}, h("p.facts", {}, "Choose a cell to see its voyages."));
     this.handlers.ends(job.request.study.voyage);
-    if (["done", "failed", "cancelled"].includes(job.state)) await this.#ended(job);
+    if (hasEnded(job.state)) await this.#ended(job);
     else this.#watch(job);
   }
 
@@ -135,7 +137,7 @@ export class StudyView {
     this.close?.();
     this.map.draw();
     const state = h("p.lead", { role: "status" }, "Waiting for its turn."), meter = h("progress.meter", { max: 1, value: 0, "aria-label": "Voyages planned" }), facts = h("p.facts"), problem = h("div");
-    this.handlers.panel([h("div.scroll", {}, h("h1", {}, job.title), state, meter, facts, this.cellBox, problem), h("div.foot", {}, h("button.quiet", { type: "button", onclick: async () => { state.textContent = "Stopping …"; await remove(`/plans/${job.id}`).catch((error) => fill(problem, errorBox(error))); } }, "Stop, keep these"), h("button.quiet", { type: "button", onclick: () => this.handlers.leave() }, "Leave it running"))]);
+    this.handlers.panel([h("div.scroll", {}, h("h1", {}, job.title), state, meter, facts, this.cellBox, problem), jobFoot(job, "Stop, keep these", { state, problem, leave: () => this.handlers.leave() })]);
     this.close = follow(job.id, {
       progress: (data) => {
         state.textContent = `${number(data.done)} of ${number(data.total)} voyages`;
@@ -146,7 +148,7 @@ export class StudyView {
       },
       state: async (data) => {
         if (data.state === "queued" && data.why) { state.textContent = `Started again: ${data.why}. Voyages that were planned are kept.`; return; }
-        if (!["done", "failed", "cancelled"].includes(data.state)) return;
+        if (!hasEnded(data.state)) return;
         const done = await get(`/plans/${job.id}`);
         if (this.job?.id === job.id) await this.#ended(done);
       },
