@@ -303,8 +303,9 @@ def test_a_tablet_shows_form_and_result_without_sideways_scrolling(visit, planne
     page = visit.open()
     for width, height in ((1024, 768), (768, 1024)):
         page.set_viewport_size({"width": width, "height": height})
-        page.goto(f"{visit.service.address}/#plan={planned}")
+        page.goto(f"{visit.service.address}/?width={width}#plan={planned}")
         page.wait_for_selector(".proof")
+        assert page.get_by_text("Not for navigation", exact=True).is_visible()
         wide = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
         assert page.evaluate(wide) == 0
         assert page.locator("#chart").bounding_box()["width"] >= 380

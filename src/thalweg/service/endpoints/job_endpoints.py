@@ -135,6 +135,19 @@ def example_project() -> dict[str, Any]:
     return {"title": project.name, "project": entries}
 
 
+@jobs_router.get("/studies/ready")
+def list_ready_studies() -> list[dict[str, Any]]:
+    """Return the studies that are ready to run, each as the body of a request to start it."""
+    from thalweg.studies import ready_studies, ready_study
+
+    found = []
+    for name, about in ready_studies().items():
+        entries, study = StudyOrder(study=ready_study(name)).checked_study()
+        request = {"title": study.name or name, "study": entries}
+        found.append({"name": name, "about": about, "voyages": study.size, "request": request})
+    return found
+
+
 @jobs_router.post("/studies", status_code=202)
 def start_study(
     state: State,

@@ -9,7 +9,7 @@ const atlantic = { start: "Halifax", goal: "49.7N 6.5W", depart: "1998-08-31T12:
 // beside: the route that ignores the weather is compared too.
 export const EXAMPLES = [
   {
-    name: "Suez, or round the Cape", facts: "Rotterdam to Singapore in calm water, as in Seuren (2020).",
+    name: "Suez, or round the Cape", facts: "Rotterdam to Singapore in calm water, as on the screen of Seuren.",
     plans: [{ ...WAYS, title: "By Suez", voyage: rotterdam }, { ...WAYS, title: "Round the Cape", voyage: { ...rotterdam, avoid: ["suez"] } }],
   },
   {
@@ -17,7 +17,7 @@ export const EXAMPLES = [
     plans: [{ ...OCEAN, title: "Least time", voyage: atlantic }, { ...OCEAN, title: "A day later", voyage: { ...atlantic, depart: "1998-09-01T12:00Z" } }],
   },
   {
-    name: "One voyage, four speeds", facts: "Along western Norway, case B of Yu (2021): the same way, more fuel.",
+    name: "One voyage, four speeds", facts: "Along western Norway, case B of Yu: the same way, more fuel.",
     plans: [12, 14, 16, 17].map((speed_kn) => ({ ...NORWAY, title: `${speed_kn} kn`, voyage: { start: "59.2N 4.4E", goal: "62.6N 5.2E", depart: "1998-08-31T12:00Z", speed_kn } })),
   },
   {

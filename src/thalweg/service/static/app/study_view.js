@@ -26,11 +26,12 @@ export class StudyView {
     this.problem = h("div");
     this.voyage = h("div");
     this.earlier = h("div");
+    this.ready = h("div");
     this.file = h("input.hidden", { type: "file", id: "study-file", "aria-label": "Study file", accept: ".yaml,.yml,.json", tabindex: "-1", onchange: () => this.#open() });
     const field = (name, label, input, more = null) => h("div.field", { "data-field": name }, h("label.label", { for: input.id }, label), input, more, h("div.slot"));
     this.element = h("form", { novalidate: true, class: "form", style: "display: contents", onsubmit: (event) => { event.preventDefault(); this.submit(); } },
       h("div.scroll", {}, h("h1", {}, "Study"), h("p.lead", {}, "One voyage for many departures, speeds and ships: when is it fast, cheap, or not possible at all?"),
-        h("div.exports.block", {}, h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Study file …"), this.file), this.earlier,
+        h("div.exports.block", {}, h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Study file …"), this.file), this.ready, this.earlier,
         h("div.block", {}, h("h2", {}, "Voyage"), this.voyage),
         h("fieldset.block", {}, h("legend", {}, "Departures ", unit("UTC")), h("div.pair", {}, field("from", "From", this.from), field("to", "To", this.to)), h("div.field", { "data-field": "step" }, h("label.label", { for: "s-step" }, "Every"), h("div.with-unit", {}, this.step, h("span.unit", {}, "h")), h("div.slot"))),
         h("div.block", {}, field("speed_kn", ["Speeds ", unit("kn, separated by commas")], this.speeds, h("p.facts", {}, "Empty: as the voyage states."))),
@@ -60,9 +61,16 @@ export class StudyView {
     const chosen = before.length ? before : [plans.ship.value];
     fill(this.ships, (plans.ships || []).map((ship) => h("label.check", {}, h("input", { type: "checkbox", value: ship.id, checked: chosen.includes(ship.id) }), h("span", {}, ship.name))));
     this.#count();
+    this.#listReady();
     const { jobs } = await get("/plans?kind=study&size=20");
     fill(this.earlier, jobs.length ? h("details", {}, h("summary", {}, "Earlier studies", h("span.set", {}, String(jobs.length))), h("div.inside", {}, jobs.map((job) => h("button.job", { type: "button", onclick: () => this.openJob(job.id) }, h("b", {}, job.title), " ", job.state === "done" ? null : h(`span.state.${job.state}`, {}, job.state), h("span", {}, job.summary ? `${number(job.summary.voyages)} voyages · ${time(seconds(job.created))}` : time(seconds(job.created))))))) : null);
     return this.element;
+  }
+
+  async #listReady() {
+    if (this.ready.childElementCount) return;
+    const studies = await get("/studies/ready").catch(() => []);
+    fill(this.ready, studies.length ? h("details", {}, h("summary", {}, "Ready studies", h("span.set", {}, String(studies.length))), h("div.inside", {}, studies.map(({ about, voyages, request }) => h("button.job", { type: "button", onclick: () => this.#start(request) }, h("b", {}, request.title), h("span", {}, about), h("span", {}, `${number(voyages)} voyages`))))) : null);
   }
 
   get #axes() {
