@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import os
 import shutil
 from collections.abc import Iterator
@@ -10,13 +11,13 @@ from typing import Any
 
 import pytest
 
-from tests.service.conftest import TOKEN, ServerProcess
+from tests.service.conftest import TOKEN, ServerProcess, ended
 
 playwright_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 #: Screenshots of the tests are kept here where it is set.
 PICTURES = os.environ.get("THALWEG_SCREENSHOTS")
-#: The script axe.min.js of axe-core.
-AXE = os.environ.get("THALWEG_AXE")
+#: The script axe.min.js of axe-core 4.14.1.
+AXE = Path(__file__).parent / "axe" / "axe.min.js.gz"
 #: Time in which something appears on a loaded machine [ms]; ``expect`` of playwright has 5 s.
 LONG_MS = 120_000
 playwright_api.expect.set_options(timeout=LONG_MS)
@@ -28,7 +29,7 @@ def chromium_path() -> str | None:
     return given or shutil.which("chromium") or shutil.which("chromium-browser")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser() -> Iterator[Any]:
     path = chromium_path()
     if path is None:
@@ -39,20 +40,39 @@ def browser() -> Iterator[Any]:
         found.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ServerProcess]:
     found = ServerProcess(tmp_path_factory.mktemp("browser")).start()
     yield found
     found.stop()
 
 
+#: A voyage through the storm of the package, as the form sends it.
+SHORT_REQUEST = {
+    "title": "A short voyage",
+    "voyage": {"start": "47.0N 20.0W", "goal": "47.2N 19.5W", "depart": "1998-08-31T12:00Z"},
+    "ship": "handysize-bulker",
+    "seas": ["storm"],
+    "resolution_nm": 2.0,
+    "proof_s": 0.0,
+}
+
+
+@pytest.fixture(scope="session")
+def planned(service: ServerProcess) -> str:
+    """The id of a plan that is done, for tests that only look at a result."""
+    job = service.http.post("/api/v1/plans", json=SHORT_REQUEST).raise_for_status().json()
+    assert ended(service.http.get, job["id"])["state"] == "done"
+    return str(job["id"])
+
+
 class Visit:
     """A page of the application, with what it asked for and what went wrong in it."""
 
-    def __init__(self, browser: Any, service: ServerProcess) -> None:
+    def __init__(self, browser: Any, service: ServerProcess, **options: Any) -> None:
         self.service = service
         self.context = browser.new_context(
-            viewport={"width": 1280, "height": 720}, accept_downloads=True
+            viewport={"width": 1280, "height": 720}, accept_downloads=True, **options
         )
         self.page = self.context.new_page()
         self.page.set_default_timeout(LONG_MS)
@@ -84,16 +104,26 @@ class Visit:
         self.page.get_by_role("button", name="Plan the voyage").click()
         self.page.wait_for_selector(".proof", timeout=400_000)
 
+    def until(self, script: str, accepted: Any) -> Any:
+        """Return the value of a script as soon as a function accepts it.
+
+        ``wait_for_function`` cannot be used: the page allows no evaluation of texts.
+        """
+        for _ in range(LONG_MS // 100):
+            value = self.page.evaluate(script)
+            if accepted(value):
+                return value
+            self.page.wait_for_timeout(100)
+        raise AssertionError(f"{script} is still {value}")
+
     def figure(self, name: str) -> str:
         """Return a figure of the cards."""
         card = self.page.locator(".card", has=self.page.get_by_text(name, exact=True))
         return str(card.locator("dd").inner_text()).split("\n")[0]
 
     def check_accessibility(self) -> None:
-        """Assert that axe-core, where the environment names it, finds nothing in any palette."""
-        if not AXE:
-            return
-        self.page.evaluate(Path(AXE).read_text("utf-8"))
+        """Assert that axe-core finds nothing in any palette."""
+        self.page.evaluate(gzip.decompress(AXE.read_bytes()).decode())
         found = {}
         for palette in PALETTES:
             self.page.evaluate("p => { document.documentElement.dataset.palette = p }", palette)

@@ -55,6 +55,17 @@ def test_a_project_that_is_wrong_says_so_at_its_field(visit):
     assert "volume_m3" in page.locator("form [role=alert]").inner_text()
 
 
+def test_ready_studies_start_with_one_click(visit):
+    page = visit.open("#view=studies")
+    page.get_by_text("Ready studies").click()
+    study = page.get_by_role("button", name=re.compile("What a finer network is worth"))
+    study.click()
+    page.wait_for_url(re.compile("plan="))
+    page.get_by_text("Leave it running").wait_for()
+    page.get_by_role("button", name="Stop, keep these").click()
+    playwright_api.expect(page.get_by_text("Leave it running")).to_have_count(0)
+
+
 def test_a_study_fills_a_heat_map(visit):
     page = visit.open()
     visit.fill_short()

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.browser.conftest import AXE, playwright_api
+from tests.browser.conftest import Visit, playwright_api
 from tests.service.conftest import ended
 
 pytestmark = pytest.mark.slow
@@ -44,10 +44,9 @@ def test_a_voyage_is_planned_by_clicking_on_the_chart(visit):
     assert "<waypoint" in text and 'version="1.2"' in text
 
 
-def test_the_address_restores_the_result_after_a_reload(visit):
-    page = visit.open()
-    visit.fill_short()
-    visit.plan()
+def test_the_address_restores_the_result_after_a_reload(visit, planned):
+    page = visit.open(f"#plan={planned}")
+    page.wait_for_selector(".proof")
     page.wait_for_url(re.compile("route=1"))
     before = visit.figure("Time"), page.url
     page.reload()
@@ -233,12 +232,10 @@ def test_choosing_a_route_of_a_front_changes_cards_and_profile(visit):
     page.get_by_role("button", name="Pause (space)").click()
 
 
-def test_an_exported_route_is_scored_beside_its_plan(visit, tmp_path):
-    page = visit.open()
-    visit.fill_short()
-    page.locator("#title").fill("the plan")
-    visit.plan()
-    rtz = visit.service.http.get(f"/api/v1/plans/{job_of(page)}/routes/1.rtz").content
+def test_an_exported_route_is_scored_beside_its_plan(visit, planned, tmp_path):
+    page = visit.open(f"#plan={planned}")
+    page.wait_for_selector(".proof")
+    rtz = visit.service.http.get(f"/api/v1/plans/{planned}/routes/1.rtz").content
     (tmp_path / "mine.rtz").write_bytes(rtz)
     page.get_by_role("button", name="Compare").last.click()
     page.wait_for_selector("#route-file", state="attached")
@@ -271,10 +268,52 @@ def test_a_reload_in_the_middle_of_a_job_and_a_killed_service(visit):
     assert "the service was stopped" in events
 
 
+INK = """() => {
+  const { canvas } = window.thalweg.chart.particles;
+  return canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data
+    .reduce((sum, value, i) => sum + (i % 4 === 3 ? value : 0), 0);
+}"""
+
+
+def test_wind_moves_as_particles_but_not_where_less_motion_is_wanted(visit, browser, service):
+    page = visit.open("#demo")
+    page.locator("#layers-button").click()
+    page.get_by_label("Wind at 10 m").check()
+    assert page.evaluate(INK) == 0  # barbs
+    page.get_by_label("moving particles").check()
+    before = visit.until(INK, lambda ink: ink > 0)
+    visit.until(INK, lambda ink: ink not in (0, before))
+    visit.picture("particles")
+    page.get_by_label("Significant wave height").check()
+    visit.until(INK, lambda ink: ink == 0)
+    page.reload()
+    page.locator("#layers-button").click()
+    assert page.get_by_label("moving particles").is_checked()
+    still = Visit(browser, service, reduced_motion="reduce")
+    try:
+        page = still.open("#demo")
+        page.locator("#layers-button").click()
+        page.get_by_label("Wind at 10 m").check()
+        assert page.get_by_label("less motion").is_disabled()
+    finally:
+        still.context.close()
+
+
+def test_a_tablet_shows_form_and_result_without_sideways_scrolling(visit, planned):
+    page = visit.open()
+    for width, height in ((1024, 768), (768, 1024)):
+        page.set_viewport_size({"width": width, "height": height})
+        page.goto(f"{visit.service.address}/?width={width}#plan={planned}")
+        page.wait_for_selector(".proof")
+        assert page.get_by_text("Not for navigation", exact=True).is_visible()
+        wide = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+        assert page.evaluate(wide) == 0
+        assert page.locator("#chart").bounding_box()["width"] >= 380
+        visit.picture(f"tablet_{width}")
+
+
 @pytest.mark.parametrize("view", ["plan", "compare", "projects", "studies", "voyages"])
 def test_nothing_that_axe_finds(visit, view):
-    if not AXE:
-        pytest.skip("set THALWEG_AXE to axe.min.js of axe-core")
     page = visit.open()
     visit.fill_short()
     page.locator(f'.tab[data-view="{view}"]').click()

@@ -219,3 +219,12 @@ def test_a_forecast_that_is_not_possible_is_refused(client):
     given = {**given, "box": [40, 60, -10, -8], "quantities": ["current"]}
     assert "current" in problem(client.post("/api/v1/forecasts/estimate", json=given), 422)["asked"]
     assert problem(client.post("/api/v1/forecasts", json={**given, "source": "x"}), 422)
+
+
+def test_ready_studies_are_requests_that_start(client):
+    found = client.get("/api/v1/studies/ready").json()
+    assert {"season", "speeds", "step-length"} <= {one["name"] for one in found}
+    one = next(one for one in found if one["name"] == "network-fidelity")
+    answer = client.post("/api/v1/studies", json=one["request"])
+    assert answer.status_code == 202 and one["voyages"] == 3
+    client.delete(f"/api/v1/plans/{answer.json()['id']}")

@@ -87,25 +87,33 @@ def draw_space_time_diagram(
     return _draw(route, closures, voyage, min_ukc, path)
 
 
-def write_space_time_diagram(plan: PlanData, folder: str | Path) -> list[Path]:
-    """Draw st.png in a folder if the tide matters to a plan; return the files written.
+def closures_of_plan(plan: PlanData, places: int = 60, count: int = 60) -> Closures | None:
+    """Return where and when the best route of a plan is closed, if the tide matters to it.
 
     The tide matters if depth and water level are known, and the ship waits or a part of its track
     is closed at some time around the voyage.
+
+    Parameters
+    ----------
+    places, count : Approximate number of positions and times.
     """
     known, best = plan.plot_context, plan.best
     if known is None or best.min_ukc_m is None or not math.isfinite(best.arrive):
-        return []
+        return None
     if known.sea.members or WATER_LEVEL not in known.sea.variables:
+        return None
+    found = find_closures(
+        best, ship=known.ship, sea=known.sea, chart=known.chart,
+        min_ukc=required_under_keel_clearance(plan.voyage, known.ship), places=places,
+        times=default_times(best, count),
+    )  # fmt: skip
+    return found if best.waiting_h > 0.0 or (found.shallow | found.strong).any() else None
+
+
+def write_space_time_diagram(plan: PlanData, folder: str | Path) -> list[Path]:
+    """Draw st.png in a folder if the tide matters to a plan; return the files written."""
+    if closures_of_plan(plan) is None:
         return []
-    if not best.waiting_h > 0.0:
-        closures = find_closures(
-            best, ship=known.ship, sea=known.sea, chart=known.chart,
-            min_ukc=required_under_keel_clearance(plan.voyage, known.ship), places=60,
-            times=default_times(best, 60),
-        )  # fmt: skip
-        if not (closures.shallow | closures.strong).any():
-            return []
     path = Path(folder) / "st.png"
     draw_space_time_diagram(plan, path)
     return [path]

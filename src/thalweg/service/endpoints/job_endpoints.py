@@ -135,6 +135,19 @@ def example_project() -> dict[str, Any]:
     return {"title": project.name, "project": entries}
 
 
+@jobs_router.get("/studies/ready")
+def list_ready_studies() -> list[dict[str, Any]]:
+    """Return the studies that are ready to run, each as the body of a request to start it."""
+    from thalweg.studies import ready_studies, ready_study
+
+    found = []
+    for name, about in ready_studies().items():
+        entries, study = StudyOrder(study=ready_study(name)).checked_study()
+        request = {"title": study.name or name, "study": entries}
+        found.append({"name": name, "about": about, "voyages": study.size, "request": request})
+    return found
+
+
 @jobs_router.post("/studies", status_code=202)
 def start_study(
     state: State,
@@ -334,9 +347,11 @@ def job_table(
 
 @jobs_router.get("/plans/{job_id}/{part}.json")
 def job_part(
-    state: State, part: Literal["isochrones", "beside", "diagrams"], job_id: JobId
+    state: State, part: Literal["isochrones", "beside", "space_time", "diagrams"], job_id: JobId
 ) -> FileResponse:
-    """Return the isochrones, the route that ignores the weather, or the diagrams of a project."""
+    """Return a further file of a result: isochrones, the route that ignores the weather, place and
+    time (where and when the track is closed by the tide), or the diagrams of a project.
+    """
     return FileResponse(result_file(job_id, f"{part}.json", state), media_type="application/json")
 
 

@@ -80,7 +80,7 @@ def _contours(
 
     drawn: Any = Figure().add_subplot().contour(lon, lat, hours, levels=levels)
     return [
-        {"hours": float(level), "points": np.round(points, 3).tolist()}
+        {"hours": round(float(level), 3), "points": np.round(points, 3).tolist()}
         for level, parts in zip(levels, drawn.allsegs)
         for points in parts
         if len(points) > 3

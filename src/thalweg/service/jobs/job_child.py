@@ -125,4 +125,6 @@ def _program_error(error: Exception) -> ThalwegError:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    code = main()
+    sys.stderr.flush()
+    os._exit(code)  # at an ordinary end Python aborts: a thread still reads the input

@@ -17,6 +17,7 @@ from thalweg.core.errors import ThalwegError
 from thalweg.core.file_writing import make_folder, write_text
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.service.jobs.child_messages import MessageWriter
+from thalweg.service.jobs.closure_facts import PLACES, TIMES, closure_facts
 from thalweg.service.jobs.isochrone_lines import isochrone_lines
 from thalweg.service.jobs.job_order import JobOrder, StageMessages
 from thalweg.service.jobs.plan_request import EvaluationRequest, PlanRequest
@@ -193,7 +194,7 @@ def write_plan_result(found: Plan, folder: Path, beside: Route | None) -> list[s
     Returns
     -------
     list of str
-        ``isochrones`` and ``beside``, where there are such files.
+        ``isochrones``, ``beside`` and ``space_time``, where there are such files.
     """
     from thalweg.route import RouteFileOptions
     from thalweg.route.formats import ROUTE_FORMATS
@@ -206,10 +207,18 @@ def write_plan_result(found: Plan, folder: Path, beside: Route | None) -> list[s
         write_route_result(route, folder, number, options, plan=found)
     lines = isochrone_lines(found)
     other = None if beside is None else {**beside.as_dict(), "profile": route_profile(beside)}
-    parts = {"isochrones": lines, "beside": other}
+    parts = {"isochrones": lines, "beside": other, "space_time": _space_time(found)}
     for name, data in parts.items():
         _write_json(folder / f"{name}.json", data)
     return [name for name, data in parts.items() if data is not None]
+
+
+def _space_time(found: Plan) -> dict[str, Any] | None:
+    """Return the diagram of place and time of the best route, if the tide matters to it."""
+    from thalweg.planning.plots.space_time_diagram import closures_of_plan
+
+    closures = closures_of_plan(found, PLACES, TIMES)
+    return None if closures is None else closure_facts(closures, [found.best])
 
 
 def write_route_result(

@@ -9,6 +9,7 @@ import numpy as np
 from thalweg.core.file_writing import write_csv_rows
 from thalweg.core.types import FloatArray
 from thalweg.service.jobs.child_messages import MessageWriter
+from thalweg.service.jobs.closure_facts import PLACES, TIMES, closure_facts
 from thalweg.service.jobs.job_order import JobOrder, StageMessages
 
 if TYPE_CHECKING:
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from thalweg.route import Route
 
 _LEVEL_STEP: Final = 600.0  # between values of the water level [s]
-_PLACES, _TIMES = 90, 144  # of the diagram of place and time
 _AROUND: Final = 7.0 * 3600.0  # shown before and after the leg in that diagram [s]
 _KEY_FIGURES: Final = (
     "production_m3_week", "duration_days", "cycles", "fuel_t", "co2_t", "waiting_share",
@@ -115,9 +115,7 @@ def space_time_facts(result: ProjectResult, run: ProjectRun) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``distance_m`` and ``times``; ``closed`` with a row of digits for each distance (0 open,
-        1 too shallow, 2 current too strong, 3 unknown); ``cycle``; ``lines`` of all legs on this
-        track, each with ``times`` and ``distance_m``.
+        As of `closure_facts`, with the number of the ``cycle``.
     """
     from thalweg.planning.plots.channel_closures import find_closures
 
@@ -125,7 +123,7 @@ def space_time_facts(result: ProjectResult, run: ProjectRun) -> dict[str, Any]:
     cycle = max(run.cycles, key=lambda c: (c.out.waiting, -np.nan_to_num(c.out.clearance, nan=1e9)))
     route = cycle.out.route
     environment = result.environment
-    times = np.linspace(route.depart - _AROUND, route.arrive + _AROUND, _TIMES)
+    times = np.linspace(route.depart - _AROUND, route.arrive + _AROUND, TIMES)
     times = times[(times >= result.project.start) & (times <= result.project.end)]
     found = find_closures(
         route,
@@ -134,18 +132,11 @@ def space_time_facts(result: ProjectResult, run: ProjectRun) -> dict[str, Any]:
         chart=environment.chart,
         min_ukc=environment.min_ukc,
         times=times,
-        places=_PLACES,
+        places=PLACES,
     )
-    codes = np.where(found.unknown, 3, np.where(found.strong, 2, found.shallow.astype(int)))
     along = [c.out.route for c in run.cycles if _same_track(c.out.route, route)]
     lines = [one for one in along if times[0] <= one.arrive and one.depart <= times[-1]]
-    return {
-        "cycle": cycle.number,
-        "distance_m": np.round(found.distance, 1).tolist(),
-        "times": np.round(times).tolist(),
-        "closed": ["".join(map(str, row)) for row in codes],
-        "lines": [_line(one) for one in lines],
-    }
+    return {"cycle": cycle.number, **closure_facts(found, lines)}
 
 
 def _same_track(one: Route, other: Route) -> bool:
@@ -153,15 +144,6 @@ def _same_track(one: Route, other: Route) -> bool:
     return len(a.lat) == len(b.lat) and bool(
         np.allclose(a.lat, b.lat, atol=1e-6) and np.allclose(a.lon, b.lon, atol=1e-6)
     )
-
-
-def _line(route: Route) -> dict[str, Any]:
-    """Return distance over time of a leg, with its waits."""
-    samples = route.samples
-    return {
-        "times": np.round(np.asarray(samples["time"], float)).tolist(),
-        "distance_m": np.round(np.asarray(samples["distance"], float), 1).tolist(),
-    }
 
 
 def _rounded(values: FloatArray) -> list[float | None]:

@@ -2,6 +2,8 @@
 
 const BASE = "/api/v1";
 
+export const hasEnded = (state) => ["done", "failed", "cancelled"].includes(state);
+
 export class Problem extends Error {
   constructor(details) {
     super(details.detail || details.asked || "The request failed.");
@@ -43,6 +45,11 @@ export async function post(path, data, headers = {}) {
   return (await answer(fetch(BASE + path, { method: "POST", headers: { "Content-Type": "application/json", ...headers }, body }))).json();
 }
 
+// Start a job; a repeated request after a lost answer starts no second one.
+export async function start(path, request) {
+  return post(path, request, { "Idempotency-Key": crypto.randomUUID?.() || String(Math.random()) });
+}
+
 export async function remove(path) {
   return answer(fetch(BASE + path, { method: "DELETE" }));
 }
@@ -71,7 +78,7 @@ export function follow(id, handlers) {
   for (const kind of ["state", "stage", "route", "front", "progress"]) {
     source.addEventListener(kind, (event) => {
       const data = JSON.parse(event.data);
-      const last = kind === "state" && ["done", "failed", "cancelled"].includes(data.state);
+      const last = kind === "state" && hasEnded(data.state);
       if (last) source.close();
       handlers[kind]?.(data);
     });

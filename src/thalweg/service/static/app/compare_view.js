@@ -2,6 +2,7 @@
 
 import { get, post, uploadForm } from "./api.js";
 import { errorBox, fill, h } from "./elements.js";
+import { EXAMPLES, keyOf } from "./examples.js";
 import { duration, known, number, seconds, signed, signedDuration, time } from "./format.js";
 
 const MOST = 6;
@@ -18,7 +19,7 @@ export class CompareView {
     this.table = h("div");
     this.problem = h("div");
     this.file = h("input.hidden", { type: "file", id: "route-file", "aria-label": "Route file", accept: ".rtz,.rtzp,.gml,.gpx,.geojson,.json,.csv", tabindex: "-1", onchange: () => this.#score() });
-    this.element = [h("div.scroll", {}, h("h1", {}, "Compare routes"), h("p.lead", {}, "Choose two to six. The first is the one that the others are compared with."), this.problem, h("div.block", {}, this.list), h("div.block", {}, h("h2", {}, "Ready studies"), h("p.facts", {}, "Each plans the voyage of the first chosen route again, and adds the results."), h("div.exports", {},
+    this.element = [h("div.scroll", {}, h("h1", {}, "Compare routes"), h("p.lead", {}, "Choose two to six. The first is the one that the others are compared with."), this.problem, h("div.block", {}, this.list), h("div.block", {}, h("h2", {}, "Examples"), EXAMPLES.map((example) => h("button.job.example", { type: "button", onclick: () => this.#example(example) }, h("b", {}, example.name), h("span", {}, example.facts)))), h("div.block", {}, h("h2", {}, "Ready studies"), h("p.facts", {}, "Each plans the voyage of the first chosen route again, and adds the results."), h("div.exports", {},
       h("button.quiet.small", { type: "button", onclick: () => this.#study("speeds") }, "Three speeds"), h("button.quiet.small", { type: "button", onclick: () => this.#study("departures") }, "Departures +12, +24 h"), h("button.quiet.small", { type: "button", onclick: () => this.#study("calm") }, "Without weather"), h("button.quiet.small", { type: "button", onclick: () => this.#study("offing") }, "Without offing")),
     h("div.block", {}, h("h2", {}, "A route of your own"), h("p.facts", {}, "An RTZ, S-421, GPX, GeoJSON or CSV file is sailed in the weather and by the ship of the first chosen route."), h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Score a route file …"), this.file)))];
   }
@@ -74,6 +75,21 @@ export class CompareView {
   #table(rows) {
     const key = (i) => { const mark = h("span.key"); mark.style.borderTopColor = `var(--${PAINTS[i]})`; mark.style.borderTopStyle = i ? "dashed" : "solid"; return mark; };
     return h("div.table", { tabindex: 0 }, h("table.compare-table", {}, h("caption.hidden", {}, "Routes compared with the first"), h("thead", {}, h("tr", {}, h("th.text", { scope: "col" }, "Route"), h("th.text", { scope: "col" }, "Leaves, arrives"), FIGURES.map(([name]) => h("th", { scope: "col" }, name)))), h("tbody", {}, rows.map((row, i) => h("tr", {}, h("td.text", {}, key(i), h("b", {}, this.chosen[i].title), row.feasible ? null : h("small", {}, `breaks ${row.violations} limits`)), h("td.text", {}, time(seconds(row.depart)), h("small", {}, time(seconds(row.arrive)))), FIGURES.map(([, name, text, change]) => h("td", {}, h("b", {}, text(row[name], row)), i && change && known(row.difference[name]) ? h("small", {}, change(row.difference[name])) : null)))))));
+  }
+
+  // Plan the voyages of an example, or find them planned, and compare them.
+  async #example({ plans, beside }) {
+    fill(this.problem);
+    const jobs = [];
+    try {
+      for (const request of plans) await this.handlers.run(await post("/plans", request, { "Idempotency-Key": keyOf(request) }), (job) => { if (job.result) jobs.push(job); });
+      if (!jobs.length) return;
+      this.chosen = jobs.map((job) => ({ job: job.id, number: 1, title: job.title }));
+      if (beside) this.chosen.splice(1, 0, { job: jobs[0].id, number: 0, title: `${jobs[0].title}, weather ignored` });
+      await this.show();
+    } catch (problem) {
+      fill(this.problem, errorBox(problem));
+    }
   }
 
   // Plan the voyage of the first chosen route again, with changes.

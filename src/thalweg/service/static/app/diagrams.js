@@ -4,6 +4,7 @@ import uPlot from "../vendor/uplot.mjs";
 import { colour, fill, h } from "./elements.js";
 import { bearing, duration, known, number, plainPosition, seconds, time } from "./format.js";
 import { FrontDiagram } from "./front_diagram.js";
+import { drawClosures } from "./project_diagrams.js";
 import { selection } from "./selection.js";
 
 const SERIES = [
@@ -47,8 +48,8 @@ export class Drawer {
   show(result) {
     this.element.hidden = false;
     this.result = result;
-    if (this.tab === "front" && !result.front) this.tab = "profile";
-    const names = [["profile", "Profile"], ...(result.front ? [["front", "Front"]] : []), ["legs", "Legs"]];
+    if ((this.tab === "front" && !result.front) || (this.tab === "tide" && !result.spaceTime)) this.tab = "profile";
+    const names = [["profile", "Profile"], ...(result.front ? [["front", "Front"]] : []), ...(result.spaceTime ? [["tide", "Place and time"]] : []), ["legs", "Legs"]];
     fill(this.tabs, names.map(([name, text]) => h("button", { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": "sheet", "aria-selected": String(name === this.tab), tabindex: name === this.tab ? 0 : -1, onclick: () => this.open(name), onkeydown: (event) => this.#tabKey(event, names) }, text)));
     this.sheet.setAttribute("aria-labelledby", `tab-${this.tab}`);
     this.plot?.destroy();
@@ -56,6 +57,7 @@ export class Drawer {
     this.front = null;
     if (this.tab === "front") this.#showFront();
     else if (this.tab === "legs") this.#showLegs();
+    else if (this.tab === "tide") this.#showTide();
     else this.#showProfile();
     this.#moved();
   }
@@ -179,6 +181,11 @@ export class Drawer {
   #resize() {
     if (this.plot && this.holder) this.plot.setSize({ width: Math.max(200, this.holder.clientWidth - 8), height: Math.max(80, this.holder.clientHeight - 6) });
     if (this.front) this.front.draw();
+    if (this.tab === "tide" && this.result?.spaceTime) this.#showTide();
+  }
+
+  #showTide() {
+    drawClosures(this.sheet, this.result.spaceTime, "Where and when the track of the route is closed by the tide, and the line of the ship");
   }
 
   // Front

@@ -1,6 +1,6 @@
 // Fetch a forecast from the page: the size first, then the download as a job.
 
-import { follow, get, post, remove } from "./api.js";
+import { follow, get, hasEnded, post, remove, start } from "./api.js";
 import { announce, errorBox, fill, h } from "./elements.js";
 import { inputTime, number, seconds, time } from "./format.js";
 import { typedTime } from "./typed_time.js";
@@ -66,7 +66,7 @@ export class ForecastFetch {
 
   async #download(request) {
     try {
-      const job = await post("/forecasts", { ...request, title: `Forecast ${request.source} ${request.start.slice(0, 10)}` }, { "Idempotency-Key": crypto.randomUUID?.() || String(Math.random()) });
+      const job = await start("/forecasts", { ...request, title: `Forecast ${request.source} ${request.start.slice(0, 10)}` });
       this.watch(job);
     } catch (problem) {
       fill(this.answer, errorBox(problem));
@@ -81,7 +81,7 @@ export class ForecastFetch {
     follow(job.id, {
       stage: (data) => { said.textContent = `${data.text[0].toUpperCase()}${data.text.slice(1)} …`; },
       state: async (data) => {
-        if (!["done", "failed", "cancelled"].includes(data.state)) return;
+        if (!hasEnded(data.state)) return;
         const ended = await get(`/plans/${job.id}`);
         if (data.state === "done") {
           fill(this.answer, h("p.facts", {}, `Fetched: ${time(seconds(ended.summary.start))} to ${time(seconds(ended.summary.end), true)}.`));

@@ -1,6 +1,6 @@
 // The application: views, selection, palette, keys and the link to a state.
 
-import { follow, get, remove } from "./api.js";
+import { follow, get, hasEnded, remove } from "./api.js";
 import { Chart } from "./chart_map.js";
 import { CompareView, DASHES, PAINTS } from "./compare_view.js";
 import { Drawer, indexAt, placeAt } from "./diagrams.js";
@@ -206,7 +206,7 @@ class Application {
     if (job.kind === "forecast") { this.#showForm(); await this.form.openForecast?.(job); return; }
     this.#sheet(null);
     if (job.kind === "plan") this.form.set(job.request);
-    if (!["done", "failed", "cancelled"].includes(job.state)) { this.#follow(job); return; }
+    if (!hasEnded(job.state)) { this.#follow(job); return; }
     await this.#ended(job, route, t);
   }
 
@@ -285,7 +285,7 @@ class Application {
     if (fit) this.chart.fit(profile.lon.map((lon, i) => [lon, profile.lat[i]]));
     result.view.show(profile);
     result.profile = profile;
-    this.drawer.show({ plan: result.plan, front: result.front, profile, waypoints: route.waypoints });
+    this.drawer.show({ plan: result.plan, front: result.front, spaceTime: selection.route === 0 ? result.spaceTime : null, profile, waypoints: route.waypoints });
     this.#time();
     this.#layers();
     this.#permalink();
@@ -376,7 +376,7 @@ class Application {
       follow(job.id, {
         stage: (data) => { said.textContent = `${job.title}: ${data.text} …`; },
         state: async (data) => {
-          if (!["done", "failed", "cancelled"].includes(data.state)) return;
+          if (!hasEnded(data.state)) return;
           const ended = await get(`/plans/${job.id}`);
           done(ended);
           fill(this.compare.problem, ended.problem ? errorBox(ended.problem) : null);
@@ -391,7 +391,7 @@ class Application {
     fill(panel, box);
     try {
       const { jobs } = await get("/plans?size=100");
-      box.append(h("div.block", {}, jobs.length ? jobs.map((job) => h("div.jobrow", {}, h("button.job", { type: "button", onclick: () => this.openJob(job.id) }, h("b", {}, job.title || "Plan"), " ", job.state === "done" ? null : h(`span.state.${job.state}`, {}, job.state), h("span", {}, this.#facts(job))), ["done", "failed", "cancelled"].includes(job.state) ? h("button.quiet.small", { type: "button", "aria-label": `Remove ${job.title || "plan"}`, onclick: async () => { await remove(`/plans/${job.id}?forget=true`); this.#showVoyages(); } }, "Remove") : h("button.quiet.small", { type: "button", "aria-label": `Stop ${job.title || "plan"}`, onclick: async () => { await remove(`/plans/${job.id}`); this.#showVoyages(); } }, "Stop"))) : h("p.empty", {}, h("b", {}, "No voyages yet"), "Plan one, or open the example.", h("p", {}, h("button.quiet", { type: "button", onclick: () => { this.form.set(DEMO); this.#switch("plan"); } }, "Fill in the storm of 1998")))));
+      box.append(h("div.block", {}, jobs.length ? jobs.map((job) => h("div.jobrow", {}, h("button.job", { type: "button", onclick: () => this.openJob(job.id) }, h("b", {}, job.title || "Plan"), " ", job.state === "done" ? null : h(`span.state.${job.state}`, {}, job.state), h("span", {}, this.#facts(job))), hasEnded(job.state) ? h("button.quiet.small", { type: "button", "aria-label": `Remove ${job.title || "plan"}`, onclick: async () => { await remove(`/plans/${job.id}?forget=true`); this.#showVoyages(); } }, "Remove") : h("button.quiet.small", { type: "button", "aria-label": `Stop ${job.title || "plan"}`, onclick: async () => { await remove(`/plans/${job.id}`); this.#showVoyages(); } }, "Stop"))) : h("p.empty", {}, h("b", {}, "No voyages yet"), "Plan one, or open the example.", h("p", {}, h("button.quiet", { type: "button", onclick: () => { this.form.set(DEMO); this.#switch("plan"); } }, "Fill in the storm of 1998")))));
     } catch (problem) {
       box.append(errorBox(problem));
     }

@@ -1,6 +1,6 @@
 // The form of a voyage. Errors stand at their field; what is missing is said, not greyed out.
 
-import { get, post, uploadForm, uploadSea } from "./api.js";
+import { get, post, start, uploadForm, uploadSea } from "./api.js";
 import { announce, errorBox, fill, h } from "./elements.js";
 import { inputTime, known, number, seconds, time } from "./format.js";
 import { ForecastFetch } from "./forecast_fetch.js";
@@ -440,7 +440,7 @@ export class PlanForm extends EventTarget {
     if (!request) return;
     this.button.textContent = "Sending …";
     try {
-      const job = await post("/plans", request, { "Idempotency-Key": crypto.randomUUID?.() || String(Math.random()) });
+      const job = await start("/plans", request);
       this.dispatchEvent(new CustomEvent("started", { detail: job }));
     } catch (problem) {
       this.showProblem(problem);

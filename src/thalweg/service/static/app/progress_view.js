@@ -5,6 +5,12 @@ import { announce, errorBox, fill, h, unit } from "./elements.js";
 import { LiveFront } from "./live_front.js";
 import { duration, known, number, time, seconds } from "./format.js";
 
+// The buttons under a job that runs.
+export function jobFoot(job, words, { state, problem, leave }) {
+  const stop = async () => { state.textContent = "Stopping …"; await remove(`/plans/${job.id}`).catch((error) => fill(problem, errorBox(error))); };
+  return h("div.foot", {}, h("button.quiet", { type: "button", onclick: stop }, words), h("button.quiet", { type: "button", onclick: leave }, "Leave it running"));
+}
+
 export class ProgressView {
   constructor(job, handlers) {
     this.job = job;

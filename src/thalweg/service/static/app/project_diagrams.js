@@ -81,9 +81,13 @@ export function drawActivities(sheet, diagrams, start) {
 
 export function drawPlaceAndTime(sheet, diagrams, chosen, choose) {
   const names = Object.keys(diagrams.runs), name = names.includes(chosen) ? chosen : names[0];
-  const found = diagrams.runs[name].space_time;
   const picker = h("fieldset", {}, h("legend", {}, "Way out of"), names.map((one) => h("label.check", {}, h("input", { type: "radio", name: "space-time", checked: one === name, onchange: () => choose(one) }), h("span", {}, `${one}, cycle ${diagrams.runs[one].space_time.cycle}`))));
-  const [drawing, width, height] = frame(sheet, `Where and when the way out of the ${name} is closed, and the lines of the ship`, [picker, mark("--accent", "Ship"), mark("--shallow", "Too little water", ".filled"), mark("--amber", "Current too strong", ".filled"), mark("--hatch", "No data", ".filled")]);
+  return drawClosures(sheet, diagrams.runs[name].space_time, `Where and when the way out of the ${name} is closed, and the lines of the ship`, picker);
+}
+
+// Distance along a track against time: where it is closed, and the lines of ships on it.
+export function drawClosures(sheet, found, label, picker = null) {
+  const [drawing, width, height] = frame(sheet, label, [picker, mark("--accent", "Ship"), mark("--shallow", "Too little water", ".filled"), mark("--amber", "Current too strong", ".filled"), mark("--hatch", "No data", ".filled")]);
   const { distance_m: along, times, closed, lines } = found;
   const left = 56, right = 16, top = 10, bottom = 30, t0 = times[0], t1 = times.at(-1), far = along.at(-1) || 1;
   const px = (t) => left + ((t - t0) / (t1 - t0)) * (width - left - right), py = (d) => height - bottom - (d / far) * (height - top - bottom);

@@ -1,10 +1,11 @@
 // Dredging projects: the form, the simulation while it runs, and the result.
 
-import { follow, get, post, remove, resultAddress, tableAddress } from "./api.js";
+import { follow, get, hasEnded, remove, resultAddress, start, tableAddress } from "./api.js";
 import { announce, errorBox, fill, h, unit } from "./elements.js";
 import { duration, inputTime, known, number, plainPosition, seconds, time } from "./format.js";
 import { PlaceField } from "./places.js";
 import { drawActivities, drawLoads, drawPlaceAndTime, drawVolume, runColour, showCycles } from "./project_diagrams.js";
+import { jobFoot } from "./progress_view.js";
 import { SheetTabs } from "./sheet_tabs.js";
 
 const NUMBERS = [["volume_m3", "Volume to move", "m³"], ["hopper_m3", "Full load", "m³"], ["loading", "Loads at", "m³/s"], ["unloading", "Unloads at", "m³/s"], ["days", "At most", "days"], ["min_ukc_m", "Under-keel clearance", "m"], ["load_factors", "Loads to choose from", "count"], ["spacing_m", "Spacing of the network", "m"]];
@@ -171,7 +172,7 @@ export class ProjectView {
 
   async #start(request) {
     try {
-      const job = await post("/projects", request, { "Idempotency-Key": crypto.randomUUID?.() || String(Math.random()) });
+      const job = await start("/projects", request);
       await this.openJob(job.id);
     } catch (problem) {
       this.fail(problem);
@@ -185,7 +186,7 @@ export class ProjectView {
     this.job = job;
     this.handlers.link(id);
     this.set(job.request.project);
-    if (["done", "failed", "cancelled"].includes(job.state)) await this.#ended(job);
+    if (hasEnded(job.state)) await this.#ended(job);
     else this.#watch(job);
   }
 
@@ -195,7 +196,7 @@ export class ProjectView {
     if (!job.request.project.base_case) delete runs["base case"];
     const state = h("p.lead", { role: "status" }, "Waiting for its turn."), steps = h("ol.steps"), cards = h("dl.cards"), problem = h("div");
     const tabs = new SheetTabs("The project so far", [["volume", "Volume so far", (sheet) => (runs.optimised.length ? drawVolume(sheet, runs, job.request.project.volume_m3, seconds(job.request.project.start)) : (fill(sheet, h("p.empty", {}, h("b", {}, "No cycle yet"), "The volume that is moved appears here, cycle by cycle.")), ""))]]);
-    this.handlers.panel([h("div.scroll", {}, h("h1", {}, job.title), state, steps, cards, problem), h("div.foot", {}, h("button.quiet", { type: "button", onclick: async () => { state.textContent = "Stopping …"; await remove(`/plans/${job.id}`).catch((error) => fill(problem, errorBox(error))); } }, "Stop"), h("button.quiet", { type: "button", onclick: () => this.handlers.leave() }, "Leave it running"))]);
+    this.handlers.panel([h("div.scroll", {}, h("h1", {}, job.title), state, steps, cards, problem), jobFoot(job, "Stop", { state, problem, leave: () => this.handlers.leave() })]);
     this.handlers.sheet(tabs.element);
     let pending = false;
     const redraw = () => { if (pending) return; pending = true; requestAnimationFrame(() => { pending = false; tabs.redraw(); this.#cards(cards, runs); }); };
@@ -215,7 +216,7 @@ export class ProjectView {
       },
       state: async (data) => {
         if (data.state === "queued" && data.why) { fill(steps); for (const name of Object.keys(runs)) runs[name] = []; state.textContent = `Started again: ${data.why}.`; return; }
-        if (!["done", "failed", "cancelled"].includes(data.state)) return;
+        if (!hasEnded(data.state)) return;
         const done = await get(`/plans/${job.id}`);
         if (this.job?.id === job.id) await this.#ended(done);
       },

@@ -16,8 +16,8 @@ export async function loadResult(job) {
   const plan = job.kind === "plan" ? raw : { routes: [raw], notes: raw.assumptions || [], rejections: {}, voyage: null, provenance: {} };
   const optional = (part) => get(`/plans/${job.id}/${part}.json`).catch(() => null);
   const parts = job.summary.parts || [];
-  const [isochrones, beside] = await Promise.all(["isochrones", "beside"].map((part) => (parts.includes(part) ? optional(part) : null)));
-  return { job, plan, isochrones, beside, front: plan.front || null, profiles: new Map() };
+  const [isochrones, beside, spaceTime] = await Promise.all(["isochrones", "beside", "space_time"].map((part) => (parts.includes(part) ? optional(part) : null)));
+  return { job, plan, isochrones, beside, spaceTime, front: plan.front || null, profiles: new Map() };
 }
 
 export async function profileOf(result, number_) {

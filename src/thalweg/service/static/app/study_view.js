@@ -1,12 +1,14 @@
 // Studies: the voyage of the plan form over departures, speeds and ships, as a heat map.
 
-import { follow, get, post, remove, resultAddress, tableAddress } from "./api.js";
+import { follow, get, hasEnded, resultAddress, start, tableAddress } from "./api.js";
 import { announce, errorBox, fill, h, unit } from "./elements.js";
 import { duration, inputTime, known, number, seconds, time } from "./format.js";
 import { HeatMap } from "./heat_map.js";
 import { typedTime } from "./typed_time.js";
 
 const SECONDS_EACH = 6; // of an ocean voyage, about
+
+import { jobFoot } from "./progress_view.js";
 
 export class StudyView {
   // handlers: sheet(element, tall), panel(elements), link(id), leave(), plan(), ends(voyage), voyage(request)
@@ -24,11 +26,12 @@ export class StudyView {
     this.problem = h("div");
     this.voyage = h("div");
     this.earlier = h("div");
+    this.ready = h("div");
     this.file = h("input.hidden", { type: "file", id: "study-file", "aria-label": "Study file", accept: ".yaml,.yml,.json", tabindex: "-1", onchange: () => this.#open() });
     const field = (name, label, input, more = null) => h("div.field", { "data-field": name }, h("label.label", { for: input.id }, label), input, more, h("div.slot"));
     this.element = h("form", { novalidate: true, class: "form", style: "display: contents", onsubmit: (event) => { event.preventDefault(); this.submit(); } },
       h("div.scroll", {}, h("h1", {}, "Study"), h("p.lead", {}, "One voyage for many departures, speeds and ships: when is it fast, cheap, or not possible at all?"),
-        h("div.exports.block", {}, h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Study file …"), this.file), this.earlier,
+        h("div.exports.block", {}, h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Study file …"), this.file), this.ready, this.earlier,
         h("div.block", {}, h("h2", {}, "Voyage"), this.voyage),
         h("fieldset.block", {}, h("legend", {}, "Departures ", unit("UTC")), h("div.pair", {}, field("from", "From", this.from), field("to", "To", this.to)), h("div.field", { "data-field": "step" }, h("label.label", { for: "s-step" }, "Every"), h("div.with-unit", {}, this.step, h("span.unit", {}, "h")), h("div.slot"))),
         h("div.block", {}, field("speed_kn", ["Speeds ", unit("kn, separated by commas")], this.speeds, h("p.facts", {}, "Empty: as the voyage states."))),
@@ -58,9 +61,16 @@ export class StudyView {
     const chosen = before.length ? before : [plans.ship.value];
     fill(this.ships, (plans.ships || []).map((ship) => h("label.check", {}, h("input", { type: "checkbox", value: ship.id, checked: chosen.includes(ship.id) }), h("span", {}, ship.name))));
     this.#count();
+    this.#listReady();
     const { jobs } = await get("/plans?kind=study&size=20");
     fill(this.earlier, jobs.length ? h("details", {}, h("summary", {}, "Earlier studies", h("span.set", {}, String(jobs.length))), h("div.inside", {}, jobs.map((job) => h("button.job", { type: "button", onclick: () => this.openJob(job.id) }, h("b", {}, job.title), " ", job.state === "done" ? null : h(`span.state.${job.state}`, {}, job.state), h("span", {}, job.summary ? `${number(job.summary.voyages)} voyages · ${time(seconds(job.created))}` : time(seconds(job.created))))))) : null);
     return this.element;
+  }
+
+  async #listReady() {
+    if (this.ready.childElementCount) return;
+    const studies = await get("/studies/ready").catch(() => []);
+    fill(this.ready, studies.length ? h("details", {}, h("summary", {}, "Ready studies", h("span.set", {}, String(studies.length))), h("div.inside", {}, studies.map(({ about, voyages, request }) => h("button.job", { type: "button", onclick: () => this.#start(request) }, h("b", {}, request.title), h("span", {}, about), h("span", {}, `${number(voyages)} voyages`))))) : null);
   }
 
   get #axes() {
@@ -111,7 +121,7 @@ export class StudyView {
 
   async #start(request) {
     try {
-      const job = await post("/studies", request, { "Idempotency-Key": crypto.randomUUID?.() || String(Math.random()) });
+      const job = await start("/studies", request);
       await this.openJob(job.id);
     } catch (problem) {
       this.fail(problem);
@@ -127,7 +137,7 @@ export class StudyView {
     this.handlers.sheet(this.map.element, true);
     this.cellBox = h("div.block", {}, h("p.facts", {}, "Choose a cell to see its voyages."));
     this.handlers.ends(job.request.study.voyage);
-    if (["done", "failed", "cancelled"].includes(job.state)) await this.#ended(job);
+    if (hasEnded(job.state)) await this.#ended(job);
     else this.#watch(job);
   }
 
@@ -135,7 +145,7 @@ export class StudyView {
     this.close?.();
     this.map.draw();
     const state = h("p.lead", { role: "status" }, "Waiting for its turn."), meter = h("progress.meter", { max: 1, value: 0, "aria-label": "Voyages planned" }), facts = h("p.facts"), problem = h("div");
-    this.handlers.panel([h("div.scroll", {}, h("h1", {}, job.title), state, meter, facts, this.cellBox, problem), h("div.foot", {}, h("button.quiet", { type: "button", onclick: async () => { state.textContent = "Stopping …"; await remove(`/plans/${job.id}`).catch((error) => fill(problem, errorBox(error))); } }, "Stop, keep these"), h("button.quiet", { type: "button", onclick: () => this.handlers.leave() }, "Leave it running"))]);
+    this.handlers.panel([h("div.scroll", {}, h("h1", {}, job.title), state, meter, facts, this.cellBox, problem), jobFoot(job, "Stop, keep these", { state, problem, leave: () => this.handlers.leave() })]);
     this.close = follow(job.id, {
       progress: (data) => {
         state.textContent = `${number(data.done)} of ${number(data.total)} voyages`;
@@ -146,7 +156,7 @@ export class StudyView {
       },
       state: async (data) => {
         if (data.state === "queued" && data.why) { state.textContent = `Started again: ${data.why}. Voyages that were planned are kept.`; return; }
-        if (!["done", "failed", "cancelled"].includes(data.state)) return;
+        if (!hasEnded(data.state)) return;
         const done = await get(`/plans/${job.id}`);
         if (this.job?.id === job.id) await this.#ended(done);
       },

@@ -249,7 +249,7 @@ export class WeatherLayer {
         const lon = this.#turned(((extent[0] + x * pixel) / HALF) * 180, frames[0]);
         const first = kind === "waves" ? 1 : 0;
         const east = this.#blended(first, lon, my), north = this.#blended(first + 1, lon, my);
-        if (!Number.isFinite(east) || !Number.isFinite(north) || Math.hypot(east, north) < 1e-3) continue;
+        if (!Number.isFinite(east) || !Number.isFinite(north) || Math.hypot(east, north) < 1e-3 || (kind === "waves" && this.#blended(0, lon, my) < 0.05)) continue;
         context.save();
         context.translate(x, y);
         context.rotate(Math.atan2(east, north));
