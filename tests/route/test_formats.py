@@ -215,3 +215,11 @@ def test_tables_as_other_programs_write_them(tmp_path, text):
     path.write_text(text, encoding="utf-8")
     track = read_track(path, depart=0.0)
     assert track.lat.tolist() == [51.05, 51.3] and track.lon.tolist() == [1.45, 2.0]
+
+
+def test_a_file_of_another_kind_is_refused_with_the_endings_that_are_read(tmp_path):
+    path = tmp_path / "route.kml"
+    path.write_text("<kml/>")
+    with pytest.raises(InputError) as caught:
+        read_track(path)
+    assert ".rtz" in caught.value.possible and "KML is written only" in caught.value.possible

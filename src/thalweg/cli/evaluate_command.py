@@ -21,7 +21,9 @@ def add_command(commands: Any) -> None:
         "time, fuel, under-keel clearance and violated limits.",
         epilog="Example: thalweg evaluate route.gpx --ship handysize-bulker --sea forecast.nc",
     )
-    parser.add_argument("route", metavar="ROUTE", help="route file: RTZ, GPX, GeoJSON or CSV")
+    parser.add_argument(
+        "route", metavar="ROUTE", help="route file: RTZ, S-421, GPX, GeoJSON or CSV"
+    )
     options.add_ship_and_chart_options(parser, default_ukc="0")
     options.add_verbose_option(parser)
     parser.add_argument(

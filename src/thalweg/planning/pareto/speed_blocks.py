@@ -184,7 +184,7 @@ def _note_costs(
     hours = trade_off.context.voyage.least_speed_block_h
     note = f"Speeds are ordered in blocks of at least {hours:g} h or a quarter of the voyage"
     if extra:
-        note += f", at a cost of up to {max(0.0, *extra):.1%} {trade_off.objective.name}"
+        note += f", which adds up to {max(0.0, *extra):.1%} to the {trade_off.objective.name}"
     if kept:
         note += f"; {kept} of {len(after)} routes keep shorter ones, to stay within the limits"
     trade_off.notes.append(f"{note}.")

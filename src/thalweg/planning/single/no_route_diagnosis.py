@@ -166,7 +166,8 @@ class DepthDeficit(NamedTuple):
         until = "" if math.isnan(self.time) else f" before {format_time(self.until)}"
         return (
             f"The deepest path has at most {self.depth:.2f} m near {place}{when}; "
-            f"{self.required:.2f} m are required{until}: {self.missing:.2f} m too little."
+            f"{self.required:.2f} m are required{until}: {self.missing:.2f} m "
+            "too little; a draught smaller by that passes there."
         )
 
 
@@ -181,9 +182,13 @@ def _depth_deficit(network: Network, fields: StationFields, required: float) -> 
     return DepthDeficit(found.lat, found.lon, found.depth, found.time, required, end)
 
 
-_ADVICE_SHALLOW = "Load less, require less clearance, or use data that include a higher tide."
+_ADVICE_SHALLOW = (
+    "Load less (--load-factor), require less clearance (--ukc), or use data that include a higher "
+    "tide."
+)
 _ADVICE = {
-    codes.DEPTH: "Load less, require less clearance, or allow waiting for the tide.",
+    codes.DEPTH: "Load less (--load-factor), require less clearance (--ukc), or allow waiting for "
+    "the tide.",
     codes.WAVE_HEIGHT: "Depart later, or raise the limit of the ship.",
     codes.WIND_SPEED: "Depart later, or raise the limit of the ship.",
     codes.NO_DATA: "The data have gaps: add a layer that covers them, or fill them by name, for "

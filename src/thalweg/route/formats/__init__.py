@@ -145,7 +145,7 @@ def _contents_of(path: Path) -> ParsedTrack:
     if ending not in (*_PARSERS, *_BYTE_PARSERS):
         raise InputError(
             f"Routes are not read from files like {path.name!r}.",
-            f"Known endings: {', '.join((*_PARSERS, *_BYTE_PARSERS))}.",
+            f"Known endings: {', '.join((*_PARSERS, *_BYTE_PARSERS))}; KML is written only.",
             "Convert the file, or give it the right ending.",
             file=str(path),
         )
