@@ -239,7 +239,7 @@ def test_an_edge_burns_the_fuel_rate_of_the_table_at_the_published_heading():
         problem = make_front_problem(ship, request)
         out, edges = np.empty((2, 2)), np.zeros(2, np.int64)
         sail_departures(
-            problem.world, edges, edges, np.arange(2), np.full(2, 60.0), out, new_edge_workspace()
+            problem.arrays, edges, edges, np.arange(2), np.full(2, 60.0), out, new_edge_workspace()
         )
         for setting in range(2):
             ground = published_speed_over_ground(table, sea, course, 40.0, setting)

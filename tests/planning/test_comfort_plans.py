@@ -104,7 +104,7 @@ def _all_walks(problem):
         network.meta.start, network.meta.goal, DEPART, DEPART + 12 * 3600.0, wait=False,
         prices=LegPrices(consumption="squared_dose"),
     )  # fmt: skip
-    world = make_front_problem(problem, _request(problem, query)).world
+    arrays = make_front_problem(problem, _request(problem, query)).arrays
     leaving = {}
     for edge, tail in enumerate(network.tails().tolist()):
         leaving.setdefault(tail, []).append((edge, int(network.graph.target[edge])))
@@ -123,7 +123,7 @@ def _all_walks(problem):
             arrive, depart = np.empty(count + 1), np.empty(count + 1)
             arrive[0] = DEPART
             cost, status = sail_path(
-                world, nodes, np.array(edges, np.int64), np.array(choices, np.int64),
+                arrays, nodes, np.array(edges, np.int64), np.array(choices, np.int64),
                 np.full(count, -np.inf), arrive, depart, new_edge_workspace(),
             )  # fmt: skip
             if status == 0:

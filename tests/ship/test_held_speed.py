@@ -8,6 +8,7 @@ from thalweg.core.units import KNOT
 from thalweg.ship import Conditions
 from thalweg.ship.consumption import engine_order
 from thalweg.ship.held_speed import with_held_power, with_held_speed
+from thalweg.ship.models.known_speed_model import SpeedLossModel
 
 BULKER = Ship.load("handysize-bulker")
 HELD = with_held_speed(BULKER, 12.0)
@@ -22,6 +23,12 @@ def test_in_calm_air_it_burns_what_the_table_gives():
     assert float(HELD.fuel_rate(wind(0.0))) == pytest.approx(fuel, rel=1e-4)
     assert float(HELD.speed_through_water(wind(0.0))) == pytest.approx(12.0 * KNOT)
     assert engine_order(HELD) == "constant speed" and engine_order(BULKER) == "constant power"
+
+
+def test_it_keeps_the_speed_loss_and_its_range():
+    """The referee warns of a method outside its range for held speeds, too."""
+    assert isinstance(HELD.model, SpeedLossModel)
+    assert HELD.model.loss is BULKER.model.loss is not None
 
 
 def test_against_wind_it_holds_the_speed_at_more_power():

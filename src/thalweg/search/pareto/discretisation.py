@@ -166,10 +166,10 @@ def _slices(
     If none that fit the memory and take a bearable time are exact enough, the finest that do, or
     the sea's own times where finer ones help little: jumps are not known better for them.
     """
-    ladder = _slice_candidates(front_problem.world.sea.times - request.depart, time_bins.latest)
+    ladder = _slice_candidates(front_problem.arrays.sea.times - request.depart, time_bins.latest)
     most, own = (
         min(memory_limit, _MAX_BYTES_OF_FINER_SLICES),
-        len(front_problem.world.sea.times) + 2,
+        len(front_problem.arrays.sea.times) + 2,
     )
     chosen, error, memory, fine = ladder[0], math.inf, 0, False
     for slices in ladder:
@@ -208,8 +208,8 @@ def _slice_candidates(times: FloatArray, horizon: float) -> list[FloatArray]:
 def _relaxations(front_problem: FrontProblem, windows: BinWindows) -> float:
     """Return how many relaxations the windows allow for."""
     bins = np.maximum(windows.last.astype(np.int64) - windows.first + 1, 0)
-    return float((bins * np.diff(front_problem.world.network.indptr)).sum()) * len(
-        front_problem.world.ship.settings
+    return float((bins * np.diff(front_problem.arrays.network.indptr)).sum()) * len(
+        front_problem.arrays.ship.settings
     )
 
 
@@ -230,8 +230,8 @@ def _memory(
     front_problem: FrontProblem, time_bins: TimeBins, windows: BinWindows, slices: FloatArray
 ) -> int:
     _, count = slice_windows(time_bins, windows, slices)
-    degree = np.diff(front_problem.world.network.indptr)
-    values = int((count * degree).sum()) * 2 * len(front_problem.world.ship.settings) * 4
+    degree = np.diff(front_problem.arrays.network.indptr)
+    values = int((count * degree).sum()) * 2 * len(front_problem.arrays.ship.settings) * 4
     slack = int((count * degree).sum()) * 13
     return values + slack + int(count.sum()) * 2 + windows.bins * _LABEL_BYTES + 200 * len(degree)
 
@@ -249,15 +249,15 @@ def _table_error(
     """
     rng = np.random.default_rng(0)
     usable = windows.last >= windows.first
-    usable &= np.diff(front_problem.world.network.indptr) > 0
+    usable &= np.diff(front_problem.arrays.network.indptr) > 0
     nodes = np.flatnonzero(usable)
     if len(nodes) == 0:
         return 0.0, False
     nodes = rng.choice(nodes, _SAMPLED_EDGES)
-    net = front_problem.world.network
+    net = front_problem.arrays.network
     degree = np.diff(net.indptr)[nodes]
     edges = net.indptr[nodes] + rng.integers(0, degree)
-    choices = rng.integers(0, len(front_problem.world.ship.settings), _SAMPLED_EDGES)
+    choices = rng.integers(0, len(front_problem.arrays.ship.settings), _SAMPLED_EDGES)
     span = (windows.last - windows.first + 1)[nodes]
     when = (windows.first[nodes] + rng.random(_SAMPLED_EDGES) * span) * time_bins.width
     k = np.clip(np.searchsorted(slices, when, side="right") - 1, 0, len(slices) - 2)
@@ -267,7 +267,7 @@ def _table_error(
         out = np.empty((_SAMPLED_EDGES, 2))
         departures = np.ascontiguousarray(request.depart + t)
         sail_departures(
-            front_problem.world, edges, nodes, choices, departures, out, new_edge_workspace()
+            front_problem.arrays, edges, nodes, choices, departures, out, new_edge_workspace()
         )
         errors.append(out)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -281,10 +281,10 @@ def _table_error(
 def _memory_error(
     front_problem: FrontProblem, time_bins: TimeBins, memory: int, limit: float
 ) -> InputError:
-    net = front_problem.world.network
+    net = front_problem.arrays.network
     return InputError(
         f"A front over {len(net.station):,} nodes and {len(net.target):,} edges with "
-        f"{len(front_problem.world.ship.settings)} settings in bins of {time_bins.width:g} s "
+        f"{len(front_problem.arrays.ship.settings)} settings in bins of {time_bins.width:g} s "
         "would take "
         f"{memory / 1e9:.3g} GB of memory.",
         f"At most {limit / 1e9:.3g} GB may be taken.",
@@ -298,8 +298,8 @@ def _memory_error(
 def new_edge_tables(front_problem: FrontProblem, plan: Discretisation) -> EdgeTables:
     """Return tables of edges, not filled yet."""
     first, count = slice_windows(plan.time_bins, plan.windows, plan.slices)
-    degree = np.diff(front_problem.world.network.indptr)
-    size = count * degree * 2 * len(front_problem.world.ship.settings)
+    degree = np.diff(front_problem.arrays.network.indptr)
+    size = count * degree * 2 * len(front_problem.arrays.ship.settings)
     return EdgeTables(
         times=plan.slices,
         first=first,

@@ -128,21 +128,22 @@ class FrontRequest(NamedTuple):
 
 
 class FrontProblem(NamedTuple):
-    """The world of a front with its bounds.
+    """The arrays of a search of a front, with bounds.
 
     Attributes
     ----------
+    arrays : For the kernels.
     given : For the search of the earliest arrival, at the highest setting.
     whole : The same with one state for each node.
     origin : int64[E]
-        Edge of the network that each edge of the world comes from.
+        Edge of the network that each edge of ``arrays`` comes from.
     tails : int64[E]
         State that each edge leaves.
     fastest, least_rate : float64[S]
         Greatest speed through water [m/s] and least fuel rate [kg/s] of each setting.
     """
 
-    world: FrontArrays
+    arrays: FrontArrays
     given: SearchProblem
     whole: SearchProblem
     origin: IntArray
@@ -184,8 +185,8 @@ def make_front_problem(
     )  # fmt: skip
     prices = _prices(network, origin, priced, request)
     tails = np.repeat(np.arange(len(net.station)), np.diff(net.indptr))
-    world = FrontArrays(net, given.sea, priced, prices, request.depart)
-    return FrontProblem(world, given, whole, origin, tails, fastest, least_rate)
+    arrays = FrontArrays(net, given.sea, priced, prices, request.depart)
+    return FrontProblem(arrays, given, whole, origin, tails, fastest, least_rate)
 
 
 def _with_states(

@@ -50,10 +50,10 @@ class BackwardSearch:
     """
 
     def __init__(self, front_problem: FrontProblem, goal: int) -> None:
-        net, self._got, self._goal = front_problem.world.network, front_problem, goal
+        net, self._got, self._goal = front_problem.arrays.network, front_problem, goal
         self.along = np.zeros(len(net.target))
-        if min(front_problem.world.sea.channel_index[[CURRENT_EAST, CURRENT_NORTH]]) >= 0:
-            largest_edge_currents(net, front_problem.world.sea, self.along)
+        if min(front_problem.arrays.sea.channel_index[[CURRENT_EAST, CURRENT_NORTH]]) >= 0:
+            largest_edge_currents(net, front_problem.arrays.sea, self.along)
         over_ground = front_problem.fastest[:, None] + self.along[None, :]
         with np.errstate(divide="ignore", invalid="ignore"):
             pace = np.where(over_ground > 0.0, net.length / over_ground, math.inf)
@@ -66,7 +66,7 @@ class BackwardSearch:
 
     def time(self) -> FloatArray:
         """Return the least time to the goal [s]."""
-        fixed = self._got.world.prices.fixed_time
+        fixed = self._got.arrays.prices.fixed_time
         return (
             self._least(np.where(np.isnan(fixed), self._least_times.min(axis=0), fixed))
             * ROUNDING_FACTOR
@@ -89,7 +89,7 @@ class BackwardSearch:
 
     def _costs(self, rate: float) -> FloatArray:
         """Return the least cost plus shadow price of every edge."""
-        prices = self._got.world.prices
+        prices = self._got.arrays.prices
         second = prices.time_price + rate
         least = np.full(len(prices.fee), math.inf)
         for least_time, fuel in zip(self._least_times, self._got.least_rate):
@@ -112,7 +112,7 @@ class BackwardSearch:
 def bounds_to_goal(front_problem: FrontProblem, goal: int) -> BoundsToGoal:
     """Bound time and cost from every state to the goal."""
     to_goal = BackwardSearch(front_problem, goal)
-    weight = front_problem.world.prices.weight
+    weight = front_problem.arrays.prices.weight
     rates = _time_prices(front_problem, float(np.median(weight)) if len(weight) else 1.0)
     floor = np.stack([to_goal.floor(rate) for rate in rates], axis=1)
     return BoundsToGoal(to_goal.time(), rates, floor, to_goal)
@@ -125,7 +125,7 @@ def _time_prices(front_problem: FrontProblem, weight: float) -> FloatArray:
         spent = front_problem.least_rate * pace * weight
     front = non_dominated_indices(pace, spent)
     hull = front[lower_hull(pace[front], spent[front])]
-    price = front_problem.world.prices.time_price
+    price = front_problem.arrays.prices.time_price
     slopes = np.sort(-np.diff(spent[hull]) / np.diff(pace[hull]) - price)
     slopes = slopes[slopes > 0.0]
     if len(slopes) > _MAX_TIME_PRICES:

@@ -74,17 +74,17 @@ def lower_front(
 
 
 def _waiting_price_capped(front_problem: FrontProblem) -> FrontProblem:
-    """Return a world whose price of waiting is at most that of sailing at its cheapest.
+    """Return a problem whose price of waiting is at most that of sailing at its cheapest.
 
     Sailing then never gains on waiting, so that no circle within a bin can fall without end.
     """
-    prices = front_problem.world.prices
+    prices = front_problem.arrays.prices
     spent = (prices.fixed_fuel * prices.weight + prices.fee) / prices.fixed_time
     sailed = np.nanmin(front_problem.least_rate, initial=np.inf) * prices.weight
     least = float(np.where(np.isnan(prices.fixed_time), sailed, spent).min(initial=np.inf))
     rate = min(prices.waiting_cost_rate, prices.time_price + least)
     return front_problem._replace(
-        world=front_problem.world._replace(prices=prices._replace(waiting_cost_rate=rate))
+        arrays=front_problem.arrays._replace(prices=prices._replace(waiting_cost_rate=rate))
     )
 
 
@@ -107,7 +107,7 @@ def _lower_by_bins(
     labels.cost[labels.place[request.start]] = 0.0
     active_nodes = new_active_nodes(plan.windows)
     search = LowerSearch(
-        front_problem.world,
+        front_problem.arrays,
         labels,
         target,
         time_bins,
@@ -125,7 +125,7 @@ def _lower_by_bins(
     time = np.arange(first, last + 1) * time_bins.width
     cost = (
         labels.cost[begin : begin + last - first + 1]
-        + front_problem.world.prices.waiting_cost_rate * time
+        + front_problem.arrays.prices.waiting_cost_rate * time
     )
     time = np.append(time, [point.time for point in points])
     cost = np.append(_ROUNDING_MARGIN * cost, [point.cost for point in points])
@@ -159,7 +159,7 @@ def _lower_by_time_prices(
         active_nodes = new_active_nodes(plan.windows)
         process_bins_scalarised(
             LowerSearch(
-                front_problem.world,
+                front_problem.arrays,
                 labels,
                 target,
                 plan.time_bins,
@@ -235,7 +235,7 @@ def _new_labels(plan: Discretisation) -> LowerLabels:
 def _new_slack(
     front_problem: FrontProblem, bounds: BoundsToGoal, blocks: EdgeTables
 ) -> InterpolationBounds:
-    size = blocks.count * np.diff(front_problem.world.network.indptr)
+    size = blocks.count * np.diff(front_problem.arrays.network.indptr)
     total = int(size.sum())
     return InterpolationBounds(
         start=np.concatenate(([0], np.cumsum(size)[:-1])).astype(np.int64),

@@ -217,7 +217,7 @@ def _set_labels(
     labels.cost[begin], labels.when[begin], labels.source[begin] = 0.0, (0.0, np.nan), -1
     active_nodes = new_active_nodes(plan.windows)
     search = LabelSearch(
-        front_problem.world,
+        front_problem.arrays,
         labels,
         target,
         plan.time_bins,
@@ -248,7 +248,7 @@ def _find_seed_paths(
 
     What is forbidden in waves may be allowed at a lower setting: then the search decides.
     """
-    table, arrive, fastest = front_problem.world.ship.table, math.inf, None
+    table, arrive, fastest = front_problem.arrays.ship.table, math.inf, None
     has_wave_limits = len(table.safety) > 0 or len(table.motions) > 0
     for choice in range(len(request.settings))[::-1]:
         arrive, fastest = _fastest_path(network, front_problem, request, choice)
@@ -294,7 +294,7 @@ def _fastest_path(
 def _no_route(network: Network, front_problem: FrontProblem, request: FrontRequest) -> NoRouteError:
     arrivals = earliest_arrivals(front_problem, request, everywhere=False)
     reasons = counts_by_reason(arrivals.refused)
-    reached = front_problem.world.network.station[np.isfinite(arrivals.time)]
+    reached = front_problem.arrays.network.station[np.isfinite(arrivals.time)]
     lat, lon = network.lat, network.lon
     to = float(lat[request.goal]), float(lon[request.goal])
     off = distance_bounds(lat[reached], lon[reached], *to)

@@ -46,7 +46,7 @@ def sail_planned_path(
     arrive, depart = np.empty(len(path.states)), np.empty(len(path.states))
     arrive[0] = request.depart
     cost, status = sail_path(
-        front_problem.world,
+        front_problem.arrays,
         path.states,
         path.edges,
         path.choices,
@@ -60,10 +60,10 @@ def sail_planned_path(
     return FrontPoint(
         time=float(arrive[-1] - request.depart),
         cost=float(cost),
-        path=front_problem.world.network.station[path.states].astype(np.int64),
+        path=front_problem.arrays.network.station[path.states].astype(np.int64),
         path_arrive=arrive,
         path_depart=depart,
-        setting=front_problem.world.ship.settings[path.choices],
+        setting=front_problem.arrays.ship.settings[path.choices],
     )
 
 
@@ -117,7 +117,7 @@ def _setting_choices(front_problem: FrontProblem, path: PlannedPath, count: int)
 
 def _edge_settings(front_problem: FrontProblem, edges: IntArray, choice: int) -> IntArray:
     """Return a setting for every edge; those of fixed time have their own."""
-    prices = front_problem.world.prices
+    prices = front_problem.arrays.prices
     sailed = np.isnan(prices.fixed_time[edges])
     return np.where(sailed, choice, prices.fixed_choice[edges]).astype(np.int64)
 
@@ -138,7 +138,7 @@ def earliest_arrival_path(
 
 def path_of_search_result(front_problem: FrontProblem, result: SearchResult) -> PlannedPath:
     """Return the path of a search on a network with one state for each node."""
-    net = front_problem.world.network
+    net = front_problem.arrays.network
     states = [int(result.path[0])]
     for node, time in zip(result.path[1:].tolist(), result.path_arrive[1:].tolist()):
         leaving = np.arange(net.indptr[states[-1]], net.indptr[states[-1] + 1])
@@ -154,7 +154,7 @@ def path_of_search_result(front_problem: FrontProblem, result: SearchResult) -> 
 
 def _path_through(front_problem: FrontProblem, path: IntArray) -> PlannedPath:
     """Return the path through states, without waiting."""
-    net = front_problem.world.network
+    net = front_problem.arrays.network
     edges = []
     for a, b in pairwise(path.tolist()):
         leaving = np.arange(net.indptr[a], net.indptr[a + 1])
@@ -189,7 +189,7 @@ def paths_of_goal_labels(
     start = int(labels.place[goal])
     cost = labels.cost[start : start + last - first + 1]
     best = np.minimum.accumulate(np.concatenate(([np.inf], cost[:-1])))
-    slots = np.empty(len(front_problem.world.network.station) * 4 + 16, np.int64)
+    slots = np.empty(len(front_problem.arrays.network.station) * 4 + 16, np.int64)
     paths, dropped = [], 0
     for slot in start + np.flatnonzero(cost < best):
         n = int(trace_labels(labels, int(slot), slots))
@@ -216,7 +216,7 @@ def _path_of_label(
     left = labels.when[slots[1:], 1].astype(float)
     edges = code // count
     states = np.append(
-        front_problem.tails[edges], front_problem.world.network.target[edges[-1]]
+        front_problem.tails[edges], front_problem.arrays.network.target[edges[-1]]
     ).astype(np.int64)
     leave = np.where(np.isnan(left), -math.inf, request.depart + left)
     return PlannedPath(states, edges, code % count, leave)
