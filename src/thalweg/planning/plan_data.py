@@ -119,6 +119,8 @@ class PlanData:
     @property
     def _objective(self) -> Objective:
         name: str = self.voyage.objective
+        if name == "weighted" and self.front is not None and self.front.objective is not None:
+            return self.front.objective
         currency = "USD" if self.front is None else self.front.unit
         return Objective.of("time" if name == "front" else name, currency=currency)
 
