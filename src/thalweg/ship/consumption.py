@@ -57,8 +57,8 @@ def leg_prices(objective: Objective, ship: Ship, terms: FuelTerms | None = None)
 
     Raises
     ------
-    InputError : If a price of fuel or a carbon factor that it needs is not known, or fuel that costs more in
-        control areas is mixed with another consumption.
+    InputError : If a price of fuel or a carbon factor that it needs is not known, or fuel that
+        costs more in control areas is mixed with another consumption.
     """
     terms = ship.fuel_terms if terms is None else terms
     prices = objective.prices
