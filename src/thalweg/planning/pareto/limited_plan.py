@@ -121,7 +121,7 @@ def plan_within_limits(voyage: Voyage, plan_one: Callable[[Voyage], Plan]) -> Pl
         broken = [one for one in limits if one.excess(found.best) > 0.0]
         for other in _stricter_voyages(free, broken, lambda: plans[-1], limits):
             plans.append(plan_one(other))
-    objective = found._objective
+    objective = found.objective
     candidates = [
         (objective.value(route), number, k)
         for number, plan in enumerate(plans)
@@ -193,7 +193,7 @@ def _assembled(
     """Return the plan of one route, with the bound of the plan without limits."""
     k, value = best
     route = source.routes[k]
-    objective: Objective = found._objective
+    objective: Objective = found.objective
     words = ", ".join(one.text(route) for one in limits)
     note = f"Limits of the route: {words}."
     free = objective.value(found.best)
