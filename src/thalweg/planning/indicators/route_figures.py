@@ -38,10 +38,10 @@ COMPARED_FIGURES: Final = {
     "encounters": ComparedFigure("least", "fewest encounters", "encounters", 1),
     "land_distance_nm": ComparedFigure("greatest", "farthest from land", "off land", 1),
     "near_ground_h": ComparedFigure("least", "least time near the ground", "near ground", 1),
-    "workable_percent": ComparedFigure("greatest", "most work done", "workable", 0),
+    "workable_percent": ComparedFigure("greatest", "most time to work", "workable", 0),
     "distance": ComparedFigure("least", "shortest", "length", 0),
     "max_acceleration": ComparedFigure("least", "least acceleration", "acceleration", 2),
-    "worst_hour_percent": ComparedFigure("least", "best worst hour", "worst hour", 0),
+    "worst_hour_percent": ComparedFigure("least", "mildest worst hour", "worst hour", 0),
     "contour_distance_nm": ComparedFigure("greatest", "farthest from shoals", "off shoals", 1),
     "inshore_percent": ComparedFigure("greatest", "most sheltered by land", "inshore", 0),
 }
@@ -49,7 +49,8 @@ _OF_PLACES: Final = (
     "comfort", "sick_percent", "worst_hour_percent", "max_acceleration", "uncomfortable_percent"
 )  # fmt: skip
 _EQUAL: Final = 5e-3  # figures that differ by less than this share are the same
-_WORTH_WORDS: Final = 0.03  # smaller differences are not put into words
+_WORTH_WORDS: Final = 0.03  # smaller differences are not put into words ...
+_WORTH_WORDS_OF_TIME: Final = 0.005  # ... but those of time are
 _IN_WORDS: Final = ("time", "sick_percent", "fuel", "encounters", "distance")
 
 
@@ -110,7 +111,8 @@ def difference_in_words(values: dict[str, float], reference: dict[str, float]) -
         if not (math.isfinite(own) and math.isfinite(other)):
             continue
         change = own - other
-        if abs(change) <= _WORTH_WORDS * max(abs(other), abs(own), 1e-12):
+        worth = _WORTH_WORDS_OF_TIME if name == "time" else _WORTH_WORDS
+        if abs(change) <= worth * max(abs(other), abs(own), 1e-12):
             continue
         sign = "+" if change > 0.0 else "-"
         if name == "time":
