@@ -33,7 +33,18 @@ def test_prices_add_up():
 def test_unknown_key_figures_make_the_value_infinite_only_where_they_are_priced():
     assert Objective.of("energy").value(ROUTE) == np.inf
     assert Objective.of("co2").value(ROUTE) == np.inf
-    assert set(OBJECTIVE_NAMES) == {"time", "distance", "fuel", "energy", "cost", "co2", "comfort"}
+    names = {
+        "time",
+        "distance",
+        "fuel",
+        "energy",
+        "cost",
+        "co2",
+        "comfort",
+        "encounters",
+        "inshore",
+    }
+    assert set(OBJECTIVE_NAMES) == names
 
 
 @pytest.mark.parametrize("wrong", [{}, {"time": -1.0}, {"fuel": np.nan}, {"cost": np.inf}])

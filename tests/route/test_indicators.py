@@ -145,3 +145,40 @@ def test_time_in_water_less_than_twice_as_deep_as_the_draught(ship):
     )
     route = _route(ship, _sea(), PLACES[:2], chart=chart)
     assert route.indicators["shallow_h"] == pytest.approx(0.5 * route.time_h, rel=0.02)
+
+
+def test_grounding_margin_from_land_and_from_the_safety_contour(ship):
+    """A bank of 3 m between two meridians south of the track; the ship draws 2.8 m."""
+    bank = {"south": 64.95, "north": 64.98}
+
+    def depth(lat, lon):
+        inside = (np.asarray(lat) > bank["south"]) & (np.asarray(lat) < bank["north"])
+        return np.where(inside & (np.asarray(lon) > 0.4) & (np.asarray(lon) < 0.6), 3.0, 50.0)
+
+    chart = Chart.open_water().with_depth(depth, spacing_deg=1 / 600)
+    open_bank = _route(ship, _sea(), PLACES[:2], chart=chart, min_ukc=0.0).indicators
+    assert open_bank["contour_distance_nm"] == 5.0  # 3 m are enough: 5 or more
+    assert open_bank["near_ground_h"] == 0.0
+    route = _route(ship, _sea(), PLACES[:2], chart=chart, min_ukc=0.5)
+    found = route.indicators
+    at = route.samples
+    nearest = 60.0 * np.min(at["lat"][(at["lon"] > 0.4) & (at["lon"] < 0.6)] - bank["north"])
+    assert found["contour_distance_nm"] == pytest.approx(nearest, abs=0.13)
+    assert nearest > 0.0 and found["land_distance_nm"] == 12.0
+    chart = Chart.open_water().with_depth(depth, spacing_deg=1 / 600).within(60, 70, -5, 5)
+    close = _route(ship, _sea(), [(64.985, 0.0), (64.985, 1.0)], chart=chart, min_ukc=0.5)
+    across = 0.2 * 60.0 * math.cos(math.radians(65.0)) + 2.0 * math.sqrt(1.0 - 0.4**2)
+    share = close.indicators["near_ground_h"] / close.time_h
+    assert share * close.distance_nm == pytest.approx(across, abs=0.6)
+
+
+def test_indicators_are_columns_of_the_table_of_waypoints(ship):
+    route = _route(ship, _sea())
+    table = route.to_frame()
+    for name in ("heave_m", "pitch_deg", "squared_dose_m2_s3:mess", "velocity_m_s:bridge",
+                 "weighted_acceleration_m_s2:mess", "workable_h:laboratory work",
+                 "inshore_nm", "land_distance_nm", "near_ground_h"):  # fmt: skip
+        assert np.isfinite(table[name][:-1]).all() and np.isnan(table[name].iloc[-1]), name
+    dose = table["squared_dose_m2_s3:mess"][:-1].sum()
+    assert dose == pytest.approx(route.comfort, rel=1e-12)
+    assert route.indicators["fuel_t_per_nm"] == pytest.approx(route.fuel_t / route.distance_nm)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from thalweg import Sea, evaluate
-from thalweg.core.errors import InputError
 from thalweg.core.objective import Objective
 from thalweg.ship import Ship
 from thalweg.ship.consumption import calm_water_consumption, consumption_table, leg_prices
@@ -55,13 +54,13 @@ def test_cubed_speed_replaces_fuel_without_a_price():
     assert consumption_table(ship, "cubed_speed").kernel_arrays().n_settings == 2
 
 
-@pytest.mark.parametrize(
-    "objective",
-    [Objective.of("time"), Objective(fuel=1.0, co2=1.0), Objective(fuel=1.0, distance=1.0)],
-)
-def test_other_sums_are_refused(objective):
-    with pytest.raises(InputError, match="Speeds are chosen for one of"):
-        leg_prices(objective, BULKER)
+def test_sums_of_key_figures_are_mixed_and_time_and_length_are_prices_beside_them():
+    time = leg_prices(Objective.of("time"), BULKER)
+    assert (time.time, time.inside, time.outside) == (1.0 / 3600.0, 0.0, 0.0)
+    length = leg_prices(Objective(fuel=1.0, distance=1852.0), BULKER)
+    assert length.length == 1.0 and length.consumption == "fuel" and length.counts_water
+    mixed = leg_prices(Objective(fuel=1.0, energy=3.6), BULKER)
+    assert mixed.mix == (("fuel", 1e-3), ("energy", pytest.approx(1e-9)))
 
 
 def test_a_load_factor_without_effect_is_stated():

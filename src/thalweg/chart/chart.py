@@ -27,6 +27,8 @@ from thalweg.chart.offing import (
 )
 from thalweg.chart.passages import PASSAGES, Passage
 from thalweg.chart.zones.emission_control_areas import EcaZone, select_emission_control_areas
+from thalweg.chart.zones.ship_traffic import ShipTraffic
+from thalweg.chart.zones.traffic_files import chart_with_traffic
 from thalweg.chart.zones.zone_set import Zones
 from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.delegation import delegated
@@ -81,6 +83,8 @@ class Chart:
         Passages that no leg crosses.
     offing : Offing
         How far from land ships stay.
+    traffic : ShipTraffic, optional
+        How often other ships are met.
     """
 
     coastline: Coastline
@@ -93,6 +97,7 @@ class Chart:
     passages: tuple[Passage, ...] = ()
     closed_passages: tuple[Passage, ...] = ()
     offing: Offing = NO_OFFING
+    traffic: ShipTraffic | None = None
 
     if not TYPE_CHECKING:
         __getattr__ = renamed_attributes(
@@ -379,6 +384,7 @@ class Chart:
     leg_status = delegated(chart_tests.chart_leg_status)
     legs_blocked = delegated(chart_tests.chart_legs_blocked)
     with_offing = delegated(chart_with_offing)
+    with_traffic = delegated(chart_with_traffic)
     without_passages = delegated(chart_without_passages)
     may_wait = delegated(chart_tests.chart_may_wait)
     sea_room = delegated(chart_tests.chart_sea_room)

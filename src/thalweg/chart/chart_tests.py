@@ -19,6 +19,7 @@ from thalweg.chart.coast.snapping import is_joined_to_sea, nearest_navigable
 from thalweg.chart.depth.depth_layers import DepthLayers
 from thalweg.chart.offing import Offing, sea_room
 from thalweg.chart.passages import Passage
+from thalweg.chart.zones.ship_traffic import ShipTraffic
 from thalweg.chart.zones.zone_set import Zones
 from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.types import FloatArray
@@ -75,6 +76,11 @@ class ChartParts(Protocol):
     @property
     def offing(self) -> Offing:
         """How far from land ships stay."""
+        ...
+
+    @property
+    def traffic(self) -> ShipTraffic | None:
+        """How often other ships are met."""
         ...
 
     @property
@@ -304,6 +310,8 @@ def chart_fingerprint(chart: ChartParts) -> str:
     off_land = [f"closed {passage.name}" for passage in chart.closed_passages]
     if chart.offing.distance > 0.0:
         off_land += [repr(chart.offing), *(passage.name for passage in chart.passages)]
+    if chart.traffic is not None:
+        off_land.append(f"traffic {chart.traffic.fingerprint()}")
     for text in (*chart.zones.texts(), *layers, *map(repr, chart.canals), *off_land):
         digest.update(text.encode())
     return digest.hexdigest()[:16]

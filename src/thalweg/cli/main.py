@@ -26,6 +26,7 @@ from thalweg.cli import (
 )
 from thalweg.cli.exit_codes import INTERRUPTED, SUCCESS, exit_code, print_error
 from thalweg.cli.history import distances_command, history_command
+from thalweg.cli.indicators import alternatives_command
 from thalweg.cli.options import accept_negative_positions, add_quiet_option
 from thalweg.cli.progress import ProgressMessages
 from thalweg.cli.serve import serve_command
@@ -35,6 +36,7 @@ from thalweg.core.errors import InputError, ThalwegError, ThalwegWarning
 
 _COMMANDS = (
     plan_command.add_command,
+    alternatives_command.add_command,
     evaluate_command.add_command,
     distance_command.add_command,
     distances_command.add_command,

@@ -169,7 +169,7 @@ def _parse_fill_policy(text: str) -> tuple[str, float | str]:
 
 def check_chart_files(arguments: argparse.Namespace) -> None:
     """Raise `InputError` if a file of the chart does not exist, before anything is loaded."""
-    for option in ("depth", "zones"):
+    for option in ("depth", "zones", "traffic"):
         for name in getattr(arguments, option, ()):
             if not Path(name).expanduser().exists():
                 raise InputError(
@@ -193,6 +193,8 @@ def open_chart(arguments: argparse.Namespace) -> Chart:
         chart = chart.with_depth(path)
     for path in arguments.zones:
         chart = chart.with_zones(path)
+    for path in arguments.traffic:
+        chart = chart.with_traffic(path)
     return chart.without_eca() if getattr(arguments, "no_eca", False) else chart
 
 

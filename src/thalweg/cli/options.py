@@ -38,6 +38,15 @@ def add_ship_and_chart_options(parser: argparse.ArgumentParser, *, default_ukc: 
         "anchorage, no-waiting); may be repeated",
     )
     chart.add_argument(
+        "--traffic",
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="traffic of other ships, for expected encounters: zones (GeoJSON with the property "
+        "encounters_per_h, encounters_per_nm or ships_per_km2) or a grid of density (NetCDF, "
+        "ships km-2); may be repeated",
+    )
+    chart.add_argument(
         "--coast",
         default="i",
         choices=("c", "l", "i", "h", "f", "none"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from thalweg.cli import option_values, options
@@ -12,6 +13,7 @@ from thalweg.cli.first_run import announce_compilation
 from thalweg.cli.history.corridor_options import add_corridor_option, requested_network
 from thalweg.cli.layered_options import add_layered_options, layered_request
 from thalweg.cli.tables import print_plan
+from thalweg.core.errors import InputError
 from thalweg.kernels.compilation import warm_up
 
 if TYPE_CHECKING:
@@ -31,6 +33,13 @@ def add_command(commands: Any) -> None:
         epilog="Example: thalweg plan NLRTM GBSOU --ship handysize-bulker --sea forecast.nc "
         "--depart 2026-01-01T06:00Z --objective fuel --out results",
     )
+    add_voyage_options(parser)
+    options.add_verbose_option(parser)
+    parser.set_defaults(run=run)
+
+
+def add_voyage_options(parser: argparse.ArgumentParser) -> None:
+    """Add the places of a voyage and the options of a request for a plan."""
     parser.add_argument("start", metavar="FROM", help="place of departure")
     parser.add_argument("goal", metavar="TO", help="destination")
     parser.add_argument(
@@ -41,13 +50,30 @@ def add_command(commands: Any) -> None:
         help="place to pass; repeat it for several, in their order",
     )
     options.add_ship_and_chart_options(parser, default_ukc="that of the ship file")
-    options.add_verbose_option(parser)
     _add_time_options(parser)
     _add_objective_options(parser)
     _add_network_options(parser)
     _add_cost_options(parser.add_argument_group("fuel, cost, canals"))
     _add_passage_options(parser.add_argument_group("distance from land, passages"))
-    parser.set_defaults(run=run)
+    _add_indicator_options(parser.add_argument_group("key performance indicators"))
+
+
+def _add_indicator_options(group: Any) -> None:
+    for name, pair, text in (
+        ("weight", "NAME=WEIGHT", "count a key figure (time, distance, fuel, energy, cost, co2, "
+         "comfort, encounters, inshore) with a weight, over its range from the best to the worst "
+         "of the routes that are best in one of them; the objective is their sum"),
+        ("at-most", "NAME=VALUE", "greatest value of an indicator of the whole route, such as "
+         "sick_percent=20 or sick_percent:bridge=20, fuel=3, encounters=5"),
+        ("at-least", "NAME=VALUE", "least value of one, such as workable_percent=80"),
+    ):  # fmt: skip
+        group.add_argument(
+            f"--{name}",
+            action="append",
+            default=[],
+            metavar=pair,
+            help=f"{text}; may be repeated",
+        )
 
 
 def _add_time_options(parser: argparse.ArgumentParser) -> None:
@@ -100,11 +126,12 @@ def _add_objective_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--objective",
         default="time",
-        metavar="time|distance|fuel|energy|cost|co2|comfort|front",
+        metavar="time|distance|fuel|energy|cost|co2|comfort|encounters|inshore|front",
         help="quantity to minimise (default: time). energy: propulsion and hotel load. cost: fuel, "
         "time and dues; where fuel has no price, time and cubed speed at the costs of the ship "
-        "file. comfort: motion sickness at the first place of the ship file. front: all trade-offs "
-        "of time against fuel or cost (the Pareto front)",
+        "file. comfort: motion sickness at the first place of the ship file. encounters: with "
+        "other ships (--traffic). inshore: length within 3 nm of land. front: all trade-offs of "
+        "time against fuel or cost (the Pareto front)",
     )
     parser.add_argument(
         "--method",
@@ -203,42 +230,13 @@ def _add_passage_options(group: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Plan the voyage, print it and write its files."""
-    from thalweg.chart.ports import place_positions
-
     option_values.prepare_output_folder(arguments)
-    place_positions([arguments.start, arguments.goal, *arguments.via])  # refuses unknown ports
     files_as = option_values.route_file_options(arguments)
-    resolution = option_values.resolution_m(arguments.resolution)
-    option_values.check_chart_files(arguments)
-    ship = option_values.with_given_prices(option_values.open_ship(arguments), arguments)
-    # the packages of planning are imported after what can be refused without them
+    voyage, given = requested_plan(arguments)
     from thalweg.planning import plan
-    from thalweg.planning.request.early_checks import check_request
-    from thalweg.planning.request.ordered_speed import with_exact_speed, with_ordered_speed
-    from thalweg.route import with_wind_speed
 
-    if arguments.speed is not None:  # a speed is refused before data are opened
-        if arguments.hold is None:
-            with_ordered_speed(ship, arguments.speed)
-        else:
-            with_exact_speed(ship, arguments.speed, arguments.hold)
-    sea = option_values.open_sea(arguments)
-    voyage = _voyage(arguments, sea, ship)
-    if not sea.members:
-        check_request(voyage, ship, with_wind_speed(ship, sea))
-    announce_compilation(search=True, quiet=arguments.quiet)
-    warm_up.start_compiling("thalweg.planning.compile_kernels")
     try:
-        made = plan(
-            voyage,
-            ship=ship,
-            sea=sea,
-            chart=option_values.open_chart(arguments),
-            network=requested_network(arguments),
-            resolution=resolution,
-            proof=arguments.proof,
-            progress=arguments.progress,
-        )
+        made = plan(voyage, **given, proof=arguments.proof)
     except KeyboardInterrupt:
         print("stopped before a plan was found: there is no result", file=sys.stderr)
         return INTERRUPTED
@@ -255,6 +253,40 @@ def run(arguments: argparse.Namespace) -> int:
     return SUCCESS if made.best.feasible else NO_ROUTE
 
 
+def requested_plan(arguments: argparse.Namespace) -> tuple[Voyage, dict[str, Any]]:
+    """Return the voyage that the options request, and the other arguments of `plan`."""
+    from thalweg.chart.ports import place_positions
+
+    place_positions([arguments.start, arguments.goal, *arguments.via])  # refuses unknown ports
+    resolution = option_values.resolution_m(arguments.resolution)
+    option_values.check_chart_files(arguments)
+    ship = option_values.with_given_prices(option_values.open_ship(arguments), arguments)
+    # the packages of planning are imported after what can be refused without them
+    from thalweg.planning.request.early_checks import check_request
+    from thalweg.planning.request.ordered_speed import with_exact_speed, with_ordered_speed
+    from thalweg.route import with_wind_speed
+
+    if arguments.speed is not None:  # a speed is refused before data are opened
+        if arguments.hold is None:
+            with_ordered_speed(ship, arguments.speed)
+        else:
+            with_exact_speed(ship, arguments.speed, arguments.hold)
+    sea = option_values.open_sea(arguments)
+    voyage = _voyage(arguments, sea, ship)
+    if not sea.members:
+        check_request(voyage, ship, with_wind_speed(ship, sea))
+    announce_compilation(search=True, quiet=arguments.quiet)
+    warm_up.start_compiling("thalweg.planning.compile_kernels")
+    return voyage, {
+        "ship": ship,
+        "sea": sea,
+        "chart": option_values.open_chart(arguments),
+        "network": requested_network(arguments),
+        "resolution": resolution,
+        "progress": arguments.progress,
+    }
+
+
 def _voyage(arguments: argparse.Namespace, sea: Sea, ship: Ship) -> Voyage:
     from thalweg.planning import Voyage
 
@@ -269,7 +301,10 @@ def _voyage(arguments: argparse.Namespace, sea: Sea, ship: Ship) -> Voyage:
         depart_window=tuple(arguments.depart_window) if arguments.depart_window else None,
         arrive_by=arguments.arrive_by,
         arrive=arguments.arrive,
-        objective=arguments.objective,
+        objective=_objective(arguments),
+        weights=_numbers("--weight", arguments.weight, "fuel=0.5"),
+        at_most=_numbers("--at-most", arguments.at_most, "sick_percent=20"),
+        at_least=_numbers("--at-least", arguments.at_least, "workable_percent=80"),
         wait=arguments.wait,
         speed_kn=arguments.speed,
         hold=arguments.hold,
@@ -289,6 +324,31 @@ def _voyage(arguments: argparse.Namespace, sea: Sea, ship: Ship) -> Voyage:
         method=arguments.method,
         ensemble=arguments.ensemble,
     )
+
+
+def _objective(arguments: argparse.Namespace) -> Any:
+    if arguments.weight and arguments.objective in ("time", "weighted"):
+        return "weighted"
+    return arguments.objective
+
+
+def _numbers(option: str, texts: Sequence[str], example: str) -> dict[str, float]:
+    """Return the numbers of an option that is written NAME=NUMBER, several times.
+
+    Raises
+    ------
+    InputError
+        If one is not a number.
+    """
+    pairs = option_values.parse_pairs(option, texts, "NAME=NUMBER", example)
+    try:
+        return {name: float(text) for name, text in pairs.items()}
+    except ValueError as error:
+        raise InputError(
+            f"{option} is not understood: {error}.",
+            f"It is written NAME=NUMBER, such as {example}.",
+            "Give the number in this form.",
+        ) from None
 
 
 def _default_departure(arguments: argparse.Namespace, sea: Sea, ship: Ship) -> float:

@@ -13,13 +13,15 @@ from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
 
 #: The key figures of a route that an objective can price.
-ObjectiveName: TypeAlias = Literal["time", "distance", "fuel", "energy", "cost", "co2", "comfort"]
+ObjectiveName: TypeAlias = Literal[
+    "time", "distance", "fuel", "energy", "cost", "co2", "comfort", "encounters", "inshore"
+]
 #: Those that a search at one speed setting minimises; the others need a choice of speed.
 SingleSettingObjective: TypeAlias = Literal["time", "distance"]
 #: What a ship consumes along a leg: fuel [kg], energy of brake and hotel load [J], or the cube of
-#: the ordered speed times time [m3/s2], where that stands for fuel; or, for comfort, the squared
-#: motion sickness dose [m2/s3].
-Consumption: TypeAlias = Literal["fuel", "energy", "cubed_speed", "squared_dose"]
+#: the ordered speed times time [m3/s2], where that stands for fuel; for comfort, the squared
+#: motion sickness dose [m2/s3]; or a weighted sum of these.
+Consumption: TypeAlias = Literal["fuel", "energy", "cubed_speed", "squared_dose", "mixed"]
 
 OBJECTIVE_NAMES: Final[tuple[ObjectiveName, ...]] = get_args(ObjectiveName)
 
@@ -47,6 +49,8 @@ KEY_FIGURES: Final[dict[str, KeyFigure]] = {
     "cost": KeyFigure("cost", ""),
     "co2": KeyFigure("co2_t", "t"),
     "comfort": KeyFigure("comfort", "m2/s3"),
+    "encounters": KeyFigure("encounters", "encounters"),
+    "inshore": KeyFigure("inshore_nm", "nm"),
 }
 
 
@@ -76,6 +80,10 @@ class Objective:
         Price of a tonne of CO2 emitted [1/t].
     comfort : float
         Price of the squared motion sickness dose at the first place of the ship file [s3/m2].
+    encounters : float
+        Price of an expected encounter with another ship.
+    inshore : float
+        Price of a nautical mile within 3 nm of land [1/nm].
     currency : str
         Unit of the cost.
 
@@ -92,6 +100,8 @@ class Objective:
     cost: float = 0.0
     co2: float = 0.0
     comfort: float = 0.0
+    encounters: float = 0.0
+    inshore: float = 0.0
     currency: str = "USD"
 
     def __post_init__(self) -> None:
@@ -117,7 +127,8 @@ class Objective:
 
         Parameters
         ----------
-        name : {"time", "distance", "fuel", "energy", "cost", "co2", "comfort"}
+        name : {"time", "distance", "fuel", "energy", "cost", "co2", "comfort", "encounters", \
+"inshore"}
         price : float, optional
             Price of one published unit of it.
         currency : str, optional
@@ -179,10 +190,11 @@ class Objective:
 class LegPrices:
     """Prices of consumption and time along a leg, in SI: an `Objective` as kernels count it.
 
-    .. math:: J = p C + p_t T + p_w T_w + p_d D
+    .. math:: J = p C + p_t T + p_w T_w + p_d D + p_l L + p_i L_i + p_e E
 
-    with consumption :math:`C`, passage time :math:`T` (waits included), waiting time :math:`T_w`
-    and canal dues :math:`D`. The price of consumption depends on the position:
+    with consumption :math:`C`, passage time :math:`T` (waits included), waiting time :math:`T_w`,
+    canal dues :math:`D`, length :math:`L`, length near land :math:`L_i` and expected encounters
+    :math:`E`. The price of consumption depends on the position:
     :math:`p = (p_{out} + f (p_{in} - p_{out})) z`, with the fraction :math:`f` of the leg inside
     emission control areas and the factor :math:`z` of price zones.
     `thalweg.ship.consumption.leg_prices` makes it for a ship.
@@ -197,8 +209,15 @@ class LegPrices:
         Price of the consumption in a second of waiting [1/s], in addition to ``time``.
     dues : float
         Price of a unit of canal dues; 0 where dues and price zones do not count.
-    consumption : {"fuel", "energy", "cubed_speed", "squared_dose"}
-        What ``inside`` and ``outside`` price: [kg], [J], [m3/s2] or [m2/s3].
+    consumption : {"fuel", "energy", "cubed_speed", "squared_dose", "mixed"}
+        What ``inside`` and ``outside`` price: [kg], [J], [m3/s2] or [m2/s3]; a mixed one is 1 for
+        the sum of ``mix``.
+    mix : tuple of (Consumption, float)
+        Consumptions and their weights, for a mixed one.
+    length, inshore : float
+        Price of a metre, and of one near land [1/m]; searches on networks count them.
+    encounters : float
+        Price of an expected encounter; likewise.
 
     Raises
     ------
@@ -212,10 +231,16 @@ class LegPrices:
     waiting: float = 0.0
     dues: float = 0.0
     consumption: Consumption = "fuel"
+    mix: tuple[tuple[Consumption, float], ...] = ()
+    length: float = 0.0
+    inshore: float = 0.0
+    encounters: float = 0.0
 
     def __post_init__(self) -> None:
-        for field in fields(self)[:5]:
+        for field in fields(self):
             value = getattr(self, field.name)
+            if field.name in ("consumption", "mix"):
+                continue
             if not (math.isfinite(value) and value >= 0.0):
                 raise InputError(
                     f"The price {field.name!r} of legs is {value!r}.",
@@ -223,6 +248,16 @@ class LegPrices:
                     "Correct the price.",
                     field=field.name,
                 )
+
+    @property
+    def counts_water(self) -> bool:
+        """Whether length, land or other ships have a price."""
+        return max(self.length, self.inshore, self.encounters) > 0.0
+
+    @property
+    def counts_dose(self) -> bool:
+        """Whether motion sickness has a price."""
+        return "squared_dose" in (self.consumption, *(name for name, _ in self.mix))
 
     @property
     def differs_in_control_areas(self) -> bool:

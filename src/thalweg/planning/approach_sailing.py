@@ -95,7 +95,7 @@ class ApproachSailing:
         if self.outward is None and self.inward is None:
             return replace(plan, plot_context=plots)
         routes = tuple(self._joined(route, context) for route in plan.routes)
-        added = _difference(routes[0], plan.best, voyage, context)
+        added = _difference(routes[0], plan, voyage, context)
         proof = Proof(
             plan.proof.certain + added[1],
             f"{plan.proof.kind}; with the approaches of the ports",
@@ -199,13 +199,29 @@ def _percent(saved: float | None, value: float) -> float | None:
 
 
 def _difference(
-    whole: Route, part: Route, voyage: Voyage, context: PlanningContext
+    whole: Route, plan: Plan, voyage: Voyage, context: PlanningContext
 ) -> tuple[float, float]:
-    """Return the time [h] and value [unit of the objective] of a route beyond a part of it."""
+    """Return the time [h] and value [unit of the objective] of a route beyond that of its plan.
+
+    Raises
+    ------
+    InputError
+        If the value of the approaches is not known, such as their traffic.
+    """
+    part = plan.best
     hours = whole.time_h - part.time_h
     if voyage.chooses_speeds:
-        objective = priced_objective(voyage, context.ship)
-        return hours, objective.value(whole) - objective.value(part)
+        own = plan.front.objective if plan.front is not None else None
+        objective = own or priced_objective(voyage, context.ship).objective
+        value = objective.value(whole) - objective.value(part)
+        if math.isinf(value):
+            raise InputError(
+                f"The {objective.name} of the approaches of the ports is not known.",
+                "Every leg of the route counts, that from the berth to the sea as well.",
+                "Add the data there, or give positions at sea in place of ports.",
+                field="objective",
+            )
+        return hours, value
     if voyage.objective == "distance":
         return hours, whole.distance_nm - part.distance_nm
     return hours, hours
@@ -251,7 +267,14 @@ def plan_along_approaches(
         one = np.array([total])
         lower = np.array([[route.time_h], [total]])
         front = ParetoFront(
-            objective.name, objective.unit, one, ("exact",), ("approach",), lower, certain=lower
+            objective.name,
+            objective.unit,
+            one,
+            ("exact",),
+            ("approach",),
+            lower,
+            certain=lower,
+            objective=objective.objective,
         )
         value = route.time_h if voyage.objective == "front" else total
     elif voyage.objective == "distance":

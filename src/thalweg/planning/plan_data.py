@@ -109,16 +109,19 @@ class PlanData:
         With the objective ``"front"`` the hours of the fastest route; the other points are in
         `front`.
         """
-        return self._objective.value(self.best)
+        return self.objective.value(self.best)
 
     @property
     def unit(self) -> str:
         """The unit of the objective: ``"h"``, ``"nm"``, ``"t"``, ``"MWh"`` or the currency."""
-        return self._objective.unit
+        return self.objective.unit
 
     @property
-    def _objective(self) -> Objective:
+    def objective(self) -> Objective:
+        """What the plan minimises, with its prices; the time for the objective ``"front"``."""
         name: str = self.voyage.objective
+        if name == "weighted" and self.front is not None and self.front.objective is not None:
+            return self.front.objective
         currency = "USD" if self.front is None else self.front.unit
         return Objective.of("time" if name == "front" else name, currency=currency)
 

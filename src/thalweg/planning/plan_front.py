@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thalweg.core.objective import Objective
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
@@ -45,8 +46,7 @@ class ParetoFront:
 
     Attributes
     ----------
-    criterion : {"fuel", "energy", "cost", "co2", "comfort"}
-        The key figure.
+    criterion : The key figure, such as "fuel"; "weighted sum" for several.
     unit : Its unit: t, MWh, or a currency.
     values : Of the routes of the plan, in their order, (n,).
     stages : tuple of str (n,)
@@ -61,6 +61,8 @@ class ParetoFront:
         between its nodes is neither searched nor bounded, (2, m).
     comparison : The weather-blind route in the same weather.
     certain : Times [h] and values of a front below every route, to be joined by lines, (2, m).
+    objective : Objective, optional
+        What the values are, with its prices.
     """
 
     criterion: str
@@ -71,6 +73,7 @@ class ParetoFront:
     lower: FloatArray
     comparison: BaselineComparison | None = None
     certain: FloatArray = field(default_factory=lambda: np.empty((2, 0)))
+    objective: Objective | None = None
 
     def __post_init__(self) -> None:
         stages = tuple(_RENAMED_STAGES.get(stage, stage) for stage in self.stages)
@@ -114,13 +117,16 @@ class ParetoFront:
     @property
     def column(self) -> str:
         """The key figure with its unit, as in files."""
-        return f"{self.criterion}_{self.unit.lower().replace('/', '_')}"
+        name = self.criterion.replace(" ", "_")
+        return f"{name}_{self.unit.lower().replace('/', '_')}" if self.unit else name
 
     def as_dict(self, routes: tuple[Route, ...]) -> dict[str, Any]:
         """Return the front as plain data for JSON."""
+        prices = {} if self.objective is None else {"prices": self.objective.prices}
         return {
             "criterion": self.criterion,
             "unit": self.unit,
+            **prices,
             "points": self.rows(routes),
             "lower": [
                 {"time_h": float(t), self.column: float(v)} for t, v in self.lower.T if t == t

@@ -132,6 +132,8 @@ def plan(
     replan: _Replan = partial(
         plan, network=network, resolution=resolution, proof=proof, progress=progress
     )
+    if voyage.has_indicator_limits:
+        return _plan_within_limits(voyage, ship, sea, chart, replan)
     if voyage.arrive is not None:
         return _plan_arrival(voyage, ship, sea, chart, replan)
     ship = with_order(ship, voyage)
@@ -143,8 +145,6 @@ def plan(
         return _plan_in_usual_water(voyage, ship, sea, chart, corridor, replan)
     assert not isinstance(network, HistoryCorridor)  # planned above
     choice = NetworkChoice(network, resolution, voyage.layered)
-    if choice.layered is not None:
-        choice.layered.shapes(len(voyage.via) + 1)  # refuses lists of another length
     context, ends = voyage_context(voyage, ship, with_wind_speed(ship, sea), chart, choice)
     context = replace(
         context, report_progress=progress or context.report_progress, proof_seconds=proof
@@ -161,6 +161,22 @@ def _plan_arrival(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, replan: _R
 
     check_request(voyage, ship, with_wind_speed(ship, sea))
     return plan_arrival(ArrivalRequest(voyage, ship, sea, chart, plan_at_speed))
+
+
+def _plan_within_limits(
+    voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, replan: _Replan
+) -> Plan:
+    """Return the plan of a voyage with limits of indicators over the whole route."""
+    from thalweg.planning.pareto.limited_plan import plan_within_limits
+
+    if sea.members:
+        raise InputError(
+            "Indicators of the whole route are limited, in an ensemble forecast.",
+            "Such limits are for one forecast.",
+            "Leave out at_most and at_least, or give one member.",
+            field="at_most",
+        )
+    return plan_within_limits(voyage, partial(replan, ship=ship, sea=sea, chart=chart))
 
 
 def _plan_members(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, replan: _Replan) -> Plan:
@@ -252,6 +268,8 @@ def voyage_context(
     voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, choice: NetworkChoice
 ) -> tuple[PlanningContext, list[Endpoint]]:
     """Return the context of a voyage and its end points, after all checks of the request."""
+    if choice.layered is not None:
+        choice.layered.shapes(len(voyage.via) + 1)  # refuses lists of another length
     check_request(voyage, ship, sea)
     ends = resolve_places(voyage.start, voyage.via, voyage.goal, chart)
     chart, notes = exclude_closed_canals(chart, voyage, ship, ends)

@@ -12,21 +12,29 @@ from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.file_reading import read_text_file
 from thalweg.core.file_writing import write_text
 from thalweg.core.time import format_time
-from thalweg.planning.voyage_parts import Itinerary, Schedule, SearchRequest, VoyagePrices
+from thalweg.planning.voyage_parts import (
+    IndicatorRequest,
+    Itinerary,
+    Schedule,
+    SearchRequest,
+    VoyagePrices,
+)
 
 #: The entries of a voyage in the order of its files.
 _ENTRIES: Final = (
     "start", "goal", "depart", "depart_window", "objective", "via", "arrive_by", "arrive", "wait",
     "speed_kn", "hold", "min_ukc_m", "seed", "fuel_price_usd", "eca_price_factor",
     "time_price_usd_per_h", "forbid", "open", "avoid", "offing_nm", "ignore_shoals", "ignore_lanes",
-    "method", "ensemble", "speed_block_h", "layered",
+    "method", "ensemble", "speed_block_h", "layered", "weights", "at_most", "at_least",
 )  # fmt: skip
+#: Entries that are left out of plain data where they are empty.
+_MAY_BE_EMPTY: Final = ("via", "forbid", "open", "avoid", "weights", "at_most", "at_least")
 #: Entries that are left out of plain data at these values.
 _LEFT_OUT: Final = (("method", "default"), ("ignore_shoals", False), ("ignore_lanes", False))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
+class Voyage(IndicatorRequest, SearchRequest, VoyagePrices, Schedule, Itinerary):
     """A voyage to plan: an itinerary, a schedule, prices and a search request.
 
     Parameters
@@ -39,13 +47,17 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
     depart_window : pair of times, optional
         Earliest and latest departure; the departure with the shortest passage is chosen (with via
         points the shortest passage to the first of them).
-    objective : {"time", "distance", "fuel", "energy", "cost", "co2", "comfort", "front"}
+    objective : {"time", "distance", "fuel", "energy", "cost", "co2", "comfort", "encounters", \
+"inshore", "weighted", "front"}
         The key figure to minimise. Energy is that of propulsion and hotel load, waiting included.
         Cost is that of fuel, time and canal dues; where fuel has no price, that of time and cubed
         speed (``costs`` in the ship file). Comfort is the squared motion sickness dose at the
-        first of the ``places`` in the ship file; the ship does not wait for it. ``"front"``
-        returns the Pareto front of time against fuel, or against cost where a price is given. For
-        all but time and distance the speed is chosen leg by leg.
+        first of the ``places`` in the ship file; the ship does not wait for it. Encounters are
+        those with other ships that the traffic of the chart makes likely, inshore is the length
+        within 3 nm of land; both are searched on the network only, and so are weighted sums with
+        them or with distance. ``"weighted"`` is the sum of `weights`. ``"front"`` returns the
+        Pareto front of time against fuel, or against cost where a price is given. For all but time
+        and distance the speed is chosen leg by leg.
     via : sequence of places
         Places to pass, in this order.
     arrive_by : time, optional
@@ -118,6 +130,7 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
         self._check_schedule()
         self._check_prices()
         self._check_search()
+        self._check_indicators(self.objective)
         self._check_order()
         if self.chooses_speeds and self.depart_window is not None:
             raise InputError(
@@ -173,7 +186,7 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
         data: dict[str, Any] = {}
         for name in _ENTRIES:
             value = getattr(self, name)
-            if value is None or (name in ("via", "forbid", "open", "avoid") and not value):
+            if value is None or (name in _MAY_BE_EMPTY and not value):
                 continue
             if (name, value) in _LEFT_OUT:
                 continue
@@ -267,4 +280,6 @@ def _plain_value(name: str, value: Any) -> Any:
         return value.as_dict()
     if name == "via":
         return [_plain_value("place", place) for place in value]
+    if isinstance(value, Mapping):
+        return dict(value)
     return list(value) if isinstance(value, tuple) else value

@@ -3,31 +3,38 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from numbers import Integral
 from typing import Any, Literal, TypeAlias
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import Position, check_position
 from thalweg.core.given_numbers import shortened_repr, to_number
-from thalweg.core.objective import ObjectiveName
+from thalweg.core.objective import OBJECTIVE_NAMES, ObjectiveName
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.network.layered.layered_request import LayeredRequest
+from thalweg.route.indicator_columns import INDICATORS
 
 Place: TypeAlias = "Position | str"
-VoyageObjective: TypeAlias = ObjectiveName | Literal["front"]
+VoyageObjective: TypeAlias = ObjectiveName | Literal["front", "weighted"]
 
 OBJECTIVES: tuple[VoyageObjective, ...] = (
-    "time", "distance", "fuel", "energy", "cost", "co2", "comfort", "front",
+    "time", "distance", "fuel", "energy", "cost", "co2", "comfort", "encounters", "inshore",
+    "weighted", "front",
 )  # fmt: skip
 #: Objectives for which the ship's speed is chosen leg by leg.
 TRADE_OFF_OBJECTIVES: tuple[VoyageObjective, ...] = (
-    "fuel", "energy", "cost", "co2", "comfort", "front",
+    "fuel", "energy", "cost", "co2", "comfort", "encounters", "inshore", "weighted", "front",
 )  # fmt: skip
 METHODS = ("default", "exact", "nsga2", "spea2", "mpaes")
 RISK_MEASURES = ("mean", "cvar")
 HELD = ("speed", "power", "ground")
+#: Indicators of motions on board, which need waves.
+_OF_MOTIONS = (
+    "comfort", "sick_percent", "worst_hour_percent", "max_acceleration", "uncomfortable_percent",
+    "workable_percent",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,7 +179,7 @@ class SearchRequest:
 
     Parameters
     ----------
-    objective : {"time", "distance", "fuel", "energy", "cost", "co2", "comfort", "front"}
+    objective : Among `OBJECTIVES`.
     method : {"default", "exact", "nsga2", "spea2", "mpaes"}
     ensemble : {"mean", "cvar"}, optional
     speed_kn : [kn].
@@ -240,6 +247,74 @@ class SearchRequest:
             raise unknown_name_error(
                 "risk measure of an ensemble", str(self.ensemble), RISK_MEASURES
             )
+
+
+@dataclass(frozen=True, kw_only=True)
+class IndicatorRequest:
+    """Weights of key figures, and limits of indicators over the whole route.
+
+    Parameters
+    ----------
+    weights : mapping of str to float
+        For the objective "weighted".
+    at_most, at_least : mapping of str to float
+        By indicator, as ``NAME`` or ``NAME:PLACE``.
+    """
+
+    weights: Mapping[str, float] = field(default_factory=dict)
+    at_most: Mapping[str, float] = field(default_factory=dict)
+    at_least: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def has_indicator_limits(self) -> bool:
+        """Whether an indicator of the whole route is limited."""
+        return bool(self.at_most or self.at_least)
+
+    @property
+    def asks_for_motions(self) -> bool:
+        """Whether weights or limits need the motions of the ship."""
+        names = {name.partition(":")[0] for name in (*self.weights, *self.at_most, *self.at_least)}
+        return bool(names & set(_OF_MOTIONS))
+
+    def _check_indicators(self, objective: str) -> None:
+        for name in ("weights", "at_most", "at_least"):
+            given = getattr(self, name)
+            if not isinstance(given, Mapping):
+                raise InputError(
+                    f"{name} is {shortened_repr(given)}.",
+                    "It is a mapping of names to numbers.",
+                    "Correct it, or leave it out.",
+                    field=name,
+                )
+            known: Any = OBJECTIVE_NAMES if name == "weights" else INDICATORS
+            checked = {str(k): _checked_indicator(name, str(k), v, known) for k, v in given.items()}
+            object.__setattr__(self, name, checked)
+        weighted = objective == "weighted"
+        if weighted != bool(self.weights) or (weighted and not sum(self.weights.values()) > 0.0):
+            raise InputError(
+                f"The objective is {objective!r}, with "
+                + (f"the weights {dict(self.weights)}." if self.weights else "no weights."),
+                "The objective 'weighted' needs weights, one of them above zero; others have none.",
+                "Give the objective 'weighted' with weights such as {'fuel': 1, 'comfort': 1}.",
+                field="weights",
+            )
+
+
+def _checked_indicator(kind: str, name: str, value: Any, known: Any) -> float:
+    plain = name if kind == "weights" else name.partition(":")[0]
+    if plain not in known:
+        raise unknown_name_error(
+            "key figure of a weighted sum" if kind == "weights" else "indicator", plain, known
+        )
+    number = to_number(value)
+    if not (math.isfinite(number) and (kind != "weights" or number >= 0.0)):
+        raise InputError(
+            f"{kind} of {name} is {shortened_repr(value)}.",
+            "It is a number" + (" of zero or more." if kind == "weights" else "."),
+            "Correct it.",
+            field=kind,
+        )
+    return number
 
 
 def _window(given: Any) -> tuple[float, float]:

@@ -5,8 +5,11 @@ Columns of legs, per place NAME of the ship file, in SI and NaN where unknown:
 squares ``weighted_acceleration:NAME``, ``acceleration:NAME`` [m/s2], ``velocity:NAME`` [m/s] and
 ``displacement:NAME`` [m]; ``heave`` [m], ``pitch`` and ``roll`` [rad] (greatest root mean squares);
 ``workable_time:TASK`` [s]; ``inshore_length`` [m] and ``inshore_time`` [s] (land nearer than
-`INSHORE_DISTANCE`); ``land_distance`` [m] (least, at most `LAND_DISTANCE_CAP`); ``shallow_time``
-[s] (water less than twice as deep as the draught).
+`INSHORE_DISTANCE`); ``land_distance`` [m] (least, at most `LAND_DISTANCE_CAP`) and
+``contour_distance`` [m] (least, from charted water shallower than draught and under-keel clearance,
+at most 5 nautical miles); ``near_ground_time`` [s] (land or such water nearer than
+`GROUNDING_MARGIN`); ``shallow_time`` [s] (water less than twice as deep as the draught);
+``encounters`` (expected, with other ships) and ``dense_traffic_time`` [s] (inside traffic zones).
 """
 
 from __future__ import annotations
@@ -23,6 +26,7 @@ from thalweg.core.units import GRAVITY, HOUR, NAUTICAL_MILE
 
 INSHORE_DISTANCE: Final = 3.0 * NAUTICAL_MILE  #: nearer to land than this is inshore [m]
 LAND_DISTANCE_CAP: Final = 12.0 * NAUTICAL_MILE  #: larger distances to land count as this [m]
+GROUNDING_MARGIN: Final = 1.0 * NAUTICAL_MILE  #: nearer to the ground than this is close [m]
 #: Per cent of people sick per dose (ISO 2631-1, annex D: mixed adults not used to the sea).
 PERCENT_PER_DOSE: Final = 1.0 / 3.0
 #: Root mean square of vertical acceleration for passengers in transit [m/s2]: 0.05 g (Nordforsk
@@ -46,10 +50,47 @@ INDICATORS: Final[dict[str, tuple[str, bool]]] = {
     "inshore_percent": ("%", False),
     "land_distance_nm": ("nm", False),
     "inshore_h": ("h", True),
+    "contour_distance_nm": ("nm", False),
+    "near_ground_h": ("h", True),
     "shallow_h": ("h", True),
     "min_ukc": ("m", False),
+    "encounters": ("", True),
+    "dense_traffic_h": ("h", True),
     "workable_percent": ("%", False),
 }
+#: Indicators of surroundings: column of the legs, and what one unit of the indicator is in SI.
+_WATER_COLUMNS: Final = {
+    "inshore_nm": ("inshore_length", NAUTICAL_MILE),
+    "inshore_percent": ("inshore_length", 0.01),
+    "inshore_h": ("inshore_time", HOUR),
+    "land_distance_nm": ("land_distance", NAUTICAL_MILE),
+    "contour_distance_nm": ("contour_distance", NAUTICAL_MILE),
+    "near_ground_h": ("near_ground_time", HOUR),
+    "shallow_h": ("shallow_time", HOUR),
+    "encounters": ("encounters", 1.0),
+    "dense_traffic_h": ("dense_traffic_time", HOUR),
+}
+#: Columns of tables: name with unit, and what one unit is in SI.
+_TABLE_COLUMNS: Final = {
+    "squared_dose": ("squared_dose_m2_s3", 1.0),
+    "weighted_acceleration": ("weighted_acceleration_m_s2", 1.0),
+    "acceleration": ("acceleration_m_s2", 1.0),
+    "velocity": ("velocity_m_s", 1.0),
+    "displacement": ("displacement_m", 1.0),
+    "heave": ("heave_m", 1.0),
+    "pitch": ("pitch_deg", math.radians(1.0)),
+    "roll": ("roll_deg", math.radians(1.0)),
+    "workable_time": ("workable_h", HOUR),
+    "inshore_length": ("inshore_nm", NAUTICAL_MILE),
+    "inshore_time": ("inshore_h", HOUR),
+    "land_distance": ("land_distance_nm", NAUTICAL_MILE),
+    "contour_distance": ("contour_distance_nm", NAUTICAL_MILE),
+    "near_ground_time": ("near_ground_h", HOUR),
+    "shallow_time": ("shallow_h", HOUR),
+    "encounters": ("encounters", 1.0),
+    "dense_traffic_time": ("dense_traffic_h", HOUR),
+}
+_LEAST: Final = ("land_distance_nm", "contour_distance_nm")
 _ATTRIBUTES: Final = {
     "time": "time_h",
     "distance": "distance_nm",
@@ -117,7 +158,7 @@ def indicator_value(route: RefereedRoute, name: str, at: str | None = None) -> f
     if name in _ATTRIBUTES:
         value = getattr(route, _ATTRIBUTES[name])
         return math.nan if value is None else float(value)
-    if name in ("inshore_nm", "inshore_percent", "land_distance_nm", "inshore_h", "shallow_h"):
+    if name in _WATER_COLUMNS:
         return _water_indicator(route, name)
     if name == "workable_percent":
         times = named_columns(route.legs, "workable_time")
@@ -169,22 +210,14 @@ def _greatest_in_an_hour(rate: FloatArray, time: FloatArray) -> float:
 
 
 def _water_indicator(route: RefereedRoute, name: str) -> float:
-    legs = route.legs
-    column = {
-        "inshore_nm": "inshore_length",
-        "inshore_percent": "inshore_length",
-        "land_distance_nm": "land_distance",
-        "inshore_h": "inshore_time",
-        "shallow_h": "shallow_time",
-    }[name]
-    if column not in legs:
+    column, unit = _WATER_COLUMNS[name]
+    if column not in route.legs:
         return math.nan
-    if name == "land_distance_nm":
-        return float(np.min(legs[column])) / NAUTICAL_MILE
-    total = _total(legs[column])
-    if name == "inshore_percent":
-        return 100.0 * total / float(legs["length"].sum())
-    return total / (NAUTICAL_MILE if name == "inshore_nm" else HOUR)
+    values = route.legs[column]
+    if name in _LEAST:
+        return float(np.min(values)) / unit
+    whole = float(route.legs["length"].sum()) if name == "inshore_percent" else 1.0
+    return _total(values) / (unit * whole)
 
 
 def _chosen(kind: str, at: str | None, known: Mapping[str, Any]) -> str | None:
@@ -253,5 +286,33 @@ def indicator_table(route: RefereedRoute) -> dict[str, Any]:
             "max_roll_rms_deg": math.degrees(_largest(legs["roll"])),
         }
         ship = {name: value if math.isfinite(value) else None for name, value in largest.items()}
-    names = ("inshore_nm", "inshore_percent", "inshore_h", "land_distance_nm", "shallow_h")
-    return {**{name: plain(name) for name in names}, **ship, "places": places, "tasks": tasks}
+    around = {name: plain(name) for name in _WATER_COLUMNS}
+    fuel = {"fuel_t_per_nm": _per_mile(route)}
+    return {**around, **fuel, **ship, "places": places, "tasks": tasks}
+
+
+def _per_mile(route: RefereedRoute) -> float | None:
+    fuel, length = indicator_value(route, "fuel"), indicator_value(route, "distance")
+    return fuel / length if math.isfinite(fuel) and length > 0.0 else None
+
+
+def leg_indicators(legs: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    """Return the indicators of every leg as columns of tables, with units in their names.
+
+    Parameters
+    ----------
+    legs : mapping of str to array (legs,)
+        Columns in SI.
+
+    Returns
+    -------
+    dict of str to float64 array (legs,)
+        Sums and greatest or least values of the leg alone (with the wait before it); NaN unknown.
+    """
+    found: dict[str, FloatArray] = {}
+    for key, values in legs.items():
+        kind, _, name = key.partition(":")
+        if kind in _TABLE_COLUMNS:
+            column, unit = _TABLE_COLUMNS[kind]
+            found[f"{column}:{name}" if name else column] = np.asarray(values) / unit
+    return found

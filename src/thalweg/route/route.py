@@ -212,6 +212,16 @@ class Route:
         return none_if_nan(indicator_value(self, "comfort"))
 
     @property
+    def encounters(self) -> float | None:
+        """Expected encounters with other ships; None where the traffic is unknown."""
+        return none_if_nan(indicator_value(self, "encounters"))
+
+    @property
+    def inshore_nm(self) -> float | None:
+        """Length within 3 nm of land [nautical miles]; None without a chart."""
+        return none_if_nan(indicator_value(self, "inshore_nm"))
+
+    @property
     def indicators(self) -> dict[str, Any]:
         """Comfort, workability, distance from land and depth; None where unknown."""
         return indicator_table(self)

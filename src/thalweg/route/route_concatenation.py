@@ -13,7 +13,10 @@ from thalweg.route.track import Track
 
 _POSITION_TOLERANCE = 1e-9  # degrees between the end of a route and the start of the next
 _TIME_TOLERANCE = 1e-3  # seconds between them that do not count as a wait
-_QUANTITIES_OF_WAITS = {"waiting_fuel", "waiting_energy", "fuel_in_eca", "co2", "cost"}
+_QUANTITIES_OF_WAITS = {"waiting_fuel", "waiting_energy", "fuel_in_eca", "co2", "cost"} | {
+    "encounters",
+    "dense_traffic_time",
+}
 
 
 def join(routes: Sequence[Route]) -> Route:

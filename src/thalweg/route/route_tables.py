@@ -11,6 +11,7 @@ import numpy as np
 from thalweg.core.time import format_time, to_datetime64
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
+from thalweg.route.indicator_columns import leg_indicators
 from thalweg.route.track import Track
 
 if TYPE_CHECKING:
@@ -57,6 +58,7 @@ def waypoint_rows(route: SailedRoute) -> list[dict[str, Any]]:
     and conditions are those on leaving (at the last waypoint: on arriving); speeds are means over
     the time of the leg that begins there, ``ukc_m`` the least clearance on it. Distance, fuel,
     energy, CO2 and cost are sums up to the waypoint; those of each leg are in ``route.legs``.
+    Indicators (`thalweg.route.indicator_columns.leg_indicators`) are those of the leg that begins.
     ``leg_kind`` is the kind of the leg that begins there: sea, canal or approach (of a port), and
     ``held`` what is constant on it: the power, the speed through water or that over ground.
     """
@@ -130,6 +132,7 @@ def waypoint_columns(route: SailedRoute) -> dict[str, FloatArray]:
         route.cost_name: _cumulative(legs["cost"]),
         **_conditions(route, at),
         "ukc_m": np.append(legs["under_keel_clearance"], math.nan),
+        **{name: np.append(values, math.nan) for name, values in leg_indicators(legs).items()},
     }
 
 

@@ -4,7 +4,7 @@ from thalweg.search.fifo import FifoReport, earliest_arrivals_with_waiting, fifo
 from thalweg.search.lower_bounds import LowerBound, direction_factor, lower_bound
 from thalweg.search.pareto.front_problem import FrontQuery, MultiSettingShipOnNetwork
 from thalweg.search.pareto.front_result import FrontPoint, FrontWork, NetworkFront, cheapest
-from thalweg.search.pareto.pareto_search import pareto_front
+from thalweg.search.pareto.pareto_search import pareto_front, path_costs
 from thalweg.search.prepared_network import PreparedNetwork
 from thalweg.search.profile_search import ProfileSearch, prepare_profile_search
 from thalweg.search.search_problem import ShipOnNetwork
@@ -36,6 +36,7 @@ __all__ = [
     "fifo_report",
     "lower_bound",
     "pareto_front",
+    "path_costs",
     "prepare_profile_search",
     "table_bounds",
 ]

@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from dataclasses import astuple, replace
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.objective import Consumption, LegPrices, Objective
 from thalweg.core.types import FloatArray
-from thalweg.core.units import HOUR, MEGAWATT_HOUR, TONNE
+from thalweg.core.units import HOUR, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.model_protocol import SpeedHoldingModel
+from thalweg.ship.tables.performance_table import PerformanceTable
+from thalweg.ship.tables.table_parts import TableError, TablePart
 from thalweg.ship.tables.tabulate import tabulate_cubed_speed
 
 if TYPE_CHECKING:
     from thalweg.ship.fuel_prices import FuelTerms
     from thalweg.ship.ship import Ship
-    from thalweg.ship.tables.performance_table import PerformanceTable
 
 #: Conditions in calm, deep water; without waves the wave period has no effect.
 _CALM_CONDITIONS = {
@@ -32,6 +34,9 @@ _CALM_CONDITIONS = {
     "current_east": 0.0,
     "current_north": 0.0,
 }
+#: Consumptions and their weights.
+Mix: TypeAlias = tuple[tuple[Consumption, float], ...]
+
 _PRICED_CONSUMPTIONS = ("fuel", "energy", "cost", "co2", "comfort")
 
 
@@ -41,52 +46,80 @@ def leg_prices(objective: Objective, ship: Ship, terms: FuelTerms | None = None)
     Parameters
     ----------
     objective : Objective
-        With a price for one of fuel, energy, cost, CO2 and comfort, and perhaps one for time.
+        The prices of its key figures add up.
     terms : Fuels and prices; by default those of the ship file.
 
     Returns
     -------
     LegPrices : Prices [`Objective.unit`] of fuel [kg], energy [J] or, where fuel has no price, of
-        the cube of the ordered speed times time [m3/s2] (van Halem 2019).
+        the cube of the ordered speed times time [m3/s2] (van Halem 2019); of their mixture where
+        several key figures consume.
 
     Raises
     ------
-    InputError : If the objective prices none or several of these, or if a price of fuel or a carbon
-        factor that it needs is not known.
+    InputError : If a price of fuel or a carbon factor that it needs is not known, or fuel that
+        costs more in control areas is mixed with another consumption.
     """
     terms = ship.fuel_terms if terms is None else terms
     prices = objective.prices
-    priced = [name for name in _PRICED_CONSUMPTIONS if name in prices]
-    if len(priced) != 1 or "distance" in prices:
+    parts = [_consumption_prices(name, prices[name], ship, terms)
+             for name in _PRICED_CONSUMPTIONS if name in prices]  # fmt: skip
+    if not parts:
+        found = LegPrices(0.0, 0.0, consumption="cubed_speed")
+    elif len(parts) == 1:
+        found = parts[0]
+    else:
+        found = _mixed_prices(parts, tuple(prices))
+    return replace(
+        found,
+        time=found.time + objective.time / HOUR,
+        length=objective.distance / NAUTICAL_MILE,
+        inshore=objective.inshore / NAUTICAL_MILE,
+        encounters=objective.encounters,
+    )
+
+
+def _mixed_prices(parts: list[LegPrices], names: tuple[str, ...]) -> LegPrices:
+    if any(part.differs_in_control_areas for part in parts):
         raise InputError(
-            f"The objective prices {', '.join(prices)}.",
-            f"Speeds are chosen for one of {', '.join(_PRICED_CONSUMPTIONS)}, and for time.",
-            "Price one of these.",
-            field="objective",
+            f"The weighted sum counts {', '.join(names)}, and fuel has another price or carbon "
+            "factor inside emission control areas.",
+            "Such a price is counted for one consumption alone.",
+            "Weigh fuel in place of cost or CO2, or leave the areas out (--no-eca).",
+            field="weights",
         )
-    name, hourly = priced[0], objective.time / HOUR
-    price = prices[name]
+    return LegPrices(
+        1.0,
+        1.0,
+        sum(part.time for part in parts),
+        sum(part.waiting for part in parts),
+        max(part.dues for part in parts),
+        "mixed",
+        tuple((part.consumption, part.outside) for part in parts),
+    )
+
+
+def _consumption_prices(name: str, price: float, ship: Ship, terms: FuelTerms) -> LegPrices:
+    """Return the prices of one key figure that is consumed along legs."""
     if name == "energy":
         joule = price / MEGAWATT_HOUR
-        waiting = ship.hotel_power * joule
-        return LegPrices(joule, joule, hourly, waiting, consumption="energy")
+        return LegPrices(joule, joule, 0.0, ship.hotel_power * joule, consumption="energy")
     if name == "comfort":
-        return LegPrices(price, price, hourly, consumption="squared_dose")
+        return LegPrices(price, price, consumption="squared_dose")
     if name == "cost" and terms.by_speed:
         cubed = price * terms.cubed_speed_price
-        second = price * terms.time_price + hourly
-        return LegPrices(cubed, cubed, second, 0.0, price, "cubed_speed")
+        return LegPrices(cubed, cubed, price * terms.time_price, 0.0, price, "cubed_speed")
     if name == "co2" and terms.emits_by_speed:
         cubed = price * terms.cubed_speed_co2 / TONNE
-        return LegPrices(cubed, cubed, hourly, consumption="cubed_speed")
+        return LegPrices(cubed, cubed, consumption="cubed_speed")
     inside, outside = (price * terms.per_kg(name, inside=within) for within in (True, False))
     if not (math.isfinite(inside) and math.isfinite(outside)):
         raise _unknown_price_error(name, ship)
     if name == "cost":
-        second = price * terms.time_price + hourly
+        second = price * terms.time_price
         return LegPrices(inside, outside, second, ship.waiting_fuel_rate * outside, price)
     inside, outside = inside / TONNE, outside / TONNE
-    return LegPrices(inside, outside, hourly, ship.waiting_fuel_rate * outside)
+    return LegPrices(inside, outside, 0.0, ship.waiting_fuel_rate * outside)
 
 
 def engine_order(ship: Ship) -> str:
@@ -104,22 +137,27 @@ def engine_order(ship: Ship) -> str:
     return "constant speed" if holds_speed else "constant power"
 
 
-def consumption_table(ship: Ship, consumption: Consumption) -> PerformanceTable:
+def consumption_table(ship: Ship, consumption: Consumption, mix: Mix = ()) -> PerformanceTable:
     """Return the table of what a ship consumes in a second.
 
     Parameters
     ----------
-    consumption : {"fuel", "energy", "cubed_speed", "squared_dose"}
+    consumption : {"fuel", "energy", "cubed_speed", "squared_dose", "mixed"}
+    mix : tuple of (Consumption, float)
+        For a mixed one.
 
     Returns
     -------
     PerformanceTable : Fuel rate [kg/s], power of brake and hotel load [W], cubed ordered speed
-        [m3/s3], or squared weighted acceleration [m2/s4].
+        [m3/s3], squared weighted acceleration [m2/s4], or their weighted sum.
 
     Raises
     ------
-    InputError : If the ship's fuel, or its power, is not known.
+    InputError : If the ship's fuel, or its power, is not known, or it is no sum of parts where a
+        sum is needed.
     """
+    if consumption == "mixed":
+        return _mixed_table(ship, mix)
     if consumption == "cubed_speed":
         return tabulate_cubed_speed(ship.speeds)
     if consumption == "squared_dose":
@@ -129,17 +167,41 @@ def consumption_table(ship: Ship, consumption: Consumption) -> PerformanceTable:
     return ship.tabulate_power() if consumption == "energy" else ship.tabulate_fuel()
 
 
-def calm_water_consumption(ship: Ship, consumption: Consumption) -> FloatArray:
+def _mixed_table(ship: Ship, mix: Mix) -> PerformanceTable:
+    """Return the weighted sum of tables: the parts of all."""
+    parts: list[TablePart] = []
+    error = TableError(0.0, 0.0, 0.0)
+    for name, weight in mix:
+        table = consumption_table(ship, name)
+        if table.finish is not None:
+            raise InputError(
+                f"A weighted sum counts the {name} of {ship.name!r}, which holds a constant speed.",
+                "Its fuel is a curve of its resistance, and cannot be added to other tables.",
+                "Let the ship hold its power (leave out --hold), or weigh time in place of fuel.",
+                field="weights",
+            )
+        parts += [replace(part, values=weight * part.values) for part in table.parts]
+        own = table.error
+        error = TableError(*(max(a, b) for a, b in zip(astuple(error), astuple(own))))
+    return PerformanceTable(tuple(parts), ship.speeds, ship.fingerprint(), error)
+
+
+def calm_water_consumption(ship: Ship, consumption: Consumption, mix: Mix = ()) -> FloatArray:
     """Return what a ship consumes in a second in calm, deep water, at every setting.
 
     Parameters
     ----------
-    consumption : {"fuel", "energy", "cubed_speed", "squared_dose"}
+    consumption : {"fuel", "energy", "cubed_speed", "squared_dose", "mixed"}
+    mix : tuple of (Consumption, float)
+        For a mixed one.
 
     Returns
     -------
     float64 array (settings,) : In the units of `consumption_table`.
     """
+    if consumption == "mixed":
+        rates = [weight * calm_water_consumption(ship, name) for name, weight in mix]
+        return np.sum(rates, axis=0, dtype=np.float64)
     if consumption == "cubed_speed":
         return np.asarray(ship.speeds, float) ** 3
     if consumption == "squared_dose":

@@ -180,10 +180,10 @@ def make_depth_layer(
             "It is 'up' or 'down' (elevations or depths).",
             "Give one of these.",
         )
-    name, data = _open_source(source)
+    name, data = open_grid_source(source, "Depth")
     array = _select_depth_variable(data, variable, name)
     scale = _depth_sign(array, positive, name) * _unit_factor(array, name)
-    lat_name, lon_name = _axes(array)
+    lat_name, lon_name = horizontal_axes(array)
     array = array.squeeze(drop=True).transpose(lat_name, lon_name)
     lat, lon = np.asarray(array[lat_name], float), np.asarray(array[lon_name], float)
     for axis, line in ((lat_name, lat), (lon_name, lon)):
@@ -238,7 +238,14 @@ def _check_plausible(depth: Float32Array, name: str) -> None:
         )
 
 
-def _open_source(source: Any) -> tuple[str, Any]:
+def open_grid_source(source: Any, what: str) -> tuple[str, Any]:
+    """Return the name and the dataset of a file or an xarray object; ``what`` names its contents.
+
+    Raises
+    ------
+    InputError
+        If it is neither.
+    """
     import xarray as xr
 
     from thalweg.sea.files.file_opener import open_file
@@ -249,7 +256,7 @@ def _open_source(source: Any) -> tuple[str, Any]:
         return "the dataset", source
     if not isinstance(source, (str, PathLike)):
         raise InputError(
-            f"Depth cannot be read from {type(source).__name__!r}.",
+            f"{what} cannot be read from {type(source).__name__!r}.",
             "It comes from a file, an xarray object or a function of (lat, lon).",
             "Give one of these.",
         )
@@ -257,7 +264,8 @@ def _open_source(source: Any) -> tuple[str, Any]:
     return str(source), parts[0] if len(parts) == 1 else xr.merge(parts, compat="override")
 
 
-def _axes(array: Any) -> tuple[str, str]:
+def horizontal_axes(array: Any) -> tuple[str, str]:
+    """Return the names of the axes of latitude and longitude; empty where there is none."""
     found: dict[str, str] = {}
     for name in array.dims:
         if array.sizes[name] > 1 and name in array.coords:
@@ -275,7 +283,7 @@ def _select_depth_variable(data: Any, variable: str | None, name: str) -> Any:
     gridded = []
     for key in data.data_vars:
         wide = [d for d in data[key].dims if data[key].sizes[d] > 1]
-        if len(wide) == 2 and all(_axes(data[key])):
+        if len(wide) == 2 and all(horizontal_axes(data[key])):
             gridded.append(str(key))
     if variable is not None:
         known = [variable] if variable in gridded else []

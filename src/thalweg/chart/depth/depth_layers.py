@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.chart.depth.depth_grids import DepthFunctionLayer, DepthGrid
+from thalweg.chart.depth.safety_contour import SafetyContour
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import (
     geocentric_positions,
@@ -37,6 +38,14 @@ class DepthLayers:
     _kept: dict[int, tuple[Box, DepthArrays]] = field(
         default_factory=dict, compare=False, repr=False
     )
+    _contours: dict[float, SafetyContour] = field(default_factory=dict, compare=False, repr=False)
+
+    def safety_contour(self, required: float) -> SafetyContour:
+        """Return where the charted depth is less than required [m]; made once for each depth."""
+        if required not in self._contours:
+            own = DepthLayers(self.layers)  # its small boxes do not displace those held here
+            self._contours[required] = SafetyContour(own, required)
+        return self._contours[required]
 
     def arrays(self, box: Box, only: int = ALL_LAYERS) -> DepthArrays:
         """Return all layers (or one) in a box [deg] for kernels; longitudes count modulo 360.

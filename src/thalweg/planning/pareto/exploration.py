@@ -14,6 +14,7 @@ from thalweg.kernels import codes
 from thalweg.network import Network, eca_fractions
 from thalweg.planning.frozen_sea import FrozenSea
 from thalweg.planning.network_selection.route_alternatives import RouteAlternative
+from thalweg.planning.pareto.edge_costs import edge_costs
 from thalweg.planning.pareto.search_horizon import SearchHorizon, extend_horizon
 from thalweg.planning.pareto.trade_off_context import ExploredAlternative, TradeOffContext
 from thalweg.planning.planning_context import PlanningContext
@@ -139,13 +140,22 @@ def network_pareto_front(
     ------
     SearchInterrupted : If Ctrl-C is pressed before there is a front.
     """
-    context = trade_off.context
     share_of_labels = 0.5 if lower else 1.0
 
     def progress(share: float) -> None:
         if share < share_of_labels and trade_off.interrupt_guard.stopped():
             raise SearchInterrupted
 
+    ship, query = front_search(trade_off, network, frozen, latest)
+    bin_s = (latest - query.depart) / _TIME_BINS
+    return pareto_front(ship, query, bin_s=bin_s, lower=lower, progress=progress)
+
+
+def front_search(
+    trade_off: TradeOffContext, network: Network, frozen: FrozenSea, latest: float
+) -> tuple[MultiSettingShipOnNetwork, FrontQuery]:
+    """Return the ship on a network and the query of a trade-off, for `thalweg.search`."""
+    context = trade_off.context
     depart = context.voyage.earliest_departure
     prices = trade_off.objective.prices
     differs = prices.differs_in_control_areas
@@ -165,10 +175,16 @@ def network_pareto_front(
         settings=trade_off.settings,
         prices=prices,
         eca_fraction=eca_fractions(network, context.chart) if differs else None,
-        wait=context.voyage.wait and prices.consumption != "squared_dose",
+        edge_cost=edge_costs(
+            network,
+            context.chart,
+            prices,
+            depart=depart,
+            speed=float(context.ship.speeds[trade_off.settings[-1]]),
+        ),
+        wait=context.voyage.wait and not (prices.counts_dose or prices.counts_water),
     )
-    bin_s = (latest - depart) / _TIME_BINS
-    return pareto_front(ship, query, bin_s=bin_s, lower=lower, progress=progress)
+    return ship, query
 
 
 def _largest_direction_factor(

@@ -143,6 +143,7 @@ def _pareto_front(
         lower=lower * factors[:, None],
         comparison=compare_with_baseline(context, objective, routes, values, *references),
         certain=certain,
+        objective=objective.objective,
     )
     return front, correction_notes(factors)
 

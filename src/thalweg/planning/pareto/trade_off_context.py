@@ -54,7 +54,8 @@ class TradeOffContext:
     def calm_water_cost_rates(self) -> FloatArray:
         """Cost of a second in calm water at each of `settings`; infinite if unknown."""
         prices = self.objective.prices
-        rates = calm_water_consumption(self.context.ship, prices.consumption)[self.settings]
+        rates = calm_water_consumption(self.context.ship, prices.consumption, prices.mix)
+        rates = rates[self.settings]
         cost = prices.outside * rates + prices.time
         return np.where(np.isfinite(cost), cost, np.inf)
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Callable
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -17,6 +19,7 @@ from thalweg.core.pareto_fronts import (
     non_dominated_indices,
 )
 from thalweg.core.units import HOUR
+from thalweg.network import Network
 from thalweg.planning.network_selection.route_alternatives import (
     RouteAlternative,
     find_route_alternatives,
@@ -31,6 +34,7 @@ from thalweg.planning.pareto.trade_off_context import (
     TrackCandidate,
     TradeOffContext,
 )
+from thalweg.planning.pareto.weighted_sums import normalised_trade_off
 from thalweg.planning.plan import Plan
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -39,8 +43,14 @@ from thalweg.planning.single.weather_gaps import MAX_GAPS, data_gaps_on_route
 from thalweg.route.route import Violation
 from thalweg.ship.consumption import consumption_table
 
+Result = TypeVar("Result")
+
 #: Least and greatest number of routes of a front, and of the steps of their evaluation.
 _MIN_ROUTES, _MAX_ROUTES, _MAX_STEPS = 40, 100, 150_000
+_NETWORK_ONLY = (
+    "Length, land and encounters were counted on the network only, encounters at the highest "
+    "speed; the routes were not refined in open water."
+)
 _MAX_ROUTES_INTERRUPTED = 20  # after Ctrl-C
 
 
@@ -52,21 +62,13 @@ def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
     InputError : If the ship's fuel, its price or its power is not known.
     NoRouteError : If no route exists within the limits and in time.
     """
-    objective = priced_objective(context.voyage, context.ship)
-    consumption = consumption_table(context.ship, objective.prices.consumption)
-    single = context.voyage.speed_kn is not None
-    settings = np.array([context.setting]) if single else np.arange(len(context.ship.speeds))
     with InterruptGuard() as interrupt_guard:
-        trade_off = TradeOffContext(
-            context,
-            objective,
-            consumption,
-            tuple(ends),
-            settings,
-            context.needs.limits,
-            interrupt_guard,
-        )
+        trade_off = _trade_off_context(context, ends, interrupt_guard)
         alternatives = find_route_alternatives(context, ends)
+        if context.voyage.weights:
+            trade_off = normalised_trade_off(trade_off, alternatives[0].network)
+        if trade_off.objective.prices.counts_water:
+            trade_off.notes.append(_NETWORK_ONLY)
         steps, seen = deque(NETWORK_STEPS), 0
         while steps:  # while the referee finds no route within the limits and known water
             step = steps.popleft()
@@ -86,6 +88,31 @@ def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
         if not interrupt_guard.stopped() and any(item.route.feasible for item in scored):
             scored = _not_dominated(in_speed_blocks(trade_off, scored))
         return assemble_trade_off_plan(trade_off, ends, explored, scored)
+
+
+def with_trade_off(
+    context: PlanningContext,
+    ends: list[Endpoint],
+    search: Callable[[TradeOffContext, Network], Result],
+) -> Result:
+    """Return what a search finds on the network of the shortest route alternative."""
+    with InterruptGuard() as interrupt_guard:
+        trade_off = _trade_off_context(context, ends, interrupt_guard)
+        return search(trade_off, find_route_alternatives(context, ends)[0].network)
+
+
+def _trade_off_context(
+    context: PlanningContext, ends: list[Endpoint], interrupt_guard: InterruptGuard
+) -> TradeOffContext:
+    objective = priced_objective(context.voyage, context.ship)
+    prices = objective.prices
+    consumption = consumption_table(context.ship, prices.consumption, prices.mix)
+    single = context.voyage.speed_kn is not None
+    settings = np.array([context.setting]) if single else np.arange(len(context.ship.speeds))
+    limits = context.needs.limits
+    return TradeOffContext(
+        context, objective, consumption, tuple(ends), settings, limits, interrupt_guard
+    )
 
 
 def _explore_all(
@@ -155,7 +182,7 @@ def _refined_candidates(
 ) -> list[TrackCandidate]:
     """Return candidates from fixed-route fronts and from refinement, as the method requires."""
     method, stopped = trade_off.context.voyage.method, trade_off.interrupt_guard.stopped
-    if method == "exact" or stopped():
+    if method == "exact" or stopped() or trade_off.objective.prices.counts_water:
         return []
     from thalweg.planning.pareto.evolutionary_refinement import evolutionary_candidates
     from thalweg.planning.pareto.fixed_route_fronts import fixed_route_candidates

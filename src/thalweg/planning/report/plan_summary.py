@@ -35,7 +35,12 @@ MAX_LINES = 12  #: of a summary with its notes
 #: Notes whose contents the summary states in its own lines.
 _STATED = ("No depth in the data",)
 _HELD = {"speed": "speed through water", "power": "power", "ground": "speed over ground"}
-_LEAST = {"comfort": "least motion sickness"}
+_LEAST = {
+    "comfort": "least motion sickness",
+    "encounters": "fewest encounters",
+    "inshore": "least length near land",
+    "weighted": "least weighted sum",
+}
 #: Notes on the safety of the ship come first.
 _FIRST = (CHECK_POSITION, CHECK_DEPTH)
 _ALWAYS = ("land", "no-go zone")  # reasons that every coastal route meets

@@ -64,11 +64,12 @@ def arrival_text(route: Route) -> str:
 
 
 def distance_text(route: Route, canals: Sequence[Canal]) -> str:
-    """Return the distance, the mean speed and the canals."""
+    """Return the distance, the mean speed, the canals and the encounters with other ships."""
     sailing = route.time_h - route.waiting_h
     mean = f", mean speed {route.distance_nm / sailing:.1f} kn" if sailing > 0.0 else ""
     by = f", by {' and '.join(canal.title for canal in canals)}" if canals else ""
-    return f"{route.distance_nm:,.1f} nm{mean}{by}"
+    met = "" if route.encounters is None else f", {route.encounters:.1f} encounters expected"
+    return f"{route.distance_nm:,.1f} nm{mean}{by}{met}"
 
 
 def canals_passed(route: Route, chart: Chart | None) -> list[Canal]:

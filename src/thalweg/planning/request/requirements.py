@@ -87,7 +87,9 @@ def variables_of_request(voyage: Voyage, ship: Ship) -> frozenset[str]:
     -------
     frozenset of str : CF standard names; for comfort those of the waves as well.
     """
-    return ship.needs | (WAVES if voyage.objective == "comfort" else frozenset())
+    return ship.needs | (
+        WAVES if voyage.objective == "comfort" or voyage.asks_for_motions else frozenset()
+    )
 
 
 def check_variables(ship: Ship, sea: Sea, needed: frozenset[str] | None = None) -> None:

@@ -77,5 +77,9 @@ def priced_objective(voyage: Voyage, ship: Ship) -> PricedObjective:
     name: str = voyage.objective
     if name == "front":
         name = "cost" if terms.any_price else "fuel"
-    objective = Objective.of(name, currency=terms.currency or "USD")
+    currency = terms.currency or "USD"
+    if name == "weighted":  # not yet normalised: the network is not known
+        objective = Objective(**voyage.weights, currency=currency)
+    else:
+        objective = Objective.of(name, currency=currency)
     return PricedObjective(objective, terms, leg_prices(objective, ship, terms))

@@ -1,18 +1,17 @@
-"""Motions on board and distance from land along a sailed track, as columns of its legs."""
+"""Motions on board along a sailed track, as columns of its legs."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import HOUR
-from thalweg.route.indicator_columns import INSHORE_DISTANCE, LAND_DISTANCE_CAP
 from thalweg.route.referee.leg_segments import TrackPoints
 from thalweg.route.referee.sailing import SailedTrack
 from thalweg.route.referee.sailing_physics import SailingEnvironment, SailingState
+from thalweg.route.referee.surroundings import leg_maxima, leg_sums, time_weights
 from thalweg.ship.comfort.onboard_motions import (
     ROLL_NOTE,
     OnboardMotions,
@@ -22,16 +21,13 @@ from thalweg.ship.comfort.onboard_motions import (
 from thalweg.ship.condition_variables import WAVE_EAST, WAVE_HEIGHT, WAVE_NORTH, WAVE_PERIOD
 from thalweg.ship.conditions import Conditions
 
-if TYPE_CHECKING:
-    from thalweg.chart import Chart
-
 _WAVE_VARIABLES = (WAVE_HEIGHT, WAVE_PERIOD, WAVE_EAST, WAVE_NORTH)
 _WAIT_STEP = 0.5 * HOUR  # between two samples of the sea while waiting
 NO_WAVES_NOTE = "Motions on board are not known: the sea has no wave height, period and direction."
 SHELTERED_NOTE = "Canals and harbour approaches count as without motions."
 
 
-def indicator_columns(
+def motion_indicators(
     sailed: SailedTrack, points: TrackPoints, time: FloatArray, motion: SailingState
 ) -> tuple[dict[str, FloatArray], dict[str, FloatArray], list[str]]:
     """Return columns of legs and of samples, and notes.
@@ -52,16 +48,10 @@ def indicator_columns(
     """
     world, count = sailed.world, len(sailed.pieces.length)
     leg = np.asarray(points.leg, np.int64)
-    weights = _time_weights(leg, time)
+    weights = time_weights(leg, time)
     legs: dict[str, FloatArray] = {}
     samples: dict[str, FloatArray] = {}
     notes: list[str] = []
-    if world.chart is not None and hasattr(world.chart, "coastline"):
-        legs |= _land_columns(world.chart, sailed, points, weights)
-    if world.has_depth:
-        shallow = motion.depth < 2.0 * world.ship.draught
-        known = np.where(np.isfinite(time), np.where(np.isnan(motion.depth), math.nan, shallow), 0)
-        legs["shallow_time"] = _sums(leg, weights * known, count)
     own = onboard_motions(world.ship)
     if own is not None:
         found, known_waves = _motions_at(world, own, points, time, motion)
@@ -77,53 +67,12 @@ def indicator_columns(
             legs[f"squared_dose:{name}"] += _waiting_dose(sailed, own, name)
             samples[f"weighted_acceleration:{name}"] = np.where(sheltered, 0.0, at.weighted)
             samples[f"acceleration:{name}"] = np.where(sheltered, 0.0, at.acceleration)
-    unfinished = ~np.isfinite(sailed.leg_times()[1])
-    for values in legs.values():
-        values[unfinished] = math.nan
     return legs, samples, notes
-
-
-def _time_weights(leg: IntArray, time: FloatArray) -> FloatArray:
-    """Return the time that each sample stands for on its leg (trapezoidal rule) [s]."""
-    step = np.diff(time)
-    step = np.where((np.diff(leg) == 0) & np.isfinite(step), step, 0.0)
-    return 0.5 * (np.concatenate([[0.0], step]) + np.concatenate([step, [0.0]]))
-
-
-def _sums(leg: IntArray, values: FloatArray, count: int) -> FloatArray:
-    return np.bincount(leg, weights=values, minlength=count).astype(np.float64)
-
-
-def _greatest(leg: IntArray, values: FloatArray, count: int) -> FloatArray:
-    """Return the greatest value on each leg; NaN where one is unknown."""
-    most = np.full(count, -math.inf)
-    with np.errstate(invalid="ignore"):
-        np.maximum.at(most, leg, values)  # a NaN stays
-    return np.where(np.isinf(most), math.nan, most)
 
 
 def _sheltered_legs(sailed: SailedTrack) -> BoolArray:
     canals = sailed.pieces.canals
     return (canals.number >= 0) | np.asarray(canals.approach, bool)
-
-
-def _land_columns(
-    chart: Chart, sailed: SailedTrack, points: TrackPoints, weights: FloatArray
-) -> dict[str, FloatArray]:
-    leg, count = np.asarray(points.leg, np.int64), len(sailed.pieces.length)
-    shore = np.asarray(
-        chart.coastline.shore_distance(points.lat, points.lon, cap=LAND_DISTANCE_CAP)
-    )
-    shore = np.minimum(shore, LAND_DISTANCE_CAP)
-    near = (shore < INSHORE_DISTANCE).astype(np.float64)
-    same = np.diff(leg) == 0
-    along = np.where(same, np.diff(points.along), 0.0)
-    length = _sums(leg[:-1], along * 0.5 * (near[1:] + near[:-1]), count)
-    return {
-        "land_distance": -_greatest(leg, -shore, count),
-        "inshore_length": np.minimum(length, sailed.pieces.length),
-        "inshore_time": _sums(leg, weights * near, count),
-    }
 
 
 def _motions_at(
@@ -180,22 +129,22 @@ def _motion_columns(
         return np.where(sheltered, 0.0, values)
 
     columns = {
-        "heave": _greatest(leg, calm(found.heave), count),
-        "pitch": _greatest(leg, calm(found.pitch), count),
-        "roll": _greatest(leg, calm(found.roll), count),
+        "heave": leg_maxima(leg, calm(found.heave), count),
+        "pitch": leg_maxima(leg, calm(found.pitch), count),
+        "roll": leg_maxima(leg, calm(found.roll), count),
     }
     for name, at in found.places.items():
         squared = np.where(weights > 0.0, calm(at.weighted) ** 2, 0.0)
-        columns[f"squared_dose:{name}"] = _sums(leg, weights * squared, count)
-        columns[f"weighted_acceleration:{name}"] = _greatest(leg, calm(at.weighted), count)
-        columns[f"acceleration:{name}"] = _greatest(leg, calm(at.acceleration), count)
-        columns[f"velocity:{name}"] = _greatest(leg, calm(at.velocity), count)
-        columns[f"displacement:{name}"] = _greatest(leg, calm(at.displacement), count)
+        columns[f"squared_dose:{name}"] = leg_sums(leg, weights * squared, count)
+        columns[f"weighted_acceleration:{name}"] = leg_maxima(leg, calm(at.weighted), count)
+        columns[f"acceleration:{name}"] = leg_maxima(leg, calm(at.acceleration), count)
+        columns[f"velocity:{name}"] = leg_maxima(leg, calm(at.velocity), count)
+        columns[f"displacement:{name}"] = leg_maxima(leg, calm(at.displacement), count)
     for task in own.tasks:
         good, known = own.workable(task, found)
         share = np.where(known | sheltered, (good | sheltered).astype(float), math.nan)
         share = np.where(weights > 0.0, share, 0.0)
-        columns[f"workable_time:{task}"] = _sums(leg, weights * share, count)
+        columns[f"workable_time:{task}"] = leg_sums(leg, weights * share, count)
     return columns
 
 

@@ -18,7 +18,7 @@ from thalweg.route.referee.limit_checks import (
     seaway_violations,
     stoppage_violations,
 )
-from thalweg.route.referee.onboard_indicators import indicator_columns
+from thalweg.route.referee.onboard_indicators import motion_indicators
 from thalweg.route.referee.pricing import ConsumptionRates, cost_breakdown
 from thalweg.route.referee.sailing import SailedTrack, data_spacings, sailing_state_along
 from thalweg.route.referee.sailing_physics import (
@@ -27,6 +27,7 @@ from thalweg.route.referee.sailing_physics import (
     conditions_at,
     sample_sea_and_depth,
 )
+from thalweg.route.referee.surroundings import surroundings_columns
 from thalweg.route.route import Route, Violation
 from thalweg.route.track import Track
 from thalweg.ship.consumption import engine_order
@@ -78,10 +79,14 @@ def assemble_route(
     if np.any(pieces.track.wait) and world.has_depth:
         tolerance += float(np.max(np.diff(moments), initial=0.0, where=np.diff(near.leg) == 0))
     samples = _samples(sailed, points, time, motion=motion, rates=(power, rate))
-    columns, at_samples, notes = indicator_columns(sailed, points, time, motion)
+    around, more = surroundings_columns(sailed, points, time, motion, min_ukc)
+    columns, at_samples, notes = motion_indicators(sailed, points, time, motion)
+    columns |= around
+    for values in columns.values():
+        values[~np.isfinite(arrives)] = math.nan
     samples |= at_samples
     assumptions = (*world.assumptions, *spent.notes, *_range_notes(world, points, time, motion))
-    assumptions = (*assumptions, *notes)
+    assumptions = (*assumptions, *notes, *more)
     return Route(
         pieces.track,
         {**legs, **spent.legs, **columns},

@@ -95,6 +95,8 @@ class FrontQuery:
     eca_fraction : array_like (E,), optional
         Fraction of each edge inside emission control areas, 0 to 1 (default: 0); see
         `thalweg.network.eca_fractions`.
+    edge_cost : array_like (E,), optional
+        Further cost of each edge, at any setting and time, zero or more (default: 0).
     wait : bool
         Whether the ship may wait at nodes that allow it, as long as it stays afloat.
     """
@@ -106,6 +108,7 @@ class FrontQuery:
     settings: Sequence[int] | NDArray[np.int64] | None = None
     prices: LegPrices = FUEL_MASS
     eca_fraction: ArrayLike | None = None
+    edge_cost: ArrayLike | None = None
     wait: bool = True
 
 
@@ -120,6 +123,7 @@ class FrontRequest(NamedTuple):
     prices: LegPrices
     edge_price: FloatArray
     wait: bool
+    edge_cost: FloatArray | float = 0.0
 
     @property
     def horizon(self) -> float:
@@ -206,10 +210,8 @@ def _with_states(
 def _prices(
     network: Network, origin: IntArray, ship: MultiSettingShip, request: FrontRequest
 ) -> EdgePrices:
-    fixed_time, fee = (
-        np.asarray(network.edges.fixed_time),
-        request.prices.dues * np.asarray(network.edges.fee),
-    )
+    fixed_time = np.asarray(network.edges.fixed_time)
+    fee = request.prices.dues * np.asarray(network.edges.fee, float) + request.edge_cost
     fuel, choice = np.zeros(len(origin)), np.zeros(len(origin), np.int64)
     fixed = fixed_time[origin]
     if not np.isnan(fixed).all():

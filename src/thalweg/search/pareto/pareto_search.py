@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.types import FloatArray
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.pareto.edge_tables import EdgeTables
 from thalweg.kernels.pareto.label_arrays import PRUNED, RELAXED, VISITED, WAITED, LabelSearch
@@ -43,6 +44,7 @@ from thalweg.search.pareto.seed_paths import (
     non_dominated_points,
     path_of_search_result,
     paths_of_goal_labels,
+    sail_planned_path,
     seed_paths,
     tighten_target,
 )
@@ -150,6 +152,33 @@ def pareto_front(
         front_problem, request, bounds, earliest.time, bin_s=bin_s, memory_limit=memory_limit
     )
     return _search(front_problem, request, bounds, plan, first, lower=lower, progress=progress)
+
+
+def path_costs(
+    ship_on_network: MultiSettingShipOnNetwork, query: FrontQuery, points: Sequence[FrontPoint]
+) -> FloatArray:
+    """Return what paths cost at the prices of a query, sailed again edge by edge.
+
+    Parameters
+    ----------
+    ship_on_network : With the table of what the prices count.
+    query : Start, goal, departure and prices; the settings of the paths are among its own.
+    points : Paths of the same network and departure, found with any prices.
+
+    Returns
+    -------
+    float64 array (paths,)
+        NaN for a path that is closed.
+    """
+    request = _request(ship_on_network, query)
+    front_problem = make_front_problem(ship_on_network, request)
+    found = []
+    for point in points:
+        path = path_of_search_result(front_problem, point)
+        choices = np.searchsorted(request.settings, point.setting).astype(np.int64)
+        sailed = sail_planned_path(front_problem, request, path._replace(choices=choices))
+        found.append(math.nan if sailed is None else sailed.cost)
+    return np.array(found)
 
 
 def _search(
@@ -346,8 +375,15 @@ def _request(ship_on_network: MultiSettingShipOnNetwork, query: FrontQuery) -> F
             "Each edge has one, as thalweg.network.eca_fractions returns them.",
             "Correct the fractions.",
         )
+    further = np.asarray(0.0 if query.edge_cost is None else query.edge_cost, float)
+    if further.shape not in ((), (network.n_edges,)) or not (further >= 0.0).all():
+        raise InputError(
+            "A further cost of an edge is not a number of zero or more.",
+            f"Each of the {network.n_edges} edges has one.",
+            "Correct the costs.",
+        )
     return FrontRequest(
         int(start), int(goal), float(depart), float(latest), chosen, query.prices,
         query.prices.of_legs(inside, np.asarray(network.edges.price_factor, float)),
-        bool(query.wait),
+        bool(query.wait), further,
     )  # fmt: skip

@@ -136,7 +136,9 @@ def earliest_arrival_path(
     return path._replace(leave=np.where(waited, departed, -math.inf))
 
 
-def path_of_search_result(front_problem: FrontProblem, result: SearchResult) -> PlannedPath:
+def path_of_search_result(
+    front_problem: FrontProblem, result: SearchResult | FrontPoint
+) -> PlannedPath:
     """Return the path of a search on a network with one state for each node."""
     net = front_problem.arrays.network
     states = [int(result.path[0])]

@@ -1,0 +1,1 @@
+"""The command for routes that differ, beside each other."""

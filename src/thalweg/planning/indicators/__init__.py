@@ -1,0 +1,1 @@
+"""Plans by key performance indicators: weighted sums, limits of totals, fronts, alternatives."""

@@ -1,0 +1,95 @@
+"""Costs of edges that depend on the water they cross: length, land and other ships."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import direct, distance, inverse
+from thalweg.core.objective import LegPrices
+from thalweg.core.types import FloatArray
+from thalweg.route.indicator_columns import INSHORE_DISTANCE, LAND_DISTANCE_CAP
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.network import Network
+
+_SAMPLES: Final = 8  # along each edge
+
+
+def edge_costs(
+    network: Network, chart: Chart, prices: LegPrices, *, depart: float, speed: float
+) -> FloatArray | None:
+    """Return the cost of length, land and other ships on every edge; None where they cost nothing.
+
+    Parameters
+    ----------
+    depart : When the ship leaves [s since 1970].
+    speed : Over ground [m/s], for the rate and the time of encounters: a search does not know the
+        time at which it comes to an edge, so that the ship is taken to come there straight.
+
+    Raises
+    ------
+    InputError
+        If encounters have a price and the traffic on some edge is not known.
+    """
+    if not prices.counts_water:
+        return None
+    length = np.asarray(network.edges.length, float)
+    cost = prices.length * length
+    if max(prices.inshore, prices.encounters) <= 0.0:
+        return np.asarray(cost)
+    lat, lon = _edge_samples(network)
+    if prices.inshore > 0.0:
+        shore = chart.coastline.shore_distance(lat, lon, cap=LAND_DISTANCE_CAP)
+        near = np.asarray(shore < INSHORE_DISTANCE, float).reshape(-1, _SAMPLES)
+        cost = cost + prices.inshore * length * near.mean(axis=1)
+    if prices.encounters > 0.0:
+        cost = cost + prices.encounters * _encounters(network, chart, (lat, lon), depart, speed)
+    return np.asarray(cost)
+
+
+def _edge_samples(network: Network) -> tuple[FloatArray, FloatArray]:
+    """Return positions on the edges [deg], `_SAMPLES` for each in order, at equal distances."""
+    tail, head = network.tails(), np.asarray(network.graph.target)
+    places = network.lat[tail], network.lon[tail], network.lat[head], network.lon[head]
+    length, course, _ = inverse(*places)
+    share = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
+    at = [np.repeat(x, _SAMPLES) for x in (*places[:2], course, length)]
+    lat, lon = direct(at[0], at[1], at[2], at[3] * np.tile(share, len(tail)))
+    return np.asarray(lat), np.asarray(lon)
+
+
+def _encounters(
+    network: Network,
+    chart: Chart,
+    places: tuple[FloatArray, FloatArray],
+    depart: float,
+    speed: float,
+) -> FloatArray:
+    if chart.traffic is None:
+        raise InputError(
+            "The objective counts encounters with other ships, but no traffic is given.",
+            "Traffic is zones with rates (GeoJSON) or a grid of density.",
+            "Give --traffic FILE, or Chart.with_traffic.",
+            field="objective",
+        )
+    lat, lon = places
+    start = network.meta.start
+    away = distance(network.lat[start], network.lon[start], lat, lon)
+    rate = chart.traffic.rate(lat, lon, depart + np.asarray(away) / speed, speed)
+    length = np.asarray(network.edges.length, float)
+    found = rate.reshape(-1, _SAMPLES).mean(axis=1) * length / speed
+    unknown = np.flatnonzero(np.isnan(found))
+    if len(unknown):
+        at = np.flatnonzero(np.isnan(rate))[0]
+        raise InputError(
+            f"The traffic is not known on {len(unknown)} of {len(found)} edges, such as at "
+            f"{lat[at]:.2f}, {lon[at]:.2f}.",
+            "Encounters can be minimised where the traffic is known in all water.",
+            "Add a zone or a grid there, or a member 'elsewhere' to the GeoJSON of the zones.",
+            field="objective",
+        )
+    return np.asarray(found)

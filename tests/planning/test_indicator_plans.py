@@ -1,0 +1,264 @@
+"""Plans by indicators: weighted sums, limits of totals, fronts of two, alternatives."""
+
+import json
+import math
+from functools import partial
+
+import numpy as np
+import pytest
+
+from tests.planning.test_comfort_plans import DATA, DEPART, _sea
+from thalweg.chart import Chart
+from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.objective import Objective
+from thalweg.planning import Voyage, alternative_plans, indicator_front, plan
+from thalweg.planning.indicators.route_figures import champions, difference_in_words
+from thalweg.planning.pareto.weighted_sums import (
+    KeyFigureRange,
+    key_figure,
+    key_figure_notes,
+    normalised_objective,
+)
+from thalweg.ship import Ship
+from thalweg.ship.consumption import calm_water_consumption, consumption_table, leg_prices
+
+ISLANDS = {"type": "Polygon", "coordinates": [
+    [[0.3, 65.02], [0.7, 65.02], [0.7, 65.05], [0.3, 65.05], [0.3, 65.02]]
+]}  # fmt: skip
+TRAFFIC = {
+    "type": "FeatureCollection", "elsewhere": {"encounters_per_nm": 0.1},
+    "features": [{"type": "Feature", "properties": {"encounters_per_nm": 2.0, "name": "fairway"},
+                  "geometry": {"type": "Polygon", "coordinates": [
+                      [[0.2, 64.97], [0.8, 64.97], [0.8, 65.01], [0.2, 65.01], [0.2, 64.97]]]}}],
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def ship():
+    return Ship.from_dict(DATA)
+
+
+def _voyage(**more):
+    shape = {"layers": 3, "fan": 3, "offset_nm": 3.0}
+    given = {"method": "exact", "layered": shape, "offing_nm": 0.0, "speed_block_h": 0.0}
+    return Voyage(start=(65.0, 0.0), goal=(65.0, 1.0), depart=DEPART, **(given | more))
+
+
+def _plan(ship, chart=None, **more):
+    chart = Chart.open_water() if chart is None else chart
+    return plan(_voyage(**more), ship=ship, sea=_sea(), chart=chart, proof=0.0)
+
+
+def test_prices_of_a_weighted_sum_add_up(ship):
+    both = leg_prices(Objective(fuel=2.0, comfort=0.5, time=36.0, distance=1852.0), ship)
+    assert both.consumption == "mixed" and both.outside == both.inside == 1.0
+    assert both.time == pytest.approx(0.01) and both.length == pytest.approx(1.0)
+    table = consumption_table(ship, "mixed", both.mix)
+    where = {"wave_height": 2.0, "wave_angle": 0.3, "wave_period": 8.0}
+    fuel = consumption_table(ship, "fuel").lookup(where, 1) * 2.0 / 1000.0
+    dose = consumption_table(ship, "squared_dose").lookup(where, 1) * 0.5
+    assert float(table.lookup(where, 1)) == pytest.approx(float(fuel + dose), rel=1e-5)
+    calm = calm_water_consumption(ship, "mixed", both.mix)
+    assert calm == pytest.approx(calm_water_consumption(ship, "fuel") * 2.0 / 1000.0)
+    assert both.counts_dose and both.counts_water
+
+
+def test_a_weighted_sum_with_two_prices_of_fuel_is_refused():
+    bulker = Ship.load("handysize-bulker").with_prices(300.0, 1.5)
+    with pytest.raises(InputError, match="control areas"):
+        leg_prices(Objective(cost=1.0, energy=1.0), bulker)
+
+
+def test_weights_are_over_the_range_of_the_single_optima():
+    ranges = {"fuel": KeyFigureRange(0.25, 2.0, 4.0), "time": KeyFigureRange(0.75, 5.0, 5.0)}
+    objective = normalised_objective(ranges, "USD")
+    assert objective.prices == {"fuel": pytest.approx(0.125)}
+    assert "fuel 0.25 (2 to 4)" in key_figure_notes(ranges)[0]
+    assert "No route differs in time" in key_figure_notes(ranges)[1]
+
+
+@pytest.mark.parametrize(
+    ("given", "text"),
+    [
+        ({"objective": "weighted"}, "no weights"),
+        ({"weights": {"fuel": 1.0}}, "objective is 'time'"),
+        ({"objective": "weighted", "weights": {"fuell": 1.0}}, "fuell"),
+        ({"objective": "weighted", "weights": {"fuel": -1.0}}, "zero or more"),
+        ({"at_most": {"sick": 1.0}}, "sick"),
+        ({"at_least": {"workable_percent": "much"}}, "number"),
+    ],
+)
+def test_requests_that_are_not_possible_are_refused(given, text):
+    with pytest.raises(InputError, match=text):
+        _voyage(**given)
+
+
+def test_voyages_with_weights_and_limits_are_read_back(tmp_path):
+    voyage = _voyage(
+        objective="weighted", weights={"fuel": 1, "comfort": 2}, at_most={"sick_percent:mess": 20}
+    )
+    voyage.save(tmp_path / "voyage.yaml")
+    assert Voyage.load(tmp_path / "voyage.yaml").to_dict() == voyage.to_dict()
+
+
+@pytest.fixture(scope="module")
+def chart():
+    return Chart.from_geojson(ISLANDS).with_traffic(TRAFFIC)
+
+
+NAMES = ("time", "fuel", "comfort", "encounters", "inshore", "distance")
+
+
+@pytest.fixture(scope="module")
+def singles(ship, chart):
+    return {name: _plan(ship, chart, objective=name) for name in NAMES}
+
+
+@pytest.mark.slow
+def test_every_single_optimum_is_no_worse_in_its_figure_than_the_others(singles):
+    for name in NAMES:
+        own = key_figure(singles[name].best, name)
+        others = [key_figure(p.best, name) for key, p in singles.items() if key != name]
+        assert own <= min(others) * (1.0 + 2e-3) + 1e-9, name
+    fewest = singles["encounters"].best
+    assert fewest.encounters < 0.6 * singles["time"].best.encounters
+    assert any("counted on the network only" in text for text in singles["encounters"].notes)
+
+
+@pytest.mark.slow
+def test_weighted_sums_are_no_better_than_single_optima_and_on_the_front(ship, chart, singles):
+    weighted = _plan(ship, chart, objective="weighted", weights={"fuel": 1.0, "comfort": 1.0})
+    best = weighted.best
+    low = {name: key_figure(singles[name].best, name) for name in ("fuel", "comfort")}
+    assert best.fuel_t >= low["fuel"] * (1 - 1e-3)
+    assert best.comfort >= low["comfort"] * (1 - 1e-3)
+    objective = weighted.front.objective
+    assert set(objective.prices) == {"fuel", "comfort"}
+    assert weighted.objective_value == pytest.approx(objective.value(best))
+    for other in (singles["fuel"].best, singles["comfort"].best):
+        assert objective.value(best) <= objective.value(other) * (1 + 2e-3)
+    front = indicator_front(
+        _voyage(), ("fuel", "comfort"), ship=ship, sea=_sea(), chart=chart
+    )  # fmt: skip
+    values = [objective.value(route) for route in front.routes]
+    assert objective.value(best) == pytest.approx(min(values), rel=0.01)
+    text = json.loads(weighted.to_json())
+    assert text["front"]["prices"] == objective.prices and weighted.unit == ""
+
+
+@pytest.mark.slow
+def test_the_front_of_fuel_and_comfort_is_that_of_all_walks(ship):
+    """Weighted searches against every walk at every choice of speed, in weather that changes."""
+    from tests.planning.test_comfort_plans import _all_walks, _front, _wave_channels
+    from thalweg.core.limits import Limits
+    from thalweg.network import layered_network
+    from thalweg.search import MultiSettingShipOnNetwork
+    from thalweg.ship.comfort.dose_table import squared_dose_table
+
+    ends = [(65.0, 0.0), (65.0, 1.0)]
+    network = layered_network(Chart.open_water(), ends, layers=3, fan=3, offset=5556.0)
+    lat, lon = network.stations.lat, network.stations.lon
+    fields = _sea().freeze_stations(lat, lon, DEPART, DEPART + 20 * 3600.0, _wave_channels())
+
+    def walks(table):
+        on_network = MultiSettingShipOnNetwork(network, fields, ship.tabulate(), table, Limits())
+        return [cost for _, cost in _all_walks(on_network)]
+
+    every = list(zip(np.array(walks(ship.tabulate_fuel())) / 1000.0,
+                     walks(squared_dose_table(ship))))  # fmt: skip
+    best = _front(every)
+    found = indicator_front(
+        _voyage(), ("fuel", "comfort"), ship=ship, sea=_sea(), chart=Chart.open_water()
+    )
+    assert found.gaps.max() < 0.02
+    assert found.values[:, 0].min() == pytest.approx(best[0][0], rel=2e-3)
+    assert found.values[:, 1].min() == pytest.approx(best[-1][1], rel=2e-3)
+    a, b, c = found.bounds.T
+    for fuel, dose in every:  # no walk is below a bound
+        assert (a * fuel + b * dose >= c * (1 - 1e-3)).all()
+    for fuel, dose in found.values:  # every point is near a walk that nothing dominates
+        near = min(max(fuel / x - 1.0, dose / y - 1.0) for x, y in best)
+        assert near < 0.02
+    rows = found.to_dict()["points"]
+    assert all(abs(row["fuel"] / row["network_fuel"] - 1.0) < 0.02 for row in rows)
+    assert found.lower_at(float(found.values[0, 0])) <= found.values[0, 1] * (1 + 1e-9)
+
+
+@pytest.mark.slow
+def test_limits_of_totals_are_kept_at_the_least_cost(ship):
+    free = _plan(ship, objective="time")
+    sick = free.best.indicators["places"]["mess"]["sick_percent"]
+    limit = 0.8 * sick
+    kept = _plan(ship, objective="time", at_most={"sick_percent": limit})
+    assert kept.best.indicators["places"]["mess"]["sick_percent"] <= limit
+    assert kept.best.time_h > free.best.time_h
+    assert kept.objective_value == kept.best.time_h and len(kept.routes) == 1
+    assert any("Limits of the route: sick_percent at most" in text for text in kept.notes)
+    assert kept.voyage.at_most == {"sick_percent": limit}
+    easy = _plan(ship, objective="time", at_most={"sick_percent": 2.0 * sick})
+    assert easy.best.time_h == free.best.time_h
+    with pytest.raises(NoRouteError, match=r"No route was found with sick_percent at most 0\.1"):
+        _plan(ship, objective="time", at_most={"sick_percent": 0.1})
+    with pytest.raises(InputError, match="not known on this voyage"):
+        _plan(ship, objective="time", at_most={"encounters": 5.0})
+
+
+@pytest.mark.slow
+def test_a_front_keeps_the_routes_within_the_limits(ship):
+    whole = _plan(ship, objective="front")
+    latest = float(np.median([route.time_h for route in whole.routes]))
+    part = _plan(ship, objective="front", at_most={"time": latest})
+    assert 0 < len(part.routes) < len(whole.routes)
+    assert max(route.time_h for route in part.routes) <= latest
+    assert len(part.front.values) == len(part.routes) == len(part.front.ways)
+
+
+@pytest.mark.parametrize("names", [("fuel", "fuel"), ("fuel", "wind")])
+def test_fronts_of_other_than_two_key_figures_are_refused(ship, names):
+    with pytest.raises(InputError):
+        indicator_front(_voyage(), names, ship=ship, sea=_sea(), chart=Chart.open_water())
+
+
+def test_encounters_need_traffic_that_is_known_everywhere(ship):
+    with pytest.raises(InputError, match="no traffic is given"):
+        _plan(ship, objective="encounters")
+    partly = Chart.open_water().with_traffic({**TRAFFIC, "elsewhere": None})
+    with pytest.raises(InputError, match="traffic is not known on"):
+        _plan(ship, partly, objective="encounters")
+
+
+@pytest.mark.slow
+def test_alternatives_differ_and_each_is_best_in_something(ship, chart, tmp_path):
+    found = alternative_plans(
+        _voyage(arrive_by=DEPART + 8 * 3600.0),
+        partial(plan, ship=ship, sea=_sea(), chart=chart, proof=0.0),
+    )
+    assert 2 <= len(found.choices) <= 5
+    assert len({one.name for one in found.choices}) == len(found.choices)
+    times = [one.route.time_h for one in found.choices]
+    assert times == sorted(times) and "fastest" in found.choices[0].best_in
+    assert all(one.best_in for one in found.choices)
+    assert found.choices[0].difference == "the fastest"
+    assert any("% sick instead of" in one.difference for one in found.choices[1:])
+    assert found.slack_h[0] == pytest.approx(8.0 - times[0])
+    files = found.write(tmp_path)
+    rows = (tmp_path / "alternatives.csv").read_text().splitlines()
+    assert len(rows) == 1 + len(found.choices) and "sick_percent:bridge" in rows[0]
+    assert {"alternatives.json", "alternative_1.rtz"} <= {path.name for path in files}
+    assert json.loads((tmp_path / "alternatives.json").read_text())["alternatives"]
+    with pytest.raises(InputError, match="2 to 5"):
+        alternative_plans(_voyage(), lambda voyage: None, most=1)
+
+
+def test_champions_and_differences_in_words():
+    fast = {"time": 10.0, "fuel": 3.0, "sick_percent": 30.0, "distance": 100.0, "encounters": 1.0}
+    calm = {"time": 10.5, "fuel": 3.0, "sick_percent": 12.0, "distance": 108.0,
+            "encounters": math.nan}  # fmt: skip
+    other = dict.fromkeys(
+        ("cost", "land_distance_nm", "near_ground_h", "workable_percent", "max_acceleration",
+         "worst_hour_percent", "contour_distance_nm", "inshore_percent"), math.nan)  # fmt: skip
+    best = champions([fast | other, calm | other])
+    assert best == {"time": 0, "sick_percent": 1, "distance": 0}
+    words = difference_in_words(calm, fast)
+    assert words == "+30 min, 12 % sick instead of 30 %, +8 nm"
+    assert difference_in_words(fast, fast) == "nearly the same figures"
