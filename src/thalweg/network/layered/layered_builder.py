@@ -67,6 +67,7 @@ def layered_network(
     layers: PerSection,
     fan: PerSection,
     offset: PerSection,
+    near_coast: float | None = None,
     numbering: tuple[int, int] | None = None,
 ) -> Network:
     """Build a layered network from a start through waypoints to a goal.
@@ -89,6 +90,9 @@ def layered_network(
         H, 2 or more; an odd number has a segment straight ahead.
     offset : float or sequence of float
         d [m].
+    near_coast : float, optional
+        Within this distance of land [m] there are twice as many layers, and the nodes of a layer
+        are half as far apart.
     numbering : tuple of int, optional
         Number of the first section in the voyage, from 0, and how many the voyage has, for
         messages.
@@ -113,6 +117,10 @@ def layered_network(
     place of the plane, and whole segments tested in place of nodes.
     """
     draft = layered_draft(places, layers=layers, fan=fan, offset=offset)
+    if near_coast is not None:
+        from thalweg.network.layered.coastal_refinement import refined_near_coast
+
+        draft = refined_near_coast(chart, places, draft.shapes, near_coast)
     for a, b in itertools.pairwise(places):
         check_endpoints(chart, a, b)
     free, rejected = allowed_legs(chart, draft.lat, draft.lon, draft.first, draft.second)
@@ -231,9 +239,7 @@ def _assembled(
 
 def _layer_distance(draft: LayeredDraft) -> float:
     """Return the greatest distance between two layers [m]."""
-    ends = np.append(
-        np.cumsum([0] + [s.n_nodes - 1 for s in draft.shapes])[:-1], len(draft.lat) - 1
-    )
+    ends = np.append(0, np.flatnonzero(np.diff(draft.section, append=-1)))
     lat, lon = draft.lat[ends], draft.lon[ends]
     between = geodesy.distance(lat[:-1], lon[:-1], lat[1:], lon[1:])
     return float(max(a / (s.layers + 1) for a, s in zip(between, draft.shapes)))
