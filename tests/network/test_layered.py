@@ -10,7 +10,7 @@ from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoPathError
 from thalweg.network import LayeredRequest, check_network, layered_network, shortest_path
-from thalweg.network.layered.layered_builder import layered_draft
+from thalweg.network.layered.layered_draft import layered_draft
 from thalweg.network.layered.layered_request import layered_section, suggested_shape
 from thalweg.network.short_legs import positions_on_short_legs
 

@@ -10,7 +10,11 @@ from thalweg.core.errors import NoPathError
 from thalweg.network import shortest_path
 from thalweg.network.assembly import allowed_legs
 from thalweg.network.layered.layered_builder import segments_on_paths
-from thalweg.network.layered.layered_request import layered_section, suggested_shape
+from thalweg.network.layered.layered_request import (
+    LayeredRequest,
+    layered_section,
+    suggested_shape,
+)
 from thalweg.network.layered.section_shape import SectionShape
 
 ONE, THREE = (plane.START, plane.GOAL), (plane.START, plane.FIRST, plane.SECOND, plane.GOAL)
@@ -216,4 +220,13 @@ def test_a_route_by_the_strait_of_node_120_exists_where_the_shape_must_contain_i
     offshore = there[network.meta.goal] / 1000.0
     assert 4.0 < inshore - offshore < 8.0
     with pytest.raises(NoPathError, match=r"has (a|no) path through"):
+        suggested_shape(chart, *places, contain=[(64.87, 12.5)])
+
+
+def test_straits_narrower_than_the_coastline_shows_are_noted(chart):
+    request = LayeredRequest(contain=((64.862, 11.253),), within_percent=2.0)
+    places = (64.6047, 10.5371), (65.3480, 11.3946)
+    notes = layered_section(chart, *places, None, request=request).meta.notes
+    assert any("smaller than about 1000 m" in note for note in notes)
+    with pytest.raises(NoPathError, match="there is land on this coastline"):
         suggested_shape(chart, *places, contain=[(64.87, 12.5)])

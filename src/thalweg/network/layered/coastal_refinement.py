@@ -9,7 +9,7 @@ import numpy as np
 
 from thalweg.core.geodesy import Position
 from thalweg.core.types import IntArray
-from thalweg.network.layered.layered_builder import LayeredDraft, layered_draft
+from thalweg.network.layered.layered_draft import LayeredDraft, layered_draft
 from thalweg.network.layered.section_shape import SectionShape
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ import numpy as np
 
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoPathError, unknown_name_error
-from thalweg.core.geodesy import Position
+from thalweg.core.geodesy import Position, format_position
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.layered.layered_builder import layered_network
 from thalweg.network.layered.section_shape import PerSection, SectionShape, section_shapes
@@ -244,6 +244,7 @@ def layered_section(
         near_coast=None if wanted.near_coast_nm is None else wanted.near_coast_nm * NAUTICAL_MILE,
         numbering=numbering,
     )  # fmt: skip
+    notes = tuple(note for place in wanted.contain if (note := _narrow_strait(chart, place)))
     if not chosen:
         return network
     note = (
@@ -251,7 +252,7 @@ def layered_section(
         f"{shape.offset / NAUTICAL_MILE:.3g} nm, chosen for a shortest path within "
         f"{wanted.within_percent:g} % of that of the finest network tried."
     )
-    return replace(network, meta=replace(network.meta, notes=(note, *network.meta.notes)))
+    return replace(network, meta=replace(network.meta, notes=(note, *notes, *network.meta.notes)))
 
 
 def suggested_shape(
@@ -301,11 +302,11 @@ def suggested_shape(
                 numbering=numbering,
             )  # fmt: skip
         except NoPathError as error:
-            refusal = error
+            refusal = refusal or error
             continue
         left_out = [place for place in contain if not _passes(network, place)]
         if left_out:
-            refusal = _strait_error(left_out[0], layers)
+            refusal = _strait_error(chart, left_out[0], layers)
             continue
         distance, _ = shortest_path(network, network.meta.start, network.meta.goal)
         shape = SectionShape(layers, _LADDER_FAN, offset)
@@ -323,11 +324,25 @@ def _passes(network: Network, place: Position) -> bool:
     return bool(np.min(away) <= _STRAIT_DISTANCE)
 
 
-def _strait_error(place: Position, layers: int) -> NoPathError:
+def _narrow_strait(chart: Chart, place: Position) -> str:
+    """Return a sentence on a strait that is narrower than what the coastline shows; else empty."""
+    detail = chart.coastline.detail
+    width = 2.0 * float(chart.coastline.shore_distance(*place, cap=2.0 * detail))
+    if width >= 2.0 * detail:  # each shore may be off by as much
+        return ""
+    where = "there is land" if width == 0.0 else f"the water is about {width:.0f} m wide"
+    return (
+        f"At {format_position(*place)} {where} on this coastline, which leaves out what is smaller "
+        f"than about {detail:.0f} m: check the strait on a chart, or use a finer coastline (h, f)."
+    )
+
+
+def _strait_error(chart: Chart, place: Position, layers: int) -> NoPathError:
+    narrow = _narrow_strait(chart, place)
     return NoPathError(
         f"No layered network of up to {layers} layers has a path through "
-        f"{geodesy.format_position(*place)}.",
-        "Straits are contained where a node on a path is within half a nautical mile.",
+        f"{format_position(*place)}.",
+        narrow or "Straits are contained where a node on a path is within half a nautical mile.",
         "Put waypoints in open water before and behind it, or use a finer coastline (h, f).",
         nearest=place,
     )
