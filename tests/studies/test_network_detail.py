@@ -115,6 +115,8 @@ def test_a_season_is_the_same_in_any_order_and_has_its_calm_month(folder, tmp_pa
     run_study(study(folder), tmp_path / "out", chunk=1)
     summary = summarise_study(tmp_path / "out")
     assert summary.best["month"].tolist() == [2]
+    best = summary.best_months.set_index("figure")["month"].to_dict()
+    assert best == {"time_h": 2, "fuel_t": 2, "sick_percent": 2}
     rows = read_parts(tmp_path / "out").set_index("depart")["sick_percent"]
     february = rows.index.str.startswith("2026-02")
     assert rows[february].max() < 0.2 * rows[~february].min()
