@@ -297,7 +297,7 @@ def _best_months(table: pd.DataFrame, by: list[str]) -> pd.DataFrame:
         known = table.dropna(subset=[f"{figure}_p50"])
         for key, group in known.groupby(others, dropna=False) if others else [((), known)]:
             if len(group):
-                best = group.loc[group[f"{figure}_p50"].idxmin()]
+                best = group.iloc[int(np.argmin(group[f"{figure}_p50"].to_numpy(float)))]
                 labels = dict(zip(others, key if isinstance(key, tuple) else (key,)))
                 value = float(best[f"{figure}_p50"])
                 found.append(
