@@ -44,7 +44,7 @@ CHANNELS = (
     codes.WAVE_NORTH, codes.WAVE_PERIOD,
 )  # fmt: skip
 START, FIRST, SECOND, GOAL = (
-    (63.6706, 9.2983), (64.6047, 10.5371), (65.3480, 11.3946), (66.5653, 11.6697),
+    (63.675, 9.298), (64.6047, 10.5371), (65.3480, 11.3946), (66.5653, 11.6697),
 )  # fmt: skip
 SHAPE = {"layers": 25, "fan": 5, "offset_nm": 2.4}
 CASE = {

@@ -157,7 +157,7 @@ def test_request_of_files_and_options():
 
 def test_random_segments_on_the_worlds_coast_agree_with_their_samples():
     chart = Chart.gshhg("i")
-    places = [(63.6706, 9.2983), (66.5653, 11.6697)]
+    places = [(63.675, 9.298), (66.5653, 11.6697)]
     network = layered_network(chart, places, layers=30, fan=7, offset=4400.0)
     tails, heads = network.tails(), network.graph.target
     for share in np.linspace(0.0, 1.0, 9):
