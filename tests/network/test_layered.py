@@ -10,7 +10,7 @@ from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoPathError
 from thalweg.network import LayeredRequest, check_network, layered_network, shortest_path
-from thalweg.network.layered.layered_builder import layered_draft
+from thalweg.network.layered.layered_draft import layered_draft
 from thalweg.network.layered.layered_request import layered_section, suggested_shape
 from thalweg.network.short_legs import positions_on_short_legs
 
@@ -157,7 +157,7 @@ def test_request_of_files_and_options():
 
 def test_random_segments_on_the_worlds_coast_agree_with_their_samples():
     chart = Chart.gshhg("i")
-    places = [(63.6706, 9.2983), (66.5653, 11.6697)]
+    places = [(63.675, 9.298), (66.5653, 11.6697)]
     network = layered_network(chart, places, layers=30, fan=7, offset=4400.0)
     tails, heads = network.tails(), network.graph.target
     for share in np.linspace(0.0, 1.0, 9):
@@ -191,3 +191,37 @@ def test_positions_on_short_legs_are_those_of_geodesics():
         )  # fmt: skip
         true = geodesy.direct(lat, lon, course, share * length)
         assert np.max(geodesy.distance(*found, *true)) < tolerance
+
+
+def test_nodes_are_closer_near_land_only():
+    """Every node of the coarse network stays, and the way round the island is that of the fine."""
+    places, chart = [(65.0, 0.0), (65.0, 4.0)], _chart(ISLAND)
+    coarse = layered_network(chart, places, **SHAPE)
+    fine = layered_network(chart, places, layers=19, fan=5, offset=2000.0)
+    mixed = layered_network(chart, places, near_coast=15_000.0, **SHAPE)
+    check_network(mixed)
+    assert coarse.n_edges < mixed.n_edges < 0.6 * fine.n_edges
+
+    def positions(network):
+        return set(zip(np.round(network.lat, 9).tolist(), np.round(network.lon, 9).tolist()))
+
+    assert positions(coarse) <= positions(mixed) <= positions(fine)
+    lengths = [shortest_path(n, 0)[0][n.meta.goal] for n in (fine, mixed, coarse)]
+    assert lengths[0] <= lengths[1] + 1e-6 and lengths[1] <= lengths[2] + 1e-6
+    away = chart.coastline.shore_distance(mixed.lat, mixed.lon, cap=1e5)
+    others = [k for k, place in enumerate(zip(np.round(mixed.lat, 9), np.round(mixed.lon, 9)))
+              if tuple(map(float, place)) not in positions(coarse)]  # fmt: skip
+    assert others and np.max(away[others]) <= 15_000.0
+    even = layered_network(chart, places, layers=8, fan=4, offset=4000.0, near_coast=15_000.0)
+    check_network(even)
+
+
+def test_requests_for_a_chosen_shape():
+    wanted = {"contain": [[64.862, 11.253]], "within_percent": 0.5, "near_coast_nm": 2.0}
+    request = LayeredRequest.from_dict(wanted)
+    assert request.shapes(3) == (None, None, None)
+    assert LayeredRequest.from_dict(request.as_dict()) == request
+    for bad in ({"contain": [[64.0]]}, {"within_percent": 0}, {"near_coast_nm": "far"},
+                {"layers": 3, "fan": 3, "offset_nm": 1, "contain": [[1, 2]]}):  # fmt: skip
+        with pytest.raises(InputError):
+            LayeredRequest.from_dict(bad)

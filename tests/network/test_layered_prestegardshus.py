@@ -1,16 +1,26 @@
 """Layered networks against the printed values of Prestegardshus (2020)."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tests.network import prestegardshus_plane as plane
 from thalweg.chart import Chart
+from thalweg.chart.coast.coast_index_builder import build_index
+from thalweg.chart.coast.coastline import Coastline
+from thalweg.chart.coast.gshhg import read_land_rings
+from thalweg.chart.rings import Rings
 from thalweg.core import geodesy
 from thalweg.core.errors import NoPathError
 from thalweg.network import shortest_path
 from thalweg.network.assembly import allowed_legs
 from thalweg.network.layered.layered_builder import segments_on_paths
-from thalweg.network.layered.layered_request import layered_section, suggested_shape
+from thalweg.network.layered.layered_request import (
+    LayeredRequest,
+    layered_section,
+    suggested_shape,
+)
 from thalweg.network.layered.section_shape import SectionShape
 
 ONE, THREE = (plane.START, plane.GOAL), (plane.START, plane.FIRST, plane.SECOND, plane.GOAL)
@@ -72,7 +82,15 @@ FILTERED = [
 
 @pytest.fixture(scope="module")
 def chart():
-    return Chart.gshhg("i")
+    """GSHHG i as the counts were made with it: without the islets that it lacks, near Norway."""
+    rings = read_land_rings("i", islets=False)
+    lines = (slice(a, b) for a, b in zip(rings.start[:-1], rings.start[1:]))
+    near = [k for k in lines if rings.lat[k].max() > 60.0 and rings.lat[k].min() < 70.0]
+    land = Rings.from_lists(
+        [(np.stack([rings.lat[k], rings.lon[k]], axis=1).tolist(), False) for k in near]
+    )
+    coastline = Coastline("GSHHG i", build_index(land, 512), lambda: land)
+    return replace(Chart.gshhg("i"), coastline=coastline)
 
 
 @pytest.mark.parametrize("shape, expected", COUNTS.items())
@@ -216,4 +234,13 @@ def test_a_route_by_the_strait_of_node_120_exists_where_the_shape_must_contain_i
     offshore = there[network.meta.goal] / 1000.0
     assert 4.0 < inshore - offshore < 8.0
     with pytest.raises(NoPathError, match=r"has (a|no) path through"):
+        suggested_shape(chart, *places, contain=[(64.87, 12.5)])
+
+
+def test_straits_narrower_than_the_coastline_shows_are_noted(chart):
+    request = LayeredRequest(contain=((64.862, 11.253),), within_percent=2.0)
+    places = (64.6047, 10.5371), (65.3480, 11.3946)
+    notes = layered_section(chart, *places, None, request=request).meta.notes
+    assert any("smaller than about 1000 m" in note for note in notes)
+    with pytest.raises(NoPathError, match="there is land on this coastline"):
         suggested_shape(chart, *places, contain=[(64.87, 12.5)])

@@ -3,6 +3,7 @@
 import pytest
 
 from thalweg.chart import Chart
+from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.planning import Voyage, plan
 from thalweg.sea import Sea
@@ -48,3 +49,19 @@ def test_files_of_voyages_keep_the_shape(tmp_path):
     voyage = _voyage(via=[WAYPOINT], layered=shape)
     voyage.save(tmp_path / "voyage.yaml")
     assert Voyage.load(tmp_path / "voyage.yaml").to_dict()["layered"] == shape
+
+
+@pytest.mark.slow
+def test_a_chosen_shape_that_contains_a_strait_has_a_route_through_it():
+    """The Naeroysund, node 120 of Prestegardshus; plans by it and offshore have all figures."""
+    ends = {"start": (64.6047, 10.5371), "goal": (65.3480, 11.3946), "objective": "distance"}
+    strait = (64.862, 11.253)
+    offshore = _plan(_voyage(layered={"contain": [strait], "within_percent": 2.0}, **ends))
+    inshore = _plan(_voyage(via=[strait], **ends))
+    assert 2.0 < inshore.best.distance_nm - offshore.best.distance_nm < 5.0
+    away = geodesy.distance(inshore.best.track.lat, inshore.best.track.lon, *strait)
+    assert away.min() < 100.0
+    for plan_ in (inshore, offshore):
+        known = plan_.best.indicators
+        assert known["inshore_percent"] > 0.0 and known["land_distance_nm"] >= 0.0
+    assert any("within 2 %" in note for note in offshore.notes)

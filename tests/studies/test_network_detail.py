@@ -115,6 +115,8 @@ def test_a_season_is_the_same_in_any_order_and_has_its_calm_month(folder, tmp_pa
     run_study(study(folder), tmp_path / "out", chunk=1)
     summary = summarise_study(tmp_path / "out")
     assert summary.best["month"].tolist() == [2]
+    best = summary.best_months.set_index("figure")["month"].to_dict()
+    assert best == {"time_h": 2, "fuel_t": 2, "sick_percent": 2}
     rows = read_parts(tmp_path / "out").set_index("depart")["sick_percent"]
     february = rows.index.str.startswith("2026-02")
     assert rows[february].max() < 0.2 * rows[~february].min()
@@ -171,3 +173,19 @@ def test_what_the_detail_is_not_for(folder, changes):
 def test_unknown_details_are_refused(folder):
     with pytest.raises(InputError, match="detail"):
         study(folder, detail="rough")
+
+
+def test_workers_open_a_zarr_sea_themselves(folder):
+    """The same rows as from NetCDF, from chunks of ten days."""
+    pytest.importorskip("zarr", reason="zarr is not installed")
+    with xr.open_dataset(folder / "three_months.nc") as data:
+        plain = data.load().drop_encoding()
+    plain.chunk({"time": 40}).to_zarr(folder / "three_months.zarr", mode="w", consolidated=False)
+    axes = {"depart": ["2026-01-05T00:00Z", "2026-02-10T00:00Z"]}
+    from_netcdf, from_zarr = (
+        run_rows(study(folder, sea=[name], axes=axes).rows(), str(folder))
+        for name in ("three_months.nc", "three_months.zarr")
+    )
+    for a, b in zip(from_netcdf, from_zarr):
+        assert a["refusal"] is None is b["refusal"]
+        assert (a["time_h"], a["fuel_t"]) == (b["time_h"], b["fuel_t"])

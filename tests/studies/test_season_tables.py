@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from thalweg.studies import Study, study_run
 from thalweg.studies.season_plots import draw_heat_map
 from thalweg.studies.season_tables import (
     choices_by_axis,
@@ -13,6 +14,7 @@ from thalweg.studies.season_tables import (
     inshore_share,
     month_by_hour,
 )
+from thalweg.studies.study_parts import read_parts
 
 
 def departures(count: int, step_h: float = 12.0) -> list[str]:
@@ -61,3 +63,19 @@ def test_heat_map_of_month_and_hour(tmp_path):
     assert table["routes"].sum() == 120
     assert draw_heat_map(table, "time_h", tmp_path / "hours.png").stat().st_size > 5_000
     assert month_by_hour(frame[frame["month"] == 1], ["time_h"]).empty
+
+
+def test_ctrl_c_keeps_the_finished_voyages_of_a_chunk(tmp_path, monkeypatch):
+    pytest.importorskip("pyarrow", reason="the extra 'studies' is not installed")
+    departs = departures(5)
+    study = Study.from_dict({"voyage": {"start": "A", "goal": "B"}, "axes": {"depart": departs}})
+
+    def stopped(rows, folder):
+        if rows[0].labels["depart"] == departs[3]:
+            raise KeyboardInterrupt
+        return [{"id": row.id, "refusal": None, "reason": None} for row in rows]
+
+    monkeypatch.setattr(study_run, "run_rows", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        study_run.run_study(study, tmp_path)
+    assert len(read_parts(tmp_path)) == 3

@@ -9,7 +9,7 @@ from thalweg.core.errors import InputError
 
 
 def add_layered_options(parser: argparse.ArgumentParser) -> None:
-    """Add ``--layers``, ``--fan`` and ``--layer-offset``."""
+    """Add the options of the shape, the refinement and the choice of layered networks."""
     for name, letter, unit, kind in (
         ("layers", "S", "N", "layers between two places of a layered network"),
         ("fan", "H", "N", "segments that leave a node of it towards the next layer"),
@@ -22,6 +22,19 @@ def add_layered_options(parser: argparse.ArgumentParser) -> None:
             help=f"{kind} ({letter}); one value, or one for each section between via points; "
             "default: chosen",
         )
+    parser.add_argument(
+        "--near-coast", type=float, metavar="NM",
+        help="within this distance of land the nodes of a layered network are twice as close",
+    )  # fmt: skip
+    parser.add_argument(
+        "--contain", nargs="+", action="extend", metavar="LAT,LON",
+        help="straits that a layered network of chosen shape must contain",
+    )  # fmt: skip
+    parser.add_argument(
+        "--within", type=float, metavar="PERCENT",
+        help="by how much its shortest path may be longer than that of the finest network tried "
+        "(default: 1)",
+    )  # fmt: skip
 
 
 def layered_request(arguments: argparse.Namespace) -> dict[str, Any] | None:
@@ -37,15 +50,24 @@ def layered_request(arguments: argparse.Namespace) -> dict[str, Any] | None:
         "offset_nm": arguments.layer_offset,
     }
     stated = {name: text for name, text in given.items() if text is not None}
-    if not stated:
+    more = {"near_coast_nm": arguments.near_coast, "within_percent": arguments.within}
+    more["contain"] = arguments.contain and [_place(text) for text in arguments.contain]
+    more = {name: value for name, value in more.items() if value is not None}
+    if not stated and not more:
         return None
     if arguments.network not in ("auto", "layered"):
         raise InputError(
-            f"--layers, --fan and --layer-offset are given with --network {arguments.network}.",
-            "They shape the network 'layered'.",
+            f"Options of layered networks are given with --network {arguments.network}.",
+            "--layers, --fan, --layer-offset, --near-coast, --contain and --within shape the "
+            "network 'layered'.",
             "Give --network layered, or leave them out.",
         )
-    return {name: _numbers_of_sections(name, text) for name, text in stated.items()}
+    return {name: _numbers_of_sections(name, text) for name, text in stated.items()} | more
+
+
+def _place(text: str) -> list[float]:
+    numbers = _numbers_of_sections("contain", text)
+    return numbers if isinstance(numbers, list) else [numbers]
 
 
 def _numbers_of_sections(name: str, text: str) -> float | list[float]:

@@ -119,6 +119,7 @@ def _summary(arguments: argparse.Namespace) -> int:
                 ("voyages", summary.voyages),
                 ("choices", summary.choices),
                 ("hours", summary.hours),
+                ("best_months", summary.best_months),
             )
         }
         print(json.dumps(parts, indent=2, allow_nan=False))
@@ -129,6 +130,8 @@ def _summary(arguments: argparse.Namespace) -> int:
     if not summary.best.empty:
         for _, row in summary.best.iterrows():
             print(f"least median time: month {int(row['month'])}, {row['time_h_p50']:.2f} h")
+    if len(summary.best_months) > 1:
+        print(summary.best_months.round(2).to_string(index=False))
     if not summary.choices.empty:
         print(summary.choices.round(2).to_string(index=False, na_rep="-"))
     if not summary.fronts.empty and "method" in summary.fronts:

@@ -33,6 +33,7 @@ _SAVINGS: Final = (
     "saved_time_h", "saved_fuel_t", "saved_sick_percent", "saved", "saved_by_route",
     "saved_by_speed",
 )  # fmt: skip
+_LEAST_IS_BEST: Final = ("time_h", "fuel_t", "sick_percent")
 QUANTILES: Final = (0.1, 0.5, 0.9)
 _CONFIDENCE: Final = 0.9
 
@@ -62,6 +63,8 @@ class StudySummary:
         How often each value of an axis is the best of a departure (`choices_by_axis`).
     hours : pandas.DataFrame
         Medians by month and hour of the departure (`month_by_hour`).
+    best_months : pandas.DataFrame
+        The month with the least median of time, fuel and share of people sick, by the other axes.
     """
 
     table: pd.DataFrame
@@ -72,6 +75,7 @@ class StudySummary:
     voyages: pd.DataFrame
     choices: pd.DataFrame = field(default_factory=pd.DataFrame)
     hours: pd.DataFrame = field(default_factory=pd.DataFrame)
+    best_months: pd.DataFrame = field(default_factory=pd.DataFrame)
 
     def write(self, folder: str | Path) -> list[Path]:
         """Write ``summary.csv``, ``voyages.csv``, ``refusals.csv``, and what else there is.
@@ -92,10 +96,10 @@ class StudySummary:
         tables = {
             "summary": self.table, "voyages": self.voyages, "refusals": self.refusals,
             "fronts": self.fronts, "annual": self.annual, "choices": self.choices,
-            "hours": self.hours,
+            "hours": self.hours, "best_months": self.best_months,
         }  # fmt: skip
         for name, frame in tables.items():
-            if frame.empty and name in ("fronts", "annual", "choices", "hours"):
+            if frame.empty and name not in ("summary", "voyages", "refusals"):
                 continue
             path = folder / f"{name}.csv"
             rows = frame.astype(object).where(frame.notna(), None).to_numpy().tolist()
@@ -213,6 +217,7 @@ def summarise_study(folder: str | Path) -> StudySummary:
         _voyages(frame, list(study.axes), figures),
         choices_by_axis(frame, usable, ways),
         month_by_hour(frame[usable], figures),
+        _best_months(table, by),
     )
 
 
@@ -281,6 +286,24 @@ def _refusals(frame: pd.DataFrame, usable: pd.Series) -> pd.DataFrame:
     )
     counted = reasons.value_counts().rename("voyages").reset_index()
     return counted.sort_values("voyages", ascending=False, ignore_index=True)
+
+
+def _best_months(table: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+    """Return the month with the least median of each of `_LEAST_IS_BEST`, by the other axes."""
+    if "month" not in table:
+        return pd.DataFrame()
+    others, found = [name for name in by if name != "month"], []
+    for figure in (name for name in _LEAST_IS_BEST if f"{name}_p50" in table):
+        known = table.dropna(subset=[f"{figure}_p50"])
+        for key, group in known.groupby(others, dropna=False) if others else [((), known)]:
+            if len(group):
+                best = group.iloc[int(np.argmin(group[f"{figure}_p50"].to_numpy(float)))]
+                labels = dict(zip(others, key if isinstance(key, tuple) else (key,)))
+                value = float(best[f"{figure}_p50"])
+                found.append(
+                    {**labels, "figure": figure, "month": int(best["month"]), "median": value}
+                )
+    return pd.DataFrame(found)
 
 
 def _best(table: pd.DataFrame, by: list[str]) -> pd.DataFrame:

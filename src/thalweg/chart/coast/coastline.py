@@ -21,6 +21,7 @@ from thalweg.kernels.geometry.cube_sphere import IndexArrays
 from thalweg.kernels.geometry.shore_distance import shore_distances
 
 _GEOJSON_INDEX_CELLS: Final = 512  # cells along a face of the index of land from GeoJSON
+_GSHHG_DETAIL: Final = {"c": 25_000.0, "l": 5_000.0, "i": 1_000.0, "h": 200.0}  # [m]
 _MAX_SHORE_DISTANCE: Final = 250_000.0  # [m]
 
 
@@ -70,6 +71,15 @@ class Coastline:
     def rings(self) -> Rings:
         """The rings of the polygons, read when first used."""
         return self.read()
+
+    @property
+    def detail(self) -> float:
+        """Size of what the coastline leaves out [m]; 0 where it is not simplified.
+
+        Tolerances of GSHHG: Wessel and Smith (1996), J. Geophys. Res. 101(B4), 8741-8743.
+        """
+        source, _, resolution = self.name.partition(" ")
+        return _GSHHG_DETAIL.get(resolution[:1], 0.0) if source == "GSHHG" else 0.0
 
     def shore_distance(
         self, lat: ArrayLike, lon: ArrayLike, *, cap: float = 50_000.0

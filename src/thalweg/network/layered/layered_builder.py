@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +12,7 @@ import numpy as np
 from thalweg.core import geodesy
 from thalweg.core.errors import NoPathError
 from thalweg.core.geodesy import Position
-from thalweg.core.types import BoolArray, FloatArray, Int32Array
+from thalweg.core.types import BoolArray, Int32Array
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.assembly import (
     DirectedEdges,
@@ -25,7 +24,9 @@ from thalweg.network.assembly import (
     measured_pairs,
 )
 from thalweg.network.endpoints import check_endpoints
-from thalweg.network.layered.section_shape import PerSection, SectionShape, section_shapes
+from thalweg.network.layered.coastal_refinement import refined_near_coast
+from thalweg.network.layered.layered_draft import LayeredDraft, layered_draft
+from thalweg.network.layered.section_shape import PerSection, SectionShape
 from thalweg.network.network import Graph, Network, NetworkMeta, Stations
 from thalweg.network.short_legs import positions_on_short_legs
 
@@ -35,31 +36,6 @@ if TYPE_CHECKING:
 _SAMPLE_SPACING = 5.0 * NAUTICAL_MILE  # at most this far apart is the sea sampled on segments
 
 
-@dataclass(frozen=True, eq=False)
-class LayeredDraft:
-    """All nodes and segments of a layered network, before any test.
-
-    Attributes
-    ----------
-    shapes : Of every section.
-    lat, lon : float64[N]
-        Nodes [deg], section by section, layer by layer, port to starboard. The end of a section
-        is the start of the next.
-    section, layer : int32[N]
-        Section and layer that a node belongs to; waypoints belong to the section they end.
-    first, second : int32[P]
-        The nodes that segments join.
-    """
-
-    shapes: tuple[SectionShape, ...]
-    lat: FloatArray
-    lon: FloatArray
-    section: Int32Array
-    layer: Int32Array
-    first: Int32Array
-    second: Int32Array
-
-
 def layered_network(
     chart: Chart,
     places: Sequence[Position],
@@ -67,6 +43,7 @@ def layered_network(
     layers: PerSection,
     fan: PerSection,
     offset: PerSection,
+    near_coast: float | None = None,
     numbering: tuple[int, int] | None = None,
 ) -> Network:
     """Build a layered network from a start through waypoints to a goal.
@@ -89,6 +66,9 @@ def layered_network(
         H, 2 or more; an odd number has a segment straight ahead.
     offset : float or sequence of float
         d [m].
+    near_coast : float, optional
+        Within this distance of land [m] there are twice as many layers, and the nodes of a layer
+        are half as far apart.
     numbering : tuple of int, optional
         Number of the first section in the voyage, from 0, and how many the voyage has, for
         messages.
@@ -113,6 +93,8 @@ def layered_network(
     place of the plane, and whole segments tested in place of nodes.
     """
     draft = layered_draft(places, layers=layers, fan=fan, offset=offset)
+    if near_coast is not None:
+        draft = refined_near_coast(chart, places, draft.shapes, near_coast)
     for a, b in itertools.pairwise(places):
         check_endpoints(chart, a, b)
     free, rejected = allowed_legs(chart, draft.lat, draft.lon, draft.first, draft.second)
@@ -120,49 +102,6 @@ def layered_network(
     if not keep.any():
         raise _broken_network(draft, free, rejected, numbering or (0, len(draft.shapes)))
     return _assembled(chart, draft, used, keep, rejected)
-
-
-def layered_draft(
-    places: Sequence[Position], *, layers: PerSection, fan: PerSection, offset: PerSection
-) -> LayeredDraft:
-    """Return the nodes and segments of a layered network without a chart; see `layered_network`."""
-    shapes = section_shapes(max(len(places) - 1, 1), layers, fan, offset)
-    lat, lon = [np.array([places[0][0]], float)], [np.array([places[0][1]], float)]
-    section, layer = [np.zeros(1, np.int32)], [np.zeros(1, np.int32)]
-    first, second = [], []
-    count = 1
-    for number, (shape, (a, b)) in enumerate(zip(shapes, itertools.pairwise(places))):
-        in_layers = np.repeat(np.arange(shape.layers + 2), shape.nodes_in_layers)[1:]
-        there = _section_positions(shape, a, b)
-        lat.append(there[0][1:])
-        lon.append(there[1][1:])
-        section.append(np.full(len(in_layers), number, np.int32))
-        layer.append(in_layers.astype(np.int32))
-        tails, heads = shape.segments()
-        first.append(tails + np.int32(count - 1))
-        second.append(heads + np.int32(count - 1))
-        count += len(in_layers)
-    parts = (lat, lon, section, layer, first, second)
-    return LayeredDraft(shapes, *(np.concatenate(part) for part in parts))
-
-
-def _section_positions(
-    shape: SectionShape, start: Position, end: Position
-) -> tuple[FloatArray, FloatArray]:
-    """Return the nodes of a section [deg], its two waypoints included."""
-    length, course, _ = geodesy.inverse(*start, *end)
-    sizes = np.asarray(shape.nodes_in_layers)
-    along = np.arange(len(sizes)) / (len(sizes) - 1) * float(length)
-    middle_lat, middle_lon = geodesy.direct(*start, float(course), along)
-    _, onward, _ = geodesy.inverse(middle_lat[:-1], middle_lon[:-1], *end)
-    of = np.repeat(np.arange(len(sizes)), sizes)
-    rank = np.arange(len(of)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
-    starboard = shape.spacing_in_layer() * (rank - 0.5 * (sizes[of] - 1))
-    across = np.append(onward, 0.0)[of] + 0.5 * math.pi
-    lat, lon = geodesy.direct(middle_lat[of], middle_lon[of], across, starboard)
-    lat[0], lon[0] = start
-    lat[-1], lon[-1] = end
-    return lat, lon
 
 
 def segments_on_paths(
@@ -231,9 +170,7 @@ def _assembled(
 
 def _layer_distance(draft: LayeredDraft) -> float:
     """Return the greatest distance between two layers [m]."""
-    ends = np.append(
-        np.cumsum([0] + [s.n_nodes - 1 for s in draft.shapes])[:-1], len(draft.lat) - 1
-    )
+    ends = np.append(0, np.flatnonzero(np.diff(draft.section, append=-1)))
     lat, lon = draft.lat[ends], draft.lon[ends]
     between = geodesy.distance(lat[:-1], lon[:-1], lat[1:], lon[1:])
     return float(max(a / (s.layers + 1) for a, s in zip(between, draft.shapes)))

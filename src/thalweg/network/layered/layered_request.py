@@ -11,7 +11,7 @@ import numpy as np
 
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoPathError, unknown_name_error
-from thalweg.core.geodesy import Position
+from thalweg.core.geodesy import Position, format_position
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.layered.layered_builder import layered_network
 from thalweg.network.layered.section_shape import PerSection, SectionShape, section_shapes
@@ -28,7 +28,9 @@ _LADDER_FAN = 7
 #: differ by up to 39 and 17 degrees from that of the section.
 _HALF_WIDTHS = (0.4, 0.15)
 _STRAIT_DISTANCE = 0.5 * NAUTICAL_MILE  #: of a node from a place that paths must pass
-_KEYS = ("layers", "fan", "offset_nm")
+_SHAPE = ("layers", "fan", "offset_nm")
+_KEYS = (*_SHAPE, "near_coast_nm", "contain", "within_percent")
+_LARGEST_PERCENT, _LARGEST_COAST_NM = 100.0, 100.0
 
 
 @dataclass(frozen=True)
@@ -37,24 +39,38 @@ class LayeredRequest:
 
     Parameters
     ----------
-    layers : int or sequence of int
+    layers : int or sequence of int, optional
         S, layers between two waypoints; one value for all sections, or one for each.
-    fan : int or sequence of int
+    fan : int or sequence of int, optional
         H, segments that leave a node; odd numbers have one straight ahead.
-    offset_nm : float or sequence of float
-        d, by how much a layer is wider than the one before, to either side [nm].
+    offset_nm : float or sequence of float, optional
+        d, by how much a layer is wider than the one before, to either side [nm]. Without these
+        three the shape is chosen (`suggested_shape`).
+    near_coast_nm : float, optional
+        Within this distance of land layers and nodes are twice as close [nm].
+    contain : sequence of (lat, lon)
+        Places [deg], such as straits, that paths must be able to pass, where the shape is chosen.
+    within_percent : float
+        By how much the shortest path may be longer than on the finest network tried, where the
+        shape is chosen.
     """
 
-    layers: PerSection
-    fan: PerSection
-    offset_nm: PerSection
+    layers: PerSection | None = None
+    fan: PerSection | None = None
+    offset_nm: PerSection | None = None
+    near_coast_nm: float | None = None
+    contain: tuple[Position, ...] = ()
+    within_percent: float = 1.0
 
     def __post_init__(self) -> None:
-        for name in _KEYS:
+        for name in _SHAPE:
             value = getattr(self, name)
             if isinstance(value, np.ndarray):
                 value = value.tolist()
             object.__setattr__(self, name, tuple(value) if isinstance(value, list) else value)
+        object.__setattr__(self, "contain", _places(self.contain))
+        _check_range("near_coast_nm", self.near_coast_nm, _LARGEST_COAST_NM)
+        _check_range("within_percent", self.within_percent, _LARGEST_PERCENT)
         self.shapes(self._given_sections())
 
     @classmethod
@@ -80,22 +96,24 @@ class LayeredRequest:
         if not isinstance(data, Mapping):
             raise InputError(
                 f"The layered network is {data!r}.",
-                "It is a mapping with layers, fan and offset_nm.",
+                f"It is a mapping with {', '.join(_KEYS)}.",
                 "Give these three, for example {layers: 25, fan: 5, offset_nm: 2.4}.",
                 field="layered",
             )
         for key in data:
             if key not in _KEYS:
                 raise unknown_name_error("entry of a layered network", str(key), _KEYS)
-        missing = [key for key in _KEYS if key not in data]
-        if missing:
+        given = [key for key in _SHAPE if data.get(key) is not None]
+        missing = [key for key in _SHAPE if key not in given]
+        if given and (missing or data.get("contain")):
+            missing = missing or ["free shape, which contain needs"]
             raise InputError(
                 f"The layered network has no {' and no '.join(missing)}.",
                 "It has layers, fan and offset_nm, each a number or one number for each section.",
                 "Add what is missing, or leave out all three to have them chosen.",
                 field="layered",
             )
-        return cls(**{key: data[key] for key in _KEYS})
+        return cls(**{key: data[key] for key in _KEYS if data.get(key) is not None})
 
     def as_dict(self) -> dict[str, Any]:
         """Return the request as plain data for files.
@@ -105,11 +123,17 @@ class LayeredRequest:
         dict
             As `from_dict` reads it.
         """
-        values = ((key, getattr(self, key)) for key in _KEYS)
-        return {key: list(v) if isinstance(v, tuple) else v for key, v in values}
+        values = {key: getattr(self, key) for key in _SHAPE if getattr(self, key) is not None}
+        found = {key: list(v) if isinstance(v, tuple) else v for key, v in values.items()}
+        if self.near_coast_nm is not None:
+            found["near_coast_nm"] = self.near_coast_nm
+        if self.layers is None:
+            found["contain"] = [list(place) for place in self.contain]
+            found["within_percent"] = self.within_percent
+        return found
 
-    def shapes(self, sections: int) -> tuple[SectionShape, ...]:
-        """Return the shape of every section.
+    def shapes(self, sections: int) -> tuple[SectionShape | None, ...]:
+        """Return the shape of every section; None where it is to be chosen.
 
         Parameters
         ----------
@@ -118,13 +142,15 @@ class LayeredRequest:
 
         Returns
         -------
-        tuple of SectionShape
+        tuple of SectionShape or None
 
         Raises
         ------
         InputError
             If a list has another length.
         """
+        if self.layers is None or self.fan is None or self.offset_nm is None:
+            return (None,) * sections
         offset = self.offset_nm
         metres = (
             [_metres(d) for d in offset] if isinstance(offset, (list, tuple)) else _metres(offset)
@@ -132,7 +158,7 @@ class LayeredRequest:
         return section_shapes(sections, self.layers, self.fan, metres)
 
     def _given_sections(self) -> int:
-        lengths = [len(v) for key in _KEYS if isinstance(v := getattr(self, key), tuple)]
+        lengths = [len(v) for key in _SHAPE if isinstance(v := getattr(self, key), tuple)]
         return max(lengths, default=1)
 
 
@@ -142,6 +168,29 @@ def _metres(offset_nm: Any) -> Any:
     return offset_nm * NAUTICAL_MILE if number else offset_nm
 
 
+def _places(given: Any) -> tuple[Position, ...]:
+    try:
+        return tuple((float(lat), float(lon)) for lat, lon in given)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"contain of a layered network is {given!r}.",
+            "It is a list of places, each latitude and longitude in degrees.",
+            "Correct it, for example [[64.862, 11.253]].",
+            field="layered",
+        ) from None
+
+
+def _check_range(name: str, value: Any, largest: float) -> None:
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if value is not None and not (number and 0.0 < value <= largest):
+        raise InputError(
+            f"{name} of a layered network is {value!r}.",
+            f"It is a number above 0, up to {largest:g}.",
+            "Correct it.",
+            field="layered",
+        )
+
+
 def layered_section(
     chart: Chart,
     start: Position,
@@ -149,6 +198,7 @@ def layered_section(
     shape: SectionShape | None,
     *,
     spacing: float | None = None,
+    request: LayeredRequest | None = None,
     numbering: tuple[int, int] = (0, 1),
 ) -> Network:
     """Return the layered network of one section.
@@ -165,6 +215,9 @@ def layered_section(
     spacing : float, optional
         Layers are at most this far apart [m]; a shape that is coarser is made finer, with the
         same width.
+    request : LayeredRequest, optional
+        With what the shape must contain and how good it must be, where it is chosen, and with the
+        refinement near the coast.
     numbering : tuple of int, optional
         Number of the section in the voyage, from 0, and how many it has.
 
@@ -177,24 +230,29 @@ def layered_section(
     NoPathError
         If it has no path.
     """
-    chosen = shape is None
+    chosen, wanted = shape is None, request or LayeredRequest()
     if shape is None:
-        shape = suggested_shape(chart, start, goal, numbering=numbering)
+        shape = suggested_shape(
+            chart, start, goal, tolerance=wanted.within_percent / 100.0, contain=wanted.contain,
+            numbering=numbering,
+        )  # fmt: skip
     between = float(geodesy.distance(*start, *goal)) / (shape.layers + 1)
     if spacing is not None and between > 1.001 * spacing:
         shape = shape.finer(int(np.ceil(between / spacing - 1e-3)))
     network = layered_network(
         chart, (start, goal), layers=shape.layers, fan=shape.fan, offset=shape.offset,
+        near_coast=None if wanted.near_coast_nm is None else wanted.near_coast_nm * NAUTICAL_MILE,
         numbering=numbering,
     )  # fmt: skip
+    notes = tuple(note for place in wanted.contain if (note := _narrow_strait(chart, place)))
     if not chosen:
         return network
     note = (
         f"The layered network has {shape.layers} layers, a fan of {shape.fan} and an offset of "
-        f"{shape.offset / NAUTICAL_MILE:.3g} nm, chosen for a shortest path within 1 % of that of "
-        "the finest network tried."
+        f"{shape.offset / NAUTICAL_MILE:.3g} nm, chosen for a shortest path within "
+        f"{wanted.within_percent:g} % of that of the finest network tried."
     )
-    return replace(network, meta=replace(network.meta, notes=(note, *network.meta.notes)))
+    return replace(network, meta=replace(network.meta, notes=(note, *notes, *network.meta.notes)))
 
 
 def suggested_shape(
@@ -244,11 +302,11 @@ def suggested_shape(
                 numbering=numbering,
             )  # fmt: skip
         except NoPathError as error:
-            refusal = error
+            refusal = refusal or error
             continue
         left_out = [place for place in contain if not _passes(network, place)]
         if left_out:
-            refusal = _strait_error(left_out[0], layers)
+            refusal = _strait_error(chart, left_out[0], layers)
             continue
         distance, _ = shortest_path(network, network.meta.start, network.meta.goal)
         shape = SectionShape(layers, _LADDER_FAN, offset)
@@ -266,11 +324,25 @@ def _passes(network: Network, place: Position) -> bool:
     return bool(np.min(away) <= _STRAIT_DISTANCE)
 
 
-def _strait_error(place: Position, layers: int) -> NoPathError:
+def _narrow_strait(chart: Chart, place: Position) -> str:
+    """Return a sentence on a strait that is narrower than what the coastline shows; else empty."""
+    detail = chart.coastline.detail
+    width = 2.0 * float(chart.coastline.shore_distance(*place, cap=2.0 * detail))
+    if width >= 2.0 * detail:  # each shore may be off by as much
+        return ""
+    where = "there is land" if width == 0.0 else f"the water is about {width:.0f} m wide"
+    return (
+        f"At {format_position(*place)} {where} on this coastline, which leaves out what is smaller "
+        f"than about {detail:.0f} m: check the strait on a chart, or use a finer coastline (h, f)."
+    )
+
+
+def _strait_error(chart: Chart, place: Position, layers: int) -> NoPathError:
+    narrow = _narrow_strait(chart, place)
     return NoPathError(
         f"No layered network of up to {layers} layers has a path through "
-        f"{geodesy.format_position(*place)}.",
-        "Straits are contained where a node on a path is within half a nautical mile.",
+        f"{format_position(*place)}.",
+        narrow or "Straits are contained where a node on a path is within half a nautical mile.",
         "Put waypoints in open water before and behind it, or use a finer coastline (h, f).",
         nearest=place,
     )

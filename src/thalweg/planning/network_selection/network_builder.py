@@ -46,8 +46,10 @@ def build_network(
     if choice.network == "globe":
         return globe(chart, *places)
     if choice.network == "layered":
-        shape, numbering = choice.section_shape, choice.section
-        return layered_section(chart, *places, shape, spacing=choice.spacing, numbering=numbering)
+        return layered_section(
+            chart, *places, choice.section_shape, spacing=choice.spacing, request=choice.layered,
+            numbering=choice.section,
+        )  # fmt: skip
     return lattice_between(chart, *places, spacing=choice.spacing)
 
 
