@@ -9,7 +9,7 @@ import { typedTime } from "./typed_time.js";
 
 const OBJECTIVES = [
   ["front", "All trade-offs of time and fuel"], ["time", "Least time"], ["fuel", "Least fuel"], ["cost", "Least cost"],
-  ["co2", "Least CO₂"], ["energy", "Least energy"], ["distance", "Shortest distance"],
+  ["co2", "Least CO₂"], ["energy", "Least energy"], ["comfort", "Least motion sickness"], ["distance", "Shortest distance"],
 ];
 const CANALS = [["suez", "Suez"], ["panama", "Panama"], ["kiel", "Kiel"], ["corinth", "Corinth"]];
 export const DEMO = { title: "Halifax to Bishop Rock", ship: "handysize-bulker", seas: ["storm"], voyage: { start: "Halifax", goal: "49.7N 6.5W", depart: "1998-08-31T12:00Z", objective: "time" } };
