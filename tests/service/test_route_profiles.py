@@ -38,3 +38,17 @@ def test_a_ship_with_places_has_the_motion_along_the_route():
 
 def test_a_ship_without_places_has_none():
     assert "weighted_acceleration_m_s2" not in profile_in_waves("handysize-bulker")[1]
+
+
+@pytest.mark.parametrize("ship", ["gunnerus-2019", "handysize-bulker"])
+def test_a_request_may_limit_motion_sickness(ship):
+    from thalweg.service.jobs.plan_request import PlanRequest
+    from thalweg.service.jobs.request_objects import open_ship_of
+
+    given = {"voyage": {"start": "Halifax", "goal": "Brest"}, "ship": ship, "seas": ["storm"]}
+    assert open_ship_of(PlanRequest(**given), {}).file.limits.max_motion_sickness_percent is None
+    given["limits"] = {"motion_sickness_percent": 10.0}
+    limited = open_ship_of(PlanRequest(**given), {})
+    assert limited.file.limits.max_motion_sickness_percent == 10.0
+    assert limited.limits.safety is not None
+    assert limited.limits.wave_height == Ship.load(ship).limits.wave_height
