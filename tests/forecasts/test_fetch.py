@@ -26,6 +26,7 @@ from thalweg.forecasts.sources.era5 import Era5
 from thalweg.forecasts.sources.gfs import LEAD_HOURS, Gfs, byte_ranges
 from thalweg.forecasts.sources.matroos import Matroos
 from thalweg.forecasts.sources.open_meteo import OpenMeteo
+from thalweg.sea.standard_names import WAVE_HEIGHT, WAVE_PERIOD
 
 pytestmark = pytest.mark.skipif(  # found, not imported: eccodes and pyproj do not share a process
     any(importlib.util.find_spec(name) is None for name in ("requests", "eccodes", "cfgrib")),
@@ -220,7 +221,7 @@ def open_meteo_answers(recorded: Recorded, *, gap: bool = False) -> None:
                     hourly[name][3] = None
                 units[name] = "°" if "direction" in name else {
                     "wind_speed_10m": "m/s", "ocean_current_velocity": "km/h", "wave_height": "m",
-                    "wave_period": "s"}[name]  # fmt: skip
+                    "wave_peak_period": "s"}[name]  # fmt: skip
             answers.append({"hourly": hourly, "hourly_units": units})
         body = json.dumps(answers).encode()
         handler.send_response(200)
@@ -245,6 +246,7 @@ def test_open_meteo_directions_and_units(tmp_path, client):
         assert np.allclose(current, (3.6 + lat) / 3.6)  # it goes to the east
         height = found["sea_surface_wave_significant_height"].values[1]
         assert np.allclose(height, 3.6 + lat)
+    assert {WAVE_HEIGHT, WAVE_PERIOD} <= set(Sea.open(tmp_path / "a.nc").variables)
 
 
 def test_a_gap_in_a_delivery_is_named_and_nothing_written(tmp_path, client):
@@ -306,7 +308,7 @@ def test_matroos_fields_in_pieces_that_the_server_can_give(tmp_path, client, mon
     with serving(recorded) as address:
         done = fetch_forecast(wanted, Matroos(address), out, client=client, now=NOW)
     assert done.run == RUN and (done.first, done.last) == (RUN + HOUR, RUN + 8 * HOUR)
-    assert "mean sea level" in done.notes[0]
+    assert "mean sea level" in done.notes[0] and "1.1 times" in done.notes[1]
     fields = [path for path in asked if "get_matroos" in path]
     assert len(fields) == 2 * 3 and all("anal=202611220000" in path for path in fields)
     with xr.open_dataset(out) as found:
@@ -318,6 +320,7 @@ def test_matroos_fields_in_pieces_that_the_server_can_give(tmp_path, client, mon
         assert value == pytest.approx(0.515 + 0.003 + 4 * 0.0036, abs=1e-5)
         assert bool(east[:, 0, 0].isnull().all())  # dry, not still water
     sea = Sea.open(out)
+    assert {WAVE_HEIGHT, WAVE_PERIOD} <= set(sea.variables)
     level = sea.sample(["sea_surface_height_above_geopotential_datum"], RUN + 4 * HOUR, 51.5, 3.0)
     assert next(iter(level.values())) == pytest.approx(0.5324, abs=1e-4)
 

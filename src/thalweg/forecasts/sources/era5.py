@@ -31,7 +31,7 @@ _VARIABLES: Final = {
     "waves": (
         ("significant_height_of_combined_wind_waves_and_swell", "swh"),
         ("mean_wave_direction", "mwd"),
-        ("mean_wave_period", "mwp"),
+        ("peak_wave_period", "pp1d"),
     ),
     "pressure": (("mean_sea_level_pressure", "msl"),),
     "ice": (("sea_ice_cover", "siconc"),),

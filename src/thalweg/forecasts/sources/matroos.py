@@ -24,11 +24,17 @@ from thalweg.forecasts.box_cut import cut_to_box, join_pieces
 from thalweg.forecasts.download_client import DownloadClient, DownloadPart
 from thalweg.forecasts.download_plan import DownloadPlan
 from thalweg.forecasts.forecast_request import ForecastRequest
+from thalweg.sea.standard_names import WAVE_PERIOD
 
 _SPACING: Final = 0.05  # of the grid that is asked for [deg]
 _REACH: Final = 48  # of a run [h]
 _SEARCHED: Final = 5 * 24 * HOUR  # period before the start in which a run is looked for [s]
 _MOST_VALUES: Final = 2_000_000  # of one request: larger ones fail on the server
+_PEAK: Final = 1.1  # peak period over Tm-1,0 of a usual spectrum (EurOtop manual, 2018)
+_NOTES: Final = {
+    "current": "Water levels are above the datum of the model, about mean sea level.",
+    "waves": f"Peak periods are {_PEAK} times the mean periods (Tm-1,0) that the model has.",
+}
 _MINUTE: Final = 60.0
 _EPOCH_UNITS: Final = "minutes since 1970-01-01"
 
@@ -63,7 +69,7 @@ MODELS: Final = {
         (48.0, 64.0, -12.0, 9.0),
         {
             "wave_height_hm0": ("sea_surface_wave_significant_height", 40.0),
-            "wave_period_tm10": ("sea_surface_wave_mean_period", 60.0),
+            "wave_period_tm10": (WAVE_PERIOD, 60.0),
             "wave_dir_th0": ("sea_surface_wave_from_direction", 360.0),
         },
     ),
@@ -105,9 +111,7 @@ class Matroos:
             run,
             tuple(run + hour * HOUR for hour in hours),
             tuple(name for model in models for name, _ in model.fields.values()),
-            ("Water levels are above the datum of the model, about mean sea level.",)
-            if "current" in request.quantities
-            else (),
+            tuple(_NOTES[name] for name in request.quantities),
         )
 
     def read(self, request: ForecastRequest, plan: DownloadPlan, files: list[Path]) -> list[Any]:
@@ -223,7 +227,8 @@ def _fields(path: Path, url: str) -> Any:
     for name, (standard, most) in known.items():
         if name in found:
             field = found[name].rename({k: v for k, v in names.items() if k in found[name].dims})
-            field = field.where(np.abs(field) <= most)  # the server marks dry cells by 999 or 1e30
+            field = field.where(np.abs(field) <= most)  # dry cells are 999 or 1e30 there
+            field = field * (_PEAK if standard == WAVE_PERIOD else 1.0)
             data[standard] = field.assign_attrs(standard_name=standard, units=_unit(standard))
     units = str(found["time"].attrs.get("units") or _EPOCH_UNITS).lower()
     if not units.startswith(_EPOCH_UNITS):

@@ -29,7 +29,7 @@ _PER_CALL: Final = 100
 _LONGEST: Final = 16 * DAY
 _WEATHER: Final = ("wind_speed_10m", "wind_direction_10m")
 _MARINE: Final = {
-    "waves": ("wave_height", "wave_direction", "wave_period"),
+    "waves": ("wave_height", "wave_direction", "wave_peak_period"),
     "current": ("ocean_current_velocity", "ocean_current_direction"),
 }
 _RESULTS: Final = {
@@ -37,7 +37,7 @@ _RESULTS: Final = {
     "waves": (
         "sea_surface_wave_significant_height",
         "sea_surface_wave_from_direction",
-        "sea_surface_wave_mean_period",
+        "sea_surface_wave_period_at_variance_spectral_density_maximum",
     ),
     "current": ("eastward_sea_water_velocity", "northward_sea_water_velocity"),
 }
@@ -205,7 +205,7 @@ def _standard(series: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         result["eastward_sea_water_velocity"] = speed * np.sin(towards)
         result["northward_sea_water_velocity"] = speed * np.cos(towards)
     if "wave_height" in series:
-        names = ("wave_height", "wave_direction", "wave_period")
+        names = _MARINE["waves"]
         result |= {ours: series[theirs] for ours, theirs in zip(_RESULTS["waves"], names)}
     return result
 

@@ -29,7 +29,7 @@ FilledQuantity = Literal["currents", "wind", "waves"]
 FileId = Annotated[str, Field(pattern=r"^[0-9a-f]{16,64}$|^calm$|^storm$")]
 
 
-class WeatherLimits(BaseModel):
+class RequestedLimits(BaseModel):
     """Limits that replace those of the ship file; left out: those of the file."""
 
     model_config = ConfigDict(extra="forbid")
@@ -38,6 +38,9 @@ class WeatherLimits(BaseModel):
         float | None, Field(gt=0, le=40, description="significant wave height")
     ] = None
     wind_speed_kn: Annotated[float | None, Field(gt=0, le=200, description="wind at 10 m")] = None
+    motion_sickness_percent: Annotated[
+        float | None, Field(gt=0, le=100, description="people sick after two hours")
+    ] = None
 
 
 class ShipAndSea(BaseModel):
@@ -59,7 +62,7 @@ class ShipAndSea(BaseModel):
     areas: dict[str, Any] | None = Field(
         None, description="GeoJSON areas with the property `kind`: no-go, penalty, price, eca"
     )
-    limits: WeatherLimits = WeatherLimits()
+    limits: RequestedLimits = RequestedLimits()
     coast: Literal["c", "l", "i", "h", "f"] = Field("i", description="resolution of GSHHG")
     load_factor: float | None = Field(None, ge=0, le=1, description="0 empty to 1 full")
 

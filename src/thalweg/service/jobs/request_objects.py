@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
 from thalweg.service.jobs.plan_request import EMBEDDED_SEAS, ShipAndSea
 
@@ -48,7 +49,9 @@ def open_ship_of(request: ShipAndSea, files: Mapping[str, str]) -> Ship:
     """Return the ship of a request, with its load and limits."""
     from thalweg.ship import Ship
 
-    ship = Ship.load(files.get(request.ship, request.ship))
+    name = files.get(request.ship, request.ship)
+    sick = request.limits.motion_sickness_percent
+    ship = Ship.load(name) if sick is None else _with_comfort_limit(name, sick)
     if request.load_factor is not None:
         ship = ship.with_load_factor(request.load_factor)
     given: dict[str, Any] = {}
@@ -57,6 +60,23 @@ def open_ship_of(request: ShipAndSea, files: Mapping[str, str]) -> Ship:
     if request.limits.wind_speed_kn is not None:
         given["wind_speed"] = request.limits.wind_speed_kn * KNOT
     return ship.with_limits(replace(ship.limits, **given)) if given else ship
+
+
+def _with_comfort_limit(name: str, percent: float) -> Ship:
+    """Return a ship whose file has another limit of motion sickness."""
+    from thalweg.ship import Ship, plugin_names
+    from thalweg.ship.file.ship_file import read_ship
+
+    if name in plugin_names():
+        raise InputError(
+            f"A limit of motion sickness was given for the ship {name!r}.",
+            "It can be given for ships of the library and of files; this one is of a plug-in.",
+            "Leave the limit out, or choose another ship.",
+            field="motion_sickness_percent",
+        )
+    data, source = read_ship(name)
+    limits = {**(data.get("limits") or {}), "max_motion_sickness_percent": percent}
+    return Ship.from_dict({**data, "limits": limits}, source=source)
 
 
 def open_seas(names: list[str], fill: Mapping[str, Any], files: Mapping[str, str]) -> Sea:

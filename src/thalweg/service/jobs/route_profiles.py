@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from thalweg.route import Route
 
 MOST_POINTS: Final = 600  #: points of a profile
+_COMFORT: Final = "weighted_acceleration:"  # and the name of a place
 #: Columns of a profile: source in the samples of a route, factor, decimals.
 _COLUMNS: Final[Mapping[str, tuple[str, float, int]]] = {
     "lat": ("lat", 1.0, 5),
@@ -61,6 +62,9 @@ def route_profile(route: Route) -> dict[str, Any]:
     if all(part in samples for part in nm.WAVES.pair):
         east, north = (np.asarray(samples[part], float)[take] for part in nm.WAVES.pair)
         _add(columns, "waves_from_deg", _bearing(east, north, 180.0), 0)
+    motion = next((name for name in samples if name.startswith(_COMFORT)), None)
+    if motion is not None:  # of the first place of the ship file
+        _add(columns, "weighted_acceleration_m_s2", np.asarray(samples[motion], float)[take], 3)
     return columns
 
 

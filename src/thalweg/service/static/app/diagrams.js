@@ -17,6 +17,7 @@ const SERIES = [
   ["under_keel_clearance_m", "Under-keel clearance", "m", "depth", "--coast", 1],
   ["depth_m", "Depth", "m", "depth", "--other", 0],
   ["current_speed_kn", "Current", "kn", "speed", "--isochrone", 1],
+  ["weighted_acceleration_m_s2", "Motion felt on board", "m/s²", "motion", "--danger", 2],
 ];
 const FIRST = ["speed_over_ground_kn", "wave_height_m"];
 
@@ -151,7 +152,7 @@ export class Drawer {
     const there = SERIES.filter(([name]) => profile[name] && this.shown.has(name));
     const scales = [...new Set(there.map((row) => row[3]))];
     const axis = { stroke: colour("ink-2"), grid: { stroke: colour("ground-3"), width: 1 }, ticks: { stroke: colour("line"), width: 1, size: 4 }, font: '11px system-ui, "DejaVu Sans", sans-serif' };
-    const units = { speed: "kn", waves: "m", power: "kW", fuel: "t/d", depth: "m" };
+    const units = { speed: "kn", waves: "m", power: "kW", fuel: "t/d", depth: "m", motion: "m/s²" };
     this.plot = new uPlot({
       width: Math.max(200, this.holder.clientWidth - 8), height: Math.max(80, this.holder.clientHeight - 6), padding: [10, 8, 0, 0],
       tzDate: (t) => uPlot.tzDate(new Date(t * 1000), "UTC"),

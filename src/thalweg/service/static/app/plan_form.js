@@ -9,7 +9,7 @@ import { typedTime } from "./typed_time.js";
 
 const OBJECTIVES = [
   ["front", "All trade-offs of time and fuel"], ["time", "Least time"], ["fuel", "Least fuel"], ["cost", "Least cost"],
-  ["co2", "Least CO₂"], ["energy", "Least energy"], ["distance", "Shortest distance"],
+  ["co2", "Least CO₂"], ["energy", "Least energy"], ["comfort", "Least motion sickness"], ["distance", "Shortest distance"],
 ];
 const CANALS = [["suez", "Suez"], ["panama", "Panama"], ["kiel", "Kiel"], ["corinth", "Corinth"]];
 export const DEMO = { title: "Halifax to Bishop Rock", ship: "handysize-bulker", seas: ["storm"], voyage: { start: "Halifax", goal: "49.7N 6.5W", depart: "1998-08-31T12:00Z", objective: "time" } };
@@ -88,6 +88,7 @@ export class PlanForm extends EventTarget {
         this.#details("limits", "Limits", [
           h("div.pair", {}, this.#number("wave_height_m", "Waves at most", "m"), this.#number("wind_speed_kn", "Wind at most", "kn")),
           h("div.pair", {}, this.#number("min_ukc_m", "Under-keel clearance", "m"), this.#number("offing_nm", "Distance from land", "nm")),
+          this.#number("motion_sickness_percent", "Sick after two hours at most", "% of people"),
           h("p.facts", {}, "Empty: as the ship file states; the distance from land by the size of the ship."),
         ]),
         this.#details("areas", "Areas to avoid", [this.areaBox]),
@@ -134,7 +135,7 @@ export class PlanForm extends EventTarget {
     const text = (name, unitText) => { const value = this.numbers[name].value.trim(); return value ? `${value} ${unitText}` : ""; };
     const said = {
       time: [text("speed_kn", "kn"), this.arriveBy.value ? "arrival set" : "", this.latest.value ? "window" : ""],
-      limits: [text("wave_height_m", "m waves"), text("wind_speed_kn", "kn wind"), text("min_ukc_m", "m UKC"), text("offing_nm", "nm off")],
+      limits: [text("wave_height_m", "m waves"), text("wind_speed_kn", "kn wind"), text("motion_sickness_percent", "% sick"), text("min_ukc_m", "m UKC"), text("offing_nm", "nm off")],
       areas: [this.areas.length ? `${this.areas.length} drawn` : ""],
       canals: [...this.forbid.filter(([, input]) => input.checked).map(([, , name]) => `no ${name}`), this.avoid.value.trim() ? "passages" : ""],
       prices: [text("fuel_price_usd", "USD/t"), text("time_price_usd_per_h", "USD/h")],
@@ -416,7 +417,7 @@ export class PlanForm extends EventTarget {
     if (!this.wait.checked) voyage.wait = false;
     for (const name of ["speed_kn", "min_ukc_m", "offing_nm", "fuel_price_usd", "eca_price_factor", "time_price_usd_per_h"]) voyage[name] = value(name);
     for (const name of Object.keys(voyage)) if (voyage[name] === null || (Array.isArray(voyage[name]) && !voyage[name].length)) delete voyage[name];
-    const request = { title: this.title.value.trim() || this.defaultTitle(), voyage, ship: this.ship.value, seas: this.chosenSeas, limits: { wave_height_m: value("wave_height_m"), wind_speed_kn: value("wind_speed_kn") } };
+    const request = { title: this.title.value.trim() || this.defaultTitle(), voyage, ship: this.ship.value, seas: this.chosenSeas, limits: { wave_height_m: value("wave_height_m"), wind_speed_kn: value("wind_speed_kn"), motion_sickness_percent: value("motion_sickness_percent") } };
     const filled = this.fills.filter(([, select]) => select.value).map(([name, select]) => [name, select.value === "0" ? 0 : select.value]);
     if (filled.length) request.fill = Object.fromEntries(filled);
     if (this.areas.length) request.areas = { type: "FeatureCollection", features: this.areas.map((area) => ({ type: "Feature", properties: area.kind === "no-go" ? { kind: "no-go" } : { kind: area.kind, factor: area.factor }, geometry: { type: "Polygon", coordinates: [area.ring] } })) };

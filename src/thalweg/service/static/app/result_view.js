@@ -5,7 +5,7 @@ import { fill, h, unit } from "./elements.js";
 import { duration, known, number, plainPosition, seconds, signed, signedDuration, time } from "./format.js";
 import { selection } from "./selection.js";
 
-const OBJECTIVES = { time: "least time", distance: "shortest distance", fuel: "least fuel", energy: "least energy", cost: "least cost", co2: "least CO₂", front: "all trade-offs" };
+const OBJECTIVES = { time: "least time", distance: "shortest distance", fuel: "least fuel", energy: "least energy", cost: "least cost", comfort: "least motion sickness", co2: "least CO₂", front: "all trade-offs" };
 const REASONS = {
   "nearer to land than the offing": "legs nearer to land than the offing", "no-go zone": "legs through closed areas", "outside the period of the data": "legs after the end of the data",
   "wave height above the limit": "legs with waves above the limit", "wind speed above the limit": "legs with wind above the limit", "no data": "legs over water without data", land: "legs over land",
@@ -78,7 +78,16 @@ export class ResultView {
       card("Distance", number(route.distance_nm, 1), "nm", known(route.time_h) ? `mean ${number(route.distance_nm / route.time_h, 1)} kn` : null),
       card("CO₂", number(route.co2_t, 0), "t"),
       card("Highest waves", number(waves, 1), "m", known(besideWaves) && known(waves) ? `weather ignored: ${number(besideWaves, 1)} m` : known(waves) ? null : "no waves in the data"),
-      known(route.min_ukc_m) ? card("Least under-keel clearance", number(route.min_ukc_m, 1), "m") : card("Strongest wind", number(wind), "kn", known(wind) ? null : "no wind in the data"));
+      known(route.min_ukc_m) ? card("Least under-keel clearance", number(route.min_ukc_m, 1), "m") : card("Strongest wind", number(wind), "kn", known(wind) ? null : "no wind in the data"),
+      this.#comfort(route, card));
+  }
+
+  // Where people are, for ships whose file names places: how many are sick at the end.
+  #comfort(route, card) {
+    const rows = Object.entries(route.indicators?.places || {}).filter(([, row]) => known(row.sick_percent));
+    const cards = rows.map(([name, row]) => card(`Sick, ${name}`, number(row.sick_percent, 0), "% of people", known(row.worst_hour_percent) ? `worst hour ${number(row.worst_hour_percent, 0)} %` : null));
+    if (cards.length % 2) cards.at(-1).classList.add("wide");
+    return cards;
   }
 
   #proof(plan) {

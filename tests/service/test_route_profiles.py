@@ -1,0 +1,54 @@
+"""Routes along time for the page: motion on board, where the ship file names places."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thalweg import Chart, Sea, Ship, evaluate
+
+pytest.importorskip("fastapi", reason='the extra "serve" is not installed')
+
+
+def profile_in_waves(ship: str):
+    from thalweg.service.jobs.route_profiles import route_profile
+
+    waves = {
+        "sea_surface_wave_significant_height": 2.0,
+        "sea_surface_wave_period_at_variance_spectral_density_maximum": 8.0,
+        "sea_surface_wave_from_direction": 0.0,
+        "eastward_wind": 0.0,
+        "northward_wind": 0.0,
+    }
+    sea = Sea.from_functions(
+        {name: lambda t, lat, lon, v=value: v + 0.0 * lat for name, value in waves.items()}
+    )
+    chart = Chart.open_water(63.0, 65.0, 5.0, 8.0)
+    ends = [(63.5, 6.0), (64.5, 6.0)]
+    route = evaluate(ends, ship=Ship.load(ship), sea=sea, chart=chart, depart=0)
+    return route, route_profile(route)
+
+
+def test_a_ship_with_places_has_the_motion_along_the_route():
+    route, profile = profile_in_waves("gunnerus-2019")
+    motion = np.array(profile["weighted_acceleration_m_s2"])
+    assert len(motion) == len(profile["time"]) and (motion > 0.05).all()
+    assert route.indicators["places"]["mess"]["sick_percent"] > 0.0
+
+
+def test_a_ship_without_places_has_none():
+    assert "weighted_acceleration_m_s2" not in profile_in_waves("handysize-bulker")[1]
+
+
+@pytest.mark.parametrize("ship", ["gunnerus-2019", "handysize-bulker"])
+def test_a_request_may_limit_motion_sickness(ship):
+    from thalweg.service.jobs.plan_request import PlanRequest
+    from thalweg.service.jobs.request_objects import open_ship_of
+
+    given = {"voyage": {"start": "Halifax", "goal": "Brest"}, "ship": ship, "seas": ["storm"]}
+    assert open_ship_of(PlanRequest(**given), {}).file.limits.max_motion_sickness_percent is None
+    given["limits"] = {"motion_sickness_percent": 10.0}
+    limited = open_ship_of(PlanRequest(**given), {})
+    assert limited.file.limits.max_motion_sickness_percent == 10.0
+    assert limited.limits.safety is not None
+    assert limited.limits.wave_height == Ship.load(ship).limits.wave_height
