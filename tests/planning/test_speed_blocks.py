@@ -111,7 +111,10 @@ def test_a_short_block_goes_and_its_cost_is_stated():
     assert [len(item.route.track) for item in after] == [2, 4]  # two waypoints suffice
     assert after[0].route.fuel_t == pytest.approx(routes[1].fuel_t, rel=1e-6)
     (note,) = trade_off.notes
-    assert note.startswith("Speeds are ordered in blocks of at least 6 h") and "0.0% to the fuel" in note
+    assert (
+        note.startswith("Speeds are ordered in blocks of at least 6 h")
+        and "0.0% to the fuel" in note
+    )
     context.voyage = replace(context.voyage, method="exact")
     assert in_speed_blocks(trade_off, before) == before
     context.voyage = replace(context.voyage, speed_block_h=6.0)  # once without effect
