@@ -9,7 +9,13 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.kernels.certificate.cell_conditions import sample_node, time_step_of
-from thalweg.kernels.codes import CHANNEL_COUNT, OK
+from thalweg.kernels.codes import (
+    CHANNEL_COUNT,
+    CURRENT_EAST,
+    CURRENT_NORTH,
+    OK,
+    SPEED_FIELD,
+)
 from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit
 from thalweg.kernels.leg.point_speed import ShipArrays, point_speed_from_guess
@@ -18,7 +24,6 @@ COURSES = 32  # directions to the square of neighbours round a node
 _RENEWAL = 0.02  # of the step of the data, after which times round a node are found again
 _PER_SIDE = COURSES // 8  # points between two neighbours
 UNREACHED = 1e29
-_GOLDEN = 0.6180339887498949
 
 # offsets of the points on the square of neighbours: row, column, counterclockwise from the east
 _RING = np.array(
@@ -71,10 +76,19 @@ def _course_offset(course):
 
 @kernel_only
 def _fill_times(world, ship, node, t, forward, sample, out):
-    """Fill the times [s] from the points round a node to it (or from it to them) at one moment."""
+    """Fill the times [s] from the points round a node to it (or from it to them) at one moment.
+
+    They are those of the conditions at the node itself.
+    """
     j, i = node
     step, fraction = time_step_of(world.raster.times, t)
     sample_node(world, j, i, step, fraction, sample)
+    index = world.raster.channel_index
+    flows = index[CURRENT_EAST] >= 0 and index[CURRENT_NORTH] >= 0
+    current_east = sample[CURRENT_EAST] if flows else 0.0
+    current_north = sample[CURRENT_NORTH] if flows else 0.0
+    known = current_east == current_east and current_north == current_north
+    constant = ship.needs == 0 and index[SPEED_FIELD] < 0
     dlat = world.raster.corner[1] / world.refinement
     dlon = world.raster.corner[3] / world.refinement
     south, west = world.metres_north[j] * dlat, world.metres_east[j] * dlon
@@ -85,12 +99,40 @@ def _fill_times(world, ship, node, t, forward, sample, out):
         east, north = east / size, north / size
         if forward:
             east, north = -east, -north
-        speed, status, _ = point_speed_from_guess(
-            sample, world.raster.channel_index, (east, north), ship, math.inf, math.inf
-        )
-        if status != OK:
-            speed = world.top_speed
+        speed = world.top_speed
+        if constant and known:
+            across = current_north * east - current_east * north
+            spare = speed * speed - across * across
+            along = current_east * east + current_north * north
+            speed = along + math.sqrt(spare) if spare > 0.0 else 0.0
+        elif not constant:
+            attained, status, _ = point_speed_from_guess(
+                sample, index, (east, north), ship, math.inf, math.inf
+            )
+            speed = attained if status == OK else speed
         out[course] = size / speed if speed > 0.0 else UNREACHED
+
+
+@kernel_only
+def _least_in_cells(times, j, i, out):
+    """Fill the times round a node by the best conditions at the corners of the cells they cross.
+
+    Barriers are checked by the best conditions in each cell, not by those at single nodes.
+    """
+    ny, nx, _ = times.shape
+    for course in range(COURSES):
+        out[course] = times[j, i, course]
+    for k in range(8):
+        a, b = j + _RING[k, 0], i + _RING[k, 1]
+        if a < 0 or b < 0 or a >= ny or b >= nx:
+            continue
+        # a corner counts for the courses of one cell, a neighbour in a row or column for two
+        reach = _PER_SIDE if k % 2 else 2 * _PER_SIDE
+        for course in range(k * _PER_SIDE - reach, k * _PER_SIDE + reach + 1):
+            at = (course + COURSES) % COURSES
+            value = times[a, b, at]
+            if value < out[at]:
+                out[at] = value
 
 
 @kernel_only
@@ -103,23 +145,21 @@ def _update(phi, f, j, i, times, aspect):
             best, best_course = value, course
     if best_course < 0:
         return best
-    # the least time through the ring is between its points: a golden section on both sides
+    # the least time through the ring is between its points: that of a parabola on both sides
+    at_best = best
     for side in range(2):
-        first = best_course if side else (best_course + COURSES - 1) % COURSES
-        low, high = 0.0, 1.0
-        one, two = 1.0 - _GOLDEN, _GOLDEN
-        at_one = _between(phi, f, j, i, first, one, times, aspect)
-        at_two = _between(phi, f, j, i, first, two, times, aspect)
-        for _ in range(9):
-            if at_one < at_two:
-                high, two, at_two = two, one, at_one
-                one = high - _GOLDEN * (high - low)
-                at_one = _between(phi, f, j, i, first, one, times, aspect)
-            else:
-                low, one, at_one = one, two, at_two
-                two = low + _GOLDEN * (high - low)
-                at_two = _between(phi, f, j, i, first, two, times, aspect)
-        best = min(best, at_one, at_two)
+        after = (best_course + 1) % COURSES if side else (best_course + COURSES - 1) % COURSES
+        first = best_course if side else after
+        at_after = _through(phi, f, j, i, after, times)
+        if at_after >= 0.5 * UNREACHED:
+            continue
+        zero, one = (at_best, at_after) if side else (at_after, at_best)
+        half = _between(phi, f, j, i, first, 0.5, times, aspect)
+        bend = 2.0 * (zero + one - 2.0 * half)
+        share = 0.5
+        if bend > 0.0:
+            share = min(max(0.5 * (3.0 * zero + one - 4.0 * half) / bend, 0.0), 1.0)
+        best = min(best, half, _between(phi, f, j, i, first, share, times, aspect))
     return best
 
 
@@ -173,6 +213,36 @@ def _through(phi, f, j, i, course, times):
     return value + f[j, i] * times[course]
 
 
+@kernel_only
+def _renew_rings(world, ship, node, moment, windows, forward, rings, work):
+    """Find the times round a node again, if its moment differs, and round new neighbours."""
+    j, i = node
+    ny, nx = rings.moment.shape
+    sample, times, other = work
+    axis = world.raster.times
+    renewal = max(_RENEWAL * (axis[1] - axis[0]), 30.0)
+    if not forward:
+        moment = 0.0
+    for a in range(max(j - 1, 0), min(j + 2, ny)):
+        for b in range(max(i - 1, 0), min(i + 2, nx)):
+            kept = rings.moment[a, b]
+            if kept == kept and ((a != j or b != i) or abs(kept - moment) <= renewal):
+                continue
+            rings.moment[a, b] = moment
+            if forward:
+                _fill_times(world, ship, (a, b), moment, True, sample, times)
+            else:
+                times[:] = UNREACHED
+                for part in range(5):
+                    share = 0.25 * part
+                    t = windows.first[a, b] * (1.0 - share) + windows.last[a, b] * share
+                    _fill_times(world, ship, (a, b), t, False, sample, other)
+                    for k in range(COURSES):
+                        times[k] = min(times[k], other[k])
+            for k in range(COURSES):
+                rings.times[a, b, k] = times[k]
+
+
 @jit
 def solve_barrier(world, phi, nodes, windows, forward, cap, rings):
     """Fill ``phi`` with approximate earliest arrivals, or least times to the goal.
@@ -205,14 +275,12 @@ def solve_barrier(world, phi, nodes, windows, forward, cap, rings):
                     row, column = j + _RING[k, 0], i + _RING[k, 1]
                     if 0 <= row < ny and 0 <= column < nx:
                         active[row, column] = True
-    sample, times = np.full(CHANNEL_COUNT, np.nan), np.empty(COURSES)
-    other = np.empty(COURSES)
+    times = np.empty(COURSES)
+    work = (np.full(CHANNEL_COUNT, np.nan), np.empty(COURSES), np.empty(COURSES))
     limits = world.ship.limits.copy()
     limits[0] = -np.inf
     limits[1:] = np.inf
     ship = ShipArrays(world.ship.table, world.ship.setting, limits, world.ship.needs)
-    axis = world.raster.times
-    renewal = max(_RENEWAL * (axis[1] - axis[0]), 30.0)
     sweep = 0
     for sweep in range(300):
         changes = 0
@@ -234,25 +302,11 @@ def solve_barrier(world, phi, nodes, windows, forward, cap, rings):
                             moment = min(moment, phi[a, b])
                 if moment >= cap:
                     continue
-                if not forward:
-                    moment = 0.0
-                if not abs(rings.moment[j, i] - moment) <= renewal:
-                    rings.moment[j, i] = moment
-                    if forward:
-                        _fill_times(world, ship, (j, i), moment, True, sample, times)
-                    else:
-                        times[:] = UNREACHED
-                        for part in range(5):
-                            share = 0.25 * part
-                            t = windows.first[j, i] * (1.0 - share) + windows.last[j, i] * share
-                            _fill_times(world, ship, (j, i), t, False, sample, other)
-                            for k in range(COURSES):
-                                times[k] = min(times[k], other[k])
-                    for k in range(COURSES):
-                        rings.times[j, i, k] = times[k]
+                _renew_rings(world, ship, (j, i), moment, windows, forward, rings, work)
+                _least_in_cells(rings.times, j, i, times)
                 aspect = world.metres_east[j] * world.raster.corner[3]
                 aspect /= world.metres_north[j] * world.raster.corner[1]
-                value = _update(phi, nodes.factor, j, i, rings.times[j, i], aspect)
+                value = _update(phi, nodes.factor, j, i, times, aspect)
                 if value < phi[j, i] - 1e-9 * max(abs(phi[j, i]), 1.0):
                     phi[j, i] = value
                     changes += 1
