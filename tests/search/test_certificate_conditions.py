@@ -166,5 +166,23 @@ def test_water_of_functions_may_open_at_any_moment_between_samples(by_steps):
     sample = step * math.ceil((opens - 1e9) / step)  # the first one at which it is open
     for moment, expected in ((sample + 5.0, False), (sample - 0.9 * step, not by_steps)):
         closed, window = np.ones(cells, bool), np.full(cells, moment)
-        closed_throughout(mesh.world, TimeWindows(window, window + 1.0), closed)
+        may_close = np.zeros(cells, bool)
+        closed_throughout(mesh.world, TimeWindows(window, window + 1.0), closed, may_close)
         assert (closed == expected).all()
+        assert (may_close == (by_steps and not expected and moment < sample)).all()
+
+
+@pytest.mark.slow
+def test_a_bar_across_the_whole_way_delays_the_bound_until_it_opens():
+    """No ship passes the bar before it opens: the bound rises over it by the time of waiting."""
+    opens, step = 18_000.0, 600.0
+
+    def depth(t, y, x):
+        return np.where((abs(x - 20.5) < 0.03) & (t - 1e9 < opens), -5.0, 20.0) + 0 * y
+
+    sea = Sea.from_functions({"sea_floor_depth_below_geoid": depth}, time_step=step)
+    afloat = ship_of_one_speed(SPEED, Limits(required_depth=6.5))
+    best = opens + 0.53 * STRAIGHT
+    bar = passage(1.002 * best, sea=sea, ship=afloat, channels=(codes.BED_DEPTH,))
+    found = on_meshes(bar, 100, 1)
+    assert 0.955 * best < found.value <= best

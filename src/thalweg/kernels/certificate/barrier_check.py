@@ -9,13 +9,20 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.kernels.certificate.cell_conditions import (
-    MAX_INSTANTS,
     SECTORS,
-    CellBuffers,
     cell_speeds,
+    make_buffers,
     read_cell,
 )
-from thalweg.kernels.codes import AXIS_COUNT, CHANNEL_COUNT
+from thalweg.kernels.certificate.speed_ranges import direction_range
+from thalweg.kernels.codes import (
+    AXIS_DEPTH,
+    AXIS_WAVE_HEIGHT,
+    BED_DEPTH,
+    LIMIT_REQUIRED_DEPTH,
+    LIMIT_WAVE_HEIGHT,
+    LIMIT_WIND_SPEED,
+)
 from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit
 
@@ -170,22 +177,6 @@ def _replace_unknown(currents, instants):
     return strongest
 
 
-@jit
-def make_buffers():
-    """Return the work arrays of one thread."""
-    return CellBuffers(
-        np.full(CHANNEL_COUNT, np.nan),
-        np.zeros((MAX_INSTANTS, 4, 2)),
-        np.zeros((4 * MAX_INSTANTS, 2)),
-        np.zeros((4 * MAX_INSTANTS, 2)),
-        np.zeros((4 * MAX_INSTANTS, 2)),
-        np.zeros(AXIS_COUNT),
-        np.zeros(AXIS_COUNT),
-        np.zeros(4 * AXIS_COUNT),
-        np.zeros(SECTORS),
-    )
-
-
 @kernel_only
 def _kept_speeds(world, j, i, first, last, found, buffers, kept):
     """Return (greatest speed, same for all headings, renewed) of a cell; fill speeds by sector.
@@ -218,11 +209,32 @@ def _kept_speeds(world, j, i, first, last, found, buffers, kept):
 
 
 @kernel_only
+def _has_limits(world):
+    limits = world.ship.limits
+    return (
+        limits[LIMIT_REQUIRED_DEPTH] > -math.inf
+        or limits[LIMIT_WAVE_HEIGHT] < math.inf
+        or limits[LIMIT_WIND_SPEED] < math.inf
+    )
+
+
+@kernel_only
+def _open_on_barrier(world, j, i, least, greatest, buffers):
+    """Return whether a ship may be in a cell at some moment of the values of a barrier in it.
+
+    The centre is then the mean of the corners, and the barrier may rise at any rate.
+    """
+    return not _has_limits(world) or read_cell(world, j, i, least - 1.0, greatest, buffers)[1]
+
+
+@kernel_only
 def _check_cell(world, phi, cell, window, forward, strict, buffers, kept):
     """Return (excess, centre value): how far the barrier rises faster than time in one cell."""
     j, i = cell
     a, b, c, d = phi[j, i], phi[j, i + 1], phi[j + 1, i], phi[j + 1, i + 1]
     least, greatest = min(a, b, c, d), max(a, b, c, d)
+    if forward and not _open_on_barrier(world, j, i, least, greatest, buffers):
+        return -1.0, 0.25 * (a + b + c + d)
     first, last = window
     if forward:  # centre values are searched within half the spread of the corners
         spread = greatest - least
@@ -316,8 +328,8 @@ def check_barrier(world, phi, candidate, windows, forward, strict, found, kept):
 
 
 @jit
-def closed_throughout(world, windows, closed):
-    """Fill which cells no ship may be in at any moment of their windows of time.
+def closed_throughout(world, windows, closed, closing):
+    """Fill which cells no ship may be in at any moment, or at some, of their windows of time.
 
     Parameters
     ----------
@@ -325,10 +337,30 @@ def closed_throughout(world, windows, closed):
     windows : TimeWindows
     closed : bool[Y - 1, X - 1]
         Whether to test each cell before; whether it is closed after.
+    closing : bool[Y - 1, X - 1]
+        Filled: open cells that a limit may close for a time.
     """
     buffers = make_buffers()
+    limited = _has_limits(world)
     for j in range(closed.shape[0]):
         for i in range(closed.shape[1]):
+            closing[j, i] = False
             if closed[j, i]:
                 first, last = windows.first[j, i], windows.last[j, i]
-                closed[j, i] = not read_cell(world, j, i, first, last, buffers)[1]
+                instants, is_open, _, winds, _ = read_cell(world, j, i, first, last, buffers)
+                closed[j, i] = not is_open
+                if limited and is_open:
+                    closing[j, i] = instants < 0 or _may_close(world, winds, buffers)
+
+
+@kernel_only
+def _may_close(world, winds, buffers):
+    """Return whether a condition that was read in a cell is beyond a limit somewhere."""
+    limits, index = world.ship.limits, world.raster.channel_index
+    shallow = buffers.low[AXIS_DEPTH] < limits[LIMIT_REQUIRED_DEPTH]
+    if index[BED_DEPTH] >= 0 and shallow:
+        return True
+    if buffers.high[AXIS_WAVE_HEIGHT] > limits[LIMIT_WAVE_HEIGHT]:
+        return True
+    wind = limits[LIMIT_WIND_SPEED]
+    return winds > 0 and wind < direction_range(buffers.wind_over_ground, winds)[3]

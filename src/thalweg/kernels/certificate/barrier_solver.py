@@ -8,7 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from thalweg.kernels.certificate.cell_conditions import sample_node, time_step_of
+from thalweg.kernels.certificate.cell_conditions import (
+    make_buffers,
+    read_cell,
+    sample_node,
+    time_step_of,
+)
 from thalweg.kernels.codes import (
     CHANNEL_COUNT,
     CURRENT_EAST,
@@ -42,11 +47,14 @@ class SolvedNodes(NamedTuple):
         Factor on the times at each node.
     solvable : bool[Y, X]
         Nodes that take part.
+    closing : bool[Y - 1, X - 1]
+        Cells that a limit may close for a time.
     """
 
     fixed: np.ndarray
     factor: np.ndarray
     solvable: np.ndarray
+    closing: np.ndarray
 
 
 class RingTimes(NamedTuple):
@@ -214,6 +222,73 @@ def _through(phi, f, j, i, course, times):
 
 
 @kernel_only
+def _near_closing(closing, j, i):
+    """Return whether a limit may close a cell at a node."""
+    for row in range(max(j - 1, 0), min(j + 1, closing.shape[0])):
+        for column in range(max(i - 1, 0), min(i + 1, closing.shape[1])):
+            if closing[row, column]:
+                return True
+    return False
+
+
+@kernel_only
+def _update_by_cells(world, phi, nodes, j, i, times, buffers):
+    """Return the least time at a node by way of its cells, after those are open.
+
+    A cell that is closed from the least of its values to the time through it delays a ship to
+    the moment that it opens.
+    """
+    best = UNREACHED
+    ny, nx = nodes.closing.shape
+    for quarter in range(4):
+        row = j if quarter < 2 else j - 1
+        column = i if quarter == 0 or quarter == 3 else i - 1
+        if row < 0 or column < 0 or row >= ny or column >= nx:
+            continue
+        value = UNREACHED
+        for part in range(2 * _PER_SIDE + 1):
+            course = (2 * _PER_SIDE * quarter + part) % COURSES
+            value = min(value, _through(phi, nodes.factor, j, i, course, times))
+        if value >= best:
+            continue
+        if nodes.closing[row, column]:
+            least = value
+            for a in range(row, row + 2):
+                for b in range(column, column + 2):
+                    if a != j or b != i:
+                        least = min(least, phi[a, b])
+            value = _after_opening(world, row, column, least - 1.0, value, buffers)
+        best = min(best, value)
+    return best
+
+
+@kernel_only
+def _after_opening(world, j, i, since, value, buffers):
+    """Return the moment that a cell opens, if it is closed from a moment to a value [s]."""
+    times = world.raster.times
+    if read_cell(world, j, i, since, value, buffers)[1]:
+        return value
+    closed = value
+    opens = closed
+    for k in range(times.shape[0]):
+        if times[k] <= closed:
+            continue
+        if read_cell(world, j, i, closed, times[k], buffers)[1]:
+            opens = times[k]
+            break
+        closed = times[k]
+    if opens <= closed:  # closed to the end of the data
+        return closed
+    while opens - closed > 1.0:
+        middle = 0.5 * (closed + opens)
+        if read_cell(world, j, i, closed, middle, buffers)[1]:
+            opens = middle
+        else:
+            closed = middle
+    return closed
+
+
+@kernel_only
 def _renew_rings(world, ship, node, moment, windows, forward, rings, work):
     """Find the times round a node again, if its moment differs, and round new neighbours."""
     j, i = node
@@ -267,6 +342,7 @@ def solve_barrier(world, phi, nodes, windows, forward, cap, rings):
         Number of sweeps.
     """
     ny, nx = phi.shape
+    buffers = make_buffers()
     active = np.zeros((ny, nx), np.bool_)
     for j in range(ny):
         for i in range(nx):
@@ -307,6 +383,8 @@ def solve_barrier(world, phi, nodes, windows, forward, cap, rings):
                 aspect = world.metres_east[j] * world.raster.corner[3]
                 aspect /= world.metres_north[j] * world.raster.corner[1]
                 value = _update(phi, nodes.factor, j, i, times, aspect)
+                if forward and _near_closing(nodes.closing, j, i):
+                    value = _update_by_cells(world, phi, nodes, j, i, times, buffers)
                 if value < phi[j, i] - 1e-9 * max(abs(phi[j, i]), 1.0):
                     phi[j, i] = value
                     changes += 1

@@ -5,8 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from thalweg.kernels.certificate.speed_ranges import greatest_speed
+from thalweg.kernels.certificate.speed_ranges import (
+    angle_from_bow_range,
+    direction_range,
+    greatest_speed,
+)
 from thalweg.kernels.codes import (
+    AXIS_COUNT,
     AXIS_DEPTH,
     AXIS_WAVE_ANGLE,
     AXIS_WAVE_HEIGHT,
@@ -14,6 +19,7 @@ from thalweg.kernels.codes import (
     AXIS_WIND_ANGLE,
     AXIS_WIND_SPEED,
     BED_DEPTH,
+    CHANNEL_COUNT,
     CURRENT_EAST,
     CURRENT_NORTH,
     LIMIT_REQUIRED_DEPTH,
@@ -29,6 +35,7 @@ from thalweg.kernels.codes import (
     WIND_NORTH,
 )
 from thalweg.kernels.compilation.decorators import kernel_only
+from thalweg.kernels.compilation.jit import jit
 from thalweg.kernels.leg.point_speed import ShipArrays
 from thalweg.kernels.leg.raster_sampling import RasterArrays
 
@@ -117,6 +124,22 @@ class CellBuffers(NamedTuple):
     speed: np.ndarray
 
 
+@jit
+def make_buffers():
+    """Return the work arrays of one thread."""
+    return CellBuffers(
+        np.full(CHANNEL_COUNT, np.nan),
+        np.zeros((MAX_INSTANTS, 4, 2)),
+        np.zeros((4 * MAX_INSTANTS, 2)),
+        np.zeros((4 * MAX_INSTANTS, 2)),
+        np.zeros((4 * MAX_INSTANTS, 2)),
+        np.zeros(AXIS_COUNT),
+        np.zeros(AXIS_COUNT),
+        np.zeros(4 * AXIS_COUNT),
+        np.zeros(SECTORS),
+    )
+
+
 @kernel_only
 def time_step_of(times, t):
     """Return (step, fraction) of a time on an increasing axis, held inside it."""
@@ -154,58 +177,6 @@ def sample_node(world, j, i, step, fraction, sample):
 @kernel_only
 def _widen(low, high, value):
     return min(low, value), max(high, value)
-
-
-@kernel_only
-def direction_range(vectors, count):
-    """Return (least, greatest, shortest, longest) of the azimuths and lengths of a hull of vectors.
-
-    Azimuths are from north, the way they point [rad]; the whole circle where the hull may hold the
-    zero vector.
-    """
-    east, north, longest = 0.0, 0.0, 0.0
-    for k in range(count):
-        east += vectors[k, 0]
-        north += vectors[k, 1]
-        longest = max(longest, math.hypot(vectors[k, 0], vectors[k, 1]))
-    size = math.hypot(east, north)
-    if size <= 1e-12 * max(longest, 1e-300) * count or count == 0:
-        return -math.pi, math.pi, 0.0, longest
-    east, north = east / size, north / size
-    least, greatest, shortest = 0.0, 0.0, math.inf
-    for k in range(count):
-        along = vectors[k, 0] * east + vectors[k, 1] * north
-        across = vectors[k, 0] * north - vectors[k, 1] * east  # clockwise positive
-        if along <= 0.0:
-            return -math.pi, math.pi, 0.0, longest
-        turn = math.atan2(across, along)
-        least, greatest = min(least, turn), max(greatest, turn)
-        shortest = min(shortest, along)
-    middle = math.atan2(east, north)
-    return middle + least, middle + greatest, shortest, longest
-
-
-@kernel_only
-def _angle_from_bow_range(first, last):
-    """Return the range of the angle from the bow [0, pi] over a range of relative azimuths."""
-    if last - first >= 2.0 * math.pi:
-        return 0.0, math.pi
-    turns = math.floor(first / (2.0 * math.pi))
-    first -= 2.0 * math.pi * turns
-    last -= 2.0 * math.pi * turns  # first in [0, 2 pi)
-    low = min(_folded(first), _folded(last))
-    high = max(_folded(first), _folded(last))
-    if last >= 2.0 * math.pi:
-        low = 0.0
-    if (first <= math.pi and last >= math.pi) or last >= 3.0 * math.pi:
-        high = math.pi
-    return low, high
-
-
-@kernel_only
-def _folded(angle):
-    angle = angle % (2.0 * math.pi)
-    return 2.0 * math.pi - angle if angle > math.pi else angle
 
 
 @kernel_only
@@ -376,10 +347,10 @@ def cell_speeds(world, instants, field_high, winds, waves, buffers):
     for sector in range(SECTORS):
         heading = 2.0 * half * sector
         # what travels towards an azimuth comes from the opposite one
-        low[AXIS_WIND_ANGLE], high[AXIS_WIND_ANGLE] = _angle_from_bow_range(
+        low[AXIS_WIND_ANGLE], high[AXIS_WIND_ANGLE] = angle_from_bow_range(
             wind_first + math.pi - heading - half, wind_last + math.pi - heading + half
         )
-        low[AXIS_WAVE_ANGLE], high[AXIS_WAVE_ANGLE] = _angle_from_bow_range(
+        low[AXIS_WAVE_ANGLE], high[AXIS_WAVE_ANGLE] = angle_from_bow_range(
             wave_first + math.pi - heading - half, wave_last + math.pi - heading + half
         )
         speed = greatest_speed(table, setting, low, high, world.top_speed, buffers.place)

@@ -1,4 +1,4 @@
-"""Greatest speed through water of a ship's table over ranges of conditions."""
+"""Ranges of conditions, and the greatest speed through water of a ship's table over them."""
 
 import math
 
@@ -9,6 +9,58 @@ from thalweg.kernels.leg.table_lookup import (
     CURVE_REFINEMENT,
     OUTPUT_CURVE,
 )
+
+
+@kernel_only
+def direction_range(vectors, count):
+    """Return (least, greatest, shortest, longest) of the azimuths and lengths of a hull of vectors.
+
+    Azimuths are from north, the way they point [rad]; the whole circle where the hull may hold the
+    zero vector.
+    """
+    east, north, longest = 0.0, 0.0, 0.0
+    for k in range(count):
+        east += vectors[k, 0]
+        north += vectors[k, 1]
+        longest = max(longest, math.hypot(vectors[k, 0], vectors[k, 1]))
+    size = math.hypot(east, north)
+    if size <= 1e-12 * max(longest, 1e-300) * count or count == 0:
+        return -math.pi, math.pi, 0.0, longest
+    east, north = east / size, north / size
+    least, greatest, shortest = 0.0, 0.0, math.inf
+    for k in range(count):
+        along = vectors[k, 0] * east + vectors[k, 1] * north
+        across = vectors[k, 0] * north - vectors[k, 1] * east  # clockwise positive
+        if along <= 0.0:
+            return -math.pi, math.pi, 0.0, longest
+        turn = math.atan2(across, along)
+        least, greatest = min(least, turn), max(greatest, turn)
+        shortest = min(shortest, along)
+    middle = math.atan2(east, north)
+    return middle + least, middle + greatest, shortest, longest
+
+
+@kernel_only
+def angle_from_bow_range(first, last):
+    """Return the range of the angle from the bow [0, pi] over a range of relative azimuths."""
+    if last - first >= 2.0 * math.pi:
+        return 0.0, math.pi
+    turns = math.floor(first / (2.0 * math.pi))
+    first -= 2.0 * math.pi * turns
+    last -= 2.0 * math.pi * turns  # first in [0, 2 pi)
+    low = min(_folded(first), _folded(last))
+    high = max(_folded(first), _folded(last))
+    if last >= 2.0 * math.pi:
+        low = 0.0
+    if (first <= math.pi and last >= math.pi) or last >= 3.0 * math.pi:
+        high = math.pi
+    return low, high
+
+
+@kernel_only
+def _folded(angle):
+    angle = angle % (2.0 * math.pi)
+    return 2.0 * math.pi - angle if angle > math.pi else angle
 
 
 @kernel_only

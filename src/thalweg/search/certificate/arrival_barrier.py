@@ -106,7 +106,8 @@ def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
     windows = _windows(task)
     around = ndimage.binary_dilation(task.band, np.ones((3, 3), bool), iterations=_BESIDE_BAND)
     closed = around.copy()
-    closed_throughout(mesh.world, windows, closed)
+    may_close = np.zeros(cells, bool)
+    closed_throughout(mesh.world, windows, closed, may_close)
     solvable = _nodes_of(around & ~closed, shape)
     latest = windows.last + mesh.world.departures
     node_windows = TimeWindows(_node_minimum(windows.first), -_node_minimum(-latest))
@@ -120,7 +121,7 @@ def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
     def solve(values: FloatArray) -> FloatArray:
         fixed = ~np.isnan(values)
         phi = np.where(fixed, values, UNREACHED)
-        nodes = SolvedNodes(fixed, f, solvable)
+        nodes = SolvedNodes(fixed, f, solvable, may_close)
         cap = _CAP_RATIO * known
         solve_barrier(mesh.world, phi, nodes, node_windows, task.forward, cap, rings)
         return np.minimum(phi, _CAP_RATIO * known)
@@ -163,7 +164,8 @@ def first_arrivals(task: BarrierTask) -> FloatArray:
     j, i = mesh.cell_of(*task.source)
     given[j : j + 2, i : i + 2] = mesh.times_to_corners(*task.source)
     phi = np.where(np.isnan(given), UNREACHED, given)
-    nodes = SolvedNodes(~np.isnan(given), np.ones(shape), solvable)
+    never = np.zeros((shape[0] - 1, shape[1] - 1), bool)
+    nodes = SolvedNodes(~np.isnan(given), np.ones(shape), solvable, never)
     cap = _CAP_RATIO * task.known
     solve_barrier(mesh.world, phi, nodes, windows, True, cap, _no_ring_times(shape))
     return np.minimum(phi, cap)
