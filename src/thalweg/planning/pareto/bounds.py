@@ -119,8 +119,6 @@ def strongest_current_of_plan(
     if not feasible or trade_off.interrupt_guard.stopped():
         return math.inf, _CURRENT_UNKNOWN
     found = strongest_current_in_data(context, max(feasible, key=lambda route: route.time_h))
-    if found is None:
-        return math.inf, _CURRENT_UNKNOWN
     at_stations = max(strongest_current(one.frozen.stations) for one in explored)
     return max(found[0], at_stations), _KIND + (f", in {found[1]}" if found[1] else "")
 

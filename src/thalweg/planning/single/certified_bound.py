@@ -33,10 +33,6 @@ _HOLDS_FOR = "; it holds for all routes in open water"
 _TABLE_MARGIN = 1e-3
 #: A bound this share above the value of a route contradicts it.
 _CONTRADICTION = 2e-3
-_NO_REGION = (
-    "no bound: the routes that may be faster reach a pole or span more than 350 degrees of "
-    "longitude"
-)
 _NOT_SAILED = "no bound: the route breaks a limit"
 _CELLS_FOR_CURRENT = 100  # where the data are no finer
 _CELLS_OF_PATH = 800  # of functions, along the longer side
@@ -76,8 +72,6 @@ def certified_bound(
     if not by_length:
         passage = replace(passage, depart=departures[0], latest=departures[1])
     found = certify_departures(passage, seconds=seconds)
-    if found is None:
-        return no_bound(_NO_REGION)
     margin = 1.0 if by_length or not context.table.axes else 1.0 - _TABLE_MARGIN
     if found.reached * margin > passage.known * (1.0 + _CONTRADICTION) + route.tolerance_s:
         # a theorem for the data themselves cannot be contradicted by a route through them
@@ -121,13 +115,13 @@ def certified_distance(context: PlanningContext, route: Route, *, seconds: float
 
     Returns
     -------
-    LowerBound : NaN where a canal may shorten the way, and near a pole.
+    LowerBound : NaN where a canal may shorten the way.
     """
     passage = _still_water(context, route)
     if passage.canal_speed(1.0) > 0.0:
         return no_bound(_CANAL)
     found = certify_time(passage, seconds=seconds)
-    return no_bound(_NO_REGION) if found is None else LowerBound(found.value, "")
+    return LowerBound(found.value, "")
 
 
 def certified_total(
@@ -177,7 +171,7 @@ def certified_total(
     return LowerBound(sum(bound.value for bound in least), kind)
 
 
-def strongest_current_in_data(context: PlanningContext, route: Route) -> tuple[float, str] | None:
+def strongest_current_in_data(context: PlanningContext, route: Route) -> tuple[float, str]:
     """Return the strongest current [m/s] that a ship can meet, and how the sea was sampled.
 
     Parameters
@@ -187,15 +181,15 @@ def strongest_current_in_data(context: PlanningContext, route: Route) -> tuple[f
 
     Returns
     -------
-    tuple of float and str, or None : The text is empty where the data themselves were read. None
-        where no box holds the water, as near a pole.
+    tuple of float and str : The text is empty where the data themselves were read.
     """
     currents = tuple(c for c in context.needs.channels if c in (CURRENT_EAST, CURRENT_NORTH))
     if len(currents) < 2:
         return 0.0, ""
     passage = replace(_passage(context, route), channels=currents)
     domain = BarrierDomain.around(passage, _CELLS_FOR_CURRENT)
-    return None if domain is None else (domain.strongest_current, domain.sampling)
+    domain = domain or BarrierDomain.of_globe(passage, _CELLS_FOR_CURRENT)
+    return domain.strongest_current, domain.sampling
 
 
 def no_bound(why: str) -> LowerBound:

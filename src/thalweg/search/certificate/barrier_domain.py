@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 _MARGIN: Final = 1.02
 _CELLS_FOR_SPEED: Final = 60  # of functions, while the greatest speed over ground is sought
 _STEPS_ROUND_ELLIPSE: Final = 73
+_GLOBE: Final = (-89.0, 89.0, -180.0, 180.0)  # south, north, west and east [deg]
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,6 +114,27 @@ class BarrierDomain:
                 break  # the data decide on the cells
             first = found.fastest
         return found
+
+    @classmethod
+    def of_globe(cls, passage: PassageToBound, cells: int) -> BarrierDomain:
+        """Return the domain of all seas, for the bound of the geodesic alone: it has no mesh.
+
+        Parameters
+        ----------
+        cells : Cells of the raster along the equator where the data are no finer.
+        """
+        ship, period = passage.ship, (passage.depart, passage.depart + passage.known)
+        period = period[0], period[1] + passage.departures
+        flows = tuple(c for c in passage.channels if c in (CURRENT_EAST, CURRENT_NORTH))
+        request = RasterRequest(passage.sea, flows, _GLOBE, period, cells, ship.speed_field)
+        frozen = freeze_barrier_raster(request)
+        top = ship.top_speed
+        if ship.speed_field is not None:
+            top = _greatest(frozen.arrays, SPEED_FIELD)
+        speed = top + _strongest_current(frozen.arrays)
+        speed = max(speed, passage.canal_speed(speed))
+        sampling = frozen.sampling if flows or ship.speed_field is not None else ""
+        return cls(frozen.arrays, sampling, speed, replace(ship, top_speed=top))
 
     @classmethod
     def _within_reach(

@@ -23,7 +23,7 @@ _SPLIT_FIRST: Final = 900.0  # pieces this long or longer [s] are divided before
 
 def certify_departures(
     passage: PassageToBound, *, seconds: float, target: float = 0.005
-) -> TimeCertificate | None:
+) -> TimeCertificate:
     """Bound the time of every route of a passage from below, whenever it departs.
 
     The window is divided where its bound is least: a barrier for a piece of the window rises no
@@ -37,8 +37,8 @@ def certify_departures(
 
     Returns
     -------
-    TimeCertificate or None : The least bound of all pieces of the window. None near a pole and
-        across more than half of the globe.
+    TimeCertificate : The least bound of all pieces of the window; that of the geodesic near a pole
+        and across half of the globe.
     """
     if passage.departures <= 0.0:
         return certify_time(passage, seconds=seconds, target=target)
@@ -46,7 +46,7 @@ def certify_departures(
     cells = first_cells(passage, seconds)
     domain = BarrierDomain.around(passage, cells)
     if domain is None:
-        return None
+        return certify_time(passage, seconds=0.0)
     free = free_space_time(passage, domain)
     enough = (1.0 - target) * passage.known
     order = itertools.count()
