@@ -219,12 +219,16 @@ def _has_limits(world):
 
 
 @kernel_only
-def _open_on_barrier(world, j, i, least, greatest, buffers):
-    """Return whether a ship may be in a cell at some moment of the values of a barrier in it.
+def _open_on_barrier(world, j, i, values, window, buffers):
+    """Return whether a faster ship may be in a cell at some moment of a barrier's values there.
 
-    The centre is then the mean of the corners, and the barrier may rise at any rate.
+    ``window`` are the times at which a faster ship may be there at all. The centre is then the
+    mean of the corners, and the barrier may rise at any rate.
     """
-    return not _has_limits(world) or read_cell(world, j, i, least - 1.0, greatest, buffers)[1]
+    if not _has_limits(world):
+        return True
+    first, last = max(values[0] - 1.0, window[0]), min(values[1], window[1])
+    return first <= last and read_cell(world, j, i, first, last, buffers)[1]
 
 
 @kernel_only
@@ -233,7 +237,7 @@ def _check_cell(world, phi, cell, window, forward, strict, buffers, kept):
     j, i = cell
     a, b, c, d = phi[j, i], phi[j, i + 1], phi[j + 1, i], phi[j + 1, i + 1]
     least, greatest = min(a, b, c, d), max(a, b, c, d)
-    if forward and not _open_on_barrier(world, j, i, least, greatest, buffers):
+    if forward and not _open_on_barrier(world, j, i, (least, greatest), window, buffers):
         return -1.0, 0.25 * (a + b + c + d)
     first, last = window
     if forward:  # centre values are searched within half the spread of the corners

@@ -48,7 +48,7 @@ class SolvedNodes(NamedTuple):
     solvable : bool[Y, X]
         Nodes that take part.
     closing : bool[Y - 1, X - 1]
-        Cells that a limit may close for a time.
+        Cells that may be closed, always or for a time.
     """
 
     fixed: np.ndarray
@@ -223,7 +223,7 @@ def _through(phi, f, j, i, course, times):
 
 @kernel_only
 def _near_closing(closing, j, i):
-    """Return whether a limit may close a cell at a node."""
+    """Return whether a cell at a node may be closed."""
     for row in range(max(j - 1, 0), min(j + 1, closing.shape[0])):
         for column in range(max(i - 1, 0), min(i + 1, closing.shape[1])):
             if closing[row, column]:
@@ -266,6 +266,8 @@ def _update_by_cells(world, phi, nodes, j, i, times, buffers):
 def _after_opening(world, j, i, since, value, buffers):
     """Return the moment that a cell opens, if it is closed from a moment to a value [s]."""
     times = world.raster.times
+    if world.closed[j, i]:
+        return UNREACHED
     if read_cell(world, j, i, since, value, buffers)[1]:
         return value
     closed = value
@@ -278,7 +280,7 @@ def _after_opening(world, j, i, since, value, buffers):
             break
         closed = times[k]
     if opens <= closed:  # closed to the end of the data
-        return closed
+        return UNREACHED
     while opens - closed > 1.0:
         middle = 0.5 * (closed + opens)
         if read_cell(world, j, i, closed, middle, buffers)[1]:

@@ -108,6 +108,7 @@ def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
     closed = around.copy()
     may_close = np.zeros(cells, bool)
     closed_throughout(mesh.world, windows, closed, may_close)
+    may_close |= (closed | ~around) if may_close.any() else closed
     solvable = _nodes_of(around & ~closed, shape)
     latest = windows.last + mesh.world.departures
     node_windows = TimeWindows(_node_minimum(windows.first), -_node_minimum(-latest))
