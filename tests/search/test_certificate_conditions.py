@@ -186,3 +186,17 @@ def test_a_bar_across_the_whole_way_delays_the_bound_until_it_opens():
     bar = passage(1.002 * best, sea=sea, ship=afloat, channels=(codes.BED_DEPTH,))
     found = on_meshes(bar, 100, 1)
     assert 0.98 * best < found.value <= best
+
+
+@pytest.mark.parametrize("current", [0.0, 1.0])
+def test_a_passage_near_a_pole_is_bounded_by_the_geodesic(current):
+    ends = (82.0, 0.0), (82.0, 180.0)
+    length = float(distance(*ends[0], *ends[1]))
+    sea = sea_of(lambda t, y, x: current + 0 * x, lambda t, y, x: 0 * x) if current else Sea.calm()
+    channels = CURRENTS if current else ()
+    where = PassageToBound(
+        sea, None, ship_of_one_speed(SPEED), channels, *ends, depart=1e9, known=1.1 * length / SPEED
+    )
+    found = certify_time(where, seconds=1.0)
+    best = length / (SPEED + current)
+    assert found.cells == 0 and 0.999 * best < found.value <= best
