@@ -26,8 +26,7 @@ def assign_fronts(order, second, tails, rank):
 
     Returns
     -------
-    int
-        Number of fronts.
+    int : Number of fronts.
 
     Notes
     -----

@@ -20,10 +20,8 @@ class ArcFrame(NamedTuple):
     m, e, n : (float, float, float)
         Unit vectors: the direction of its middle, the direction along it there, and the normal of
         its plane.
-    k : float
-        Curvature of the geodesic against the plane, ``-f n_z``.
-    tan_half : float
-        Tangent of half its angle.
+    k : Curvature of the geodesic against the plane, ``-f n_z``.
+    tan_half : Tangent of half its angle.
     """
 
     m: tuple

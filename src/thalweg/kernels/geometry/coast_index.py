@@ -226,12 +226,10 @@ def leg_code(coast, lat1, lon1, lat2, lon2):
 
     Returns
     -------
-    code : int
-        OK, LAND, NO_GO (a zone, or outside the area), OFFING (nearer to land than the offing, or
+    code : OK, LAND, NO_GO (a zone, or outside the area), OFFING (nearer to land than the offing, or
         on it) or NO_DATA (a position that is none).
-    unsure : bool
-        The leg passes so near that the first-order geodesic cannot decide; ``code`` is then the
-        blocked one.
+    unsure : The leg passes so near that the first-order geodesic cannot decide; ``code`` is then
+        the blocked one.
     """
     if not (abs(lat1) <= 90.0 and abs(lon1) < 1e6 and abs(lat2) <= 90.0 and abs(lon2) < 1e6):
         return NO_DATA, False

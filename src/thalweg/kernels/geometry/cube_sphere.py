@@ -25,8 +25,7 @@ class IndexArrays(NamedTuple):
 
     Attributes
     ----------
-    side : int
-        Cells along a side of a face.
+    side : Cells along a side of a face.
     cell : float32[6 * side * side]
         Positive: no edges, and none within this angle [rad] of any point of the cell, outside
         the polygons; -1: no edges, inside; -2 - row: the edges of that row.

@@ -35,8 +35,7 @@ class OffingArrays(NamedTuple):
 
     Attributes
     ----------
-    distance : float
-        The offing [m]; 0 for none.
+    distance : The offing [m]; 0 for none.
     disc : float64[D, 6]
         Centre as a unit vector, least distance from land inside [m], radius [m], and by how many
         metres the required distance grows for each metre outside.

@@ -134,8 +134,7 @@ def leaf_face_pairs(keys, middles, faces, longest, first, second):
 
     Returns
     -------
-    pairs, longest : int
-        How many pairs there are, and the longest boundary.
+    pairs, longest : How many pairs there are, and the longest boundary.
 
     Notes
     -----

@@ -95,10 +95,8 @@ class MarchCutoff(NamedTuple):
 
     Attributes
     ----------
-    latest : float
-        An arrival from this time on is not useful [s].
-    least : float
-        Lower bound of the time per metre [s/m].
+    latest : An arrival from this time on is not useful [s].
+    least : Lower bound of the time per metre [s/m].
     """
 
     latest: float
@@ -228,15 +226,12 @@ def march_edge(world, ship, fuel, edge, k, t, cutoff, work):
 
     Returns
     -------
-    arrival : float
-        [s]; of one that is not useful a lower bound that is not useful either. When the status is
-        not `OK`: when the ship was to pass the sample that blocks the edge.
-    burnt : float
-        Fuel [kg]; 0 without a fuel table.
+    arrival : [s]; of one that is not useful a lower bound that is not useful either. When the
+        status is not `OK`: when the ship was to pass the sample that blocks the edge.
+    burnt : Fuel [kg]; 0 without a fuel table.
     status : int
-    sample : int
-        Index of the sample that blocks the edge: less than those inside the edge for the tail, the
-        one after them for the head, the next where the head is not open.
+    sample : Index of the sample that blocks the edge: less than those inside the edge for the tail,
+        the one after them for the head, the next where the head is not open.
 
     Notes
     -----

@@ -40,7 +40,6 @@ class ShipOnRaster(NamedTuple):
 
     Attributes
     ----------
-    raster : RasterArrays
     table : TableArrays
         Speed through water [m/s].
     limits : float64[LIMITS]
@@ -58,15 +57,10 @@ class GreatCircleLeg(NamedTuple):
     ----------
     start, end : (float, float)
         Latitude and longitude [deg].
-    setting : int
-    pieces : int
-        Number of pieces; 0: as many as the longest piece needs.
-    longest_piece : float
-        [m].
-    charted : float
-        Least charted depth [m below datum]; +inf not checked.
-    is_blocked : bool
-        Whether it touches land or a no-go zone.
+    pieces : Number of pieces; 0: as many as the longest piece needs.
+    longest_piece : [m].
+    charted : Least charted depth [m below datum]; +inf not checked.
+    is_blocked : Whether it touches land or a no-go zone.
     """
 
     start: tuple

@@ -307,8 +307,7 @@ def point_speed(sample, channel_index, east, north, table, setting, static_depth
 
     Returns
     -------
-    speed : float
-        Over ground [m/s], > 0 when the status is `OK`, else 0.
+    speed : Over ground [m/s], > 0 when the status is `OK`, else 0.
     status : int
         `OK`, `NO_DATA`, `DEPTH`, `WAVE_HEIGHT`, `WIND_SPEED`, `SHIP_RANGE`, `CURRENT` or `SAFETY`.
 

@@ -73,7 +73,6 @@ class FitnessArrays(NamedTuple):
 
     Attributes
     ----------
-    raster : RasterArrays
     table, fuel : TableArrays
         Speed through water [m/s]; fuel rate [kg/s].
     limits : float64[LIMITS]

@@ -40,18 +40,15 @@ class TableArrays(NamedTuple):
         Number of grid points, at least 2 (any value where there is no axis).
     value_offset : int64[P]
         Where the values of each part start in ``values``.
-    n_settings : int
-        Number of settings.
+    n_settings : Number of settings.
     values : float32[:]
         Values of all parts, C order, one part after another; NaN where the model refuses. The
         innermost axis of every part is the setting, or the column of a crossing.
-    n_columns : int
-        Length of the innermost axis; 0 when it is that of the settings.
+    n_columns : Length of the innermost axis; 0 when it is that of the settings.
     squared_height_limit : float64[P]
         Parts are multiplied by the square of the wave height, up to this height [m]; NaN: not
         multiplied. Empty when none is.
-    finish : int
-        0 when the sum is the value, else `OUTPUT_CURVE` or `CURVE_INTERSECTION`.
+    finish : 0 when the sum is the value, else `OUTPUT_CURVE` or `CURVE_INTERSECTION`.
     curve_start, curve_inv_step, curve_top : float64[settings]
         Where each curve begins and one over the step of its points; greatest value.
     curve : float64[settings, points]
@@ -364,10 +361,8 @@ def table_value(table, axis_values, setting):
 
     Returns
     -------
-    value : float
-        Speed through water [m/s], or fuel rate [kg/s].
-    ok : bool
-        False outside an axis (no extrapolation; only depth beyond the deepest grid point counts as
+    value : Speed through water [m/s], or fuel rate [kg/s].
+    ok : False outside an axis (no extrapolation; only depth beyond the deepest grid point counts as
         that point), for NaN on an axis and where the table itself holds NaN.
     """
     return sum_of_parts(table, axis_values, setting)

@@ -12,12 +12,10 @@ class LatticeRows(NamedTuple):
 
     Attributes
     ----------
-    i0 : int
-        Number of the first row.
+    i0 : Number of the first row.
     row_ptr : int64[R + 1], col : int32[P]
         Row ``i0 + r`` holds the columns ``col[row_ptr[r]:row_ptr[r + 1]]``, ascending.
-    wrap : int
-        Rows that go round the globe; 0: no wrapping.
+    wrap : Rows that go round the globe; 0: no wrapping.
     """
 
     i0: int
@@ -105,8 +103,7 @@ def lattice_pairs(rows, di, dj, first, second, offset):
 
     Returns
     -------
-    int
-        Number of pairs.
+    int : Number of pairs.
     """
     i0, row_ptr, col, _ = rows
     fill = first.shape[0] > 0

@@ -28,8 +28,7 @@ def static_astar(indptr, target, weight, potential, start, goal, distance, paren
 
     Returns
     -------
-    int
-        Nodes settled.
+    int : Nodes settled.
     """
     n = indptr.shape[0] - 1
     nodes, keys = np.empty(n, np.int32), np.empty(n)

@@ -44,8 +44,7 @@ class MultiSettingShip(NamedTuple):
     settings : int64[S]
         The settings of the tables to choose from.
     limits : float64[LIMITS]
-    needs, fuel_needs : int
-        Axes of the two tables (`thalweg.kernels.leg.table_lookup.axes_needed`).
+    needs, fuel_needs : Axes of the two tables (`thalweg.kernels.leg.table_lookup.axes_needed`).
     """
 
     table: TableArrays
@@ -64,17 +63,15 @@ class EdgePrices(NamedTuple):
     weight : float64[E]
         Cost of a kilogram of fuel.
     fee : float64[E]
-        Cost of the passage in addition to fuel.
+        Cost of the edge in addition to fuel.
     fixed_time : float64[E]
         Duration of edges that do not depend on the sea [s]; NaN where sailed.
     fixed_fuel : float64[E]
         Fuel of such an edge [kg].
     fixed_choice : int64[E]
         Which of the chosen settings such an edge is passed with; the others are not offered.
-    time_price : float
-        Cost of a second, under way or not.
-    waiting_cost_rate : float
-        Cost of a second of waiting, ``time_price`` included.
+    time_price : Cost of a second, under way or not.
+    waiting_cost_rate : Cost of a second of waiting, ``time_price`` included.
     """
 
     weight: np.ndarray
@@ -170,8 +167,7 @@ def sail_edge_priced(world, edge, choice, k, t, work):
 
     Returns
     -------
-    arrival, cost : float
-        Cost of fuel, fee and time; not useful unless the status is `OK`.
+    arrival, cost : Cost of fuel, fee and time; not useful unless the status is `OK`.
     status : int
     """
     fixed = world.prices.fixed_time[edge]

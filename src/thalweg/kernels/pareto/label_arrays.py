@@ -50,7 +50,6 @@ class LabelTarget(NamedTuple):
 
     Attributes
     ----------
-    goal : int
     upper : float64[B + 1]
         Least cost known of arriving at the goal by the start of each bin; inf for none.
     time_to_go : float64[N]
@@ -73,16 +72,11 @@ class TimeBins(NamedTuple):
 
     Attributes
     ----------
-    width : float
-        Width of a bin [s].
-    latest : float
-        Latest useful arrival [s after departure].
-    count : int
-        Number of bins B.
-    group : int
-        Bins whose bounds are tested together first.
-    wait : bool
-        Whether ships wait where the network allows it.
+    width : Width of a bin [s].
+    latest : Latest useful arrival [s after departure].
+    count : Number of bins B.
+    group : Bins whose bounds are tested together first.
+    wait : Whether ships wait where the network allows it.
     """
 
     width: float
@@ -115,12 +109,6 @@ class LabelSearch(NamedTuple):
 
     Attributes
     ----------
-    world : FrontArrays
-    labels : BinLabels
-    target : LabelTarget
-    time_bins : TimeBins
-    tables : EdgeTables
-    active_nodes : ActiveNodes
     work : float64[4, CHANNELS]
         Work space.
     at_settings : float32[2 S]
@@ -142,14 +130,10 @@ class LabelDeparture(NamedTuple):
 
     Attributes
     ----------
-    time, cost : float
-        Then [s after departure of the voyage], and spent so far.
-    slot : int
-        The label.
-    left : float
-        ``time``, or NaN if the ship departs on arrival.
-    bin : int
-        Bin that is being processed.
+    time, cost : Then [s after departure of the voyage], and spent so far.
+    slot : The label.
+    left : ``time``, or NaN if the ship departs on arrival.
+    bin : Bin that is being processed.
     """
 
     time: float

@@ -62,8 +62,8 @@ class InterpolationBounds(NamedTuple):
     state : uint8[B]
         By block: `UNFILLED` or `FILLED`.
     off : float32[:, 3]
-        How much shorter a passage may be, how much cheaper without the price of time, and how much
-        longer; each as a share.
+        How much shorter the time on the edge may be, how much cheaper without the price of time,
+        and how much longer; each as a share.
     gains : uint8[:]
         Whether leaving later may be useful; 2 where the edge is closed at one of the two slices.
     along : float64[E]
@@ -82,15 +82,12 @@ class InterpolationBounds(NamedTuple):
 
 
 class ScalarisedLabelTarget(NamedTuple):
-    """A search of the least cost plus a price of time.
+    """A search of the least cost plus a shadow price of time.
 
     Attributes
     ----------
-    goal : int
-    rate : float
-        Price of a second.
-    known : float
-        Cost plus priced time of a real path; labels that are not below it are not extended.
+    rate : Price of a second.
+    known : Cost plus priced time of a real path; labels that are not below it are not extended.
     time_to_go : float64[N]
         Lower bound of the time to the goal [s].
     floor : float64[N]
@@ -109,13 +106,6 @@ class LowerSearch(NamedTuple):
 
     Attributes
     ----------
-    world : FrontArrays
-    labels : LowerLabels
-    target : LabelTarget or ScalarisedLabelTarget
-    time_bins : TimeBins
-    tables : EdgeTables
-    error_bounds : InterpolationBounds
-    active_nodes : ActiveNodes
     work : float64[4, CHANNELS]
         Work space.
     """
@@ -132,7 +122,7 @@ class LowerSearch(NamedTuple):
 
 @inlined
 def _widened_errors(errors, estimate, time, cost, price):
-    """Return errors widened by a passage that takes and costs other than the estimate of both."""
+    """Return errors widened by a time and a cost that differ from the estimates of both."""
     duration, spent = estimate
     own = spent - price * duration
     excess_cost = (cost - price * time) / own - 1.0 if own > 0.0 else 0.0
@@ -142,7 +132,7 @@ def _widened_errors(errors, estimate, time, cost, price):
 
 @inlined
 def _midpoint_errors(search, edge, at, span, k, t):
-    """Return the errors of the mean of two slices for passages midway between them."""
+    """Return the errors of the mean of two slices for departures midway between them."""
     tables, price = search.tables, search.world.prices.time_price
     values, errors = tables.values, (0.0, 0.0, 0.0)
     count = search.world.ship.settings.shape[0]
@@ -161,7 +151,7 @@ def _midpoint_errors(search, edge, at, span, k, t):
 
 @inlined
 def _errors_until_closed(search, node, edge, s, interval, estimate):
-    """Return the errors of a slice for passages until an edge that is open then closes.
+    """Return the errors of a slice for departures until an edge that is open then closes.
 
     ``interval`` is a time at which the edge is open and one at which it is closed, ``estimate`` the
     duration and cost at the slice.

@@ -25,15 +25,13 @@ _GOLDEN = 0.6180339887498949
 _CLOSE = 0.2  # accuracy of the best departure between openings [s]
 
 
-class EdgePassage(NamedTuple):
-    """One passage of an edge.
+class EdgeDeparture(NamedTuple):
+    """One departure along an edge.
 
     Attributes
     ----------
-    departure, arrival : float
-        [s]; the arrival is inf if the edge cannot be sailed to any use.
-    status : int
-        `OK`, or why the edge is blocked.
+    departure, arrival : [s]; the arrival is inf if the edge cannot be sailed to any use.
+    status : `OK`, or why the edge is blocked.
     """
 
     departure: float
@@ -46,16 +44,11 @@ class WaitingTerms(NamedTuple):
 
     Attributes
     ----------
-    may_wait : bool
-        Whether the ship may wait at the tail at all.
-    until : float
-        How long it may wait there [s].
-    factor : float
-        Weight of the time under way; waiting weighs 1.
-    least_time : float
-        Lower bound of the time under way on the edge [s].
-    enough : float
-        A departure is useful only if waiting plus ``factor`` times sailing is below this [s].
+    may_wait : Whether the ship may wait at the tail at all.
+    until : How long it may wait there [s].
+    factor : Weight of the time under way; waiting weighs 1.
+    least_time : Lower bound of the time under way on the edge [s].
+    enough : A departure is useful only if waiting plus ``factor`` times sailing is below this [s].
     """
 
     may_wait: bool
@@ -102,7 +95,7 @@ def _opening_on_edge(world, where, passed, blocked, useless, work):
 
 @kernel_only
 def _first_past(world, where, since, closed, step, work):
-    """Return (departure, passage, status, sample) of the first departure a sample does not block.
+    """Return (departure, time, status, sample) of the first departure that a sample does not block.
 
     ``closed`` is (sample, when it is passed by a departure at ``since``, when it opens). A
     departure that still reaches it before it opens is returned as well, as progress. ``step`` is
@@ -255,7 +248,7 @@ def wait_for_edge(world, edge, tail, k, at_once, terms, work):
         The edge and the station it leaves.
     k : int
         Interval of the times that holds the arrival at the tail.
-    at_once : EdgePassage
+    at_once : EdgeDeparture
         What `sail_edge` gives for departing at the arrival at the tail.
     terms : WaitingTerms
     work : float64[4, CHANNELS]
@@ -263,8 +256,7 @@ def wait_for_edge(world, edge, tail, k, at_once, terms, work):
 
     Returns
     -------
-    EdgePassage
-        With the status of ``at_once`` if the edge is blocked throughout.
+    EdgeDeparture : With the status of ``at_once`` if the edge is blocked throughout.
 
     Notes
     -----
@@ -313,7 +305,7 @@ def wait_for_edge(world, edge, tail, k, at_once, terms, work):
         s, k = end, interval_near(sea.times, k, end)
         if s in (latest, useless):
             break
-    return EdgePassage(departure, arrival if best < math.inf else math.inf, found)
+    return EdgeDeparture(departure, arrival if best < math.inf else math.inf, found)
 
 
 @inlined_by_numba
@@ -328,8 +320,8 @@ def _waiting_is_useless(sea, k, at_once, terms):
 
 
 @inlined_by_numba
-def best_edge_passage(world, edge, tail, k, time, cutoff, terms, work):
-    """Return the best use of an edge since a time: an `EdgePassage` at once or after a wait.
+def best_edge_departure(world, edge, tail, k, time, cutoff, terms, work):
+    """Return the best use of an edge since a time: an `EdgeDeparture` at once or after a wait.
 
     Parameters
     ----------
@@ -347,11 +339,11 @@ def best_edge_passage(world, edge, tail, k, time, cutoff, terms, work):
         Work space; the first row holds the sea at the tail at the time.
     """
     arrival, status = sail_edge(world, edge, k, time, cutoff, (work[0], work[2], work[3]))
-    at_once = EdgePassage(time, arrival, status)
+    at_once = EdgeDeparture(time, arrival, status)
     if terms.may_wait and not _waiting_is_useless(world.sea, k, at_once, terms):
         return wait_for_edge(world, edge, tail, k, at_once, terms, work)
     useless = status == OK and arrival >= cutoff.latest
-    return EdgePassage(time, math.inf if useless else arrival, status)
+    return EdgeDeparture(time, math.inf if useless else arrival, status)
 
 
 @allocation_free

@@ -22,29 +22,22 @@ from thalweg.kernels.leg.edge_sailing import (
     sample_station,
 )
 from thalweg.kernels.search import heap
-from thalweg.kernels.search.edge_departure import WaitingTerms, best_edge_passage
+from thalweg.kernels.search.edge_departure import WaitingTerms, best_edge_departure
 from thalweg.kernels.search.field_bounds import never_deep_enough
 
 
 class SearchQuery(NamedTuple):
-    """One question to a network.
+    """One search of a network.
 
     Attributes
     ----------
-    start, goal : int
-        States; goal -1 reaches everything.
-    depart : float
-        [s].
-    horizon : float
-        Latest arrival anywhere [s]; inf for none.
-    by_distance : bool
-        Cost is length times penalty factor [m], not time times penalty factor [s].
-    wait : bool
-        Whether waiting is allowed at all (nodes must allow it too).
-    slowness : float
-        Lower bound of the time per metre under way [s/m].
-    per_metre : float
-        Lower bound of the cost per metre of geodesic distance to the goal.
+    start, goal : States; goal -1 reaches everything.
+    depart : [s].
+    horizon : Latest arrival anywhere [s]; inf for none.
+    by_distance : Cost is length times penalty factor [m], not time times penalty factor [s].
+    wait : Whether waiting is allowed at all (nodes must allow it too).
+    slowness : Lower bound of the time per metre under way [s/m].
+    per_metre : Lower bound of the cost per metre of geodesic distance to the goal.
     """
 
     start: int
@@ -58,7 +51,20 @@ class SearchQuery(NamedTuple):
 
 
 class NodeLabels(NamedTuple):
-    """What a search found for every node; the unsettled ones hold upper bounds."""
+    """What a search found for every state; the unsettled ones hold upper bounds.
+
+    Attributes
+    ----------
+    cost : float64[N]
+        Time [s] or length [m], times penalty factors; inf where not reached.
+    time : float64[N]
+        Arrival [s]; inf where not reached.
+    before : int32[N]
+        The state before it; -1 for none.
+    departed : float64[N]
+        Departure from there [s].
+    settled : bool[N]
+    """
 
     cost: np.ndarray
     time: np.ndarray
@@ -68,7 +74,20 @@ class NodeLabels(NamedTuple):
 
 
 class SearchWorkspace(NamedTuple):
-    """Memory of one search: the heap, samples of the sea, and counts (`SETTLED`, ...)."""
+    """Memory of one search.
+
+    Attributes
+    ----------
+    nodes : int32[N]
+        States in the heap, with their ``keys`` (float64[N]) and the ``place`` of each state in it
+        (int32[N]; -1 outside).
+    samples : float64[4, CHANNEL_COUNT]
+        Values of the sea.
+    counts : int64[3]
+        By `SETTLED`, `RELAXED` and `SAILED`.
+    refused : int64[STATUS_COUNT]
+        Edges refused, by status.
+    """
 
     nodes: np.ndarray
     keys: np.ndarray
@@ -129,7 +148,7 @@ def _longest_useful_time(query, labels, node, to, length, quickest, factor, goal
 
 @inlined_by_numba
 def _best_departure(world, query, node, edge, k, time, enough, work):
-    """Return the best use of an edge from a node since a time, as an `EdgePassage`."""
+    """Return the best use of an edge from a node since a time, as an `EdgeDeparture`."""
     network = world.network
     factor = 1.0 if query.by_distance else float(network.factor[edge])
     latest = math.inf if query.by_distance else time + enough / factor
@@ -138,7 +157,7 @@ def _best_departure(world, query, node, edge, k, time, enough, work):
     may_wait = query.wait and network.can_wait[node]
     until = max(time, min(network.until[node], query.horizon - quickest))
     terms = WaitingTerms(may_wait, until, factor, quickest, enough)
-    return best_edge_passage(world, edge, network.station[node], k, time, cutoff, terms, work)
+    return best_edge_departure(world, edge, network.station[node], k, time, cutoff, terms, work)
 
 
 @inlined_by_numba

@@ -20,7 +20,7 @@ from thalweg.kernels.codes import (
 from thalweg.kernels.compilation.decorators import allocation_free, inlined_by_numba
 from thalweg.kernels.leg.edge_sailing import MarchCutoff, ShipOnEdges, interval_of, sample_station
 from thalweg.kernels.search import heap
-from thalweg.kernels.search.edge_departure import WaitingTerms, best_edge_passage
+from thalweg.kernels.search.edge_departure import WaitingTerms, best_edge_departure
 
 CURRENT_DIRECTIONS = 16  # directions for which the strongest current is tabulated
 _SHRINK = 1.0 - 1e-7  # so that bounds are below the exact values in single precision
@@ -39,22 +39,15 @@ class DepartureQuery(NamedTuple):
 
     Attributes
     ----------
-    start, goal : int
-        States.
-    depart : float
-        [s].
-    limit : float
-        Costs above this are not useful [s].
-    latest : float
-        So are later arrivals [s].
-    slowness : float
-        Lower bound of the time per metre anywhere [s/m].
-    wait : bool
-        Whether waiting is allowed at all.
+    start, goal : States.
+    depart : [s].
+    limit : Costs above this are not useful [s].
+    latest : So are later arrivals [s].
+    slowness : Lower bound of the time per metre anywhere [s/m].
+    wait : Whether waiting is allowed at all.
     heuristic_weight : float
         Weight of the bounds of the time to go: 1 finds the best path; more finds some path, sooner.
-    most : int
-        The search gives up after settling so many nodes.
+    most : The search gives up after settling so many nodes.
     """
 
     start: int
@@ -266,7 +259,7 @@ def _relax_edges_of_state(world, states, trip, to_goal, marks, state, k, size):
             network.opens[head], network.closes[head] = states.opens[s], states.closes[s]
             cutoff = MarchCutoff(time + enough / factor, trip.slowness)
             terms = WaitingTerms(may_wait, until, factor, least_edge_time / factor, enough)
-            departure, arrival, status = best_edge_passage(
+            departure, arrival, status = best_edge_departure(
                 world, edge, node, k, time, cutoff, terms, marks.samples
             )
             if status != OK or arrival == math.inf or arrival > trip.latest:

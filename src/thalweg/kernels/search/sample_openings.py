@@ -113,7 +113,7 @@ def _margin(network, sea, ship, place, k, moment, work):
     if status != CURRENT or not through > 0.0:
         return -math.inf
     along = sample[CURRENT_EAST] * east + sample[CURRENT_NORTH] * north
-    across = sample[CURRENT_NORTH] * east - sample[CURRENT_EAST] * north
+    across = sample[CURRENT_EAST] * north - sample[CURRENT_NORTH] * east  # positive to starboard
     spare = through * through - across * across
     return min(along + (math.sqrt(spare) if spare > 0.0 else spare / through), 0.0)
 
@@ -181,8 +181,7 @@ def opening_of_sample(network, sea, ship, place, k, moment, blocked, work):
 
     Returns
     -------
-    float
-        [s]; inf if it does not open before it is of no use.
+    float : [s]; inf if it does not open before it is of no use.
 
     Notes
     -----
