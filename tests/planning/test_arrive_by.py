@@ -7,7 +7,7 @@ import pytest
 
 from thalweg import Chart, NoRouteError, Sea, Ship, Voyage, plan
 from thalweg.core.geodesy import distance
-from thalweg.planning.single import passage, route_candidates
+from thalweg.planning.single import route_candidates, stretch
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error
 
 KNOT, HOUR, DEPART = 1852.0 / 3600.0, 3600.0, 1767225600.0
@@ -49,14 +49,14 @@ def test_a_route_that_the_referee_finds_late_is_not_reported_as_in_time(monkeypa
     hours = float(distance(0.0, 0.0, 0.0, 2.0)) / (10.0 * KNOT) / HOUR
     latest = DEPART + (hours + 0.5) * HOUR
     assert plan(Voyage(**ENDS, arrive_by=latest), **given).best.arrive <= latest
-    refined = passage.refine_track
+    refined = stretch.refine_track
 
     def slower(context, track, limits):
         route = refined(context, track, limits)
         legs = {**route.legs, "arrive": route.legs["arrive"] + HOUR}
         return dataclasses.replace(route, legs=legs)
 
-    for module in (passage, route_candidates):
+    for module in (stretch, route_candidates):
         monkeypatch.setattr(module, "refine_track", slower)
     with pytest.raises(NoRouteError, match="No route arrives by") as caught:
         plan(Voyage(**ENDS, arrive_by=latest), **given)
