@@ -19,6 +19,7 @@ from thalweg.planning.pareto.weighted_sums import (
     key_figure_notes,
     normalised_objective,
 )
+from thalweg.sea import Sea
 from thalweg.ship import Ship
 from thalweg.ship.consumption import calm_water_consumption, consumption_table, leg_prices
 
@@ -182,6 +183,15 @@ def test_the_front_of_fuel_and_comfort_is_that_of_all_walks(ship):
     rows = found.to_dict()["points"]
     assert all(abs(row["fuel"] / row["network_fuel"] - 1.0) < 0.02 for row in rows)
     assert found.lower_at(float(found.values[0, 0])) <= found.values[0, 1] * (1 + 1e-9)
+
+
+def test_sums_and_limits_are_for_one_forecast(ship):
+    members = Sea.ensemble(_sea(), _sea())
+    refused = partial(plan, ship=ship, sea=members, chart=Chart.open_water())
+    with pytest.raises(InputError, match="ranges of one network in one forecast"):
+        refused(_voyage(objective="weighted", weights={"fuel": 1.0, "comfort": 1.0}))
+    with pytest.raises(InputError, match="limits are for one forecast"):
+        refused(_voyage(objective="time", at_most={"fuel": 1.0}))
 
 
 @pytest.mark.slow

@@ -183,6 +183,14 @@ def _plan_members(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, replan: _R
     """Return the plan of a voyage in an ensemble forecast."""
     from thalweg.planning.ensemble_plan import plan_ensemble
 
+    if voyage.objective == "weighted":
+        raise InputError(
+            "A weighted sum of key figures is minimised, in an ensemble forecast.",
+            "Weights count over the ranges of one network in one forecast.",
+            "Choose another objective, or give one member.",
+            field="objective",
+        )
+
     def plan_member(request: Voyage, member: Sea) -> Plan:
         return replan(replace(request, ensemble=None), ship=ship, sea=member, chart=chart)
 
