@@ -210,7 +210,7 @@ def test_noon_reports_make_voyages():
 def test_tracks_without_a_voyage_are_refused():
     table = pd.DataFrame({"mmsi": 1, "time": [1.7e9, 1.7e9 + 600.0], "lat": 45.0,
                           "lon": [0.0, 0.01]})  # fmt: skip
-    with pytest.raises(InputError, match="no voyage"):
+    with pytest.raises(InputError, match="No voyage between two ports was found: 1 ship with 2"):
         history_from_tracks(read_fleet([table]), Chart.open_water(), ports=PORTS)
 
 

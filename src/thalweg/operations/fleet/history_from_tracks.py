@@ -112,8 +112,9 @@ def _no_voyage(
         f"{format_position(float(of(fleet.lat)), float(of(fleet.lon)))}" for of in (np.min, np.max)
     )
     return InputError(
-        f"No voyage between two ports was found: {ships} ships with {len(fleet.time):,} positions "
-        f"from {' to '.join(box)} call {len(calls.port)} times, at {ports} ports.",
+        f"No voyage between two ports was found: {ships} {'ship' if ships == 1 else 'ships'} with "
+        f"{len(fleet.time):,} positions from {' to '.join(box)} call {len(calls.port)} times, at "
+        f"{ports} ports.",
         f"A call is a stop, or the first or last position, within "
         f"{rules.reach / NAUTICAL_MILE:g} nm of a port of {known}; a voyage joins two calls.",
         "Name the ports where these ships stop (--ports FILE), or give a greater --reach or more "
