@@ -123,7 +123,9 @@ class Chart:
             object.__setattr__(self, "canals", left)
 
     @classmethod
-    def gshhg(cls, resolution: str = "i", *, narrows_closed: bool = True) -> Chart:
+    def gshhg(
+        cls, resolution: str = "i", *, narrows_closed: bool = True, islets: bool = True
+    ) -> Chart:
         """Return the chart of the world's coasts from GSHHG.
 
         Parameters
@@ -136,6 +138,9 @@ class Chart:
         narrows_closed : bool
             Whether dams and narrows that no ship should use (`thalweg.chart.coast.gshhg`), such as
             the Menai Strait and Kyle Akin, are land.
+        islets : bool
+            Whether resolutions i and h have the islets and rocks that they lack
+            (`thalweg.chart.coast.islets`); False for the outline as published.
 
         Returns
         -------
@@ -148,7 +153,7 @@ class Chart:
             If the resolution is unknown or not installed.
         """
         return cls(
-            Coastline.gshhg(resolution, narrows_closed=narrows_closed),
+            Coastline.gshhg(resolution, narrows_closed=narrows_closed, islets=islets),
             canals=CANALS,
             approaches=PORT_APPROACHES,
             passages=OPEN_PASSAGES,

@@ -23,14 +23,16 @@ CACHE_FORMAT: Final = 3  # increase when the arrays or their construction change
 CELLS_BY_RESOLUTION: Final = {"c": 256, "l": 512, "i": 512, "h": 1024, "f": 1024}
 
 
-def gshhg_index(resolution: str, *, narrows_closed: bool = True) -> IndexArrays:
+def gshhg_index(
+    resolution: str, *, narrows_closed: bool = True, islets: bool = True
+) -> IndexArrays:
     """Return the index of a GSHHG resolution, from disk if it was made before."""
     size = data_files(resolution)[1].stat().st_size
     strips = (CLOSED_CANALS, CLOSED_NARROWS if narrows_closed else {})
-    added = islet_rings().fingerprint() if resolution in "ih" else ""
+    added = islet_rings().fingerprint() if islets and resolution in "ih" else ""
     closed = hashlib.sha256((repr(strips) + added).encode()).hexdigest()[:8]
     side = CELLS_BY_RESOLUTION[resolution]
-    rings = partial(read_land_rings, resolution, narrows_closed=narrows_closed)
+    rings = partial(read_land_rings, resolution, narrows_closed=narrows_closed, islets=islets)
     path = cache_folder("coast") / f"gshhg-{resolution}-{size}-{side}-{closed}-v{CACHE_FORMAT}.npz"
     return load_or_build(path, lambda: build_index(rings(), side))
 

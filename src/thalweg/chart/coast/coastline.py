@@ -41,18 +41,22 @@ class Coastline:
     read: Callable[[], Rings]
 
     @classmethod
-    def gshhg(cls, resolution: str, *, narrows_closed: bool = True) -> Coastline:
+    def gshhg(
+        cls, resolution: str, *, narrows_closed: bool = True, islets: bool = True
+    ) -> Coastline:
         """Return the land of the world from GSHHG (see `thalweg.chart.Chart.gshhg`).
 
         Parameters
         ----------
         resolution : 'c', 'l', 'i', 'h' or 'f'.
         narrows_closed : Whether narrows that no ship should use, and dams, are land.
+        islets : Whether resolutions i and h have the islets that they lack.
         """
-        index = gshhg_index(resolution, narrows_closed=narrows_closed)
+        choice = {"narrows_closed": narrows_closed, "islets": islets}
         name = f"GSHHG {resolution}" + ("" if narrows_closed else ", narrows open")
-        read = partial(read_land_rings, resolution, narrows_closed=narrows_closed)
-        return cls(name, index, read)
+        name += "" if islets else ", without islets"
+        read = partial(read_land_rings, resolution, **choice)
+        return cls(name, gshhg_index(resolution, **choice), read)
 
     @classmethod
     def none(cls) -> Coastline:
