@@ -136,11 +136,9 @@ class Chart:
             can be passed from end to end (`canals`, `without_canals`), and the approaches of
             ports from berth to open sea (`approaches`).
         narrows_closed : bool
-            Whether dams and narrows that no ship should use (`thalweg.chart.coast.gshhg`), such as
-            the Menai Strait and Kyle Akin, are land.
+            Whether dams and narrows that no ship should use, such as the Menai Strait, are land.
         islets : bool
-            Whether resolutions i and h have the islets and rocks that they lack
-            (`thalweg.chart.coast.islets`); False for the outline as published.
+            Whether i and h have the islets that they lack; False: the outline as published.
 
         Returns
         -------
@@ -149,8 +147,7 @@ class Chart:
 
         Raises
         ------
-        InputError
-            If the resolution is unknown or not installed.
+        InputError : If the resolution is unknown or not installed.
         """
         return cls(
             Coastline.gshhg(resolution, narrows_closed=narrows_closed, islets=islets),
