@@ -43,6 +43,12 @@ def test_what_is_not_a_time(value):
         parse_time(value)
 
 
+@pytest.mark.parametrize("value", ["2026-02-30", "2026-02-30T06:00Z", "2026-01-01T25:00"])
+def test_dates_and_hours_that_do_not_exist(value):
+    with pytest.raises(InputError, match=r"is not a time: .*Give a date and time that exist"):
+        parse_time(value)
+
+
 def test_times_go_out_as_they_came_in():
     assert format_time(parse_time("2026-02-28T23:59:59Z")) == "2026-02-28T23:59:59Z"
     assert to_datetime64(parse_time("2026-01-01T00:00Z")) == np.datetime64("2026-01-01T00:00")

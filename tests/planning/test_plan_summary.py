@@ -80,6 +80,11 @@ def with_bound(answer, certain, kind="certificate"):
         (0.963, "certificate", "at most 3.9 % from the best possible"),
         (1.0, "certificate", "at most 0.1 % from the best possible"),
         (0.6, "certificate", "at most 66.7 % from the best possible"),
+        (
+            0.231,
+            "certificate",
+            "little known (weak bound): the best possible is at least 23 % of this",
+        ),
         (np.nan, "no bound: the route ends at a pole", "no bound: the route ends at a pole"),
         (0.0, "certificate", "no bound was found"),
     ],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from datetime import UTC, date, datetime, timedelta
 from typing import Final, TypeAlias
 
@@ -94,11 +95,12 @@ def _from_datetime64(value: np.datetime64) -> float:
 def _parse_text(text: str) -> datetime:
     try:
         return datetime.fromisoformat(text.strip())
-    except ValueError:
+    except ValueError as error:
+        in_form = re.match(r"\s*\d{4}-\d{2}-\d{2}($|[T\s]+\d{2}:\d{2})", text) is not None
         raise InputError(
-            f"{text!r} is not a time.",
+            f"{text!r} is not a time" + (f": {error}." if in_form else "."),
             "Times are ISO 8601 in UTC, such as 2026-01-01T06:30Z.",
-            "Write the time in this form.",
+            "Give a date and time that exist." if in_form else "Write the time in this form.",
             value=text,
         ) from None
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -35,6 +35,7 @@ MAX_LINES = 12  #: of a summary with its notes
 #: Notes whose contents the summary states in its own lines.
 _STATED = ("No depth in the data",)
 _HELD = {"speed": "speed through water", "power": "power", "ground": "speed over ground"}
+_WEAK: Final = 0.5  # gap from which a bound says little of a route
 _LEAST = {
     "comfort": "least motion sickness",
     "encounters": "fewest encounters",
@@ -139,6 +140,9 @@ def quality_text(plan: PlanData) -> str:
     if not plan.gap < 1.0:
         why = plan.proof.kind if plan.proof.kind.startswith("no bound") else "no bound was found"
         return f"{early}{why}"
+    if plan.gap > _WEAK:
+        least = math.floor(100.0 * (1.0 - plan.gap) + 1e-9)
+        return f"{early}little known (weak bound): the best possible is at least {least} % of this"
     excess = plan.gap / (1.0 - plan.gap)  # of the route over the bound
     return f"{early}at most {_percent(excess)} % from the best possible"
 
