@@ -132,9 +132,8 @@ class Chart:
         ----------
         resolution : str
             'c' (crude, 25 km), 'l' (5 km), 'i' (1 km), 'h' (0.2 km) or 'f' (full); h and f need
-            ``pip install "thalweg[hires]"``. Lakes are land. Ship canals are closed to legs, but
-            can be passed from end to end (`canals`, `without_canals`), and the approaches of
-            ports from berth to open sea (`approaches`).
+            ``pip install "thalweg[hires]"``. Lakes are land. Ship canals are closed to legs, but can
+            be passed from end to end (`canals`), as can the approaches of ports (`approaches`).
         narrows_closed : bool
             Whether dams and narrows that no ship should use, such as the Menai Strait, are land.
         islets : bool
@@ -147,7 +146,8 @@ class Chart:
 
         Raises
         ------
-        InputError : If the resolution is unknown or not installed.
+        InputError
+            If the resolution is unknown or not installed.
         """
         return cls(
             Coastline.gshhg(resolution, narrows_closed=narrows_closed, islets=islets),
