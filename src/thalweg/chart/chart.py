@@ -132,7 +132,7 @@ class Chart:
         ----------
         resolution : str
             'c' (crude, 25 km), 'l' (5 km), 'i' (1 km), 'h' (0.2 km) or 'f' (full); h and f need
-            ``pip install "thalweg[hires]"``. Lakes are land. Ship canals are closed to legs, but can
+            ``pip install "thalweg[hires]"``. Lakes are land. Canals are closed to legs, but can
             be passed from end to end (`canals`), as can the approaches of ports (`approaches`).
         narrows_closed : bool
             Whether dams and narrows that no ship should use, such as the Menai Strait, are land.
