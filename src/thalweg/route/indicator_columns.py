@@ -81,14 +81,11 @@ _TABLE_COLUMNS: Final = {
     "pitch": ("pitch_deg", math.radians(1.0)),
     "roll": ("roll_deg", math.radians(1.0)),
     "workable_time": ("workable_h", HOUR),
-    "inshore_length": ("inshore_nm", NAUTICAL_MILE),
-    "inshore_time": ("inshore_h", HOUR),
-    "land_distance": ("land_distance_nm", NAUTICAL_MILE),
-    "contour_distance": ("contour_distance_nm", NAUTICAL_MILE),
-    "near_ground_time": ("near_ground_h", HOUR),
-    "shallow_time": ("shallow_h", HOUR),
-    "encounters": ("encounters", 1.0),
-    "dense_traffic_time": ("dense_traffic_h", HOUR),
+    **{
+        column: (name, unit)
+        for name, (column, unit) in _WATER_COLUMNS.items()
+        if name != "inshore_percent"
+    },
 }
 _LEAST: Final = ("land_distance_nm", "contour_distance_nm")
 _ATTRIBUTES: Final = {

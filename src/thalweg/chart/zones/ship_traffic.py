@@ -186,7 +186,7 @@ class ShipTraffic:
         y, x, when, v = np.broadcast_arrays(*arrays)
         found = np.full(y.shape, math.nan)
         if self.elsewhere is not None:
-            found = np.where(np.isfinite(v), self.elsewhere.at_speed(np.nan_to_num(v)), math.nan)
+            found = self.elsewhere.at_speed(v)
         known = np.isfinite(y + x + when + v)
         month, hour = months_and_hours(np.where(known, when, 0.0))
         meeting = ENCOUNTER_WIDTH * mean_relative_speed(np.where(known, v, 0.0))

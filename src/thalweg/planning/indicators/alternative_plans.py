@@ -190,7 +190,7 @@ def alternative_plans(
     """
     if not 2 <= most <= 5:
         raise InputError(
-            f"{most} alternatives are asked.",
+            f"{most} alternatives were requested.",
             "There are 2 to 5.",
             "Give such a number.",
             field="most",
@@ -204,7 +204,7 @@ def alternative_plans(
         except NoRouteError as error:
             notes.append(f"No route {words}: {error.args[0]}")
         except InputError as error:
-            if not _OPTIONAL.intersection({words}):
+            if words not in _OPTIONAL:
                 raise
             notes.append(f"No route {words}: {error.args[0]}")
     routes = [route for plan in plans for route in _candidates(plan) if route.feasible]
@@ -291,13 +291,12 @@ def _line(route: Route) -> tuple[FloatArray, FloatArray]:
 
 def _differ(one: tuple[FloatArray, FloatArray], other: tuple[FloatArray, FloatArray]) -> bool:
     """Return whether two routes are far apart somewhere: each position to the nearest other."""
-    lat, lon = (np.asarray(x) for x in one)
+    lat, lon = one
     away = np.asarray(distance(lat[:, None], lon[:, None], other[0][None, :], other[1][None, :]))
     steps = np.asarray(distance(lat[:-1], lon[:-1], lat[1:], lon[1:]))
     length = float(steps.sum())
     grid = 0.5 * length / (_SAMPLES - 1)  # positions of one line are this far from the other's
-    apart = float(np.hypot(np.maximum(away.min(axis=1) - grid, 0.0), 0.0).max())
-    return apart > max(_APART * length, _LEAST_APART)
+    return float(away.min(axis=1).max()) - grid > max(_APART * length, _LEAST_APART)
 
 
 def _named(chosen: Sequence[Route], fastest: Plan) -> tuple[RouteChoice, ...]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.objective import KEY_FIGURES, OBJECTIVE_NAMES, Objective
-from thalweg.core.pareto_fronts import evenly_spaced_subset, non_dominated_indices
+from thalweg.core.pareto_fronts import evenly_spaced_subset, lower_hull, non_dominated_indices
 from thalweg.core.types import FloatArray
 from thalweg.network import Network
 from thalweg.planning.pareto.exploration import front_search
@@ -139,7 +139,7 @@ class _WeightedSearches:
     ) -> None:
         if len(names) != 2 or names[0] == names[1] or set(names) - set(OBJECTIVE_NAMES):
             raise InputError(
-                f"A front of {' and '.join(names)} is asked.",
+                f"A front of {' and '.join(names)} was requested.",
                 f"It has two different key figures of {', '.join(OBJECTIVE_NAMES)}.",
                 "Give two of these.",
                 field="of",
@@ -231,13 +231,8 @@ class _WeightedSearches:
 
     def _hull(self) -> list[int]:
         """Return the points of the lower hull of the non-dominated ones, by the first figure."""
-        order = non_dominated_indices(self.values[:, 0], self.values[:, 1])
-        hull: list[int] = []
-        for k in order.tolist():
-            while len(hull) > 1 and _turns_right(self.values[[hull[-2], hull[-1], k]]):
-                hull.pop()
-            hull.append(k)
-        return hull
+        order = np.asarray(non_dominated_indices(self.values[:, 0], self.values[:, 1]))
+        return order[lower_hull(*self.values[order].T)].tolist()
 
     def result(self) -> IndicatorFront:
         """Return the front, with routes scored by the referee."""
@@ -259,9 +254,3 @@ class _WeightedSearches:
             np.array(self.bounds),
             len(self.bounds),
         )
-
-
-def _turns_right(three: FloatArray) -> bool:
-    """Return whether the middle one of three points is on or above the line of the others."""
-    (x1, y1), (x2, y2), (x3, y3) = three
-    return bool((x2 - x1) * (y3 - y1) - (y2 - y1) * (x3 - x1) <= 0.0)
