@@ -141,9 +141,10 @@ def test_names_of_waypoints(tmp_path, ocean):
     assert waypoint_names(miles, "Rotterdam (moved)", "Hull") == [
         "Rotterdam", "WP 2", "Rotterdam approach", "WP 4", "WP 5", "Hull approach", "Hull",
     ]  # fmt: skip
-    speed = np.array([5.0, 5.0, 5.0, 7.0, 7.0, 5.0])
-    named = waypoint_names(miles, "Rotterdam, NL", "49.7000N 6.5000W", speed)
+    approach = np.array([True, True, True, False, False, True])
+    named = waypoint_names(miles, "Rotterdam, NL", "49.7000N 6.5000W", approach)
     assert named[0] == "Rotterdam" and named[3] == "Rotterdam approach" and named[-1] == "WP 7"
+    assert waypoint_names(miles, goal="Hull", approach=approach)[-2:] == ["Hull approach", "Hull"]
     assert waypoint_names(miles[:2]) == ["WP 1", "WP 2"]
     assert waypoint_names(miles[:2], "Hull", "Hull") == ["Hull", "Hull (end)"]
     path = tmp_path / "route.csv"

@@ -14,6 +14,7 @@ from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.report.land_report import passages_used
 from thalweg.route import Route
+from thalweg.route.canal_legs import canal_legs
 from thalweg.ship import Ship
 
 _STEP: Final = 1.0 * NAUTICAL_MILE
@@ -52,7 +53,8 @@ def depth_notes(chart: Chart, route: Route, ship: Ship, clearance: float) -> lis
         if area.contains(lat, lon).any()
     ]
     depth = np.asarray(coarse_depth(lat, lon))
-    shallow = (depth < required) & _judged(chart, route, lat, lon)
+    in_approach = canal_legs(route.track, chart, ship).approach[leg]
+    shallow = (depth < required) & ~in_approach & _judged(chart, route, lat, lon)
     if shallow.any():
         notes.append(_shallow_legs(depth, np.flatnonzero(shallow), (lat, lon, leg), required))
     return notes
@@ -91,6 +93,6 @@ def _shallow_legs(
     more = f", and {len(found) - _MOST_LEGS} more legs" if len(found) > _MOST_LEGS else ""
     return (
         f"{CHECK_DEPTH}: {required:.1f} m are required, and the {NAME} has {'; '.join(named)}"
-        f"{more}. It does not show small shoals and channels, and was not read within 12 nm of the "
-        "ends, 1 nm of land and in narrow passages."
+        f"{more}. It does not show small shoals and channels, and was not read in the approaches of "
+        "ports, within 12 nm of the ends, 1 nm of land and in narrow passages."
     )

@@ -15,7 +15,7 @@ from thalweg.route.formats.file_waypoints import FileVertices, file_vertices
 from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.formats.waypoint_names import waypoint_names
 from thalweg.route.route import Route
-from thalweg.route.route_tables import waypoint_rows
+from thalweg.route.route_tables import LEG_KINDS, waypoint_rows
 from thalweg.route.track import Track
 
 #: Results of legs that are not sums over their parts.
@@ -68,7 +68,8 @@ def _cut_at_waypoints(route: Route, options: RouteFileOptions) -> FileRoute:
     rows = waypoint_rows(cut)
     lat, lon = vertices.lat, vertices.lon
     _, course = inverse_rhumb(lat[:-1], lon[:-1], lat[1:], lon[1:])
-    names = waypoint_names(vertices.at, options.start, options.goal, cut.legs["ordered_speed"])
+    approach = cut.legs["leg_kind"] == LEG_KINDS.index("approach")
+    names = waypoint_names(vertices.at, options.start, options.goal, approach)
     bearings = np.degrees(np.append(course, course[-1])).tolist()
     rows = [
         {
