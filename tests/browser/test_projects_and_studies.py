@@ -47,9 +47,14 @@ def test_a_project_is_simulated_and_read(visit):
 
 
 def test_a_project_that_is_wrong_says_so_at_its_field(visit):
+    asked: list[str] = []
+    visit.page.on("request", lambda request: asked.append(request.url))
     page = visit.open("#view=projects")
     page.get_by_role("button", name="Fill in the example").click()
     playwright_api.expect(page.locator("#p-volume_m3")).to_have_value("425500")
+    assert sum("/projects/example" in url for url in asked) == 1, (
+        "a second answer would replace what the user writes meanwhile"
+    )
     page.locator("#p-volume_m3").fill("-5")
     page.get_by_role("button", name="Simulate the project").click()
     assert "volume_m3" in page.locator("form [role=alert]").inner_text()

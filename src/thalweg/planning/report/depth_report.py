@@ -93,6 +93,6 @@ def _shallow_legs(
     more = f", and {len(found) - _MOST_LEGS} more legs" if len(found) > _MOST_LEGS else ""
     return (
         f"{CHECK_DEPTH}: {required:.1f} m are required, and the {NAME} has {'; '.join(named)}"
-        f"{more}. It does not show small shoals and channels, and was not read in the approaches of "
-        "ports, within 12 nm of the ends, 1 nm of land and in narrow passages."
+        f"{more}. It does not show small shoals and channels, and was not read in the approaches "
+        "of ports, within 12 nm of the ends, 1 nm of land and in narrow passages."
     )

@@ -37,7 +37,7 @@ export class ProjectView {
     this.problem = h("div");
     this.earlier = h("div");
     this.button = h("button.primary", { type: "submit" }, "Simulate the project");
-    this.element = h("form", { novalidate: true, class: "form", style: "display: contents", onsubmit: (event) => { event.preventDefault(); this.submit(); } },
+    this.element = h("form", { novalidate: true, class: "form", style: "display: contents", oninput: () => { this.touched = true; }, onsubmit: (event) => { event.preventDefault(); this.submit(); } },
       h("div.scroll", {}, h("h1", {}, "Dredging project"), h("p.lead", {}, "Load, sail full, unload, sail empty, until a volume is moved. Each cycle takes the load and the routes that move most."),
         h("div.exports.block", {}, h("button.quiet.small", { type: "button", onclick: () => this.example() }, "Fill in the example"), h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Project file …"), this.file),
         this.earlier,
@@ -61,7 +61,7 @@ export class ProjectView {
     this.chart.routes.clear();
     this.lists();
     this.places();
-    if (!this.load.value && !this.touched) await this.example().catch((problem) => fill(this.problem, errorBox(problem)));
+    if (!this.touched) await this.example(true).catch((problem) => fill(this.problem, errorBox(problem)));
     const { jobs } = await get("/plans?kind=project&size=20");
     fill(this.earlier, jobs.length ? h("details", {}, h("summary", {}, "Earlier projects", h("span.set", {}, String(jobs.length))), h("div.inside", {}, jobs.map((job) => h("button.job", { type: "button", onclick: () => this.openJob(job.id) }, h("b", {}, job.title), " ", job.state === "done" ? null : h(`span.state.${job.state}`, {}, job.state), h("span", {}, job.summary ? `${number(job.summary.duration_days, 1)} days · ${number(job.summary.cycles)} cycles · ${time(seconds(job.created))}` : time(seconds(job.created))))))) : null);
     return this.element;
@@ -79,8 +79,11 @@ export class ProjectView {
     fill(this.sea, rows.map((sea) => h("label.check", {}, h("input", { type: "checkbox", value: sea.id, checked: before.has(sea.id), onchange: (event) => { if (event.target.checked) for (const box of this.sea.querySelectorAll("input")) if (box !== event.target && (box.value === "synthetic-estuary" || event.target.value === "synthetic-estuary")) box.checked = false; } }), h("span", {}, sea.name, h("small", {}, sea.facts)))));
   }
 
-  async example() {
-    const { project } = await get("/projects/example");
+  // The example is read once, so that it never arrives after what the user writes.
+  async example(first = false) {
+    this.fetched ||= get("/projects/example").catch((problem) => { this.fetched = null; throw problem; });
+    const { project } = await this.fetched;
+    if (first && this.touched) return;
     this.set(project);
     this.fit();
   }
@@ -128,9 +131,14 @@ export class ProjectView {
     [this.load, this.unload].filter((field) => field.place)[number_]?.setPosition(lat, lon);
   }
 
+  #place(field, lat, lon) {
+    this.touched = true;
+    field.setPosition(lat, lon);
+  }
+
   clicked(lat, lon, coordinate) {
     if (this.job) return;
-    this.chart.choose(coordinate, plainPosition(lat, lon), [["Load here", () => this.load.setPosition(lat, lon)], ["Unload here", () => this.unload.setPosition(lat, lon)], ["Close", () => {}]]);
+    this.chart.choose(coordinate, plainPosition(lat, lon), [["Load here", () => this.#place(this.load, lat, lon)], ["Unload here", () => this.#place(this.unload, lat, lon)], ["Close", () => {}]]);
   }
 
   request() {
