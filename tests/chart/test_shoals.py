@@ -103,6 +103,14 @@ def test_channels_count_as_deep_along_their_lines():
     assert global_depth_codes()[1314, 1097] - 1 < 20  # the layer itself is unchanged
 
 
+def test_a_named_area_beside_a_harbour_stays_shoal():
+    inside, outside = (51.85, 2.0), (51.835, 1.8)  # Galloper, and the sea end of Felixstowe
+    for place, shoal in ((outside, True), (inside, False)):
+        shoals = Shoals(20.0, 12.0, harbours=(place,))
+        assert (shoals.excess(51.85, 1.98, 51.85, 2.02) > 5.0) == shoal
+        assert shoals.excess(51.835, 1.78, 51.835, 1.8) == 0.0
+
+
 def test_shoals_add_to_penalty_zones_and_change_the_fingerprint():
     square = [[-71.0, 41.0], [-70.0, 41.0], [-70.0, 41.9], [-71.0, 41.9], [-71.0, 41.0]]
     zone = {"type": "Feature", "properties": {"kind": "penalty", "factor": 2.0},

@@ -8,6 +8,7 @@ import pytest
 from tests.sea import hydrodynamic_runs as hydro
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.errors import MissingVariableError, NoRouteError
+from thalweg.core.geodesy import distance
 from thalweg.core.time import parse_time
 
 LOW, M2 = 1767236400.0, 44714.0  # 2026-01-01T03:00Z
@@ -100,6 +101,21 @@ def test_an_arrival_before_a_window_allows_it() -> None:
         )
     assert caught.value.asked == "No route arrives by 2026-01-01T06:00:00Z."
     assert "shortest passage of the window" in caught.value.possible
+
+
+def test_the_best_departure_of_a_window_goes_straight_over_the_bar() -> None:
+    # at the first moment of the tide the referee still finds the limit exceeded at the bar's edge
+    def bar(time, lat, lon):
+        return np.where((lon > 3.55) & (lon < 3.60), 7.0, 15.0) + 0.0 * lat
+
+    voyage = {"start": (51.71, 3.45), "goal": (51.77, 3.70), "min_ukc_m": 1.0}
+    sea = Sea.from_functions({BED: bar, LEVEL: level})
+    given = {"ship": SHIP, "sea": sea, "chart": Chart.open_water(*AREA), "resolution": COARSE}
+    window = (LOW - 3.0 * 3600.0, LOW + 9.0 * 3600.0)
+    best = plan(Voyage(offing_nm=0.0, **voyage, depart_window=window), **given).best
+    straight = distance(51.71, 3.45, 51.77, 3.70)
+    assert best.feasible and best.waiting_h == 0.0
+    assert best.legs["length"].sum() == pytest.approx(straight, rel=1e-4)
 
 
 def test_water_that_is_never_deep_enough_is_reported_for_any_arrival() -> None:

@@ -9,6 +9,7 @@ the 5, 10 and 20 m contours for draughts below 3, 6 and 10 m. The factors are ou
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import Final
@@ -67,7 +68,8 @@ class Shoals:
     channels : tuple of tuple of (lat, lon)
         Lines along which water is as deep as the contour, whatever the layer has [deg].
     harbours : tuple of (lat, lon)
-        Positions round which it is so within 8 nautical miles: the layer shows no dredged channels.
+        Positions round which it is so within 8 nautical miles, outside named areas that have none
+        of them inside: the layer shows no dredged channels.
     """
 
     contour: float
@@ -108,18 +110,30 @@ class Shoals:
 def _arrays(shoals: Shoals) -> ShoalArrays:
     code = global_depth_codes().copy()
     deep = np.uint8(min(np.ceil(shoals.contour) + 1.0, 255.0))
-    for area in SHOAL_AREAS:
-        row, column = _points_inside(area)
-        code[row, column] = np.minimum(code[row, column], np.uint8(area.depth + 1.0))
+    _shoal_inside(code, SHOAL_AREAS)
     code[_beside_shoals(code, shoals)] = deep
-    for line, margin in (
-        *((channel, _MARGIN) for channel in shoals.channels),
-        *(((place,), _HARBOUR) for place in shoals.harbours),
-    ):
-        row, column = _points_near(line, margin)
-        code[row, column] = np.maximum(code[row, column], deep)
+    for place in shoals.harbours:
+        _deepen_near(code, (place,), _HARBOUR, deep)
+    # a named area beside a harbour stays shoal, one with a harbour in it does not
+    ends = np.array(shoals.harbours).reshape(-1, 2)
+    _shoal_inside(code, [area for area in SHOAL_AREAS if not area.contains(*ends.T).any()])
+    for channel in shoals.channels:
+        _deepen_near(code, channel, _MARGIN, deep)
     depths = np.array([shoals.contour, shoals.least])
     return ShoalArrays(code, _free_tiles((code > 0) & (code < deep)), depths, np.array(EXCESS))
+
+
+def _shoal_inside(code: NDArray[np.uint8], areas: Iterable[ShoalArea]) -> None:
+    for area in areas:
+        row, column = _points_inside(area)
+        code[row, column] = np.minimum(code[row, column], np.uint8(area.depth + 1.0))
+
+
+def _deepen_near(
+    code: NDArray[np.uint8], line: tuple[Position, ...], margin: float, deep: np.uint8
+) -> None:
+    row, column = _points_near(line, margin)
+    code[row, column] = np.maximum(code[row, column], deep)
 
 
 def _beside_shoals(code: NDArray[np.uint8], shoals: Shoals) -> NDArray[np.bool_]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -19,6 +21,9 @@ from thalweg.search import LowerBound, SearchResult
 _WIDE_GAP = 0.01
 #: Searches through the data for what is narrower than the network, and the gain for another one.
 _MOST_RASTERS, _WORTH_ANOTHER = 4, 2e-3
+_WORTH_REFINING = 1e-4  # gain of a later departure for which the route is refined again
+#: Later departures that are tried where a window leaves the choice [min].
+_LATER = (1, 2, 3, 5, 8, 13, 21, 34, 55)
 
 
 def refined_bound_path(
@@ -60,6 +65,36 @@ def through_narrow_features(context: PlanningContext, route: Route, limits: Limi
         if route is before or route.time_h > (1.0 - _WORTH_ANOTHER) * before.time_h:
             break
     return route
+
+
+def departing_later(
+    context: PlanningContext, tracks: Sequence[Track], route: Route, limits: Limits, last: float
+) -> Route:
+    """Return the better of a route and tracks that depart a little later, refined.
+
+    The first of many equal departures is that at which a limit opens, and the referee, which looks
+    between the stations, may find it exceeded still.
+
+    Parameters
+    ----------
+    tracks : Departing no later than the route.
+    last : Latest departure [s since 1970-01-01T00:00Z].
+    """
+    key = partial(comparison_key, objective=context.voyage.objective, chart=context.chart)
+    departures = [route.depart + 60.0 * minutes for minutes in _LATER]
+    later = [
+        context.evaluate(replace(track, depart=depart, wait=None))
+        for depart in departures
+        if depart <= last
+        for track in tracks
+    ]
+    later = [one for one in later if one.arrive <= context.latest_arrival]
+    best = min([route, *later], key=key)
+    if best is route or route_value(context, best) > (1.0 - _WORTH_REFINING) * route_value(
+        context, route
+    ):
+        return route
+    return min((route, refine_track(context, best.track, limits)), key=key)
 
 
 def route_value(context: PlanningContext, route: Route) -> float:

@@ -27,6 +27,7 @@ from thalweg.planning.single.exceeded_limits import (
 )
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.single.route_candidates import (
+    departing_later,
     refine_track,
     refined_bound_path,
     route_value,
@@ -167,7 +168,10 @@ def _search_and_refine(
 ) -> StretchResult:
     """Search, refine and bound the stretch on one network with one set of limits."""
     frozen, result = _search(context, network, limits, window, ends)
-    route = refine_track(context, track_from_result(network, result, context.setting), limits)
+    track = track_from_result(network, result, context.setting)
+    route = refine_track(context, track, limits)
+    if window[1] > window[0]:
+        route = departing_later(context, (track, route.track), route, limits, window[1])
     if context.voyage.depart_window is None:
         context.report_progress("searching as in open water")
         hint = _bound(context, network, frozen, result, route)

@@ -195,14 +195,20 @@ def _clipped_period(period: FloatArray) -> FloatArray:
     return np.clip(period, SHORTEST_PERIOD, LONGEST_PERIOD)
 
 
+def _wind_method_for(hull: Hull) -> str:
+    """Return the choice of a wind method that needs no more than a hull has."""
+    if hull.number("frontal_area_m2") is None:
+        return "wind: yu_2021"
+    return "wind: ittc" if hull.number("lateral_area_m2") is None else "wind: blendermann_1994"
+
+
 def _fujiwara(hull: Hull, kind: str) -> WindResistance:
     keys = (
         *("length_overall_m", "breadth_m", "frontal_area_m2", "lateral_area_m2"),
         *("superstructure_lateral_area_m2", "superstructure_height_m"),
     )
-    instead = "wind: blendermann_1994 or wind: ittc"
     length, breadth, front, side, deck, high = required_particulars(
-        hull, keys, "fujiwara_2006", instead=instead
+        hull, keys, "fujiwara_2006", instead=_wind_method_for(hull)
     )
     centre = hull.number("lateral_centre_height_m")
     if centre is None:
@@ -248,7 +254,8 @@ def _blendermann(hull: Hull, kind: str) -> WindResistance:
             "type of ship for blendermann_1994 (models.wind_type)", kind, BLENDERMANN
         )
     keys = ("frontal_area_m2", "lateral_area_m2")
-    front, side = required_particulars(hull, keys, "blendermann_1994", instead="wind: ittc")
+    instead = _wind_method_for(hull)
+    front, side = required_particulars(hull, keys, "blendermann_1994", instead=instead)
 
     def coefficient(angle: FloatArray) -> FloatArray:
         return blendermann_1994(
