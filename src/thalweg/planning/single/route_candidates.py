@@ -83,7 +83,7 @@ def departing_later(
     key = partial(comparison_key, objective=context.voyage.objective, chart=context.chart)
     departures = [route.depart + 60.0 * minutes for minutes in _LATER]
     later = [
-        context.evaluate(replace(track, depart=depart, wait=None))
+        context.evaluate(replace(track, depart=depart, wait=np.zeros(len(track.lat))))
         for depart in departures
         if depart <= last
         for track in tracks
