@@ -137,7 +137,8 @@ def test_only_pieces_near_a_lane_are_compared_and_none_is_missed():
         ring = [[x - 1, y - 0.2], [x + 1, y - 0.2], [x + 1, y + 0.2], [x - 1, y + 0.2]]
         lanes.append(lane([*ring, ring[0]], factor=2.0, direction_deg=float(rng.uniform(0, 360))))
     group = Zones.read(collection(*lanes)).lane_group
-    every = replace(group, cells=np.ones_like(group.cells))
+    rows, columns = (np.arange(n, dtype=np.int32) for n in group.cells.shape)
+    every = replace(group, cells=rows[:, None] * columns)
     at = np.array(places)[rng.integers(0, len(places), 400)]
     spread = np.where(rng.uniform(size=400) < 0.5, 1.5, 20.0)[:, None]
     begin = np.clip(at + spread * rng.normal(size=(400, 2)), -85.0, 85.0)
@@ -145,3 +146,6 @@ def test_only_pieces_near_a_lane_are_compared_and_none_is_missed():
     legs = (*begin.T, *end.T)
     assert group.excess(*legs) == pytest.approx(every.excess(*legs), abs=1e-12)
     assert np.count_nonzero(every.excess(*legs)) > 25
+    there, back = group.excess_both_ways(*legs)
+    assert there == pytest.approx(group.excess(*legs), abs=1e-12)
+    assert back == pytest.approx(group.excess(*legs[2:], *legs[:2]), abs=1e-9)

@@ -215,12 +215,11 @@ def assemble(
     course = _with_canal_courses(stations, pairs)[directed.pair]
     course[directed.reversed] += np.float32(np.pi)
     course[course >= 2 * np.pi] -= np.float32(2 * np.pi)
-    edges = _pair_properties(chart, stations, pairs).take(directed.pair)
-    if chart.zones.lanes:  # the factors of pairs are those from the first node to the second
-        back = np.flatnonzero(directed.reversed & np.isnan(edges.fixed_time))
-        pair = directed.pair[back]
-        ends = _ends(stations, pairs.second[pair], pairs.first[pair])
-        edges.penalty_factor[back] = chart.zones.factors(*ends)[0]
+    properties, penalty_back = _pair_properties(chart, stations, pairs)
+    edges = properties.take(directed.pair)
+    if chart.zones.lanes:
+        back = np.flatnonzero(directed.reversed)
+        edges.penalty_factor[back] = penalty_back[directed.pair[back]]
     return Network(
         stations,
         directed.graph,
@@ -252,26 +251,32 @@ def _with_canal_courses(stations: Stations, pairs: Pairs) -> Float32Array:
     return course
 
 
-def _pair_properties(chart: Chart, stations: Stations, pairs: Pairs) -> Edges:
-    """Return the properties of pairs as edges from their first node to their second."""
+def _pair_properties(
+    chart: Chart, stations: Stations, pairs: Pairs
+) -> tuple[Edges, Float32Array]:
+    """Return the properties of pairs as edges from their first node to their second.
+
+    The second result holds the penalty factors of the edges back.
+    """
     count = len(pairs.first)
     depth = np.full(count, np.inf, np.float32)
-    penalty, price = np.ones(count, np.float32), np.ones(count, np.float32)
+    penalty, back, price = np.ones((3, count), np.float32)
     for begin in range(0, count, _CHUNK_SIZE):
         part = slice(begin, begin + _CHUNK_SIZE)
         ends = _ends(stations, pairs.first[part], pairs.second[part])
         if chart.has_depth:
             depth[part] = chart.depths.along(*ends)
-        penalty[part], price[part] = chart.zones.factors(*ends)
+        penalty[part], back[part], price[part] = chart.zones.factors_both_ways(*ends)
     fixed_time, fee = np.full(count, np.nan), np.zeros(count)
     canals = np.flatnonzero(np.isnan(pairs.course))
-    depth[canals], penalty[canals], price[canals] = np.inf, 1.0, 1.0
+    depth[canals], penalty[canals], back[canals], price[canals] = np.inf, 1.0, 1.0, 1.0
     if len(canals):
         ends = _ends(stations, pairs.first[canals], pairs.second[canals])
         for pair, number in zip(canals, chart.canal_of_legs(*ends)):
             canal = chart.canals[number]
             fixed_time[pair], fee[pair] = canal.transit_time, canal.fee
-    return Edges(pairs.length, pairs.course, depth, penalty, price, fixed_time, fee)
+    edges = Edges(pairs.length, pairs.course, depth, penalty, price, fixed_time, fee)
+    return edges, back
 
 
 def _ends(

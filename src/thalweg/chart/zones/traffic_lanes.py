@@ -14,23 +14,20 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.chart.coast.coast_index_builder import build_index
-from thalweg.chart.geojson_polygons import rings_from_polygons
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import direct, inverse, wrap_longitude
 from thalweg.core.given_numbers import shortened_repr, to_number
-from thalweg.core.types import BoolArray, FloatArray
-from thalweg.kernels.geometry.coast_index import outlines_touched
-from thalweg.kernels.geometry.cube_sphere import IndexArrays
+from thalweg.core.types import BoolArray, FloatArray, Int32Array
 
 #: Factor in searches for sailing against a lane where that is forbidden; the referee refuses it.
 FORBIDDEN_FACTOR: Final = 1000.0
 DEFAULT_TOLERANCE: Final = 100.0  # [deg]
 _PIECE: Final = 20_000.0  # legs are split into straight lines of at most this [m]
-_INDEX_CELLS: Final = 128
-_CELL: Final = 0.5  # [deg]; more than a piece in latitude
-_REACH: Final = 2  # cells; more than a piece in longitude up to the latitude ``_POLAR``
-_POLAR: Final = 79.0  # [deg]
+_CELL: Final = 0.25  # side of a cell [deg]
+_ROWS: Final = round(180.0 / _CELL)
+_COLUMNS: Final = round(360.0 / _CELL)
+_FAR_ACROSS: Final = 120.0  # legs over more longitude than this [deg] may meet any lane
+_ROUNDING: Final = 1e-6  # [deg]
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,16 +80,41 @@ class TrafficLane:
 
 
 @dataclass(frozen=True, eq=False)
-class LaneGroup:
-    """Lanes ready for legs: a tree of their areas on three turns of longitude, and outlines.
+class LaneMeetings:
+    """Where legs run against lanes, in one direction or the other.
 
-    ``cells`` marks the cells of half a degree from which a piece of a leg can reach a lane.
+    Attributes
+    ----------
+    leg, lane : int64 array
+        A leg and a lane that it meets.
+    share : Share of the length of the leg that is inside the lane and against it, one way or back.
+    there, back : bool array
+        Whether the leg from its first end to its second, and back, is against the lane.
+    """
+
+    leg: NDArray[np.int64]
+    lane: NDArray[np.int64]
+    share: FloatArray
+    there: BoolArray
+    back: BoolArray
+
+
+_NO_MEETINGS: Final = LaneMeetings(
+    np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0), np.empty(0, bool), np.empty(0, bool)
+)
+
+
+@dataclass(frozen=True, eq=False)
+class LaneGroup:
+    """Lanes ready for legs: a tree of their areas on three turns of longitude.
+
+    ``cells`` counts the cells that bounds of lanes touch, south and west of the corners of all
+    cells on two turns of longitude: four of these numbers tell whether a box holds any.
     """
 
     lanes: tuple[TrafficLane, ...]
     tree: Any
-    outlines: IndexArrays
-    cells: BoolArray
+    cells: Int32Array
 
     @classmethod
     def of(cls, lanes: Sequence[TrafficLane]) -> LaneGroup:
@@ -105,9 +127,7 @@ class LaneGroup:
             for turn in (-360.0, 0.0, 360.0)
         ]
         shapely.prepare(shapes)
-        parts = [part for lane in lanes for part in shapely.get_parts(lane.shape)]
-        index = build_index(rings_from_polygons(parts), _INDEX_CELLS)
-        return cls(tuple(lanes), shapely.STRtree(shapes), index, _cells_around(lanes))
+        return cls(tuple(lanes), shapely.STRtree(shapes), _cells_of_lanes(lanes))
 
     def shares_against(
         self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
@@ -119,84 +139,113 @@ class LaneGroup:
         leg, lane : A leg and a lane that it is against.
         share : The share of the length of the leg that is inside the lane and against it.
         """
-        import shapely
-
-        near = np.flatnonzero(self._touched(lat1, lon1, lat2, lon2))
-        if not near.size:
-            none = np.empty(0, np.int64)
-            return none, none, np.empty(0)
-        ends = [x[near] for x in (lat1, lon1, lat2, lon2)]
-        length, course, _ = inverse(*ends)
-        pieces = np.maximum(np.ceil(length / _PIECE), 1.0).astype(np.int64)
-        leg = np.repeat(np.arange(len(near)), pieces + 1)
-        number = np.arange(len(leg)) - np.repeat(np.cumsum(pieces + 1) - pieces - 1, pieces + 1)
-        y, x = direct(ends[0][leg], ends[1][leg], course[leg], number / pieces[leg] * length[leg])
-        reach = self._within_reach(y, x)
-        first = np.flatnonzero((number < pieces[leg]) & (reach | np.roll(reach, -1)))
-        of, y0, x0, y1, x1 = leg[first], y[first], x[first], y[first + 1], x[first + 1]
-        x1 = x0 + wrap_longitude(x1 - x0)
-        lines = shapely.linestrings(np.stack([np.stack([x0, y0], -1), np.stack([x1, y1], -1)], 1))
-        which, zone = self.tree.query(lines, predicate="intersects")
-        _, heading, _ = inverse(y0[which], x0[which], y1[which], x1[which])
-        lane = zone // 3
-        off = np.array([one.direction for one in self.lanes])[lane]
-        off = np.abs((np.degrees(heading) - off + 180.0) % 360.0 - 180.0)
-        against = off > np.array([one.tolerance for one in self.lanes])[lane]
-        which, zone, lane = which[against], zone[against], lane[against]
-        whole = shapely.length(lines[which])
-        part = shapely.length(shapely.intersection(lines[which], self.tree.geometries[zone]))
-        share = np.where(whole > 0.0, part / np.where(whole > 0.0, whole, 1.0), 0.0)
-        return near[of[which]], lane, share / pieces[of[which]]
+        met = self._meetings(lat1, lon1, lat2, lon2, back=False)
+        return met.leg[met.there], met.lane[met.there], met.share[met.there]
 
     def excess(
         self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
     ) -> FloatArray:
         """Return for each leg [deg] by how much its factor exceeds 1."""
-        leg, lane, share = self.shares_against(lat1, lon1, lat2, lon2)
-        factors = np.minimum([one.factor for one in self.lanes], FORBIDDEN_FACTOR)
-        more = np.bincount(leg, share * (factors[lane] - 1.0), minlength=len(lat1))
-        return more.astype(np.float64)
+        met = self._meetings(lat1, lon1, lat2, lon2, back=False)
+        return self._sum(met, met.there, len(lat1))
 
-    def _touched(
+    def excess_both_ways(
         self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
-    ) -> BoolArray:
-        """Return which legs may be partly inside a lane."""
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the same for each leg [deg] and for the leg back."""
+        met = self._meetings(lat1, lon1, lat2, lon2, back=True)
+        count = len(lat1)
+        return self._sum(met, met.there, count), self._sum(met, met.back, count)
+
+    def _sum(self, met: LaneMeetings, against: BoolArray, count: int) -> FloatArray:
+        factors = np.minimum([one.factor for one in self.lanes], FORBIDDEN_FACTOR)
+        share = met.share[against] * (factors[met.lane[against]] - 1.0)
+        return np.bincount(met.leg[against], share, minlength=count).astype(np.float64)
+
+    def _meetings(
+        self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray, *, back: bool
+    ) -> LaneMeetings:
+        """Return where legs [deg] are against lanes; only there, unless ``back`` counts too."""
         import shapely
 
-        touched = np.empty(len(lat1), np.bool_)
-        legs = [np.require(x, float, ("C", "W")) for x in (lat1, lon1, lat2, lon2)]
-        outlines_touched(self.outlines, *legs, touched)
-        beside = np.flatnonzero(self._within_reach(lat1, lon1) & ~touched)
-        points = shapely.points(lon1[beside], lat1[beside])
-        inside, _ = self.tree.query(points, predicate="intersects")
-        touched[beside[inside]] = True
-        return touched
+        near = np.flatnonzero(self._may_meet(lat1, lon1, lat2, lon2))
+        if not near.size:
+            return _NO_MEETINGS
+        leg, pieces, y0, x0, y1, x1 = self._pieces(*(x[near] for x in (lat1, lon1, lat2, lon2)))
+        lines = shapely.linestrings(np.stack([np.stack([x0, y0], -1), np.stack([x1, y1], -1)], 1))
+        which, zone = self.tree.query(lines)
+        lane = zone // 3
+        _, begin, end = inverse(y0[which], x0[which], y1[which], x1[which])
+        there = self._is_against(begin, lane)
+        turned = self._is_against(end + np.pi, lane) & back
+        against = np.flatnonzero(there | turned)
+        areas = self.tree.geometries
+        inside = shapely.intersects(areas[zone[against]], lines[which[against]])
+        against = against[inside]
+        which, zone, lane = which[against], zone[against], lane[against]
+        whole = shapely.length(lines[which])
+        part = shapely.length(shapely.intersection(lines[which], areas[zone]))
+        share = np.where(whole > 0.0, part / np.where(whole > 0.0, whole, 1.0), 0.0)
+        share /= pieces[leg[which]]
+        return LaneMeetings(near[leg[which]], lane, share, there[against], turned[against])
 
-    def _within_reach(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
-        """Return from which positions [deg] a piece of a leg can reach a lane."""
-        rows, columns = _cells_of(lat, lon)
-        found = self.cells[np.clip(rows, 0, len(self.cells) - 1), columns % self.cells.shape[1]]
-        return np.asarray(found | (np.abs(lat) > _POLAR))
+    def _pieces(
+        self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64], FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Return the pieces of legs that may meet a lane: legs, their counts, and ends [deg]."""
+        length, course, _ = inverse(lat1, lon1, lat2, lon2)
+        pieces = np.maximum(np.ceil(length / _PIECE), 1.0).astype(np.int64)
+        leg = np.repeat(np.arange(len(lat1)), pieces + 1)
+        number = np.arange(len(leg)) - np.repeat(np.cumsum(pieces + 1) - pieces - 1, pieces + 1)
+        y, x = direct(lat1[leg], lon1[leg], course[leg], number / pieces[leg] * length[leg])
+        first = np.flatnonzero(number < pieces[leg])
+        first = first[self._may_meet(y[first], x[first], y[first + 1], x[first + 1])]
+        x1 = x[first] + wrap_longitude(x[first + 1] - x[first])
+        return leg[first], pieces, y[first], x[first], y[first + 1], x1
+
+    def _is_against(self, course: FloatArray, lane: NDArray[np.int64]) -> BoolArray:
+        """Return which courses [rad] are against lanes."""
+        direction, tolerance = np.array([(one.direction, one.tolerance) for one in self.lanes]).T
+        off = np.abs((np.degrees(course) - direction[lane] + 180.0) % 360.0 - 180.0)
+        return np.asarray(off > tolerance[lane])
+
+    def _may_meet(
+        self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
+    ) -> BoolArray:
+        """Return which legs [deg] have boxes with a cell of a lane.
+
+        A great circle over an angle d of longitude leaves the latitudes of its ends by at most
+        arcsin(tan(d / 4)^2), which is below d^2 / 12 up to 120 degrees.
+        """
+        turn = np.nan_to_num(wrap_longitude(lon2 - lon1))
+        bulge = np.degrees(np.radians(turn) ** 2 / 12.0) + _ROUNDING
+        south = np.nan_to_num(np.minimum(lat1, lat2)) - bulge
+        north = np.nan_to_num(np.maximum(lat1, lat2)) + bulge
+        west = np.nan_to_num(np.where(turn < 0.0, lon2, lon1)) - _ROUNDING
+        east = west + np.abs(turn) + 2.0 * _ROUNDING
+        low, high = (np.clip(_cell(y + 90.0), 0, _ROWS - 1) for y in (south, north))
+        left, right = _cell(west + 180.0), _cell(east + 180.0)
+        left, right = left % _COLUMNS, left % _COLUMNS + right - left
+        sums = self.cells
+        count = sums[high + 1, right + 1] - sums[low, right + 1]
+        count -= sums[high + 1, left] - sums[low, left]
+        return np.asarray((count > 0) | (np.abs(turn) > _FAR_ACROSS))
 
 
-def _cells_around(lanes: Sequence[TrafficLane]) -> BoolArray:
-    """Return the cells within the length of a piece of the bounds of lanes."""
-    rows, columns = round(180.0 / _CELL), round(360.0 / _CELL)
-    found = np.zeros((rows, columns), np.bool_)
+def _cells_of_lanes(lanes: Sequence[TrafficLane]) -> Int32Array:
+    """Return the sums of the cells that the bounds of lanes touch (see `LaneGroup`)."""
+    found = np.zeros((_ROWS, _COLUMNS), np.int32)
     for lane in lanes:
         west, south, east, north = lane.shape.bounds
-        low, left = _cells_of(south, west)
-        high, right = _cells_of(north, east)
-        across = np.arange(left - _REACH, min(right + _REACH + 1, left - _REACH + columns))
-        found[max(low - 1, 0) : high + 2, across % columns] = True
-    return found
+        low, high = (np.clip(_cell(y + 90.0), 0, _ROWS - 1) for y in (south, north))
+        left = int(_cell(west + 180.0))
+        across = np.arange(left, min(int(_cell(east + 180.0)) + 1, left + _COLUMNS))
+        found[low : high + 1, across % _COLUMNS] = 1
+    sums = np.zeros((_ROWS + 1, 2 * _COLUMNS + 1), np.int32)
+    sums[1:, 1:] = np.cumsum(np.cumsum(np.tile(found, 2), axis=0), axis=1)
+    return sums
 
 
-def _cells_of(lat: ArrayLike, lon: ArrayLike) -> tuple[Any, Any]:
-    """Return row and column of positions [deg]; columns go on beyond a turn.
-
-    An unknown position gets any cell: what is computed with it stays NaN.
-    """
-    rows = np.floor((np.nan_to_num(lat) + 90.0) / _CELL)
-    columns = np.floor((np.nan_to_num(lon) + 180.0) / _CELL)
-    return rows.astype(np.int64), columns.astype(np.int64)
+def _cell(degrees: ArrayLike) -> NDArray[np.int64]:
+    """Return in which cell positions are, from the south pole or the antimeridian [deg]."""
+    return np.asarray(np.floor(np.asarray(degrees) / _CELL).astype(np.int64))

@@ -10,7 +10,7 @@ only, and never in zones of the kind "no-waiting".
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
@@ -268,19 +268,40 @@ class Zones:
         Sailing against traffic lanes counts as a penalty. NaN where a position is not a number.
         """
         ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
+        penalty, price, legs, known = self._undirected_factors(ends)
+        if self.lanes:
+            penalty.reshape(-1)[known] += self.lane_group.excess(*legs)
+        return penalty, price
+
+    def factors_both_ways(
+        self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return the penalty factor of legs [deg], that of the legs back, and the price factor."""
+        ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
+        penalty, price, legs, known = self._undirected_factors(ends)
+        back = penalty.copy()
+        if self.lanes:
+            for factor, more in zip((penalty, back), self.lane_group.excess_both_ways(*legs)):
+                factor.reshape(-1)[known] += more
+        return penalty, back, price
+
+    def _undirected_factors(
+        self, ends: Sequence[FloatArray]
+    ) -> tuple[FloatArray, FloatArray, list[FloatArray], NDArray[np.bool_]]:
+        """Return the factors of legs without lanes; the legs whose ends are known, and which."""
         shape = ends[0].shape
-        shoal = 0.0 if self.shoals is None else self.shoals.excess(*ends)
-        if not (self.penalty or self.lanes or self.price):
-            one = np.where(np.isfinite(sum(ends)), 1.0, np.nan)
-            return one + shoal, one
         legs = np.stack([x.ravel() for x in ends])
         known = np.isfinite(legs).all(axis=0)
-        penalty, price = np.full((2, known.size), np.nan)
         whole = list(np.ascontiguousarray(legs[:, known]))
-        penalty[known], price[known] = (self._weighted(whole, group) for group in self._groups)
-        if self.lanes:
-            penalty[known] += self.lane_group.excess(*whole)
-        return penalty.reshape(shape) + shoal, price.reshape(shape)
+        penalty, price = np.full((2, known.size), np.nan)
+        if self.penalty or self.price:
+            penalty[known], price[known] = (self._weighted(whole, group) for group in self._groups)
+        else:
+            penalty[known] = price[known] = 1.0
+        penalty = penalty.reshape(shape)
+        if self.shoals is not None:
+            penalty += self.shoals.excess(*ends)
+        return penalty, price.reshape(shape), whole, known
 
     def _weighted(self, legs: list[FloatArray], group: ZoneGroup) -> FloatArray:
         """Return the factors of legs of one group: at once where no outline is touched."""
