@@ -13,7 +13,6 @@ from __future__ import annotations
 import csv
 import gzip
 import itertools
-from collections import defaultdict
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import resources
@@ -30,6 +29,7 @@ from thalweg.core.units import KNOT, NAUTICAL_MILE
 MAX_APPROACH_SPEED: Final = 10.0 * KNOT  #: speed over ground in approaches [m/s]
 ON_LINE: Final = 100.0  #: a position within this distance of a line is on it [m]
 _CELL: Final = 0.25  # side of the cells by which segments are found [deg]
+_TURN: Final = round(360.0 / _CELL)
 _LENGTH_TOLERANCE: Final = 0.02  # of a leg that follows a line, relative
 #: Two lines are joined where they are this close [m] ...
 _SAME_WATER: Final = 0.15 * NAUTICAL_MILE
@@ -170,28 +170,45 @@ class PortApproaches:
     @cached_property
     def _segments(self) -> tuple[FloatArray, ...]:
         """Ends [deg] of all segments, distance of the first along its line [m], and its line."""
-        rows = []
-        for number, approach in enumerate(self.all):
-            line = np.array(approach.line, float)
-            lengths = distance(line[:-1, 0], line[:-1, 1], line[1:, 0], line[1:, 1])
-            start = np.concatenate([[0.0], np.cumsum(lengths)])[:-1]
-            whose = np.full(len(start), float(number))
-            rows.append(np.column_stack([line[:-1], line[1:], start, whose]))
-        return tuple(np.concatenate(rows).T) if rows else tuple(np.empty((6, 0)))
+        lines = [approach.line for approach in self.all]
+        if not lines:
+            return tuple(np.empty((6, 0)))
+        count = np.array([len(line) for line in lines])
+        vertices = np.array(list(itertools.chain.from_iterable(lines)), float)
+        last = np.cumsum(count) - 1
+        begin = np.delete(np.arange(len(vertices)), last)
+        a, b = vertices[begin], vertices[begin + 1]
+        sailed = np.concatenate([[0.0], np.cumsum(distance(*a.T, *b.T))])[:-1]
+        first = np.concatenate([[0], last[:-1] + 1]) - np.arange(len(lines))
+        whose = np.repeat(np.arange(len(lines)), count - 1)
+        start = sailed - sailed[np.minimum(first, len(sailed) - 1)][whose]
+        return (*a.T, *b.T, start, whose.astype(float))
 
     @cached_property
     def _segments_by_cell(self) -> dict[tuple[int, int], NDArray[np.int64]]:
-        cells: dict[tuple[int, int], list[int]] = defaultdict(list)
+        """The segments in each cell, and in those within a few hundred metres."""
         a_lat, a_lon, b_lat, b_lon = self._segments[:4]
         b_lon = a_lon + _wrapped(b_lon - a_lon)
-        for k, (p, q, r, s) in enumerate(zip(a_lat, a_lon, b_lat, b_lon)):
-            for row in range(
-                int((min(p, r) - 0.01) // _CELL), int((max(p, r) + 0.01) // _CELL) + 1
-            ):
-                first, last = (min(q, s) - 0.05) // _CELL, (max(q, s) + 0.05) // _CELL
-                for column in range(int(first), int(last) + 1):
-                    cells[row, column % round(360.0 / _CELL)].append(k)
-        return {cell: np.array(which) for cell, which in cells.items()}
+        low, high = (
+            np.floor(edge / _CELL).astype(np.int64)
+            for edge in (np.minimum(a_lat, b_lat) - 0.01, np.maximum(a_lat, b_lat) + 0.01)
+        )
+        left, right = (
+            np.floor(edge / _CELL).astype(np.int64)
+            for edge in (np.minimum(a_lon, b_lon) - 0.05, np.maximum(a_lon, b_lon) + 0.05)
+        )
+        across = right - left + 1
+        cells = (high - low + 1) * across
+        which = np.repeat(np.arange(len(cells)), cells)
+        number = np.arange(len(which)) - np.repeat(np.cumsum(cells) - cells, cells)
+        row = low[which] + number // across[which]
+        column = (left[which] + number % across[which]) % _TURN
+        order = np.lexsort((which, column, row))
+        row, column, which = row[order], column[order], which[order]
+        new = np.flatnonzero((np.diff(row) != 0) | (np.diff(column) != 0)) + 1
+        first = np.concatenate([[0], new])[: len(which)]
+        keys = zip(row[first].tolist(), column[first].tolist())
+        return dict(zip(keys, np.split(which, new)))
 
     @cached_property
     def _made(self) -> dict[Port, PortApproach]:
@@ -283,7 +300,7 @@ def _wrapped(degrees: FloatArray) -> FloatArray:
 
 
 def _cell(lat: float, lon: float) -> tuple[int, int]:
-    return int(lat // _CELL), int(lon // _CELL) % round(360.0 / _CELL)
+    return int(lat // _CELL), int(lon // _CELL) % _TURN
 
 
 def _key(port: Port) -> tuple[str, str, str]:

@@ -142,10 +142,11 @@ def _beside_shoals(code: NDArray[np.uint8], shoals: Shoals) -> NDArray[np.bool_]
     A point says nothing about the water half-way to the next. These points count as no deeper than
     the contour, so that water towards the shoal is shoal.
     """
-    from scipy.ndimage import minimum_filter
-
-    water = np.where(code > 0, code, np.uint8(255))
-    least = minimum_filter(water, size=3, mode=("nearest", "wrap"))
+    least = np.where(code > 0, code, np.uint8(255))  # of each point and the eight beside it
+    upper, lower = least[:-1].copy(), least[1:].copy()
+    np.minimum(least[:-1], lower, out=least[:-1])
+    np.minimum(least[1:], upper, out=least[1:])
+    least = np.minimum(least, np.minimum(np.roll(least, 1, axis=1), np.roll(least, -1, axis=1)))
     gentle = (code > shoals.contour + 1.0) & (code <= _GENTLE * shoals.contour + 1.0)
     return gentle & (least < shoals.least + 1.0)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
@@ -157,9 +158,16 @@ class LaneGroup:
         count = len(lat1)
         return self._sum(met, met.there, count), self._sum(met, met.back, count)
 
+    @cached_property
+    def _rules(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Direction and tolerance of each lane [deg], and what a mile against it counts more."""
+        rules = [(one.direction, one.tolerance, one.factor) for one in self.lanes]
+        direction, tolerance, factor = np.array(rules, float).reshape(-1, 3).T
+        return direction, tolerance, np.minimum(factor, FORBIDDEN_FACTOR) - 1.0
+
     def _sum(self, met: LaneMeetings, against: BoolArray, count: int) -> FloatArray:
-        factors = np.minimum([one.factor for one in self.lanes], FORBIDDEN_FACTOR)
-        share = met.share[against] * (factors[met.lane[against]] - 1.0)
+        _, _, excess = self._rules
+        share = met.share[against] * excess[met.lane[against]]
         return np.bincount(met.leg[against], share, minlength=count).astype(np.float64)
 
     def _meetings(
@@ -184,8 +192,10 @@ class LaneGroup:
         against = against[inside]
         which, zone, lane = which[against], zone[against], lane[against]
         whole = shapely.length(lines[which])
-        part = shapely.length(shapely.intersection(lines[which], areas[zone]))
-        share = np.where(whole > 0.0, part / np.where(whole > 0.0, whole, 1.0), 0.0)
+        share = np.where(whole > 0.0, 1.0, 0.0)
+        cut = np.flatnonzero(~shapely.covers(areas[zone], lines[which]) & (whole > 0.0))
+        part = shapely.intersection(lines[which[cut]], areas[zone[cut]])
+        share[cut] = shapely.length(part) / whole[cut]
         share /= pieces[leg[which]]
         return LaneMeetings(near[leg[which]], lane, share, there[against], turned[against])
 
@@ -205,7 +215,7 @@ class LaneGroup:
 
     def _is_against(self, course: FloatArray, lane: NDArray[np.int64]) -> BoolArray:
         """Return which courses [rad] are against lanes."""
-        direction, tolerance = np.array([(one.direction, one.tolerance) for one in self.lanes]).T
+        direction, tolerance, _ = self._rules
         off = np.abs((np.degrees(course) - direction[lane] + 180.0) % 360.0 - 180.0)
         return np.asarray(off > tolerance[lane])
 

@@ -286,9 +286,11 @@ def penalty_factors(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> Fl
     """
     if chart is None or not chart.zones.has_penalty:
         return None
-    ends = lat[..., :-1], lon[..., :-1], lat[..., 1:], lon[..., 1:]
-    shape = ends[0].shape
-    return np.asarray(chart.zones.factors(*(x.ravel() for x in ends))[0]).reshape(shape)
+    shape = lat[..., 1:].shape
+    ends = [x.ravel() for x in (lat[..., :-1], lon[..., :-1], lat[..., 1:], lon[..., 1:])]
+    first, place = unique_legs(ends)
+    factor = np.asarray(chart.zones.factors(*(x[first] for x in ends))[0])
+    return factor[place].reshape(shape)
 
 
 def unique_legs(ends: Sequence[FloatArray]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

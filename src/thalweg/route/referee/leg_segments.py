@@ -95,7 +95,11 @@ class TrackPieces:
         )
         lat, lon = np.asarray(lat), wrap_longitude(lon)
         course = np.radians(np.asarray(back) + 180.0) % (2.0 * math.pi)
+        straight = self.canals.approach
+        course = np.where(straight[leg], self.course[leg], course)  # as in canals
         for canal in self.canals.legs:
+            if straight[canal]:
+                continue
             on = leg == canal
             lat[on], lon[on], course[on] = self.canals.places(canal, along[on])
         return TrackPoints(
