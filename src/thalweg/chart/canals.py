@@ -232,6 +232,8 @@ def canal_index_of_legs(
                 (np.abs(a - first[0]) < _END_TOLERANCE_DEGREES)
                 & (np.abs(c - last[0]) < _END_TOLERANCE_DEGREES)
             )
+            if not len(near):
+                continue
             at_first = distance(a[near], b[near], *first) <= END_TOLERANCE
             flat[near[at_first & (distance(c[near], d[near], *last) <= END_TOLERANCE)]] = k
     return number

@@ -227,11 +227,10 @@ class LaneGroup:
         A great circle over an angle d of longitude leaves the latitudes of its ends by at most
         arcsin(tan(d / 4)^2), which is below d^2 / 12 up to 120 degrees.
         """
-        turn = np.nan_to_num(wrap_longitude(lon2 - lon1))
+        turn = wrap_longitude(lon2 - lon1)
         bulge = np.degrees(np.radians(turn) ** 2 / 12.0) + _ROUNDING
-        south = np.nan_to_num(np.minimum(lat1, lat2)) - bulge
-        north = np.nan_to_num(np.maximum(lat1, lat2)) + bulge
-        west = np.nan_to_num(np.where(turn < 0.0, lon2, lon1)) - _ROUNDING
+        south, north = np.minimum(lat1, lat2) - bulge, np.maximum(lat1, lat2) + bulge
+        west = np.where(turn < 0.0, lon2, lon1) - _ROUNDING
         east = west + np.abs(turn) + 2.0 * _ROUNDING
         low, high = (np.clip(_cell(y + 90.0), 0, _ROWS - 1) for y in (south, north))
         left, right = _cell(west + 180.0), _cell(east + 180.0)

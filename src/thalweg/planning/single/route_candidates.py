@@ -27,15 +27,24 @@ _LATER = (1, 2, 3, 5, 8, 13, 21, 34, 55)
 
 
 def refined_bound_path(
-    context: PlanningContext, network: Network, bound: LowerBound, route: Route, limits: Limits
+    context: PlanningContext,
+    network: Network,
+    bound: LowerBound,
+    result: SearchResult,
+    route: Route,
+    limits: Limits,
 ) -> Route:
     """Where the gap is wide, refine the path of the bound as well and return the better route.
 
     In weather that passes quickly the best path depends on delays along the network; the path of
-    the bound has the times of a ship in open water.
+    the bound has the times of a ship in open water. A path through nodes of the path that has been
+    refined, or through all of them, is pulled to the same line.
     """
     value = route_value(context, route)
     if len(bound.path) < 2 or not value - bound.value > _WIDE_GAP * value:
+        return route
+    common = len(np.intersect1d(bound.path, result.path))
+    if common == min(len(bound.path), len(result.path)) and not _waits(result):
         return route
     lat, lon = network.stations.lat[bound.path], network.stations.lon[bound.path]
     settings = np.full(len(lat) - 1, context.setting)
@@ -44,6 +53,11 @@ def refined_bound_path(
     return min(
         routes, key=lambda item: comparison_key(item, context.voyage.objective, context.chart)
     )
+
+
+def _waits(result: SearchResult) -> bool:
+    """Return whether a ship waits on the path of a search before its end."""
+    return bool(np.any(result.path_depart[:-1] - result.path_arrive[:-1] >= 1.0))
 
 
 def through_narrow_features(context: PlanningContext, route: Route, limits: Limits) -> Route:

@@ -175,7 +175,7 @@ def _search_and_refine(
     if context.voyage.depart_window is None:
         context.report_progress("searching as in open water")
         hint = _bound(context, network, frozen, result, route)
-        route = refined_bound_path(context, network, hint, route, limits)
+        route = refined_bound_path(context, network, hint, result, route, limits)
         if network.meta.kind != "layered":  # those routes keep to their layers
             route = through_narrow_features(context, route, limits)
     notes = network.meta.notes if network.meta.kind == "layered" else ()
