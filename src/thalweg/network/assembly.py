@@ -251,9 +251,7 @@ def _with_canal_courses(stations: Stations, pairs: Pairs) -> Float32Array:
     return course
 
 
-def _pair_properties(
-    chart: Chart, stations: Stations, pairs: Pairs
-) -> tuple[Edges, Float32Array]:
+def _pair_properties(chart: Chart, stations: Stations, pairs: Pairs) -> tuple[Edges, Float32Array]:
     """Return the properties of pairs as edges from their first node to their second.
 
     The second result holds the penalty factors of the edges back.

@@ -179,7 +179,8 @@ class LaneGroup:
         near = np.flatnonzero(self._may_meet(lat1, lon1, lat2, lon2))
         if not near.size:
             return _NO_MEETINGS
-        leg, pieces, y0, x0, y1, x1 = self._pieces(*(x[near] for x in (lat1, lon1, lat2, lon2)))
+        leg, pieces, ends = self._pieces(*(x[near] for x in (lat1, lon1, lat2, lon2)))
+        y0, x0, y1, x1 = ends
         lines = shapely.linestrings(np.stack([np.stack([x0, y0], -1), np.stack([x1, y1], -1)], 1))
         which, zone = self.tree.query(lines)
         lane = zone // 3
@@ -201,8 +202,15 @@ class LaneGroup:
 
     def _pieces(
         self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
-    ) -> tuple[NDArray[np.int64], NDArray[np.int64], FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Return the pieces of legs that may meet a lane: legs, their counts, and ends [deg]."""
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64], tuple[FloatArray, ...]]:
+        """Return the pieces of legs that may meet a lane.
+
+        Returns
+        -------
+        leg : Leg of each piece.
+        pieces : Number of pieces of each leg, near a lane or not.
+        ends : Latitude and longitude of the beginning and the end of each piece [deg].
+        """
         length, course, _ = inverse(lat1, lon1, lat2, lon2)
         pieces = np.maximum(np.ceil(length / _PIECE), 1.0).astype(np.int64)
         leg = np.repeat(np.arange(len(lat1)), pieces + 1)
@@ -211,7 +219,7 @@ class LaneGroup:
         first = np.flatnonzero(number < pieces[leg])
         first = first[self._may_meet(y[first], x[first], y[first + 1], x[first + 1])]
         x1 = x[first] + wrap_longitude(x[first + 1] - x[first])
-        return leg[first], pieces, y[first], x[first], y[first + 1], x1
+        return leg[first], pieces, (y[first], x[first], y[first + 1], x1)
 
     def _is_against(self, course: FloatArray, lane: NDArray[np.int64]) -> BoolArray:
         """Return which courses [rad] are against lanes."""

@@ -291,17 +291,17 @@ class Zones:
         """Return the factors of legs without lanes; the legs whose ends are known, and which."""
         shape = ends[0].shape
         legs = np.stack([x.ravel() for x in ends])
-        known = np.isfinite(legs).all(axis=0)
+        known = np.asarray(np.isfinite(legs).all(axis=0))
         whole = list(np.ascontiguousarray(legs[:, known]))
-        penalty, price = np.full((2, known.size), np.nan)
+        penalty: FloatArray = np.full(known.size, np.nan)
+        price: FloatArray = np.full(known.size, np.nan)
         if self.penalty or self.price:
             penalty[known], price[known] = (self._weighted(whole, group) for group in self._groups)
         else:
             penalty[known] = price[known] = 1.0
-        penalty = penalty.reshape(shape)
         if self.shoals is not None:
-            penalty += self.shoals.excess(*ends)
-        return penalty, price.reshape(shape), whole, known
+            penalty += self.shoals.excess(*legs)
+        return penalty.reshape(shape), price.reshape(shape), whole, known
 
     def _weighted(self, legs: list[FloatArray], group: ZoneGroup) -> FloatArray:
         """Return the factors of legs of one group: at once where no outline is touched."""
