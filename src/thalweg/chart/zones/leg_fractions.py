@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.coast.coast_index_builder import empty_index
 from thalweg.core.ellipsoid import MEAN_RADIUS
-from thalweg.core.geodesy import direct, inverse
+from thalweg.core.geodesy import direct, inverse, wrap_longitude
 from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import LAND
 from thalweg.kernels.geometry.coast_index import CoastArrays, outlines_touched, point_codes
@@ -18,6 +18,7 @@ from thalweg.kernels.geometry.polygon_fractions import fractions_by_bisection, m
 
 CROSSING_TOLERANCE: Final = 0.25  # pieces this short are not split further [m]
 MAX_PART_LENGTH: Final = 400_000.0  # longer legs are first split into such pieces [m]
+_STRAIGHT: Final = 50_000.0  # pieces of legs are straight in degrees up to this length [m]
 _WORLD: Final = np.array([-90.0, 90.0, -180.0, 360.0])
 
 
@@ -119,3 +120,23 @@ def _fractions_by_bisection(
     share = np.empty(len(leg))
     fractions_by_bisection(index, outlines, *low, *high, finest / MEAN_RADIUS, share)
     return np.minimum(np.bincount(leg, share / parts[leg], minlength=len(parts)), 1.0)
+
+
+def straight_pieces(
+    lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
+) -> tuple[Any, NDArray[np.int64], FloatArray]:
+    """Return pieces of the geodesics as lines, the leg of each, and each leg's count."""
+    import shapely
+
+    length, course, _ = inverse(lat1, lon1, lat2, lon2)
+    pieces = np.maximum(np.ceil(length / _STRAIGHT), 1.0).astype(np.int64)
+    leg = np.repeat(np.arange(len(pieces)), pieces)
+    number = np.arange(len(leg)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    sides = []
+    for share in (number / pieces[leg], (number + 1) / pieces[leg]):
+        lat, lon = direct(lat1[leg], lon1[leg], course[leg], share * length[leg])
+        sides.append((lon, lat))
+    (x0, y0), (x1, y1) = sides
+    x1 = x0 + wrap_longitude(x1 - x0)
+    ends = np.stack([np.stack([x0, y0], -1), np.stack([x1, y1], -1)], 1)
+    return shapely.linestrings(ends), leg, pieces.astype(float)

@@ -29,18 +29,17 @@ from thalweg.chart.zones.leg_fractions import (
     fractions_inside,
     outlines_only,
     points_inside,
+    straight_pieces,
 )
 from thalweg.chart.zones.traffic_lanes import LaneGroup, TrafficLane
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import direct, inverse, wrap_longitude
 from thalweg.core.given_numbers import shortened_repr, to_number
 from thalweg.core.types import FloatArray
 from thalweg.kernels.geometry.coast_index import outlines_touched
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
 
 ZONE_INDEX_CELLS: Final = 128  # cells along a face of the index of no-go zones
-MAX_PART_LENGTH: Final = 50_000.0  # legs are split into pieces of at most this for factors [m]
 ZONE_KINDS: Final = {
     "nogo": "no-go",
     "forbidden": "no-go",
@@ -314,7 +313,7 @@ class Zones:
         excess[whole] = group.at(legs[0][whole], legs[1][whole])
         cut = np.flatnonzero(touched)
         if len(cut):
-            lines, leg, pieces = _geodesic_parts(*(x[cut] for x in legs))
+            lines, leg, pieces = straight_pieces(*(x[cut] for x in legs))
             shares = np.bincount(leg, group.along(lines), minlength=len(cut))
             excess[cut] = shares / pieces
         return 1.0 + excess
@@ -383,23 +382,3 @@ def _without_overlaps(zones: list[tuple[Any, float]]) -> tuple[tuple[Any, float]
         if not shapely.is_empty(remainder):
             disjoint.append((remainder, factor))
     return tuple(disjoint)
-
-
-def _geodesic_parts(
-    lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
-) -> tuple[Any, NDArray[np.int64], FloatArray]:
-    """Return pieces of the geodesics as lines, the leg of each, and each leg's count."""
-    import shapely
-
-    length, course, _ = inverse(lat1, lon1, lat2, lon2)
-    pieces = np.maximum(np.ceil(length / MAX_PART_LENGTH), 1.0).astype(np.int64)
-    leg = np.repeat(np.arange(len(pieces)), pieces)
-    number = np.arange(len(leg)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    sides = []
-    for share in (number / pieces[leg], (number + 1) / pieces[leg]):
-        lat, lon = direct(lat1[leg], lon1[leg], course[leg], share * length[leg])
-        sides.append((lon, lat))
-    (x0, y0), (x1, y1) = sides
-    x1 = x0 + wrap_longitude(x1 - x0)
-    ends = np.stack([np.stack([x0, y0], -1), np.stack([x1, y1], -1)], 1)
-    return shapely.linestrings(ends), leg, pieces.astype(float)
