@@ -159,7 +159,6 @@ def _cheapest_subset(rules: _LegRules, line: PolylineCoordinates) -> IntArray:
     first, second = np.triu_indices(count, 1)
     near = second - first <= _MAX_SKIPPED_WAYPOINTS
     first, second = first[near], second[near]
-    price = rules.cost(lat[first], lon[first], lat[second], lon[second])
     shortcut = np.flatnonzero(second - first > 1)  # neighbours are known to be joined
     a, b = first[shortcut], second[shortcut]
     free = rules.allowed((lat[a], lon[a]), (lat[b], lon[b]))
@@ -168,7 +167,11 @@ def _cheapest_subset(rules: _LegRules, line: PolylineCoordinates) -> IntArray:
         past = np.concatenate([np.zeros((1, passed.shape[1]), np.int16), passed.cumsum(axis=0)])
         own = rules.sides(lat[a], lon[a], lat[b], lon[b])
         free &= (own == past[b] - past[a]).all(axis=1)
-    price[shortcut[~free]] = np.inf
+    used = np.ones(len(first), bool)
+    used[shortcut[~free]] = False
+    price = np.full(len(first), np.inf)
+    legs = first[used], second[used]
+    price[used] = rules.cost(lat[legs[0]], lon[legs[0]], lat[legs[1]], lon[legs[1]])
     rows = np.searchsorted(first, np.arange(count + 1))
     price *= 1.0 + 1e-12  # of equal paths, prefer fewer waypoints
 
