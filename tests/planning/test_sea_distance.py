@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import thalweg
-from thalweg.cli import distance_command
 from thalweg.cli.main import main
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.units import NAUTICAL_MILE
@@ -144,8 +143,7 @@ def test_errors_of_the_request():
     assert issubclass(NoRouteError, thalweg.ThalwegError)
 
 
-def test_command(capsys, monkeypatch, tmp_path):
-    monkeypatch.setattr(distance_command, "cache_folder", lambda name: tmp_path)
+def test_command(capsys):
     assert main(["distance", "Rotterdam", "Hamburg", "--speed", "12", "--quiet"]) == 0
     text = capsys.readouterr().out
     assert "Rotterdam, NL to Hamburg, DE" in text
@@ -155,24 +153,6 @@ def test_command(capsys, monkeypatch, tmp_path):
     found = json.loads(capsys.readouterr().out)
     assert found["distance_nm"] == pytest.approx(thalweg.distance("Rotterdam", "Hamburg").nm)
     assert main(["distance", "Rotterdam", "Nowhere", "--quiet"]) == 2
-    assert len(list(tmp_path.glob("*.json"))) == 2
-
-
-def test_the_command_keeps_answers(capsys, monkeypatch, tmp_path):
-    monkeypatch.setattr(distance_command, "cache_folder", lambda name: tmp_path)
-    asked = ["distance", "Rotterdam", "Hamburg", "--quiet"]
-    assert main(asked) == 0
-    first = capsys.readouterr().out
-    (kept,) = tmp_path.glob("*.json")
-    with monkeypatch.context() as patch:
-        patch.setattr(distance_command, "_answer", lambda arguments: "made again")
-        assert main(asked) == 0
-        assert capsys.readouterr().out == first
-        assert main([*asked, "--avoid", "kiel"]) == 0  # another question
-        assert capsys.readouterr().out == "made again\n"
-    kept.write_bytes(kept.read_bytes()[:20])  # damaged
-    assert main(asked) == 0
-    assert capsys.readouterr().out == first
 
 
 def test_with_a_draught_shallow_canals_are_closed_and_shoals_avoided_or_named():
