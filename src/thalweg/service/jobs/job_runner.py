@@ -24,6 +24,7 @@ from thalweg.service.problem_details import problem_of
 from thalweg.service.service_settings import ServiceLimits, ServiceSettings
 
 _CHECK_SECONDS: Final = 0.5  # between checks of time and memory
+_FIRST_ROUTE_SECONDS: Final = 20.0  # a job has the processor to itself so long for a first route
 _LOG: Final = "log.txt"
 
 
@@ -36,6 +37,12 @@ class RunningChild:
     started: float = field(default_factory=time.monotonic)
     stop_asked: float | None = None
     stopped_why: ThalwegError | None = None
+    has_shown: bool = False  # a route or a front
+
+    @property
+    def seeks_first_route(self) -> bool:
+        """Whether it calculates, and people have seen nothing of it yet."""
+        return not self.has_shown and time.monotonic() - self.started < _FIRST_ROUTE_SECONDS
 
     def kill(self) -> None:
         """End the process at once."""
@@ -45,7 +52,8 @@ class RunningChild:
 class JobRunner:
     """Runs the jobs of a store, each in a child process of its own.
 
-    One further child waits with the libraries loaded, so that a job starts at once. A job whose
+    One further child waits with the libraries loaded, so that a job starts at once; where no job
+    could start, it begins to load when those that run have shown something. A job whose
     child dies is started again, up to a limit; a job found running at the start of the service
     always is.
 
@@ -161,9 +169,16 @@ class JobRunner:
                 for job in queued[:free]:
                     if self._store.start(job.id):
                         self._launch(self._store.get(job.id))
-                if self._waiting_child is None or self._waiting_child.process.poll() is not None:
+                child = self._waiting_child
+                if (child is None or child.process.poll() is not None) and self._may_load():
                     self._waiting_child = self._new_child()
                 self._changed.wait(2.0)
+
+    def _may_load(self) -> bool:
+        """Return whether the next child may load its libraries beside those that calculate."""
+        children = self._children.values()
+        full = len(children) >= self._limits.workers
+        return not (full and any(child.seeks_first_route for child in children))
 
     def _launch(self, job: Job) -> None:
         """Send a job to the child that waits; the lock is held."""
@@ -202,6 +217,9 @@ class JobRunner:
                 else:
                     first = message.get("summary", first)
                     self._store.add_event(job.id, kind, message)
+                    if kind in ("route", "front") and not child.has_shown:
+                        child.has_shown = True
+                        self.wake()
             child.process.wait()
             self._end(job, child, folder, end, first)
         except ThalwegError as error:

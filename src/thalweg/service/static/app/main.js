@@ -215,13 +215,26 @@ class Application {
     this.result = null;
     this.chart.routes.clear();
     this.drawer.hide();
-    this.progress = new ProgressView(job, {
-      ended: async () => { const done = await get(`/plans/${job.id}`); this.progress = null; if (this.view === "plan") await this.#ended(done); },
-      route: (points) => { if (this.view === "plan") { this.chart.routes.showChosen(points, null, null, 0); if (!this.#inView(points)) this.chart.fit(points); } },
-      leave: () => { this.progress.close(); this.progress = null; this.#switch("voyages"); },
+    const shown = new ProgressView(job, {
+      ended: async () => {
+        const done = await get(`/plans/${job.id}`);
+        if (this.progress !== shown) return;
+        this.#leaveProgress();
+        if (this.view === "plan") await this.#ended(done);
+      },
+      route: (points) => { if (this.view === "plan" && this.progress === shown) { this.chart.routes.showChosen(points, null, null, 0); if (!this.#inView(points)) this.chart.fit(points); } },
+      leave: () => { this.#leaveProgress(); this.#switch("voyages"); },
     });
+    this.progress = shown;
     this.progress.id = job.id;
+    this.chart.particles.rest(true);
     this.#showProgress();
+  }
+
+  #leaveProgress() {
+    this.progress?.close();
+    this.progress = null;
+    this.chart.particles.rest(false);
   }
 
   #showProgress() {

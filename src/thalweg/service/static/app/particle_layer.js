@@ -7,6 +7,7 @@ const CELL = 12; // pixels between computed velocities
 const SHARE = 1 / 900; // particles for each pixel
 const LIFE = 90; // frames
 const FRAME_MS = 40;
+const STILL = 24; // frames drawn at once where the particles rest
 const PIXELS = { wind: 0.16, current: 2.2 }; // a frame, for each m/s
 const LONGEST = 9; // pixels of one step
 
@@ -21,6 +22,7 @@ class CanvasLayer extends ImageLayer {
 
 export class ParticleLayer {
   wanted = false;
+  resting = false; // while a voyage is calculated: the processor is for it
   particles = [];
 
   constructor(map, weather) {
@@ -49,7 +51,14 @@ export class ParticleLayer {
     const { width, height } = this.canvas;
     this.particles = Array.from({ length: Math.round(width * height * SHARE) }, () => this.#born(true));
     this.last = 0;
-    this.running = requestAnimationFrame((now) => this.#step(now));
+    if (this.resting) for (let i = 0; i < STILL; i++) this.#advance();
+    else this.running = requestAnimationFrame((now) => this.#step(now));
+  }
+
+  rest(wanted) {
+    if (wanted === this.resting) return;
+    this.resting = wanted;
+    this.refresh();
   }
 
   #stop() {
@@ -90,6 +99,10 @@ export class ParticleLayer {
     this.running = requestAnimationFrame((next) => this.#step(next));
     if (now - this.last < FRAME_MS) return;
     this.last = now;
+    this.#advance();
+  }
+
+  #advance() {
     const { canvas, columns, flow } = this, pen = canvas.getContext("2d");
     pen.globalCompositeOperation = "destination-in";
     pen.fillStyle = "rgba(0, 0, 0, 0.9)";
