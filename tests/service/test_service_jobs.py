@@ -244,3 +244,54 @@ def test_a_second_service_on_the_same_data_is_refused(client):
 
     with pytest.raises(InputError, match="Another service"):
         create_application(client.app.state.service.settings)
+
+
+#: Zones of traffic across the short voyage.
+FERRIES = {
+    "type": "FeatureCollection",
+    "elsewhere": {"encounters_per_h": 0.5},
+    "features": [
+        {
+            "type": "Feature",
+            "properties": {"name": "ferries", "encounters_per_h": 4.0},
+            "geometry": {
+                "type": "Polygon",
+                "coordinates": [
+                    [[-5.2, 47.1], [-5.1, 47.1], [-5.1, 47.2], [-5.2, 47.2], [-5.2, 47.1]]
+                ],
+            },
+        }
+    ],
+}
+
+
+def test_alternatives_are_routes_with_names_and_figures(client):
+    file = {"file": ("ferries.geojson", json.dumps(FERRIES).encode())}
+    traffic = client.post("/api/v1/traffic", files=file).json()["id"]
+    request = {**SHORT, "traffic": [traffic], "most": 2}
+    answer = client.post("/api/v1/alternatives", json=request)
+    assert answer.status_code == 202 and answer.json()["kind"] == "alternatives"
+    job = ended(client.get, answer.json()["id"])
+    assert job["state"] == "done", job["problem"]
+    found = client.get(f"/api/v1/plans/{job['id']}/result").json()
+    rows = found["alternatives"]
+    assert 1 <= len(rows) == job["summary"]["routes"] <= 2
+    assert rows[0]["difference"] == "the fastest" and not found["cancelled"]
+    assert all(row["figures"]["encounters"] > 0.0 for row in rows)
+    assert client.get(f"/api/v1/plans/{job['id']}/routes/1.rtz").status_code == 200
+    profile = client.get(f"/api/v1/plans/{job['id']}/profiles/1").json()
+    assert len(profile["time"]) == len(profile["lat"])
+    pair = [{"job": job["id"], "number": 1}] * 2
+    assert client.post("/api/v1/compare", json={"routes": pair}).status_code == 200
+
+
+def test_a_plan_keeps_limits_of_indicators_and_states_encounters(client):
+    file = {"file": ("ferries.geojson", json.dumps(FERRIES).encode())}
+    traffic = client.post("/api/v1/traffic", files=file).json()["id"]
+    voyage = {**SHORT["voyage"], "layered": {"layers": 5, "fan": 3, "offset_nm": 2.0}}
+    request = {**SHORT, "voyage": {**voyage, "at_most": {"encounters": 50}}, "traffic": [traffic]}
+    job = ended(client.get, client.post("/api/v1/plans", json=request).json()["id"])
+    assert job["state"] == "done", job["problem"]
+    plan = client.get(f"/api/v1/plans/{job['id']}/result").json()
+    assert 0.0 < plan["routes"][0]["indicators"]["encounters"] < 50.0
+    assert plan["voyage"]["at_most"] == {"encounters": 50.0}

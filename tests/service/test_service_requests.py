@@ -85,11 +85,30 @@ def test_a_place_is_shown_as_it_is_understood(client):
         ({"seas": ["calm", "storm"]}, "seas", "calm"),
         ({"seas": ["../../etc/passwd"]}, "seas.0", "pattern"),
         ({"surprise": 1}, "surprise", "known"),
+        ({"voyage": {**SHORT["voyage"], "at_most": {"sickness": 3}}}, "at_most", "sick_percent"),
+        ({"voyage": {**SHORT["voyage"], "objective": "weighted"}}, "weights", "weights"),
+        ({"voyage": {**SHORT["voyage"], "layered": {"fan": 3}}}, "layered", "layers"),
+        ({"voyage": {**SHORT["voyage"], "layered": {"near_coast_nm": -1}}}, "layered", "0"),
+        (
+            {"voyage": {**SHORT["voyage"], "layered": {"near_coast_nm": 3}}, "network": "globe"},
+            "network",
+            "layered",
+        ),
+        ({"network": "history"}, "network", "layered"),
+        ({"history": "0123456789abcdef"}, "history", "history network"),
+        ({"history": "0123456789abcdef", "network": "mesh"}, "network", "history"),
+        ({"corridor_gain_percent": 5}, "corridor_gain_percent", "history"),
+        ({"traffic": ["0123456789abcdef"]}, "traffic", "traffic"),
+        ({"traffic": ["../../etc/passwd"]}, "traffic.0", "pattern"),
+        ({"charges": {"ets_price": 80}}, "charges.share_percent", "missing"),
+        ({"sampling": "nearest:soon"}, "sampling", "pattern"),
     ],
 )
 def test_an_impossible_request_is_refused_at_its_field(client, change, field, word):
     answer = client.post("/api/v1/plans", json={**SHORT, **change})
-    found = problem(answer, 404 if change.get("seas") == ["0123456789abcdef"] else 422)
+    absent = "0123456789abcdef" in (*change.get("seas", ()), *change.get("traffic", ()))
+    absent |= change.get("history") is not None and "network" not in change
+    found = problem(answer, 404 if absent else 422)
     assert found["field"] == field
     assert word in found["asked"] + found["possible"]
 
@@ -258,3 +277,41 @@ def test_a_voyage_file_is_read_as_a_request(client):
     wrong = client.post("/api/v1/voyages/read", json={"text": "start: Halifax\nspeed: 12\n"})
     assert "speed" in problem(wrong, 422)["asked"]
     assert problem(client.post("/api/v1/voyages/read", json={"text": "- a"}), 422)["remedy"]
+
+
+TRAFFIC = {
+    "type": "FeatureCollection",
+    "elsewhere": {"encounters_per_h": 0.0},
+    "features": [
+        {
+            "type": "Feature",
+            "properties": {"name": "ferries", "encounters_per_h": 2.0},
+            "geometry": {
+                "type": "Polygon",
+                "coordinates": [[[-6, 46], [-4, 46], [-4, 48], [-6, 48], [-6, 46]]],
+            },
+        }
+    ],
+}
+
+
+def test_files_of_traffic_are_checked_when_they_arrive(client):
+    def upload(name: str, content: bytes) -> Any:
+        return client.post("/api/v1/traffic", files={"file": (name, content)})
+
+    kept = upload("ferries.geojson", json.dumps(TRAFFIC).encode())
+    assert kept.status_code == 201 and kept.json()["zones"] == ["ferries"]
+    assert kept.json()["id"] in [row["id"] for row in client.get("/api/v1/traffic").json()]
+    nothing = {**TRAFFIC, "features": [{**TRAFFIC["features"][0], "properties": {"name": "x"}}]}
+    found = problem(upload("broken.geojson", json.dumps(nothing).encode()), 422)
+    assert found["field"] == "file" and "encounters_per_h" in found["possible"]
+    problem(upload("ferries.txt", b"x"), 415)
+    assert client.delete(f"/api/v1/traffic/{kept.json()['id']}").status_code == 204
+    problem(client.delete("/api/v1/traffic/0123456789abcdef"), 404)
+
+
+def test_history_networks_are_checked_when_they_arrive(client):
+    answer = client.post("/api/v1/histories", files={"file": ("net.json", b'{"format": "other"}')})
+    assert "history network" in problem(answer, 422)["asked"]
+    assert client.get("/api/v1/histories").json() == []
+    problem(client.delete("/api/v1/histories/0123456789abcdef"), 404)

@@ -129,7 +129,9 @@ def close_matches(word: str, known: Iterable[str], count: int = 3) -> list[str]:
     return [by_lower[name] for name in found]
 
 
-def unknown_name_error(kind: str, word: str, known: Iterable[str]) -> InputError:
+def unknown_name_error(
+    kind: str, word: str, known: Iterable[str], *, field: str | None = None
+) -> InputError:
     """Build the error for a name that is not among the known ones, with near matches.
 
     Parameters
@@ -137,6 +139,7 @@ def unknown_name_error(kind: str, word: str, known: Iterable[str]) -> InputError
     kind : Kind of the name, for the message, such as ``"method"``.
     word : The unknown name.
     known : All known names.
+    field : Entry of a request that holds the name.
 
     Returns
     -------
@@ -146,8 +149,14 @@ def unknown_name_error(kind: str, word: str, known: Iterable[str]) -> InputError
     near = close_matches(word, names)
     listed = ", ".join(names[:20]) + (", ..." if len(names) > 20 else "")
     remedy = f"Did you mean {' or '.join(repr(n) for n in near)}?" if near else "Check the name."
+    place = {} if field is None else {"field": field}
     return InputError(
-        f"There is no {kind} named {word!r}.", f"Known: {listed}.", remedy, value=word, near=near
+        f"There is no {kind} named {word!r}.",
+        f"Known: {listed}.",
+        remedy,
+        value=word,
+        near=near,
+        **place,
     )
 
 

@@ -217,7 +217,9 @@ class SearchRequest:
 
     def _check_search(self) -> None:
         if self.objective not in OBJECTIVES:
-            raise unknown_name_error("objective", str(self.objective), OBJECTIVES)
+            raise unknown_name_error(
+                "objective", str(self.objective), OBJECTIVES, field="objective"
+            )
         _check_number("speed_kn", self.speed_kn, above=0.0, below=100.0, unit="kn")
         _check_number("speed_block_h", self.speed_block_h, above=-1e-9, below=1000.0, unit="h")
         _check_number("min_ukc_m", self.min_ukc_m, above=-1e-9, below=100.0, unit="m")
@@ -238,14 +240,14 @@ class SearchRequest:
                 field="seed",
             )
         if self.hold is not None and self.hold not in HELD:
-            raise unknown_name_error("quantity to hold", str(self.hold), HELD)
+            raise unknown_name_error("quantity to hold", str(self.hold), HELD, field="hold")
         if self.layered is not None:
             object.__setattr__(self, "layered", LayeredRequest.from_dict(self.layered))
         if self.method not in METHODS:
-            raise unknown_name_error("method", str(self.method), METHODS)
+            raise unknown_name_error("method", str(self.method), METHODS, field="method")
         if self.ensemble is not None and self.ensemble not in RISK_MEASURES:
             raise unknown_name_error(
-                "risk measure of an ensemble", str(self.ensemble), RISK_MEASURES
+                "risk measure of an ensemble", str(self.ensemble), RISK_MEASURES, field="ensemble"
             )
 
 
@@ -304,7 +306,10 @@ def _checked_indicator(kind: str, name: str, value: Any, known: Any) -> float:
     plain = name if kind == "weights" else name.partition(":")[0]
     if plain not in known:
         raise unknown_name_error(
-            "key figure of a weighted sum" if kind == "weights" else "indicator", plain, known
+            "key figure of a weighted sum" if kind == "weights" else "indicator",
+            plain,
+            known,
+            field=kind,
         )
     number = to_number(value)
     if not (math.isfinite(number) and (kind != "weights" or number >= 0.0)):

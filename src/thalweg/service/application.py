@@ -21,6 +21,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from thalweg.service.access_control import AccessControl
 from thalweg.service.endpoints.catalogue_endpoints import catalogue
 from thalweg.service.endpoints.chart_endpoints import chart_router
+from thalweg.service.endpoints.chart_file_endpoints import chart_files_router
 from thalweg.service.endpoints.job_endpoints import jobs_router
 from thalweg.service.endpoints.route_endpoints import routes_router
 from thalweg.service.endpoints.sea_endpoints import seas_router
@@ -141,7 +142,14 @@ def create_application(settings: ServiceSettings) -> FastAPI:
     )
     application.state.service = state
     add_problem_handlers(application)
-    for router in (catalogue, chart_router, seas_router, jobs_router, routes_router):
+    for router in (
+        catalogue,
+        chart_router,
+        chart_files_router,
+        seas_router,
+        jobs_router,
+        routes_router,
+    ):
         application.include_router(router, prefix="/api/v1")
     _add_pages(application)
     application.add_middleware(BodyLimit, largest=settings.limits.small_upload_bytes)

@@ -20,6 +20,8 @@ from thalweg.service.worker.worker_client import WorkerClient
 
 SEA_ENDINGS: Final = (".nc", ".nc4", ".cdf", ".grb", ".grb2", ".grib", ".grib1", ".grib2", ".gri")
 SHIP_ENDINGS: Final = (".yaml", ".yml", ".json")
+TRAFFIC_ENDINGS: Final = (".geojson", ".json", ".nc", ".nc4")
+HISTORY_ENDINGS: Final = (".json",)
 ROUTE_ENDINGS: Final = (".rtz", ".rtzp", ".gml", ".gpx", ".geojson", ".json", ".csv", ".txt")
 
 
@@ -78,6 +80,14 @@ class ServiceState:
         self.routes = UploadStore(
             settings.subfolder("routes"), "route", ROUTE_ENDINGS, largest=small, total=100 * small
         )
+        self.traffic = UploadStore(
+            settings.subfolder("traffic"), "traffic", TRAFFIC_ENDINGS,
+            largest=small, total=100 * small,
+        )  # fmt: skip
+        self.histories = UploadStore(
+            settings.subfolder("histories"), "history network", HISTORY_ENDINGS,
+            largest=small, total=100 * small,
+        )  # fmt: skip
         self.store = JobStore(settings.folder / "jobs.sqlite")
         self.runner = JobRunner(self.store, settings, self.files_of)
         self.changes = JobChanges()
@@ -95,7 +105,13 @@ class ServiceState:
         for ship in named.ships:
             if ship not in library:
                 found[ship] = str(self.ships.get(ship).path)
-        return found | {name: str(self.routes.get(name).path) for name in named.routes}
+        for names, store in (
+            (named.routes, self.routes),
+            (named.traffic, self.traffic),
+            (named.histories, self.histories),
+        ):
+            found |= {name: str(store.get(name).path) for name in names}
+        return found
 
     @cached_property
     def library_ships(self) -> tuple[str, ...]:

@@ -102,7 +102,9 @@ class LayeredRequest:
             )
         for key in data:
             if key not in _KEYS:
-                raise unknown_name_error("entry of a layered network", str(key), _KEYS)
+                raise unknown_name_error(
+                    "entry of a layered network", str(key), _KEYS, field="layered"
+                )
         given = [key for key in _SHAPE if data.get(key) is not None]
         missing = [key for key in _SHAPE if key not in given]
         if given and (missing or data.get("contain")):

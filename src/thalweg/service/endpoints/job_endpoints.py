@@ -25,14 +25,21 @@ from thalweg.service.jobs.batch_requests import (
 )
 from thalweg.service.jobs.job_store import FINAL_STATES, Job
 from thalweg.service.jobs.named_uploads import entries_of, named_uploads
-from thalweg.service.jobs.plan_request import PLAN_EXAMPLE, EvaluationRequest, PlanRequest
+from thalweg.service.jobs.plan_request import (
+    ALTERNATIVES_EXAMPLE,
+    LAYERED_EXAMPLE,
+    PLAN_EXAMPLE,
+    AlternativesRequest,
+    EvaluationRequest,
+    PlanRequest,
+)
 from thalweg.service.problem_details import ServiceError, not_found
 from thalweg.service.service_state import ServiceState, State
 from thalweg.studies.study_axes import plain_data
 
 jobs_router = APIRouter(tags=["jobs"])
 JobId = Annotated[str, Path(pattern=r"^[0-9a-f]{16}$")]
-Kind = Literal["plan", "evaluation", "project", "study", "forecast"]
+Kind = Literal["plan", "alternatives", "evaluation", "project", "study", "forecast"]
 JobState = Literal["queued", "running", "done", "failed", "cancelled"]
 KEEP_ALIVE_SECONDS: Final = 15.0
 _MEDIA_TYPES: Final = {
@@ -74,12 +81,25 @@ def job_dict(job: Job) -> dict[str, Any]:
 def start_plan(
     state: State,
     response: Response,
-    request: Annotated[PlanRequest, Body(examples=[PLAN_EXAMPLE])],
+    request: Annotated[PlanRequest, Body(examples=[PLAN_EXAMPLE, LAYERED_EXAMPLE])],
     idempotency_key: str | None = Header(None, max_length=200),
 ) -> dict[str, Any]:
     """Start planning a voyage; the answer comes at once, with the address of the job."""
     request.checked_voyage()
     return _start("plan", request.model_dump(mode="json"), response, idempotency_key, state)
+
+
+@jobs_router.post("/alternatives", status_code=202)
+def start_alternatives(
+    state: State,
+    response: Response,
+    request: Annotated[AlternativesRequest, Body(examples=[ALTERNATIVES_EXAMPLE])],
+    idempotency_key: str | None = Header(None, max_length=200),
+) -> dict[str, Any]:
+    """Start planning routes that differ, each the best in something; a job like that of a plan."""
+    request.checked_voyage()
+    given = request.model_dump(mode="json")
+    return _start("alternatives", given, response, idempotency_key, state)
 
 
 class VoyageText(BaseModel):
@@ -216,7 +236,9 @@ def _check_files(request: dict[str, Any], state: ServiceState) -> None:
     try:
         state.files_of(request)
     except ServiceError as error:
-        error.details["field"] = "route" if error.asked.startswith("There is no route") else "seas"
+        kinds = {"route": "route", "traffic": "traffic", "history network": "history"}
+        missing = (kinds[kind] for kind in kinds if error.asked.startswith(f"There is no {kind} "))
+        error.details["field"] = next(missing, "seas")
         raise
 
 
@@ -330,7 +352,9 @@ def result_file(job_id: str, name: str, state: ServiceState) -> Any:
 
 @jobs_router.get("/plans/{job_id}/result")
 def job_result(state: State, job_id: JobId) -> FileResponse:
-    """Return the result: of a plan exactly the file ``plan.json``, of an evaluation its route."""
+    """Return the result: of a plan exactly the file ``plan.json``, of an evaluation its route, of
+    alternatives the routes with their names and figures.
+    """
     kind = state.store.get(job_id).kind
     name = "route.json" if kind == "evaluation" else f"{kind}.json"
     return FileResponse(result_file(job_id, name, state), media_type="application/json")

@@ -98,14 +98,18 @@ def _row(one: ComparedRoute, state: ServiceState) -> dict[str, Any]:
 
 def _route(one: ComparedRoute, kind: str, state: ServiceState) -> dict[str, Any]:
     if one.number == 0:
-        found: dict[str, Any] = json.loads(result_file(one.job, "beside.json", state).read_text())
-        return found
+        beside: dict[str, Any] = json.loads(result_file(one.job, "beside.json", state).read_text())
+        return beside
     if kind == "evaluation":
         evaluated: dict[str, Any] = json.loads(
             result_file(one.job, "route.json", state).read_text()
         )
         return evaluated
-    routes = json.loads(result_file(one.job, "plan.json", state).read_text())["routes"]
+    if kind == "alternatives":
+        found = json.loads(result_file(one.job, "alternatives.json", state).read_text())
+        routes = [choice["route"] for choice in found["alternatives"]]
+    else:
+        routes = json.loads(result_file(one.job, "plan.json", state).read_text())["routes"]
     if one.number > len(routes):
         raise InputError(
             f"The plan {one.job} has no route {one.number}.",

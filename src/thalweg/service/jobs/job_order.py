@@ -27,7 +27,7 @@ class JobOrder:
 
     Attributes
     ----------
-    kind : ``plan``, ``evaluation``, ``project``, ``study`` or ``forecast``.
+    kind : ``plan``, ``alternatives``, ``evaluation``, ``project``, ``study`` or ``forecast``.
     folder : Draft folder of the result, which exists.
     files : Paths of uploaded files by id.
     workspace : Folder that the attempts of the job share; it is removed when the job has ended.

@@ -42,7 +42,7 @@ class Job:
     Attributes
     ----------
     number : Order of arrival.
-    kind : ``plan``, ``evaluation``, ``project``, ``study`` or ``forecast``.
+    kind : ``plan``, ``alternatives``, ``evaluation``, ``project``, ``study`` or ``forecast``.
     request : What was asked.
     attempt : How often it was started.
     cancelling : Whether it was asked to stop.

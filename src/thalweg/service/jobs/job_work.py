@@ -15,13 +15,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 from thalweg.core.errors import ThalwegError
 from thalweg.core.file_writing import make_folder, write_text
-from thalweg.core.units import NAUTICAL_MILE
 from thalweg.service.jobs.child_messages import MessageWriter
 from thalweg.service.jobs.closure_facts import PLACES, TIMES, closure_facts
 from thalweg.service.jobs.isochrone_lines import isochrone_lines
 from thalweg.service.jobs.job_order import JobOrder, StageMessages
 from thalweg.service.jobs.plan_request import EvaluationRequest, PlanRequest
-from thalweg.service.jobs.request_objects import WorldOfJob, open_world
+from thalweg.service.jobs.request_objects import WorldOfJob, network_of, open_world
 from thalweg.service.jobs.route_profiles import first_look, route_profile
 
 if TYPE_CHECKING:
@@ -44,6 +43,10 @@ def run_order(order: JobOrder, messages: MessageWriter) -> tuple[str, dict[str, 
     stages = StageMessages(messages)
     if order.kind == "evaluation":
         return "done", _evaluate(order, stages)
+    if order.kind == "alternatives":
+        from thalweg.service.jobs.alternatives_work import plan_alternatives
+
+        return plan_alternatives(order, stages)
     if order.kind == "project":
         from thalweg.service.jobs.project_work import simulate_project
 
@@ -111,8 +114,8 @@ def _plan_whole(
         ship=world.ship,
         sea=world.sea,
         chart=world.chart,
-        network=request.network,
-        resolution=_metres(request.resolution_nm),
+        network=network_of(request, order.files),
+        resolution=request.resolution_m,
         proof=request.proof_s,
         progress=stages,
     )
@@ -146,8 +149,8 @@ def _plan_first(
             ship=world.ship,
             sea=world.sea,
             chart=world.chart,
-            network=request.network,
-            resolution=_metres(request.resolution_nm),
+            network=network_of(request, order.files),
+            resolution=request.resolution_m,
             proof=0.0,
             progress=stages,
         )
@@ -158,10 +161,6 @@ def _plan_first(
         messages.send(
             "route", {"route": first_look(found.best), "final": False, "summary": summary}
         )
-
-
-def _metres(miles: float | None) -> float | None:
-    return None if miles is None else miles * NAUTICAL_MILE
 
 
 def _beside(
@@ -252,12 +251,13 @@ def job_summary(found: Plan, seconds: float) -> dict[str, Any]:
         "feasible": best.feasible,
         "cancelled": found.cancelled,
         "seconds": seconds,
-        **_totals(best),
+        **route_totals(best),
         "quality": quality_text(found),
     }
 
 
-def _totals(route: Route) -> dict[str, Any]:
+def route_totals(route: Route) -> dict[str, Any]:
+    """Return the totals of a route for lists of jobs."""
     first = first_look(route)
     del first["points"]
     return {**first, "co2_t": route.co2_t}
@@ -285,4 +285,9 @@ def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
     folder = Path(order.folder)
     _write_json(folder / "route.json", route.as_dict())
     write_route_result(route, folder, 1, RouteFileOptions(formats=ROUTE_FORMATS))
-    return {"feasible": route.feasible, "seconds": stages.seconds(), "routes": 1, **_totals(route)}
+    return {
+        "feasible": route.feasible,
+        "seconds": stages.seconds(),
+        "routes": 1,
+        **route_totals(route),
+    }

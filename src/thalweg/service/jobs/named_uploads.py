@@ -13,11 +13,13 @@ ESTUARY: Final = "synthetic-estuary"  #: the sea of the example project
 
 
 class NamedUploads(NamedTuple):
-    """Names in a request: ships (of the library or uploaded), seas and routes (uploaded)."""
+    """Names in a request: ships (of the library or uploaded), and uploaded files of each kind."""
 
     ships: list[str]
     seas: list[str]
     routes: list[str]
+    traffic: tuple[str, ...] = ()
+    histories: tuple[str, ...] = ()
 
 
 def named_uploads(request: Mapping[str, Any]) -> NamedUploads:
@@ -33,7 +35,13 @@ def named_uploads(request: Mapping[str, Any]) -> NamedUploads:
         found = NamedUploads([], [], [])
     else:
         seas = [*request.get("seas", ()), *request.get("depths", ())]
-        found = NamedUploads([str(request["ship"])], seas, [*_texts(request.get("route"))])
+        found = NamedUploads(
+            [str(request["ship"])],
+            seas,
+            [*_texts(request.get("route"))],
+            tuple(request.get("traffic", ())),
+            tuple(_texts(request.get("history"))),
+        )
     seas = [name for name in found.seas if name not in (*EMBEDDED_SEAS, ESTUARY)]
     return found._replace(seas=seas)
 

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import parse_position
+from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.voyage import Voyage
 
 EMBEDDED_SEAS: Final = ("calm", "storm")
@@ -25,7 +26,35 @@ PLAN_EXAMPLE: Final[dict[str, Any]] = {
     "seas": ["storm"],
 }
 
+ALTERNATIVES_EXAMPLE: Final[dict[str, Any]] = {
+    "title": "Ways along western Norway",
+    "voyage": {
+        "start": "59.2N 4.4E",
+        "goal": "62.6N 5.2E",
+        "depart": "1998-08-31T12:00Z",
+        "at_most": {"fuel": 30},
+    },
+    "ship": "handysize-bulker",
+    "seas": ["storm"],
+    "most": 3,
+}
+LAYERED_EXAMPLE: Final[dict[str, Any]] = {
+    "title": "Fuel and comfort together, on a layered network",
+    "voyage": {
+        "start": "63.67N 9.30E",
+        "goal": "66.57N 11.67E",
+        "depart": "1998-08-31T12:00Z",
+        "objective": "weighted",
+        "weights": {"fuel": 1, "inshore": 0.5},
+        "at_least": {"land_distance_nm": 0.5},
+        "layered": {"near_coast_nm": 3, "within_percent": 2},
+    },
+    "ship": "handysize-bulker",
+    "seas": ["storm"],
+}
+
 FilledQuantity = Literal["currents", "wind", "waves"]
+UploadId = Annotated[str, Field(pattern=r"^[0-9a-f]{16,64}$")]
 FileId = Annotated[str, Field(pattern=r"^[0-9a-f]{16,64}$|^calm$|^storm$")]
 
 
@@ -41,6 +70,20 @@ class RequestedLimits(BaseModel):
     motion_sickness_percent: Annotated[
         float | None, Field(gt=0, le=100, description="people sick after two hours")
     ] = None
+
+
+class RequestedCharges(BaseModel):
+    """Charges of the European Union, which count in the cost; see the page on money."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    share_percent: Literal[0, 50, 100] = Field(
+        description="share of the voyage in their scope: 100 between two ports of the Union, 50 to "
+        "or from one"
+    )
+    ets_price: float = Field(0.0, ge=0, le=1e5, description="of an allowance, per tonne of CO2")
+    eur_rate: float = Field(0.0, ge=0, le=1e5, description="of a euro; 0: no FuelEU penalty")
+    year: int = Field(2026, ge=2024, le=2060)
 
 
 class ShipAndSea(BaseModel):
@@ -62,8 +105,23 @@ class ShipAndSea(BaseModel):
     areas: dict[str, Any] | None = Field(
         None, description="GeoJSON areas with the property `kind`: no-go, penalty, price, eca"
     )
+    traffic: list[UploadId] = Field(
+        default_factory=list, max_length=10, description="ids of /traffic, for expected encounters"
+    )
+    eca: bool = Field(True, description="whether emission control areas count in the cost")
+    charges: RequestedCharges | None = None
+    sampling: str = Field(
+        "linear",
+        pattern=r"^linear$|^nearest:[0-9]{1,4}(\.[0-9]{1,4})?$",
+        description="weather between its times: `linear`, or the nearest update: `nearest:HOURS`",
+    )
+    average_over_m: float | None = Field(
+        None, gt=0, le=1000, description="depth over which currents in layers are averaged"
+    )
     limits: RequestedLimits = RequestedLimits()
-    coast: Literal["c", "l", "i", "h", "f"] = Field("i", description="resolution of GSHHG")
+    coast: Literal["c", "l", "i", "h", "f", "none"] = Field(
+        "i", description="resolution of GSHHG; `none`: no land"
+    )
     load_factor: float | None = Field(None, ge=0, le=1, description="0 empty to 1 full")
 
     def check_embedded(self) -> None:
@@ -81,13 +139,26 @@ class PlanRequest(ShipAndSea):
     """A voyage to plan, with its ship, sea and chart."""
 
     voyage: dict[str, Any] = Field(
-        description="entries of a voyage file: start, goal, depart, objective, ..."
+        description="entries of a voyage file: start, goal, depart, objective (time, distance, "
+        "fuel, energy, cost, co2, comfort, encounters, inshore, weighted, front), weights, at_most "
+        "and at_least of key performance indicators, layered, ..."
     )
-    network: Literal["auto", "lattice", "mesh", "globe"] = "auto"
+    network: Literal["auto", "lattice", "mesh", "globe", "layered"] = "auto"
+    history: UploadId | None = Field(
+        None, description="id of /histories: plan in the water that ships usually use"
+    )
+    corridor_gain_percent: float | None = Field(
+        None, ge=0, lt=100, description="gain of the objective for which a plan leaves that water"
+    )
     resolution_nm: float | None = Field(None, ge=0.001, le=300)
     proof_s: float | None = Field(
         None, ge=0, le=3600, description="time for the proof of the lower bound [s]"
     )
+
+    @property
+    def resolution_m(self) -> float | None:
+        """The resolution [m]; None: chosen."""
+        return None if self.resolution_nm is None else self.resolution_nm * NAUTICAL_MILE
 
     def checked_voyage(self) -> Voyage:
         """Return the voyage; all checks that need neither chart nor data are made here.
@@ -99,6 +170,7 @@ class PlanRequest(ShipAndSea):
         """
         self.check_embedded()
         voyage = Voyage.from_dict(self.voyage)
+        self._check_network(voyage)
         places = [("start", voyage.start), ("goal", voyage.goal)]
         places += [(f"via.{i}", place) for i, place in enumerate(voyage.via)]
         for name, place in places:
@@ -110,13 +182,42 @@ class PlanRequest(ShipAndSea):
                     raise
         return voyage
 
+    def _check_network(self, voyage: Voyage) -> None:
+        layered = voyage.layered is not None
+        if layered and (self.history is not None or self.network not in ("auto", "layered")):
+            raise InputError(
+                f"A layered network is described, and the network is "
+                f"{'a history network' if self.history else repr(self.network)}.",
+                "The entry layered of the voyage shapes the network 'layered'.",
+                "Choose this network, or leave the entry out.",
+                field="network",
+            )
+        if self.history is not None and self.network != "auto":
+            raise InputError(
+                f"Both history and the network {self.network!r} are given.",
+                "A history network is searched in place of the others.",
+                "Leave one of them out.",
+                field="network",
+            )
+        if self.corridor_gain_percent is not None and self.history is None:
+            raise InputError(
+                "corridor_gain_percent is given without history.",
+                "It states for what gain a plan leaves the water that ships usually use.",
+                "Give the id of a history network, or leave it out.",
+                field="corridor_gain_percent",
+            )
+
+
+class AlternativesRequest(PlanRequest):
+    """A voyage whose routes that differ are wanted; its objective is not used."""
+
+    most: int = Field(5, ge=2, le=5, description="greatest number of routes")
+
 
 class EvaluationRequest(ShipAndSea):
     """A route from a file to sail in given weather."""
 
-    route: Annotated[str, Field(pattern=r"^[0-9a-f]{16,64}$")] = Field(
-        description="id of a route of POST /routes"
-    )
+    route: UploadId = Field(description="id of a route of POST /routes")
     depart: str | None = Field(None, max_length=40, description="ISO 8601; default: of the file")
     speed_kn: float | None = Field(None, gt=0, lt=100)
     min_ukc_m: float = Field(0.0, ge=0, lt=100)

@@ -8,12 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
-from thalweg.service.jobs.plan_request import EMBEDDED_SEAS, ShipAndSea
+from thalweg.service.jobs.plan_request import (
+    EMBEDDED_SEAS,
+    PlanRequest,
+    RequestedCharges,
+    ShipAndSea,
+)
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.network.history.history_corridor import HistoryCorridor
     from thalweg.sea import Sea
     from thalweg.ship import Ship
+    from thalweg.ship.methods.engine.european_charges import EuropeanCharges
 
 
 @dataclass(frozen=True)
@@ -35,14 +42,32 @@ def open_world(request: ShipAndSea, files: Mapping[str, str]) -> WorldOfJob:
     """
     from thalweg.chart import Chart
 
-    chart = Chart.gshhg(request.coast)
+    if request.coast == "none":
+        chart = Chart.open_water(-90.0, 90.0, -180.0, 180.0)
+    else:
+        chart = Chart.gshhg(request.coast)
     for name in request.depths:
         chart = chart.with_depth(files[name])
     if request.areas:
         chart = chart.with_zones(request.areas)
+    for name in request.traffic:
+        chart = chart.with_traffic(files[name])
+    chart = chart if request.eca else chart.without_eca()
     fill = {str(name): value for name, value in request.fill.items()}
-    sea = open_seas(request.seas, fill, files)
-    return WorldOfJob(open_ship_of(request, files), sea, chart)
+    sea = open_seas(request.seas, fill, files, average_over_m=request.average_over_m)
+    return WorldOfJob(open_ship_of(request, files), sea.sampled(request.sampling), chart)
+
+
+def network_of(request: PlanRequest, files: Mapping[str, str]) -> str | HistoryCorridor:
+    """Return the network of a request, as `plan` takes it."""
+    from thalweg.network.history.history_corridor import HistoryCorridor
+    from thalweg.network.history.history_file import read_history
+
+    if request.history is None:
+        return request.network
+    gain = request.corridor_gain_percent
+    history = read_history(files[request.history])
+    return HistoryCorridor(history, gain=None if gain is None else gain / 100.0)
 
 
 def open_ship_of(request: ShipAndSea, files: Mapping[str, str]) -> Ship:
@@ -54,12 +79,21 @@ def open_ship_of(request: ShipAndSea, files: Mapping[str, str]) -> Ship:
     ship = Ship.load(name) if sick is None else _with_comfort_limit(name, sick)
     if request.load_factor is not None:
         ship = ship.with_load_factor(request.load_factor)
+    if request.charges is not None:
+        ship = ship.with_charges(_charges(request.charges))
     given: dict[str, Any] = {}
     if request.limits.wave_height_m is not None:
         given["wave_height"] = request.limits.wave_height_m
     if request.limits.wind_speed_kn is not None:
         given["wind_speed"] = request.limits.wind_speed_kn * KNOT
     return ship.with_limits(replace(ship.limits, **given)) if given else ship
+
+
+def _charges(given: RequestedCharges) -> EuropeanCharges:
+    from thalweg.ship.methods.engine.european_charges import EuropeanCharges
+
+    share = given.share_percent / 100.0
+    return EuropeanCharges(share, given.ets_price, given.eur_rate, given.year)
 
 
 def _with_comfort_limit(name: str, percent: float) -> Ship:
@@ -79,13 +113,19 @@ def _with_comfort_limit(name: str, percent: float) -> Ship:
     return Ship.from_dict({**data, "limits": limits}, source=source)
 
 
-def open_seas(names: list[str], fill: Mapping[str, Any], files: Mapping[str, str]) -> Sea:
+def open_seas(
+    names: list[str],
+    fill: Mapping[str, Any],
+    files: Mapping[str, str],
+    *,
+    average_over_m: float | None = None,
+) -> Sea:
     """Return the sea of a list of names, the first with priority."""
     from thalweg.sea import Sea
 
     embedded = {"calm": Sea.calm, "storm": Sea.storm}
     uploaded = [files[name] for name in names if name not in EMBEDDED_SEAS]
-    parts = [Sea.open(*uploaded)] if uploaded else []
+    parts = [Sea.open(*uploaded, draught_m=average_over_m)] if uploaded else []
     parts += [embedded[name]() for name in names if name in EMBEDDED_SEAS]
     sea = parts[0] if len(parts) == 1 else Sea.layered(*parts)
     return sea.filled(**fill) if fill else sea

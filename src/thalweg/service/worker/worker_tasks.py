@@ -109,6 +109,42 @@ def import_route(task: Mapping[str, Any]) -> TaskResult:
     }, b""
 
 
+def inspect_traffic(task: Mapping[str, Any]) -> TaskResult:
+    """Return what a file of ship traffic holds: zones by name, or the box of a raster.
+
+    Parameters
+    ----------
+    task : mapping
+        ``path``.
+    """
+    from thalweg.chart.zones.traffic_files import read_ship_traffic
+
+    traffic = read_ship_traffic(task["path"])
+    return {
+        "zones": [zone.name for zone in traffic.zones],
+        "grids": len(traffic.grids),
+    }, b""
+
+
+def inspect_history(task: Mapping[str, Any]) -> TaskResult:
+    """Return what a history network holds: numbers of ports, junctions and arcs.
+
+    Parameters
+    ----------
+    task : mapping
+        ``path``.
+    """
+    from thalweg.network.history.history_file import read_history
+
+    network = read_history(task["path"])
+    ports = len(network.nodes.lat) - network.nodes.first_port
+    return {
+        "ports": ports,
+        "junctions": int(network.nodes.first_port),
+        "arcs": len(network.arcs.kind),
+    }, b""
+
+
 def ship_sheet(task: Mapping[str, Any]) -> TaskResult:
     """Return the performance sheet of a ship, with its limits.
 
@@ -168,6 +204,8 @@ TASKS: Final[Mapping[str, Callable[[Mapping[str, Any]], TaskResult]]] = {
     "frame": frame,
     "inspect": inspect,
     "import_route": import_route,
+    "inspect_traffic": inspect_traffic,
+    "inspect_history": inspect_history,
     "ship_sheet": ship_sheet,
     "coast_cells": coast_cells,
     "forecast_size": forecast_size,

@@ -30,7 +30,9 @@ export class CompareView {
   }
 
   async show() {
+    const ask = (this.listed = Symbol("ask"));
     const { jobs } = await get("/plans?size=60");
+    if (ask !== this.listed) return;
     this.jobs = jobs.filter((job) => job.result);
     this.chosen = this.chosen.filter((one) => this.jobs.some((job) => job.id === one.job));
     fill(this.list, this.jobs.length ? this.jobs.map((job) => this.#row(job)) : h("p.empty", {}, h("b", {}, "No routes yet"), "Plan a voyage first; its routes can then be compared here."));
@@ -52,16 +54,20 @@ export class CompareView {
   }
 
   async #compare() {
+    const ask = (this.asked = Symbol("ask")); // the answer to an earlier choice is not shown
     if (this.chosen.length < 2) {
       this.handlers.show([], h("p.empty", {}, h("b", {}, this.chosen.length ? "Choose one more route" : "Choose routes to compare"), "Their figures and differences stand here, and all of them on the chart."));
-      if (this.chosen.length) this.handlers.show(await this.#points(), null);
+      if (!this.chosen.length) return;
+      const points = await this.#points();
+      if (ask === this.asked) this.handlers.show(points, null);
       return;
     }
     try {
       const { routes } = await post("/compare", { routes: this.chosen.map(({ job, number: n }) => ({ job, number: n })) });
-      this.handlers.show(await this.#points(), this.#table(routes));
+      const points = await this.#points();
+      if (ask === this.asked) this.handlers.show(points, this.#table(routes));
     } catch (problem) {
-      fill(this.problem, errorBox(problem));
+      if (ask === this.asked) fill(this.problem, errorBox(problem));
     }
   }
 
@@ -79,17 +85,32 @@ export class CompareView {
 
   // Plan the voyages of an example, or find them planned, and compare them.
   async #example({ plans, beside }) {
-    fill(this.problem);
-    const jobs = [];
-    try {
-      for (const request of plans) await this.handlers.run(await post("/plans", request, { "Idempotency-Key": keyOf(request) }), (job) => { if (job.result) jobs.push(job); });
-      if (!jobs.length) return;
+    const orders = plans.map((request) => ["/plans", request, { "Idempotency-Key": keyOf(request) }]);
+    await this.#planAll(orders, async (jobs) => {
+      if (jobs.length < orders.length) return;
       this.chosen = jobs.map((job) => ({ job: job.id, number: 1, title: job.title }));
       if (beside) this.chosen.splice(1, 0, { job: jobs[0].id, number: 0, title: `${jobs[0].title}, weather ignored` });
+    });
+  }
+
+  // Plan one after the other, then compare; a second click waits for the first to end.
+  async #planAll(orders, then) {
+    if (this.busy) return;
+    this.busy = true;
+    const jobs = [], problems = [];
+    fill(this.problem);
+    try {
+      for (const order of orders) {
+        await this.handlers.run(await post(...order), (job) => { if (job.result) jobs.push(job); else if (job.problem) problems.push(job.problem); });
+      }
+      await then(jobs);
       await this.show();
     } catch (problem) {
-      fill(this.problem, errorBox(problem));
+      problems.push(problem);
+    } finally {
+      this.busy = false;
     }
+    fill(this.problem, problems.map(errorBox));
   }
 
   // Plan the voyage of the first chosen route again, with changes.
@@ -107,12 +128,7 @@ export class CompareView {
       for (const hours of [12, 24]) change(`+${hours} h`, (r) => { r.voyage.depart = new Date(Date.parse(r.voyage.depart || r.voyage.depart_window[0]) + hours * 3.6e6).toISOString().slice(0, 19) + "Z"; delete r.voyage.depart_window; });
     } else if (kind === "calm") change("no weather", (r) => { r.seas = ["calm"]; r.fill = {}; });
     else change("no offing", (r) => { r.voyage.offing_nm = 0; });
-    try {
-      for (const request of plans) await this.handlers.run(await post("/plans", request), (job) => { if (job.result) this.add(job.id, 1, job.title); });
-      await this.show();
-    } catch (problem) {
-      fill(this.problem, errorBox(problem));
-    }
+    await this.#planAll(plans.map((request) => ["/plans", request]), (jobs) => jobs.forEach((job) => this.add(job.id, 1, job.title)));
   }
 
   async #score() {
@@ -124,11 +140,10 @@ export class CompareView {
     fill(this.problem);
     try {
       const route = await uploadForm("/routes", file);
-      const { ship, seas, fill: filled, limits, areas, coast, load_factor, depths } = first.request;
-      const request = { title: file.name, route: route.id, ship, seas, fill: filled, limits, areas, coast, load_factor, depths };
+      const { ship, seas, fill: filled, limits, areas, coast, load_factor, depths, traffic, eca, charges, sampling, average_over_m } = first.request;
+      const request = { title: file.name, route: route.id, ship, seas, fill: filled, limits, areas, coast, load_factor, depths, traffic, eca, charges, sampling, average_over_m };
       if (!route.depart) request.depart = first.summary.depart;
-      await this.handlers.run(await post("/evaluate", request), (job) => { if (job.result) this.add(job.id, 1, file.name); });
-      await this.show();
+      await this.#planAll([["/evaluate", request]], (jobs) => jobs.forEach((job) => this.add(job.id, 1, file.name)));
     } catch (problem) {
       fill(this.problem, errorBox(problem));
     }

@@ -8,9 +8,9 @@ import { typedTime } from "./typed_time.js";
 const SOURCES = [["gfs", "GFS and GFS-wave (NOAA)", ["wind", "waves"]], ["ecmwf", "ECMWF open data", ["wind", "waves"]], ["open-meteo", "Open-Meteo (small areas)", ["wind", "waves", "current"]], ["matroos", "Rijkswaterstaat, North Sea, 2 days", ["current", "waves"]], ["copernicus", "Copernicus Marine (account)", ["waves", "current"]], ["era5", "ERA5, past weather (account)", ["wind", "waves"]]];
 
 export class ForecastFetch {
-  // ends(): [{lat, lon}]; departs(): seconds or null; arrived(seas)
-  constructor(ends, departs, arrived) {
-    Object.assign(this, { ends, departs, arrived });
+  // ends(): [{lat, lon}]; departs(): seconds or null; chosen(): ids of seas; arrived(seas, chosen before)
+  constructor(ends, departs, chosen, arrived) {
+    Object.assign(this, { ends, departs, chosen, arrived });
     this.source = h("select", { id: "f-source", onchange: () => this.#sourceChanged() }, SOURCES.map(([name, text]) => h("option", { value: name }, text)));
     this.from = h("input", { type: "text", id: "f-from", autocomplete: "off", placeholder: "2026-01-31 12:00" });
     this.days = h("input", { type: "text", inputmode: "decimal", id: "f-days", value: "10" });
@@ -55,30 +55,37 @@ export class ForecastFetch {
   async #estimate() {
     const request = this.#request();
     if (!request) return;
-    fill(this.answer, h("p.facts", {}, "Asking the server what it has …"));
+    const waits = h("p.facts", {}, "Asking the server what it has …");
+    fill(this.answer, waits);
     try {
       const found = await post("/forecasts/estimate", request);
+      if (!waits.parentNode) return; // the answer to a request that was changed
       fill(this.answer, h("p", {}, h("b", {}, `About ${number(found.bytes / 1e6, found.bytes < 1e7 ? 1 : 0)} MB`), ` in ${number(found.times)} times${found.run ? `, run of ${time(seconds(found.run))} UTC` : ""}.`), h("p.facts", {}, found.licence), found.notes.map((text) => h("p.facts", {}, text)), h("button.quiet", { type: "button", onclick: () => this.#download(request) }, "Download"));
     } catch (problem) {
-      fill(this.answer, errorBox(problem));
+      if (waits.parentNode) fill(this.answer, errorBox(problem));
     }
   }
 
   async #download(request) {
+    if (this.sending) return;
+    this.sending = true;
     try {
       const job = await start("/forecasts", { ...request, title: `Forecast ${request.source} ${request.start.slice(0, 10)}` });
       this.watch(job);
     } catch (problem) {
       fill(this.answer, errorBox(problem));
+    } finally {
+      this.sending = false;
     }
   }
 
   watch(job) {
     this.element.open = true;
-    const said = h("p.facts", {}, "Waiting for its turn.");
+    this.close?.(); // one download at a time is shown
+    const said = h("p.facts", {}, "Waiting for its turn."), before = this.chosen();
     const stop = h("button.quiet.small", { type: "button", onclick: () => remove(`/plans/${job.id}`).catch((problem) => fill(this.answer, errorBox(problem))) }, "Stop the download");
     fill(this.answer, said, stop);
-    follow(job.id, {
+    this.close = follow(job.id, {
       stage: (data) => { said.textContent = `${data.text[0].toUpperCase()}${data.text.slice(1)} …`; },
       state: async (data) => {
         if (!hasEnded(data.state)) return;
@@ -86,7 +93,7 @@ export class ForecastFetch {
         if (data.state === "done") {
           fill(this.answer, h("p.facts", {}, `Fetched: ${time(seconds(ended.summary.start))} to ${time(seconds(ended.summary.end), true)}.`));
           announce("The forecast is fetched.");
-          await this.arrived(ended.summary.seas);
+          await this.arrived(ended.summary.seas, before);
         } else fill(this.answer, ended.problem ? errorBox(ended.problem) : h("p.facts", {}, "The download was stopped; what has arrived is kept for the next time."));
       },
     });

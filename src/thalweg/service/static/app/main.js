@@ -92,8 +92,15 @@ class Application {
     }
   }
 
+  // Answers to what was wanted before are not shown over what is wanted now.
+  #begins() {
+    const visit = (this.visit = Symbol("visit"));
+    return () => visit === this.visit;
+  }
+
   // A project or study that is opened takes the place of the form of its view.
   #switch(view, job = null) {
+    this.#begins();
     this.#weatherOf(view);
     this.view = view;
     this.#tabs();
@@ -191,9 +198,12 @@ class Application {
 
   async openJob(id, route = 0, t = null) {
     let job;
+    const wanted = this.#begins();
     try {
       job = await get(`/plans/${id}`);
+      if (!wanted()) return;
     } catch (problem) {
+      if (!wanted()) return;
       this.view = "plan";
       this.#showForm();
       fill(this.form.problem, errorBox(problem));
@@ -205,7 +215,8 @@ class Application {
     this.#tabs();
     if (job.kind === "forecast") { this.#showForm(); await this.form.openForecast?.(job); return; }
     this.#sheet(null);
-    if (job.kind === "plan") this.form.set(job.request);
+    this.#leaveProgress(); // the one that was followed goes on
+    if (["plan", "alternatives"].includes(job.kind)) this.form.set(job.request);
     if (!hasEnded(job.state)) { this.#follow(job); return; }
     await this.#ended(job, route, t);
   }
@@ -213,14 +224,13 @@ class Application {
   #follow(job) {
     this.progress?.close();
     this.result = null;
-    this.chart.routes.clear();
-    this.drawer.hide();
+    if (this.view === "plan") { this.#begins(); this.chart.routes.clear(); this.drawer.hide(); }
     const shown = new ProgressView(job, {
       ended: async () => {
         const done = await get(`/plans/${job.id}`);
         if (this.progress !== shown) return;
         this.#leaveProgress();
-        if (this.view === "plan") await this.#ended(done);
+        await this.#ended(done);
       },
       route: (points) => { if (this.view === "plan" && this.progress === shown) { this.chart.routes.showChosen(points, null, null, 0); if (!this.#inView(points)) this.chart.fit(points); } },
       leave: () => { this.#leaveProgress(); this.#switch("voyages"); },
@@ -228,7 +238,7 @@ class Application {
     this.progress = shown;
     this.progress.id = job.id;
     this.chart.particles.rest(true);
-    this.#showProgress();
+    if (this.view === "plan") this.#showProgress();
   }
 
   #leaveProgress() {
@@ -249,10 +259,16 @@ class Application {
     return points.every(([lon, lat]) => lat > s && lat < n && lon > w && lon < e);
   }
 
+  // In another view the result waits for the return to this one.
   async #ended(job, route = 0, t = null) {
     if (job.result) {
       try {
+        const wanted = this.view === "plan" ? this.#begins() : () => false;
         const result = await loadResult(job);
+        if (!wanted()) {
+          if (this.view !== "plan" && !this.progress) { this.result = result; selection.route = 0; selection.time = null; }
+          return;
+        }
         selection.route = Math.min(Math.max(0, route), result.plan.routes.length - 1);
         selection.hovered = null;
         selection.time = t;
@@ -260,17 +276,16 @@ class Application {
         await this.showResult(result, true);
         announce("The route is shown.");
       } catch (problem) {
-        this.#showForm();
+        if (this.view === "plan") this.#showForm();
         fill(this.form.problem, errorBox(problem));
       }
       return;
     }
-    this.#showForm();
-    this.#link("");
+    if (this.view === "plan") { this.#showForm(); this.#link(""); }
     if (job.problem) {
       this.form.showProblem(job.problem);
       const near = job.problem.nearest;
-      if (near) this.chart.routes.showFaults([{ lat: near[0], lon: near[1], reason: "nearest point reached" }]);
+      if (near && this.view === "plan") this.chart.routes.showFaults([{ lat: near[0], lon: near[1], reason: "nearest point reached" }]);
     } else fill(this.form.problem, h("p.note", {}, "The job was stopped before a route was found."));
   }
 
@@ -289,7 +304,7 @@ class Application {
     this.chart.closeMenu();
     this.chart.showAreas(this.form.areas, null);
     const profile = await profileOf(result, number_);
-    if (this.result !== result) return;
+    if (this.result !== result || selection.route !== number_ || this.view !== "plan") return;
     const route = result.plan.routes[number_];
     this.drawer.range(profile.time[0], profile.time.at(-1));
     if (selection.time === null || selection.time < profile.time[0] || selection.time > profile.time.at(-1)) selection.time = profile.time[0];
@@ -402,16 +417,20 @@ class Application {
   async #showVoyages() {
     const box = h("div.scroll", {}, h("h1", {}, "Voyages"), h("p.lead", {}, "All plans, projects and studies of this computer, the newest first."));
     fill(panel, box);
+    const again = async (asked) => {
+      try { await asked; } catch (problem) { box.prepend(errorBox(problem)); return; }
+      if (this.view === "voyages" && box.isConnected) await this.#showVoyages();
+    };
     try {
       const { jobs } = await get("/plans?size=100");
-      box.append(h("div.block", {}, jobs.length ? jobs.map((job) => h("div.jobrow", {}, h("button.job", { type: "button", onclick: () => this.openJob(job.id) }, h("b", {}, job.title || "Plan"), " ", job.state === "done" ? null : h(`span.state.${job.state}`, {}, job.state), h("span", {}, this.#facts(job))), hasEnded(job.state) ? h("button.quiet.small", { type: "button", "aria-label": `Remove ${job.title || "plan"}`, onclick: async () => { await remove(`/plans/${job.id}?forget=true`); this.#showVoyages(); } }, "Remove") : h("button.quiet.small", { type: "button", "aria-label": `Stop ${job.title || "plan"}`, onclick: async () => { await remove(`/plans/${job.id}`); this.#showVoyages(); } }, "Stop"))) : h("p.empty", {}, h("b", {}, "No voyages yet"), "Plan one, or open the example.", h("p", {}, h("button.quiet", { type: "button", onclick: () => { this.form.set(DEMO); this.#switch("plan"); } }, "Fill in the storm of 1998")))));
+      box.append(h("div.block", {}, jobs.length ? jobs.map((job) => h("div.jobrow", {}, h("button.job", { type: "button", onclick: () => this.openJob(job.id) }, h("b", {}, job.title || "Plan"), " ", job.state === "done" ? null : h(`span.state.${job.state}`, {}, job.state), h("span", {}, this.#facts(job))), hasEnded(job.state) ? h("button.quiet.small", { type: "button", "aria-label": `Remove ${job.title || "plan"}`, onclick: () => again(remove(`/plans/${job.id}?forget=true`)) }, "Remove") : h("button.quiet.small", { type: "button", "aria-label": `Stop ${job.title || "plan"}`, onclick: () => again(remove(`/plans/${job.id}`)) }, "Stop"))) : h("p.empty", {}, h("b", {}, "No voyages yet"), "Plan one, or open the example.", h("p", {}, h("button.quiet", { type: "button", onclick: () => { this.form.set(DEMO); this.#switch("plan"); } }, "Fill in the storm of 1998")))));
     } catch (problem) {
       box.append(errorBox(problem));
     }
   }
 
   #facts(job) {
-    if (job.summary && job.kind !== "plan" && job.kind !== "evaluation") {
+    if (job.summary && ["project", "study", "forecast"].includes(job.kind)) {
       const what = { project: () => `Project · ${number(job.summary.duration_days, 1)} days · ${number(job.summary.cycles)} cycles`, study: () => `Study · ${number(job.summary.voyages)} voyages`, forecast: () => `Forecast · ${number(job.summary.bytes / 1e6, 1)} MB` }[job.kind]();
       return `${what} · ${time(seconds(job.created))}`;
     }
@@ -463,7 +482,7 @@ class Application {
     });
     chart.addEventListener("dragged", ({ detail: { number: n, lat, lon } }) => { if (this.view === "projects") this.projects.moved(n, lat, lon); else form.moved(n, lat, lon); });
     form.addEventListener("change", () => this.#fieldTime());
-    form.addEventListener("started", (event) => this.#follow(event.detail));
+    form.addEventListener("started", ({ detail }) => this.#follow(detail));
     chart.addEventListener("hoverroute", (event) => { if (this.result?.plan.routes.length > 1) selection.hover(event.detail); });
     chart.addEventListener("click", (event) => this.#clicked(event.detail));
     selection.addEventListener("route", () => { if (this.result) this.showResult(this.result); });

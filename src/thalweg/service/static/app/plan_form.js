@@ -4,12 +4,15 @@ import { get, post, start, uploadForm, uploadSea } from "./api.js";
 import { announce, errorBox, fill, h } from "./elements.js";
 import { inputTime, known, number, seconds, time } from "./format.js";
 import { ForecastFetch } from "./forecast_fetch.js";
+import { IndicatorLimits, IndicatorWeights } from "./indicators.js";
+import { NetworkFields } from "./network_fields.js";
 import { PlaceField } from "./places.js";
 import { typedTime } from "./typed_time.js";
 
 const OBJECTIVES = [
   ["front", "All trade-offs of time and fuel"], ["time", "Least time"], ["fuel", "Least fuel"], ["cost", "Least cost"],
-  ["co2", "Least CO₂"], ["energy", "Least energy"], ["comfort", "Least motion sickness"], ["distance", "Shortest distance"],
+  ["co2", "Least CO₂"], ["energy", "Least energy"], ["comfort", "Least motion sickness"], ["encounters", "Fewest encounters with ships"], ["inshore", "Least length near land"], ["distance", "Shortest distance"],
+  ["weighted", "A weighted sum …"], ["alternatives", "Routes that differ, to choose from"],
 ];
 const CANALS = [["suez", "Suez"], ["panama", "Panama"], ["kiel", "Kiel"], ["corinth", "Corinth"]];
 export const DEMO = { title: "Halifax to Bishop Rock", ship: "handysize-bulker", seas: ["storm"], voyage: { start: "Halifax", goal: "49.7N 6.5W", depart: "1998-08-31T12:00Z", objective: "time" } };
@@ -28,7 +31,7 @@ export class PlanForm extends EventTarget {
   }
 
   async load() {
-    const [ships, seas] = await Promise.all([get("/ships"), get("/seas")]);
+    const [ships, seas] = await Promise.all([get("/ships"), get("/seas"), this.network.load()]);
     this.ships = ships;
     this.seas = seas;
     this.#showShips();
@@ -52,7 +55,10 @@ export class PlanForm extends EventTarget {
     this.latest = h("input", { type: "text", id: "latest", autocomplete: "off", placeholder: "2026-01-31 12:00" });
     this.arriveBy = h("input", { type: "text", id: "arrive-by", autocomplete: "off", placeholder: "2026-01-31 12:00" });
     this.departFacts = h("p.facts");
-    this.objective = h("select", { id: "objective" }, OBJECTIVES.map(([value, text]) => h("option", { value }, text)));
+    this.weights = new IndicatorWeights();
+    this.indicators = new IndicatorLimits(() => this.#summaries());
+    this.network = new NetworkFields();
+    this.objective = h("select", { id: "objective", onchange: () => this.#objectiveChosen() }, OBJECTIVES.map(([value, text]) => h("option", { value }, text)));
     this.objective.value = "time";
     this.title = h("input", { type: "text", id: "title", maxlength: 200, placeholder: "Name of this plan" });
     this.numbers = {};
@@ -65,7 +71,7 @@ export class PlanForm extends EventTarget {
       h("option", { value: "" }, "closed water"), h("option", { value: "0" }, "none (0)"), h("option", { value: "nearest:25" }, "nearest value within 25 nm"),
       name === "waves" ? [h("option", { value: "wind" }, "those that the wind raises"), h("option", { value: "head_seas" }, "head seas, where only heights are known")] : [])]);
     this.button = h("button.primary", { type: "submit" }, "Plan the voyage");
-    this.fetch = new ForecastFetch(() => this.ends, () => typedTime(this.depart), (seas) => this.#fetched(seas));
+    this.fetch = new ForecastFetch(() => this.ends, () => typedTime(this.depart), () => this.chosenSeas, (seas, before) => this.#fetched(seas, before));
     this.voyageFile = h("input.hidden", { type: "file", id: "voyage-file", "aria-label": "Voyage file", accept: ".json,.yaml,.yml", tabindex: "-1", onchange: () => this.#openFile() });
     const swap = h("button.quiet.small", { type: "button", onclick: () => this.#swap() }, "⇅ Swap");
     const addVia = h("button.quiet.small", { type: "button", onclick: () => this.addVia() }, "+ Via point");
@@ -78,7 +84,7 @@ export class PlanForm extends EventTarget {
       h("fieldset.block", { "data-field": "seas" }, h("legend", {}, "Sea"), this.seaBox, this.drop, this.seaFile, this.fetch.element, h("div.slot")),
       h("div.block", {},
         h("div.field", { "data-field": "depart" }, h("label.label", { for: "depart" }, "Departure ", h("span.unit", {}, "UTC")), this.depart, this.departFacts, h("div.slot")),
-        h("div.field", { "data-field": "objective" }, h("label.label", { for: "objective" }, "Objective"), this.objective, h("div.slot"))),
+        h("div.field", { "data-field": "objective" }, h("label.label", { for: "objective" }, "Objective"), this.objective, h("div.slot")), this.weights.element),
       h("div.block", {},
         this.#details("time", "Time and speed", [
           h("div.pair", {}, this.#number("speed_kn", "Ordered speed", "kn"), this.#timeField("arrive_by", "Arrive by", this.arriveBy)),
@@ -91,6 +97,7 @@ export class PlanForm extends EventTarget {
           this.#number("motion_sickness_percent", "Sick after two hours at most", "% of people"),
           h("p.facts", {}, "Empty: as the ship file states; the distance from land by the size of the ship."),
         ]),
+        this.#details("indicators", "Limits of key figures", [this.indicators.element]),
         this.#details("areas", "Areas to avoid", [this.areaBox]),
         this.#details("canals", "Canals and passages", [
           h("fieldset", {}, h("legend", {}, "Do not use"), this.forbid.map(([, input, text]) => h("label.check", {}, input, h("span", {}, text)))),
@@ -101,6 +108,8 @@ export class PlanForm extends EventTarget {
           this.#number("time_price_usd_per_h", "Time without fuel", "USD/h"),
           h("p.facts", {}, "Empty: the prices of the ship file."),
         ]),
+        this.#details("traffic", "Other ships", [this.network.trafficElement]),
+        this.#details("network", "Network and proof", [this.network.element]),
         this.#details("fill", "Where data are missing", [
           h("p.facts", {}, "Water without data is closed; it never becomes calm. A filling is noted in the result."),
           this.fills.map(([name, select]) => h("div.field", { "data-field": "fill" }, h("label.label", { for: select.id }, `Unknown ${name}`), select)),
@@ -112,6 +121,10 @@ export class PlanForm extends EventTarget {
     this.#showAreas();
     this.element.addEventListener("input", () => this.#summaries());
     this.element.addEventListener("change", () => { this.#summaries(); this.dispatchEvent(new Event("change")); });
+  }
+
+  #objectiveChosen() {
+    this.weights.element.hidden = this.objective.value !== "weighted";
   }
 
   #details(name, text, inside) {
@@ -138,6 +151,9 @@ export class PlanForm extends EventTarget {
       limits: [text("wave_height_m", "m waves"), text("wind_speed_kn", "kn wind"), text("motion_sickness_percent", "% sick"), text("min_ukc_m", "m UKC"), text("offing_nm", "nm off")],
       areas: [this.areas.length ? `${this.areas.length} drawn` : ""],
       canals: [...this.forbid.filter(([, input]) => input.checked).map(([, , name]) => `no ${name}`), this.avoid.value.trim() ? "passages" : ""],
+      indicators: [this.indicators.words],
+      traffic: [this.network.traffic.chosen.length ? `${this.network.traffic.chosen.length} chosen` : ""],
+      network: this.network.words,
       prices: [text("fuel_price_usd", "USD/t"), text("time_price_usd_per_h", "USD/h")],
       fill: this.fills.filter(([, select]) => select.value).map(([name, select]) => `${name}: ${select.value}`),
     };
@@ -209,11 +225,13 @@ export class PlanForm extends EventTarget {
     this.shipFile.value = "";
     if (!file) return;
     this.#clearField("ship");
+    const before = this.ship.value;
     try {
       const ship = await uploadForm("/ships", file);
       this.ships = await get("/ships");
-      this.#showShips(ship.id);
-      announce(`Ship ${ship.name} is chosen.`);
+      const chosen = this.ship.value === before; // another choice that was made meanwhile stays
+      this.#showShips(chosen ? ship.id : this.ship.value);
+      announce(chosen ? `Ship ${ship.name} is chosen.` : `Ship ${ship.name} is in the list.`);
     } catch (problem) {
       this.#fail("ship", problem);
     }
@@ -277,9 +295,12 @@ export class PlanForm extends EventTarget {
     }
   }
 
-  async #fetched(seas) {
+  // A forecast takes the place of the seas that were chosen when its download began.
+  async #fetched(seas, before) {
     this.seas = await get("/seas");
-    this.#showSeas(seas);
+    const same = String(this.chosenSeas) === String(before);
+    this.#showSeas(same ? seas : this.chosenSeas);
+    if (!same) announce("The forecast is in the list of seas.");
   }
 
   openForecast(job) {
@@ -369,7 +390,7 @@ export class PlanForm extends EventTarget {
   #clearField(name) {
     const field = this.element.querySelector(`[data-field="${name}"]`);
     field?.classList.remove("wrong");
-    const slot = field?.querySelector(".slot");
+    const slot = field?.querySelector(":scope > .slot");
     if (slot) fill(slot);
   }
 
@@ -377,7 +398,7 @@ export class PlanForm extends EventTarget {
     const place = { start: this.start, goal: this.goal }[name] || (name?.startsWith("via.") ? this.vias[Number(name.slice(4))] : null);
     if (place) { place.fail(problem); place.element.scrollIntoView({ block: "center" }); place.input.focus(); return; }
     const field = this.element.querySelector(`[data-field="${name}"]`);
-    const slot = field?.querySelector(".slot");
+    const slot = field?.querySelector(":scope > .slot");
     if (!slot) { fill(this.problem, errorBox(problem)); this.problem.scrollIntoView({ block: "center" }); return; }
     field.closest("details")?.setAttribute("open", "");
     field.classList.add("wrong");
@@ -387,7 +408,8 @@ export class PlanForm extends EventTarget {
   }
 
   showProblem(problem) {
-    const name = { "start": "start", "goal": "goal", speed: "speed_kn", file: "seas" }[problem.field] || problem.field?.replace(/^(voyage|limits)\./, "");
+    const field = problem.field?.replace(/^(voyage|limits)\./, "").replace(/^(seas|traffic|layered)\..*/, "$1");
+    const name = { speed: "speed_kn", file: "seas", at_most: "indicators", at_least: "indicators" }[field] || field;
     this.#fail(name, problem);
   }
 
@@ -407,7 +429,7 @@ export class PlanForm extends EventTarget {
     }
     const utc = (input) => { const t = typedTime(input); return t === null ? null : `${inputTime(t).replace(" ", "T")}Z`; };
     const voyage = {
-      start: this.start.value, goal: this.goal.value, objective: this.objective.value,
+      start: this.start.value, goal: this.goal.value, objective: this.objective.value === "alternatives" ? "time" : this.objective.value,
       via: this.vias.map((field) => field.value).filter(Boolean), arrive_by: utc(this.arriveBy),
       forbid: this.forbid.filter(([, input]) => input.checked).map(([name]) => name),
       avoid: this.avoid.value.split(",").map((name) => name.trim()).filter(Boolean),
@@ -418,6 +440,13 @@ export class PlanForm extends EventTarget {
     for (const name of ["speed_kn", "min_ukc_m", "offing_nm", "fuel_price_usd", "eca_price_factor", "time_price_usd_per_h"]) voyage[name] = value(name);
     for (const name of Object.keys(voyage)) if (voyage[name] === null || (Array.isArray(voyage[name]) && !voyage[name].length)) delete voyage[name];
     const request = { title: this.title.value.trim() || this.defaultTitle(), voyage, ship: this.ship.value, seas: this.chosenSeas, limits: { wave_height_m: value("wave_height_m"), wind_speed_kn: value("wind_speed_kn"), motion_sickness_percent: value("motion_sickness_percent") } };
+    if (voyage.objective === "weighted") { voyage.weights = this.weights.value(); if (!voyage.weights) return this.#missing("weights", this.weights.fault.asked, this.weights.fault.remedy); }
+    const limited = this.indicators.value();
+    if (!limited) return this.#missing("indicators", this.indicators.fault.asked, this.indicators.fault.remedy);
+    for (const [side, values] of Object.entries(limited)) if (Object.keys(values).length) voyage[side] = values;
+    const fault = this.network.fill(request);
+    if (fault) return this.#missing(fault.field, fault.asked, fault.remedy);
+    if (this.objective.value === "alternatives") request.most = 5;
     const filled = this.fills.filter(([, select]) => select.value).map(([name, select]) => [name, select.value === "0" ? 0 : select.value]);
     if (filled.length) request.fill = Object.fromEntries(filled);
     if (this.areas.length) request.areas = { type: "FeatureCollection", features: this.areas.map((area) => ({ type: "Feature", properties: area.kind === "no-go" ? { kind: "no-go" } : { kind: area.kind, factor: area.factor }, geometry: { type: "Polygon", coordinates: [area.ring] } })) };
@@ -436,16 +465,19 @@ export class PlanForm extends EventTarget {
 
   async submit() {
     fill(this.problem);
-    this.element.querySelectorAll(".field.wrong, fieldset.wrong").forEach((field) => this.#clearField(field.dataset.field));
+    this.element.querySelectorAll(".wrong[data-field]").forEach((field) => this.#clearField(field.dataset.field));
+    if (this.sending) return;
     const request = this.request();
     if (!request) return;
+    this.sending = true;
     this.button.textContent = "Sending …";
     try {
-      const job = await start("/plans", request);
+      const job = await start(this.objective.value === "alternatives" ? "/alternatives" : "/plans", request);
       this.dispatchEvent(new CustomEvent("started", { detail: job }));
     } catch (problem) {
       this.showProblem(problem);
     } finally {
+      this.sending = false;
       this.button.textContent = "Plan the voyage";
     }
   }
@@ -459,7 +491,11 @@ export class PlanForm extends EventTarget {
     this.vias = [];
     (voyage.via || []).forEach((place) => this.addVia(text(place)));
     this.#showVias();
-    this.objective.value = voyage.objective || "time";
+    this.objective.value = request.most ? "alternatives" : voyage.objective || "time";
+    this.#objectiveChosen();
+    this.weights.set(voyage.weights);
+    this.indicators.set(voyage);
+    this.network.set(request);
     const input = (value) => (value ? inputTime(seconds(value)) : "");
     this.depart.value = input(voyage.depart_window ? voyage.depart_window[0] : voyage.depart);
     this.latest.value = input(voyage.depart_window?.[1]);

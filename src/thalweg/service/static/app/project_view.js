@@ -54,6 +54,7 @@ export class ProjectView {
   // The form
 
   async show() {
+    this.asked = Symbol("ask");
     this.job = null;
     this.close?.();
     this.handlers.link("");
@@ -179,18 +180,24 @@ export class ProjectView {
   }
 
   async #start(request) {
+    if (this.sending) return;
+    this.sending = true;
     try {
       const job = await start("/projects", request);
-      await this.openJob(job.id);
+      if (!this.handlers.hidden()) await this.openJob(job.id);
     } catch (problem) {
       this.fail(problem);
+    } finally {
+      this.sending = false;
     }
   }
 
   // A job
 
   async openJob(id) {
+    const ask = (this.asked = Symbol("ask")); // a form or job that is wanted later stays
     const job = await get(`/plans/${id}`);
+    if (ask !== this.asked || this.handlers.hidden()) return;
     this.job = job;
     this.handlers.link(id);
     this.set(job.request.project);
@@ -249,6 +256,7 @@ export class ProjectView {
       return;
     }
     const [result, diagrams] = await Promise.all([get(`/plans/${job.id}/result`), get(`/plans/${job.id}/diagrams.json`)]);
+    if (this.job !== job || this.handlers.hidden()) return;
     this.result = result;
     this.diagrams = diagrams;
     this.handlers.panel(this.#panel(job, result, diagrams));

@@ -2,10 +2,11 @@
 
 import { fileAddress, get, resultAddress } from "./api.js";
 import { fill, h, unit } from "./elements.js";
+import { indicatorTable } from "./indicators.js";
 import { duration, known, number, plainPosition, seconds, signed, signedDuration, time } from "./format.js";
 import { selection } from "./selection.js";
 
-const OBJECTIVES = { time: "least time", distance: "shortest distance", fuel: "least fuel", energy: "least energy", cost: "least cost", comfort: "least motion sickness", co2: "least CO₂", front: "all trade-offs" };
+const OBJECTIVES = { time: "least time", distance: "shortest distance", fuel: "least fuel", energy: "least energy", cost: "least cost", comfort: "least motion sickness", co2: "least CO₂", encounters: "fewest encounters", inshore: "least length near land", weighted: "a weighted sum", front: "all trade-offs", alternatives: "routes that differ" };
 const REASONS = {
   "nearer to land than the offing": "legs nearer to land than the offing", "no-go zone": "legs through closed areas", "outside the period of the data": "legs after the end of the data",
   "wave height above the limit": "legs with waves above the limit", "wind speed above the limit": "legs with wind above the limit", "no data": "legs over water without data", land: "legs over land",
@@ -13,7 +14,8 @@ const REASONS = {
 
 export async function loadResult(job) {
   const raw = await get(`/plans/${job.id}/result`);
-  const plan = job.kind === "plan" ? raw : { routes: [raw], notes: raw.assumptions || [], rejections: {}, voyage: null, provenance: {} };
+  const evaluated = () => ({ routes: [raw], notes: raw.assumptions || [], rejections: {}, voyage: null, provenance: {} });
+  const plan = { plan: () => raw, alternatives: () => ({ ...raw, routes: raw.alternatives.map((one) => one.route), rejections: {}, objective: "alternatives" }) }[job.kind]?.() || evaluated();
   const optional = (part) => get(`/plans/${job.id}/${part}.json`).catch(() => null);
   const parts = job.summary.parts || [];
   const [isochrones, beside, spaceTime] = await Promise.all(["isochrones", "beside", "space_time"].map((part) => (parts.includes(part) ? optional(part) : null)));
@@ -50,8 +52,9 @@ export class ResultView {
       plan.cancelled ? h("p.note", {}, "Stopped: this is the best found so far.") : null,
       this.#faults(route),
       this.#cards(route, profile, beside),
-      plan.voyage ? this.#proof(plan) : null,
-      plan.routes.length > 1 ? this.#routes(plan) : null,
+      plan.voyage && !plan.alternatives ? this.#proof(plan) : null,
+      plan.alternatives ? this.#alternatives(plan) : plan.routes.length > 1 ? this.#routes(plan) : null,
+      this.#indicators(plan),
       this.#notes(plan, route),
       this.#exports(job, route));
     this.body.scrollTop = top;
@@ -111,6 +114,23 @@ export class ResultView {
     }, h("span.swatch"), h("span", {}, duration(route.time_h), front && front.points[i]?.way !== "open sea" ? h("small.unit", {}, ` ${front.points[i]?.way}`) : null), h("span", {}, number(route.fuel_t, 1), unit("t")), h("span", {}, known(costOf(route)) ? [number(costOf(route)), unit(route.currency)] : ""))))));
   }
 
+  // Routes that differ: what each is best in, and how it differs from the fastest.
+  #alternatives(plan) {
+    return h("div.block", {}, h("h2", {}, plan.routes.length > 1 ? `${plan.routes.length} routes that differ, fastest first` : "No other route is better in anything"), h("ol.routes.named", {}, plan.alternatives.map((one, i) => h("li", {}, h("button", {
+      type: "button", "aria-pressed": String(i === selection.route), onclick: () => selection.choose(i), onpointerenter: () => selection.hover(i), onpointerleave: () => selection.hover(null),
+    }, h("span.swatch"), h("span", {}, h("b", {}, `${i + 1}. ${one.name[0].toUpperCase()}${one.name.slice(1)}`), one.best_in.length ? h("small", {}, one.best_in.join(", ")) : null, h("small", {}, one.difference)), h("span", {}, duration(one.route.time_h)))))));
+  }
+
+  // All figures of the route, beside those of up to five others.
+  #indicators(plan) {
+    const few = plan.routes.length <= 5, routes = few ? plan.routes : [plan.routes[selection.route]];
+    const titles = routes.map((route, i) => plan.alternatives?.[i].name || `Route ${i + 1}`);
+    this.open ??= Boolean(plan.alternatives);
+    const details = h("details", { open: this.open }, h("summary", {}, "Key figures", h("span.set", {}, few && routes.length > 1 ? "of all routes" : "")), h("div.inside", {}, indicatorTable(routes, few ? selection.route : 0, titles)));
+    details.addEventListener("toggle", () => { this.open = details.open; });
+    return h("div.block", {}, details);
+  }
+
   #notes(plan, route) {
     const notes = [...new Set([...plan.notes, ...(route.assumptions || [])])];
     if (!notes.length) return null;
@@ -121,7 +141,7 @@ export class ResultView {
     const number_ = selection.route + 1;
     return h("div.block", {}, h("h2", {}, "Take it along"), h("div.exports", {},
       ["rtz", "rtzp", "gml", "gpx", "geojson", "kml", "csv"].map((form) => h("a.quiet.small", { href: fileAddress(job.id, number_, form), download: "" }, { gml: "S-421", geojson: "GeoJSON" }[form] || form.toUpperCase())),
-      job.kind === "plan" ? h("a.quiet.small", { href: resultAddress(job.id), download: "plan.json" }, "plan.json") : null,
+      job.kind === "plan" ? h("a.quiet.small", { href: resultAddress(job.id), download: "plan.json" }, "plan.json") : job.kind === "alternatives" ? h("a.quiet.small", { href: resultAddress(job.id), download: "alternatives.json" }, "alternatives.json") : null,
       h("button.quiet.small", { type: "button", onclick: this.handlers.print }, "Print a brief"),
       h("button.quiet.small", { type: "button", onclick: this.handlers.link }, "Copy link")),
     h("p.facts", {}, `Route ${number_}. Check it against official charts and notices before use.`));

@@ -42,6 +42,7 @@ export class StudyView {
   }
 
   async show() {
+    this.asked = Symbol("ask");
     this.job = null;
     this.close?.();
     this.handlers.link("");
@@ -120,16 +121,22 @@ export class StudyView {
   }
 
   async #start(request) {
+    if (this.sending) return;
+    this.sending = true;
     try {
       const job = await start("/studies", request);
-      await this.openJob(job.id);
+      if (!this.handlers.hidden()) await this.openJob(job.id);
     } catch (problem) {
       this.fail(problem);
+    } finally {
+      this.sending = false;
     }
   }
 
   async openJob(id) {
+    const ask = (this.asked = Symbol("ask")); // a form or job that is wanted later stays
     const job = await get(`/plans/${id}`);
+    if (ask !== this.asked || this.handlers.hidden()) return;
     this.job = job;
     this.handlers.link(id);
     const drawn = Object.keys(job.request.study.sample || {}).filter((name) => !["count", "seed"].includes(name));
@@ -173,6 +180,7 @@ export class StudyView {
       return;
     }
     const result = await get(`/plans/${job.id}/result`);
+    if (this.job !== job || this.handlers.hidden()) return;
     this.map.axes = result.axes;
     this.map.rows = [];
     this.map.add(result.rows.map((row) => Object.fromEntries(result.columns.map((name, i) => [name, row[i]]))));

@@ -107,6 +107,7 @@ export class WeatherLayer {
 
   async refresh() {
     this.layer.setVisible(Boolean(this.kind));
+    const ask = (this.ask = Symbol("ask"));
     const uploaded = this.seas.join("+");
     if (!this.kind || !uploaded || this.time === null) {
       this.shown = null;
@@ -117,7 +118,6 @@ export class WeatherLayer {
     const box = this.#box();
     const first = Math.floor(this.time / this.step) * this.step;
     const wanted = [first, first + this.step].map((time) => this.#frame(uploaded, time, box));
-    const ask = (this.ask = Symbol("ask"));
     const ready = wanted.map((one) => one.frame);
     if (ready.every(Boolean)) this.#show(ready, first);
     else {
