@@ -118,6 +118,9 @@ def serving(recorded: Recorded):
         def do_GET(self) -> None:
             recorded.answer(self)
 
+        def do_POST(self) -> None:
+            recorded.answer(self)
+
         def log_message(self, *args) -> None:
             pass
 

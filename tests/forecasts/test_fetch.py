@@ -495,4 +495,4 @@ def test_the_command_line_refuses(capsys, words, message):
 def test_the_command_line_lists_the_sources(capsys):
     assert main(["fetch", "--json"]) == 0
     names = [row["source"] for row in json.loads(capsys.readouterr().out)]
-    assert names == ["gfs", "ecmwf", "open-meteo", "matroos", "copernicus", "era5"]
+    assert names == ["gfs", "ecmwf", "open-meteo", "matroos", "rws", "copernicus", "era5"]

@@ -32,7 +32,7 @@ def add_command(commands: Any) -> None:
         "source",
         nargs="?",
         metavar="SOURCE",
-        help="gfs, ecmwf, open-meteo, matroos, copernicus or era5",
+        help="gfs, ecmwf, open-meteo, matroos, rws, copernicus or era5",
     )
     parser.add_argument(
         "--box", metavar="S,N,W,E", help="area [deg]; an east below west spans the antimeridian"
@@ -44,7 +44,7 @@ def add_command(commands: Any) -> None:
         "--quantities",
         default="wind,waves",
         metavar="LIST",
-        help="of wind,waves,current,ice,pressure (default: wind,waves)",
+        help="of wind,waves,current,level,ice,pressure (default: wind,waves)",
     )
     parser.add_argument(
         "--step", type=float, default=3.0, metavar="H", help="hours between fields (default: 3)"

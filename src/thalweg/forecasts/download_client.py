@@ -39,11 +39,13 @@ class DownloadPart:
     ranges : tuple of (int, int)
         First byte and number of bytes of each range, ascending; empty: the whole file.
     label : What it holds, for messages: ``waves at 2026-11-22T06:00Z``.
+    body : JSON that is sent; the file is then the answer to a POST.
     """
 
     url: str
     ranges: tuple[tuple[int, int], ...] = ()
     label: str = ""
+    body: str = ""
 
 
 class TransferError(ThalwegError):
@@ -80,16 +82,17 @@ class DownloadClient:
         self._pause = pause
         self.folder = folder if folder is not None else cache_folder("forecasts")
 
-    def text(self, url: str, **parameters: Any) -> str | None:
+    def text(self, url: str, *, body: str = "", **parameters: Any) -> str | None:
         """Return a small text; None where the server does not have it.
 
         Parameters
         ----------
+        body : JSON that is sent with a POST.
         **parameters : Of the query.
 
         Returns
         -------
-        str or None : None for the statuses 403, 404 and 410.
+        str or None : None for the statuses 204, 403, 404 and 410.
 
         Raises
         ------
@@ -99,7 +102,7 @@ class DownloadClient:
         def read(answer: Any) -> bytes:
             return _bounded(answer, url)
 
-        data = self._attempts(url, read, {"params": parameters or None})
+        data = self._attempts(url, read, {"params": parameters or None}, body=body)
         return None if data is None else data.decode("utf-8", "replace")
 
     def file(self, part: DownloadPart) -> Path:
@@ -113,7 +116,8 @@ class DownloadClient:
         ------
         TransferError : If it is not there, or the server does not deliver all of it.
         """
-        key = hashlib.blake2b(repr((part.url, part.ranges)).encode(), digest_size=16).hexdigest()
+        named = (part.url, part.ranges, part.body) if part.body else (part.url, part.ranges)
+        key = hashlib.blake2b(repr(named).encode(), digest_size=16).hexdigest()
         target = self.folder / key
         if target.exists():
             os.utime(target)
@@ -169,7 +173,7 @@ class DownloadClient:
             last = "" if count < 0 else str(first + count - 1)
             return {"Range": f"bytes={first + done}-{last}"}
 
-        if self._attempts(part.url, read, {"stream": True}, headers) is None:
+        if self._attempts(part.url, read, {"stream": True}, headers, body=part.body) is None:
             raise TransferError(
                 f"{_host(part.url)} does not have {part.label or part.url}.",
                 "Other times or runs of the source may be complete.",
@@ -183,15 +187,26 @@ class DownloadClient:
         read: Callable[[Any], bytes],
         options: dict[str, Any],
         headers: Callable[[], dict[str, str]] = dict,
+        *,
+        body: str = "",
     ) -> bytes | None:
         """Return what ``read`` makes of the answer; None if the server does not have it."""
         failure = ""
+        sent = {"data": body.encode()} if body else {}
+        kind = {"Content-Type": "application/json"} if body else {}
         for attempt in range(ATTEMPTS):
             pause = _PAUSES[min(attempt, len(_PAUSES) - 1)]
             try:
-                answer = self._session.get(url, headers=headers(), timeout=_TIMEOUT, **options)
+                answer = self._session.request(
+                    "POST" if body else "GET",
+                    url,
+                    headers={**headers(), **kind},
+                    timeout=_TIMEOUT,
+                    **options,
+                    **sent,
+                )
                 with answer:
-                    if answer.status_code in (403, 404, 410):
+                    if answer.status_code in (204, 403, 404, 410):
                         return None
                     if answer.status_code in (200, 206):
                         return read(answer)

@@ -12,7 +12,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import HOUR
 
-QUANTITIES: Final = ("wind", "waves", "current", "ice", "pressure")
+QUANTITIES: Final = ("wind", "waves", "current", "level", "ice", "pressure")
 _LONGEST: Final = 400 * 24 * HOUR  #: [s] period of one request
 
 

@@ -11,6 +11,7 @@ from thalweg.forecasts.sources.era5 import Era5
 from thalweg.forecasts.sources.gfs import Gfs
 from thalweg.forecasts.sources.matroos import Matroos
 from thalweg.forecasts.sources.open_meteo import OpenMeteo
+from thalweg.forecasts.sources.rws_station import RwsStation
 
 SOURCES: Final[Mapping[str, ForecastSource]] = MappingProxyType(
     {
@@ -20,6 +21,7 @@ SOURCES: Final[Mapping[str, ForecastSource]] = MappingProxyType(
             EcmwfOpenData(),
             OpenMeteo(),
             Matroos(),
+            RwsStation(),
             CopernicusMarine(),
             Era5(),
         )

@@ -133,14 +133,14 @@ class FetchOrder(BaseModel):
     model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [FORECAST_EXAMPLE]})
 
     title: Annotated[str, Field(max_length=200, description="a name for people")] = ""
-    source: Literal["gfs", "ecmwf", "open-meteo", "matroos", "copernicus", "era5"]
+    source: Literal["gfs", "ecmwf", "open-meteo", "matroos", "rws", "copernicus", "era5"]
     box: Annotated[
         list[float],
         Field(min_length=4, max_length=4, description="south, north, west, east [deg]"),
     ]
     start: str = Field(max_length=40, description="ISO 8601")
     end: str = Field(max_length=40, description="ISO 8601")
-    quantities: list[Literal["wind", "waves", "current", "ice", "pressure"]] = Field(
+    quantities: list[Literal["wind", "waves", "current", "level", "ice", "pressure"]] = Field(
         default=["wind", "waves"], min_length=1, max_length=5
     )
     step_h: int = Field(3, ge=1, le=24, description="hours between fields")

@@ -5,7 +5,7 @@ import { announce, errorBox, fill, h } from "./elements.js";
 import { inputTime, number, seconds, time } from "./format.js";
 import { typedTime } from "./typed_time.js";
 
-const SOURCES = [["gfs", "GFS and GFS-wave (NOAA)", ["wind", "waves"]], ["ecmwf", "ECMWF open data", ["wind", "waves"]], ["open-meteo", "Open-Meteo (small areas)", ["wind", "waves", "current"]], ["matroos", "Rijkswaterstaat, North Sea, 2 days", ["current", "waves"]], ["copernicus", "Copernicus Marine (account)", ["waves", "current"]], ["era5", "ERA5, past weather (account)", ["wind", "waves"]]];
+const SOURCES = [["gfs", "GFS and GFS-wave (NOAA)", ["wind", "waves"]], ["ecmwf", "ECMWF open data", ["wind", "waves"]], ["open-meteo", "Open-Meteo (small areas)", ["wind", "waves", "current"]], ["matroos", "Rijkswaterstaat, North Sea, 2 days", ["current", "waves"]], ["rws", "Rijkswaterstaat, level at one station", ["level"]], ["copernicus", "Copernicus Marine (account)", ["waves", "current"]], ["era5", "ERA5, past weather (account)", ["wind", "waves"]]];
 
 export class ForecastFetch {
   // ends(): [{lat, lon}]; departs(): seconds or null; chosen(): ids of seas; arrived(seas, chosen before)
@@ -16,12 +16,13 @@ export class ForecastFetch {
     this.days = h("input", { type: "text", inputmode: "decimal", id: "f-days", value: "10" });
     this.step = h("select", { id: "f-step" }, [1, 3, 6, 12].map((n) => h("option", { value: n, selected: n === 3 }, `${n} h`)));
     this.quantities = h("div");
+    this.area = h("p.facts");
     this.answer = h("div", { role: "status" });
     this.element = h("details.fetch", {}, h("summary", {}, "Fetch a forecast"), h("div.inside", {},
       h("div.field", {}, h("label.label", { for: "f-source" }, "From"), this.source), this.quantities,
       h("div.pair", {}, h("div.field", {}, h("label.label", { for: "f-from" }, "First time ", h("span.unit", {}, "UTC")), this.from), h("div.field", {}, h("label.label", { for: "f-days" }, "For"), h("div.with-unit", {}, this.days, h("span.unit", {}, "days")))),
       h("div.field", {}, h("label.label", { for: "f-step" }, "Fields every"), this.step),
-      h("p.facts", {}, "The area is that of the voyage with 8 degrees around it. Without internet, use files."),
+      this.area,
       h("button.quiet", { type: "button", onclick: () => this.#estimate() }, "Estimate the download"), this.answer));
     this.element.addEventListener("toggle", () => { const t = this.departs() ?? Date.now() / 1000; if (this.element.open && !this.from.value) this.from.value = inputTime(Math.floor(t / 10800) * 10800); });
     this.#sourceChanged();
@@ -30,6 +31,7 @@ export class ForecastFetch {
   #sourceChanged() {
     const [, , there] = SOURCES.find(([name]) => name === this.source.value);
     fill(this.quantities, h("div.row", { role: "group", "aria-label": "Quantities" }, there.map((name) => h("label.check", {}, h("input", { type: "checkbox", value: name, checked: true }), h("span", {}, name[0].toUpperCase() + name.slice(1)))), h("span")));
+    this.area.textContent = `The area is ${this.source.value === "rws" ? "12 nm around the destination; its level is that of the nearest station" : "that of the voyage with 8 degrees around it"}. Without internet, use files.`;
     fill(this.answer);
   }
 
@@ -42,6 +44,7 @@ export class ForecastFetch {
     const lons = ends.map((end) => first + ((((end.lon - first + 540) % 360) + 360) % 360) - 180);
     const turned = (lon) => Math.round((((((lon + 180) % 360) + 360) % 360) - 180) * 10) / 10;
     let box = [Math.max(-80, Math.floor(Math.min(...lats) - 8)), Math.min(85, Math.ceil(Math.max(...lats) + 8)), turned(Math.min(...lons) - 8), turned(Math.max(...lons) + 8)];
+    if (this.source.value === "rws") box = [ends.at(-1).lat - 0.2, ends.at(-1).lat + 0.2, ends.at(-1).lon - 0.3, ends.at(-1).lon + 0.3].map((v) => Number(v.toFixed(3))); // a level of one place
     const iso = (t) => `${inputTime(t).replace(" ", "T")}Z`;
     if (this.source.value === "matroos") box = [Math.max(48, box[0]), Math.min(64, box[1]), Math.max(-12, box[2]), Math.min(9, box[3])]; // the area of its models
     return { source: this.source.value, box, start: iso(from), end: iso(from + days * 86400), step_h: Number(this.step.value), quantities: [...this.quantities.querySelectorAll("input:checked")].map((box_) => box_.value) };

@@ -60,15 +60,17 @@ class Application {
       fill(panel, h("div.scroll", {}, errorBox(problem)));
       return;
     }
-    await this.#route();
+    await this.#route(true);
     addEventListener("hashchange", () => this.#route());
   }
 
   // The address: #demo, #plan=ID&route=2, #voyage=REQUEST, #view=compare
 
-  async #route() {
+  // What was typed before the lists arrived is not replaced.
+  async #route(first = false) {
     const given = new URLSearchParams(location.hash.slice(1));
     if (location.hash === this.written) return;
+    if (first && this.form.touched && (given.has("voyage") || given.has("demo"))) return;
     if (given.get("voyage")) {
       try { this.form.set(JSON.parse(given.get("voyage"))); } catch { this.#hint("The link holds no voyage."); }
       this.#switch("plan");

@@ -4,7 +4,7 @@ import { get, uploadForm } from "./api.js";
 import { announce, errorBox, fill, h } from "./elements.js";
 
 const NETWORKS = [["auto", "Chosen"], ["lattice", "Grid around the route"], ["mesh", "Mesh of the sea data"], ["globe", "Global grid"], ["layered", "Layers between two places"], ["history", "Water that ships usually use"]];
-const NUMBERS = [["resolution_nm", "Spacing", "nm"], ["proof_s", "Time for the proof", "s"], ["corridor_gain_percent", "Leave it where that saves", "%"], ["near_coast_nm", "Twice as close within", "nm of land"], ["within_percent", "Longer than the finest by", "%"]];
+const NUMBERS = [["resolution_nm", "Spacing", "nm"], ["proof_s", "Time for the proof", "s"], ["corridor_gain_percent", "Leave it where that saves", "%"], ["near_coast_nm", "Finer near land", "nm"], ["within_percent", "Tolerance of length", "%"]];
 const asNumber = (text) => Number(text.trim().replace(",", "."));
 
 // A file that is uploaded and chosen from a list: `path` of the API holds the list.
@@ -62,7 +62,7 @@ export class NetworkFields {
     this.layered = h("div.part", { "data-field": "layered" },
       h("div.triple", {}, Object.entries(this.shape).map(([name, input]) => h("div.field", {}, h("label.label", { for: `net-${name}` }, { layers: "Layers", fan: "Fan", offset_nm: "Offset, nm" }[name]), input))),
       h("div.pair", {}, field("near_coast_nm"), field("within_percent")),
-      h("div.field", {}, h("label.label", { for: "net-contain" }, "Straits that it must contain: latitude, longitude"), this.contain), h("div.slot"));
+      h("div.field", {}, h("label.label", { for: "net-contain" }, "Straits to contain: latitude, longitude"), this.contain), h("div.slot"));
     this.history = h("div.part", { "data-field": "history" }, this.histories.element, field("corridor_gain_percent"), h("div.slot"));
     this.element = h("div", {}, h("div.field", { "data-field": "network" }, h("label.label", { for: "network" }, "Network"), this.kind, h("div.slot")), this.layered, this.history, h("div.pair", {}, field("resolution_nm"), field("proof_s")), h("p.facts", {}, "Empty: chosen from the length of the voyage."));
     this.trafficElement = h("div", { "data-field": "traffic" }, this.traffic.element, h("p.facts", {}, "Zones (GeoJSON) or a raster of density (NetCDF). The result then states the expected encounters."), h("div.slot"));

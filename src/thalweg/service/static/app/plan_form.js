@@ -109,7 +109,7 @@ export class PlanForm extends EventTarget {
           h("p.facts", {}, "Empty: the prices of the ship file."),
         ]),
         this.#details("traffic", "Other ships", [this.network.trafficElement]),
-        this.#details("network", "Network and proof", [this.network.element]),
+        this.#details("network", "Network", [this.network.element]),
         this.#details("fill", "Where data are missing", [
           h("p.facts", {}, "Water without data is closed; it never becomes calm. A filling is noted in the result."),
           this.fills.map(([name, select]) => h("div.field", { "data-field": "fill" }, h("label.label", { for: select.id }, `Unknown ${name}`), select)),
@@ -119,7 +119,7 @@ export class PlanForm extends EventTarget {
       this.problem);
     fill(this.element, body, h("div.foot", {}, this.button));
     this.#showAreas();
-    this.element.addEventListener("input", () => this.#summaries());
+    this.element.addEventListener("input", () => { this.touched = true; this.#summaries(); });
     this.element.addEventListener("change", () => { this.#summaries(); this.dispatchEvent(new Event("change")); });
   }
 
