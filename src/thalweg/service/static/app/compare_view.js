@@ -8,7 +8,7 @@ import { duration, known, number, seconds, signed, signedDuration, time } from "
 const MOST = 6;
 export const DASHES = [null, [10, 6], [2, 6], [12, 5, 2, 5], [18, 6], [4, 4]];
 export const PAINTS = ["route", "imported", "good", "amber", "ink", "other"];
-const FIGURES = [["Time", "time_h", duration, signedDuration], ["Distance", "distance_nm", (v) => `${number(v, 1)} nm`, (v) => signed(v, 1)], ["Fuel", "fuel_t", (v) => (known(v) ? `${number(v, 1)} t` : "unknown"), (v) => signed(v, 1)], ["Cost", "cost", (v, row) => (known(v) ? `${number(v)} ${row.currency}` : "unknown"), (v) => signed(v, 0)], ["CO₂", "co2_t", (v) => (known(v) ? `${number(v)} t` : "unknown"), (v) => signed(v, 0)], ["Highest waves", "highest_waves_m", (v) => (known(v) ? `${number(v, 1)} m` : "unknown"), null], ["Strongest wind", "strongest_wind_kn", (v) => (known(v) ? `${number(v)} kn` : "unknown"), null]];
+const FIGURES = [["Time", "time_h", duration, signedDuration], ["Distance", "distance_nm", (v) => `${number(v, 1)} nm`, (v) => signed(v, 1)], ["Fuel", "fuel_t", (v) => (known(v) ? `${number(v, 1)} t` : "unknown"), (v) => signed(v, 1)], ["Cost", "cost", (v, row) => (known(v) ? `${number(v)} ${row.currency}` : "unknown"), (v) => signed(v, 0)], ["CO₂", "co2_t", (v) => (known(v) ? `${number(v)} t` : "unknown"), (v) => signed(v, 0)], ["Waves up to", "highest_waves_m", (v) => (known(v) ? `${number(v, 1)} m` : "unknown"), null], ["Wind up to", "strongest_wind_kn", (v) => (known(v) ? `${number(v)} kn` : "unknown"), null]];
 
 export class CompareView {
   chosen = []; // {job, number, title}

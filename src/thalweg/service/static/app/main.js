@@ -18,6 +18,7 @@ import { typedTime } from "./typed_time.js";
 import { KINDS } from "./weather_layer.js";
 
 const panel = document.getElementById("panel");
+const APART = ["projects", "studies", "compare"]; // views without the weather of the voyage of the form
 const PALETTES = ["day", "dusk", "night"];
 
 class Application {
@@ -138,9 +139,9 @@ class Application {
     } catch { /* the study states what is wrong with its places */ }
   }
 
-  // The weather of a voyage is not that of a project or a study.
+  // The weather of one voyage at one time is not that of a project, a study or a comparison.
   #weatherOf(view) {
-    const { weather } = this.chart, apart = ["projects", "studies"].includes(view);
+    const { weather } = this.chart, apart = APART.includes(view);
     if (apart && weather.kind) { this.kindBefore = weather.kind; weather.set({ kind: "" }); } else if (!apart && this.kindBefore) { weather.set({ kind: this.kindBefore }); this.kindBefore = ""; }
     if (apart) fill(document.getElementById("valid"));
     this.chart.showLegend();
@@ -213,6 +214,7 @@ class Application {
     }
     const batch = { project: "projects", study: "studies" }[job.kind];
     if (batch) { this.#switch(batch, id); return; }
+    this.#weatherOf("plan");
     this.view = "plan";
     this.#tabs();
     if (job.kind === "forecast") { this.#showForm(); await this.form.openForecast?.(job); return; }
@@ -355,7 +357,7 @@ class Application {
   }
 
   #valid() {
-    if (this.view === "projects" || this.view === "studies") return;
+    if (APART.includes(this.view)) return;
     const t = selection.time, { weather } = this.chart;
     const shown = weather.kind && known(t) ? [h("b", {}, time(t, true)), " UTC"] : [];
     const period = this.form.period;
@@ -385,7 +387,6 @@ class Application {
 
   #showCompare() {
     fill(panel, this.compare.element);
-    this.chart.weather.set({ kind: this.chart.weather.kind });
     this.compare.show().catch((problem) => fill(this.compare.problem, errorBox(problem)));
   }
 

@@ -118,7 +118,7 @@ export class ResultView {
   #alternatives(plan) {
     return h("div.block", {}, h("h2", {}, plan.routes.length > 1 ? `${plan.routes.length} routes that differ, fastest first` : "No other route is better in anything"), h("ol.routes.named", {}, plan.alternatives.map((one, i) => h("li", {}, h("button", {
       type: "button", "aria-pressed": String(i === selection.route), onclick: () => selection.choose(i), onpointerenter: () => selection.hover(i), onpointerleave: () => selection.hover(null),
-    }, h("span.swatch"), h("span", {}, h("b", {}, `${i + 1}. ${one.name[0].toUpperCase()}${one.name.slice(1)}`), one.best_in.length ? h("small", {}, one.best_in.join(", ")) : null, h("small", {}, one.difference)), h("span", {}, duration(one.route.time_h)))))));
+    }, h("span.swatch"), h("span", {}, h("b", {}, `${i + 1}. ${one.name[0].toUpperCase()}${one.name.slice(1)}`), one.best_in.length ? h("small", {}, one.best_in.join(", ")) : null, i ? h("small", {}, one.difference.replace(/(^|[\s(])-(?=\d)/g, "$1−")) : null), h("span", {}, duration(one.route.time_h)))))));
   }
 
   // All figures of the route, beside those of up to five others.
