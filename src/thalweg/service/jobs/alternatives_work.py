@@ -8,6 +8,7 @@ from thalweg.core.errors import NoRouteError
 from thalweg.service.jobs.job_order import JobOrder, StageMessages
 from thalweg.service.jobs.plan_request import AlternativesRequest
 from thalweg.service.jobs.request_objects import network_of, open_world
+from thalweg.service.jobs.route_results import route_totals, write_route_result
 
 if TYPE_CHECKING:
     from thalweg.planning import Plan, Voyage
@@ -36,7 +37,6 @@ def plan_alternatives(order: JobOrder, stages: StageMessages) -> tuple[str, dict
     from thalweg.planning import alternative_plans
     from thalweg.route import RouteFileOptions
     from thalweg.route.formats import ROUTE_FORMATS
-    from thalweg.service.jobs.job_work import route_totals, write_route_result
 
     request = AlternativesRequest.model_validate(order.request)
     voyage = request.checked_voyage()

@@ -5,16 +5,14 @@ Files are written into a draft folder; the server gives the complete folder its 
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from thalweg.core.errors import ThalwegError
-from thalweg.core.file_writing import make_folder, write_text
+from thalweg.core.file_writing import make_folder
 from thalweg.service.jobs.child_messages import MessageWriter
 from thalweg.service.jobs.closure_facts import PLACES, TIMES, closure_facts
 from thalweg.service.jobs.isochrone_lines import isochrone_lines
@@ -22,6 +20,7 @@ from thalweg.service.jobs.job_order import JobOrder, StageMessages
 from thalweg.service.jobs.plan_request import EvaluationRequest, PlanRequest
 from thalweg.service.jobs.request_objects import WorldOfJob, network_of, open_world
 from thalweg.service.jobs.route_profiles import first_look, route_profile
+from thalweg.service.jobs.route_results import route_totals, write_json_file, write_route_result
 
 if TYPE_CHECKING:
     from thalweg.planning import Plan, Voyage
@@ -208,7 +207,7 @@ def write_plan_result(found: Plan, folder: Path, beside: Route | None) -> list[s
     other = None if beside is None else {**beside.as_dict(), "profile": route_profile(beside)}
     parts = {"isochrones": lines, "beside": other, "space_time": _space_time(found)}
     for name, data in parts.items():
-        _write_json(folder / f"{name}.json", data)
+        write_json_file(folder / f"{name}.json", data)
     return [name for name, data in parts.items() if data is not None]
 
 
@@ -218,24 +217,6 @@ def _space_time(found: Plan) -> dict[str, Any] | None:
 
     closures = closures_of_plan(found, PLACES, TIMES)
     return None if closures is None else closure_facts(closures, [found.best])
-
-
-def write_route_result(
-    route: Route, folder: Path, number: int, options: Any, *, plan: Plan | None = None
-) -> None:
-    """Write one route in every format, and its profile."""
-    from thalweg.planning.report.output_files import keeping_limits
-    from thalweg.route import write_route_files
-
-    if plan is not None:
-        options = keeping_limits(plan, route, options)
-    write_route_files(route, folder, f"route_{number:02d}", options)
-    _write_json(folder / f"profile_{number:02d}.json", route_profile(route))
-
-
-def _write_json(path: Path, data: Mapping[str, Any] | None) -> None:
-    if data is not None:
-        write_text(path, json.dumps(data, allow_nan=False))
 
 
 def job_summary(found: Plan, seconds: float) -> dict[str, Any]:
@@ -254,13 +235,6 @@ def job_summary(found: Plan, seconds: float) -> dict[str, Any]:
         **route_totals(best),
         "quality": quality_text(found),
     }
-
-
-def route_totals(route: Route) -> dict[str, Any]:
-    """Return the totals of a route for lists of jobs."""
-    first = first_look(route)
-    del first["points"]
-    return {**first, "co2_t": route.co2_t}
 
 
 def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
@@ -283,7 +257,7 @@ def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
         strict=False,
     )
     folder = Path(order.folder)
-    _write_json(folder / "route.json", route.as_dict())
+    write_json_file(folder / "route.json", route.as_dict())
     write_route_result(route, folder, 1, RouteFileOptions(formats=ROUTE_FORMATS))
     return {
         "feasible": route.feasible,
