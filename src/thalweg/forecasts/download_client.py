@@ -192,7 +192,6 @@ class DownloadClient:
     ) -> bytes | None:
         """Return what ``read`` makes of the answer; None if the server does not have it."""
         failure = ""
-        sent = {"data": body.encode()} if body else {}
         kind = {"Content-Type": "application/json"} if body else {}
         for attempt in range(ATTEMPTS):
             pause = _PAUSES[min(attempt, len(_PAUSES) - 1)]
@@ -202,8 +201,8 @@ class DownloadClient:
                     url,
                     headers={**headers(), **kind},
                     timeout=_TIMEOUT,
+                    data=body.encode() or None,
                     **options,
-                    **sent,
                 )
                 with answer:
                     if answer.status_code in (204, 403, 404, 410):

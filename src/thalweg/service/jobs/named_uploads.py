@@ -18,8 +18,8 @@ class NamedUploads(NamedTuple):
     ships: list[str]
     seas: list[str]
     routes: list[str]
-    traffic: tuple[str, ...] = ()
-    histories: tuple[str, ...] = ()
+    traffic: list[str]
+    histories: list[str]
 
 
 def named_uploads(request: Mapping[str, Any]) -> NamedUploads:
@@ -27,20 +27,21 @@ def named_uploads(request: Mapping[str, Any]) -> NamedUploads:
     if "project" in request:
         entries = request["project"]
         seas = [name for key in ("sea", "depth") for name in _texts(entries.get(key))]
-        found = NamedUploads([*_texts(entries.get("ship", "hopper-dredger"))], seas, [])
+        found = NamedUploads([*_texts(entries.get("ship", "hopper-dredger"))], seas, [], [], [])
     elif "study" in request:
         study = request["study"]
-        found = NamedUploads(*([*_study_texts(study, key)] for key in ("ship", "sea", "track")))
+        ships, seas, tracks = ([*_study_texts(study, key)] for key in ("ship", "sea", "track"))
+        found = NamedUploads(ships, seas, tracks, [], [])
     elif "source" in request:
-        found = NamedUploads([], [], [])
+        found = NamedUploads([], [], [], [], [])
     else:
         seas = [*request.get("seas", ()), *request.get("depths", ())]
         found = NamedUploads(
             [str(request["ship"])],
             seas,
             [*_texts(request.get("route"))],
-            tuple(request.get("traffic", ())),
-            tuple(_texts(request.get("history"))),
+            [*request.get("traffic", ())],
+            [*_texts(request.get("history"))],
         )
     seas = [name for name in found.seas if name not in (*EMBEDDED_SEAS, ESTUARY)]
     return found._replace(seas=seas)
