@@ -32,11 +32,19 @@ def differing(service) -> str:
 
 
 class Held:
-    """A request of the page that is held until the test lets it go."""
+    """Requests of the page that are held until the test lets them go."""
 
     def __init__(self, page: Any, pattern: str) -> None:
-        self.page, self.pattern, self.routes = page, pattern, []
-        page.route(pattern, lambda route: self.routes.append(route))
+        self.page = page
+        self.routes: list[Any] = []
+        self.held = True
+        page.route(pattern, self._hold)
+
+    def _hold(self, route: Any) -> None:
+        if self.held:
+            self.routes.append(route)
+        else:
+            route.continue_()
 
     def wait(self) -> None:
         while not self.routes:
@@ -44,7 +52,7 @@ class Held:
 
     def release(self) -> None:
         """Let the requests through, and wait until the page has drawn what it makes of them."""
-        self.page.unroute(self.pattern)
+        self.held = False
         for route in self.routes:
             with self.page.expect_response(route.request.url):
                 route.continue_()
@@ -145,6 +153,5 @@ def test_a_second_click_sends_no_second_voyage(visit):
     page.evaluate(DRAWN)
     assert len(held.routes) == 1
     held.routes[0].abort()
-    page.unroute(held.pattern)
     playwright_api.expect(page.locator("#panel .error")).to_contain_text("does not answer")
     assert button.inner_text() == "Plan the voyage"
