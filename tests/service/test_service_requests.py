@@ -138,6 +138,49 @@ def test_the_interface_is_described_with_an_example(client):
     assert body["examples"] if "examples" in body else body["schema"]
 
 
+def test_every_body_has_examples_that_it_takes(client):
+    from thalweg.service.endpoints import job_endpoints, route_endpoints
+
+    schema = client.get("/openapi.json").json()
+    checked = 0
+    for path, methods in schema["paths"].items():
+        content = methods.get("post", {}).get("requestBody", {}).get("content", {})
+        if "application/json" not in content:
+            continue
+        body = content["application/json"]
+        name = body["schema"]["$ref"].rpartition("/")[2]
+        model = getattr(job_endpoints, name, None) or getattr(route_endpoints, name)
+        examples = [
+            *(one.get("value", one) for one in _listed(body.get("examples"))),
+            *_listed(body["schema"].get("examples")),
+            *schema["components"]["schemas"][name].get("examples", ()),
+        ]
+        assert examples, path
+        for example in examples:
+            taken = model.model_validate(example)
+            if isinstance(taken, job_endpoints.PlanRequest):
+                taken.checked_voyage()
+            checked += 1
+    assert checked >= 10
+
+
+def _listed(given: Any) -> list[Any]:
+    return list(given.values()) if isinstance(given, dict) else list(given or ())
+
+
+def test_the_names_of_seas_are_those_of_the_documentation(client):
+    page = (Path(__file__).parents[2] / "docs" / "howto" / "service_client.md").read_text("utf-8")
+    embedded = [row["id"] for row in client.get("/api/v1/seas").json() if row.get("embedded")]
+    assert sorted(embedded) == ["calm", "storm"]
+    for name in (*embedded, "synthetic-estuary"):
+        assert f'`"{name}"`' in page
+    behind = {"seas": ["storm", "0123456789abcdef"]}
+    problem(client.post("/api/v1/plans", json={**SHORT, **behind}), 404)
+    estuary = {"seas": ["synthetic-estuary"]}
+    found = problem(client.post("/api/v1/plans", json={**SHORT, **estuary}), 422)
+    assert found["field"] == "seas.0"
+
+
 def test_a_frame_holds_the_field_of_the_sea(client):
     from thalweg import Sea
 

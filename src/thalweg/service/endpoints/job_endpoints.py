@@ -27,6 +27,7 @@ from thalweg.service.jobs.job_store import FINAL_STATES, Job
 from thalweg.service.jobs.named_uploads import entries_of, named_uploads
 from thalweg.service.jobs.plan_request import (
     ALTERNATIVES_EXAMPLE,
+    EVALUATION_EXAMPLE,
     LAYERED_EXAMPLE,
     PLAN_EXAMPLE,
     AlternativesRequest,
@@ -105,7 +106,12 @@ def start_alternatives(
 class VoyageText(BaseModel):
     """The text of a voyage file."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "examples": [{"text": "start: Halifax\ngoal: 49.7N 6.5W\ndepart: 1998-08-31T12:00Z\n"}]
+        },
+    )
 
     text: str = Field(max_length=1_000_000, description="YAML or JSON")
 
@@ -125,7 +131,7 @@ def read_voyage(given: VoyageText) -> dict[str, Any]:
 def start_evaluation(
     state: State,
     response: Response,
-    request: EvaluationRequest,
+    request: Annotated[EvaluationRequest, Body(examples=[EVALUATION_EXAMPLE])],
     idempotency_key: str | None = Header(None, max_length=200),
 ) -> dict[str, Any]:
     """Sail an imported route in given weather; the answer is a job like that of a plan."""

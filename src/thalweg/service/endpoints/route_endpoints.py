@@ -37,7 +37,19 @@ class ComparedRoute(BaseModel):
 class Comparison(BaseModel):
     """Routes to compare with the first of them."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "examples": [
+                {
+                    "routes": [
+                        {"job": "0123456789abcdef", "number": 1},
+                        {"job": "0123456789abcdef", "number": 0},
+                    ]
+                }
+            ]
+        },
+    )
 
     routes: list[ComparedRoute] = Field(min_length=2, max_length=12)
 

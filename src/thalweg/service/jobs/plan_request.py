@@ -53,6 +53,15 @@ LAYERED_EXAMPLE: Final[dict[str, Any]] = {
     "seas": ["storm"],
 }
 
+EVALUATION_EXAMPLE: Final[dict[str, Any]] = {
+    "title": "A route of the master",
+    "route": "0123456789abcdef0123456789abcdef",
+    "ship": "handysize-bulker",
+    "seas": ["storm"],
+    "depart": "1998-08-31T12:00Z",
+    "speed_kn": 13.0,
+}
+
 FilledQuantity = Literal["currents", "wind", "waves"]
 UploadId = Annotated[str, Field(pattern=r"^[0-9a-f]{16,64}$")]
 FileId = Annotated[str, Field(pattern=r"^[0-9a-f]{16,64}$|^calm$|^storm$")]
@@ -89,7 +98,7 @@ class RequestedCharges(BaseModel):
 class ShipAndSea(BaseModel):
     """The ship, the sea and the chart of a plan or an evaluation."""
 
-    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [PLAN_EXAMPLE]})
+    model_config = ConfigDict(extra="forbid")
 
     title: str = Field("", max_length=200, description="a name for people")
     ship: str = Field(max_length=100, description="a ship of /ships", examples=["handysize-bulker"])
@@ -137,6 +146,8 @@ class ShipAndSea(BaseModel):
 
 class PlanRequest(ShipAndSea):
     """A voyage to plan, with its ship, sea and chart."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [PLAN_EXAMPLE, LAYERED_EXAMPLE]})
 
     voyage: dict[str, Any] = Field(
         description="entries of a voyage file: start, goal, depart, objective (time, distance, "
@@ -211,11 +222,15 @@ class PlanRequest(ShipAndSea):
 class AlternativesRequest(PlanRequest):
     """A voyage whose routes that differ are wanted; its objective is not used."""
 
+    model_config = ConfigDict(json_schema_extra={"examples": [ALTERNATIVES_EXAMPLE]})
+
     most: int = Field(5, ge=2, le=5, description="greatest number of routes")
 
 
 class EvaluationRequest(ShipAndSea):
     """A route from a file to sail in given weather."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [EVALUATION_EXAMPLE]})
 
     route: UploadId = Field(description="id of a route of POST /routes")
     depart: str | None = Field(None, max_length=40, description="ISO 8601; default: of the file")
