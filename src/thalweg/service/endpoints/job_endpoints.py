@@ -10,7 +10,6 @@ from typing import Annotated, Any, Final, Literal
 
 from fastapi import APIRouter, Body, Header, Path, Query, Request, Response
 from fastapi.responses import FileResponse, StreamingResponse
-from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
 from thalweg.core.errors import InputError
@@ -24,7 +23,7 @@ from thalweg.service.jobs.batch_requests import (
     StudyOrder,
 )
 from thalweg.service.jobs.job_store import FINAL_STATES, Job
-from thalweg.service.jobs.named_uploads import entries_of, named_uploads
+from thalweg.service.jobs.named_uploads import named_uploads
 from thalweg.service.jobs.plan_request import (
     ALTERNATIVES_EXAMPLE,
     EVALUATION_EXAMPLE,
@@ -36,7 +35,6 @@ from thalweg.service.jobs.plan_request import (
 )
 from thalweg.service.problem_details import ServiceError, not_found
 from thalweg.service.service_state import ServiceState, State
-from thalweg.studies.study_axes import plain_data
 
 jobs_router = APIRouter(tags=["jobs"])
 JobId = Annotated[str, Path(pattern=r"^[0-9a-f]{16}$")]
@@ -101,30 +99,6 @@ def start_alternatives(
     request.checked_voyage()
     given = request.model_dump(mode="json")
     return _start("alternatives", given, response, idempotency_key, state)
-
-
-class VoyageText(BaseModel):
-    """The text of a voyage file."""
-
-    model_config = ConfigDict(
-        extra="forbid",
-        json_schema_extra={
-            "examples": [{"text": "start: Halifax\ngoal: 49.7N 6.5W\ndepart: 1998-08-31T12:00Z\n"}]
-        },
-    )
-
-    text: str = Field(max_length=1_000_000, description="YAML or JSON")
-
-
-@jobs_router.post("/voyages/read")
-def read_voyage(given: VoyageText) -> dict[str, Any]:
-    """Return the request of a voyage file: entries of a voyage, or a whole request with them."""
-    from thalweg.planning.voyage import Voyage
-
-    data = plain_data(entries_of(given.text, "voyage"))
-    request = data if isinstance(data.get("voyage"), dict) else {"voyage": data}
-    Voyage.from_dict(request["voyage"])
-    return request
 
 
 @jobs_router.post("/evaluate", status_code=202)

@@ -1,4 +1,4 @@
-"""Routes from files, and the comparison of routes."""
+"""Routes and voyages from files, and the comparison of routes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from pydantic import BaseModel, ConfigDict, Field
 from thalweg.core.errors import InputError
 from thalweg.service.endpoints.job_endpoints import result_file
 from thalweg.service.endpoints.upload_reading import chunks_of, kept_upload
+from thalweg.service.jobs.named_uploads import entries_of
 from thalweg.service.service_state import ServiceState, State
+from thalweg.studies.study_axes import plain_data
 
 routes_router = APIRouter(tags=["routes"])
 _FIGURES = (
@@ -70,6 +72,30 @@ async def add_route(state: State, file: UploadFile) -> dict[str, Any]:
 def get_route(state: State, route_id: str) -> dict[str, Any]:
     """Return an uploaded route."""
     return state.routes.get(route_id).as_dict()
+
+
+class VoyageText(BaseModel):
+    """The text of a voyage file."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "examples": [{"text": "start: Halifax\ngoal: 49.7N 6.5W\ndepart: 1998-08-31T12:00Z\n"}]
+        },
+    )
+
+    text: str = Field(max_length=1_000_000, description="YAML or JSON")
+
+
+@routes_router.post("/voyages/read")
+def read_voyage(given: VoyageText) -> dict[str, Any]:
+    """Return the request of a voyage file: entries of a voyage, or a whole request with them."""
+    from thalweg.planning.voyage import Voyage
+
+    data = plain_data(entries_of(given.text, "voyage"))
+    request = data if isinstance(data.get("voyage"), dict) else {"voyage": data}
+    Voyage.from_dict(request["voyage"])
+    return request
 
 
 @routes_router.post("/compare")
