@@ -126,7 +126,7 @@ class RwsStation:
                 "Choose a small box around the station; matroos has levels of whole seas.",
                 field="box",
             )
-        body = json.dumps({"CatalogusFilter": {"Grootheden": True}})
+        body = json.dumps({"CatalogusFilter": {"Grootheden": True}}, allow_nan=False)
         url = f"{self.root}/METADATASERVICES/OphalenCatalogus"
         stations = list(_stations_of(_json_of(client.text(url, body=body) or "", url)))
         inside = [
@@ -168,7 +168,7 @@ class RwsStation:
                 },
             }
             label = f"{station.name} from {format_time(float(begin))}"
-            yield DownloadPart(url, (), label, json.dumps(body))
+            yield DownloadPart(url, (), label, json.dumps(body, allow_nan=False))
 
 
 def _stamp(moment: float) -> str:
