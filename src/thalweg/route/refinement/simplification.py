@@ -13,9 +13,9 @@ from thalweg.route.route import Route
 from thalweg.route.track import Track
 
 _NOT_SIMPLIFIED_UP_TO = 16  # waypoints; shorter routes are not changed
-#: Largest lateral offset of the route, as shares of its length, widest first.
-_OFFSET_TOLERANCES = (1e-3, 2e-4, 4e-5, 1e-5, 2e-6)
-_MAX_COST_INCREASE = 6e-5  # relative increase of the cost of the simplified route
+#: Largest lateral offset of the route, as shares of its length, narrowest first.
+_OFFSET_TOLERANCES = (2e-6, 1e-5, 4e-5, 2e-4, 1e-3)
+_MAX_COST_INCREASE = 1e-6  # relative increase of the cost of the simplified route
 
 
 def simplified_route(
@@ -39,21 +39,23 @@ def simplified_route(
     Returns
     -------
     Route : The given one, or one through some of its waypoints that violates no limit and costs at
-        most 6e-5 more. Waypoints where the ship waits or changes its setting are not removed.
+        most 1e-6 more. Waypoints where the ship waits or changes its setting are not removed.
     """
     track = route.track
     if len(track.lat) <= _NOT_SIMPLIFIED_UP_TO or not route.feasible:
         return route
     allowed = min(most, cost(route) * (1.0 + _MAX_COST_INCREASE))
     length = float(route.legs["length"].sum())
+    best = route
     for share in _OFFSET_TOLERANCES:
         keep = _douglas_peucker(track, share * length, held)
-        if keep.all():
+        if keep.sum() == len(best.track.lat):
             continue
         fewer = score(_track_through(track, keep))
-        if fewer.feasible and cost(fewer) <= allowed:
-            return fewer
-    return route
+        if not (fewer.feasible and cost(fewer) <= allowed):
+            break
+        best = fewer
+    return best
 
 
 def _track_through(track: Track, keep: NDArray[np.bool_]) -> Track:

@@ -28,6 +28,7 @@ from thalweg.route.evaluators.time_evaluator import (
 from thalweg.route.refinement.corner_cutting import cut_corners, merge_short_legs
 from thalweg.route.refinement.sailed_polyline import optimise_line_offsets, search_line_positions
 from thalweg.route.refinement.string_pulling import string_pull
+from thalweg.route.refinement.track_geometry import turning_losses
 from thalweg.route.track import Track
 
 if TYPE_CHECKING:
@@ -37,8 +38,12 @@ if TYPE_CHECKING:
 
 MAX_LEGS = 160  #: legs are split until they are shorter than the track divided by this at most
 SIMPLIFICATION_LOSS = (
-    5e-5  #: share of the cost that may be lost by leaving waypoints out at the end
+    2e-6  #: share of the cost that may be lost by leaving waypoints out at the end
 )
+_SIMPLIFICATION_SKIP = 16  # waypoints at most that one leg replaces at the end
+_TURNING_LOSS = 3e-6  # share of the cost that straight legs may lose to a curve
+_FINER_LEVELS = 4  # levels at most that halve the legs of turns only
+_FINER_GAIN_TOLERANCE = 5e-7  # relative gain of such a level below which no finer one is tried
 _LEVEL_GAIN_TOLERANCE = (
     5e-5  # relative gain of a level below which no finer one is tried: a third of it is left
 )
@@ -90,8 +95,9 @@ def smooth(
     Notes
     -----
     First string pulling over the waypoints. Then, level by level, legs are halved and the waypoints
-    moved sideways by Newton's method, and by compass search where obstacles bind. At last
-    waypoints are removed that together lower the cost by less than a share of 5e-5.
+    moved sideways by Newton's method, and by compass search where obstacles bind. Then the legs
+    of turns are halved until straight legs lose less than 3e-6 of the cost, and at last waypoints
+    are removed that together lower the cost by less than a share of 2e-6.
     """
     if canal_legs(track, chart).any:
         smoothed = partial(
@@ -134,6 +140,7 @@ def smooth(
             for start in _initial_polylines(first, line, evaluator)
         ]
         best = min(lines, key=lambda item: _cost(item, evaluator))
+        best = _simplified(_with_finer_turns(best, evaluator), evaluator)
     if not _cost(best, evaluator) <= _cost(first, evaluator):
         return track
     return track_of_polyline(best, evaluator)
@@ -218,7 +225,7 @@ def resampled_polyline(line: Polyline, count: int) -> Polyline:
 
 
 def _refine_by_levels(line: Polyline, evaluator: PolylineEvaluator, finest: int) -> Polyline:
-    """Refine a line level by level, and remove needless waypoints at the end."""
+    """Refine a line level by level."""
     total = float(rough_lengths(line.lat, line.lon).sum())
     longest, idle = total / 2.0, 0
     bound = _may_be_constrained(line, evaluator)
@@ -235,7 +242,27 @@ def _refine_by_levels(line: Polyline, evaluator: PolylineEvaluator, finest: int)
         longest *= 0.5
     if bound:
         line = cut_corners(_refined(line, evaluator, True), evaluator)
-    return _simplified(line, evaluator)
+    return line
+
+
+def _with_finer_turns(line: Polyline, evaluator: PolylineEvaluator) -> Polyline:
+    """Halve legs where the line turns and move all points, until straight legs lose almost nothing.
+
+    Corners at obstacles stay: to halve the legs beside them gains nothing.
+    """
+    for _ in range(_FINER_LEVELS):
+        loss = turning_losses(line.lat, line.lon)
+        if not loss.sum() > _TURNING_LOSS:
+            break
+        finer = line.split(0.0, loss > _TURNING_LOSS / len(loss))
+        finer = _shortened_waits(optimise_line_offsets(finer, evaluator, rounds=4), evaluator)
+        spent = _elapsed_cost(line, evaluator)
+        gained = spent - _elapsed_cost(finer, evaluator)
+        if gained > 0.0:
+            line = finer
+        if not gained > _FINER_GAIN_TOLERANCE * spent:
+            break
+    return line
 
 
 def _refined(line: Polyline, evaluator: PolylineEvaluator, bound: bool) -> Polyline:
@@ -262,7 +289,12 @@ def _simplified(line: Polyline, evaluator: PolylineEvaluator) -> Polyline:
         return line
     shortest = _MIN_LEG_SHARE * float(rough_lengths(line.lat, line.lon).sum())
     thin = merge_short_legs(line, evaluator, shortest=shortest)
-    thin = string_pull(thin, evaluator, penalty=SIMPLIFICATION_LOSS * spent / len(line))
+    thin = string_pull(
+        thin,
+        evaluator,
+        penalty=SIMPLIFICATION_LOSS * spent / len(line),
+        skip=_SIMPLIFICATION_SKIP,
+    )
     thin = optimise_line_offsets(thin, evaluator, rounds=3)
     return (
         thin

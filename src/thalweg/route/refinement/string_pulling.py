@@ -15,13 +15,20 @@ _MAX_SKIPPED = 48  # waypoints that a leg may skip
 _PASSES = 4
 
 
-def string_pull(line: Polyline, evaluator: PolylineEvaluator, *, penalty: float = 0.0) -> Polyline:
+def string_pull(
+    line: Polyline,
+    evaluator: PolylineEvaluator,
+    *,
+    penalty: float = 0.0,
+    skip: int = _MAX_SKIPPED,
+) -> Polyline:
     """Return the best line through a subset of the waypoints, in their order.
 
     Parameters
     ----------
     penalty : Cost of a waypoint [unit of the cost]: a line with fewer waypoints may be worse by
         this much for each that is removed.
+    skip : Waypoints that a leg may skip.
 
     Returns
     -------
@@ -36,23 +43,25 @@ def string_pull(line: Polyline, evaluator: PolylineEvaluator, *, penalty: float 
     shortcuts past many.
     """
     for _ in range(_PASSES):
-        index = _best_subset(line, evaluator, penalty)
+        index = _best_subset(line, evaluator, penalty, skip)
         if index is None or len(index) == len(line):
             return line
         before, line = len(line), line.kept(index)
-        if before <= _MAX_SKIPPED:
+        if before <= skip:
             return line
     return line
 
 
-def _best_subset(line: Polyline, evaluator: PolylineEvaluator, penalty: float) -> IntArray | None:
+def _best_subset(
+    line: Polyline, evaluator: PolylineEvaluator, penalty: float, skip: int
+) -> IntArray | None:
     count = len(line)
     fixed = np.flatnonzero(line.required_points(evaluator))
     arrive: dict[int, FloatArray] = {}  # at the points after each one
 
     def steps(here: int, previous: int) -> tuple[IntArray, FloatArray]:
         reached = float(arrive[previous][here - previous - 1]) if here else line.depart
-        there = np.arange(here + 1, min(count, here + 1 + _MAX_SKIPPED))
+        there = np.arange(here + 1, min(count, here + 1 + skip))
         there = there[: int(np.searchsorted(there, fixed[fixed > here][0], side="right"))]
         batch = _shortcut_batch(line, here, there, max(reached, line.leave[here]))
         ends, cost = evaluator.sail(batch)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from thalweg.core.geodesy import METRES_PER_DEGREE
+from thalweg.core.geodesy import METRES_PER_DEGREE, rough_lengths, unit_vectors
 from thalweg.core.types import FloatArray, IntArray
 
 _SMALLEST_COSINE = 1e-3  # of the latitude, so that displacements at the poles stay finite
@@ -66,3 +66,27 @@ def shorter_adjacent_legs(lengths: FloatArray) -> FloatArray:
     shorter = np.zeros_like(lengths)
     shorter[:, 1:] = np.minimum(lengths[:, :-1], lengths[:, 1:])
     return shorter
+
+
+def turning_losses(lat: FloatArray, lon: FloatArray) -> FloatArray:
+    r"""Return what each straight leg loses to the curve that a line stands for (n - 1,).
+
+    A leg of length :math:`h` that replaces an arc of turn :math:`\theta` is longer than the best
+    curve by :math:`\theta^2 h / 24`; half of the turns at its two ends is its share.
+
+    Parameters
+    ----------
+    lat, lon : Points of one line [deg], (n,).
+
+    Returns
+    -------
+    float64 array (n - 1,) : As shares of the length of the line.
+    """
+    points = unit_vectors(lat, lon)
+    normal = np.cross(points[:-1], points[1:])
+    across = np.linalg.norm(np.cross(normal[:-1], normal[1:]), axis=1)
+    turn = np.arctan2(across, np.sum(normal[:-1] * normal[1:], axis=1))
+    both = np.concatenate([turn[:1], 0.5 * (turn[:-1] + turn[1:]), turn[-1:]])
+    lengths = rough_lengths(lat, lon)
+    loss: FloatArray = both * both * lengths / (24.0 * lengths.sum())
+    return loss
