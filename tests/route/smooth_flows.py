@@ -5,8 +5,8 @@ x axis::
 
     dh/dt = v_x sin^2 h + (u_x - v_y) sin h cos h - u_y cos^2 h
 
-The first heading and the time of each flow are a root of the miss at the goal, started from the best
-of a fan of 3,000 extremals.
+The first heading and the time of each flow are a root of the miss at the goal, started from the
+best of a fan of 3,000 extremals.
 """
 
 from __future__ import annotations

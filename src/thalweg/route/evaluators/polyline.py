@@ -134,9 +134,10 @@ def polyline_of_track(track: Track, evaluator: PolylineEvaluator) -> Polyline:
 def track_of_polyline(line: Polyline, evaluator: PolylineEvaluator) -> Track:
     """Return a polyline as a track; its earliest departures become waits."""
     arrive, leave, _ = evaluator.sail_and_wait(line.batch())
-    wait = np.maximum(0.0, leave[0] - arrive[0])
-    wait[~np.isfinite(wait)] = 0.0
-    wait[-1] = 0.0
+    known = np.isfinite(leave[0]) & np.isfinite(arrive[0])
+    known[-1] = False
+    wait = np.zeros(len(line))  # none from the first leg that cannot be sailed
+    wait[known] = np.maximum(0.0, leave[0, known] - arrive[0, known])
     return Track(
         line.lat, wrap_longitude(line.lon), line.depart + evaluator.origin, wait, line.setting
     )

@@ -247,14 +247,18 @@ class SailedPolyline:
     def with_points_moved(
         self, gain: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> tuple[SailedPolyline, BoolArray]:
-        """Return the line with points (1, n) at other positions where that gains, and which."""
+        """Return the line with points (1, n) at other positions where that gains, and which.
+
+        An earlier arrival can meet what is closed then: a line that does not gain as a whole stays.
+        """
         moved = gain > 0.0
         if not moved.any():
             return self, moved
         line = self.line.moved(
             np.where(moved[0], lat[0], self.line.lat), np.where(moved[0], lon[0], self.line.lon)
         )
-        return SailedPolyline.of(line, self.evaluator), moved
+        better = SailedPolyline.of(line, self.evaluator)
+        return (better, moved) if better.cost < self.cost else (self, np.zeros_like(moved))
 
     def _shifted(self, offset: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return positions (..., n) of the points moved to starboard [m]."""
