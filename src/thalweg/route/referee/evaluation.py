@@ -20,9 +20,11 @@ from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT, NAUTICAL_MILE
+from thalweg.route.referee.adaptive_sailing import sail_to_tolerance
+from thalweg.route.referee.leg_segments import cut_into_pieces
 from thalweg.route.referee.limit_checks import coverage_error, is_data_gap
 from thalweg.route.referee.route_assembly import assemble_route
-from thalweg.route.referee.sailing import data_spacings, sail_track
+from thalweg.route.referee.sailing import data_spacings
 from thalweg.route.referee.sailing_physics import SailingEnvironment, make_sailing_environment
 from thalweg.route.referee.wind_speed_only import with_wind_speed
 from thalweg.route.route import Route
@@ -107,13 +109,16 @@ def evaluate(
     .. math:: \frac{dT}{ds} = \frac{1}{SOG(s, T)}
 
     by the two-stage Gauss method (order 4 in smooth fields, 2 across the kinks of gridded data),
-    first with pieces of ``step``, then of half that. The second solution is the result, and the
-    difference is its ``tolerance_s``. Limits are checked at up to 10,000 further points; for a
-    route that waits, the time between two of them is part of the tolerance, since its waits may be
-    too short by as much. Wind is relative to the moving water; angles of wind and waves are from
-    the heading. A waiting ship burns the fuel of its hotel load and does not drift (it is at
-    anchor); only its clearance is checked, and not at the first waypoint, where the ship is at its
-    berth. If the sea has no current variables, still water is assumed, and the route states this.
+    first with pieces of ``step``, then of half that. The second solution is the result; the
+    difference is its ``tolerance_s``, with what jumps of the speed between two points can add.
+    Without ``step``, pieces with jumps of the speed and those where it comes near zero are split
+    further until the error is at most 1e-5 of the time. Limits are checked at up to 10,000 further
+    points; for a route that waits, the time between two of them is part of the tolerance, since its
+    waits may be too short by as much. Wind is relative to the moving water; angles of wind and
+    waves are from the heading. A waiting ship burns the fuel of its hotel load and does not drift
+    (it is at anchor); only its clearance is checked, and not at the first waypoint, where the ship
+    is at its berth. If the sea has no current variables, still water is assumed, and the route
+    states this.
 
     Fuel is priced per piece: the exact share inside the emission control areas of the chart at the
     terms inside, the rest at those outside, times the factor of price zones. A leg from one end of
@@ -129,10 +134,10 @@ def evaluate(
     ship = ship if load_factor is None else ship.with_load_factor(load_factor)
     ship, track = resolve_settings(ship, as_track(route, depart), speed_kn)
     world = make_sailing_environment(ship, with_wind_speed(ship, sea), chart)
-    step = _default_step(world, track) if step is None else _checked_step(step)
-    coarse = sail_track(world, track, step, MIN_PIECES, None)
-    fine = sail_track(world, track, 0.5 * step, 2 * MIN_PIECES, coarse)
-    result = assemble_route(fine, min_ukc, abs(fine.arrive - coarse.arrive), terms)
+    step = None if step is None else _checked_step(step)
+    pieces = cut_into_pieces(track, step or _default_step(world, track), MIN_PIECES, chart, ship)
+    sailed, tolerance = sail_to_tolerance(world, pieces, adapt=step is None)
+    result = assemble_route(sailed, min_ukc, tolerance, terms)
     if isinstance(route, (str, Path)) and chart is not None:
         from thalweg.route.formats import cross_track_notes
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -123,6 +123,27 @@ class TrackPieces:
         return self.points(
             np.concatenate([self.leg, legs]), np.concatenate([self.start, self.length])
         )
+
+    def split(self, parts: IntArray) -> TrackPieces:
+        """Return the track with every piece split into a number of equal parts (p,)."""
+        of = np.repeat(np.arange(len(self)), parts)
+        number = np.arange(len(of)) - np.repeat(np.cumsum(parts) - parts, parts)
+        step = (self.step / parts)[of]
+        wait = np.where(number == parts[of] - 1, self.wait[of], 0.0)
+        start = self.start[of] + number * step
+        return replace(self, leg=self.leg[of], start=start, step=step, wait=wait)
+
+    def order_key(self, leg: IntArray, along: FloatArray) -> FloatArray:
+        """Return a number that grows along the track, with a step between legs."""
+        length = self.length[leg]
+        share = np.divide(along, length, out=np.zeros(len(leg)), where=length > 0.0)
+        return leg * 2.0 + np.clip(share, 0.0, 1.0)
+
+    def containing(self, leg: IntArray, along: FloatArray) -> IntArray:
+        """Return the piece at distances along legs [m]; at a boundary the later one of the leg."""
+        starts = self.order_key(self.leg, self.start)
+        place = np.searchsorted(starts, self.order_key(leg, along), side="right") - 1
+        return np.asarray(place, dtype=np.int64)
 
     def last_of_leg(self) -> NDArray[np.bool_]:
         """Return which pieces end a leg."""

@@ -250,24 +250,11 @@ def _check_points(
     leg = np.repeat(np.arange(len(count)), count)
     share = (np.arange(len(leg)) - np.repeat(np.cumsum(count) - count, count)) / (count[leg] - 1)
     near = pieces.points(leg, share * pieces.length[leg])
-    step = np.zeros(len(pieces.length))
-    step[pieces.leg] = pieces.step
-    first = np.searchsorted(pieces.leg, leg)
-    last = np.searchsorted(pieces.leg, leg, side="right") - 1
-    with np.errstate(invalid="ignore", divide="ignore"):
-        number = np.where(step[leg] > 0.0, near.along / step[leg], 0.0).astype(np.int64)
-    near = replace(near, charted=sailed.charted[np.minimum(first + number, last)])
-    key = _track_order_key(points.leg, points.along, pieces.length)
-    moments = np.interp(_track_order_key(leg, near.along, pieces.length), key, time)
+    near = replace(near, charted=sailed.charted[pieces.containing(leg, near.along)])
+    key = pieces.order_key(points.leg, points.along)
+    moments = np.interp(pieces.order_key(leg, near.along), key, time)
     sea = pieces.canals.number[leg] < 0
     return near.part(sea), moments[sea]
-
-
-def _track_order_key(leg: IntArray, along: FloatArray, length: FloatArray) -> FloatArray:
-    """Return a number that grows along the track, with a step between legs."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        share = np.where(length[leg] > 0.0, along / length[leg], 0.0)
-    return leg * 2.0 + np.clip(share, 0.0, 1.0)
 
 
 def _finite(values: FloatArray) -> FloatArray:

@@ -10,14 +10,13 @@ import numpy as np
 from thalweg.core.geodesy import METRES_PER_DEGREE
 from thalweg.core.types import FloatArray
 from thalweg.route.canal_legs import CanalLegs
-from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints, cut_into_pieces
+from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints
 from thalweg.route.referee.passage_times import PassageTimes, solve_passage_times
 from thalweg.route.referee.sailing_physics import (
     SailingEnvironment,
     SailingState,
     solve_sailing_state,
 )
-from thalweg.route.track import Track
 
 
 @dataclass(frozen=True)
@@ -61,19 +60,11 @@ class SailedTrack:
         )
 
 
-def sail_track(
-    world: SailingEnvironment, track: Track, step: float, least: int, coarse: SailedTrack | None
+def sail_pieces(
+    world: SailingEnvironment, pieces: TrackPieces, coarse: SailedTrack | None
 ) -> SailedTrack:
-    """Divide a track into pieces and sail it; a coarser solution gives the first guess.
-
-    Parameters
-    ----------
-    step : Longest piece [m].
-    least : Least number of pieces of a leg.
-    coarse : A coarser solution.
-    """
-    pieces = cut_into_pieces(track, step, least, world.chart, world.ship)
-    charted = _least_charted_depths(world, pieces)
+    """Sail a track in given pieces; a coarser solution gives the first guess."""
+    charted = _least_charted_depths(world, pieces, coarse)
     gauss = replace(pieces.gauss_points(), charted=np.repeat(charted, 2))
 
     def slowness(
@@ -88,7 +79,7 @@ def sail_track(
         slowness,
         step=pieces.step,
         wait=pieces.wait,
-        depart=track.depart + float(track.wait[0]),
+        depart=pieces.track.depart + float(pieces.track.wait[0]),
         guess=_first_guess(world, pieces, coarse),
     )
     return SailedTrack(world, pieces, charted, gauss, passage)
@@ -143,13 +134,8 @@ def _first_guess(
     """Return a first guess of the slowness at the Gauss points of every piece [s/m]."""
     canal = pieces.canals.speed[pieces.leg]
     if coarse is not None:
-        middle = pieces.start + 0.5 * pieces.step
-        ends = np.cumsum(np.bincount(coarse.pieces.leg))
-        first = np.concatenate([[0], ends[:-1]])[pieces.leg]
-        step = coarse.pieces.step[first]  # zero between two waypoints at one place
-        nearest = first + (middle / np.where(step > 0.0, step, 1.0)).astype(np.int64)
-        mean = coarse.passage.slowness.mean(axis=1)
-        mean = mean[np.minimum(nearest, ends[pieces.leg] - 1)]
+        nearest = coarse.pieces.containing(pieces.leg, pieces.start + 0.5 * pieces.step)
+        mean = coarse.passage.slowness.mean(axis=1)[nearest]
         return np.repeat(np.where(np.isnan(canal), mean, 1.0 / canal)[:, None], 2, axis=1)
     speeds = world.ship.speeds[pieces.track.setting[pieces.leg]]
     usual = np.where(np.isfinite(speeds) & (speeds > 0.0), speeds, 5.0)
@@ -157,14 +143,23 @@ def _first_guess(
     return np.repeat(1.0 / usual[:, None], 2, axis=1)
 
 
-def _least_charted_depths(world: SailingEnvironment, pieces: TrackPieces) -> FloatArray:
+def _least_charted_depths(
+    world: SailingEnvironment, pieces: TrackPieces, coarse: SailedTrack | None
+) -> FloatArray:
     """Return the least charted depth along every piece [m below datum]; +inf if there is none."""
+    depth = np.full(len(pieces), math.inf)
     if world.chart is None or not world.charted:
-        return np.full(len(pieces), math.inf)
-    low = pieces.points(pieces.leg, pieces.start)
-    high = pieces.points(pieces.leg, pieces.start + pieces.step)
-    depth = world.chart.depths.along(low.lat, low.lon, high.lat, high.lon)
-    return np.where(pieces.canals.number[pieces.leg] >= 0, math.inf, np.asarray(depth, float))
+        return depth
+    new = pieces.canals.number[pieces.leg] < 0
+    if coarse is not None:  # pieces that were not split keep their depth
+        nearest = coarse.pieces.containing(pieces.leg, pieces.start)
+        kept = coarse.pieces.step[nearest] == pieces.step
+        depth[kept] = coarse.charted[nearest[kept]]
+        new &= ~kept
+    leg, start, step = pieces.leg[new], pieces.start[new], pieces.step[new]
+    low, high = pieces.points(leg, start), pieces.points(leg, start + step)
+    depth[new] = world.chart.depths.along(low.lat, low.lon, high.lat, high.lon)
+    return depth
 
 
 def data_spacings(world: SailingEnvironment, share: float) -> list[float]:
