@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.route.referee.leg_segments import TrackPieces
-from thalweg.route.referee.sailing import SailedTrack, sail_pieces
+from thalweg.route.referee.sailing import SailedTrack, sail_pieces, sailing_state_along
 from thalweg.route.referee.sailing_physics import SailingEnvironment
 
 _TARGET = 1e-5  # error of the time, as a share of it, above which pieces are split
@@ -18,6 +18,7 @@ _MAX_ROUNDS = 14
 _MOST_SPLIT = 64  # pieces split in a round: errors of more are not at single places
 _SLOWEST_CONVERGENCE = 0.85  # of the errors of two rounds that is believed
 _JUMP_RATIO = 3.0  # of a change of slowness to those beside it, from which it counts as a jump
+_INSIDE = 1e-4  # of a piece, from the end of a leg: waypoints may lie on a jump
 _SMALLEST_JUMP = 1e-6  # as a share of the slowness
 
 
@@ -117,16 +118,29 @@ def _durations(sailed: SailedTrack) -> FloatArray:
 def _jump_errors(sailed: SailedTrack) -> FloatArray:
     """Return the errors that jumps of the slowness between two points can add to pieces [s], (p,).
 
-    Points on both sides of a jump see it, but not where it is between them.
+    Points on both sides of a jump see it, but not where it is between them. The points are those of
+    the pieces, and one just inside each end of every leg.
     """
-    slowness, points = sailed.passage.slowness.reshape(-1), sailed.gauss
-    gap = np.where(np.diff(points.leg) == 0, np.diff(points.along), 0.0)
-    change = np.where(gap > 0.0, np.abs(np.diff(slowness)), 0.0)
+    pieces, gauss = sailed.pieces, sailed.gauss
+    last = pieces.last_of_leg()
+    ends = np.concatenate([np.flatnonzero(np.append(True, last[:-1])), np.flatnonzero(last)])
+    share = np.where(np.arange(len(ends)) < len(ends) // 2, _INSIDE, 1.0 - _INSIDE)
+    points = pieces.points(pieces.leg[ends], pieces.start[ends] + share * pieces.step[ends])
+    points = replace(points, charted=sailed.charted[ends])
+    begin, end = sailed.passage.start[:-1][ends], sailed.passage.start[1:][ends]
+    time = begin + share * (end - pieces.wait[ends] - begin)
+    speed = sailing_state_along(sailed.world, pieces.canals, points, time).speed_over_ground
+    piece = np.append(np.repeat(np.arange(len(pieces)), 2), ends)
+    along, leg = np.append(gauss.along, points.along), np.append(gauss.leg, points.leg)
+    slowness = np.append(sailed.passage.slowness.reshape(-1), 1.0 / speed)
+    order = np.lexsort((along, leg))
+    along, leg, slowness, piece = along[order], leg[order], slowness[order], piece[order]
+    gap = np.where(np.diff(leg) == 0, np.diff(along), 0.0)
+    change = np.where((gap > 0.0) & np.isfinite(np.diff(slowness)), np.abs(np.diff(slowness)), 0.0)
     beside = np.maximum(np.append(0.0, change[:-1]), np.append(change[1:], 0.0))
-    jump = (change > _JUMP_RATIO * beside) & (change > _SMALLEST_JUMP * slowness[1:])
-    error = np.zeros(len(sailed.pieces))
-    at = np.flatnonzero(jump)
+    at = np.flatnonzero((change > _JUMP_RATIO * beside) & (change > _SMALLEST_JUMP * slowness[:-1]))
+    error = np.zeros(len(pieces))
     half = 0.25 * change[at] * gap[at]  # a quarter to the pieces of both points
-    np.add.at(error, at // 2, half)
-    np.add.at(error, (at + 1) // 2, half)
+    np.add.at(error, piece[at], half)
+    np.add.at(error, piece[at + 1], half)
     return error

@@ -18,7 +18,10 @@ from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_legs, sea_stretches
 from thalweg.route.evaluators.time_evaluator import penalty_factors
 from thalweg.route.referee.evaluation import evaluate
+from thalweg.route.referee.sailing_physics import make_sailing_environment
+from thalweg.route.referee.wind_speed_only import with_wind_speed
 from thalweg.route.refinement.feasible_interpolation import bisect_to_feasible
+from thalweg.route.refinement.interface_points import with_interface_points
 from thalweg.route.refinement.simplification import simplified_route
 from thalweg.route.refinement.smoothing import smooth
 from thalweg.route.route import Route
@@ -139,6 +142,10 @@ def better_route(
     if best is scored and infeasible is not None:
         best = bisect_to_feasible(scored, infeasible, score)
     best = shorten_waits(best, score)
+    if objective != "distance":
+        world = make_sailing_environment(ship, with_wind_speed(ship, sea), chart)
+        bent = with_interface_points(best, world, score)
+        best = min(best, bent, key=lambda item: comparison_key(item, objective, chart))
     most = comparison_key(scored, objective, chart)[1] if scored.feasible else math.inf
     return simplified_route(
         best, score, lambda item: comparison_key(item, objective, chart)[1], most=most
