@@ -27,6 +27,7 @@ from thalweg.planning.network_selection.route_alternatives import (
 from thalweg.planning.pareto.exploration import explore_alternative, without_unknown_water
 from thalweg.planning.pareto.front_points import track_from_front_point
 from thalweg.planning.pareto.plan_assembly import assemble_trade_off_plan
+from thalweg.planning.pareto.single_speed import has_single_speed, refined_cheapest
 from thalweg.planning.pareto.speed_blocks import in_speed_blocks
 from thalweg.planning.pareto.trade_off_context import (
     ExploredAlternative,
@@ -193,6 +194,9 @@ def _refined_candidates(
             break
         trade_off.context.report_progress(f"refining the front: {one.alternative.name}")
         of_alternative = [c for c in (*exact, *found) if c.alternative == one.alternative.name]
+        if method == "default" and has_single_speed(trade_off):
+            found += refined_cheapest(trade_off, one, of_alternative)
+            continue
         found += evolutionary_candidates(trade_off, one, of_alternative)
         _show(trade_off, [*exact, *found])
     return found
