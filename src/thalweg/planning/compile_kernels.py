@@ -38,10 +38,10 @@ def compile_search() -> None:
 
 def compile_certificate() -> None:
     """Bound a passage in open water, to compile the kernels."""
+    from thalweg.sea import Sea
     from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
     from thalweg.search.certificate.barrier_mesh import ShipInBarrier
     from thalweg.search.certificate.time_certificate import BarrierSearch
-    from thalweg.sea import Sea
     from thalweg.ship import Ship
 
     table = Ship.load("handysize-bulker").tabulate()
