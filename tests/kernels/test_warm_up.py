@@ -5,7 +5,9 @@ import os
 
 import pytest
 
+from thalweg.kernels.certificate.barrier_solver import solve_barrier
 from thalweg.kernels.compilation import warm_up
+from thalweg.planning import compile_kernels
 
 WRITES = "from pathlib import Path\n\n\ndef compile_search():\n    Path({!r}).write_text('done')\n"
 
@@ -58,3 +60,25 @@ def _here(folder, monkeypatch, body):
     monkeypatch.syspath_prepend(str(folder))
     name = f"works_{abs(hash(body))}"
     return _module(folder, name, f"def compile_search():\n    {body}\n")
+
+
+def test_another_process_compiles_the_certificate(monkeypatch):
+    done = []
+
+    class Process:
+        def __init__(self, command, **quiet):
+            done.append(command[-1])
+
+        def wait(self):
+            done.append("waited")
+
+    monkeypatch.setattr(compile_kernels.subprocess, "Popen", Process)
+    monkeypatch.setattr(compile_kernels, "_search_and_smooth", lambda: done.append("searched"))
+    compile_kernels.compile_search()
+    assert done[0].endswith(".compile_certificate()")
+    assert done[1:] == ["searched", "waited"]
+
+
+def test_a_small_certificate_compiles_its_kernels():
+    compile_kernels.compile_certificate()
+    assert solve_barrier.signatures

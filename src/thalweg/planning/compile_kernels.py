@@ -1,6 +1,12 @@
-"""Compilation of the search kernels in a second process (`thalweg.kernels.compilation.warm_up`)."""
+"""Compilation of the search kernels in a second process (`thalweg.kernels.compilation.warm_up`),
+and of those of the certificate in a third.
+"""
 
 from __future__ import annotations
+
+import contextlib
+import subprocess
+import sys
 
 import numpy as np
 
@@ -9,9 +15,48 @@ from thalweg.core.limits import Limits
 from thalweg.kernels import codes
 from thalweg.network import Edges, Graph, Network, NetworkMeta, Samples, Stations
 
+_CELLS = 24  # of the mesh of a certificate, along the geodesic
+
 
 def compile_search() -> None:
-    """Search and smooth a passage between two nodes in open water, to compile the kernels."""
+    """Search and smooth a passage between two nodes in open water, to compile the kernels.
+
+    Another process compiles those of the certificate: a third of the whole, used last.
+    """
+    certificate = None
+    if sys.executable and not getattr(sys, "frozen", False):
+        with contextlib.suppress(OSError):
+            command = [sys.executable, "-c", f"import {__name__} as k; k.compile_certificate()"]
+            quiet = subprocess.DEVNULL
+            certificate = subprocess.Popen(command, stdin=quiet, stdout=quiet, stderr=quiet)
+    try:
+        _search_and_smooth()
+    finally:
+        if certificate is not None:
+            certificate.wait()
+
+
+def compile_certificate() -> None:
+    """Bound a passage in open water, to compile the kernels."""
+    from thalweg.sea import Sea
+    from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
+    from thalweg.search.certificate.barrier_mesh import ShipInBarrier
+    from thalweg.search.certificate.time_certificate import BarrierSearch
+    from thalweg.ship import Ship
+
+    table = Ship.load("handysize-bulker").tabulate()
+    top = float(table.largest(0))
+    ship = ShipInBarrier(table.kernel_arrays(), 0, Limits(wave_height=8.0).array, top)
+    length, _, _ = inverse(0.0, 0.0, 0.0, 1.0)
+    waves = (codes.WIND_EAST, codes.WIND_NORTH, codes.WAVE_HEIGHT_CHANNEL)
+    known = 1.1 * float(length) / top
+    passage = PassageToBound(Sea.calm(), None, ship, waves, (0.0, 0.0), (0.0, 1.0), 0.0, known)
+    domain = BarrierDomain.around(passage, _CELLS)
+    assert domain is not None  # the passage is short
+    BarrierSearch(passage, domain, _CELLS).refine()
+
+
+def _search_and_smooth() -> None:
     from thalweg.route import Track, smooth
     from thalweg.sea import GridFields, StationFields
     from thalweg.search import ShipOnNetwork, earliest_arrival, lower_bound

@@ -27,6 +27,8 @@ _PIECE: Final = 20_000.0  # legs are split into straight lines of at most this [
 _CELL: Final = 0.25  # side of a cell [deg]
 _ROWS: Final = round(180.0 / _CELL)
 _COLUMNS: Final = round(360.0 / _CELL)
+_TURNS: Final = (-360.0, 0.0, 360.0)  # of longitude, with which areas are in the tree [deg]
+_MOST_CORNERS: Final = 6  # of areas that are cut without a library
 _FAR_ACROSS: Final = 120.0  # legs over more longitude than this [deg] may meet any lane
 _ROUNDING: Final = 1e-6  # [deg]
 
@@ -122,11 +124,7 @@ class LaneGroup:
         """Prepare lanes."""
         import shapely.affinity
 
-        shapes = [
-            shapely.affinity.translate(lane.shape, turn)
-            for lane in lanes
-            for turn in (-360.0, 0.0, 360.0)
-        ]
+        shapes = [shapely.affinity.translate(lane.shape, turn) for lane in lanes for turn in _TURNS]
         shapely.prepare(shapes)
         return cls(tuple(lanes), shapely.STRtree(shapes), _cells_of_lanes(lanes))
 
@@ -183,22 +181,46 @@ class LaneGroup:
         y0, x0, y1, x1 = ends
         lines = shapely.linestrings(np.stack([np.stack([x0, y0], -1), np.stack([x1, y1], -1)], 1))
         which, zone = self.tree.query(lines)
-        lane = zone // 3
+        lane = zone // len(_TURNS)
         _, begin, end = inverse(y0[which], x0[which], y1[which], x1[which])
         there = self._is_against(begin, lane)
         turned = self._is_against(end + np.pi, lane) & back
         against = np.flatnonzero(there | turned)
-        areas = self.tree.geometries
-        inside = shapely.intersects(areas[zone[against]], lines[which[against]])
-        against = against[inside]
-        which, zone, lane = which[against], zone[against], lane[against]
-        whole = shapely.length(lines[which])
-        share = np.where(whole > 0.0, 1.0, 0.0)
-        cut = np.flatnonzero(~shapely.covers(areas[zone], lines[which]) & (whole > 0.0))
-        part = shapely.intersection(lines[which[cut]], areas[zone[cut]])
-        share[cut] = shapely.length(part) / whole[cut]
-        share /= pieces[leg[which]]
-        return LaneMeetings(near[leg[which]], lane, share, there[against], turned[against])
+        share = self._shares_inside(zone[against], lines[which[against]])
+        inside = share > 0.0
+        share, against = share[inside], against[inside]
+        leg = leg[which[against]]
+        return LaneMeetings(
+            near[leg], lane[against], share / pieces[leg], there[against], turned[against]
+        )
+
+    def _shares_inside(self, zone: NDArray[np.int64], lines: NDArray[Any]) -> FloatArray:
+        """Return which share of the length of straight lines is inside areas of the tree."""
+        import shapely
+
+        begin, end = shapely.get_coordinates(lines).reshape(-1, 2, 2).swapaxes(0, 1)
+        moves = (begin != end).any(axis=1)
+        share = np.where(moves, _shares_in_convex(self._corners[zone], begin, end), 0.0)
+        other = np.flatnonzero(np.isnan(share))
+        part = shapely.intersection(lines[other], self.tree.geometries[zone[other]])
+        share[other] = shapely.length(part) / shapely.length(lines[other])
+        return share
+
+    @cached_property
+    def _corners(self) -> FloatArray:
+        """Corners of the areas of the tree, counter-clockwise; NaN where one is not convex."""
+        import shapely
+
+        found = np.full((len(self.lanes), _MOST_CORNERS, 2), np.nan)
+        for k, area in enumerate(lane.shape for lane in self.lanes):
+            corners = shapely.get_coordinates(shapely.normalize(area))[::-1][:-1]
+            x, y = (np.roll(corners, -1, axis=0) - corners).T
+            left = (x * np.roll(y, -1) - y * np.roll(x, -1) >= 0.0).all()
+            if area.geom_type == "Polygon" and len(corners) <= _MOST_CORNERS and left:
+                found[k] = corners[np.minimum(np.arange(_MOST_CORNERS), len(corners) - 1)]
+        turned = np.repeat(found, len(_TURNS), axis=0)
+        turned[..., 0] += np.tile(_TURNS, len(found))[:, None]
+        return turned
 
     def _pieces(
         self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
@@ -247,6 +269,26 @@ class LaneGroup:
         count = sums[high + 1, right + 1] - sums[low, right + 1]
         count -= sums[high + 1, left] - sums[low, left]
         return np.asarray((count > 0) | (np.abs(turn) > _FAR_ACROSS))
+
+
+def _shares_in_convex(corners: FloatArray, begin: FloatArray, end: FloatArray) -> FloatArray:
+    """Return which share of straight lines (n, 2) is inside areas (n, corners, 2).
+
+    Each side of an area cuts off what is to its right (Cyrus and Beck 1978, Computers and Graphics
+    3(1), 23-28).
+    """
+    first, last = np.zeros(len(begin)), np.ones(len(begin))
+    for k in range(corners.shape[1]):
+        corner = corners[:, k]
+        (ax, ay), (bx, by) = (begin - corner).T, (end - corner).T
+        x, y = (corners[:, (k + 1) % corners.shape[1]] - corner).T
+        a, b = x * ay - y * ax, x * by - y * bx
+        at = a / np.where(a == b, 1.0, a - b)
+        first = np.where((a < 0.0) & (b >= 0.0), np.maximum(first, at), first)
+        last = np.where((a >= 0.0) & (b < 0.0), np.minimum(last, at), last)
+        last = np.where((a < 0.0) & (b < 0.0), 0.0, last)
+    share = np.maximum(last - first, 0.0)
+    return np.where(np.isnan(corners[:, 0, 0]), np.nan, share)
 
 
 def _cells_of_lanes(lanes: Sequence[TrafficLane]) -> Int32Array:

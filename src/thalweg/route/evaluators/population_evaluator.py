@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -242,26 +243,14 @@ class Evaluator:
             if closed_legs is not None and depth is not None:
                 blocked, charted = closed_legs[:, 0].astype(float), depth[:, 0]
         elif obstacles:
-            blocked[:] = chart.legs_blocked(*ends)
+            blocked = _on_all_cores(chart.legs_blocked, ends)
         zones: Any = chart.zones
         if prices.differs_in_control_areas and len(getattr(zones, "eca", ())):
-            inside = self._eca_fractions(ends)
+            fraction = partial(zones.eca_fraction, finest=self.zone_resolution)
+            inside = _on_all_cores(fraction, ends)
         if chart.zones.has_penalty or chart.zones.price:
             penalty, zone_factor = (np.asarray(factor) for factor in chart.zones.factors(*ends))
         return blocked, charted, prices.of_legs(inside, zone_factor), penalty
-
-    def _eca_fractions(self, ends: tuple[FloatArray, ...]) -> FloatArray:
-        """Return the shares of legs inside emission control areas."""
-        chart: Any = self.chart
-        share = np.empty(len(ends[0]))
-
-        def part(legs: slice) -> None:
-            share[legs] = chart.zones.eca_fraction(
-                *(end[legs] for end in ends), finest=self.zone_resolution
-            )
-
-        run_in_threads(part, len(share))
-        return share
 
     def _set_canals(
         self, genes: FloatArray, row: np.ndarray, place: np.ndarray, ends: list[FloatArray]
@@ -294,6 +283,17 @@ class Evaluator:
         terms = self.world.terms.copy()
         terms[columns.PIECE_SPACING] /= times
         return replace(self, world=self.world._replace(terms=terms))
+
+
+def _on_all_cores(function: Callable[..., FloatArray], ends: tuple[FloatArray, ...]) -> FloatArray:
+    """Return what a function gives for legs, one by one; its kernels run on all cores."""
+    found = np.empty(len(ends[0]))
+
+    def part(legs: slice) -> None:
+        found[legs] = function(*(end[legs] for end in ends))
+
+    run_in_threads(part, len(found))
+    return found
 
 
 _DEFAULT_RESOLUTION = EvaluationResolution()
