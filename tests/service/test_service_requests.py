@@ -348,6 +348,7 @@ def test_files_of_traffic_are_checked_when_they_arrive(client):
     nothing = {**TRAFFIC, "features": [{**TRAFFIC["features"][0], "properties": {"name": "x"}}]}
     found = problem(upload("broken.geojson", json.dumps(nothing).encode()), 422)
     assert found["field"] == "file" and "encounters_per_h" in found["possible"]
+    assert "no traffic" in problem(upload("empty.json", b"[]"), 422)["asked"]
     problem(upload("ferries.txt", b"x"), 415)
     assert client.delete(f"/api/v1/traffic/{kept.json()['id']}").status_code == 204
     problem(client.delete("/api/v1/traffic/0123456789abcdef"), 404)

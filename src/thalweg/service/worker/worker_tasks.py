@@ -110,16 +110,28 @@ def import_route(task: Mapping[str, Any]) -> TaskResult:
 
 
 def inspect_traffic(task: Mapping[str, Any]) -> TaskResult:
-    """Return what a file of ship traffic holds: zones by name, or the box of a raster.
+    """Return what a file of ship traffic holds: zones by name, and the number of rasters.
 
     Parameters
     ----------
     task : mapping
         ``path``.
+
+    Raises
+    ------
+    InputError : If it holds no rate of encounters at all.
     """
     from thalweg.chart.zones.traffic_files import read_ship_traffic
 
     traffic = read_ship_traffic(task["path"])
+    if not (traffic.zones or traffic.grids or traffic.elsewhere):
+        raise InputError(
+            "The file holds no traffic.",
+            "It holds zones with encounters_per_h, encounters_per_nm or ships_per_km2, or a raster "
+            "of density.",
+            "Choose another file.",
+            field="file",
+        )
     return {
         "zones": [zone.name for zone in traffic.zones],
         "grids": len(traffic.grids),

@@ -105,7 +105,7 @@ export class IndicatorLimits {
   }
 }
 
-const WEIGHED = { time: "Time", distance: "Distance", fuel: "Fuel", energy: "Energy", cost: "Cost", co2: "CO₂", comfort: "Motion sickness", encounters: "Encounters", inshore: "Length near land" };
+const WEIGHED = { time: "Time", distance: "Distance", fuel: "Fuel", energy: "Energy", cost: "Cost", co2: "CO₂", comfort: "Sickness", encounters: "Encounters", inshore: "Near land" };
 
 // Weights of the objective "weighted".
 export class IndicatorWeights {
