@@ -240,9 +240,8 @@ def _check_cell(world, phi, cell, window, forward, strict, buffers, kept):
     if forward and not _open_on_barrier(world, j, i, (least, greatest), window, buffers):
         return -1.0, 0.25 * (a + b + c + d)
     first, last = window
-    if forward:  # centre values are searched within half the spread of the corners
-        spread = greatest - least
-        first, last = least - 0.5 * spread - 1.0, greatest + 0.5 * spread
+    if forward:  # the value at the centre is between those at the corners
+        first, last = least - 1.0, greatest
     instants, is_open, field_high, winds, waves = read_cell(world, j, i, first, last, buffers)
     if not is_open:
         return -1.0, 0.25 * (a + b + c + d)
@@ -270,10 +269,7 @@ def _check_cell(world, phi, cell, window, forward, strict, buffers, kept):
     if rate > 1.0 + (-6e-4 if strict else 2e-4):
         low, high = min(0.5 * (a + d), 0.5 * (b + c)), max(0.5 * (a + d), 0.5 * (b + c))
         low, high = low - 0.5 * (high - low), high + 0.5 * (high - low)
-        low, high = (
-            max(low, least - 0.4 * (greatest - least)),
-            min(high, greatest + 0.4 * (greatest - least)),
-        )
+        low, high = max(low, least), min(high, greatest)
         one, two = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
         at_one = _greatest_rate(corners, one, scales, motion)
         at_two = _greatest_rate(corners, two, scales, motion)

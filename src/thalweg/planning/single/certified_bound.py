@@ -43,6 +43,10 @@ _CONTRADICTED = (
     "no bound: in {sampling} the route of the plan would not be possible in its time, so that a "
     "bound for that sea says nothing"
 )
+_ENCLOSED = (
+    "no bound: the proof says {bound}, which the route of the plan undercuts; the land or the limits "
+    "of the proof may enclose an end that the route leaves"
+)
 
 
 def certified_bound(
@@ -74,9 +78,7 @@ def certified_bound(
     found = certify_departures(passage, seconds=seconds)
     margin = 1.0 if by_length or not context.table.axes else 1.0 - _TABLE_MARGIN
     if found.reached * margin > passage.known * (1.0 + _CONTRADICTION) + route.tolerance_s:
-        # a theorem for the data themselves cannot be contradicted by a route through them
-        assert found.sampling, f"bound {found.reached} s above the route of {passage.known} s"
-        return no_bound(_CONTRADICTED.format(sampling=found.sampling))
+        return no_bound(_contradicted(found, passage.known, by_length=by_length))
     return LowerBound(min(found.value * margin, passage.known), _kind(context, found))
 
 
@@ -190,6 +192,16 @@ def strongest_current_in_data(context: PlanningContext, route: Route) -> tuple[f
     domain = BarrierDomain.around(passage, _CELLS_FOR_CURRENT)
     domain = domain or BarrierDomain.of_globe(passage, _CELLS_FOR_CURRENT)
     return domain.strongest_current, domain.sampling
+
+
+def _contradicted(found: TimeCertificate, known: float, *, by_length: bool) -> str:
+    """Return why a bound above a route is not published."""
+    if found.sampling:
+        return _CONTRADICTED.format(sampling=found.sampling)
+    reached = found.reached
+    bound = f"at least {reached / 1e3:.1f} km" if by_length else f"at least {reached / HOUR:.2f} h"
+    # what encloses an end lets nobody through: the value of the barrier there has no meaning
+    return _ENCLOSED.format(bound=bound if reached < 2.0 * known else "that there is no way")
 
 
 def no_bound(why: str) -> LowerBound:

@@ -35,9 +35,12 @@ _ROUNDING = 1e-9
 _LEAST_FACTOR = 0.05
 _SETTLED, _LEAST_GAIN = 1e-3, 2e-4  # excess and gain of a round at which no more are made
 _CLOSING_ROUNDS, _CLOSING_MARGIN = 12, 4e-4  # rounds that lower only, and below the limit
-_RAISE = 0.4  # of the slack, where the barrier rises more slowly than it may
+_CLOSING_GROWTH = 0.2  # of a correction, from one closing round to the next
+_GENTLE_ROUNDS = 3  # closing rounds that correct nodes beside a cell by half only
+_DIVISIONS = 3  # of a barrier that closing rounds do not correct
+_RAISE = 0.7  # of the slack, where the barrier rises more slowly than it may
 _PLANE_CELLS = 6.0  # half the width of the plane at the source
-_NEAR_SOURCE = 3.0  # over-correction beside the source
+_BESIDE_EXCESS = 0.5  # share of an excess by which nodes beside the corners of a cell are corrected
 _LINK_SLACK = 2e-3  # of the time of a canal, for the values at the centres of cells at its ends
 
 
@@ -92,6 +95,11 @@ class BarrierTask:
         """The cells that a route faster than the known one may touch."""
         return np.asarray(self.own + self.other < self.known)
 
+    def counts(self, phi: FloatArray, scale: float = 1.0) -> BoolArray:
+        """Return the cells where a faster ship may be as early as a barrier says, once divided."""
+        early = np.asarray(cell_minimum(phi) / scale + self.other < self.known)
+        return self.band & early & (-cell_minimum(-phi) >= self.own)
+
 
 def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
     """Return the best barrier found in some rounds of solving, checking and correcting.
@@ -117,7 +125,7 @@ def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
     rings = _no_ring_times(shape)
     found = BarrierExcess(np.empty(cells), np.empty(cells))
     kept = _no_speeds(mesh)
-    best, best_f, before, closing = -math.inf, f, -math.inf, 0
+    before, closing = -math.inf, 0
 
     def solve(values: FloatArray) -> FloatArray:
         fixed = ~np.isnan(values)
@@ -129,25 +137,38 @@ def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
 
     for number in range(rounds + _CLOSING_ROUNDS):
         phi = _solve_with_links(mesh, solve, given, (1 + closing) * _LINK_SLACK)
-        candidate = task.band & (cell_minimum(phi) / 1.3 + task.other < known)
-        strict = closing > 0
-        check_barrier(mesh.world, phi, candidate, windows, task.forward, strict, found, kept)
+        check_barrier(
+            mesh.world, phi, task.counts(phi, 1.3), windows, task.forward, closing > 0, found, kept
+        )
         scale = _least_scale(task, phi, found.excess)
         if closing and scale == 0.0:
             return _verified(task, phi, f, windows, kept)
         value = mesh.value_at(phi, found.centre, *task.target) / (1.0 + scale)
-        if value > best:
-            best, best_f = value, f.copy()
         settled = scale < _SETTLED and value - before < _LEAST_GAIN * known
         before = value
-        if not closing and (number + 1 >= rounds or settled):
-            f, closing = best_f, 1
-        elif closing == _CLOSING_ROUNDS:
-            break
-        else:
-            excess = found.excess + (closing > 0) * _CLOSING_MARGIN
-            _correct(f, excess, task, raising=not closing)
-            closing += closing > 0
+        if closing == _CLOSING_ROUNDS:
+            return _divided(task, phi, scale, f, windows, kept)
+        if closing or number + 1 >= rounds or settled:
+            closing += 1
+        excess = found.excess + (closing > 0) * _CLOSING_MARGIN
+        _correct(f, excess, closing)
+    return None
+
+
+def _divided(
+    task: BarrierTask,
+    phi: FloatArray,
+    scale: float,
+    factor: FloatArray,
+    windows: TimeWindows,
+    kept: KeptSpeeds,
+) -> CheckedBarrier | None:
+    """Divide a barrier that rises too fast in places by its greatest rate, and check it."""
+    for _ in range(_DIVISIONS):
+        phi = phi / (1.0 + scale + _CLOSING_MARGIN)
+        barrier = _verified(task, phi, factor, windows, kept)
+        if barrier is not None:
+            return barrier
     return None
 
 
@@ -253,13 +274,10 @@ def _verified(
     mesh = task.mesh
     cells = phi.shape[0] - 1, phi.shape[1] - 1
     found = BarrierExcess(np.empty(cells), np.empty(cells))
-    mask = task.band & (cell_minimum(phi) + task.other < task.known)
+    mask = task.counts(phi)
     check_barrier(mesh.world, phi, mask, windows, task.forward, True, found, kept)
     excess, centre = found
     if float(excess[mask].max(initial=-1.0)) > -_ROUNDING or not _links_kept(task, phi, centre):
-        return None
-    low = np.minimum(cell_minimum(phi), centre) + task.other < task.known
-    if (low & task.band & ~mask).any():
         return None
     edges = mask[0].any() or mask[-1].any() or mask[:, 0].any() or mask[:, -1].any()
     value = mesh.value_at(phi, centre, *task.target)
@@ -268,9 +286,9 @@ def _verified(
 
 def _least_scale(task: BarrierTask, phi: FloatArray, excess: FloatArray) -> float:
     """Return the least R with excess <= R in all cells that count once the barrier is scaled."""
-    least, scale = cell_minimum(phi), 0.0
+    scale = 0.0
     for _ in range(60):
-        mask = task.band & (least / (1.0 + scale) + task.other < task.known)
+        mask = task.counts(phi, 1.0 + scale)
         needed = max(0.0, float(excess[mask].max(initial=0.0)))
         if needed <= scale:
             break
@@ -310,25 +328,21 @@ def _block(middle: int, count: int) -> slice:
     return slice(max(middle - reach, 0), min(middle + reach + 2, count))
 
 
-def _correct(f: FloatArray, excess: FloatArray, task: BarrierTask, *, raising: bool) -> None:
-    """Lower the factor on the times where the barrier rises too fast.
+def _correct(f: FloatArray, excess: FloatArray, closing: int) -> None:
+    """Lower the factor on the times where the barrier rises too fast, raise it where it may.
 
-    Cells beside the source have corners whose values are given: the others are corrected more.
+    Corners of cells that rise too fast are corrected in full, and nodes beside them by half.
+    In the closing rounds nothing is raised, and more is corrected from round to round.
     """
-    node = np.full(f.shape, -1.0)
-    for rows in (slice(None, -1), slice(1, None)):
-        for columns in (slice(None, -1), slice(1, None)):
-            part = node[rows, columns]
-            np.maximum(part, excess, out=part)
-    node = ndimage.maximum_filter(node, 3)
-    reach = int(_PLANE_CELLS) + 3
-    source = task.mesh.cell_of(*task.source)
-    near = tuple(slice(max(k - reach, 0), k + reach + 2) for k in source)
-    node[near] = np.where(node[near] > 0.0, _NEAR_SOURCE * node[near], node[near])
+    node = -_node_minimum(-excess)
+    unused = node <= -1.0
+    beside = 1.0 if closing > _GENTLE_ROUNDS else _BESIDE_EXCESS
+    np.maximum(node, beside * ndimage.maximum_filter(node, 3), out=node)
     raised = np.minimum(_RAISE * np.maximum(-node, 0.0), _RAISE * (1.0 - f))
-    f /= 1.0 + np.where(node > 0.0, node, 0.0)
-    if raising:
-        f *= 1.0 + np.where((node < 0.0) & (node > -1.0), raised, 0.0)
+    f /= 1.0 + np.where(node > 0.0, (1.0 + _CLOSING_GROWTH * closing) * node, 0.0)
+    if not closing:
+        f *= 1.0 + np.where((node < 0.0) & ~unused, raised, 0.0)
+        f[unused] += _RAISE * (1.0 - f[unused])
     np.clip(f, _LEAST_FACTOR, 1.0, out=f)
 
 

@@ -30,14 +30,14 @@ _FEWEST_SAMPLES: Final = 120
 #: the bound of the geodesic.
 _CELLS_OF_GEODESIC: Final = 400
 _CONTRADICTION: Final = 2e-3  # a barrier above the known time by more than this share is refused
-#: Cells along the longer side of the raster for a sea of functions, for ships that weather does not
-#: slow down, if the search may take `_SECONDS_OF_FINE_CELLS` [s] or more; fewer with less time.
-_FINE_CELLS: Final = 800
+#: Cells along the longer side of the raster for a sea of functions, without and with tables of
+#: weather, if the search may take `_SECONDS_OF_FINE_CELLS` [s] or more; fewer with less time.
+_FINE_CELLS: Final = 800, 240
 _SECONDS_OF_FINE_CELLS: Final = 20.0
 _MOST_NODES: Final = 4_000_000  # of a mesh
-_FIRST_ROUNDS: Final = 5, 14  # rounds on the first mesh, backwards and forwards
+_FIRST_ROUNDS: Final = 3, 6  # rounds on the first mesh, backwards and forwards
 #: Rounds backwards and forwards on finer meshes, which begin with the factors of a coarser one.
-_LATER_ROUNDS: Final = 3, 6
+_LATER_ROUNDS: Final = 2, 5
 _GROWTH: Final = 3.5  # of the time from one mesh to the next
 #: Seconds that a first mesh takes for each of its cells, without and with tables of weather.
 _SECONDS_A_CELL: Final = 3e-5, 3e-4
@@ -171,14 +171,14 @@ class _Level:
     from_start : Lower bound of the time from the start to a cell [s], (rows, columns).
     to_goal : Lower bound of the time from a cell to the goal [s], (rows, columns).
     known : Time of the known route [s].
-    factors : Of the barriers from the goal and from the start, for a finer mesh; None for none.
+    before : Barriers from the goal and from the start on cells twice as large; None for none.
     """
 
     mesh: BarrierMesh
     from_start: FloatArray
     to_goal: FloatArray
     known: float
-    factors: tuple[FloatArray | None, FloatArray | None] = (None, None)
+    before: tuple[CheckedBarrier | None, CheckedBarrier | None] = (None, None)
 
     @classmethod
     def on(
@@ -189,13 +189,12 @@ class _Level:
         to_goal = mesh.least_times(*passage.goal, fastest)
         if coarser is None:
             return cls(mesh, from_start, to_goal, passage.known)
-        back, ahead = (None if f is None else finer_factors(f) for f in coarser.factors)
         return cls(
             mesh,
             np.maximum(from_start, _halved_cells(coarser.from_start)),
             np.maximum(to_goal, _halved_cells(coarser.to_goal)),
             passage.known,
-            (back, ahead),
+            coarser.before,
         )
 
     def band(self) -> BoolArray:
@@ -204,37 +203,48 @@ class _Level:
 
     def certify(self, passage: PassageToBound) -> tuple[BarrierTask, CheckedBarrier | None]:
         """Find barriers from the goal and from the start; return the latter with its task."""
-        back_factor, ahead_factor = self.factors
-        rounds = _FIRST_ROUNDS if back_factor is None else _LATER_ROUNDS
         back = find_barrier(
-            BarrierTask(
-                self.mesh, passage.goal, passage.start, self.known, self.to_goal, self.from_start,
-                False, factor=back_factor,
-            ),
-            rounds[0],
-        )  # fmt: skip
+            self._task(passage.goal, passage.start, self.before[0], forward=False),
+            _FIRST_ROUNDS[0] if self.before[0] is None else _LATER_ROUNDS[0],
+        )
         course = None
         if back is not None and back.complete:
             self.to_goal = np.where(
                 self.band(), np.maximum(self.to_goal, _least_in_cells(back)), self.to_goal
             )
             course = slope_direction(self.mesh, back.phi, *passage.start)
-        task = BarrierTask(
-            self.mesh, passage.start, passage.goal, self.known, self.from_start, self.to_goal, True,
-            course, ahead_factor,
-        )  # fmt: skip
-        forward = find_barrier(task, rounds[1])
+        task = self._task(
+            passage.start, passage.goal, self.before[1], forward=True, course=course
+        )
+        forward = find_barrier(
+            task, _FIRST_ROUNDS[1] if self.before[0] is None else _LATER_ROUNDS[1]
+        )
         if forward is not None and not forward.complete:
             forward = None
         if forward is not None:
             self.from_start = np.where(
                 self.band(), np.maximum(self.from_start, _least_in_cells(forward)), self.from_start
             )
-        self.factors = (
-            None if back is None else back.factor,
-            None if forward is None else forward.factor,
-        )
+        self.before = back, forward
         return task, forward
+
+    def _task(
+        self,
+        source: tuple[float, float],
+        target: tuple[float, float],
+        before: CheckedBarrier | None,
+        *,
+        forward: bool,
+        course: float | None = None,
+    ) -> BarrierTask:
+        """Return the task of a barrier, with what is known from larger cells."""
+        factor = None if before is None else finer_factors(before.factor)
+        own, other = self.from_start, self.to_goal
+        if not forward:
+            own, other = other, own
+        return BarrierTask(
+            self.mesh, source, target, self.known, own, other, forward, course, factor
+        )
 
 
 def _least_in_cells(barrier: CheckedBarrier) -> FloatArray:
@@ -255,7 +265,6 @@ def first_cells(passage: PassageToBound, seconds: float) -> int:
 def _cells(passage: PassageToBound, seconds: float) -> int:
     """Return the number of cells of the raster where the data are given by functions."""
     first = max(first_cells(passage, seconds), _FEWEST_SAMPLES)
-    if axes_needed(passage.ship.table) != 0:
-        return first
+    finest = _FINE_CELLS[axes_needed(passage.ship.table) != 0]
     share = min(max(seconds / _SECONDS_OF_FINE_CELLS, 0.0), 1.0)
-    return round(first + share * (_FINE_CELLS - first))
+    return round(first + share * max(finest - first, 0))
