@@ -197,7 +197,10 @@ def _rates_at_random_points(found: TimeCertificate, *, ship, setting: int, count
     rng = np.random.default_rng(8)
     mesh, barrier, raster = found.mesh, found.barrier, found.mesh.world.raster
     phi, centre = barrier.phi, barrier.centre
-    cells = np.argwhere(found.task.band & (phi[:-1, :-1] + found.task.other < found.task.known))
+    task, corners = found.task, np.stack([phi[:-1, :-1], phi[:-1, 1:], phi[1:, :-1], phi[1:, 1:]])
+    # cells that a faster ship may touch, not before the barrier's time there
+    early = corners.min(axis=0) + task.other < task.known
+    cells = np.argwhere(task.band & early & (corners.max(axis=0) >= task.own))
     j, i = cells[rng.integers(len(cells), size=count)].T
     y, x = rng.uniform(size=(2, count))
     a, b, c, d, m = phi[j, i], phi[j, i + 1], phi[j + 1, i], phi[j + 1, i + 1], centre[j, i]
