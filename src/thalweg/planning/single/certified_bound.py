@@ -44,8 +44,8 @@ _CONTRADICTED = (
     "bound for that sea says nothing"
 )
 _ENCLOSED = (
-    "no bound: the proof says {bound}, which the route of the plan undercuts; the land or the limits "
-    "of the proof may enclose an end that the route leaves"
+    "no bound: the proof says {bound}, which the route of the plan undercuts; land or limits "
+    "in the proof may enclose an end that the route leaves"
 )
 
 

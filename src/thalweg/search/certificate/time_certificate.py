@@ -213,9 +213,7 @@ class _Level:
                 self.band(), np.maximum(self.to_goal, _least_in_cells(back)), self.to_goal
             )
             course = slope_direction(self.mesh, back.phi, *passage.start)
-        task = self._task(
-            passage.start, passage.goal, self.before[1], forward=True, course=course
-        )
+        task = self._task(passage.start, passage.goal, self.before[1], forward=True, course=course)
         forward = find_barrier(
             task, _FIRST_ROUNDS[1] if self.before[0] is None else _LATER_ROUNDS[1]
         )
