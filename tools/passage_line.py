@@ -1,11 +1,11 @@
-"""Print the line of a passage for `thalweg/chart/data/passages.csv`: the widest water between two places.
+"""Print the line of a passage for the table of passages: the widest water between two places.
 
-    python tools/passage_line.py LAT,LON LAT,LON [--coast i] [--spacing 0.1]
+    python tools/passage_line.py LAT,LON LAT,LON [--coast i] [--spacing 0.1] [--margin 0.12]
 
 The line keeps as far from land as it can at its narrowest place (the widest path of a grid: the
 path in the maximum spanning tree of the distances from land), and is then shortened where it stays
-three quarters as far off. Printed are the half width in nautical miles, and the line. Between islets
-that the coastline lacks the line is wrong: compare it with a chart.
+three quarters as far off. Printed are the half width in nautical miles, and the line. The line is
+wrong between islets that the coastline lacks: compare it with a chart.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from thalweg.chart import Chart
 from thalweg.core.geodesy import densify, distance
 from thalweg.core.units import NAUTICAL_MILE
 
-MARGIN, WIDE, TAUT = 0.12, 3.0, 0.75
+WIDE, TAUT = 3.0, 0.75
 
 
-def widest_line(chart, start, goal, spacing_nm):
+def widest_line(chart, start, goal, spacing_nm, margin):
     """Return latitudes and longitudes of the line, and its least distance from land [nm]."""
     (y0, x0), (y1, x1) = start, goal
     step = spacing_nm / 60.0
     wide = step / np.cos(np.radians(0.5 * (y0 + y1)))
-    lat = np.arange(min(y0, y1) - MARGIN, max(y0, y1) + MARGIN, step)
-    lon = np.arange(min(x0, x1) - 2.0 * MARGIN, max(x0, x1) + 2.0 * MARGIN, wide)
+    lat = np.arange(min(y0, y1) - margin, max(y0, y1) + margin, step)
+    lon = np.arange(min(x0, x1) - 2.0 * margin, max(x0, x1) + 2.0 * margin, wide)
     y, x = (grid.ravel() for grid in np.meshgrid(lat, lon, indexing="ij"))
     shore = chart.coastline.shore_distance(y, x, cap=WIDE * NAUTICAL_MILE) / NAUTICAL_MILE
     number = np.arange(len(y)).reshape(len(lat), len(lon))
@@ -42,7 +42,9 @@ def widest_line(chart, start, goal, spacing_nm):
     a, b = a[free], b[free]
     room = np.minimum(shore[a], shore[b])
     graph = coo_array((WIDE + 1.0 - room, (a, b)), shape=(len(y), len(y)))
-    ends = [int(np.argmin(distance(y, x, *place) + 1e6 * (shore <= 0.0))) for place in (start, goal)]
+    ends = [
+        int(np.argmin(distance(y, x, *place) + 1e6 * (shore <= 0.0))) for place in (start, goal)
+    ]
     tree = minimum_spanning_tree(graph.tocsr())
     path = path_of(breadth_first_order(tree, ends[0], directed=False)[1], *ends)
     least = float(shore[path].min())
@@ -50,7 +52,9 @@ def widest_line(chart, start, goal, spacing_nm):
     far = np.asarray(distance(y[a[keep]], x[a[keep]], y[b[keep]], x[b[keep]]), float)
     far *= 1.0 + 0.5 * (1.0 - room[keep] / WIDE)  # shorter, but in the middle of the water
     taut = coo_array((far, (a[keep], b[keep])), shape=(len(y), len(y))).tocsr()
-    path = path_of(dijkstra(taut, directed=False, indices=ends[0], return_predecessors=True)[1], *ends)
+    path = path_of(
+        dijkstra(taut, directed=False, indices=ends[0], return_predecessors=True)[1], *ends
+    )
     return simplified(chart, y[path], x[path], TAUT * least)
 
 
@@ -86,9 +90,11 @@ def main() -> None:
     parser.add_argument("goal")
     parser.add_argument("--coast", default="i")
     parser.add_argument("--spacing", type=float, default=0.1, help="of the grid [nm]")
+    parser.add_argument("--margin", type=float, default=0.12, help="round both places [deg]")
     options = parser.parse_args()
     start, goal = (tuple(map(float, text.split(","))) for text in (options.start, options.goal))
-    lat, lon, width = widest_line(Chart.gshhg(options.coast), start, goal, options.spacing)
+    chart = Chart.gshhg(options.coast)
+    lat, lon, width = widest_line(chart, start, goal, options.spacing, options.margin)
     print(f"{width:.2f}", " ".join(f"{a:.4f},{b:.4f}" for a, b in zip(lat, lon)))
 
 
