@@ -14,7 +14,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.file_writing import make_folder, write_csv_rows
 from thalweg.route.indicator_columns import INDICATORS
 from thalweg.ship import Ship
-from thalweg.studies.annual_figures import annual_figures
+from thalweg.studies.annual_figures import annual_figures, share_of_voyage
 from thalweg.studies.front_statistics import draw_front_statistics, front_statistics
 from thalweg.studies.row_runner import ship_of_request
 from thalweg.studies.season_plots import draw_heat_map, draw_months
@@ -240,11 +240,14 @@ def _annual(study: Study, usable: pd.DataFrame, by: list[str]) -> pd.DataFrame:
     if not study.annual or usable.empty:
         return pd.DataFrame()
     ships: dict[Any, Ship] = {}
+    shares: dict[str, float] = {}
     for row in study.rows():
         label = row.labels.get("ship")
         if label not in ships:
             ships[label] = ship_of_request(row.request, str(study.folder))
-    return annual_figures(usable, by, ships, study.annual)
+        shares[row.id] = share_of_voyage(row.request.get("voyage", {}), study.annual)
+    rows = usable.assign(eu_share=usable["id"].map(shares).astype(float))
+    return annual_figures(rows, by, ships, study.annual)
 
 
 def _quantiles(name: str, values: np.ndarray) -> dict[str, float | None]:
