@@ -8,14 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Final
+from operator import itemgetter
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart import Chart
 from thalweg.chart.passage_crossings import legs_through, names_passed
+from thalweg.chart.passages import Passage
 from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.geodesy import distance
 from thalweg.core.interrupt import SearchInterrupted
 from thalweg.core.limits import NETWORK_STEPS, TIGHTENING
 from thalweg.core.objective import Objective
@@ -57,7 +60,9 @@ _OBJECTIVES: Final = ("fuel", "comfort", "encounters", "inshore", "distance")
 _WEIGHTED: Final = ("time", "fuel", "comfort", "encounters")
 _WIDER_OFFING: Final = 4.0 * NAUTICAL_MILE  # of the route that is searched farther off land
 _DETOUR: Final = 0.35  # ways that are longer by this share of the shortest are left out
-_ISLAND_WAYS, _PASSAGE_WAYS = 5, 8
+_REACH: Final = 12.0 * NAUTICAL_MILE  # from nodes to the ends of the line of a passage
+_ISLAND_WAYS, _PASSAGE_WAYS = 3, 5
+_ROUNDS: Final = 3  # of string pulling
 
 
 def berth_to_berth_candidates(
@@ -135,6 +140,20 @@ def candidate_routes(
         if not search.stopped:
             search.try_alternative(other)
     return search.routes, search.notes
+
+
+class _PassageWay(NamedTuple):
+    """A way by a passage.
+
+    Attributes
+    ----------
+    length : [m].
+    before, after : Latitudes and longitudes [deg] to its narrowest point, and from there.
+    """
+
+    length: float
+    before: tuple[FloatArray, ...]
+    after: tuple[FloatArray, ...]
 
 
 class _Candidates:
@@ -263,21 +282,53 @@ class _Candidates:
 
     def by_passages(self, network: Network) -> Iterator[Track]:
         """Yield the shortest ways by the passages that the fastest route does not pass."""
-        through = self._through(network)
-        passed = self._passed(network, through)
-        (start, goal), tails = self._trees(network), network.tails()
-        shortest, ways = start.distance[network.meta.goal], []
-        for name, edges in through.items():
-            rows = np.flatnonzero(edges)
-            total = start.distance[tails[rows]] + network.edges.length[rows]
-            total += goal.distance[network.graph.target[rows]]
-            at = int(np.argmin(total))
-            if name not in passed and total[at] <= (1.0 + _DETOUR) * shortest:
-                ways.append((float(total[at]), int(rows[at])))
-        for _, row in sorted(ways)[:_PASSAGE_WAYS]:
-            path = start.path(int(tails[row])) + goal.path(int(network.graph.target[row]))[::-1]
-            if len(set(path)) == len(path):  # not in and out again
-                yield self._pulled(network, self.context.chart, path)
+        chart, track = self.context.chart, self.best["time"].track
+        passed = set(names_passed(chart.coastline, chart.passages, track.lat, track.lon))
+        trees = self._trees(network)
+        longest = (1.0 + _DETOUR) * trees[0].distance[network.meta.goal]
+        others = [passage for passage in chart.passages if passage.name not in passed]
+        ways = [self._way_by(network, passage, trees) for passage in others]
+        found = sorted((way for way in ways if way and way.length <= longest), key=itemgetter(0))
+        for way in found[:_PASSAGE_WAYS]:
+            parts = [
+                string_pull_path(chart, *line, rounds=_ROUNDS) for line in (way.before, way.after)
+            ]
+            lat, lon = (np.concatenate([parts[0][k], parts[1][k][1:]]) for k in (0, 1))
+            yield self._at_full_speed(lat, lon)
+
+    def _way_by(
+        self, network: Network, passage: Passage, trees: tuple[ShortestPathTree, ShortestPathTree]
+    ) -> _PassageWay | None:
+        """Return the shortest way by the line of a passage; None where no node is near its ends."""
+        chart, (lat, lon) = self.context.chart, passage.positions
+        reach = max(_REACH, 2.0 * network.meta.spacing_m)
+        near = []  # of each end of the line: nodes with a clear leg to it, and its length
+        for at in (0, -1):
+            away = np.asarray(distance(network.lat, network.lon, lat[at], lon[at]))
+            rows = np.flatnonzero(away <= reach)
+            ends = np.full(len(rows), lat[at]), np.full(len(rows), lon[at])
+            if len(rows):
+                blocked = chart.legs_blocked(network.lat[rows], network.lon[rows], *ends)
+                rows = rows[~np.asarray(blocked)]
+            if not len(rows):
+                return None
+            near.append((rows, away[rows]))
+        found = []
+        for (first, to_line), (last, from_line), step in ((*near, 1), (*near[::-1], -1)):
+            before, after = trees[0].distance[first] + to_line, trees[1].distance[last] + from_line
+            a, b = int(np.argmin(before)), int(np.argmin(after))
+            length = float(before[a] + passage.length + after[b])
+            found.append((length, int(first[a]), int(last[b]), step))
+        length, first_node, last_node, step = min(found)
+        line = lat[::step], lon[::step]
+        shore = chart.coastline.shore_distance(*line, cap=NAUTICAL_MILE)
+        middle = 1 + int(np.argmin(shore[1:-1])) if len(lat) > 2 else 1
+        paths = trees[0].path(first_node), trees[1].path(last_node)[::-1]
+        return _PassageWay(
+            length,
+            tuple(np.append(x[paths[0]], y[: middle + 1]) for x, y in zip(_places(network), line)),
+            tuple(np.append(y[middle:], x[paths[1]]) for x, y in zip(_places(network), line)),
+        )
 
     def _trees(self, network: Network) -> tuple[ShortestPathTree, ShortestPathTree]:
         """Return the trees of shortest paths from the start and to the goal."""
@@ -303,13 +354,20 @@ class _Candidates:
 
     def _pulled(self, network: Network, chart: Chart, path: list[int]) -> Track:
         """Return a path of the network, pulled taut on a chart."""
-        return self._at_full_speed(*string_pull_path(chart, network.lat[path], network.lon[path]))
+        return self._at_full_speed(
+            *string_pull_path(chart, network.lat[path], network.lon[path], rounds=_ROUNDS)
+        )
 
     def _at_full_speed(self, lat: FloatArray, lon: FloatArray) -> Track:
         """Return a line as a track with the departure and the speed of the fastest route."""
         track = self.best["time"].track
         setting = int(np.max(track.setting))
         return Track(lat, lon, self.best["time"].depart, None, np.full(len(lat) - 1, setting))
+
+
+def _places(network: Network) -> tuple[FloatArray, FloatArray]:
+    """Return latitudes and longitudes of the nodes [deg]."""
+    return network.lat, network.lon
 
 
 def _open(network: Network, keep: NDArray[np.bool_]) -> FloatArray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -31,6 +32,7 @@ _STEEPEST: Final = 0.1  # significant height over the length of the peak waves
 _STILL: Final = {"wind_speed": 0.0, "wind_angle": 0.0, "depth": 1e4}
 
 
+@lru_cache(maxsize=8)
 def squared_dose_table(ship: Ship) -> PerformanceTable:
     r"""Tabulate the squared weighted acceleration at the first place of a ship.
 
