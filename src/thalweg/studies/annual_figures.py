@@ -161,7 +161,11 @@ def european_charges_of_year(
         terms = ship.fuel_terms
         outside = (share * (group["fuel_t"] - group["fuel_eca_t"])).mean()
         burnt = (terms.outside, outside), (terms.inside, (share * group["fuel_eca_t"]).mean())
-        parts = [_penalty(fuel.name, float(tonnes), year) for fuel, tonnes in burnt if tonnes != 0]
+        parts = [
+            _penalty(fuel.name if fuel else "", float(tonnes), year)
+            for fuel, tonnes in burnt
+            if tonnes != 0.0
+        ]
         none["fueleu_penalty"] = _known(trips * annual["euro_price"] * sum(parts))
     return none
 

@@ -219,7 +219,7 @@ class _Candidates:
         names = [name for name in _WEIGHTED if name in self.best]
         if len(names) < 2:
             return
-        ranges = {}
+        ranges: dict[str, KeyFigureRange] = {}
         for name in names:
             values = [key_figure(self.best[other], name) for other in names]
             ranges[name] = KeyFigureRange(1.0, min(values), max(values))
@@ -314,7 +314,10 @@ class _Candidates:
                 return None
             near.append((rows, away[rows]))
         found = []
-        for (first, to_line), (last, from_line), step in ((*near, 1), (*near[::-1], -1)):
+        for (first, to_line), (last, from_line), step in (
+            (near[0], near[1], 1),
+            (near[1], near[0], -1),
+        ):
             before, after = trees[0].distance[first] + to_line, trees[1].distance[last] + from_line
             a, b = int(np.argmin(before)), int(np.argmin(after))
             length = float(before[a] + passage.length + after[b])
@@ -362,7 +365,7 @@ class _Candidates:
         """Return a line as a track with the departure and the speed of the fastest route."""
         track = self.best["time"].track
         setting = int(np.max(track.setting))
-        return Track(lat, lon, self.best["time"].depart, None, np.full(len(lat) - 1, setting))
+        return Track(lat, lon, self.best["time"].depart, setting=np.full(len(lat) - 1, setting))
 
 
 def _places(network: Network) -> tuple[FloatArray, FloatArray]:

@@ -97,9 +97,10 @@ def champions(values: Sequence[dict[str, float]]) -> dict[str, int]:
         if not np.isfinite(column).all():
             continue
         signed = column if figure.best == "least" else -column
-        spread = float(np.ptp(column))
-        if spread > _EQUAL * max(float(np.abs(column).max()), 1e-12):
-            found[name] = int(np.argmin(signed))
+        equal = _EQUAL * max(float(np.abs(column).max()), 1e-12)
+        if np.ptp(column) > equal:  # of equal ones the fastest
+            near = np.flatnonzero(signed <= signed.min() + (equal if name != "time" else 0.0))
+            found[name] = int(min(near, key=lambda k: values[k]["time"]))
     return found
 
 
