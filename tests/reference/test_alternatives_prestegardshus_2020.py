@@ -48,7 +48,7 @@ def test_offshore_and_inshore_by_the_naeroysund_are_both_listed():
     found = alternative_plans(
         voyage, ship=Ship.load("gunnerus-2019"), sea=sheltered_sea(), chart=chart, resolution=12e3
     )
-    offshore = [one for one in found.choices if one.name.startswith("offshore")][0]
+    offshore = next(one for one in found.choices if one.name.startswith("offshore"))
     by_strait = [one for one in found.choices if one.name.startswith("inshore by the Naeroysund")]
     inshore = next(one for one in by_strait if "least motion sickness" in one.best_in)
     longer = inshore.route.distance_nm - found.choices[0].route.distance_nm
