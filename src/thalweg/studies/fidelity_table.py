@@ -44,12 +44,15 @@ def fidelity_table(rows: pd.DataFrame, networks: Sequence[Any]) -> pd.DataFrame:
         group = rows[rows["network"].astype(str) == str(name)]
         row: dict[str, Any] = {"network": str(name), "routes": len(group)}
         for column in dict.fromkeys((*columns, value)):
-            known = group[column].astype(float).dropna() if column in group else []
+            known = group[column].to_numpy(float) if column in group else np.empty(0)
+            known = known[np.isfinite(known)]
             row[column] = float(np.median(known)) if len(known) else None
         found.append(row)
     table = pd.DataFrame(found)
-    finest = table["segments"].astype(float).idxmax() if "segments" in table else len(table) - 1
-    best = table[value].iloc[finest]
-    table["gap_percent"] = 100.0 * (table[value].astype(float) / best - 1.0)
+    values = table[value].to_numpy(float)
+    finest = len(table) - 1
+    if "segments" in table:
+        finest = int(np.nanargmax(table["segments"].to_numpy(float)))
+    table["gap_percent"] = 100.0 * (values / values[finest] - 1.0)
     order = ["network", "routes", *(c for c in columns if c != "seconds"), "gap_percent"]
     return table[[*order, *(["seconds"] if "seconds" in columns else [])]]

@@ -18,7 +18,8 @@ from thalweg.core.file_writing import make_folder, write_csv_rows, write_text
 from thalweg.core.geodesy import distance
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, NAUTICAL_MILE
-from thalweg.planning.indicators.candidate_routes import berth_to_berth_candidates
+from thalweg.network.history.history_corridor import HistoryCorridor
+from thalweg.planning.indicators.candidate_routes import STOPPED, berth_to_berth_candidates
 from thalweg.planning.indicators.route_figures import (
     COMPARED_FIGURES,
     all_figures,
@@ -88,13 +89,17 @@ class AlternativePlans:
     voyage : The request.
     choices : 1 to 5 routes.
     slack_h : Time to the latest arrival of the voyage for each [h]; None without one.
-    notes : Which candidates were planned, and which could not.
+    notes : What was assumed, and which candidates could not be found.
+    ends : Names of start and goal.
+    cancelled : Whether Ctrl-C ended the search for candidates.
     """
 
     voyage: Voyage
     choices: tuple[RouteChoice, ...]
     slack_h: tuple[float | None, ...]
     notes: tuple[str, ...]
+    ends: tuple[str, str]
+    cancelled: bool = False
 
     def rows(self) -> list[dict[str, Any]]:
         """Return one row for each route.
@@ -171,7 +176,7 @@ def alternative_plans(
     ship: Ship,
     sea: Sea,
     chart: Chart | None = None,
-    network: str | NetworkBuilder = "auto",
+    network: str | NetworkBuilder | HistoryCorridor = "auto",
     resolution: float | None = None,
     progress: Callable[[str], None] | None = None,
     most: int = 5,
@@ -218,6 +223,7 @@ def alternative_plans(
     ship = with_order(with_voyage_prices(ship, voyage), voyage)
     if voyage.min_ukc_m is not None:
         ship = ship.with_clearance(voyage.min_ukc_m)
+    assert not isinstance(network, HistoryCorridor)  # refused above
     choice = NetworkChoice(network, resolution, voyage.layered)
     context, ends = voyage_context(
         _request(voyage, ship), ship, with_wind_speed(ship, sea), chart, choice
@@ -228,10 +234,19 @@ def alternative_plans(
     chosen = _chosen(kept, most)
     latest = context.latest_arrival
     slack = [(latest - one.arrive) / HOUR if math.isfinite(latest) else None for one in chosen]
-    return AlternativePlans(voyage, _named(chosen, context.chart), tuple(slack), tuple(notes))
+    return AlternativePlans(
+        voyage,
+        _named(chosen, context.chart),
+        tuple(slack),
+        tuple(notes),
+        (ends[0].name, ends[-1].name),
+        any(note.startswith(STOPPED) for note in notes),
+    )
 
 
-def _check_request(voyage: Voyage, sea: Sea, network: str | NetworkBuilder, most: int) -> None:
+def _check_request(
+    voyage: Voyage, sea: Sea, network: str | NetworkBuilder | HistoryCorridor, most: int
+) -> None:
     """Refuse what alternatives cannot be planned for."""
     if not 2 <= most <= 5:
         raise InputError(

@@ -56,6 +56,7 @@ from thalweg.planning.request.offing_choice import chart_off_land, chosen_offing
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route, Track
 
+STOPPED: Final = "Stopped"  #: first word of notes after Ctrl-C
 _OBJECTIVES: Final = ("fuel", "comfort", "encounters", "inshore", "distance")
 _WEIGHTED: Final = ("time", "fuel", "comfort", "encounters")
 _WIDER_OFFING: Final = 4.0 * NAUTICAL_MILE  # of the route that is searched farther off land
@@ -189,7 +190,7 @@ class _Candidates:
     def add(self, words: str, tracks: Iterator[Track]) -> None:
         """Score the tracks of one step; a step that is not possible leaves a note."""
         if self.stopped:
-            self.notes.append(f"Stopped before the routes {words} were searched.")
+            self.notes.append(f"{STOPPED} before the routes {words} were searched.")
             return
         self.context.report_progress(f"searching routes {words}")
         try:
@@ -198,7 +199,7 @@ class _Candidates:
         except (NoRouteError, InputError) as error:
             self.notes.append(f"No route {words}: {error.args[0]}")
         except SearchInterrupted:
-            self.notes.append(f"Stopped while the routes {words} were searched.")
+            self.notes.append(f"{STOPPED} while the routes {words} were searched.")
 
     def _scored(self, track: Track) -> Route:
         route = self.context.evaluate(track, self.terms)

@@ -100,7 +100,8 @@ def champions(values: Sequence[dict[str, float]]) -> dict[str, int]:
         equal = _EQUAL * max(float(np.abs(column).max()), 1e-12)
         if np.ptp(column) > equal:  # of equal ones the fastest
             near = np.flatnonzero(signed <= signed.min() + (equal if name != "time" else 0.0))
-            found[name] = int(min(near, key=lambda k: values[k]["time"]))
+            times = np.array([one["time"] for one in values])
+            found[name] = int(near[np.argmin(times[near])])
     return found
 
 
