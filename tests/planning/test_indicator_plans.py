@@ -239,10 +239,8 @@ def test_encounters_need_traffic_that_is_known_everywhere(ship):
 
 @pytest.mark.slow
 def test_alternatives_differ_and_each_is_best_in_something(ship, chart, tmp_path):
-    found = alternative_plans(
-        _voyage(arrive_by=DEPART + 8 * 3600.0),
-        partial(plan, ship=ship, sea=_sea(), chart=chart, proof=0.0),
-    )
+    given = {"ship": ship, "sea": _sea(), "chart": chart}
+    found = alternative_plans(_voyage(arrive_by=DEPART + 8 * 3600.0), **given)
     assert 2 <= len(found.choices) <= 5
     assert len({one.name for one in found.choices}) == len(found.choices)
     times = [one.route.time_h for one in found.choices]
@@ -257,7 +255,7 @@ def test_alternatives_differ_and_each_is_best_in_something(ship, chart, tmp_path
     assert {"alternatives.json", "alternative_1.rtz"} <= {path.name for path in files}
     assert json.loads((tmp_path / "alternatives.json").read_text())["alternatives"]
     with pytest.raises(InputError, match="2 to 5"):
-        alternative_plans(_voyage(), lambda voyage: None, most=1)
+        alternative_plans(_voyage(), **given, most=1)
 
 
 def test_champions_and_differences_in_words():

@@ -7,7 +7,11 @@ import pytest
 
 from thalweg.core.errors import InputError
 from thalweg.ship import Ship
-from thalweg.ship.comfort.dose_table import squared_dose_table
+from thalweg.ship.comfort.dose_table import (
+    sampled_conditions,
+    squared_dose_rates,
+    squared_dose_table,
+)
 from thalweg.ship.comfort.onboard_motions import onboard_motions, required_motions
 from thalweg.ship.conditions import Conditions
 
@@ -110,3 +114,17 @@ def test_the_table_of_the_dose_is_near_the_motions(gunnerus):
     heights = np.array([0.5, 1.0])
     low = table.lookup(where | {"wave_height": heights}, 0)
     assert low[1] / low[0] == pytest.approx(4.0, rel=0.1)  # nearly as the square of the height
+
+
+@pytest.mark.slow
+def test_the_table_of_squared_dose_is_near_direct_computation_at_random_conditions():
+    ship = Ship.load("gunnerus-2019")
+    table = squared_dose_table(ship)
+    where = sampled_conditions(600, 3)
+    truth = squared_dose_rates(ship, where)
+    found = table.parts[0].lookup_all(where)
+    known = np.isfinite(truth)  # waves too rough for a setting are refused by the table of speed
+    assert 0.3 < known.mean() < 0.9 and np.isfinite(found).all()
+    away = np.abs(np.sqrt(found) - np.sqrt(truth))[known]
+    assert away.max() < 0.05 and np.quantile(away, 0.9) < 0.02  # weighted acceleration [m/s2]
+    assert table.error.max < 0.12

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 
 import pandas as pd
 import pytest
@@ -15,7 +16,7 @@ from thalweg.core.errors import InputError
 from thalweg.planning import Voyage
 from thalweg.ship import Ship
 from thalweg.studies import Study, front_statistics, ready_studies, ready_study
-from thalweg.studies.annual_figures import annual_figures, checked_annual
+from thalweg.studies.annual_figures import annual_figures, checked_annual, share_of_voyage
 from thalweg.studies.study_summary import StudySummary
 
 
@@ -75,7 +76,50 @@ def test_a_year_of_voyages():
     assert row["cii_rating"] in "ABCDE"
 
 
-@pytest.mark.parametrize("given", [{"port": 1}, {"port_h": -1}, {"year": 1990}, 3])
+def test_european_charges_and_rating_of_a_ship_year_by_hand():
+    """Rates: Directive 2003/87/EC, 3ga, 3gb; Regulation (EU) 2023/1805, annexes II and IV B; MEPC.
+
+    40 voyages a year, half in scope, of 90 t of heavy fuel oil, CO2 factor 3.114 (MEPC.364(79)).
+    """
+    tonnes, share, trips = 90.0, 0.5, 8760.0 / 219.0
+    rows = pd.DataFrame(
+        {"ship": ["a"], "time_h": [200.0], "distance_nm": [2200.0], "fuel_t": [tonnes],
+         "fuel_eca_t": [0.0], "co2_t": [3.114 * tonnes], "eu_share": [share]}
+    )  # fmt: skip
+    ship = Ship.load("kvlcc2")
+    annual = checked_annual(
+        {"port_h": 19.0, "year": 2025, "allowance_price": 80, "euro_price": 1.1}
+    )
+    row = annual_figures(rows, ["ship"], {"a": ship}, annual).iloc[0]
+    # 40 voyages x 90 t x 3.114 x half in scope x 70 % in 2025 x 80 USD
+    assert row["eu_ets_cost"] == pytest.approx(trips * tonnes * 3.114 * 0.5 * 0.7 * 80.0)
+    # well to wake of HFO 91.744 g/MJ against 91.16 x 0.98; 40,500 MJ/t; 2400 EUR per 41,000 MJ
+    intensity = 13.5 + (3.114 + 25 * 0.00005 + 298 * 0.00018) / 0.0405
+    balance = (intensity - 91.16 * 0.98) * trips * tonnes * 40_500.0 * share
+    assert row["fueleu_penalty"] == pytest.approx(balance / (intensity * 41_000.0) * 2400.0 * 1.1)
+    # CII of a tanker: 5247 DWT^-0.610 (MEPC.353(78)), 9 % below in 2025 (MEPC.338(76))
+    deadweight = ship.file.hull.deadweight_t
+    attained = trips * tonnes * 3.114e6 / (deadweight * trips * 2200.0)
+    assert row["cii"] == pytest.approx(attained, rel=1e-6)
+    required = 0.91 * 5247.0 * deadweight**-0.610
+    assert row["cii_required"] == pytest.approx(required, rel=1e-6)
+    bounds = [required * d for d in (0.82, 0.93, 1.08, 1.28)]  # MEPC.354(78), Table 1
+    assert row["cii_rating"] == "ABCDE"[sum(attained > b for b in bounds)]
+    unknown = annual_figures(rows.assign(eu_share=float("nan")), ["ship"], {"a": ship}, annual)
+    assert unknown.iloc[0]["eu_ets_cost"] is None
+
+
+def test_the_share_in_scope_is_that_of_the_ports_or_given():
+    ports = {"start": "Rotterdam", "goal": "New York"}
+    assert share_of_voyage(ports, {}) == 0.5
+    assert share_of_voyage({**ports, "goal": "Lisbon"}, {}) == 1.0
+    assert share_of_voyage({"start": [50.0, -6.0], "goal": "Lisbon"}, {"eu_share": 100}) == 1.0
+    assert math.isnan(share_of_voyage({"start": [50.0, -6.0], "goal": "Lisbon"}, {}))
+
+
+@pytest.mark.parametrize(
+    "given", [{"port": 1}, {"port_h": -1}, {"year": 1990}, {"eu_share": 30}, 3]
+)
 def test_wrong_annual_entries(given):
     with pytest.raises(InputError, match="annual"):
         Study.from_dict({"voyage": {"start": "A", "goal": "B"}, "annual": given})

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thalweg.chart.coast.coastline import Coastline
 from thalweg.chart.offing import closing_line
@@ -81,19 +82,55 @@ def _is_near(passage: Passage, lat: FloatArray, lon: FloatArray) -> bool:
     return bool(((east >= turned.min() - wide) & (east <= turned.max() + wide)).any())
 
 
+def legs_through(
+    coastline: Coastline,
+    passages: Iterable[Passage],
+    legs: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
+) -> dict[str, NDArray[np.bool_]]:
+    """Return which short legs cross the line across each passage, by its name.
+
+    Parameters
+    ----------
+    coastline : The lines across passages end on its land.
+    legs : Latitudes and longitudes of the first and the second ends [deg], each (L,).
+
+    Returns
+    -------
+    dict of str to bool array (L,) : Only passages with such legs.
+    """
+    lat, lon, to_lat, to_lon = legs
+    found = {}
+    for passage in passages:
+        if _is_near(passage, lat, lon):
+            a, b = closing_line(coastline, passage)
+            crossed, _ = _pieces_across(np.array([lat, to_lat]), np.array([lon, to_lon]), a, b)
+            if crossed.any():
+                found[passage.name] = crossed[0]
+    return found
+
+
 def _crossing(lat: FloatArray, lon: FloatArray, a: Any, b: Any) -> float | None:
     """Return where a line crosses that from a to b [piece], or None; all pieces are short."""
+    crossed, share = _pieces_across(lat, lon, a, b)
+    hit = np.flatnonzero(crossed)
+    return None if not len(hit) else int(hit[0]) + float(share[hit[0]])
+
+
+def _pieces_across(
+    lat: FloatArray, lon: FloatArray, a: Any, b: Any
+) -> tuple[NDArray[np.bool_], FloatArray]:
+    """Return which pieces between positions along the first axis cross the line from a to b.
+
+    The second array has the share of each piece before the crossing.
+    """
     shift = np.cos(np.radians(a[0]))
     px, py = ((lon - a[1] + 180.0) % 360.0 - 180.0) * shift, lat - a[0]
     qx, qy = ((b[1] - a[1] + 180.0) % 360.0 - 180.0) * shift, b[0] - a[0]
     side = qx * py - qy * px  # on which side of a-b each position is
-    ex, ey = np.diff(px), np.diff(py)
+    ex, ey = np.diff(px, axis=0), np.diff(py, axis=0)
     start = ex * (0.0 - py[:-1]) - ey * (0.0 - px[:-1])
     end = ex * (qy - py[:-1]) - ey * (qx - px[:-1])
     near = np.hypot(px[:-1], py[:-1]) < 20.0
-    hit = np.flatnonzero((side[:-1] * side[1:] <= 0.0) & (start * end <= 0.0) & near)
-    if not len(hit):
-        return None
-    k = int(hit[0])
-    change = side[k] - side[k + 1]
-    return k + (float(side[k] / change) if change else 0.0)
+    change = side[:-1] - side[1:]
+    share = np.divide(side[:-1], change, out=np.zeros_like(change), where=change != 0.0)
+    return (side[:-1] * side[1:] <= 0.0) & (start * end <= 0.0) & near, share

@@ -120,6 +120,7 @@ def _summary(arguments: argparse.Namespace) -> int:
                 ("choices", summary.choices),
                 ("hours", summary.hours),
                 ("best_months", summary.best_months),
+                ("fidelity", summary.fidelity),
             )
         }
         print(json.dumps(parts, indent=2, allow_nan=False))
@@ -138,6 +139,8 @@ def _summary(arguments: argparse.Namespace) -> int:
         ratios = summary.fronts.groupby("method")["hypervolume_ratio"].median()
         for method, ratio in ratios.sort_values(ascending=False).items():
             print(f"median hypervolume ratio of {method}: {ratio:.4f}")
+    if not summary.fidelity.empty:
+        print(summary.fidelity.round(3).to_string(index=False, na_rep="-"))
     if not summary.annual.empty:
         print(summary.annual.round(2).to_string(index=False, na_rep="-"))
     for _, row in summary.refusals.head(5).iterrows():

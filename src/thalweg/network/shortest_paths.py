@@ -101,3 +101,10 @@ def shortest_path(
         arrays = network.graph.indptr, network.graph.target, weight
         static_astar(*arrays, bound, start, goal, tree.distance, tree.parent)
     return tree.distance, tree.path(goal)
+
+
+def reversed_graph(network: Network) -> tuple[Graph, IntArray]:
+    """Return the graph with all edges reversed, and the original index of each edge."""
+    edge = np.argsort(network.graph.target, kind="stable")
+    indptr = np.searchsorted(network.graph.target[edge], np.arange(network.n_nodes + 1))
+    return Graph(indptr.astype(np.int64), network.tails()[edge]), edge

@@ -94,7 +94,7 @@ class ApproachSailing:
         plots = plan.plot_context and _with_approach_lines(plan.plot_context, context)
         if self.outward is None and self.inward is None:
             return replace(plan, plot_context=plots)
-        routes = tuple(self._joined(route, context) for route in plan.routes)
+        routes = tuple(self.joined(route, context) for route in plan.routes)
         added = _difference(routes[0], plan, voyage, context)
         proof = Proof(
             plan.proof.certain + added[1],
@@ -136,7 +136,7 @@ class ApproachSailing:
         """Return the time of an approach [s]."""
         return 0.0 if approach is None else approach.length / self.speed
 
-    def _joined(self, route: Route, context: PlanningContext) -> Route:
+    def joined(self, route: Route, context: PlanningContext) -> Route:
         """Return a route with the approaches at its ends."""
         parts = [route]
         if self.outward is not None and self.outward.length > 1.0:
@@ -160,7 +160,7 @@ class ApproachSailing:
         """Return a front with the time [h] and value of the approaches added."""
         comparison = front.comparison
         if comparison is not None:
-            routes = tuple(self._joined(route, context) for route in comparison.routes)
+            routes = tuple(self.joined(route, context) for route in comparison.routes)
             values = np.asarray(comparison.values) + added[1]
             rows = tuple(
                 row

@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any, Final
 
 import numpy as np
 import pandas as pd
 
+from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError
+from thalweg.core.geodesy import parse_position
 from thalweg.ship import Ship
 from thalweg.ship.methods.carbon_intensity import REDUCTION_PERCENT
+from thalweg.ship.methods.engine.european_charges import (
+    WELL_TO_WAKE,
+    ets_phase_in,
+    fueleu_penalty,
+    voyage_share_between,
+)
 from thalweg.ship.performance_sheet import carbon_intensity_of
 
 _ENTRIES: Final = {
     "port_h": (0.0, 8760.0),
     "year": (min(REDUCTION_PERCENT), max(REDUCTION_PERCENT)),
+    "allowance_price": (0.0, 1e4),
+    "euro_price": (0.0, 1e3),
+    "eu_share": (0.0, 100.0),
 }
 _HOURS: Final = 8760.0
 
@@ -26,7 +38,9 @@ def checked_annual(given: Any) -> dict[str, float]:
     Parameters
     ----------
     given : mapping
-        ``port_h``: time in port after each voyage [h]; ``year`` of the carbon intensity rating.
+        ``port_h``: time in port after each voyage [h]; ``year`` of the carbon intensity rating and
+        of the charges; ``allowance_price`` of a tonne of CO2 and ``euro_price`` in the currency of
+        the costs; ``eu_share``, 0, 50 or 100 % of each voyage, by default that of its ports.
 
     Raises
     ------
@@ -36,7 +50,7 @@ def checked_annual(given: Any) -> dict[str, float]:
     if not isinstance(given, Mapping) or set(given) - set(_ENTRIES):
         raise InputError(
             f"annual is {given!r}.",
-            "It has port_h (hours in port after each voyage) and year (of the rating).",
+            f"It may have {', '.join(_ENTRIES)}.",
             "Correct it, for example {port_h: 48, year: 2026}.",
             field="annual",
         )
@@ -50,6 +64,13 @@ def checked_annual(given: Any) -> dict[str, float]:
                 "Correct it.",
                 field="annual",
             )
+    if given.get("eu_share", 0) not in (0, 50, 100):
+        raise InputError(
+            f"eu_share of annual is {given['eu_share']!r}.",
+            "It is 100 between ports of the European Union, 50 to or from one, else 0.",
+            "Correct it, or leave it out where both ends of the voyages are ports.",
+            field="annual",
+        )
     return {"port_h": 0.0, "year": 2026, **given}
 
 
@@ -75,7 +96,9 @@ def annual_figures(
         The axes; ``voyages_per_year`` (8760 h over the mean passage and the time in port);
         ``distance_nm``, ``fuel_t``, ``co2_t`` and ``cost_...`` of the year; ``cii`` (attained
         [g/(t nm)] or [g/(GT nm)]), ``cii_required`` and ``cii_rating``, None where the ship file
-        has no capacity or another type. Time and emissions in port are not counted.
+        has no capacity or another type; ``eu_ets_cost`` and ``fueleu_penalty`` by
+        `european_charges_of_year`, None where a price, the share or the fuel is not known. Time and
+        emissions in port are not counted.
     """
     found = []
     for key, group in rows.groupby(by, dropna=False) if by else [((), rows)]:
@@ -98,5 +121,91 @@ def annual_figures(
             "cii_required": rating and rating["required"],
             "cii_rating": rating and rating["rating"],
         }
-        found.append(row)
+        found.append(row | european_charges_of_year(group, trips, ship, annual))
     return pd.DataFrame(found)
+
+
+def european_charges_of_year(
+    group: pd.DataFrame, trips: float, ship: Ship | None, annual: Mapping[str, float]
+) -> dict[str, float | None]:
+    """Return the cost of emission allowances and the FuelEU penalty of a year.
+
+    Directive 2003/87/EC, articles 3ga and 3gb: CO2 times the share of the voyage in scope, the
+    phase-in of the year and the price of an allowance. Regulation (EU) 2023/1805, annex IV, part B:
+    the penalty of the fuels inside and outside emission control areas. Fuel in port is not counted.
+
+    Parameters
+    ----------
+    group : pandas.DataFrame
+        Rows of a study, with ``eu_share`` [fraction], NaN where it is not known.
+    trips : float
+        Voyages per year.
+    ship : Ship, optional
+        Her fuels are those burnt.
+    annual : mapping
+        Of `checked_annual`.
+
+    Returns
+    -------
+    dict
+        ``eu_ets_cost`` and ``fueleu_penalty`` [currency of the prices], None where not known.
+    """
+    none: dict[str, float | None] = {"eu_ets_cost": None, "fueleu_penalty": None}
+    year, share = int(annual["year"]), group.get("eu_share")
+    if share is None or share.isna().any():
+        return none
+    if "allowance_price" in annual and "co2_t" in group:
+        phase = ets_phase_in(year) * annual["allowance_price"]
+        none["eu_ets_cost"] = _known(trips * phase * float((share * group["co2_t"]).mean()))
+    if "euro_price" in annual and ship is not None and "fuel_eca_t" in group:
+        terms = ship.fuel_terms
+        outside = (share * (group["fuel_t"] - group["fuel_eca_t"])).mean()
+        burnt = (terms.outside, outside), (terms.inside, (share * group["fuel_eca_t"]).mean())
+        parts = [
+            _penalty(fuel.name if fuel else "", float(tonnes), year)
+            for fuel, tonnes in burnt
+            if tonnes != 0.0
+        ]
+        none["fueleu_penalty"] = _known(trips * annual["euro_price"] * sum(parts))
+    return none
+
+
+def share_of_voyage(voyage: Mapping[str, Any], annual: Mapping[str, float]) -> float:
+    """Return the share of a voyage in scope of the charges: given, or by its ports.
+
+    Parameters
+    ----------
+    voyage : mapping
+        With ``start`` and ``goal``.
+    annual : mapping
+        Of `checked_annual`.
+
+    Returns
+    -------
+    float
+        0, 0.5 or 1; NaN where it is not given and an end is not a port by name.
+    """
+    if "eu_share" in annual:
+        return annual["eu_share"] / 100.0
+    codes = []
+    for end in (voyage.get("start"), voyage.get("goal")):
+        if not isinstance(end, str) or parse_position(end) is not None:
+            return math.nan
+        try:
+            codes.append(PORTS.lookup(end).country_code)
+        except InputError:
+            return math.nan
+    return voyage_share_between(*codes)
+
+
+def _penalty(fuel: str, tonnes: float, year: int) -> float:
+    """Return the FuelEU penalty of a fuel [EUR]; NaN where its intensity is not known."""
+    known = WELL_TO_WAKE.get(fuel)
+    if known is None:
+        return math.nan
+    energy = 1000.0 * tonnes * known.heat
+    return float(fueleu_penalty(energy, intensity=known.intensity, year=year))
+
+
+def _known(value: float) -> float | None:
+    return value if math.isfinite(value) else None

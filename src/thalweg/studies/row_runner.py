@@ -128,7 +128,13 @@ def _figures(request: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         raise KeyboardInterrupt
     figures = _route_figures(answer.best)
     objective = answer.voyage.objective
-    figures |= {"objective": objective, "certified_gap": _certified_gap(answer)}
+    networks = answer.provenance.get("networks", [])
+    figures |= {
+        "objective": objective,
+        "certified_gap": _certified_gap(answer),
+        "nodes": sum(one["nodes"] for one in networks) or None,
+        "segments": sum(one["edges"] for one in networks) or None,
+    }
     if answer.front is not None:
         figures |= _savings(answer)
         figures["front"] = canonical_json(

@@ -67,8 +67,12 @@ def series_figures(
         )
     series, blind = _series_of(requests[0], inputs)
     times = [parse_time(depart) for depart in departs]
+    size = {
+        "nodes": sum(one.n_nodes for one in series.networks),
+        "segments": sum(one.n_edges for one in series.networks),
+    }
     found: list[dict[str, Any] | Exception] = [
-        one if isinstance(one, ThalwegError) else one | {"objective": "time"}
+        one if isinstance(one, ThalwegError) else one | {"objective": "time", **size}
         for one in series.figures(times)
     ]
     if blind is None:

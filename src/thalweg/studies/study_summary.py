@@ -14,7 +14,8 @@ from thalweg.core.errors import InputError
 from thalweg.core.file_writing import make_folder, write_csv_rows
 from thalweg.route.indicator_columns import INDICATORS
 from thalweg.ship import Ship
-from thalweg.studies.annual_figures import annual_figures
+from thalweg.studies.annual_figures import annual_figures, share_of_voyage
+from thalweg.studies.fidelity_table import fidelity_table
 from thalweg.studies.front_statistics import draw_front_statistics, front_statistics
 from thalweg.studies.row_runner import ship_of_request
 from thalweg.studies.season_plots import draw_heat_map, draw_months
@@ -65,6 +66,8 @@ class StudySummary:
         Medians by month and hour of the departure (`month_by_hour`).
     best_months : pandas.DataFrame
         The month with the least median of time, fuel and share of people sick, by the other axes.
+    fidelity : pandas.DataFrame
+        Networks against the finest (`fidelity_table`); empty without an axis ``network``.
     """
 
     table: pd.DataFrame
@@ -76,6 +79,7 @@ class StudySummary:
     choices: pd.DataFrame = field(default_factory=pd.DataFrame)
     hours: pd.DataFrame = field(default_factory=pd.DataFrame)
     best_months: pd.DataFrame = field(default_factory=pd.DataFrame)
+    fidelity: pd.DataFrame = field(default_factory=pd.DataFrame)
 
     def write(self, folder: str | Path) -> list[Path]:
         """Write ``summary.csv``, ``voyages.csv``, ``refusals.csv``, and what else there is.
@@ -96,7 +100,7 @@ class StudySummary:
         tables = {
             "summary": self.table, "voyages": self.voyages, "refusals": self.refusals,
             "fronts": self.fronts, "annual": self.annual, "choices": self.choices,
-            "hours": self.hours, "best_months": self.best_months,
+            "hours": self.hours, "best_months": self.best_months, "fidelity": self.fidelity,
         }  # fmt: skip
         for name, frame in tables.items():
             if frame.empty and name not in ("summary", "voyages", "refusals"):
@@ -218,6 +222,7 @@ def summarise_study(folder: str | Path) -> StudySummary:
         choices_by_axis(frame, usable, ways),
         month_by_hour(frame[usable], figures),
         _best_months(table, by),
+        fidelity_table(frame[usable], study.axes.get("network", ())),
     )
 
 
@@ -240,11 +245,14 @@ def _annual(study: Study, usable: pd.DataFrame, by: list[str]) -> pd.DataFrame:
     if not study.annual or usable.empty:
         return pd.DataFrame()
     ships: dict[Any, Ship] = {}
+    shares: dict[str, float] = {}
     for row in study.rows():
         label = row.labels.get("ship")
         if label not in ships:
             ships[label] = ship_of_request(row.request, str(study.folder))
-    return annual_figures(usable, by, ships, study.annual)
+        shares[row.id] = share_of_voyage(row.request.get("voyage", {}), study.annual)
+    rows = usable.assign(eu_share=usable["id"].map(shares).astype(float))
+    return annual_figures(rows, by, ships, study.annual)
 
 
 def _quantiles(name: str, values: np.ndarray) -> dict[str, float | None]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from thalweg.cli import option_values
@@ -58,10 +57,9 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         if arguments.front:
             return _run_front(arguments, voyage, given)
-        from thalweg.planning import alternative_plans, plan
+        from thalweg.planning import alternative_plans
 
-        planned = partial(plan, **given, proof=0.0)
-        found = alternative_plans(voyage, planned, most=arguments.most)
+        found = alternative_plans(voyage, **given, most=arguments.most)
     except KeyboardInterrupt:
         print("stopped before the routes were found: there is no result", file=sys.stderr)
         return INTERRUPTED

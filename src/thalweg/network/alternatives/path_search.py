@@ -24,8 +24,8 @@ from thalweg.network.alternatives.alternative_path import (
 )
 from thalweg.network.alternatives.homotopy import Obstacles, obstacles
 from thalweg.network.alternatives.path_shortening import total_cost
-from thalweg.network.network import Graph, Network
-from thalweg.network.shortest_paths import shortest_path_tree
+from thalweg.network.network import Network
+from thalweg.network.shortest_paths import reversed_graph, shortest_path_tree
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -222,13 +222,6 @@ def _no_path(network: Network) -> NoRouteError:
     )
 
 
-def _reversed_graph(network: Network) -> tuple[Graph, IntArray]:
-    """Return the graph with all edges reversed, and the original index of each edge."""
-    edge = np.argsort(network.graph.target, kind="stable")
-    indptr = np.searchsorted(network.graph.target[edge], np.arange(network.n_nodes + 1))
-    return Graph(indptr.astype(np.int64), network.tails()[edge]), edge
-
-
 def _best_of_each_class(
     network: Network, seen: Obstacles, edge_weights: EdgeWeights, order: int, stretch: float
 ) -> list[_PathClass]:
@@ -238,7 +231,7 @@ def _best_of_each_class(
     forward = network.graph, np.arange(network.n_edges)
     for root, (graph, edge) in (
         (network.meta.start, forward),
-        (network.meta.goal, _reversed_graph(network)),
+        (network.meta.goal, reversed_graph(network)),
     ):
         tree = shortest_path_tree(graph, weight[edge], root)
         sums = np.zeros((network.n_nodes, seen.crossings.shape[1]), np.int16)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,12 +11,15 @@ from typing import Any, Final
 
 import numpy as np
 
+from thalweg.chart import Chart
 from thalweg.chart.passage_crossings import names_passed
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.file_writing import make_folder, write_csv_rows, write_text
 from thalweg.core.geodesy import distance
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, NAUTICAL_MILE
+from thalweg.network.history.history_corridor import HistoryCorridor
+from thalweg.planning.indicators.candidate_routes import STOPPED, berth_to_berth_candidates
 from thalweg.planning.indicators.route_figures import (
     COMPARED_FIGURES,
     all_figures,
@@ -23,16 +27,23 @@ from thalweg.planning.indicators.route_figures import (
     compared_values,
     difference_in_words,
 )
-from thalweg.planning.passage_alternatives import passage_alternatives
-from thalweg.planning.plan import Plan
+from thalweg.planning.pareto.limited_plan import IndicatorLimit
+from thalweg.planning.planner import voyage_context
+from thalweg.planning.request.coverage_check import check_argument_types
+from thalweg.planning.request.network_choice import (
+    NetworkBuilder,
+    NetworkChoice,
+    history_corridor,
+)
+from thalweg.planning.request.ordered_speed import with_order
+from thalweg.planning.request.voyage_objective import priced_objective, with_voyage_prices
 from thalweg.planning.voyage import Voyage
-from thalweg.route import Route, RouteFileOptions, write_route_files
+from thalweg.route import Route, RouteFileOptions, with_wind_speed, write_route_files
 from thalweg.route.indicator_columns import indicator_value
+from thalweg.sea import Sea
+from thalweg.ship import Ship
 
 _INSHORE, _OFFSHORE = 50.0, 15.0  # share of the length near land above and below which [%]
-_OBJECTIVES: Final = ("time", "fuel", "comfort", "encounters", "inshore", "distance")
-_PASSAGE_WAYS: Final = 3  # other ways round passages that are planned
-_WIDER_OFFING: Final = 4.0  # nm, of the route that is sought farther off land
 _SAMPLES: Final = 60
 _APART: Final = 0.02  # of the length: routes this far apart somewhere differ ...
 _LEAST_APART: Final = 1.0 * NAUTICAL_MILE  # ... but not below this [m]
@@ -78,13 +89,17 @@ class AlternativePlans:
     voyage : The request.
     choices : 1 to 5 routes.
     slack_h : Time to the latest arrival of the voyage for each [h]; None without one.
-    notes : Which candidates were planned, and which could not.
+    notes : What was assumed, and which candidates could not be found.
+    ends : Names of start and goal.
+    cancelled : Whether Ctrl-C ended the search for candidates.
     """
 
     voyage: Voyage
     choices: tuple[RouteChoice, ...]
     slack_h: tuple[float | None, ...]
     notes: tuple[str, ...]
+    ends: tuple[str, str]
+    cancelled: bool = False
 
     def rows(self) -> list[dict[str, Any]]:
         """Return one row for each route.
@@ -156,7 +171,15 @@ class AlternativePlans:
 
 
 def alternative_plans(
-    voyage: Voyage, plan_one: Callable[[Voyage], Plan], *, most: int = 5
+    voyage: Voyage,
+    *,
+    ship: Ship,
+    sea: Sea,
+    chart: Chart | None = None,
+    network: str | NetworkBuilder | HistoryCorridor = "auto",
+    resolution: float | None = None,
+    progress: Callable[[str], None] | None = None,
+    most: int = 5,
 ) -> AlternativePlans:
     """Plan a voyage for several objectives and by several ways, and choose routes that differ.
 
@@ -164,8 +187,8 @@ def alternative_plans(
     ----------
     voyage : Voyage
         The request; its objective is not used.
-    plan_one : callable
-        Plans a voyage, such as ``functools.partial(plan, ship=ship, sea=sea)``.
+    ship, sea, chart, network, resolution, progress
+        As for `plan`.
     most : int
         Greatest number of routes, 2 to 5.
 
@@ -176,18 +199,55 @@ def alternative_plans(
     Raises
     ------
     InputError
-        If ``most`` is out of range.
+        If ``most`` is out of range, for an ensemble forecast, a network of historic routes, or an
+        arrival without a departure; and as `plan`.
+    CoverageError
+        As `plan`.
     NoRouteError
-        If the voyage has no route at all.
+        If the voyage has no route at all, or none within its limits.
 
     Notes
     -----
-    Candidates are the best routes by time, fuel, comfort, encounters, length near land and
-    distance, as far as they are known for this ship and chart, those of a weighted sum of all,
-    those round the passages of the fastest one, and those farther off land. Chosen are the best
-    in one figure after the other (`thalweg.planning.indicators.route_figures`) that differ from
-    those chosen before, in water or in time.
+    Candidates are the fastest route, refined in open water; the best of the network in fuel,
+    comfort, encounters, length near land and distance, as far as they are known for this ship and
+    chart, the knees of their fronts with time, and the best by a weighted sum; and at the speed of
+    the fastest route the shortest ways round islands, by and round named passages and farther off
+    land, pulled taut. All share one network and one sea for each set of open canals. Chosen are the
+    best in one figure after the other (`thalweg.planning.indicators.route_figures`) that differ
+    from those chosen before, in water or in time.
     """
+    chart = Chart.gshhg("i") if chart is None else chart
+    check_argument_types(voyage, ship, sea, chart)
+    _check_request(voyage, sea, network, most)
+    limits = IndicatorLimit.of_voyage(voyage)
+    ship = with_order(with_voyage_prices(ship, voyage), voyage)
+    if voyage.min_ukc_m is not None:
+        ship = ship.with_clearance(voyage.min_ukc_m)
+    assert not isinstance(network, HistoryCorridor)  # refused above
+    choice = NetworkChoice(network, resolution, voyage.layered)
+    context, ends = voyage_context(
+        _request(voyage, ship), ship, with_wind_speed(ship, sea), chart, choice
+    )
+    context = replace(context, report_progress=progress or context.report_progress)
+    routes, notes = berth_to_berth_candidates(context, ends)
+    kept = _kept(routes, limits)
+    chosen = _chosen(kept, most)
+    latest = context.latest_arrival
+    slack = [(latest - one.arrive) / HOUR if math.isfinite(latest) else None for one in chosen]
+    return AlternativePlans(
+        voyage,
+        _named(chosen, context.chart),
+        tuple(slack),
+        tuple(notes),
+        (ends[0].name, ends[-1].name),
+        any(note.startswith(STOPPED) for note in notes),
+    )
+
+
+def _check_request(
+    voyage: Voyage, sea: Sea, network: str | NetworkBuilder | HistoryCorridor, most: int
+) -> None:
+    """Refuse what alternatives cannot be planned for."""
     if not 2 <= most <= 5:
         raise InputError(
             f"{most} alternatives were requested.",
@@ -195,67 +255,67 @@ def alternative_plans(
             "Give such a number.",
             field="most",
         )
-    plain = replace(voyage, objective="time", weights={})
-    fastest = plan_one(plain)
-    plans, notes = [fastest], []
-    for words, request in _requests(plain, fastest):
-        try:
-            plans.append(plan_one(request))
-        except NoRouteError as error:
-            notes.append(f"No route {words}: {error.args[0]}")
-        except InputError as error:
-            if words not in _OPTIONAL:
-                raise
-            notes.append(f"No route {words}: {error.args[0]}")
-    routes = [route for plan in plans for route in _candidates(plan) if route.feasible]
-    chosen = _chosen(routes or [fastest.best], most)
-    latest = voyage.arrive_by
-    slack = [
-        None if latest is None else (float(latest) - route.arrive) / HOUR  # type: ignore[arg-type]
-        for route in chosen
-    ]
-    return AlternativePlans(voyage, _named(chosen, fastest), tuple(slack), tuple(notes))
+    if sea.members or voyage.ensemble is not None:
+        raise InputError(
+            "Alternatives were requested in an ensemble forecast.",
+            "Their key figures are compared in one forecast.",
+            "Give one member of it.",
+            field="sea",
+        )
+    if voyage.arrive is not None and voyage.departure_is_open:
+        raise InputError(
+            "Alternatives were requested for an arrival without a departure.",
+            "They depart at one time and arrive at different ones.",
+            "Give the departure, and the arrival as the latest one.",
+            field="arrive",
+        )
+    if history_corridor(network) is not None:
+        raise InputError(
+            "Alternatives were requested in the water that ships usually use.",
+            "They are ways that differ, on a network of their own.",
+            "Leave the network out; 'thalweg history compare' compares the usual route with the "
+            "best.",
+            field="network",
+        )
 
 
-_OPTIONAL: Final = frozenset(
-    {*(f"of least {name}" for name in _OBJECTIVES), "of a weighted sum", "farther off land"}
-)
+def _request(voyage: Voyage, ship: Ship) -> Voyage:
+    """Return the voyage with an objective of which all settings of the ship are searched."""
+    by = voyage.arrive if voyage.arrive_by is None else voyage.arrive_by
+    request = replace(
+        voyage,
+        objective="weighted",
+        weights={"time": 1.0, "fuel": 1.0},
+        at_most={},
+        at_least={},
+        arrive=None,
+        arrive_by=by,
+    )
+    try:
+        priced_objective(request, ship)
+    except InputError:  # her fuel is not known
+        return replace(request, weights={"time": 1.0})
+    return request
 
 
-def _requests(plain: Voyage, fastest: Plan) -> list[tuple[str, Voyage]]:
-    """Return the voyages that are planned besides that of least time, with words for each."""
-    best = fastest.best
-    known = [
-        name
-        for name in _OBJECTIVES[1:]
-        if np.isfinite(indicator_value(best, "inshore_nm" if name == "inshore" else name))
-    ]
-    found = [(f"of least {name}", replace(plain, objective=name)) for name in known]  # type: ignore[arg-type]
-    mixed = [name for name in ("time", "fuel", "comfort", "encounters") if name in (*known, "time")]
-    if len(mixed) > 1:
-        weights: dict[str, float] = {name: 1.0 for name in mixed}
-        found.append(("of a weighted sum", replace(plain, objective="weighted", weights=weights)))
-    wider = max(_WIDER_OFFING, 2.0 * (plain.offing_nm or 0.0))
-    if plain.offing_nm is None or plain.offing_nm < _WIDER_OFFING:
-        found.append(("farther off land", replace(plain, offing_nm=wider)))
-    for way in passage_alternatives(fastest)[: _PASSAGE_WAYS + 1]:
-        if way.without:
-            names = tuple(dict.fromkeys((*plain.avoid, *way.without)))
-            found.append((f"without {', '.join(way.without)}", replace(plain, avoid=names)))
-    return found
+def _kept(routes: list[Route], limits: Sequence[IndicatorLimit]) -> list[Route]:
+    """Return the routes that keep limits of the voyage.
 
-
-def _candidates(plan: Plan) -> list[Route]:
-    """Return the routes that may be chosen: the best, and the ends and knee of a front."""
-    from thalweg.planning.plan_front import knee
-
-    if plan.front is None or len(plan.routes) < 3:
-        return list(plan.routes)
-    order = np.argsort([route.time_h for route in plan.routes])
-    times = np.array([plan.routes[k].time_h for k in order])
-    middle = int(order[knee(times, np.asarray(plan.front.values)[order])])
-    picked = dict.fromkeys([0, int(order[0]), middle, int(order[-1])])
-    return [plan.routes[k] for k in picked]
+    Raises
+    ------
+    NoRouteError : If none does, with the limit that is broken by all or most.
+    """
+    kept = [route for route in routes if not any(one.excess(route) for one in limits)]
+    if kept:
+        return kept
+    nearest = min(routes, key=lambda route: sum(one.excess(route) > 0.0 for one in limits))
+    broken = ", ".join(one.text(nearest) for one in limits if one.excess(nearest) > 0.0)
+    raise NoRouteError(
+        f"None of {len(routes)} routes keeps the limits of the voyage.",
+        f"The nearest breaks: {broken}.",
+        "Relax the limits.",
+        reasons={},
+    )
 
 
 def _chosen(routes: Sequence[Route], most: int) -> list[Route]:
@@ -299,11 +359,11 @@ def _differ(one: tuple[FloatArray, FloatArray], other: tuple[FloatArray, FloatAr
     return float(away.min(axis=1).max()) - grid > max(_APART * length, _LEAST_APART)
 
 
-def _named(chosen: Sequence[Route], fastest: Plan) -> tuple[RouteChoice, ...]:
+def _named(chosen: Sequence[Route], chart: Chart) -> tuple[RouteChoice, ...]:
     """Return the chosen routes with names, what each is best in, and differences in words."""
     values = [compared_values(route) for route in chosen]
     best = champions(values)
-    passes = [_passes(route, fastest) for route in chosen]
+    passes = [_passes(route, chart) for route in chosen]
     common = set.intersection(*(set(names) for names in passes))
     labels = [
         _label(route, [name for name in names if name not in common])
@@ -320,10 +380,7 @@ def _named(chosen: Sequence[Route], fastest: Plan) -> tuple[RouteChoice, ...]:
     return tuple(found)
 
 
-def _passes(route: Route, plan: Plan) -> tuple[str, ...]:
-    chart = plan.plot_context.chart if plan.plot_context is not None else None
-    if chart is None or not hasattr(chart, "passages"):
-        return ()
+def _passes(route: Route, chart: Chart) -> tuple[str, ...]:
     track = route.track
     lat, lon = np.asarray(track.lat, float), np.asarray(track.lon, float)
     return names_passed(chart.coastline, chart.passages, lat, lon)

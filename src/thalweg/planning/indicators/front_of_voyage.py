@@ -65,6 +65,8 @@ def indicator_front(
     at_sea = replace(context, chart=replace(context.chart, approaches=None))
 
     def search(off_land: PlanningContext) -> IndicatorFront:
-        return with_trade_off(off_land, ends, lambda own, net: search_indicator_front(own, net, of))
+        return with_trade_off(
+            off_land, ends, lambda own, found: search_indicator_front(own, found[0].network, of)
+        )
 
     return plan_off_land(at_sea, ends, chosen_offing(request, ship), search)

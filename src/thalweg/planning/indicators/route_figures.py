@@ -48,7 +48,7 @@ COMPARED_FIGURES: Final = {
 _OF_PLACES: Final = (
     "comfort", "sick_percent", "worst_hour_percent", "max_acceleration", "uncomfortable_percent"
 )  # fmt: skip
-_EQUAL: Final = 5e-3  # figures that differ by less than this share are the same
+_EQUAL: Final = 1e-2  # figures that differ by less than this share are the same
 _WORTH_WORDS: Final = 0.03  # smaller differences are not put into words ...
 _WORTH_WORDS_OF_TIME: Final = 0.005  # ... but those of time are
 _IN_WORDS: Final = ("time", "sick_percent", "fuel", "encounters", "distance")
@@ -97,9 +97,11 @@ def champions(values: Sequence[dict[str, float]]) -> dict[str, int]:
         if not np.isfinite(column).all():
             continue
         signed = column if figure.best == "least" else -column
-        spread = float(np.ptp(column))
-        if spread > _EQUAL * max(float(np.abs(column).max()), 1e-12):
-            found[name] = int(np.argmin(signed))
+        equal = _EQUAL * max(float(np.abs(column).max()), 1e-12)
+        if np.ptp(column) > equal:  # of equal ones the fastest
+            near = np.flatnonzero(signed <= signed.min() + (equal if name != "time" else 0.0))
+            times = np.array([one["time"] for one in values])
+            found[name] = int(near[np.argmin(times[near])])
     return found
 
 
@@ -120,7 +122,8 @@ def difference_in_words(values: dict[str, float], reference: dict[str, float]) -
         elif name == "distance":
             words.append(f"{sign}{abs(change):.0f} nm")
         elif name == "sick_percent":
-            words.append(f"{own:.0f} % sick instead of {other:.0f} %")
+            digits = 0 if abs(change) >= 1.0 else 1
+            words.append(f"{own:.{digits}f} % sick instead of {other:.{digits}f} %")
         elif name == "encounters":
             words.append(f"{own:.1f} encounters instead of {other:.1f}")
         else:

@@ -47,25 +47,12 @@ def explore_alternative(
 ) -> ExploredAlternative:
     """Search the fastest route and the exact front of one route alternative.
 
-    Where the referee meets water without data on the fastest route, the edges that cross it are
-    left out and the fastest route is searched again.
-
     Raises
     ------
     NoRouteError : If no route arrives in time; with the earliest arrival if there is a route.
     """
     context = trade_off.context
-    horizon, fastest = _fastest_route(trade_off, alternative)
-    new = gaps = data_gaps_on_route(fastest)
-    while new and len(gaps) <= MAX_GAPS:
-        alternative = without_unknown_water(context, alternative, new)
-        try:
-            horizon, fastest = _fastest_route(trade_off, alternative)
-        except NoRouteError:
-            check_times_known(fastest, trade_off.ends[0], trade_off.ends[-1])
-            raise
-        new = data_gaps_on_route(fastest)
-        gaps += new
+    alternative, horizon, fastest = fastest_in_known_water(trade_off, alternative)
     frozen, first, latest = horizon.frozen, horizon.first, horizon.latest
     trade_off.interrupt_guard.begin()
     context.report_progress(f"searching the front: {alternative.name}")
@@ -85,6 +72,32 @@ def explore_alternative(
         arrival,
         _largest_direction_factor(trade_off, alternative, frozen),
     )
+
+
+def fastest_in_known_water(
+    trade_off: TradeOffContext, alternative: RouteAlternative
+) -> tuple[RouteAlternative, SearchHorizon, Route]:
+    """Return the fastest route of an alternative, refined, and the alternative it is found on.
+
+    Where the referee meets water without data on it, the edges that cross this water are left out.
+
+    Raises
+    ------
+    NoRouteError : If no route arrives in time; with the earliest arrival if there is a route.
+    """
+    context = trade_off.context
+    horizon, fastest = _fastest_route(trade_off, alternative)
+    new = gaps = data_gaps_on_route(fastest)
+    while new and len(gaps) <= MAX_GAPS:
+        alternative = without_unknown_water(context, alternative, new)
+        try:
+            horizon, fastest = _fastest_route(trade_off, alternative)
+        except NoRouteError:
+            check_times_known(fastest, trade_off.ends[0], trade_off.ends[-1])
+            raise
+        new = data_gaps_on_route(fastest)
+        gaps += new
+    return alternative, horizon, fastest
 
 
 def without_unknown_water(

@@ -19,7 +19,6 @@ from thalweg.core.pareto_fronts import (
     non_dominated_indices,
 )
 from thalweg.core.units import HOUR
-from thalweg.network import Network
 from thalweg.planning.network_selection.route_alternatives import (
     RouteAlternative,
     find_route_alternatives,
@@ -94,12 +93,12 @@ def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
 def with_trade_off(
     context: PlanningContext,
     ends: list[Endpoint],
-    search: Callable[[TradeOffContext, Network], Result],
+    search: Callable[[TradeOffContext, list[RouteAlternative]], Result],
 ) -> Result:
-    """Return what a search finds on the network of the shortest route alternative."""
+    """Return what a search finds on the networks of the route alternatives, the shortest first."""
     with InterruptGuard() as interrupt_guard:
         trade_off = _trade_off_context(context, ends, interrupt_guard)
-        return search(trade_off, find_route_alternatives(context, ends)[0].network)
+        return search(trade_off, find_route_alternatives(context, ends))
 
 
 def _trade_off_context(

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from thalweg.core.types import FloatArray
+from thalweg.core.units import GRAVITY
 from thalweg.kernels import codes
 from thalweg.ship.comfort.onboard_motions import OnboardMotions, required_motions
 from thalweg.ship.tables.performance_table import PerformanceTable
@@ -20,14 +23,16 @@ if TYPE_CHECKING:
 
 _HIGHEST: Final = 24.0  # significant wave height of the table [m]
 _LEAST_HEIGHT: Final = 0.05  # stands for a flat sea, where the rate over the squared height is 0/0
-_GRID_SIZES: Final = {"wave_height": 25, "wave_angle": 19, "wave_period": 31}
+_GRID_SIZES: Final = {"wave_height": 25, "wave_angle": 19, "wave_period": 61}
 _AXES: Final = (codes.AXIS_WAVE_HEIGHT, codes.AXIS_WAVE_ANGLE, codes.AXIS_WAVE_PERIOD)
 _SAMPLES: Final = 500
 _SAMPLED_HEIGHTS: Final = (0.2, 8.0)
 _SAMPLED_PERIODS: Final = (3.0, 20.0)
+_STEEPEST: Final = 0.1  # significant height over the length of the peak waves
 _STILL: Final = {"wind_speed": 0.0, "wind_angle": 0.0, "depth": 1e4}
 
 
+@lru_cache(maxsize=8)
 def squared_dose_table(ship: Ship) -> PerformanceTable:
     r"""Tabulate the squared weighted acceleration at the first place of a ship.
 
@@ -43,39 +48,79 @@ def squared_dose_table(ship: Ship) -> PerformanceTable:
     Returns
     -------
     PerformanceTable : [m2/s4] by wave height, angle and period, for every setting. Its error is
-        measured at random conditions between 0.2 and 8 m and 3 and 20 s.
+        measured at random conditions (`sampled_conditions`).
 
     Raises
     ------
     InputError : If the ship has no places, or not the particulars for her motions.
     """
-    own = required_motions(ship)
-    own = replace(own, places={own.first_place: own.places[own.first_place]}, tasks={})
+    own = _first_place(ship)
     ends = ((0.0, _HIGHEST), (0.0, math.pi), (0.0, 30.0))
     grids = [np.linspace(*end, size) for end, size in zip(ends, _GRID_SIZES.values())]
     height, angle, period = np.meshgrid(*grids, indexing="ij", sparse=True)
-    height = np.maximum(height, _LEAST_HEIGHT)
-    values = _rates(ship, own, height, angle, period) / (height**2)[..., None]
+    where = {"wave_height": np.maximum(height, _LEAST_HEIGHT), "wave_angle": angle}
+    where["wave_period"] = period
+    speed = _speed_in_waves(ship, where)
+    for k in range(1, len(speed)):  # too rough for a setting: go on smoothly, without a step
+        speed[k] = np.where(np.isfinite(speed[k]), speed[k], speed[k - 1])
+    speed = np.where(np.isfinite(speed), speed, np.asarray(ship.speeds, float))
+    values = _rates(own, speed, where) / (where["wave_height"] ** 2)[..., None]
     part = TablePart(_AXES, tuple(grids), values.astype(np.float32), _HIGHEST)
-    draw = np.random.default_rng(0)
-    where = {
-        "wave_height": draw.uniform(*_SAMPLED_HEIGHTS, _SAMPLES),
-        "wave_angle": draw.uniform(0.0, math.pi, _SAMPLES),
-        "wave_period": draw.uniform(*_SAMPLED_PERIODS, _SAMPLES),
-    }
-    error = table_error(part.lookup_all(where), _rates(ship, own, *where.values()))
-    return PerformanceTable((part,), ship.speeds, ship.fingerprint(), error)
+    samples = sampled_conditions(_SAMPLES, 0)
+    truth = squared_dose_rates(ship, samples)
+    found = np.where(np.isfinite(truth), part.lookup_all(samples), np.nan)
+    return PerformanceTable((part,), ship.speeds, ship.fingerprint(), table_error(found, truth))
 
 
-def _rates(
-    ship: Ship, own: OnboardMotions, height: FloatArray, angle: FloatArray, period: FloatArray
-) -> FloatArray:
-    """Return the squared weighted acceleration [m2/s4] of every setting, on the last axis."""
-    height, angle, period = (x[..., None] for x in (height, angle, period))
-    given = {"wave_height": height, "wave_angle": angle, "wave_period": np.maximum(period, 2.0)}
+def sampled_conditions(count: int, seed: int) -> dict[str, FloatArray]:
+    """Return random wave heights [m], angles [rad] and peak periods [s] of possible seas.
+
+    Waves are at most a tenth as high as long: h <= 0.1 g T^2 / (2 pi).
+
+    Parameters
+    ----------
+    count : Draws before those too steep are left out.
+    """
+    draw = np.random.default_rng(seed)
+    height = draw.uniform(*_SAMPLED_HEIGHTS, count)
+    angle, period = draw.uniform(0.0, math.pi, count), draw.uniform(*_SAMPLED_PERIODS, count)
+    possible = height <= _STEEPEST * GRAVITY * period**2 / (2.0 * math.pi)
+    found = {"wave_height": height, "wave_angle": angle, "wave_period": period}
+    return {name: values[possible] for name, values in found.items()}
+
+
+def squared_dose_rates(ship: Ship, where: Mapping[str, FloatArray]) -> FloatArray:
+    """Return the squared weighted acceleration at the first place, computed directly.
+
+    Parameters
+    ----------
+    where : Wave height [m], angle [rad] and peak period [s].
+
+    Returns
+    -------
+    float64 array (..., settings) : [m2/s4]; NaN where waves are too rough for a setting.
+    """
+    return _rates(_first_place(ship), _speed_in_waves(ship, where), where)
+
+
+def _first_place(ship: Ship) -> OnboardMotions:
+    own = required_motions(ship)
+    return replace(own, places={own.first_place: own.places[own.first_place]}, tasks={})
+
+
+def _speed_in_waves(ship: Ship, where: Mapping[str, FloatArray]) -> FloatArray:
+    """Return the speed of every setting [m/s]; NaN where waves are too rough for it."""
     speed = np.asarray(ship.speeds, float)
-    if ship.speed_field is None:
-        found = ship.tabulate().lookup({**_STILL, **given}, np.arange(len(speed)))
-        speed = np.where(np.isfinite(found), found, speed)  # too rough: the speed table refuses
-    state = own.at(speed, wave_angle=angle, wave_height=height, wave_period=period)
+    given = {name: values[..., None] for name, values in where.items()}
+    shape = np.broadcast_shapes(*(values.shape for values in given.values()), speed.shape)
+    if ship.speed_field is not None:
+        return np.broadcast_to(speed, shape).copy()
+    given["wave_period"] = np.maximum(given["wave_period"], 2.0)
+    found = ship.tabulate().lookup({**_STILL, **given}, np.arange(len(speed)))
+    return np.broadcast_to(found, shape).copy()
+
+
+def _rates(own: OnboardMotions, speed: FloatArray, where: Mapping[str, FloatArray]) -> FloatArray:
+    """Return the squared weighted acceleration [m2/s4] of every setting, on the last axis."""
+    state = own.at(speed, **{name: values[..., None] for name, values in where.items()})
     return np.asarray(state.places[own.first_place].weighted ** 2)

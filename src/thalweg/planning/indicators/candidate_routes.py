@@ -1,0 +1,379 @@
+"""Candidates for alternatives of a voyage, all on the networks and the frozen sea of one trade-off.
+
+The key figures are minimised on one network in the weather. Ways round islands, by and round named
+passages and farther off land are its shortest paths, pulled taut, at the fastest route's speed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from operator import itemgetter
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.chart import Chart
+from thalweg.chart.passage_crossings import legs_through, names_passed
+from thalweg.chart.passages import Passage
+from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.geodesy import distance
+from thalweg.core.interrupt import SearchInterrupted
+from thalweg.core.limits import NETWORK_STEPS, TIGHTENING
+from thalweg.core.objective import Objective
+from thalweg.core.types import FloatArray
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.network import Network, alternative_paths
+from thalweg.network.alternatives.path_shortening import string_pull_path
+from thalweg.network.assembly import allowed_legs
+from thalweg.network.shortest_paths import (
+    ShortestPathTree,
+    reversed_graph,
+    shortest_path_tree,
+)
+from thalweg.planning.approach_sailing import (
+    ApproachSailing,
+    plan_along_approaches,
+    shared_line,
+)
+from thalweg.planning.network_selection.route_alternatives import RouteAlternative
+from thalweg.planning.offing_attempts import plan_off_land
+from thalweg.planning.pareto.exploration import fastest_in_known_water, network_pareto_front
+from thalweg.planning.pareto.front_points import track_from_front_point
+from thalweg.planning.pareto.search_horizon import extend_horizon
+from thalweg.planning.pareto.trade_off_context import TradeOffContext
+from thalweg.planning.pareto.trade_off_planner import with_trade_off
+from thalweg.planning.pareto.weighted_sums import (
+    KeyFigureRange,
+    key_figure,
+    normalised_objective,
+    with_objective,
+)
+from thalweg.planning.plan_front import knee
+from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.request.offing_choice import chart_off_land, chosen_offing
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.route import Route, Track
+
+STOPPED: Final = "Stopped"  #: first word of notes after Ctrl-C
+_OBJECTIVES: Final = ("fuel", "comfort", "encounters", "inshore", "distance")
+_WEIGHTED: Final = ("time", "fuel", "comfort", "encounters")
+_WIDER_OFFING: Final = 4.0 * NAUTICAL_MILE  # of the route that is searched farther off land
+_DETOUR: Final = 0.35  # ways that are longer by this share of the shortest are left out
+_REACH: Final = 12.0 * NAUTICAL_MILE  # from nodes to the ends of the line of a passage
+_ISLAND_WAYS, _PASSAGE_WAYS = 3, 5
+_ROUNDS: Final = 3  # of string pulling
+
+
+def berth_to_berth_candidates(
+    context: PlanningContext, ends: list[Endpoint]
+) -> tuple[list[Route], list[str]]:
+    """Return candidates with the approaches of ports, and notes."""
+    line = shared_line(context, ends)
+    if line is not None:
+        found = plan_along_approaches(context, ends, line)
+        return list(found.routes), list(found.notes)
+    sailing = ApproachSailing.of_voyage(context, ends)
+    at_sea = replace(
+        context,
+        voyage=sailing.voyage_at_sea(context.voyage),
+        chart=replace(context.chart, approaches=None),
+    )
+    offing = chosen_offing(context.voyage, context.ship)
+
+    def search(off_land: PlanningContext) -> tuple[list[Route], list[str]]:
+        return with_trade_off(off_land, ends, _feasible_candidates)
+
+    routes, notes = plan_off_land(at_sea, ends, offing, search)
+    return [sailing.joined(route, context) for route in routes], [*sailing.notes(context), *notes]
+
+
+def _feasible_candidates(
+    trade_off: TradeOffContext, alternatives: list[RouteAlternative]
+) -> tuple[list[Route], list[str]]:
+    """Return the candidates that keep the limits, searched with limits as tight as that takes."""
+    for step in NETWORK_STEPS:
+        own = replace(trade_off, limits=trade_off.context.needs.limits.tightened(TIGHTENING[step]))
+        routes, notes = candidate_routes(own, alternatives)
+        latest = trade_off.context.latest_arrival
+        kept = [route for route in routes if route.feasible and route.arrive <= latest + 1.0]
+        if kept or trade_off.interrupt_guard.stopped():
+            break
+    return kept or routes[:1], list(dict.fromkeys((*trade_off.context.needs.notes, *notes)))
+
+
+def candidate_routes(
+    trade_off: TradeOffContext, alternatives: list[RouteAlternative]
+) -> tuple[list[Route], list[str]]:
+    """Return routes among which the alternatives of a voyage are, and notes.
+
+    Parameters
+    ----------
+    trade_off : With all settings of the ship; its own objective is not used.
+    alternatives : By canals, the shortest first.
+
+    Returns
+    -------
+    routes : Scored by the referee, the fastest of the shortest alternative first; some may break
+        limits.
+    notes : Which candidates could not be found.
+
+    Raises
+    ------
+    NoRouteError : If no route arrives in time.
+    """
+    search = _Candidates(trade_off)
+    first = search.fastest(alternatives[0])
+    steps: list[tuple[str, Iterator[Track]]] = [
+        (f"of least {name}", search.of_least(first.network, name)) for name in _OBJECTIVES
+    ]
+    steps += [
+        ("of a weighted sum", search.of_weighted_sum(first.network)),
+        ("round islands", search.round_islands(first.network)),
+        ("farther off land", search.farther_off_land(first.network)),
+        ("by passages", search.by_passages(first.network)),
+        ("round passages", search.round_passages(first.network)),
+    ]
+    for words, tracks in steps:
+        search.add(words, tracks)
+    for other in alternatives[1:]:
+        if not search.stopped:
+            search.try_alternative(other)
+    return search.routes, search.notes
+
+
+class _PassageWay(NamedTuple):
+    """A way by a passage.
+
+    Attributes
+    ----------
+    length : [m].
+    before, after : Latitudes and longitudes [deg] to its narrowest point, and from there.
+    """
+
+    length: float
+    before: tuple[FloatArray, ...]
+    after: tuple[FloatArray, ...]
+
+
+class _Candidates:
+    """Routes found so far, and the searches for more."""
+
+    def __init__(self, trade_off: TradeOffContext) -> None:
+        self.trade_off, self.context = trade_off, trade_off.context
+        self.terms = trade_off.objective.terms
+        self.currency = self.terms.currency or "USD"
+        self.routes: list[Route] = []
+        self.notes: list[str] = []
+        self.best: dict[str, Route] = {}
+
+    @property
+    def stopped(self) -> bool:
+        return self.trade_off.interrupt_guard.stopped()
+
+    def fastest(self, alternative: RouteAlternative) -> RouteAlternative:
+        """Add the fastest route of an alternative; return it without water that has no data."""
+        own = with_objective(self.trade_off, Objective.of("time", currency=self.currency))
+        alternative, _horizon, route = fastest_in_known_water(own, alternative)
+        self.routes.append(self._scored(route.track))
+        self.best.setdefault("time", self.routes[-1])
+        return alternative
+
+    def try_alternative(self, alternative: RouteAlternative) -> None:
+        """Add the fastest route of another alternative, if it has one."""
+        try:
+            self.fastest(alternative)
+        except NoRouteError as error:
+            self.notes.append(f"No route by {alternative.name}: {error.args[0]}")
+
+    def add(self, words: str, tracks: Iterator[Track]) -> None:
+        """Score the tracks of one step; a step that is not possible leaves a note."""
+        if self.stopped:
+            self.notes.append(f"{STOPPED} before the routes {words} were searched.")
+            return
+        self.context.report_progress(f"searching routes {words}")
+        try:
+            for track in tracks:
+                self.routes.append(self._scored(track))
+        except (NoRouteError, InputError) as error:
+            self.notes.append(f"No route {words}: {error.args[0]}")
+        except SearchInterrupted:
+            self.notes.append(f"{STOPPED} while the routes {words} were searched.")
+
+    def _scored(self, track: Track) -> Route:
+        route = self.context.evaluate(track, self.terms)
+        self.context.show_route(route)
+        return route
+
+    def of_least(self, network: Network, name: str) -> Iterator[Track]:
+        """Yield the route of least value of a key figure, and the knee of its front with time."""
+        if not np.isfinite(key_figure(self.best["time"], name)):
+            return
+        tracks = self._front(network, Objective.of(name, currency=self.currency))
+        self.best[name] = self._scored(tracks[0])
+        self.routes.append(self.best[name])
+        yield from tracks[1:]
+
+    def of_weighted_sum(self, network: Network) -> Iterator[Track]:
+        """Yield the route of the least sum of key figures, each over its range."""
+        names = [name for name in _WEIGHTED if name in self.best]
+        if len(names) < 2:
+            return
+        ranges: dict[str, KeyFigureRange] = {}
+        for name in names:
+            values = [key_figure(self.best[other], name) for other in names]
+            ranges[name] = KeyFigureRange(1.0, min(values), max(values))
+        yield self._front(network, normalised_objective(ranges, self.currency))[0]
+
+    def _front(self, network: Network, objective: Objective) -> list[Track]:
+        """Return the cheapest track of the front of time and an objective, and that at its knee."""
+        own = with_objective(self.trade_off, objective)
+        horizon = extend_horizon(own, network)
+        front = network_pareto_front(own, network, horizon.frozen, horizon.latest, lower=False)
+        points = sorted(front.points, key=lambda point: point.time)
+        if not points:
+            raise NoRouteError(
+                "no path of the network keeps the limits.",
+                "The limits, or the end of the data, leave none.",
+                "Relax the limits, or extend the data.",
+                reasons=front.refused,
+            )
+        middle = knee(*(np.array([getattr(p, at) for p in points]) for at in ("time", "cost")))
+        chosen = [front.cheapest] if len(points) < 3 else [front.cheapest, points[middle]]
+        return [track_from_front_point(network, point) for point in chosen]
+
+    def round_islands(self, network: Network) -> Iterator[Track]:
+        """Yield the shortest ways on the other sides of islands."""
+        for path in alternative_paths(
+            network, self.context.chart, most=_ISLAND_WAYS, stretch=_DETOUR
+        )[1:]:
+            yield self._at_full_speed(*np.array(path.waypoints, float).T)
+
+    def farther_off_land(self, network: Network) -> Iterator[Track]:
+        """Yield the shortest way with a wider offing, as far as the ends allow it."""
+        chart, ends = self.context.chart, self.trade_off.ends
+        wider = max(_WIDER_OFFING, 2.0 * self.trade_off.limits.offing)
+        off_land = chart_off_land(chart, ends, wider)
+        keep, _ = allowed_legs(
+            off_land, network.lat, network.lon, network.tails(), network.graph.target
+        )
+        keep |= np.isfinite(network.edges.fixed_time)
+        tree = shortest_path_tree(network.graph, _open(network, keep), network.meta.start)
+        path = tree.path(network.meta.goal)
+        if not path:
+            raise NoRouteError(
+                f"the ends cannot be joined {wider / NAUTICAL_MILE:g} nm off land.",
+                "The network has no such path.",
+                "Give a wider offing to plan for it.",
+                reasons={},
+            )
+        yield self._pulled(network, off_land, path)
+
+    def round_passages(self, network: Network) -> Iterator[Track]:
+        """Yield the shortest way without each passage of the fastest route."""
+        chart, through = self.context.chart, self._through(network)
+        shortest = self._trees(network)[0].distance[network.meta.goal]
+        for name in self._passed(network, through)[:_PASSAGE_WAYS]:
+            weight = _open(network, ~through[name])
+            tree = shortest_path_tree(network.graph, weight, network.meta.start)
+            path = tree.path(network.meta.goal)
+            if path and tree.distance[network.meta.goal] <= (1.0 + _DETOUR) * shortest:
+                yield self._pulled(network, chart.without_passages(name), path)
+
+    def by_passages(self, network: Network) -> Iterator[Track]:
+        """Yield the shortest ways by the passages that the fastest route does not pass."""
+        chart, track = self.context.chart, self.best["time"].track
+        passed = set(names_passed(chart.coastline, chart.passages, track.lat, track.lon))
+        trees = self._trees(network)
+        longest = (1.0 + _DETOUR) * trees[0].distance[network.meta.goal]
+        others = [passage for passage in chart.passages if passage.name not in passed]
+        ways = [self._way_by(network, passage, trees) for passage in others]
+        found = sorted((way for way in ways if way and way.length <= longest), key=itemgetter(0))
+        for way in found[:_PASSAGE_WAYS]:
+            parts = [
+                string_pull_path(chart, *line, rounds=_ROUNDS) for line in (way.before, way.after)
+            ]
+            lat, lon = (np.concatenate([parts[0][k], parts[1][k][1:]]) for k in (0, 1))
+            yield self._at_full_speed(lat, lon)
+
+    def _way_by(
+        self, network: Network, passage: Passage, trees: tuple[ShortestPathTree, ShortestPathTree]
+    ) -> _PassageWay | None:
+        """Return the shortest way by the line of a passage; None where no node is near its ends."""
+        chart, (lat, lon) = self.context.chart, passage.positions
+        reach = max(_REACH, 2.0 * network.meta.spacing_m)
+        near = []  # of each end of the line: nodes with a clear leg to it, and its length
+        for at in (0, -1):
+            away = np.asarray(distance(network.lat, network.lon, lat[at], lon[at]))
+            rows = np.flatnonzero(away <= reach)
+            ends = np.full(len(rows), lat[at]), np.full(len(rows), lon[at])
+            if len(rows):
+                blocked = chart.legs_blocked(network.lat[rows], network.lon[rows], *ends)
+                rows = rows[~np.asarray(blocked)]
+            if not len(rows):
+                return None
+            near.append((rows, away[rows]))
+        found = []
+        for (first, to_line), (last, from_line), step in (
+            (near[0], near[1], 1),
+            (near[1], near[0], -1),
+        ):
+            before, after = trees[0].distance[first] + to_line, trees[1].distance[last] + from_line
+            a, b = int(np.argmin(before)), int(np.argmin(after))
+            length = float(before[a] + passage.length + after[b])
+            found.append((length, int(first[a]), int(last[b]), step))
+        length, first_node, last_node, step = min(found)
+        line = lat[::step], lon[::step]
+        shore = chart.coastline.shore_distance(*line, cap=NAUTICAL_MILE)
+        middle = 1 + int(np.argmin(shore[1:-1])) if len(lat) > 2 else 1
+        paths = trees[0].path(first_node), trees[1].path(last_node)[::-1]
+        return _PassageWay(
+            length,
+            tuple(np.append(x[paths[0]], y[: middle + 1]) for x, y in zip(_places(network), line)),
+            tuple(np.append(y[middle:], x[paths[1]]) for x, y in zip(_places(network), line)),
+        )
+
+    def _trees(self, network: Network) -> tuple[ShortestPathTree, ShortestPathTree]:
+        """Return the trees of shortest paths from the start and to the goal."""
+        graph, edge = reversed_graph(network)
+        length = network.edges.length
+        return (
+            shortest_path_tree(network.graph, length, network.meta.start),
+            shortest_path_tree(graph, length[edge], network.meta.goal),
+        )
+
+    def _through(self, network: Network) -> dict[str, NDArray[np.bool_]]:
+        """Return which edges lead through each passage, by its name."""
+        chart, tails, heads = self.context.chart, network.tails(), network.graph.target
+        legs = network.lat[tails], network.lon[tails], network.lat[heads], network.lon[heads]
+        return legs_through(chart.coastline, chart.passages, legs)
+
+    def _passed(self, network: Network, through: dict[str, NDArray[np.bool_]]) -> list[str]:
+        """Return the passages of the fastest route among some."""
+        chart, track = self.context.chart, self.best["time"].track
+        lat, lon = np.asarray(track.lat, float), np.asarray(track.lon, float)
+        names = names_passed(chart.coastline, chart.passages, lat, lon)
+        return [name for name in names if name in through]
+
+    def _pulled(self, network: Network, chart: Chart, path: list[int]) -> Track:
+        """Return a path of the network, pulled taut on a chart."""
+        return self._at_full_speed(
+            *string_pull_path(chart, network.lat[path], network.lon[path], rounds=_ROUNDS)
+        )
+
+    def _at_full_speed(self, lat: FloatArray, lon: FloatArray) -> Track:
+        """Return a line as a track with the departure and the speed of the fastest route."""
+        track = self.best["time"].track
+        setting = int(np.max(track.setting))
+        return Track(lat, lon, self.best["time"].depart, setting=np.full(len(lat) - 1, setting))
+
+
+def _places(network: Network) -> tuple[FloatArray, FloatArray]:
+    """Return latitudes and longitudes of the nodes [deg]."""
+    return network.lat, network.lon
+
+
+def _open(network: Network, keep: NDArray[np.bool_]) -> FloatArray:
+    """Return the lengths of the edges of a network, infinite where they are closed."""
+    return np.where(keep, network.edges.length, np.inf)
