@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
+from functools import cache
 from pathlib import Path
 
 import networkx as nx
@@ -50,7 +51,12 @@ def modules() -> dict[str, Path]:
 
 
 MODULES = modules()
-TREES = {name: ast.parse(path.read_text("utf-8")) for name, path in MODULES.items()}
+
+
+@cache
+def trees() -> dict[str, ast.Module]:
+    """Return the parsed text of every module."""
+    return {name: ast.parse(path.read_text("utf-8")) for name, path in MODULES.items()}
 
 
 def repeated(places: Mapping[str, Iterable[str]]) -> dict[str, list[str]]:
@@ -61,7 +67,7 @@ def repeated(places: Mapping[str, Iterable[str]]) -> dict[str, list[str]]:
 def top_level(kind: type[ast.stmt]) -> dict[str, list[str]]:
     """Return the modules of each public class or function defined at the top of a module."""
     places = defaultdict(list)
-    for module, tree in TREES.items():
+    for module, tree in trees().items():
         for node in tree.body:
             if isinstance(node, kind) and not node.name.startswith("_"):
                 places[node.name].append(module)
@@ -119,7 +125,7 @@ def test_functions_have_few_arguments():
     """A function that needs more takes them as a dataclass or, in kernels, as a named tuple."""
     many = sorted(
         name.removeprefix("thalweg.")
-        for module, tree in TREES.items()
+        for module, tree in trees().items()
         for name, function in functions(tree, module)
         if argument_count(function) > MAX_ARGUMENTS
     )
@@ -140,14 +146,14 @@ def imported(tree: ast.AST) -> set[str]:
 
 
 def test_no_modules_import_each_other_in_a_circle():
-    graph = nx.DiGraph((m, other) for m, tree in TREES.items() for other in imported(tree) - {m})
+    graph = nx.DiGraph((m, other) for m, tree in trees().items() for other in imported(tree) - {m})
     circles = [sorted(part) for part in nx.strongly_connected_components(graph) if len(part) > 1]
     assert circles == []
 
 
 def test_numba_is_imported_in_kernels_alone():
     users = set()
-    for module, tree in TREES.items():
+    for module, tree in trees().items():
         for node in ast.walk(tree):
             names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
             if isinstance(node, ast.ImportFrom):

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache, partial
 
 import numpy as np
 
@@ -86,13 +88,10 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
                 raise
             return horizon  # the longest period that fits into memory
         warm_up.wait_until_compiled()
-        first, setting = fastest_at_highest_feasible_setting(trade_off, network, frozen)
+        path_at = cache(partial(fastest_path, trade_off, network, frozen))
+        first, setting = fastest_at_highest_feasible_setting(trade_off, path_at)
         horizon = SearchHorizon(frozen, first, setting, latest)
-        need = (
-            first.arrive
-            if has_deadline
-            else _latest_useful_arrival(trade_off, network, frozen, until)
-        )
+        need = first.arrive if has_deadline else _latest_useful_arrival(trade_off, path_at, until)
         if need <= until or until >= final:
             return horizon
         slow = depart + _HORIZON_GROWTH * (until - depart) if math.isinf(need) else need
@@ -100,16 +99,20 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
 
 
 def _latest_useful_arrival(
-    trade_off: TradeOffContext, network: Network, frozen: FrozenSea, until: float
+    trade_off: TradeOffContext, path_at: Callable[[int], SearchResult], until: float
 ) -> float:
     """Return the end of the front's period: with a margin, when the cheapest setting arrives.
 
     Infinite while a setting that has not arrived at the end of the frozen sea may be cheaper.
+
+    Parameters
+    ----------
+    path_at : The fastest path at a setting.
     """
     depart = trade_off.context.voyage.earliest_departure
 
     def duration(setting: int) -> float:
-        return fastest_path(trade_off, network, frozen, setting).arrive - depart
+        return path_at(setting).arrive - depart
 
     late = _TIME_MARGIN * duration(most_economical_setting(trade_off))
     if depart + late <= until:
@@ -121,16 +124,20 @@ def _latest_useful_arrival(
 
 
 def fastest_at_highest_feasible_setting(
-    trade_off: TradeOffContext, network: Network, frozen: FrozenSea
+    trade_off: TradeOffContext, path_at: Callable[[int], SearchResult]
 ) -> tuple[SearchResult, int]:
     """Search the fastest path at the highest setting with which there is one; return both.
 
     A lower setting may keep limits in waves that the highest does not.
+
+    Parameters
+    ----------
+    path_at : The fastest path at a setting.
     """
     table = trade_off.context.table.kernel_arrays()
     has_wave_limits = table.safety.size > 0 or table.motions.size > 0
     tried = trade_off.settings[::-1] if has_wave_limits else trade_off.settings[-1:]
-    paths = ((fastest_path(trade_off, network, frozen, int(one)), int(one)) for one in tried)
+    paths = ((path_at(int(one)), int(one)) for one in tried)
     first = next(paths)
     return first if first[0].found else next((path for path in paths if path[0].found), first)
 
