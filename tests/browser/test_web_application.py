@@ -150,7 +150,7 @@ def test_keyboard_only(visit):
     page.locator("#depart").fill("1998-08-31T12:00")
     page.locator(".field.goal input").focus()
     page.keyboard.press("Enter")
-    page.wait_for_selector(".proof", timeout=400_000)
+    page.wait_for_selector(".proof")
     page.locator("#panel h1").click()
     before = page.locator(".player output").inner_text()
     page.keyboard.press(".")
@@ -201,10 +201,10 @@ def test_progress_cancel_and_a_point_of_the_front(visit):
     page.locator("#objective").select_option("front")
     page.get_by_role("button", name="Plan the voyage").click()
     page.get_by_text("Planning the fastest route first", exact=True).wait_for()
-    page.get_by_text("First route: the fastest").wait_for(timeout=400_000)
+    page.get_by_text("First route: the fastest").wait_for()
     visit.picture("progress")
     page.get_by_role("button", name="Stop, keep the best").click()
-    page.wait_for_selector(".proof", timeout=200_000)
+    page.wait_for_selector(".proof")
     assert "Stopped" in page.locator(".note").first.inner_text()
 
 
@@ -241,7 +241,7 @@ def test_an_exported_route_is_scored_beside_its_plan(visit, planned, tmp_path):
     page.wait_for_selector("#route-file", state="attached")
     page.locator(".jobrow input:checked").first.wait_for()
     page.locator("#route-file").set_input_files(str(tmp_path / "mine.rtz"))
-    page.locator(".compare-table tbody tr").nth(1).wait_for(timeout=400_000)
+    page.locator(".compare-table tbody tr").nth(1).wait_for()
     rows = page.locator(".compare-table tbody tr")
     assert rows.nth(1).inner_text().startswith("mine.rtz")
     visit.picture("compare")
@@ -260,9 +260,9 @@ def test_a_reload_in_the_middle_of_a_job_and_a_killed_service(visit):
     page.get_by_text("The service does not answer").wait_for()
     visit.service.start()
     page.get_by_text("Started again").or_(page.locator(".steps li.now")).first.wait_for()
-    page.get_by_text("First route: the fastest").wait_for(timeout=400_000)
+    page.get_by_text("First route: the fastest").wait_for()
     page.get_by_role("button", name="Stop, keep the best").click()
-    page.wait_for_selector(".proof", timeout=200_000)
+    page.wait_for_selector(".proof")
     assert ended(visit.service.http.get, job)["state"] == "cancelled"
     events = visit.service.http.get(f"/api/v1/plans/{job}/events").text
     assert "the service was stopped" in events

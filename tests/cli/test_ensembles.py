@@ -46,7 +46,7 @@ def world(tmp_path):
     path.write_text(SHIP)
     return [
         "plan", "50.5N 1.2E", "50.5N 2.8E", "--ship", str(path), "--coast", "none",
-        "--depart", "2026-01-01T00:00Z", "--objective", "front", "--json",
+        "--depart", "2026-01-01T00:00Z", "--objective", "front", "--resolution", "5", "--json",
     ]  # fmt: skip
 
 

@@ -32,6 +32,8 @@ SHORT = {
 #: A proxy on a port where nothing listens: the service reaches nothing outside.
 NO_NETWORK = {f"{kind}_proxy": "http://127.0.0.1:1" for kind in ("http", "https", "all")}
 ENDED = ("done", "failed", "cancelled")
+#: Time after which a test gives up waiting, also on a loaded machine [s].
+LONG_S = 600.0
 
 
 def settings(folder: Path, **limits: Any) -> Any:
@@ -58,7 +60,7 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
         yield found
 
 
-def ended(get: Any, job: str, seconds: float = 400.0) -> dict[str, Any]:
+def ended(get: Any, job: str, seconds: float = LONG_S) -> dict[str, Any]:
     """Return a job when it has its final state."""
     limit = time.monotonic() + seconds
     while time.monotonic() < limit:
@@ -83,7 +85,7 @@ class ServerProcess:
         self.port = free_port()
         self.address = f"http://127.0.0.1:{self.port}"
         self.http = httpx.Client(
-            base_url=self.address, headers={"Authorization": f"Bearer {TOKEN}"}, timeout=60.0
+            base_url=self.address, headers={"Authorization": f"Bearer {TOKEN}"}, timeout=LONG_S
         )
         self.process: subprocess.Popen[bytes] | None = None
 
@@ -93,7 +95,7 @@ class ServerProcess:
         self.process = subprocess.Popen(
             command, stderr=subprocess.DEVNULL, env={**os.environ, **NO_NETWORK}
         )
-        limit = time.monotonic() + 180.0
+        limit = time.monotonic() + LONG_S
         while time.monotonic() < limit:
             try:
                 if self.http.get("/api/v1/health").status_code == 200:

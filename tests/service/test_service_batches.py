@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tests.service.conftest import ended
+from tests.service.conftest import LONG_S, ended
 from tests.service.test_service_jobs import events_of
 from tests.service.test_service_requests import problem
 
@@ -160,7 +160,7 @@ def test_a_killed_study_keeps_its_voyages(server):
 
 
 def _until_progress(server: Any, job: str, count: int) -> None:
-    limit = time.monotonic() + 120
+    limit = time.monotonic() + LONG_S
     while time.monotonic() < limit:
         with server.http.stream("GET", f"/api/v1/plans/{job}/events") as stream:
             for line in stream.iter_lines():
