@@ -22,6 +22,7 @@ from thalweg.core.types import Float32Array, FloatArray
 from thalweg.kernels.geometry.depth_sampling import DepthArrays, depths_at_points, least_depths
 
 MAX_SOUNDINGS: Final = 60_000_000  # soundings held in memory at once
+MAX_SAMPLES: Final = 65_536  # of functions, computed at once
 MAX_LEG_EXTENT: Final = 5.0  # legs wider than this are split first [deg]
 DEFAULT_SAMPLE_SPACING: Final = (
     1.0 / 600.0
@@ -176,10 +177,11 @@ class DepthLayers:
         count = min(max(math.ceil(widest / min(steps)), 8), 2048)
         least = np.full(len(lat1), np.inf)
         a, b = geocentric_unit_vectors(lat1, lon1), geocentric_unit_vectors(lat2, lon2)
-        for share in np.arange(count + 1) / count:
-            least = np.minimum(
-                least, self.at(*geocentric_positions(a + share * (b - a)), least=True)
-            )
+        shares = np.arange(count + 1) / count
+        for some in np.array_split(shares, math.ceil(len(shares) * len(least) / MAX_SAMPLES)):
+            places = a + some[:, None, None] * (b - a)
+            depth = self.at(*geocentric_positions(places), least=True)
+            least = np.minimum(least, depth.min(axis=0))
         return least
 
     def _least_depth_of_long_leg(self, lat1: float, lon1: float, lat2: float, lon2: float) -> float:
