@@ -32,11 +32,13 @@ export function duration(hours) {
 
 export function signedDuration(hours) {
   if (!known(hours)) return "";
+  if (Math.round(hours * 60) === 0) return "0 min";
   return `${hours < 0 ? "−" : "+"}${duration(Math.abs(hours))}`;
 }
 
 export function signed(value, decimals = 1) {
   if (!known(value)) return "";
+  if (Number(value.toFixed(decimals)) === 0) return number(0, decimals);
   return `${value < 0 ? "−" : "+"}${number(Math.abs(value), decimals)}`;
 }
 
