@@ -165,8 +165,9 @@ def _in_processes(chunks: list[Chunk], folder: str, workers: int) -> Iterator[li
         try:
             while waiting or running:
                 while waiting and len(running) < workers:
-                    one = waiting.pop()
+                    one = waiting[-1]  # a pool whose process died raises here too
                     running[pool.submit(run_rows, one, folder)] = one
+                    waiting.pop()
                 finished, _ = wait(running, return_when=FIRST_COMPLETED)
                 for future in finished:
                     results = future.result()
