@@ -249,6 +249,16 @@ def sea_file(folder: Path) -> Path:
     return path
 
 
+def test_an_uploaded_forecast_says_when_its_run_started(client, tmp_path):
+    import xarray as xr
+
+    path = tmp_path / "forecast.nc"
+    fields = xr.load_dataset(sea_file(tmp_path))
+    fields.assign_attrs(forecast_reference_time="2025-12-31T18:00:00Z").to_netcdf(path)
+    kept = client.post("/api/v1/seas", params={"name": path.name}, content=path.read_bytes())
+    assert kept.json()["run"] == "2025-12-31T18:00:00Z"
+
+
 def test_an_uploaded_sea_is_inspected_and_kept_once(client, tmp_path):
     data = sea_file(tmp_path).read_bytes()
     first = client.post("/api/v1/seas", params={"name": "../waves.nc"}, content=data)
@@ -256,6 +266,7 @@ def test_an_uploaded_sea_is_inspected_and_kept_once(client, tmp_path):
     found = first.json()
     assert found["name"] == "waves.nc" and found["frames"] == ["waves"]
     assert found["box"] == [45.0, 50.0, -10.0, -2.0] and found["start"].startswith("2026-01-01")
+    assert "run" not in found
     again = client.post("/api/v1/seas", params={"name": "waves.nc"}, content=data).json()
     assert again["id"] == found["id"]
     query = {"variable": "waves", "time": "2026-01-02T00:00Z", "box": "46,49,-9,-3"}

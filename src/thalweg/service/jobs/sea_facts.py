@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from thalweg.core.errors import InputError
-from thalweg.core.time import format_time
+from thalweg.core.time import format_time, parse_time
 from thalweg.sea import standard_names as nm
 
 if TYPE_CHECKING:
@@ -68,6 +68,18 @@ def sea_facts(sea: Sea, *, in_detail: bool = False) -> dict[str, Any]:
                 field="file",
             )
     return facts
+
+
+def forecast_run(path: str) -> str | None:
+    """Return the start of the forecast run that a NetCDF file names, as ``thalweg fetch`` does."""
+    import netCDF4
+
+    try:
+        with netCDF4.Dataset(path) as file:
+            run = parse_time(str(file.getncattr("forecast_reference_time")))
+    except (OSError, AttributeError, InputError):  # not NetCDF, or it names none
+        return None
+    return format_time(run)
 
 
 def _box(rows: Any) -> list[float] | None:

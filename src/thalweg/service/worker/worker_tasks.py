@@ -11,7 +11,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time
-from thalweg.service.jobs.sea_facts import FRAME_VARIABLES, sea_facts
+from thalweg.service.jobs.sea_facts import FRAME_VARIABLES, forecast_run, sea_facts
 
 if TYPE_CHECKING:
     from thalweg.sea import Sea
@@ -74,7 +74,7 @@ def _sea(seas: tuple[str, ...], files: tuple[tuple[str, str], ...]) -> Sea:
 
 
 def inspect(task: Mapping[str, Any]) -> TaskResult:
-    """Return what a sea holds: variables, box, period, times, ignored variables.
+    """Return what a sea holds: variables, box, period, times, forecast run, ignored variables.
 
     Parameters
     ----------
@@ -82,7 +82,11 @@ def inspect(task: Mapping[str, Any]) -> TaskResult:
         ``seas`` and ``files``.
     """
     sea = _sea(tuple(task["seas"]), tuple(sorted(task["files"].items())))
-    return sea_facts(sea, in_detail=bool(task.get("in_detail"))), b""
+    facts = sea_facts(sea, in_detail=bool(task.get("in_detail")))
+    runs = [*filter(None, map(forecast_run, task["files"].values()))]
+    if runs:
+        facts["run"] = min(runs)
+    return facts, b""
 
 
 def import_route(task: Mapping[str, Any]) -> TaskResult:

@@ -360,9 +360,10 @@ class Application {
     if (APART.includes(this.view)) return;
     const t = selection.time, { weather } = this.chart;
     const shown = weather.kind && known(t) ? [h("b", {}, time(t, true)), " UTC"] : [];
-    const period = this.form.period;
+    const { period, run } = this.form;
+    const age = run === null ? "" : ` · forecast of ${time(run)}, ${number(Math.max(0, Date.now() / 1000 - run) / 3600)} h old`;
     const outside = weather.kind && known(t) && period && (t < period[0] || t > period[1]);
-    fill(document.getElementById("valid"), shown, outside ? " · outside the data" : period ? ` · data until ${time(period[1])}` : "");
+    fill(document.getElementById("valid"), shown, outside ? " · outside the data" : period ? ` · data until ${time(period[1])}${age}` : "");
   }
 
   #permalink() {

@@ -273,6 +273,12 @@ export class PlanForm extends EventTarget {
     return rows.length ? [Math.max(...rows.map((sea) => seconds(sea.start))), Math.min(...rows.map((sea) => seconds(sea.end)))] : null;
   }
 
+  // The start of the oldest forecast among the chosen seas; null where none is known.
+  get run() {
+    const runs = this.chosenSeas.map((id) => this.seas.find((sea) => sea.id === id)?.run).filter(Boolean);
+    return runs.length ? Math.min(...runs.map(seconds)) : null;
+  }
+
   get frameKinds() {
     return [...new Set(this.chosenSeas.flatMap((id) => this.seas.find((sea) => sea.id === id)?.frames || []))];
   }
