@@ -8,6 +8,7 @@ import xarray as xr
 
 from tests.conftest import data_file
 from thalweg.chart import Chart
+from thalweg.chart.depth import depth_layers
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.kernels.geometry.depth_sampling import least_depth
 
@@ -81,6 +82,16 @@ def test_a_function_of_position():
     assert chart.depths.along(0.0, -1.0, 0.0, 1.0) == pytest.approx(10.0, abs=0.01)
     assert chart.depths.along(0.0, 1.0, 0.0, 2.0) == pytest.approx(11.0, abs=1e-6)
     assert np.isnan(OPEN.with_depth(lambda lat, lon: np.nan).depths.along(0, 0, 1, 1))
+
+
+def test_functions_are_sampled_along_any_number_of_legs(monkeypatch):
+    chart = OPEN.with_depth(lambda lat, lon: 10.0 + lat + 0.0 * lon)
+    lat = np.linspace(0.0, 1.0, 50)
+    legs = lat, np.zeros(50), lat + 0.1, np.zeros(50)
+    whole = chart.depths.along(*legs)
+    assert whole == pytest.approx(10.0 + lat, abs=1e-9)
+    monkeypatch.setattr(depth_layers, "MAX_SAMPLES", 7)  # fewer than legs
+    assert np.array_equal(chart.depths.along(*legs), whole)
 
 
 def test_depth_round_the_world_has_no_seam():

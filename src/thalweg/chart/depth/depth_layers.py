@@ -178,7 +178,8 @@ class DepthLayers:
         least = np.full(len(lat1), np.inf)
         a, b = geocentric_unit_vectors(lat1, lon1), geocentric_unit_vectors(lat2, lon2)
         shares = np.arange(count + 1) / count
-        for some in np.array_split(shares, math.ceil(len(shares) * len(least) / MAX_SAMPLES)):
+        parts = min(math.ceil(len(shares) * len(least) / MAX_SAMPLES), len(shares))
+        for some in np.array_split(shares, parts):
             places = a + some[:, None, None] * (b - a)
             depth = self.at(*geocentric_positions(places), least=True)
             least = np.minimum(least, depth.min(axis=0))
