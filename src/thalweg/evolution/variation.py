@@ -13,8 +13,8 @@ from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.evolution import mutation, random_numbers
 from thalweg.kernels.evolution.crossover import VariationWorkspace, make_offspring
 from thalweg.kernels.geometry.coast_index import CoastArrays
+from thalweg.kernels.kernel_threads import run_in_threads
 from thalweg.kernels.leg.population_sailing import GENE_COLUMNS, TrackGenes
-from thalweg.route.evaluators.evaluation_threads import run_in_threads
 from thalweg.route.evaluators.population import Population
 from thalweg.route.evaluators.population_evaluator import Evaluator
 

@@ -11,6 +11,7 @@ from thalweg.core.geodesy import direct, inverse
 from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import OK
 from thalweg.kernels.geometry.coast_index import CoastArrays, leg_codes, point_codes
+from thalweg.kernels.kernel_threads import run_in_threads
 
 EXACT_LEG_LENGTH: Final = 100_000.0  # legs this short are exact to 3 mm in the kernel [m]
 
@@ -37,7 +38,11 @@ def leg_status(
     a, b, c, d = (np.require(x, float, ("C", "W")).ravel() for x in ends)
     code = np.empty(len(a), np.int8)
     unsure = np.empty(len(a), np.bool_)
-    leg_codes(coast, a, b, c, d, code, unsure)
+
+    def test(part: slice) -> None:
+        leg_codes(coast, *(x[part] for x in (a, b, c, d, code, unsure)))
+
+    run_in_threads(test, len(a), least=_LEGS_AT_ONCE)
     k = np.flatnonzero(unsure)
     for part in np.array_split(k, len(k) // _LEGS_AT_ONCE + 1) if len(k) else ():
         code[part] = _status_in_parts(coast, a[part], b[part], c[part], d[part])

@@ -15,11 +15,11 @@ from thalweg.core.objective import FUEL_MASS, LegPrices
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.kernels import codes
+from thalweg.kernels.kernel_threads import run_in_threads
 from thalweg.kernels.leg import population_sailing as columns
 from thalweg.kernels.leg.population_sailing import FitnessArrays, TrackGenes, sail_population
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.evaluators.calm_water_rates import calm_water_value, calm_water_values
-from thalweg.route.evaluators.evaluation_threads import run_in_threads
 from thalweg.route.evaluators.evaluator_inputs import EvaluationResolution, TabulatedShip
 from thalweg.route.evaluators.population import Genome, Population
 from thalweg.route.evaluators.time_evaluator import TimeEvaluator, make_time_evaluator, unique_legs
