@@ -179,9 +179,16 @@ def densify_for_rhumb(
     """
     lat, lon = np.asarray(lat, float), np.asarray(lon, float)
     pieces = []
+    long = distance(lat[:-1], lon[:-1], lat[1:], lon[1:]) > spacing
+    broken = long | ~(rhumb_deviation(lat, lon) <= deviation)
+    wrapped = wrap_longitude(lon)
     for index in range(len(lat) - 1):
-        ends = lat[index : index + 2], lon[index : index + 2]
-        pieces.append(_leg_pieces(*ends, deviation, spacing))
+        ends = slice(index, index + 2)
+        pieces.append(
+            _leg_pieces(lat[ends], lon[ends], deviation, spacing)
+            if broken[index]
+            else (lat[ends], wrapped[ends])
+        )
     out_lat = np.concatenate([*(piece[0][:-1] for piece in pieces), lat[-1:]])
     out_lon = np.concatenate([*(piece[1][:-1] for piece in pieces), wrap_longitude(lon[-1:])])
     leg = np.repeat(np.arange(len(pieces)), [len(piece[0]) - 1 for piece in pieces])

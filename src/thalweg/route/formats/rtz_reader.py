@@ -56,8 +56,15 @@ def parse_rtz(data: bytes) -> ParsedTrack:
     orders = [_order(w, i, stay) for i, (w, stay) in enumerate(zip(waypoints, stays), start=1)]
     if first_time is not None:
         first_time -= orders[0].wait  # the departure of the schedule comes after the wait
-    rhumb = [_is_rhumb(root, waypoint, notes) for waypoint in waypoints[1:]]
-    corridors = [_corridor(root, waypoint) for waypoint in waypoints[1:]]
+    usual = [
+        leg
+        for group in children(root, "waypoints")
+        for default in children(group, "defaultWaypoint")
+        for leg in children(default, "leg")
+    ]
+    legs = [[*children(waypoint, "leg"), *usual] for waypoint in waypoints[1:]]
+    rhumb = [_is_rhumb(leg, notes) for leg in legs]
+    corridors = [_corridor(leg) for leg in legs]
     return ParsedTrack(positions, first_time, orders, rhumb, list(dict.fromkeys(notes)), corridors)
 
 
@@ -116,28 +123,22 @@ def _position(waypoint: ElementTree.Element, number: int, notes: list[str]) -> P
     return position_of(texts[0], texts[1], number)
 
 
-def _is_rhumb(root: ElementTree.Element, waypoint: ElementTree.Element, notes: list[str]) -> bool:
+def _is_rhumb(legs: list[ElementTree.Element], notes: list[str]) -> bool:
     """Return whether the leg that ends at a waypoint is a rhumb line."""
-    kind = _leg_attribute(root, waypoint, "geometryType") or "Loxodrome"
+    kind = _leg_attribute(legs, "geometryType") or "Loxodrome"
     if str(kind) not in ("Loxodrome", "Orthodrome"):
         notes.append(f"a leg has the geometry {kind!r}: a rhumb line is used")
     return str(kind) != "Orthodrome"
 
 
-def _leg_attribute(root: ElementTree.Element, waypoint: ElementTree.Element, name: str) -> str:
-    """Return an attribute of the leg that ends at a waypoint, or of the default leg; or ''."""
-    default = [
-        e for group in children(root, "waypoints") for e in children(group, "defaultWaypoint")
-    ]
-    legs = [leg for place in (waypoint, *default) for leg in children(place, "leg")]
+def _leg_attribute(legs: list[ElementTree.Element], name: str) -> str:
+    """Return an attribute of the first leg that has it: the own ones, then the default; or ''."""
     return next((leg.get(name, "") for leg in legs if leg.get(name)), "")
 
 
-def _corridor(root: ElementTree.Element, waypoint: ElementTree.Element) -> tuple[float, float]:
+def _corridor(legs: list[ElementTree.Element]) -> tuple[float, float]:
     """Return the cross-track limits (port, starboard) of the leg that ends at a waypoint [m]."""
-    miles = (
-        to_number(_leg_attribute(root, waypoint, name)) for name in ("portsideXTD", "starboardXTD")
-    )
+    miles = (to_number(_leg_attribute(legs, name)) for name in ("portsideXTD", "starboardXTD"))
     port, starboard = (x * NAUTICAL_MILE if 0.0 < x < 10.0 else math.nan for x in miles)
     return port, starboard
 
