@@ -35,3 +35,7 @@ def run_in_threads(work: Callable[[slice], object], count: int, *, least: int = 
 @cache
 def _threads(cores: int) -> ThreadPoolExecutor:
     return ThreadPoolExecutor(cores, thread_name_prefix=_NAME)
+
+
+if hasattr(os, "register_at_fork"):  # a child has none of its parent's threads
+    os.register_at_fork(after_in_child=_threads.cache_clear)
