@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.memory import machine_memory
 from thalweg.kernels import codes
 from thalweg.network import Network
+from thalweg.network.network import Stations
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.sea import StationFields
 
@@ -28,6 +30,37 @@ class FrozenSea:
 
     stations: StationFields
     top_speed: float
+
+
+@dataclass
+class LastFrozenSea:
+    """The sea that was frozen last, for searches at the same stations in the same period.
+
+    Attributes
+    ----------
+    stations, period : Of that sea.
+    horizon : Number of the shortest period that was long enough for a search at these stations.
+    """
+
+    stations: Stations | None = None
+    period: tuple[float, float] = (math.nan, math.nan)
+    sea: FrozenSea | None = None
+    horizon: int = 0
+
+    def first_horizon(self, network: Network) -> int:
+        """Return the number of the first period for a search with equal or stricter limits."""
+        return self.horizon if network.stations is self.stations else 0
+
+    def freeze(
+        self, context: PlanningContext, network: Network, start: float, end: float
+    ) -> FrozenSea:
+        """Return the sea at the stations of a network; see `freeze_at_stations`."""
+        known = network.stations is self.stations and self.period == (start, end)
+        if self.sea is None or not known:
+            self.sea = None  # its memory is free before the next is read
+            self.sea = freeze_at_stations(context, network, start, end)
+            self.stations, self.period = network.stations, (start, end)
+        return self.sea
 
 
 def freeze_at_stations(

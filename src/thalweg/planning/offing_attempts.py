@@ -36,7 +36,7 @@ def plan_off_land(
     ------
     NoRouteError : If no route exists without an offing either.
     """
-    if offing <= 0.0:
+    if offing <= 0.0 or context.chart.coastline.is_empty:
         return run(context)
     refusal: NoRouteError | None = None
     for share in _SHARES:

@@ -77,6 +77,11 @@ class Coastline:
         return self.read()
 
     @property
+    def is_empty(self) -> bool:
+        """Whether there is no land at all."""
+        return not self.index.winding.size and bool((self.index.cell > 0.0).all())
+
+    @property
     def detail(self) -> float:
         """Size of what the coastline leaves out [m]; 0 where it is not simplified.
 

@@ -94,21 +94,24 @@ def _maximum_depths(network: Network, fields: StationFields) -> tuple[FloatArray
     level = _maximum_over_time(fields, WATER_LEVEL, 0.0)
     charted = np.asarray(network.edges.depth, float)
     charted = np.where(np.isnan(charted), -math.inf, charted)
-    edges = np.arange(len(charted))
-    edge = np.concatenate([edges, edges, np.repeat(edges, np.diff(network.samples.ptr))])
-    ends, inside = (network.tails(), network.graph.target), network.samples
-    a = np.concatenate([*ends, inside.station_a]).astype(np.int64)
-    b = np.concatenate([*ends, inside.station_b]).astype(np.int64)
-    share = np.concatenate([np.zeros(2 * len(edges)), network.samples.weight])
+    inside = network.samples
+    edge = np.repeat(np.arange(len(charted)), np.diff(inside.ptr))
+    ends = np.stack([network.tails(), network.graph.target]).astype(np.int64)
+    a, b, share = inside.station_a, inside.station_b, inside.weight
     with np.errstate(invalid="ignore"):
-        beds = np.where(share > 0.0, (1.0 - share) * bed[a] + share * bed[b], bed[a])
-        levels = np.where(share > 0.0, (1.0 - share) * level[a] + share * level[b], level[a])
-        depth = np.minimum(charted[edge], beds) + levels
-    depth = np.where(np.isnan(depth), -math.inf, depth)
-    order = np.lexsort((depth, edge))
-    first = np.searchsorted(edge[order], edges)
-    least = order[first]
-    return depth[least], np.where(share[least] > 0.5, b[least], a[least])
+        beds, levels = (np.where(share > 0.0, (1.0 - share) * v[a] + share * v[b], v[a])
+                        for v in (bed, level))  # fmt: skip
+        between = np.minimum(charted[edge], beds) + levels
+        at_ends = np.minimum(charted, bed[ends]) + level[ends]
+    between = np.where(np.isnan(between), -math.inf, between)
+    at_ends = np.where(np.isnan(at_ends), -math.inf, at_ends)
+    place = np.where(at_ends[0] <= at_ends[1], ends[0], ends[1])
+    depth = at_ends.min(axis=0)
+    lower = np.flatnonzero(between < depth[edge])
+    np.minimum.at(depth, edge[lower], between[lower])
+    least = lower[between[lower] == depth[edge[lower]]][::-1]  # the first of equal samples
+    place[edge[least]] = np.where(share > 0.5, b, a)[least]
+    return depth, place
 
 
 def _maximum_over_time(fields: StationFields, channel: int, absent: float) -> FloatArray:

@@ -16,7 +16,7 @@ from thalweg.core.time import format_time
 from thalweg.core.units import HOUR
 from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network
-from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
+from thalweg.planning.frozen_sea import FrozenSea, LastFrozenSea
 from thalweg.planning.network_selection.network_builder import build_network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -80,6 +80,7 @@ def plan_stretch(
     gaps: tuple[Violation, ...] = ()
     rounds = 0
     attempts = deque(_ATTEMPTS)
+    seas = LastFrozenSea()
     while attempts:
         finer, step = attempts.popleft()
         if finer not in networks:
@@ -92,7 +93,9 @@ def plan_stretch(
             networks[finer] = without_unknown_edges(context, network, gaps)
         limits = context.needs.limits.tightened(TIGHTENING[step])
         try:
-            tried = _search_and_refine(context, networks[finer], (start, goal), window, limits)
+            tried = _search_and_refine(
+                context, networks[finer], (start, goal), window, limits, seas
+            )
         except NoRouteError as error:
             refusal = refusal or error
             denser = _lattice_fallback_allowed(context, networks[finer]) or _mesh_is_thinned(
@@ -165,9 +168,10 @@ def _search_and_refine(
     ends: tuple[Endpoint, Endpoint],
     window: tuple[float, float],
     limits: Limits,
+    seas: LastFrozenSea,
 ) -> StretchResult:
     """Search, refine and bound the stretch on one network with one set of limits."""
-    frozen, result = _search(context, network, limits, window, ends)
+    frozen, result = _search(context, network, limits, window, ends, seas)
     track = track_from_result(network, result, context.setting)
     route = refine_track(context, track, limits)
     if window[1] > window[0]:
@@ -223,23 +227,26 @@ def _search(
     limits: Limits,
     window: tuple[float, float],
     ends: tuple[Endpoint, Endpoint],
+    seas: LastFrozenSea,
 ) -> tuple[FrozenSea, SearchResult]:
     straight = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon))
     usual = straight / _expected_speed(context, ends, window[0])
     latest = min(context.data_end, context.latest_arrival)
-    for number, horizon in enumerate(_HORIZONS):
-        end = window[1] + horizon * usual + (_TWO_TIDES if number else 0.0)
+    for number in range(seas.first_horizon(network), len(_HORIZONS)):
+        end = window[1] + _HORIZONS[number] * usual + (_TWO_TIDES if number else 0.0)
         end = min(end, latest)
         context.report_progress(f"freezing the sea until {format_time(end)}")
-        frozen = freeze_at_stations(context, network, window[0], end)
+        frozen = seas.freeze(context, network, window[0], end)
         warm_up.wait_until_compiled()
         context.report_progress("searching")
         result = _run_search(context, network, frozen, limits, window)
         if result.found or end >= latest:
             break
-    if not result.found:
+    if result.found:
+        seas.horizon = number
+    else:
         if context.voyage.arrive_by is not None:
-            raise _late_arrival_error(context, network, limits, window, ends)
+            raise _late_arrival_error(context, network, limits, window, ends, seas)
         raise no_route_error(
             network, result, ends, depart=context.voyage.earliest_departure,
             last=context.data_end if end >= context.data_end else math.inf,
@@ -250,13 +257,13 @@ def _search(
 
 def _late_arrival_error(
     context: PlanningContext, network: Network, limits: Limits, window: tuple[float, float],
-    ends: tuple[Endpoint, Endpoint],
+    ends: tuple[Endpoint, Endpoint], seas: LastFrozenSea,
 ) -> NoRouteError:  # fmt: skip
     """Return the error for a missed latest arrival; raises where there is no route at all."""
     unrestricted = replace(
         context, voyage=replace(context.voyage, arrive_by=None, objective="time")
     )
-    _, result = _search(unrestricted, network, limits, window, ends)
+    _, result = _search(unrestricted, network, limits, window, ends, seas)
     return late_arrival_error(context.latest_arrival, result.arrive, window=window[1] > window[0])
 
 
