@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from scipy.optimize import minimize
@@ -34,6 +35,8 @@ _CLEARED = 0.02  # waypoints nearer to a crossing than this share of the length 
 _REACHES = (0.1, 0.02)  # largest displacements of a crossing, as shares of the length
 _PLACE_TOLERANCE = 2e-3  # of a displacement, as a share of the largest one
 _GAIN_TOLERANCE = 1e-7  # relative gain of a round that ends the search
+_PROBE = 0.1  # of the largest displacement: trials whether a crossing should move at all
+_LEAST_GAIN = 1e-6  # expected relative gain of a crossing that is worth a search
 _MOST_REMOVED = 60  # waypoints whose removal is tried
 _PIECES = 8  # of every leg of a trial
 
@@ -93,7 +96,9 @@ def with_interface_points(
         return route
     line = _BentLine.through(track, crossings, world)
     for reach in _REACHES:
-        line = line.with_best_crossings(reach).without_needless_points()
+        moved = line.with_best_crossings(reach)
+        if moved is not line:
+            line = moved.without_needless_points()
     better = score(line.track())
     return better if better.feasible and better.arrive < route.arrive else route
 
@@ -259,46 +264,55 @@ class _BentLine:
 
         Notes
         -----
-        By Powell's method of conjugate directions (`scipy.optimize.minimize`).
+        By Powell's method of conjugate directions (`scipy.optimize.minimize`), over the crossings
+        of which a parabola through three displacements expects a gain.
         """
         most = reach * float(rough_lengths(self.lat, self.lon).sum())
         now = self.arrival()
         spent = now - self.origin.depart
+        count = len(self.places)
+        place_of = cache(self._crossing_displaced)
+
+        def displaced(across: FloatArray) -> _BentLine | None:
+            line = self
+            for number in np.flatnonzero(across).tolist():
+                found = place_of(number, float(across[number]))
+                if found is None:
+                    return None
+                line = line._with_crossing_at(number, *found)
+            return line
 
         def relative_loss(shares: FloatArray) -> float:  # finite, for the parabolas of the search
-            moved = self._with_crossings_at(most * shares)
+            moved = displaced(most * shares)
             return 1.0 if moved is None else min((moved.arrival() - now) / spent, 1.0)
 
-        count = len(self.places)
+        units = np.eye(count)
+        chosen = [k for k in range(count) if _may_gain(relative_loss, units[k])]
+        if not chosen:
+            return self
         best = minimize(
-            lambda shares: 1.0 + relative_loss(shares),
-            np.zeros(count),
+            lambda shares: 1.0 + relative_loss(shares @ units[chosen]),
+            np.zeros(len(chosen)),
             method="Powell",
-            bounds=[(-1.0, 1.0)] * count,
+            bounds=[(-1.0, 1.0)] * len(chosen),
             options={"xtol": _PLACE_TOLERANCE, "ftol": _GAIN_TOLERANCE},
         )
-        moved = self._with_crossings_at(most * best.x) if best.fun < 1.0 else None
+        moved = displaced(most * (best.x @ units[chosen])) if best.fun < 1.0 else None
         return self if moved is None else moved
 
-    def _with_crossings_at(self, across: FloatArray) -> _BentLine | None:
-        """Return the line with every crossing displaced to starboard [m]; None if one is lost."""
-        line: _BentLine | None = self
-        for number, distance in enumerate(across.tolist()):
-            line = None if line is None else line._with_crossing_at(number, distance)
-        return line
-
-    def _with_crossing_at(self, number: int, across: float) -> _BentLine | None:
-        """Return the line with a crossing displaced; the points beside it follow in proportion."""
+    def _crossing_displaced(self, number: int, across: float) -> tuple[float, float] | None:
+        """Return a crossing displaced to starboard [m] along its interface [deg]; None if lost."""
         place = self.places[number]
-        setting = int(self.setting[place])
         here = replace(
             self.crossings[number], lat=float(self.lat[place]), lon=float(self.lon[place])
         )
         span = _OBLIQUENESS * abs(across) + 1.0
-        found = _located(self.world, here, setting, (-span, span), across)
-        if found is None:
-            return None
-        north, east = found[0] - here.lat, _turn(found[1] - here.lon)
+        return _located(self.world, here, int(self.setting[place]), (-span, span), across)
+
+    def _with_crossing_at(self, number: int, lat: float, lon: float) -> _BentLine:
+        """Return the line with a crossing moved; the points beside it follow in proportion."""
+        place = self.places[number]
+        north, east = lat - self.lat[place], _turn(lon - self.lon[place])
         share = self._followed_shares(place)
         return replace(self, lat=self.lat + share * north, lon=self.lon + share * east)
 
@@ -312,6 +326,14 @@ class _BentLine:
         along = np.concatenate([[0.0], np.cumsum(rough_lengths(self.lat, self.lon))])
         anchors = [along[fixed[k - 1]], along[place], along[fixed[k + 1]]]
         return np.asarray(np.interp(along, anchors, [0.0, 1.0, 0.0]))
+
+
+def _may_gain(loss: Callable[[FloatArray], float], unit: FloatArray) -> bool:
+    """Return whether a displacement along a unit vector may save more than `_LEAST_GAIN`."""
+    before, after = loss(-_PROBE * unit), loss(_PROBE * unit)
+    slope, bend = 0.5 * (after - before), 0.5 * (after + before)
+    gain = 0.25 * slope**2 / bend if abs(slope) < 2.0 * bend else max(-before, -after)
+    return gain > _LEAST_GAIN
 
 
 def _turn(degrees: float) -> float:
