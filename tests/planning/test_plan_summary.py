@@ -77,9 +77,9 @@ def with_bound(answer, certain, kind="certificate"):
 @pytest.mark.parametrize(
     ("certain", "kind", "text"),
     [
-        (0.963, "certificate", "at most 3.9 % from the best possible"),
+        (0.963, "certificate", "at most 3.7 % from the best possible"),
         (1.0, "certificate", "at most 0.1 % from the best possible"),
-        (0.6, "certificate", "at most 66.7 % from the best possible"),
+        (0.6, "certificate", "at most 40.0 % from the best possible"),
         (
             0.231,
             "certificate",

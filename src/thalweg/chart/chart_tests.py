@@ -285,14 +285,14 @@ def chart_nearest_navigable(
         Position [deg] and distance [m]; None if there is no such water within
         ``largest``.
     """
-    found = nearest_navigable(
+    return nearest_navigable(
         float(lat),
         float(lon),
         largest=float(largest),
         is_navigable=partial(chart_is_navigable, chart),
         legs_blocked=partial(chart_legs_blocked, chart),
+        accepts=partial(chart_is_joined_to_sea, chart),
     )
-    return found if found and chart_is_joined_to_sea(chart, *found[:2]) else None
 
 
 def chart_fingerprint(chart: ChartParts) -> str:

@@ -82,6 +82,15 @@ class ApproachSailing:
             arrive_by=None if by is None else float(by) - last,  # type: ignore[arg-type]
         )
 
+    def context_at_sea(self, context: PlanningContext) -> PlanningContext:
+        """Return the context of the voyage from sea end to sea end."""
+        return replace(
+            context,
+            voyage=self.voyage_at_sea(context.voyage),
+            chart=replace(context.chart, approaches=None),
+            approach_times=(self._duration(self.outward), self._duration(self.inward)),
+        )
+
     def with_approaches(self, plan: Plan, voyage: Voyage, context: PlanningContext) -> Plan:
         """Return a plan from sea end to sea end with the approaches added to all its figures.
 

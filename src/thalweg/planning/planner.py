@@ -245,11 +245,7 @@ def _plan_with_approaches(context: PlanningContext, ends: list[Endpoint]) -> Pla
     if line is not None:
         return plan_along_approaches(context, ends, line)
     sailing = ApproachSailing.of_voyage(context, ends)
-    at_sea = replace(
-        context,
-        voyage=sailing.voyage_at_sea(context.voyage),
-        chart=replace(context.chart, approaches=None),
-    )
+    at_sea = sailing.context_at_sea(context)
     offing = chosen_offing(context.voyage, context.ship)
     found = plan_off_land(at_sea, ends, offing, lambda c: _plan_at_sea(c, ends))
     return sailing.with_approaches(found, context.voyage, context)

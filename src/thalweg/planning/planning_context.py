@@ -60,6 +60,7 @@ class PlanningContext:
     needs : Channels of the sea, limits and the end of the data.
     report_progress : Called with a short text at each stage; see `show_route`, `show_front`.
     proof_seconds : Time for the certificate of a lower bound [s]; None for that of the search.
+    approach_times : In the approaches before and after the voyage at sea [s].
     """
 
     voyage: Voyage
@@ -71,6 +72,7 @@ class PlanningContext:
     choice: NetworkChoice
     report_progress: Callable[[str], None] = field(default=lambda text: None)
     proof_seconds: float | None = None
+    approach_times: tuple[float, float] = (0.0, 0.0)
 
     def show_route(self, route: Route) -> None:
         """Give a route that was found so far to a progress callback with ``show_route``."""

@@ -16,7 +16,7 @@ PositionTest: TypeAlias = Callable[[FloatArray, FloatArray], NDArray[np.bool_]]
 #: Whether legs (lat1, lon1, lat2, lon2) [deg] are blocked.
 LegTest: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], NDArray[np.bool_]]
 OPEN_SEA_MARGIN: Final = 40_000.0  # water that extends this far beyond the search is open sea [m]
-OPEN_SEA_WIDTH: Final = 3_704.0  # water this far from land is open sea [m]
+OPEN_SEA_WIDTH: Final = 15_000.0  # water this far from land is open sea [m]: no lake is as wide
 HALF_GRID_POINTS: Final = 90  # half the points along a side of the search grid
 #: Half widths [m] and half the points along a side of the grids on which water is followed.
 _GROWING_GRIDS: Final = ((10_000.0, 80), (25_000.0, 80), (60_000.0, 80), (150_000.0, 80))
@@ -30,6 +30,7 @@ def nearest_navigable(
     largest: float,
     is_navigable: PositionTest,
     legs_blocked: LegTest,
+    accepts: Callable[[float, float], bool] = lambda lat, lon: True,
 ) -> tuple[float, float, float] | None:
     """Return the nearest navigable place joined to the open sea, and the distance to it [m].
 
@@ -44,6 +45,7 @@ def nearest_navigable(
     lat, lon : Position [deg].
     largest : Largest search radius [m].
     is_navigable, legs_blocked : Tests of positions and of legs, as of `thalweg.chart.Chart`.
+    accepts : Whether a result is good enough; otherwise the next grid is searched.
 
     Returns
     -------
@@ -59,9 +61,10 @@ def nearest_navigable(
         if len(k):
             separation = geodesy.distance(lat, lon, lats.ravel()[k], lons.ravel()[k])
             best = int(np.argmin(separation))
-            if separation[best] <= radius:
-                place = lats.ravel()[k[best]], float(geodesy.wrap_longitude(lons.ravel()[k[best]]))
-                return float(place[0]), place[1], float(separation[best])
+            place = float(lats.ravel()[k[best]]), float(lons.ravel()[k[best]])
+            place = place[0], float(geodesy.wrap_longitude(place[1]))
+            if separation[best] <= radius and accepts(*place):
+                return *place, float(separation[best])
     return None
 
 

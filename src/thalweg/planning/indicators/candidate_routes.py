@@ -75,11 +75,7 @@ def berth_to_berth_candidates(
         found = plan_along_approaches(context, ends, line)
         return list(found.routes), list(found.notes)
     sailing = ApproachSailing.of_voyage(context, ends)
-    at_sea = replace(
-        context,
-        voyage=sailing.voyage_at_sea(context.voyage),
-        chart=replace(context.chart, approaches=None),
-    )
+    at_sea = sailing.context_at_sea(context)
     offing = chosen_offing(context.voyage, context.ship)
 
     def search(off_land: PlanningContext) -> tuple[list[Route], list[str]]:

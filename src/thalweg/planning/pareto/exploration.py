@@ -128,13 +128,15 @@ def _fastest_route(
             alternative.network,
             first,
             (trade_off.ends[0], trade_off.ends[-1]),
-            depart=context.voyage.earliest_departure,
+            depart=context.voyage.earliest_departure - context.approach_times[0],
             last=context.data_end,
             fields=horizon.frozen.stations,
             required=trade_off.limits.required_depth,
         )
     if first.arrive > context.latest_arrival:
-        raise late_arrival_error(context.latest_arrival, first.arrive)
+        raise late_arrival_error(
+            context.latest_arrival, first.arrive, approach=context.approach_times[1]
+        )
     track = track_from_result(alternative.network, first, horizon.setting)
     return horizon, refine_track(context, track, trade_off.limits)
 

@@ -42,6 +42,8 @@ def fixed_route_candidates(trade_off: TradeOffContext) -> list[TrackCandidate]:
     context.report_progress("finding alternative routes around land and control areas")
     start, goal = ((end.lat, end.lon) for end in (trade_off.ends[0], trade_off.ends[-1]))
     network = lattice_between(context.chart, start, goal)
+    if trade_off.interrupt_guard.stopped():
+        return []
     candidates: list[TrackCandidate] = []
     for path in alternative_paths(
         network,
@@ -50,6 +52,8 @@ def fixed_route_candidates(trade_off: TradeOffContext) -> list[TrackCandidate]:
         most=_MAX_ALTERNATIVES,
         stretch=_MAX_DETOUR,
     ):
+        if trade_off.interrupt_guard.stopped():
+            break
         try:
             candidates += _speed_optimised(trade_off, path)
         except SearchInterrupted:

@@ -143,8 +143,7 @@ def quality_text(plan: PlanData) -> str:
     if plan.gap > _WEAK:
         least = math.floor(100.0 * (1.0 - plan.gap) + 1e-9)
         return f"{early}little known (weak bound): the best possible is at least {least} % of this"
-    excess = plan.gap / (1.0 - plan.gap)  # of the route over the bound
-    return f"{early}at most {_percent(excess)} % from the best possible"
+    return f"{early}at most {_percent(plan.gap)} % from the best possible"
 
 
 def _percent(share: float) -> str:

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart import Chart
+from thalweg.chart.coast.snapping import joined_positions
 from thalweg.core.errors import InputError, NoRouteError, OutsideAreaError
-from thalweg.core.geodesy import direct, format_position
+from thalweg.core.geodesy import distance, format_position, wrap_longitude
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, NAUTICAL_MILE
@@ -26,7 +27,8 @@ _DIRECTIONS = ("sea_surface_wave_to_direction_east", "sea_surface_wave_to_direct
 #: Period that is checked where the data have no end [s].
 _MAX_PERIOD = 20 * 24 * HOUR
 _SAMPLE_TIMES = 24
-_SEARCH_RINGS, _SEARCH_BEARINGS, _MAX_CANDIDATES = 40, 72, 40
+_NEARBY = 10_000.0  # half the side of the first grid of water [m]
+_BLOCK = 1_000  # positions that are sampled together
 
 
 def check_argument_types(voyage: object, ship: object, sea: object, chart: object) -> None:
@@ -196,21 +198,25 @@ def _too_shallow_error(end: Endpoint, depth: float, time: float, required: float
 def _nearest_suitable_water(
     end: Endpoint, coverage_probe: _CoverageProbe, chart: Chart, *, harbour: bool
 ) -> tuple[float, float, float] | None:
-    """Return the nearest navigable water that suits: lat, lon [deg], distance [m]."""
-    radius, bearing = np.meshgrid(
-        np.linspace(0.0, MAX_SNAP_PORT, _SEARCH_RINGS + 1)[1:],
-        np.linspace(0.0, 2.0 * math.pi, _SEARCH_BEARINGS, endpoint=False),
-        indexing="ij",
-    )
-    lat, lon = direct(*end.origin, bearing.ravel(), radius.ravel())
-    use = np.asarray(chart.is_navigable(lat, lon), bool)
-    use[use] = coverage_probe.suits(lat[use], lon[use], harbour=harbour)
-    separation = radius.ravel()
-    places = np.flatnonzero(use)
-    for k in places[np.argsort(separation[places], kind="stable")][:_MAX_CANDIDATES]:
-        water = chart.nearest_navigable(float(lat[k]), float(lon[k]), largest=2_000.0)
-        if water is not None and water[2] < 1_000.0:
-            return float(lat[k]), float(lon[k]), float(separation[k])
+    """Return the nearest water that suits and that legs join to an end: lat, lon [deg], [m]."""
+    lat, lon = np.array([end.lat]), np.array([end.lon])
+    for half in (_NEARBY, MAX_SNAP_PORT):
+        apart = distance(end.lat, end.lon, lat, lon)
+        far = int(np.argmax(apart))  # out of a narrow river, for the coarser grid
+        lat, lon = joined_positions(
+            float(lat[far]), float(lon[far]), half,
+            is_navigable=chart.is_navigable, legs_blocked=chart.legs_blocked,
+        )  # fmt: skip
+        if not lat.size:
+            return None
+        apart = distance(*end.origin, lat, lon)
+        order = np.argsort(apart, kind="stable")
+        for first in range(0, order.size, _BLOCK):
+            some = order[first : first + _BLOCK]
+            good = some[coverage_probe.suits(lat[some], lon[some], harbour=harbour)]
+            if good.size and apart[good[0]] <= MAX_SNAP_PORT:
+                k = int(good[0])
+                return float(lat[k]), float(wrap_longitude(lon[k])), float(apart[k])
     return None
 
 

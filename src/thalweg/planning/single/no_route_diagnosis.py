@@ -108,7 +108,9 @@ def _be(names: list[str]) -> str:
     return "is" if len(names) == 1 else "are"
 
 
-def late_arrival_error(arrive_by: float, earliest: float, *, window: bool = False) -> NoRouteError:
+def late_arrival_error(
+    arrive_by: float, earliest: float, *, window: bool = False, approach: float = 0.0
+) -> NoRouteError:
     """Build the error for a latest arrival that no route meets.
 
     Parameters
@@ -116,7 +118,9 @@ def late_arrival_error(arrive_by: float, earliest: float, *, window: bool = Fals
     arrive_by : Latest arrival of the voyage [s since 1970].
     earliest : Earliest possible arrival [s since 1970].
     window : Whether it is that of the shortest passage in a departure window.
+    approach : Time in the approach of the port of arrival after both [s].
     """
+    arrive_by, earliest = arrive_by + approach, earliest + approach
     if earliest <= arrive_by:  # in time, but not with this objective
         return NoRouteError(
             f"The shortest route does not arrive by {format_time(arrive_by)}.",

@@ -126,7 +126,9 @@ def plan_stretch(
         check_times_known(stretch.route, start, goal)
     arrive, latest = stretch.route.arrive, context.latest_arrival
     if latest + 1.0 < arrive < math.inf:
-        raise late_arrival_error(latest, arrive, window=window[1] > window[0])
+        raise late_arrival_error(
+            latest, arrive, window=window[1] > window[0], approach=context.approach_times[1]
+        )
     return stretch
 
 
@@ -248,7 +250,8 @@ def _search(
         if context.voyage.arrive_by is not None:
             raise _late_arrival_error(context, network, limits, window, ends, seas)
         raise no_route_error(
-            network, result, ends, depart=context.voyage.earliest_departure,
+            network, result, ends,
+            depart=context.voyage.earliest_departure - context.approach_times[0],
             last=context.data_end if end >= context.data_end else math.inf,
             fields=frozen.stations, required=limits.required_depth,
         )  # fmt: skip
@@ -264,7 +267,10 @@ def _late_arrival_error(
         context, voyage=replace(context.voyage, arrive_by=None, objective="time")
     )
     _, result = _search(unrestricted, network, limits, window, ends, seas)
-    return late_arrival_error(context.latest_arrival, result.arrive, window=window[1] > window[0])
+    return late_arrival_error(
+        context.latest_arrival, result.arrive, window=window[1] > window[0],
+        approach=context.approach_times[1],
+    )  # fmt: skip
 
 
 def _expected_speed(
