@@ -164,7 +164,7 @@ def test_a_position_far_from_the_sea_is_refused_with_the_nearest_water():
         resolve_endpoint((48.1, 11.6), chart(), "goal")  # Munich
     with pytest.raises(InputError, match=r"The nearest port is Amsterdam, NL"):
         resolve_endpoint((52.09, 5.12), chart(), "goal")  # Utrecht
-    lat, lon, _ = chart().nearest_navigable(52.0, 5.5, largest=100_000.0)
+    _, lon, _ = chart().nearest_navigable(52.0, 5.5, largest=100_000.0)
     assert lon < 4.6  # the North Sea, not the IJmeer behind its dams
     assert not chart().is_joined_to_sea(52.5932, 5.0316)  # the Markermeer
 

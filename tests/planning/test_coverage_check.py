@@ -5,6 +5,9 @@ import pytest
 
 from thalweg import Chart, InputError, Sea, Ship, Voyage, plan
 from thalweg.core.errors import OutsideAreaError
+from thalweg.planning.request.coverage_check import endpoints_within_coverage
+from thalweg.planning.request.requirements import derive_requirements
+from thalweg.planning.request.voyage_endpoints import Endpoint
 
 SHIP = Ship.simple(speed_kn=10.0, draught_m=5.0)
 WATER = Chart.open_water(50.0, 52.5, 1.0, 5.0)
@@ -94,3 +97,17 @@ def test_a_voyage_of_another_type_is_refused():
 def test_voyages_of_the_wrong_kind(wrong):
     with pytest.raises(InputError):
         Voyage(**{"start": (50.5, 1.5), "goal": (50.5, 2.0), "depart": "2026-01-01", **wrong})
+
+
+def test_a_port_is_not_moved_over_land_to_covered_water():
+    land = {
+        "type": "Polygon",
+        "coordinates": [[[3, 50], [3.2, 50], [3.2, 52.5], [3, 52.5], [3, 50]]],
+    }
+    chart, sea = Chart.from_geojson(land), known_where(lambda lat, lon: lon > 3.1)
+    voyage = Voyage(start=(51.0, 2.0), goal=(51.0, 2.8), depart="2026-01-01")
+    needs = derive_requirements(voyage, ship=SHIP, sea=sea, chart=chart)
+    port = Endpoint("a port", 51.0, 2.8, 0.0, is_port=True)
+    request = {"voyage": voyage, "ship": SHIP, "sea": sea, "chart": chart, "needs": needs}
+    with pytest.raises(OutsideAreaError, match="a port is outside the data"):
+        endpoints_within_coverage([port], **request)

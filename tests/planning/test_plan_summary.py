@@ -133,6 +133,14 @@ def test_weather_is_that_of_the_sea_even_if_the_ship_ignores_it(answer):
     assert weather_text(windy, None).startswith("strongest wind 16 kn, at ")
 
 
+def test_the_share_of_the_way_without_known_waves_is_stated(answer):
+    best = answer.best
+    along = best.samples["distance"]
+    waves = np.where(along > 0.75 * along[-1], np.nan, 2.0)
+    text = weather_text(replace(best, samples=dict(best.samples) | {WAVES: waves}), None)
+    assert "; waves not known on 2" in text and text.endswith(" % of the way")
+
+
 def test_the_uniform_sea_around_a_storm_is_named(answer):
     storm = Sea.storm(start="2026-01-01T00:00Z")
     text = weather_text(answer.best, storm)

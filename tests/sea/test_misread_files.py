@@ -12,6 +12,7 @@ from tests.sea.small_datasets import EAST, HS, NORTH, T0, regular, value
 from thalweg.core.errors import DatasetError
 from thalweg.core.time import parse_time
 from thalweg.sea import Sea
+from thalweg.ship.methods.seakeeping.wave_spectra import jonswap
 
 LEVEL, DEPTH = "sea_surface_height_above_geopotential_datum", "sea_floor_depth_below_geoid"
 WAVE_TO_EAST, WAVE_TO_NORTH = (f"sea_surface_wave_to_direction_{w}" for w in ("east", "north"))
@@ -45,6 +46,18 @@ def test_ocean_models_are_read_with_their_level_bed_and_currents(tmp_path, make)
     assert got[NORTH] == pytest.approx(north, abs=2e-4)
     assert got[LEVEL] == pytest.approx(hydro.level(3.0), abs=1e-6)
     assert got[DEPTH] == pytest.approx(-bed, abs=1e-5)
+
+
+def test_the_energy_period_of_waves_gives_the_peak_period() -> None:
+    """Of a JONSWAP spectrum with peak enhancement 3.3: 0.9033 times the peak period."""
+    mean = regular(fields={"mwp": {"units": "s"}}, field=same(9.033))
+    assert value(Sea.open(mean), PERIOD, T0, 11.0, 21.0) == pytest.approx(10.0, rel=1e-3)
+    both = mean.assign(pp1d=(mean["mwp"].dims, np.full(mean["mwp"].shape, 11.0), {"units": "s"}))
+    assert value(Sea.open(both), PERIOD, T0, 11.0, 21.0) == pytest.approx(11.0, rel=1e-6)
+    frequency = np.linspace(0.05, 30.0, 200_000)
+    spectrum = jonswap(frequency, height=2.0, period=10.0, peak_factor=3.3)
+    moments = [np.trapezoid(spectrum * frequency**k, frequency) for k in (-1, 0)]
+    assert 2.0 * np.pi * moments[0] / moments[1] == pytest.approx(9.03, abs=0.01)
 
 
 def test_one_time_of_schism_is_still_a_level() -> None:

@@ -250,6 +250,8 @@ def fill_hint(missing: Sequence[str], known: frozenset[str]) -> str:
             continue
         if policy == "waves" and nm.WAVE_HEIGHT in known:
             hints.append("waves=head_seas (the known heights, from ahead on every course)")
+        elif policy == "waves" and set(nm.WIND.pair) <= known:
+            hints.append("waves=wind (those that the wind raises)")
         else:
             hints.append(f"{policy}=0")
     others = lacking - {n for names in FILLABLE_VARIABLES.values() for n in names}

@@ -155,13 +155,23 @@ def weather_text(route: Route, sea: Sea | None) -> str:
         at = int(np.nanargmax(waves))
         more = "" if wind is None else f" with wind of {wind[at]:.0f} kn"
         found = f"highest waves {waves[at]:.1f} m{more}, {_place(route, at)}"
-        return found + _ambient_text(sea, float(waves[at]))
+        return found + _ambient_text(sea, float(waves[at])) + _unknown_text(route, waves)
     for values, word in ((wind, "wind"), (current, "current")):
         if values is not None and np.nanmax(values, initial=0.0) > 0.0:
             at = int(np.nanargmax(values))
             digits = 0 if word == "wind" else 1
             return f"strongest {word} {values[at]:.{digits}f} kn, {_place(route, at)}"
     return "calm or not known: no wind, waves or currents in the data"
+
+
+def _unknown_text(route: Route, waves: np.ndarray) -> str:
+    """Return on what share of the distance waves are not known; empty where they are known."""
+    step = np.diff(np.asarray(route.samples["distance"], float), prepend=0.0)
+    step = np.where(step > 0.0, step, 0.0)  # it begins again at every leg
+    if not np.isnan(waves).any() or not step.sum() > 0.0:
+        return ""
+    share = 100.0 * float(step[np.isnan(waves)].sum() / step.sum())
+    return f"; waves not known on {max(share, 1.0):.0f} % of the way"
 
 
 def _ambient_text(sea: Sea | None, highest: float) -> str:

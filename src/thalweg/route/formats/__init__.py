@@ -158,14 +158,7 @@ def _contents_of(path: Path) -> ParsedTrack:
 def _bytes_of(path: Path) -> bytes:
     try:
         size = path.stat().st_size
-        if size > LARGEST_FILE:
-            raise InputError(
-                f"The route file {path.name!r} has {size / 1e6:.0f} MB.",
-                f"Files up to {LARGEST_FILE / 1e6:.0f} MB are read.",
-                "Reduce it to the route.",
-                file=str(path),
-            )
-        return path.read_bytes()
+        data = b"" if size > LARGEST_FILE else path.read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a null character in the path
         raise InputError(
             f"The route file {str(path)!r} cannot be read: "
@@ -174,6 +167,14 @@ def _bytes_of(path: Path) -> bytes:
             "Check the path.",
             file=str(path),
         ) from None
+    if size > LARGEST_FILE:
+        raise InputError(
+            f"The route file {path.name!r} has {size / 1e6:.0f} MB.",
+            f"Files up to {LARGEST_FILE / 1e6:.0f} MB are read.",
+            "Reduce it to the route.",
+            file=str(path),
+        )
+    return data
 
 
 def _text_of(data: bytes, path: Path) -> str:

@@ -37,8 +37,9 @@ def parse_xml(data: bytes | str, what: str, *, largest: int | None = None) -> El
     try:
         root: ElementTree.Element = fromstring(data)
     except (ElementTree.ParseError, DefusedXmlException, ValueError, LookupError) as error:
+        entities = isinstance(error, DefusedXmlException)
         raise InputError(
-            f"The {what} cannot be read: {error}.",
+            f"The {what} cannot be read: {'it declares entities' if entities else error}.",
             "The file must be well-formed XML without entities.",
             "Check that the file is complete.",
         ) from None

@@ -20,9 +20,9 @@ def identity(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
     return arrays
 
 
-def scale_by(sign: float) -> Combine:
-    """Return a function that multiplies the first array by a sign."""
-    return lambda arrays: [sign * arrays[0]]
+def scale_by(factor: float) -> Combine:
+    """Return a function that multiplies the first array by a factor."""
+    return lambda arrays: [factor * arrays[0]]
 
 
 def subtract(sign: float) -> Combine:

@@ -19,6 +19,8 @@ from thalweg.sea.grids.source_variables import Quantity
 from thalweg.sea.recognition_record import RecognisedVariable
 
 NO_TIMES = np.empty(0)
+#: Energy period (m-1 / m0) over peak period of a JONSWAP spectrum with peak enhancement 3.3.
+_ENERGY_PERIOD_SHARE = 0.903
 
 
 class QuantityAssembler:
@@ -38,6 +40,7 @@ class QuantityAssembler:
         self._vector(nm.WIND, (sp.X_WIND, sp.Y_WIND))
         self._vector(nm.CURRENT, (sp.X_CURRENT, sp.Y_CURRENT))
         self._waves()
+        self._wave_period()
         self._bed_and_level()
         for role in list(self.remaining):
             one = self.remaining.pop(role)
@@ -181,6 +184,18 @@ class QuantityAssembler:
                 self.file.source,
             )
             self._add(nm.WAVES.pair, [one], combine, how)
+
+    def _wave_period(self) -> None:
+        """Make the peak period of waves from their energy period where the peak is not given."""
+        if sp.ENERGY_PERIOD not in self.remaining:
+            return
+        if nm.WAVE_PERIOD in self.remaining:
+            self._leave(sp.ENERGY_PERIOD, "the peak period is used")
+            return
+        one = self.remaining.pop(sp.ENERGY_PERIOD)
+        how = f"{one.chosen.how}; energy period / {_ENERGY_PERIOD_SHARE} (JONSWAP spectrum)"
+        peak = derived_variables.scale_by(1.0 / _ENERGY_PERIOD_SHARE)
+        self._add((nm.WAVE_PERIOD,), [one], peak, how)
 
     def _bed_and_level(self) -> None:
         """Make bed depth and water level from depth, bed level and total depth, as present."""

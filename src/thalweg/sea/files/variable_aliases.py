@@ -15,6 +15,7 @@ Y_WIND: Final = "y_wind"
 X_CURRENT: Final = "sea_water_x_velocity"
 Y_CURRENT: Final = "sea_water_y_velocity"
 BED_LEVEL: Final = "bed_level"
+ENERGY_PERIOD: Final = "wave_energy_period"
 
 #: role of CF standard names (and their old aliases) other than the role's own name
 STANDARD_NAMES: Final[dict[str, str]] = {
@@ -30,6 +31,10 @@ STANDARD_NAMES: Final[dict[str, str]] = {
     "significant_height_of_wind_and_swell_waves": nm.WAVE_HEIGHT,
     "sea_surface_wave_period_at_variance_spectral_density_maximum": nm.WAVE_PERIOD,
     "sea_surface_wave_peak_period": nm.WAVE_PERIOD,
+    "sea_surface_wave_mean_period_from_variance_spectral_density_inverse_frequency_moment": (
+        ENERGY_PERIOD
+    ),
+    "sea_surface_wave_energy_period": ENERGY_PERIOD,
     "sea_water_x_velocity_at_u_location": X_CURRENT,
     "sea_water_y_velocity_at_v_location": Y_CURRENT,
     "altitude": BED_LEVEL,
@@ -48,7 +53,7 @@ ALIASES: Final[dict[str, dict[str, str]]] = {
         "10v": nm.NORTHWARD_WIND, "u10n": nm.EASTWARD_WIND, "v10n": nm.NORTHWARD_WIND,
         "si10": "wind_speed", "wdir10": nm.WIND.origin, "swh": nm.WAVE_HEIGHT,
         "mwd": nm.WAVES.origin, "pp1d": nm.WAVE_PERIOD, "msl": nm.PRESSURE, "siconc": nm.ICE,
-        "ci": nm.ICE,
+        "ci": nm.ICE, "mwp": ENERGY_PERIOD,
     },
     "GFS": {
         "ugrd10m": nm.EASTWARD_WIND, "vgrd10m": nm.NORTHWARD_WIND,
@@ -63,6 +68,7 @@ ALIASES: Final[dict[str, dict[str, str]]] = {
     },
     "CMEMS": {
         "vhm0": nm.WAVE_HEIGHT, "vmdr": nm.WAVES.origin, "vtpk": nm.WAVE_PERIOD,
+        "vtm10": ENERGY_PERIOD,
         "utotal": nm.EASTWARD_CURRENT, "vtotal": nm.NORTHWARD_CURRENT, "uo": X_CURRENT,
         "vo": Y_CURRENT, "zos": nm.WATER_LEVEL, "deptho": nm.BED_DEPTH,
     },
@@ -163,7 +169,7 @@ ROLE_DIMENSIONS: Final[dict[str, str]] = {
     **dict.fromkeys(
         (nm.WAVE_HEIGHT, nm.WATER_LEVEL, nm.BED_DEPTH, nm.TOTAL_DEPTH, BED_LEVEL), "length"
     ),
-    nm.WAVE_PERIOD: "time",
+    **dict.fromkeys((nm.WAVE_PERIOD, ENERGY_PERIOD), "time"),
     nm.PRESSURE: "pressure",
     nm.ICE: "fraction",
 }
