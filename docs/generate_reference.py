@@ -47,7 +47,7 @@ MORE_NAMES: dict[str, tuple[str, ...]] = {
         "methods.engine.european_charges.EuropeanCharges",
     ),
     "network": (
-        "layered.layered_request.layered_section",
+        "layered.sections_round_land.layered_section",
         "layered.layered_request.suggested_shape",
         "history.history_builder.build_history",
         "history.history_builder.HistoryRules",

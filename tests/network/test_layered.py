@@ -9,9 +9,15 @@ from shapely.geometry import LineString, box
 from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoPathError
-from thalweg.network import LayeredRequest, check_network, layered_network, shortest_path
+from thalweg.network import (
+    LayeredRequest,
+    check_network,
+    layered_network,
+    shortest_path,
+)
 from thalweg.network.layered.layered_draft import layered_draft
-from thalweg.network.layered.layered_request import layered_section, suggested_shape
+from thalweg.network.layered.layered_request import suggested_shape
+from thalweg.network.layered.sections_round_land import layered_section
 from thalweg.network.short_legs import positions_on_short_legs
 
 SHAPE = {"layers": 9, "fan": 5, "offset": 4000.0}
@@ -225,3 +231,26 @@ def test_requests_for_a_chosen_shape():
                 {"layers": 3, "fan": 3, "offset_nm": 1, "contain": [[1, 2]]}):  # fmt: skip
         with pytest.raises(InputError):
             LayeredRequest.from_dict(bad)
+
+
+def test_a_chosen_network_turns_where_land_is_across_the_direct_line():
+    """A bay with one mouth to the south, and the goal north of it: no rhombus holds a path."""
+    bay = [box(1.0, 64.6, 1.2, 65.4), box(1.0, 65.3, 2.6, 65.4), box(2.4, 64.6, 2.6, 65.4)]
+    start, goal = (65.2, 1.8), (65.6, 1.8)
+    network = layered_section(_chart(*bay), start, goal, None)
+    check_network(network)
+    length, path = shortest_path(network, network.meta.start, network.meta.goal)
+    lat, lon = np.array([start, (64.6, 1.2), (64.6, 1.0), (65.4, 1.0), goal]).T
+    round_west = float(geodesy.distance(lat[:-1], lon[:-1], lat[1:], lon[1:]).sum())
+    assert path and round_west <= length[network.meta.goal] <= 1.03 * round_west
+    assert "Land is across the direct line" in network.meta.notes[0]
+    assert "turning points of the shortest way: 64" in network.meta.notes[1]
+
+
+def test_straits_belong_to_the_section_that_is_nearest():
+    request = LayeredRequest(contain=((65.01, 1.0), (64.3, 5.0)))
+    places = [(65.0, 0.0), (65.0, 4.0), (64.0, 6.0)]
+    assert [request.of_section(places, k).contain for k in (0, 1)] == [
+        ((65.01, 1.0),), ((64.3, 5.0),)
+    ]  # fmt: skip
+    assert request.of_section(places[:2], 0) == request

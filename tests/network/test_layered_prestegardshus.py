@@ -25,10 +25,10 @@ from thalweg.network.assembly import allowed_legs
 from thalweg.network.layered.layered_builder import segments_on_paths
 from thalweg.network.layered.layered_request import (
     LayeredRequest,
-    layered_section,
     suggested_shape,
 )
 from thalweg.network.layered.section_shape import SectionShape
+from thalweg.network.layered.sections_round_land import layered_section
 
 ONE, THREE = (plane.START, plane.GOAL), (plane.START, plane.FIRST, plane.SECOND, plane.GOAL)
 NETWORKS = {

@@ -301,8 +301,9 @@ def voyage_context(
 def _plan_stretches(context: PlanningContext, ends: list[Endpoint]) -> list[StretchResult]:
     window = (context.voyage.earliest_departure, context.voyage.latest_departure)
     stretches: list[StretchResult] = []
+    places = [(end.lat, end.lon) for end in ends]
     for number, (start, goal) in enumerate(itertools.pairwise(ends)):
-        choice = context.choice.of_section(number, len(ends) - 1)
+        choice = context.choice.of_section(places, number)
         stretch = plan_stretch(replace(context, choice=choice), start, goal, window)
         stretches.append(stretch)
         window = (stretch.route.arrive, stretch.route.arrive)

@@ -12,6 +12,7 @@ import numpy as np
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoPathError, unknown_name_error
 from thalweg.core.geodesy import Position, format_position
+from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.layered.layered_builder import layered_network
 from thalweg.network.layered.section_shape import PerSection, SectionShape, section_shapes
@@ -159,9 +160,43 @@ class LayeredRequest:
         )
         return section_shapes(sections, self.layers, self.fan, metres)
 
+    def of_section(self, places: Sequence[Position], number: int) -> LayeredRequest:
+        """Return the request for one section: with the straits that are nearest to it.
+
+        Parameters
+        ----------
+        places : sequence of (lat, lon)
+            Start, waypoints and goal [deg].
+        number : int
+            Number of the section, from 0.
+
+        Returns
+        -------
+        LayeredRequest
+        """
+        if not self.contain or len(places) < 3:
+            return self
+        straits = np.array(self.contain)
+        away = [distances_from_line(straits, *pair) for pair in itertools.pairwise(places)]
+        own = np.argmin(away, axis=0) == number
+        return replace(self, contain=tuple(itertools.compress(self.contain, own)))
+
     def _given_sections(self) -> int:
         lengths = [len(v) for key in _SHAPE if isinstance(v := getattr(self, key), tuple)]
         return max(lengths, default=1)
+
+
+def distances_from_line(places: FloatArray, a: Position, b: Position) -> FloatArray:
+    """Return the distances of places from a geodesic [m], to a hundredth of its length.
+
+    Parameters
+    ----------
+    places : Positions [deg], (N, 2).
+    a, b : Ends of the geodesic [deg].
+    """
+    lat, lon = geodesy.positions_along(*a, *b, np.linspace(0.0, 1.0, 101))
+    away = geodesy.distance(places[:, :1], places[:, 1:], lat, lon)
+    return np.asarray(away.min(axis=1))
 
 
 def _metres(offset_nm: Any) -> Any:
@@ -191,70 +226,6 @@ def _check_range(name: str, value: Any, largest: float) -> None:
             "Correct it.",
             field="layered",
         )
-
-
-def layered_section(
-    chart: Chart,
-    start: Position,
-    goal: Position,
-    shape: SectionShape | None,
-    *,
-    spacing: float | None = None,
-    request: LayeredRequest | None = None,
-    numbering: tuple[int, int] = (0, 1),
-) -> Network:
-    """Return the layered network of one section.
-
-    Parameters
-    ----------
-    chart : Chart
-        Land, zones and depth.
-    start, goal : (lat, lon)
-        Positions [deg].
-    shape : SectionShape or None
-        None: the shape with the fewest segments whose shortest path is within 1 % of that of the
-        finest network tried (`suggested_shape`).
-    spacing : float, optional
-        Layers are at most this far apart [m]; a shape that is coarser is made finer, with the
-        same width.
-    request : LayeredRequest, optional
-        With what the shape must contain and how good it must be, where it is chosen, and with the
-        refinement near the coast.
-    numbering : tuple of int, optional
-        Number of the section in the voyage, from 0, and how many it has.
-
-    Returns
-    -------
-    Network
-
-    Raises
-    ------
-    NoPathError
-        If it has no path.
-    """
-    chosen, wanted = shape is None, request or LayeredRequest()
-    if shape is None:
-        shape = suggested_shape(
-            chart, start, goal, tolerance=wanted.within_percent / 100.0, contain=wanted.contain,
-            numbering=numbering,
-        )  # fmt: skip
-    between = float(geodesy.distance(*start, *goal)) / (shape.layers + 1)
-    if spacing is not None and between > 1.001 * spacing:
-        shape = shape.finer(int(np.ceil(between / spacing - 1e-3)))
-    network = layered_network(
-        chart, (start, goal), layers=shape.layers, fan=shape.fan, offset=shape.offset,
-        near_coast=None if wanted.near_coast_nm is None else wanted.near_coast_nm * NAUTICAL_MILE,
-        numbering=numbering,
-    )  # fmt: skip
-    notes = tuple(note for place in wanted.contain if (note := _narrow_strait(chart, place)))
-    if not chosen:
-        return network
-    note = (
-        f"The layered network has {shape.layers} layers, a fan of {shape.fan} and an offset of "
-        f"{shape.offset / NAUTICAL_MILE:.3g} nm, chosen for a shortest path within "
-        f"{wanted.within_percent:g} % of that of the finest network tried."
-    )
-    return replace(network, meta=replace(network.meta, notes=(note, *notes, *network.meta.notes)))
 
 
 def suggested_shape(
@@ -326,8 +297,14 @@ def _passes(network: Network, place: Position) -> bool:
     return bool(np.min(away) <= _STRAIT_DISTANCE)
 
 
-def _narrow_strait(chart: Chart, place: Position) -> str:
-    """Return a sentence on a strait that is narrower than what the coastline shows; else empty."""
+def narrow_strait_note(chart: Chart, place: Position) -> str:
+    """Return a sentence on a strait that is narrower than what the coastline shows; else empty.
+
+    Parameters
+    ----------
+    chart : With its coastline.
+    place : Position in the strait [deg].
+    """
     detail = chart.coastline.detail
     width = 2.0 * float(chart.coastline.shore_distance(*place, cap=2.0 * detail))
     if width >= 2.0 * detail:  # each shore may be off by as much
@@ -340,7 +317,7 @@ def _narrow_strait(chart: Chart, place: Position) -> str:
 
 
 def _strait_error(chart: Chart, place: Position, layers: int) -> NoPathError:
-    narrow = _narrow_strait(chart, place)
+    narrow = narrow_strait_note(chart, place)
     return NoPathError(
         f"No layered network of up to {layers} layers has a path through "
         f"{format_position(*place)}.",

@@ -124,11 +124,11 @@ class DepartureSeries:
         at_sea = replace(context, chart=replace(context.chart, approaches=None))
 
         def build(tried: PlanningContext) -> tuple[PlanningContext, tuple[Network, ...]]:
-            count = len(ends) - 1
+            places = [(end.lat, end.lon) for end in ends]
             period = tried.voyage.earliest_departure, tried.data_end
             return tried, tuple(
                 build_network(
-                    tried.choice.of_section(k, count), tried.chart, tried.sea, pair, period=period
+                    tried.choice.of_section(places, k), tried.chart, tried.sea, pair, period=period
                 )
                 for k, pair in enumerate(itertools.pairwise(ends))
             )

@@ -14,7 +14,7 @@ from thalweg.network import (
     shortest_path,
     with_endpoints,
 )
-from thalweg.network.layered.layered_request import layered_section
+from thalweg.network.layered.sections_round_land import layered_section
 from thalweg.planning.network_selection.model_mesh import model_mesh_network
 from thalweg.planning.request.network_choice import NetworkChoice
 from thalweg.planning.request.voyage_endpoints import Endpoint

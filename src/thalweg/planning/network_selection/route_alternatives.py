@@ -83,7 +83,8 @@ def _route_alternative(
     context: PlanningContext, ends: Sequence[Endpoint], chart: Chart
 ) -> RouteAlternative:
     context = replace(context, chart=chart)
-    choices = [context.choice.of_section(i, len(ends) - 1) for i in range(len(ends) - 1)]
+    places = [(end.lat, end.lon) for end in ends]
+    choices = [context.choice.of_section(places, i) for i in range(len(ends) - 1)]
     stretches = [
         _network(replace(context, choice=choice), a, b)
         for choice, (a, b) in zip(choices, itertools.pairwise(ends))

@@ -65,6 +65,8 @@ def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
     with InterruptGuard() as interrupt_guard:
         trade_off = _trade_off_context(context, ends, interrupt_guard)
         alternatives = find_route_alternatives(context, ends)
+        if alternatives[0].network.meta.kind == "layered":
+            trade_off.notes.extend(alternatives[0].network.meta.notes)
         if context.voyage.weights:
             trade_off = normalised_trade_off(trade_off, alternatives[0].network)
         if trade_off.objective.prices.counts_water:

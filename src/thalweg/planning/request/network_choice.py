@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.geodesy import Position
 from thalweg.network import LayeredRequest, Network
 from thalweg.network.history.history_corridor import HistoryCorridor
 from thalweg.network.history.history_file import read_history
@@ -67,19 +68,22 @@ class NetworkChoice:
                 "Give the spacing of the network in metres.",
             )
 
-    def of_section(self, number: int, count: int) -> NetworkChoice:
+    def of_section(self, places: Sequence[Position], number: int) -> NetworkChoice:
         """Return this choice for one section of a voyage.
 
         Parameters
         ----------
-        number, count : int
-            Number of the section, from 0, and how many there are.
+        places : sequence of (lat, lon)
+            Start, waypoints and goal [deg].
+        number : int
+            Number of the section, from 0.
 
         Returns
         -------
         NetworkChoice
         """
-        return replace(self, section=(number, count))
+        layered = None if self.layered is None else self.layered.of_section(places, number)
+        return replace(self, section=(number, len(places) - 1), layered=layered)
 
     @property
     def section_shape(self) -> SectionShape | None:
