@@ -13,7 +13,7 @@ import numpy as np
 from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.core.geodesy import Position, check_position
 from thalweg.core.given_numbers import shortened_repr, to_number
-from thalweg.core.rhumb_lines import rhumb_deviation, rhumb_pieces
+from thalweg.core.rhumb_lines import rhumb_pieces
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.units import DAY, HOUR, KNOT
 from thalweg.route.track import Track
@@ -191,17 +191,14 @@ def _with_geodesics(parsed: ParsedTrack) -> ParsedTrack:
     if not any(parsed.rhumb):
         return parsed
     orders = parsed.orders or [WaypointOrder()] * len(parsed.positions)
-    places, given = [parsed.positions[0]], [orders[0]]
-    bends = rhumb_deviation(*np.array(parsed.positions).T) > RHUMB_DEVIATION
-    broken = np.array(parsed.rhumb) & bends
-    legs = zip(broken, parsed.positions[:-1], parsed.positions[1:], orders[:-1], orders[1:])
-    for is_broken, start, end, order, last in legs:
-        if is_broken:
-            lat, lon, _ = rhumb_pieces([start[0], end[0]], [start[1], end[1]], RHUMB_DEVIATION)
-            places += [(float(y), float(x)) for y, x in zip(lat[1:-1], lon[1:-1])]
-            given += [WaypointOrder(0.0, order.speed)] * (len(lat) - 2)
-        places.append(end)
-        given.append(last)
+    limit = np.where(parsed.rhumb, RHUMB_DEVIATION, math.inf)
+    lat, lon, leg = rhumb_pieces(*np.array(parsed.positions).T, limit)
+    at_vertex = np.append(np.diff(leg, prepend=-1) > 0, True)
+    given = [
+        orders[k] if whole else WaypointOrder(0.0, orders[k].speed)
+        for k, whole in zip([*leg.tolist(), len(orders) - 1], at_vertex.tolist())
+    ]
+    places = list(zip(lat.tolist(), lon.tolist()))
     return replace(parsed, positions=places, orders=given, rhumb=[])
 
 

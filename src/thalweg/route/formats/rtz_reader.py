@@ -28,7 +28,7 @@ from thalweg.route.formats.parsed_track import (
 from thalweg.route.formats.rtz_writer import MANUFACTURER, ORDER, RTZ_NAMESPACE
 from thalweg.route.formats.xml_elements import children, local_name, parse_xml
 
-LARGEST_RTZ = 5_000_000  #: bytes of XML; the standard requires 400 kB
+LARGEST_RTZ = 20_000_000  #: bytes of XML, of some 30,000 waypoints with a schedule
 _DURATION = re.compile(r"^P(?:(\d+)D)?(?:T(?:(\d+)H)?(?:(\d+)M)?(?:(\d+(?:\.\d*)?)S)?)?$")
 _CLOCK = re.compile(r"^(\d{1,2}):(\d{2}):(\d{2})")
 _SCHEDULE_ELEMENTS = ("scheduleElement", "sheduleElement")  # the schema of 1.0 has the second

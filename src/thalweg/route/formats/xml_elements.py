@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
-import numpy as np
-
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import write_bytes
 
@@ -71,4 +69,5 @@ def write_xml(root: ElementTree.Element, path: str | Path) -> None:
 
 def decimal(value: float, digits: int) -> str:
     """Return a number without exponent and without needless zeros."""
-    return np.format_float_positional(round(float(value), digits), trim="-")
+    text = f"{float(value):.{digits}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
