@@ -23,6 +23,8 @@ from thalweg.route.track import Track
 _NO_SUMS = (
     "length", "course", "depart", "arrive", "ordered_speed", "under_keel_clearance", "leg_kind",
 )  # fmt: skip
+#: Decimals of columns that have not three.
+_DECIMALS = {"waiting_h": 6, "ordered_speed_kn": 6}
 _DIRECTIONS = ("course", "heading", "leg")  # not interpolated
 
 
@@ -72,10 +74,11 @@ def _cut_at_waypoints(route: Route, options: RouteFileOptions) -> FileRoute:
     approach = cut.legs["leg_kind"] == LEG_KINDS.index("approach")
     names = waypoint_names(vertices.at, options.start, options.goal, approach)
     bearings = np.degrees(np.append(course, course[-1])).tolist()
+    digits = {"lat": options.decimals, "lon": options.decimals, **_DECIMALS}
     rows = [
         {
             "name": name,
-            **{k: _rounded(k, v, options.decimals) for k, v in row.items()},
+            **{k: round(v, digits.get(k, 3)) if type(v) is float else v for k, v in row.items()},
             "course_deg": round(bearing, 2),
         }
         for name, row, bearing in zip(names, rows, bearings)
@@ -92,16 +95,6 @@ def file_track(route: Route, options: RouteFileOptions | None = None) -> Track:
     """
     cut = _cut(route, file_vertices(route, options or RouteFileOptions()))
     return replace(cut.track, speed=cut.legs["ordered_speed"])
-
-
-def _rounded(name: str, value: Any, decimals: int) -> Any:
-    """Return a value with the decimals that mean something."""
-    digits = 3
-    if name in ("lat", "lon"):
-        digits = decimals
-    elif name in ("waiting_h", "ordered_speed_kn"):
-        digits = 6
-    return round(value, digits) if isinstance(value, float) else value
 
 
 def _cut(route: Route, vertices: FileVertices) -> _CutRoute:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
@@ -57,9 +56,8 @@ def children(element: ElementTree.Element, name: str) -> Iterator[ElementTree.El
 def xml_bytes(root: ElementTree.Element) -> bytes:
     """Return an element as an indented XML text in UTF-8."""
     ElementTree.indent(root)
-    text = io.BytesIO()
-    ElementTree.ElementTree(root).write(text, encoding="utf-8", xml_declaration=True)
-    return text.getvalue()
+    text = ElementTree.tostring(root, encoding="unicode")
+    return f"<?xml version='1.0' encoding='utf-8'?>\n{text}".encode()
 
 
 def write_xml(root: ElementTree.Element, path: str | Path) -> None:
