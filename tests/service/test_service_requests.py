@@ -100,8 +100,16 @@ def test_a_place_is_shown_as_it_is_understood(client):
         ({"corridor_gain_percent": 5}, "corridor_gain_percent", "history"),
         ({"traffic": ["0123456789abcdef"]}, "traffic", "traffic"),
         ({"traffic": ["../../etc/passwd"]}, "traffic.0", "pattern"),
-        ({"charges": {"ets_price": 80}}, "charges.share_percent", "missing"),
+        ({"charges": {"ets_price": 80}}, "charges.share_percent", "ports"),
         ({"sampling": "nearest:soon"}, "sampling", "pattern"),
+        ({"sampling": "nearest:0"}, "sampling", "apart"),
+        ({"fill": {"waves": "nearest:500"}}, "fill", "nearest:NM"),
+        ({"fill": {"wind": 5}}, "fill", "direction"),
+        ({"fill": {"waves": ["nearest:25", -1]}}, "fill", "range"),
+        ({"variables": {"eastward_wind": "u"}}, "variables", "file"),
+        ({"route_files": {"legs": "curve"}}, "route_files.legs", "rhumb"),
+        ({"route_files": {"cross_track_nm": 0}}, "route_files.cross_track_nm", "greater"),
+        ({"route_files": {"max_waypoints": 1}}, "route_files.max_waypoints", "greater"),
     ],
 )
 def test_an_impossible_request_is_refused_at_its_field(client, change, field, word):
@@ -111,6 +119,21 @@ def test_an_impossible_request_is_refused_at_its_field(client, change, field, wo
     found = problem(answer, 404 if absent else 422)
     assert found["field"] == field
     assert word in found["asked"] + found["possible"]
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"depart": "soon"}, "depart"),
+        ({"hold": "speed"}, "hold"),
+        ({"charges": {"ets_price": 80}}, "charges.share_percent"),
+        ({"sampling": "nearest:0"}, "sampling"),
+    ],
+)
+def test_an_impossible_evaluation_is_refused_at_its_field(client, change, field):
+    given = {"route": "0123456789abcdef", "ship": "handysize-bulker", "seas": ["calm"], **change}
+    found = problem(client.post("/api/v1/evaluate", json=given), 422)
+    assert found["field"] == field and found["remedy"]
 
 
 def test_unknown_jobs_and_paths_are_problems(client):

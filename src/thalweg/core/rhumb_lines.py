@@ -158,7 +158,9 @@ def rhumb_deviates(lat: ArrayLike, lon: ArrayLike, deviation: ArrayLike) -> Bool
     return found
 
 
-def _deviation(lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray) -> FloatArray:
+def _deviation(
+    lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
+) -> FloatArray:
     """Return the deviations of legs (n,) with given ends; see `rhumb_deviation`."""
     start, end = (lat1[:, None], lon1[:, None]), (lat2[:, None], lon2[:, None])
     length, course, _ = inverse(*start, *end)

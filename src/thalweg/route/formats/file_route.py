@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from thalweg.core.geodesy import inverse
 from thalweg.core.rhumb_lines import inverse_rhumb
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.formats.file_waypoints import FileVertices, file_vertices
+from thalweg.route.formats.parsed_track import GEOMETRY, GREAT_CIRCLE, RHUMB_LINE
 from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.formats.sample_places import SamplePlaces, time_integral
 from thalweg.route.formats.waypoint_names import waypoint_names
@@ -35,8 +37,9 @@ class FileRoute:
     Attributes
     ----------
     rows : One per waypoint: ``name`` and the columns of `thalweg.route.route.Route.waypoints`, with
-        rhumb-line courses.
-    cross_track_m : Greatest distance of the route from the rhumb lines between the waypoints [m].
+        the courses of the file's lines, and ``geometry``, the line of the leg that begins there: RL
+        (rhumb line) or GC (great circle).
+    cross_track_m : Greatest distance of the route from the lines between the waypoints [m].
     """
 
     rows: list[dict[str, Any]]
@@ -70,9 +73,13 @@ def _cut_at_waypoints(route: Route, options: RouteFileOptions) -> FileRoute:
     cut = _cut(route, vertices)
     rows = waypoint_rows(cut)
     lat, lon = vertices.lat, vertices.lon
-    _, course = inverse_rhumb(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    ends = lat[:-1], lon[:-1], lat[1:], lon[1:]
+    course = inverse(*ends)[1] if options.great_circles else inverse_rhumb(*ends)[1]
     approach = cut.legs["leg_kind"] == LEG_KINDS.index("approach")
     names = waypoint_names(vertices.at, options.start, options.goal, approach)
+    # a canal is joined from end to end: its leg must not be cut along a rhumb line
+    whole = (cut.legs["leg_kind"] == LEG_KINDS.index("canal")) | options.great_circles
+    lines = [*np.where(whole, GREAT_CIRCLE, RHUMB_LINE).tolist(), None]
     bearings = np.degrees(np.append(course, course[-1])).tolist()
     digits = {"lat": options.decimals, "lon": options.decimals, **_DECIMALS}
     rows = [
@@ -80,8 +87,9 @@ def _cut_at_waypoints(route: Route, options: RouteFileOptions) -> FileRoute:
             "name": name,
             **{k: round(v, digits.get(k, 3)) if type(v) is float else v for k, v in row.items()},
             "course_deg": round(bearing, 2),
+            GEOMETRY: line,
         }
-        for name, row, bearing in zip(names, rows, bearings)
+        for name, row, bearing, line in zip(names, rows, bearings, lines)
     ]
     return FileRoute(rows, vertices.cross_track)
 

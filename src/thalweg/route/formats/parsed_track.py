@@ -53,6 +53,7 @@ class WaypointOrder(NamedTuple):
 WAITS = {"waiting_h": HOUR, "wait_h": HOUR, "waiting_s": 1.0, "wait_s": 1.0}
 SPEEDS = {"ordered_speed_kn": KNOT}
 GEOMETRY = "geometry"  #: what files call the kind of line of the leg after a waypoint
+RHUMB_LINE, GREAT_CIRCLE = "RL", "GC"  #: kinds of lines in files of this package
 _RHUMB_WORDS = ("rl", "rhumb", "rhumb line", "rhumbline", "loxodrome")
 _GREAT_CIRCLE_WORDS = ("gc", "great circle", "greatcircle", "orthodrome", "geodesic", "")
 RHUMB_DEVIATION = 20.0  #: rhumb lines are sailed as geodesics this close to them [m]

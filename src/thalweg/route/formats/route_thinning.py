@@ -61,9 +61,7 @@ class RouteLine:
         held[1:] |= canal
         start = np.concatenate([[0.0], np.cumsum(length)])
         approach = np.broadcast_to(kind != 0, canal.shape).copy()
-        return cls(
-            track.lat, track.lon, track.wait, start, canal, approach, held, route.samples
-        )
+        return cls(track.lat, track.lon, track.wait, start, canal, approach, held, route.samples)
 
 
 def kept_waypoints(line: RouteLine, chart: Chart | None, tolerance: float) -> IntArray:
@@ -165,9 +163,7 @@ def _turns(line: RouteLine, chart: Chart | None, tolerance: float) -> IntArray:
     return np.flatnonzero(keep)
 
 
-def _blocked(
-    line: RouteLine, chart: Chart | None, first: IntArray, last: IntArray
-) -> BoolArray:
+def _blocked(line: RouteLine, chart: Chart | None, first: IntArray, last: IntArray) -> BoolArray:
     """Return which legs between waypoints cross land; none without a chart."""
     if chart is None:
         return np.zeros(len(first), bool)

@@ -70,7 +70,7 @@ def _as_integers(values: Any, scale: float) -> Any:
 def _sea(seas: tuple[str, ...], files: tuple[tuple[str, str], ...]) -> Sea:
     from thalweg.service.jobs.request_objects import open_seas
 
-    return open_seas(list(seas), {}, dict(files))
+    return open_seas(list(seas), dict(files))
 
 
 def inspect(task: Mapping[str, Any]) -> TaskResult:
