@@ -238,7 +238,7 @@ def densify(
     """
     lat, lon = np.asarray(lat, float), np.asarray(lon, float)
     lengths = distance(lat[:-1], lon[:-1], lat[1:], lon[1:])
-    return in_equal_pieces(lat, lon, np.maximum(1, np.ceil(lengths / spacing - 1e-9)))
+    return in_equal_pieces(lat, lon, np.maximum(1, np.ceil(lengths / np.asarray(spacing) - 1e-9)))
 
 
 def in_equal_pieces(

@@ -70,7 +70,7 @@ def waypoint_rows(route: SailedRoute) -> list[dict[str, Any]]:
         "time": (format_time(time) if math.isfinite(time) else None for time in times.tolist()),
     }
     for name, values in columns.items():
-        given[name] = np.where(np.isfinite(values), values.astype(object), None).tolist()
+        given[name] = [x if math.isfinite(x) else None for x in values.tolist()]
     given |= {"leg_kind": _leg_kind_names(route), "held": _held_names(route)}
     return [dict(zip(given, row)) for row in zip(*given.values())]
 

@@ -6,6 +6,7 @@ import math
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import PurePath
 from typing import NamedTuple
 
 import numpy as np
@@ -32,6 +33,7 @@ class ParsedTrack:
     rhumb : By leg, whether it is a rhumb line; empty: all legs are geodesics.
     notes : What the file has otherwise than its format, and how it was read.
     corridors : By leg, the cross-track limits to port and starboard [m]; NaN: none. Empty: none.
+    route_name : Where the format requires that the file has this name.
     """
 
     positions: list[Position]
@@ -40,6 +42,14 @@ class ParsedTrack:
     rhumb: list[bool] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     corridors: list[tuple[float, float]] = field(default_factory=list)
+    route_name: str | None = None
+
+    def all_notes(self, name: str) -> list[str]:
+        """Return the notes of a file of a name."""
+        stem = PurePath(name).stem
+        if self.route_name is None or self.route_name.casefold() == stem.casefold():
+            return self.notes
+        return [*self.notes, f"its route is named {self.route_name!r}, not as the file"]
 
 
 class WaypointOrder(NamedTuple):
@@ -182,7 +192,7 @@ def track_of(parsed: ParsedTrack, depart: TimeLike | None, name: str) -> Track:
             field="depart",
         )
     start = parsed.first_time if depart is None else parse_time(depart)
-    for note in parsed.notes:
+    for note in parsed.all_notes(name):
         warnings.warn(ThalwegWarning(f"{name}: {note}."), stacklevel=3)
     return _track(_with_geodesics(parsed), start)  # type: ignore[arg-type]
 
@@ -193,7 +203,8 @@ def _with_geodesics(parsed: ParsedTrack) -> ParsedTrack:
         return parsed
     orders = parsed.orders or [WaypointOrder()] * len(parsed.positions)
     limit = np.where(parsed.rhumb, RHUMB_DEVIATION, math.inf)
-    lat, lon, leg = rhumb_pieces(*np.array(parsed.positions).T, limit)
+    lat, lon = np.array(parsed.positions).T
+    lat, lon, leg = rhumb_pieces(lat, lon, limit)
     at_vertex = np.append(np.diff(leg, prepend=-1) > 0, True)
     given = [
         orders[k] if whole else WaypointOrder(0.0, orders[k].speed)

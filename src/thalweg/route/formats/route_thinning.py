@@ -214,7 +214,8 @@ def _without_short_legs(
             continue  # the legs beside it have changed since
         ends = before[here], after[here]
         if ends not in known:
-            known[ends] = bool(_may_join(line, chart, *map(np.atleast_1d, ends), tolerance)[0])
+            pair = np.array([ends[0]]), np.array([ends[1]])
+            known[ends] = bool(_may_join(line, chart, *pair, tolerance)[0])
         if not known[ends]:
             stays.add(here)
             continue

@@ -106,16 +106,19 @@ class RequestedRouteFiles(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    legs: Literal["rhumb", "great-circle"] = Field(
-        "rhumb", description="lines between the waypoints of a file"
-    )
-    cross_track_nm: float = Field(
-        0.1, ge=0.001, le=9.99, description="the lines are closer to the route than this"
-    )
-    waypoint_spacing_nm: float | None = Field(None, ge=0.1, le=10_000, description="longest leg")
-    max_waypoints: int | None = Field(
-        None, ge=2, le=100_000, description="the cross-track limit grows as far as this needs"
-    )
+    legs: Annotated[
+        Literal["rhumb", "great-circle"], Field(description="lines between the waypoints of a file")
+    ] = "rhumb"
+    cross_track_nm: Annotated[
+        float, Field(ge=0.001, le=9.99, description="the lines are closer to the route than this")
+    ] = 0.1
+    waypoint_spacing_nm: Annotated[
+        float | None, Field(ge=0.1, le=10_000, description="longest leg")
+    ] = None
+    max_waypoints: Annotated[
+        int | None,
+        Field(ge=2, le=100_000, description="the cross-track limit grows as far as this needs"),
+    ] = None
     rtz_version: Literal["1.0", "1.1", "1.2"] = "1.2"
 
     def options(self, **given: Any) -> RouteFileOptions:
