@@ -161,6 +161,22 @@ def test_the_interface_is_described_with_an_example(client):
     assert body["examples"] if "examples" in body else body["schema"]
 
 
+def test_every_operation_states_its_errors_as_problem_details(client):
+    schema = client.get("/openapi.json").json()
+    for path, methods in schema["paths"].items():
+        for method, operation in methods.items():
+            assert operation["description"], (path, method)
+            errors = {k: v for k, v in operation["responses"].items() if int(k) >= 400}
+            assert {"401", "403"} <= set(errors), (path, method)
+            for error in errors.values():
+                assert list(error["content"]) == ["application/problem+json"]
+    posted = schema["paths"]["/api/v1/plans"]["post"]["responses"]
+    assert {"202", "404", "409", "413", "422", "429"} <= set(posted)
+    assert "HTTPValidationError" not in json.dumps(schema)
+    given = client.post("/api/v1/plans", json={}).json()
+    assert set(schema["components"]["schemas"]["Problem"]["required"]) <= set(given)
+
+
 def test_every_body_has_examples_that_it_takes(client):
     from thalweg.service.endpoints import job_endpoints, route_endpoints
 

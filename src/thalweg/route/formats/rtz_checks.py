@@ -58,8 +58,11 @@ def stated_stay(element: ElementTree.Element) -> float | None:
 
 def stated_time(element: ElementTree.Element, name: str) -> float:
     """Return a time [s since 1970-01-01T00:00Z]; NaN where there is none, or none that exists."""
+    text = element.get(name)
+    if not text:
+        return math.nan
     try:
-        return parse_time(str(element.get(name) or ""))
+        return parse_time(text)
     except InputError:
         return math.nan
 
@@ -97,10 +100,9 @@ def _validity_notes(root: ElementTree.Element) -> list[str]:
 
 def _extension_notes(root: ElementTree.Element) -> list[str]:
     outside = any(
-        local_name(child) == "extension"
+        next(children(element, "extension"), None) is not None
         for element in root.iter()
-        if local_name(element) != "extensions"
-        for child in element
+        if len(element) and local_name(element) != "extensions"
     )
     return ["an extension is not inside an element extensions: it is not used"] if outside else []
 
@@ -141,20 +143,17 @@ def _faults_of_schedule(
         faults.append("is not in the order of the waypoints")
     if whole and not unknown and len(set(numbers)) < len(number_of):
         faults.append("does not name every waypoint")
-    given = [(e, name) for _, e in rows for name in ("eta", "etd") if e.get(name)]
-    unreadable = [str(e.get(name)) for e, name in given if math.isnan(stated_time(e, name))]
-    if unreadable:
-        faults.append(f"has the time {unreadable[0]!r}, which does not exist")
     rows.sort(key=lambda row: row[0])
-    times = [stated_time(e, name) for _, e in rows for name in ("eta", "etd")]
-    times = [time for time in times if not math.isnan(time)]
-    if times != sorted(times):
+    times = [(stated_time(e, "eta"), stated_time(e, "etd")) for _, e in rows]
+    for (_, element), pair in zip(rows, times):
+        for name, time in zip(("eta", "etd"), pair):
+            if element.get(name) and math.isnan(time):
+                faults.append(f"has the time {element.get(name)!r}, which does not exist")
+    known = [time for pair in times for time in pair if not math.isnan(time)]
+    if known != sorted(known):
         faults.append("has a time before that of an earlier waypoint")
-    for _, element in rows:
-        stay, scheduled = (
-            stated_stay(element),
-            stated_time(element, "etd") - stated_time(element, "eta"),
-        )
+    for (_, element), (eta, etd) in zip(rows, times):
+        stay, scheduled = stated_stay(element), etd - eta
         if element.get("stay") and stay is None:
             faults.append(f"has the stay {element.get('stay')!r}, which is not understood")
         elif stay is not None and abs(scheduled - stay) > _SAME_STAY:
@@ -162,4 +161,4 @@ def _faults_of_schedule(
                 f"states a stay of {stay / 60.0:g} min where {scheduled / 60.0:g} min are "
                 "scheduled: the stay is used"
             )
-    return faults
+    return list(dict.fromkeys(faults))

@@ -162,8 +162,10 @@ def _stay(row: ElementTree.Element) -> float:
     stay = stated_stay(row)
     if stay is not None:
         return stay
-    scheduled = stated_time(row, "etd") - stated_time(row, "eta")
-    return max(0.0, scheduled) if math.isfinite(scheduled) else 0.0
+    if row.get("eta") and row.get("etd"):
+        scheduled = stated_time(row, "etd") - stated_time(row, "eta")
+        return max(0.0, scheduled) if math.isfinite(scheduled) else 0.0
+    return 0.0
 
 
 def _order(waypoint: ElementTree.Element, number: int, stay: float) -> WaypointOrder:
