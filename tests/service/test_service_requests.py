@@ -330,6 +330,17 @@ def test_an_imported_route_has_the_waypoints_of_its_file(client):
     found = client.post("/api/v1/routes", files={"file": ("route.csv", text, "text/csv")}).json()
     assert found["waypoints"] == [[47.0, -5.0], [47.2, -5.1], [47.3, -5.3]]
     assert found["depart"] is None
+    assert found["notes"] == []
+    rtz = (
+        '<route xmlns="http://www.cirm.org/RTZ/1/2" version="1.2"><routeInfo routeName="Other"/>'
+        '<waypoints><waypoint id="1" revision="-1"><position lat="47" lon="-5"/></waypoint>'
+        '<waypoint id="2" revision="0"><position lat="47.2" lon="-5"/></waypoint>'
+        "</waypoints></route>"
+    )
+    notes = client.post("/api/v1/routes", files={"file": ("bay.rtz", rtz, "text/xml")}).json()[
+        "notes"
+    ]
+    assert "revision '-1'" in notes[0] and "named 'Other'" in notes[1]
     packed = gzip.compress(text)
     problem(client.post("/api/v1/routes", files={"file": ("r.gpx", packed, "text/xml")}), 422)
 
