@@ -10,7 +10,15 @@ from hypothesis import strategies as st
 from tests.route.planar import ship
 from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
-from thalweg.route import Track, evaluate, read_track, write_csv, write_geojson, write_gpx
+from thalweg.route import (
+    RouteFileOptions,
+    Track,
+    evaluate,
+    read_track,
+    write_csv,
+    write_geojson,
+    write_gpx,
+)
 from thalweg.sea import Sea
 
 WRITERS = {"csv": write_csv, "geojson": write_geojson, "gpx": write_gpx}
@@ -32,10 +40,11 @@ def route_along(positions):
 )
 def test_round_trip(tmp_path, suffix, positions):
     path = tmp_path / f"route.{suffix}"
-    WRITERS[suffix](route_along(positions), path)
+    WRITERS[suffix](route_along(positions), path, RouteFileOptions(legs="great-circle"))
     track = read_track(path)
     expected = route_along(positions).track
-    for lat, lon in expected.positions:  # kept among the points that break the great circles
+    assert len(track) == len(positions)
+    for lat, lon in expected.positions:
         assert np.hypot(track.lat - lat, (track.lon - lon + 180.0) % 360.0 - 180.0).min() < 1e-6
     assert track.depart == expected.depart
     again = evaluate(path, ship=ship(5.0), sea=Sea.calm())

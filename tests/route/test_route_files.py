@@ -8,7 +8,7 @@ import pytest
 from tests.route.planar import ship
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import direct, distance
+from thalweg.core.geodesy import WGS84, direct, distance
 from thalweg.core.rhumb_lines import inverse_rhumb, rhumb_deviation, rhumb_pieces
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route import (
@@ -20,6 +20,7 @@ from thalweg.route import (
     write_geojson,
     write_gpx,
     write_rtz,
+    write_s421,
 )
 from thalweg.route.formats.file_route import file_route
 from thalweg.route.formats.waypoint_names import waypoint_names
@@ -73,6 +74,58 @@ def test_great_circles_are_broken_below_the_cross_track_limit(ocean):
     assert 0.1 * NAUTICAL_MILE < bound.cross_track_m <= NAUTICAL_MILE
     close = positions(file_route(ocean, RouteFileOptions(spacing_nm=20.0)).rows)
     assert distance(close[0][:-1], close[1][:-1], close[0][1:], close[1][1:]).max() < 37_041.0
+
+
+@pytest.mark.parametrize("suffix", ["csv", "geojson", "gpx", "rtz", "gml"])
+@pytest.mark.parametrize("legs", ["rhumb", "great-circle"])
+def test_the_lines_of_a_file_are_sailed_when_it_is_read(tmp_path, suffix, legs, ocean):
+    path = tmp_path / f"route.{suffix}"
+    {**WRITERS, "gml": write_s421}[suffix](
+        ocean, path, RouteFileOptions(legs=legs, cross_track_nm=5.0)
+    )
+    read = read_track(path)
+    found = file_route(ocean, RouteFileOptions(legs=legs, cross_track_nm=5.0))
+    lat, lon = positions(found.rows)
+    if legs == "great-circle":
+        assert len(found.rows) == len(ocean.track) and found.cross_track_m < 1.0
+        length = distance(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    else:
+        assert 1.0 * NAUTICAL_MILE < found.cross_track_m <= 5.0 * NAUTICAL_MILE
+        length = inverse_rhumb(lat[:-1], lon[:-1], lat[1:], lon[1:])[0]
+    assert read.lengths.sum() == pytest.approx(length.sum(), rel=1e-6)
+    assert read.depart == ocean.depart
+
+
+def test_the_work_for_many_waypoints_is_done_at_once(tmp_path, monkeypatch):
+    """Sixteen times the legs, all kept in the file, need a few more calls of the geodesic."""
+    counts = []
+    for size in (100, 1600):
+        share = np.linspace(0.0, 1.0, size)
+        track = Track(40.0 + 10.0 * np.sin(20.0 * share), -60.0 + 50.0 * share, 0.0)
+        route = evaluate(track, ship=ship(7.0), sea=Sea.calm())
+        calls = []
+        with monkeypatch.context() as patched:
+            for module in ("geodesy", "rhumb_lines"):
+                patched.setattr(f"thalweg.core.{module}.WGS84", CountedGeod(WGS84, calls))
+            write_rtz(route, tmp_path / "a.rtz", RouteFileOptions(thinning=0.0))
+            assert len(read_track(tmp_path / "a.rtz")) >= size
+        counts.append(len(calls))
+    assert counts[1] <= counts[0] + 100  # deeper thinning; not one or more for each leg
+
+
+class CountedGeod:
+    """A geodesic whose calls are noted."""
+
+    def __init__(self, geod, calls):
+        self.geod, self.calls = geod, calls
+
+    def inv(self, *arguments):
+        self.calls.append("inv")
+        return self.geod.inv(*arguments)
+
+    def fwd(self, *arguments):
+        self.calls.append("fwd")
+        return self.geod.fwd(*arguments)
 
 
 def test_rows_of_broken_legs(ocean):

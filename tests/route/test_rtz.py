@@ -96,7 +96,8 @@ def test_departure_and_stays_of_a_schedule(tmp_path):
         '<scheduleElement waypointId="3" eta="2026-03-01T16:00:00Z"/>'
     )
     path.write_text(f"{HEAD}<waypoints>{POINTS}</waypoints>{schedule(rows)}</route>")
-    track = read_track(path)
+    with pytest.warns(ThalwegWarning, match="not in the order"):
+        track = read_track(path)
     assert track.wait.tolist() == [0.0, 3900.0, 0.0]
     assert track.depart == evaluate(track, ship=ship(5.0), sea=Sea.calm()).depart
     assert track.depart == 1772344800.0
@@ -136,6 +137,80 @@ def test_what_differs_from_the_standard_is_noted(tmp_path, text, note):
     with pytest.warns(ThalwegWarning, match=note):
         track = read_track(path, depart=0)
     assert track.lat.tolist() == [50.0, 50.1, 50.2]
+
+
+def _of_schedule(elements: str, kind: str = "manual") -> str:
+    made = schedule(elements).replace("manual", kind)
+    return f"{HEAD}<waypoints>{POINTS}</waypoints>{made}</route>"
+
+
+@pytest.mark.parametrize(
+    ("text", "note"),
+    [
+        (f"{HEAD}<waypoints>{POINTS}</waypoints></route>".replace('n="0"', 'n="-1"'), "'-1'"),
+        (f"{HEAD}<waypoints>{POINTS}</waypoints></route>".replace('"a"', '"b"'), "named 'b'"),
+        (
+            f"{HEAD}<waypoints>{POINTS}</waypoints></route>".replace(
+                "<routeInfo",
+                '<routeInfo validityPeriodStart="2026-03-02T00:00:00Z" '
+                'validityPeriodStop="2026-03-01T00:00:00Z"',
+            ),
+            "ends before it begins",
+        ),
+        (
+            f"{HEAD}<waypoints>{POINTS}</waypoints><extension/></route>",
+            "not inside an element extensions",
+        ),
+        (
+            _of_schedule(
+                '<scheduleElement waypointId="1" etd="2026-03-01T06:00:00Z"/>'
+                '<scheduleElement waypointId="3" eta="2026-03-01T05:00:00Z"/>'
+            ),
+            "before that of an earlier waypoint",
+        ),
+        (
+            _of_schedule(
+                '<scheduleElement waypointId="1" etd="2026-02-30T00:00:00Z"/>'
+                '<scheduleElement waypointId="2"/><scheduleElement waypointId="3"/>',
+                "calculated",
+            ),
+            "does not exist",
+        ),
+        (
+            _of_schedule(
+                '<scheduleElement waypointId="1" etd="2026-03-01T06:00:00Z"/>'
+                '<scheduleElement waypointId="2" eta="2026-03-01T07:00:00Z" '
+                'etd="2026-03-01T09:00:00Z" stay="PT99M"/>'
+            ),
+            "99 min where 120 min",
+        ),
+        (
+            _of_schedule(
+                '<scheduleElement waypointId="2" eta="2026-03-01T07:00:00Z"/>'
+                '<scheduleElement waypointId="1" etd="2026-03-01T06:00:00Z"/>'
+            ),
+            "not in the order",
+        ),
+        (
+            _of_schedule(
+                '<scheduleElement waypointId="1" etd="2026-03-01T06:00:00Z"/>', "calculated"
+            ),
+            "every waypoint",
+        ),
+    ],
+)
+def test_deliberate_errors_are_named(tmp_path, text, note):
+    path = tmp_path / "a.rtz"
+    path.write_text(text)
+    with pytest.warns(ThalwegWarning, match=note):
+        track = read_track(path, depart=0)
+    assert track.lat.tolist() == [50.0, 50.1, 50.2]
+
+
+def test_every_deliberate_error_of_the_samples_is_named():
+    for path in sorted(data_file("rtz/samples/Errors").rglob("*.rtz")):
+        with pytest.warns(ThalwegWarning):
+            read_track(path, depart=0)
 
 
 @pytest.mark.parametrize(

@@ -100,8 +100,16 @@ def test_a_place_is_shown_as_it_is_understood(client):
         ({"corridor_gain_percent": 5}, "corridor_gain_percent", "history"),
         ({"traffic": ["0123456789abcdef"]}, "traffic", "traffic"),
         ({"traffic": ["../../etc/passwd"]}, "traffic.0", "pattern"),
-        ({"charges": {"ets_price": 80}}, "charges.share_percent", "missing"),
+        ({"charges": {"ets_price": 80}}, "charges.share_percent", "ports"),
         ({"sampling": "nearest:soon"}, "sampling", "pattern"),
+        ({"sampling": "nearest:0"}, "sampling", "apart"),
+        ({"fill": {"waves": "nearest:500"}}, "fill", "nearest:NM"),
+        ({"fill": {"wind": 5}}, "fill", "direction"),
+        ({"fill": {"waves": ["nearest:25", -1]}}, "fill", "range"),
+        ({"variables": {"eastward_wind": "u"}}, "variables", "file"),
+        ({"route_files": {"legs": "curve"}}, "route_files.legs", "rhumb"),
+        ({"route_files": {"cross_track_nm": 0}}, "route_files.cross_track_nm", "greater"),
+        ({"route_files": {"max_waypoints": 1}}, "route_files.max_waypoints", "greater"),
     ],
 )
 def test_an_impossible_request_is_refused_at_its_field(client, change, field, word):
@@ -111,6 +119,21 @@ def test_an_impossible_request_is_refused_at_its_field(client, change, field, wo
     found = problem(answer, 404 if absent else 422)
     assert found["field"] == field
     assert word in found["asked"] + found["possible"]
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"depart": "soon"}, "depart"),
+        ({"hold": "speed"}, "hold"),
+        ({"charges": {"ets_price": 80}}, "charges.share_percent"),
+        ({"sampling": "nearest:0"}, "sampling"),
+    ],
+)
+def test_an_impossible_evaluation_is_refused_at_its_field(client, change, field):
+    given = {"route": "0123456789abcdef", "ship": "handysize-bulker", "seas": ["calm"], **change}
+    found = problem(client.post("/api/v1/evaluate", json=given), 422)
+    assert found["field"] == field and found["remedy"]
 
 
 def test_unknown_jobs_and_paths_are_problems(client):
@@ -136,6 +159,22 @@ def test_the_interface_is_described_with_an_example(client):
     }
     body = schema["paths"]["/api/v1/plans"]["post"]["requestBody"]["content"]["application/json"]
     assert body["examples"] if "examples" in body else body["schema"]
+
+
+def test_every_operation_states_its_errors_as_problem_details(client):
+    schema = client.get("/openapi.json").json()
+    for path, methods in schema["paths"].items():
+        for method, operation in methods.items():
+            assert operation["description"], (path, method)
+            errors = {k: v for k, v in operation["responses"].items() if int(k) >= 400}
+            assert {"401", "403"} <= set(errors), (path, method)
+            for error in errors.values():
+                assert list(error["content"]) == ["application/problem+json"]
+    posted = schema["paths"]["/api/v1/plans"]["post"]["responses"]
+    assert {"202", "404", "409", "413", "422", "429"} <= set(posted)
+    assert "HTTPValidationError" not in json.dumps(schema)
+    given = client.post("/api/v1/plans", json={}).json()
+    assert set(schema["components"]["schemas"]["Problem"]["required"]) <= set(given)
 
 
 def test_every_body_has_examples_that_it_takes(client):
@@ -291,6 +330,17 @@ def test_an_imported_route_has_the_waypoints_of_its_file(client):
     found = client.post("/api/v1/routes", files={"file": ("route.csv", text, "text/csv")}).json()
     assert found["waypoints"] == [[47.0, -5.0], [47.2, -5.1], [47.3, -5.3]]
     assert found["depart"] is None
+    assert found["notes"] == []
+    rtz = (
+        '<route xmlns="http://www.cirm.org/RTZ/1/2" version="1.2"><routeInfo routeName="Other"/>'
+        '<waypoints><waypoint id="1" revision="-1"><position lat="47" lon="-5"/></waypoint>'
+        '<waypoint id="2" revision="0"><position lat="47.2" lon="-5"/></waypoint>'
+        "</waypoints></route>"
+    )
+    notes = client.post("/api/v1/routes", files={"file": ("bay.rtz", rtz, "text/xml")}).json()[
+        "notes"
+    ]
+    assert "revision '-1'" in notes[0] and "named 'Other'" in notes[1]
     packed = gzip.compress(text)
     problem(client.post("/api/v1/routes", files={"file": ("r.gpx", packed, "text/xml")}), 422)
 

@@ -89,20 +89,12 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
         layers.append(Sea.storm())
     sea = layers[0] if len(layers) == 1 else Sea.layered(*layers)
     sea = _check_ensemble_choice(sea, arguments)
-    for one_of_each in _in_turns(policies):
-        sea = sea.filled(**_with_fetch(one_of_each, arguments))
+    if policies:
+        from thalweg.planning.request.filled_sea import filled_in_turns
+
+        by_fetch = ("waves", "fetch_limited") in policies
+        sea = filled_in_turns(sea, policies, _coast_of(arguments) if by_fetch else None)
     return sea.sampled(getattr(arguments, "sampling", "linear"))
-
-
-def _in_turns(policies: list[tuple[str, float | str]]) -> list[dict[str, float | str]]:
-    """Return the policies in turns with one value of each quantity: the first is tried first."""
-    turns: list[dict[str, float | str]] = []
-    for name, value in policies:
-        turn = next((t for t in turns if name not in t), None)
-        if turn is None:
-            turns.append(turn := {})
-        turn[name] = value
-    return turns
 
 
 def _check_options(arguments: argparse.Namespace) -> None:
@@ -134,18 +126,6 @@ def _check_ensemble_choice(sea: Sea, arguments: argparse.Namespace) -> Sea:
             "Give such files with --sea, or omit --ensemble.",
         )
     return sea
-
-
-def _with_fetch(policies: dict[str, Any], arguments: argparse.Namespace) -> dict[str, Any]:
-    """Return fill values with the fetch to the coast of the options in place of its name."""
-    if policies.get("waves") != "fetch_limited":
-        return policies
-    from thalweg.chart import Chart
-    from thalweg.chart.coastal_fetch import CoastalFetch
-
-    coast = getattr(arguments, "coast", "i")
-    chart = Chart.open_water() if coast == "none" else Chart.gshhg(coast)
-    return {**policies, "waves": CoastalFetch(chart)}
 
 
 def _parse_fill_policy(text: str) -> tuple[str, float | str]:
@@ -180,15 +160,19 @@ def check_chart_files(arguments: argparse.Namespace) -> None:
                 )
 
 
-def open_chart(arguments: argparse.Namespace) -> Chart:
-    """Return the chart that the options name."""
+def _coast_of(arguments: argparse.Namespace) -> Chart:
     from thalweg.chart import Chart
 
+    coast = getattr(arguments, "coast", "i")
+    if coast == "none":
+        return Chart.open_water(-90.0, 90.0, -180.0, 180.0)
+    return Chart.gshhg(coast)
+
+
+def open_chart(arguments: argparse.Namespace) -> Chart:
+    """Return the chart that the options name."""
     arguments.progress("reading the chart")
-    if arguments.coast == "none":
-        chart = Chart.open_water(-90.0, 90.0, -180.0, 180.0)
-    else:
-        chart = Chart.gshhg(arguments.coast)
+    chart = _coast_of(arguments)
     for path in arguments.depth:
         chart = chart.with_depth(path)
     for path in arguments.zones:
@@ -259,29 +243,11 @@ def _european_charges(arguments: argparse.Namespace) -> EuropeanCharges | None:
     prices = allowance or 0.0, euro or 0.0, arguments.eu_year
     if share is not None:
         return EuropeanCharges(share / 100.0, *prices)
-    found, source = _share_of_ports(arguments)
+    from thalweg.planning.request.european_scope import share_between_places
+
+    ends = (getattr(arguments, name, None) for name in ("start", "goal"))
+    found, source = share_between_places(*ends)
     return EuropeanCharges(found, *prices, source)
-
-
-def _share_of_ports(arguments: argparse.Namespace) -> tuple[float, str]:
-    """Return the share of a voyage between named ports in scope of the charges, and its source."""
-    from thalweg.chart.ports import PORTS
-    from thalweg.core.geodesy import parse_position
-    from thalweg.ship.methods.engine.european_charges import voyage_share_between
-
-    ends = [getattr(arguments, name, None) for name in ("start", "goal")]
-    if any(end is None or parse_position(end) is not None for end in ends):
-        raise InputError(
-            "--ets-price or --eur-rate is given without the share of the voyage.",
-            "It is 100 between two ports of the Union, 50 to or from one, else 0; it is found "
-            "where both ends of a plan are ports given by name.",
-            "Add --eu-share.",
-            field="eu_share",
-        )
-    start, goal = (PORTS.lookup(str(end)) for end in ends)
-    share = voyage_share_between(start.country_code, goal.country_code)
-    rule = "Directive 2003/87/EC, article 3ga"
-    return share, f"{start.label} to {goal.label}: {100.0 * share:.0f} % ({rule})"
 
 
 def position_from_text(text: str) -> Position:
@@ -337,6 +303,7 @@ def route_file_options(arguments: argparse.Namespace) -> RouteFileOptions:
         "waypoint_spacing": "spacing_nm",
         "max_waypoints": "max_waypoints",
         "rtz": "rtz_version",
+        "legs": "legs",
     }
     given = {name: getattr(arguments, option) for option, name in names.items()}
     given = {name: value for name, value in given.items() if value is not None}

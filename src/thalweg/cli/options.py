@@ -66,9 +66,7 @@ def add_ship_and_chart_options(parser: argparse.ArgumentParser, *, default_ukc: 
 
 
 def _add_route_file_options(parser: argparse.ArgumentParser) -> None:
-    files = parser.add_argument_group(
-        "route files", "Formats and waypoints; waypoints are joined by rhumb lines."
-    )
+    files = parser.add_argument_group("route files", "Formats and waypoints of the files of --out.")
     files.add_argument(
         "--formats", metavar="LIST",
         help="formats by ending, separated by commas: rtz, rtzp, gml (S-421), gpx, geojson, kml, "
@@ -78,8 +76,14 @@ def _add_route_file_options(parser: argparse.ArgumentParser) -> None:
         "--xtd",
         type=float,
         metavar="NM",
-        help="cross-track limit: the rhumb lines are closer to the route than this [nm]; default: "
-        "0.1",
+        help="cross-track limit: the lines between the waypoints are closer to the route than this "
+        "[nm]; default: 0.1",
+    )
+    files.add_argument(
+        "--legs",
+        choices=("rhumb", "great-circle"),
+        help="lines between the waypoints: rhumb lines (default), as plotters sail them, or great "
+        "circles",
     )
     files.add_argument(
         "--waypoint-spacing", type=float, metavar="NM", help="longest leg [nm]; default: no limit"

@@ -222,14 +222,14 @@ def positions_along(
 
 
 def densify(
-    lat: ArrayLike, lon: ArrayLike, spacing: float
+    lat: ArrayLike, lon: ArrayLike, spacing: ArrayLike
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
     """Split the geodesics of a polyline into equal pieces no longer than ``spacing`` [m].
 
     Parameters
     ----------
     lat, lon : Vertices of the polyline [deg], (n,).
-    spacing : Greatest length of a piece [m], above 0.
+    spacing : Greatest length of a piece [m], above 0; of all legs or (n - 1,).
 
     Returns
     -------
@@ -237,15 +237,35 @@ def densify(
     leg : For each position but the last, the index of its leg.
     """
     lat, lon = np.asarray(lat, float), np.asarray(lon, float)
+    lengths = distance(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    return in_equal_pieces(lat, lon, np.maximum(1, np.ceil(lengths / np.asarray(spacing) - 1e-9)))
+
+
+def in_equal_pieces(
+    lat: FloatArray, lon: FloatArray, pieces: ArrayLike
+) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
+    """Split each geodesic of a polyline into a number of equal pieces.
+
+    Parameters
+    ----------
+    lat, lon : Vertices of the polyline [deg], (n,).
+    pieces : Number of pieces of each leg, 1 or more, (n - 1,).
+
+    Returns
+    -------
+    lat, lon : Positions [deg], original vertices included.
+    leg : For each position but the last, the index of its leg.
+    """
+    count = np.asarray(pieces, dtype=np.int64)
     lengths, courses, _ = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
-    pieces = np.maximum(1, np.ceil(lengths / spacing - 1e-9)).astype(np.int64)
-    leg = np.repeat(np.arange(len(pieces)), pieces)
-    first = np.repeat(np.cumsum(pieces) - pieces, pieces)
-    fraction = (np.arange(len(leg)) - first) / pieces[leg]
-    out_lat, out_lon = direct(lat[leg], lon[leg], courses[leg], fraction * lengths[leg])
-    at_vertex = fraction == 0.0
-    out_lat[at_vertex] = lat[leg[at_vertex]]
-    out_lon[at_vertex] = wrap_longitude(lon[leg[at_vertex]])
+    leg = np.repeat(np.arange(len(count)), count)
+    first = np.repeat(np.cumsum(count) - count, count)
+    fraction = (np.arange(len(leg)) - first) / count[leg]
+    out_lat, out_lon = lat[leg], wrap_longitude(lon[leg])
+    inner = fraction > 0.0
+    out_lat[inner], out_lon[inner] = direct(
+        lat[leg[inner]], lon[leg[inner]], courses[leg[inner]], (fraction * lengths[leg])[inner]
+    )
     return np.append(out_lat, lat[-1]), np.append(out_lon, wrap_longitude(lon[-1])), leg
 
 

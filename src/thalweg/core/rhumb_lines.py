@@ -15,6 +15,7 @@ the mean radius of the parallels, is found by quadrature where the latitudes are
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Final
 
 import numpy as np
@@ -22,19 +23,23 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.ellipsoid import ECCENTRICITY_SQUARED, EQUATORIAL_RADIUS
 from thalweg.core.geodesy import (
+    MEAN_RADIUS,
     WGS84,
-    densify,
     direct,
     distance,
+    in_equal_pieces,
     inverse,
     wrap_longitude,
 )
-from thalweg.core.types import FloatArray
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 
 _CLOSE: Final = 0.1  # radians of latitude within which quadrature is used
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 _FRACTIONS: Final = np.linspace(0.1, 0.9, 9)  # of a leg, where its deviation is measured
 _MAX_LATITUDE: Final = 89.999999  # the course at a pole is not defined [deg]
+_SHORT_LEG: Final = 100_000.0  # [m]
+_HIGH_LATITUDE: Final = 80.0  # [deg]
+_MOST_PIECES: Final = 5_000  # of a leg
 
 
 def inverse_rhumb(
@@ -120,7 +125,44 @@ def rhumb_deviation(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
     ndarray (n - 1,) : Greatest distance in each leg [m].
     """
     lat, lon = np.asarray(lat, float), np.asarray(lon, float)
-    start, end = (lat[:-1, None], lon[:-1, None]), (lat[1:, None], lon[1:, None])
+    return _deviation(lat[:-1], lon[:-1], lat[1:], lon[1:])
+
+
+def rhumb_deviates(lat: ArrayLike, lon: ArrayLike, deviation: ArrayLike) -> BoolArray:
+    r"""Return whether the rhumb line and the geodesic of each leg are further apart than a limit.
+
+    The rhumb line has the geodesic curvature :math:`\tan\phi \sin\alpha / R`, so in a leg of
+    length :math:`s` the two are at most about :math:`s^2 \tan\phi / 8R` apart. Where twice this is
+    within the limit, nothing is measured.
+
+    Parameters
+    ----------
+    lat, lon : Vertices of a polyline [deg], (n,).
+    deviation : Limit [m], of all legs or (n - 1,).
+
+    Returns
+    -------
+    bool array (n - 1,) : Also true where the deviation is unknown.
+    """
+    lat, lon = np.asarray(lat, float), np.asarray(lon, float)
+    limit = np.broadcast_to(np.asarray(deviation, float), len(lat) - 1)
+    length = distance(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    highest = np.maximum(np.abs(lat[:-1]), np.abs(lat[1:]))
+    most = length**2 * np.tan(np.radians(np.minimum(highest, 89.0))) / (4.0 * MEAN_RADIUS)
+    near = (length < _SHORT_LEG) & (highest < _HIGH_LATITUDE) & (most <= limit)
+    found = np.zeros(len(length), bool)
+    k = np.flatnonzero(~near)
+    if k.size:
+        apart = _deviation(lat[k], lon[k], lat[k + 1], lon[k + 1])
+        found[k] = ~(apart <= limit[k]) & (limit[k] < math.inf)
+    return found
+
+
+def _deviation(
+    lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
+) -> FloatArray:
+    """Return the deviations of legs (n,) with given ends; see `rhumb_deviation`."""
+    start, end = (lat1[:, None], lon1[:, None]), (lat2[:, None], lon2[:, None])
     length, course, _ = inverse(*start, *end)
     straight = direct(*start, course, _FRACTIONS * length)
     rhumb_length, rhumb_course = inverse_rhumb(*start, *end)
@@ -129,16 +171,19 @@ def rhumb_deviation(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
 
 
 def rhumb_cross_track(
-    start: tuple[float, float], end: tuple[float, float], lat: ArrayLike, lon: ArrayLike
+    start: tuple[ArrayLike, ArrayLike],
+    end: tuple[ArrayLike, ArrayLike],
+    lat: ArrayLike,
+    lon: ArrayLike,
 ) -> FloatArray:
-    """Return the distances [m] of positions from a rhumb line; those abreast of it, and close.
+    """Return the distances [m] of positions from rhumb lines; those abreast of them, and close.
 
     Rhumb lines are straight in Mercator's projection, whose scale at the position gives metres.
 
     Parameters
     ----------
     start, end : (lat, lon)
-        Ends of the rhumb line [deg].
+        Ends of the rhumb line [deg], or of one for each position, (n,).
     lat, lon : Positions [deg], (n,).
 
     Returns
@@ -146,31 +191,28 @@ def rhumb_cross_track(
     ndarray (n,) : Distances [m], positive.
     """
     lat, lon = np.asarray(lat, float), np.asarray(lon, float)
-    psi, _ = _isometric_step(np.array([start[0]]), np.array([end[0]]))
-    turn = np.radians(wrap_longitude(end[1] - start[1]))
-    rise, _ = _isometric_step(np.full(lat.shape, start[0]), lat)
-    lon_change = np.radians(wrap_longitude(lon - start[1]))
-    length = math.hypot(float(turn), float(psi[0]))
+    psi0, psi1, psi = (_isometric_latitude(x) for x in (start[0], end[0], lat))
+    east, north = np.radians(wrap_longitude(np.subtract(end[1], start[1]))), psi1 - psi0
+    x, y = np.radians(wrap_longitude(np.subtract(lon, start[1]))), psi - psi0
+    length = np.hypot(east, north)
     phi = np.radians(lat)
     scale = EQUATORIAL_RADIUS * np.cos(phi) / np.sqrt(1 - ECCENTRICITY_SQUARED * np.sin(phi) ** 2)
-    apart = (
-        np.hypot(lon_change, rise)
-        if length == 0.0
-        else (lon_change * psi[0] - rise * turn) / length
-    )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        apart = np.where(length == 0.0, np.hypot(x, y), (x * north - y * east) / length)
     return np.asarray(np.abs(apart) * scale)
 
 
 def densify_for_rhumb(
-    lat: ArrayLike, lon: ArrayLike, deviation: float, spacing: float = math.inf
+    lat: ArrayLike, lon: ArrayLike, deviation: ArrayLike, spacing: ArrayLike = math.inf
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
     """Break the geodesics of a polyline so that rhumb lines between the points stay close to them.
 
     Parameters
     ----------
     lat, lon : Vertices of the polyline [deg], (n,).
-    deviation : Greatest distance between rhumb line and geodesic of a piece [m], above 0.
-    spacing : Greatest length of a piece [m].
+    deviation : Greatest distance between rhumb line and geodesic of a piece [m], above 0; of all
+        legs or (n - 1,).
+    spacing : Greatest length of a piece [m], of all legs or (n - 1,).
 
     Returns
     -------
@@ -178,32 +220,28 @@ def densify_for_rhumb(
     leg : For each position but the last, the index of its leg.
     """
     lat, lon = np.asarray(lat, float), np.asarray(lon, float)
-    pieces = []
-    long = distance(lat[:-1], lon[:-1], lat[1:], lon[1:]) > spacing
-    broken = long | ~(rhumb_deviation(lat, lon) <= deviation)
-    wrapped = wrap_longitude(lon)
-    for index in range(len(lat) - 1):
-        ends = slice(index, index + 2)
-        pieces.append(
-            _leg_pieces(lat[ends], lon[ends], deviation, spacing)
-            if broken[index]
-            else (lat[ends], wrapped[ends])
-        )
-    out_lat = np.concatenate([*(piece[0][:-1] for piece in pieces), lat[-1:]])
-    out_lon = np.concatenate([*(piece[1][:-1] for piece in pieces), wrap_longitude(lon[-1:])])
-    leg = np.repeat(np.arange(len(pieces)), [len(piece[0]) - 1 for piece in pieces])
-    return out_lat, out_lon, leg
+    limit, longest = (np.broadcast_to(x, len(lat) - 1) for x in (deviation, spacing))
+    length, course, _ = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    bends = rhumb_deviates(lat, lon, limit)
+    count = np.maximum(1, np.ceil(length / longest - 1e-9)).astype(np.int64)
+
+    def place(leg: IntArray, fraction: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return direct(lat[leg], lon[leg], course[leg], fraction * length[leg])
+
+    count = _raised_counts(lat, lon, count, bends, limit, place)
+    return in_equal_pieces(lat, lon, count)
 
 
 def rhumb_pieces(
-    lat: ArrayLike, lon: ArrayLike, deviation: float
+    lat: ArrayLike, lon: ArrayLike, deviation: ArrayLike
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
     """Break the rhumb lines of a polyline so that geodesics between the points stay close to them.
 
     Parameters
     ----------
     lat, lon : Vertices of the polyline [deg], (n,).
-    deviation : Greatest distance between rhumb line and geodesic of a piece [m], above 0.
+    deviation : Greatest distance between rhumb line and geodesic of a piece [m], above 0; of all
+        legs or (n - 1,), infinite for legs that are not broken.
 
     Returns
     -------
@@ -211,38 +249,56 @@ def rhumb_pieces(
     leg : For each position but the last, the index of its leg.
     """
     lat, lon = np.asarray(lat, float), np.asarray(lon, float)
-    parts_lat, parts_lon, counts = [], [], []
-    whole = rhumb_deviation(lat, lon)
-    for index in range(len(lat) - 1):
-        count = max(1, math.ceil(math.sqrt(whole[index] / deviation)))
-        while True:
-            fractions = np.arange(count + 1) / count
-            ends = (lat[index], lon[index], lat[index + 1], lon[index + 1])
-            found = positions_along_rhumb(*ends, fractions)
-            if rhumb_deviation(*found).max() <= deviation or count > 5_000:
-                break
-            count += max(1, count // 8)
-        found[0][0], found[1][0] = lat[index], wrap_longitude(lon[index])
-        parts_lat.append(found[0][:-1])
-        parts_lon.append(found[1][:-1])
-        counts.append(count)
-    out_lat = np.concatenate([*parts_lat, lat[-1:]])
-    out_lon = np.concatenate([*parts_lon, wrap_longitude(lon[-1:])])
-    return out_lat, out_lon, np.repeat(np.arange(len(counts)), counts)
+    length, course = inverse_rhumb(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    limit = np.broadcast_to(np.asarray(deviation, float), len(length))
+    bends = rhumb_deviates(lat, lon, limit)
+
+    def place(leg: IntArray, fraction: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return direct_rhumb(lat[leg], lon[leg], course[leg], fraction * length[leg])
+
+    count = np.ones(len(length), np.int64)
+    count = _raised_counts(lat, lon, count, bends, limit, place)
+    leg = np.repeat(np.arange(len(count)), count)
+    number = np.arange(len(leg)) - np.repeat(np.cumsum(count) - count, count)
+    out_lat, out_lon = lat[leg], wrap_longitude(lon[leg])
+    inner = number > 0
+    out_lat[inner], out_lon[inner] = place(leg[inner], (number / count[leg])[inner])
+    return np.append(out_lat, lat[-1]), np.append(out_lon, wrap_longitude(lon[-1])), leg
 
 
-def _leg_pieces(
-    lat: FloatArray, lon: FloatArray, deviation: float, spacing: float
-) -> tuple[FloatArray, FloatArray]:
-    """Return one geodesic in equal pieces that keep to both limits."""
-    length = float(distance(lat[0], lon[0], lat[1], lon[1]))
-    whole = float(rhumb_deviation(lat, lon)[0])
-    count = max(1, math.ceil(length / spacing - 1e-9), math.ceil(math.sqrt(whole / deviation)))
-    while True:
-        found = densify(lat, lon, length / count) if count > 1 else (lat, wrap_longitude(lon))
-        if rhumb_deviation(found[0], found[1]).max() <= deviation or count > 5_000:
-            return found[0], found[1]
-        count += max(1, count // 8)
+def _raised_counts(
+    lat: FloatArray,
+    lon: FloatArray,
+    count: IntArray,
+    bends: BoolArray,
+    limit: FloatArray,
+    place: Callable[[IntArray, FloatArray], tuple[FloatArray, FloatArray]],
+) -> IntArray:
+    """Return the numbers of equal pieces of legs in which no piece deviates by more than a limit.
+
+    Parameters
+    ----------
+    count : The least numbers.
+    bends : Which legs deviate as a whole.
+    place : Returns the positions at fractions of legs.
+    """
+    count, pending = count.copy(), np.flatnonzero(bends)
+    if pending.size:
+        apart = _deviation(lat[pending], lon[pending], lat[pending + 1], lon[pending + 1])
+        least = np.ceil(np.sqrt(apart / limit[pending]))
+        count[pending] = np.maximum(count[pending], np.nan_to_num(least, nan=1.0).astype(np.int64))
+    while pending.size:
+        pieces = count[pending]
+        first = np.cumsum(pieces + 1) - pieces - 1
+        leg = np.repeat(pending, pieces + 1)
+        number = np.arange(len(leg)) - np.repeat(first, pieces + 1)
+        out_lat, out_lon = place(leg, number / count[leg])
+        k = np.flatnonzero(number[1:])
+        apart = _deviation(out_lat[k], out_lon[k], out_lat[k + 1], out_lon[k + 1])
+        worst = np.maximum.reduceat(apart, np.cumsum(pieces) - pieces)
+        pending = pending[~(worst <= limit[pending]) & (pieces <= _MOST_PIECES)]
+        count[pending] += np.maximum(1, count[pending] // 8)
+    return count
 
 
 def _isometric_step(start: FloatArray, end: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -266,6 +322,11 @@ def _isometric_step(start: FloatArray, end: FloatArray) -> tuple[FloatArray, Flo
         far = np.asarray(apart) / np.abs(psi)
     flat = start == end
     return np.where(close, near_psi, psi), np.where(close | flat, mean, far)
+
+
+def _isometric_latitude(lat: ArrayLike) -> FloatArray:
+    """Return isometric latitudes [rad] of latitudes [deg], finite at the poles."""
+    return _isometric(np.radians(np.clip(np.asarray(lat, float), -_MAX_LATITUDE, _MAX_LATITUDE)))
 
 
 def _isometric(phi: FloatArray) -> FloatArray:

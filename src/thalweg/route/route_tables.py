@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
@@ -64,18 +64,15 @@ def waypoint_rows(route: SailedRoute) -> list[dict[str, Any]]:
     """
     columns = waypoint_columns(route)
     times = columns.pop("time")
-    kinds, held = _leg_kind_names(route), _held_names(route)
-    return [
-        {
-            "lat": float(columns["lat"][i]),
-            "lon": float(columns["lon"][i]),
-            "time": format_time(times[i]) if math.isfinite(times[i]) else None,
-            **{k: none_if_nan(v[i]) for k, v in columns.items() if k not in ("lat", "lon")},
-            "leg_kind": kinds[i],
-            "held": held[i],
-        }
-        for i in range(len(times))
-    ]
+    given: dict[str, Iterable[Any]] = {
+        "lat": columns.pop("lat").tolist(),
+        "lon": columns.pop("lon").tolist(),
+        "time": (format_time(time) if math.isfinite(time) else None for time in times.tolist()),
+    }
+    for name, values in columns.items():
+        given[name] = [x if math.isfinite(x) else None for x in values.tolist()]
+    given |= {"leg_kind": _leg_kind_names(route), "held": _held_names(route)}
+    return [dict(zip(given, row)) for row in zip(*given.values())]
 
 
 def waypoint_frame(route: SailedRoute) -> pd.DataFrame:

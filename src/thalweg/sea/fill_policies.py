@@ -99,8 +99,27 @@ def layers_filled(
     return tuple(filled), tuple(assumptions)
 
 
-def _nearest(layers: Sequence[Layer], policy: str, value: str) -> tuple[Layer, str]:
-    """Return the layer of the nearest known values, and the sentence that states it."""
+def check_fill(policy: str, value: FillValue) -> None:
+    """Raise `InputError` for a fill value that no sea can be filled with.
+
+    Parameters
+    ----------
+    policy, value : As of `thalweg.sea.Sea.filled`; the waves of a fetch also by their name.
+    """
+    _check_name(policy)
+    if isinstance(value, str) and value.startswith(NEAREST):
+        _nearest_miles(policy, value)
+    elif policy == "waves" and isinstance(value, str) and value.startswith(SHELTER):
+        _shelter_numbers(policy, value)
+    elif policy == "waves" and isinstance(value, str):
+        if value != FETCH_LIMITED:
+            _wave_model(value)
+    elif not callable(value):
+        fill_values(policy, value)
+
+
+def _nearest_miles(policy: str, value: str) -> float:
+    """Return the greatest distance to a known position [nm]."""
     _, _, distance = value.partition(":")
     try:
         miles = float(distance)
@@ -113,13 +132,19 @@ def _nearest(layers: Sequence[Layer], policy: str, value: str) -> tuple[Layer, s
             f"{MAX_NEAREST:g} nm.",
             f"For example {policy}={NEAREST}:25.",
         )
+    return miles
+
+
+def _nearest(layers: Sequence[Layer], policy: str, value: str) -> tuple[Layer, str]:
+    """Return the layer of the nearest known values, and the sentence that states it."""
+    miles = _nearest_miles(policy, value)
     layer = nearest_layer(layers, FILLABLE_VARIABLES[policy], miles * NAUTICAL_MILE)
     text = f"those of the nearest known position within {miles:g} nm"
     return layer, f"where unknown next to land, {policy.replace('_', ' ')} = {text}"
 
 
-def _shelter(layers: Sequence[Layer], policy: str, value: str) -> tuple[Layer, str]:
-    """Return the layer of the nearest known waves, with their height times a factor."""
+def _shelter_numbers(policy: str, value: str) -> tuple[float, float]:
+    """Return the greatest distance to a known position [nm], and the factor of the height."""
     parts = value.split(":")[1:]
     try:
         numbers = [float(part) for part in parts]
@@ -133,6 +158,12 @@ def _shelter(layers: Sequence[Layer], policy: str, value: str) -> tuple[Layer, s
             f"{MAX_NEAREST:g} nm and a factor of the wave height from 0 to 1.",
             f"For example {policy}={SHELTER}:25:0.8.",
         )
+    return miles, factor
+
+
+def _shelter(layers: Sequence[Layer], policy: str, value: str) -> tuple[Layer, str]:
+    """Return the layer of the nearest known waves, with their height times a factor."""
+    miles, factor = _shelter_numbers(policy, value)
     names, distance = FILLABLE_VARIABLES[policy], miles * NAUTICAL_MILE
     text = (
         f"where unknown next to land, waves = those of the nearest known position within "

@@ -122,7 +122,7 @@ def read_track(path: str | Path, *, depart: TimeLike | None = None) -> Track:
         waypoints or impossible positions, or if there is no departure.
     """
     path = Path(path)
-    return track_of(_contents_of(path), depart, path.name)
+    return track_of(route_file_contents(path), depart, path.name)
 
 
 def cross_track_notes(path: str | Path, chart: Chart) -> list[str]:
@@ -137,10 +137,11 @@ def cross_track_notes(path: str | Path, chart: Chart) -> list[str]:
     list of str
         One note; empty where the file has no limits.
     """
-    return corridor_notes(_contents_of(Path(path)), chart)
+    return corridor_notes(route_file_contents(Path(path)), chart)
 
 
-def _contents_of(path: Path) -> ParsedTrack:
+def route_file_contents(path: Path) -> ParsedTrack:
+    """Return the contents of a route file, by its ending; see `read_track`."""
     ending = path.suffix.lower()
     if ending not in (*_PARSERS, *_BYTE_PARSERS):
         raise InputError(

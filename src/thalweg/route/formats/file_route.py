@@ -9,10 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from thalweg.core.geodesy import inverse
 from thalweg.core.rhumb_lines import inverse_rhumb
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.formats.file_waypoints import FileVertices, file_vertices
+from thalweg.route.formats.parsed_track import GEOMETRY, GREAT_CIRCLE, RHUMB_LINE
 from thalweg.route.formats.route_file_options import RouteFileOptions
+from thalweg.route.formats.sample_places import SamplePlaces, time_integral
 from thalweg.route.formats.waypoint_names import waypoint_names
 from thalweg.route.route import Route
 from thalweg.route.route_tables import LEG_KINDS, waypoint_rows
@@ -22,6 +25,8 @@ from thalweg.route.track import Track
 _NO_SUMS = (
     "length", "course", "depart", "arrive", "ordered_speed", "under_keel_clearance", "leg_kind",
 )  # fmt: skip
+#: Decimals of columns that have not three.
+_DECIMALS = {"waiting_h": 6, "ordered_speed_kn": 6}
 _DIRECTIONS = ("course", "heading", "leg")  # not interpolated
 
 
@@ -32,8 +37,9 @@ class FileRoute:
     Attributes
     ----------
     rows : One per waypoint: ``name`` and the columns of `thalweg.route.route.Route.waypoints`, with
-        rhumb-line courses.
-    cross_track_m : Greatest distance of the route from the rhumb lines between the waypoints [m].
+        the courses of the file's lines, and ``geometry``, the line of the leg that begins there: RL
+        (rhumb line) or GC (great circle).
+    cross_track_m : Greatest distance of the route from the lines between the waypoints [m].
     """
 
     rows: list[dict[str, Any]]
@@ -67,17 +73,23 @@ def _cut_at_waypoints(route: Route, options: RouteFileOptions) -> FileRoute:
     cut = _cut(route, vertices)
     rows = waypoint_rows(cut)
     lat, lon = vertices.lat, vertices.lon
-    _, course = inverse_rhumb(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    ends = lat[:-1], lon[:-1], lat[1:], lon[1:]
+    course = inverse(*ends)[1] if options.great_circles else inverse_rhumb(*ends)[1]
     approach = cut.legs["leg_kind"] == LEG_KINDS.index("approach")
     names = waypoint_names(vertices.at, options.start, options.goal, approach)
+    # a canal is joined from end to end: its leg must not be cut along a rhumb line
+    whole = (cut.legs["leg_kind"] == LEG_KINDS.index("canal")) | options.great_circles
+    lines = [*np.where(whole, GREAT_CIRCLE, RHUMB_LINE).tolist(), None]
     bearings = np.degrees(np.append(course, course[-1])).tolist()
+    digits = {"lat": options.decimals, "lon": options.decimals, **_DECIMALS}
     rows = [
         {
             "name": name,
-            **{k: _rounded(k, v, options.decimals) for k, v in row.items()},
+            **{k: round(v, digits.get(k, 3)) if type(v) is float else v for k, v in row.items()},
             "course_deg": round(bearing, 2),
+            GEOMETRY: line,
         }
-        for name, row, bearing in zip(names, rows, bearings)
+        for name, row, bearing, line in zip(names, rows, bearings, lines)
     ]
     return FileRoute(rows, vertices.cross_track)
 
@@ -93,23 +105,16 @@ def file_track(route: Route, options: RouteFileOptions | None = None) -> Track:
     return replace(cut.track, speed=cut.legs["ordered_speed"])
 
 
-def _rounded(name: str, value: Any, decimals: int) -> Any:
-    """Return a value with the decimals that mean something."""
-    digits = 3
-    if name in ("lat", "lon"):
-        digits = decimals
-    elif name in ("waiting_h", "ordered_speed_kn"):
-        digits = 6
-    return round(value, digits) if isinstance(value, float) else value
-
-
 def _cut(route: Route, vertices: FileVertices) -> _CutRoute:
     """Return the legs and samples of a route between the vertices of its files."""
     track, at, leg = route.track, vertices.at, vertices.leg
     start = np.concatenate([[0.0], np.cumsum(route.legs["length"])])
     before = np.maximum(np.searchsorted(start, at - 1e-6, side="right") - 1, 0)
-    leaving = _samples_at(route, leg, at)
-    arriving = _samples_at(route, before, at)
+    leaving_place = SamplePlaces.on_legs(route.samples, leg, at)
+    leaving = leaving_place.values(route.samples, nearest=_DIRECTIONS)
+    arriving = SamplePlaces.on_legs(route.samples, before, at).values(
+        route.samples, nearest=_DIRECTIONS
+    )
     wait = np.where(np.abs(start[leg] - at) < 1e-3, track.wait[leg], 0.0)
     wait[-1] = 0.0
     cut_track = Track(vertices.lat, vertices.lon, track.depart, wait, track.setting[leg[:-1]])
@@ -122,25 +127,13 @@ def _cut(route: Route, vertices: FileVertices) -> _CutRoute:
         "leg_kind": route.legs["leg_kind"][leg[:-1]],
         "under_keel_clearance": _least_clearance(route, samples, leg, wait),
     }
+    sailed, begun = _spent_shares(route, leaving_place), at - start[leg] > 1e-3
     for name in set(route.legs) - set(_NO_SUMS):
-        legs[name] = np.diff(_sum_until(route, name, leg, at - start[leg]))
+        values = route.legs[name]
+        share = begun if name.startswith("waiting") else sailed  # a wait is at the start of its leg
+        until = np.concatenate([[0.0], np.cumsum(values)])[leg]
+        legs[name] = np.diff(until + np.where(share == 0.0, 0.0, values[leg] * share))
     return _CutRoute(cut_track, legs, samples, route.cost_name, route.engine_order)
-
-
-def _samples_at(route: Route, leg: IntArray, at: FloatArray) -> dict[str, FloatArray]:
-    """Return the samples of a route in some of its legs, at distances from its start [m]."""
-    samples = route.samples
-    found = {name: np.empty(len(at)) for name in samples}
-    leg_of = samples["leg"].astype(np.int64)
-    for number, (which, place) in enumerate(zip(leg, at)):
-        here = slice(*np.searchsorted(leg_of, [which, which + 1]))
-        distance = samples["distance"][here]
-        nearest = int(np.argmin(np.abs(distance - place)))
-        for name, values in samples.items():
-            part = values[here]
-            near = name in _DIRECTIONS or not np.isfinite(part).all()
-            found[name][number] = part[nearest] if near else np.interp(place, distance, part)
-    return found
 
 
 def _joined_samples(
@@ -148,18 +141,21 @@ def _joined_samples(
 ) -> dict[str, FloatArray]:
     """Return the samples of all new legs, with those at both of their ends."""
     distance, count = route.samples["distance"], len(at) - 1
-    inside = [(distance > at[k]) & (distance < at[k + 1]) for k in range(count)]
-    joined = {
-        name: np.concatenate(
-            [
-                part
-                for k in range(count)
-                for part in (leaving[name][[k]], values[inside[k]], arriving[name][[k + 1]])
-            ]
-        )
-        for name, values in route.samples.items()
-    }
-    joined["leg"] = np.repeat(np.arange(count), [int(part.sum()) + 2 for part in inside])
+    number = np.searchsorted(at, distance, side="left") - 1
+    inside = (number >= 0) & (number < count)
+    inside[inside] = distance[inside] < at[number[inside] + 1]
+    kept = np.flatnonzero(inside)
+    number = number[kept]
+    size = np.bincount(number, minlength=count) + 2
+    end = np.cumsum(size)
+    place = np.arange(len(kept)) + 2 * number + 1
+    joined = {}
+    for name, values in route.samples.items():
+        joined[name] = np.empty(int(end[-1]))
+        joined[name][place] = values[kept]
+        joined[name][end - size] = leaving[name][:-1]
+        joined[name][end - 1] = arriving[name][1:]
+    joined["leg"] = np.repeat(np.arange(count), size)
     return joined
 
 
@@ -167,35 +163,21 @@ def _least_clearance(
     route: Route, samples: dict[str, FloatArray], leg: IntArray, wait: FloatArray
 ) -> FloatArray:
     """Return the least under-keel clearance of each new leg; NaN where unknown."""
-    least, given = np.full(len(leg) - 1, np.nan), route.legs["under_keel_clearance"]
-    for number in range(len(least)):
-        values = samples["under_keel_clearance"][samples["leg"] == number]
-        whole = given[leg[number] : leg[number + 1]]
-        if wait[number] > 0.0:
-            whole = np.append(whole, given[leg[number]])
-        known = np.concatenate([values[np.isfinite(values)], whole[np.isfinite(whole)]])
-        least[number] = known.min() if known.size else np.nan
-    return least
+    sampled, given = (
+        np.where(np.isfinite(values), values, np.nan)
+        for values in (samples["under_keel_clearance"], route.legs["under_keel_clearance"])
+    )
+    first = np.flatnonzero(np.diff(samples["leg"], prepend=-1))
+    # between equal legs reduceat takes one value, which does not count
+    whole = np.fmin.reduceat(np.append(given, np.nan), leg)[:-1]
+    least = np.fmin(np.fmin.reduceat(sampled, first), np.where(np.diff(leg) > 0, whole, np.nan))
+    return np.where(wait[:-1] > 0.0, np.fmin(least, given[leg[:-1]]), least)
 
 
-def _sum_until(route: Route, name: str, leg: IntArray, along: FloatArray) -> FloatArray:
-    """Return a sum over a route until distances [m] along some of its legs.
-
-    Inside a leg the part is that of the fuel, or of the time where no fuel is known; a wait is at
-    its start.
-    """
-    values = route.legs[name]
-    before = np.concatenate([[0.0], np.cumsum(values)])[leg]
-    if name.startswith("waiting"):
-        return np.asarray(before + np.where(along > 1e-3, values[leg], 0.0))
-    samples, shares = route.samples, np.empty(len(leg))
-    leg_of = samples["leg"].astype(np.int64)
-    for number, which in enumerate(leg):
-        here = slice(*np.searchsorted(leg_of, [which, which + 1]))
-        time, rate = samples["time"][here], samples["fuel_rate"][here]
-        rate = rate if np.isfinite(rate).all() and rate.any() else np.ones(len(time))
-        spent = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(time))])
-        distance = samples["distance"][here] - samples["distance"][here][0]
-        part = np.interp(along[number], distance, spent)
-        shares[number] = part / spent[-1] if spent[-1] > 0.0 else 1.0
-    return np.asarray(before + values[leg] * shares)
+def _spent_shares(route: Route, places: SamplePlaces) -> FloatArray:
+    """Return which share of the fuel of its leg, or of its time where none is known, is spent."""
+    samples = route.samples
+    spent = time_integral(samples, samples["fuel_rate"])
+    whole = spent[places.last]
+    part = places.interpolated(spent)
+    return np.divide(part, whole, out=np.ones(len(part)), where=whole > 0.0)

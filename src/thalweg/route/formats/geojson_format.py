@@ -14,7 +14,13 @@ from thalweg.core.geodesy import Position, densify, positions_along
 from thalweg.core.time import parse_time
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route.formats.file_route import file_route
-from thalweg.route.formats.parsed_track import ParsedTrack, position_of, waypoint_order
+from thalweg.route.formats.parsed_track import (
+    GEOMETRY,
+    ParsedTrack,
+    is_rhumb_line,
+    position_of,
+    waypoint_order,
+)
 from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.route import Route
 
@@ -27,8 +33,8 @@ def parse_geojson(text: str) -> ParsedTrack:
 
     Lines that continue from the end of the one before are one line, and lines split at the
     antimeridian are joined; other lines are other routes. Where there are both lines and points,
-    the points are taken if there are two or more (they are the waypoints, with their ``waiting_h``
-    and ``ordered_speed_kn``), else the lines.
+    the points are taken if there are two or more (they are the waypoints, with their ``waiting_h``,
+    ``ordered_speed_kn`` and ``geometry``), else the lines.
 
     Raises
     ------
@@ -66,7 +72,8 @@ def parse_geojson(text: str) -> ParsedTrack:
     if chosen is on_line:
         return ParsedTrack(_without_cuts(positions), first_time)
     orders = [waypoint_order(properties, i) for i, (_, properties) in enumerate(chosen, start=1)]
-    return ParsedTrack(positions, first_time, orders)
+    rhumb = [is_rhumb_line(p.get(GEOMETRY), i) for i, (_, p) in enumerate(chosen[:-1], start=1)]
+    return ParsedTrack(positions, first_time, orders, rhumb)
 
 
 def _first_line(lines: list[list[list[Any]]]) -> list[Any]:

@@ -77,12 +77,12 @@ def write_gpx(route: Route, path: str | Path, options: RouteFileOptions | None =
 
 
 def _extend(point: ElementTree.Element, row: Mapping[str, Any]) -> None:
-    """Add the wait and the ordered speed, which GPX has no elements for."""
-    given = {name: row[name] for name in (*WAITS, *SPEEDS) if row.get(name)}
+    """Add the wait, the ordered speed and the line, which GPX has no elements for."""
+    given = {name: row[name] for name in (*WAITS, *SPEEDS, GEOMETRY) if row.get(name)}
     if given:
         extensions = ElementTree.SubElement(point, "extensions")
         for name, value in given.items():
-            ElementTree.SubElement(extensions, f"{{{_OWN_NAMESPACE}}}{name}").text = repr(value)
+            ElementTree.SubElement(extensions, f"{{{_OWN_NAMESPACE}}}{name}").text = str(value)
 
 
 def _extensions(point: ElementTree.Element) -> dict[str, str]:

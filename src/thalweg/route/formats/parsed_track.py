@@ -6,6 +6,7 @@ import math
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import PurePath
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ import numpy as np
 from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.core.geodesy import Position, check_position
 from thalweg.core.given_numbers import shortened_repr, to_number
-from thalweg.core.rhumb_lines import rhumb_deviation, rhumb_pieces
+from thalweg.core.rhumb_lines import rhumb_pieces
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.units import DAY, HOUR, KNOT
 from thalweg.route.track import Track
@@ -32,6 +33,7 @@ class ParsedTrack:
     rhumb : By leg, whether it is a rhumb line; empty: all legs are geodesics.
     notes : What the file has otherwise than its format, and how it was read.
     corridors : By leg, the cross-track limits to port and starboard [m]; NaN: none. Empty: none.
+    route_name : Where the format requires that the file has this name.
     """
 
     positions: list[Position]
@@ -40,6 +42,14 @@ class ParsedTrack:
     rhumb: list[bool] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     corridors: list[tuple[float, float]] = field(default_factory=list)
+    route_name: str | None = None
+
+    def all_notes(self, name: str) -> list[str]:
+        """Return the notes of a file of a name."""
+        stem = PurePath(name).stem
+        if self.route_name is None or self.route_name.casefold() == stem.casefold():
+            return self.notes
+        return [*self.notes, f"its route is named {self.route_name!r}, not as the file"]
 
 
 class WaypointOrder(NamedTuple):
@@ -53,6 +63,7 @@ class WaypointOrder(NamedTuple):
 WAITS = {"waiting_h": HOUR, "wait_h": HOUR, "waiting_s": 1.0, "wait_s": 1.0}
 SPEEDS = {"ordered_speed_kn": KNOT}
 GEOMETRY = "geometry"  #: what files call the kind of line of the leg after a waypoint
+RHUMB_LINE, GREAT_CIRCLE = "RL", "GC"  #: kinds of lines in files of this package
 _RHUMB_WORDS = ("rl", "rhumb", "rhumb line", "rhumbline", "loxodrome")
 _GREAT_CIRCLE_WORDS = ("gc", "great circle", "greatcircle", "orthodrome", "geodesic", "")
 RHUMB_DEVIATION = 20.0  #: rhumb lines are sailed as geodesics this close to them [m]
@@ -181,7 +192,7 @@ def track_of(parsed: ParsedTrack, depart: TimeLike | None, name: str) -> Track:
             field="depart",
         )
     start = parsed.first_time if depart is None else parse_time(depart)
-    for note in parsed.notes:
+    for note in parsed.all_notes(name):
         warnings.warn(ThalwegWarning(f"{name}: {note}."), stacklevel=3)
     return _track(_with_geodesics(parsed), start)  # type: ignore[arg-type]
 
@@ -191,17 +202,15 @@ def _with_geodesics(parsed: ParsedTrack) -> ParsedTrack:
     if not any(parsed.rhumb):
         return parsed
     orders = parsed.orders or [WaypointOrder()] * len(parsed.positions)
-    places, given = [parsed.positions[0]], [orders[0]]
-    bends = rhumb_deviation(*np.array(parsed.positions).T) > RHUMB_DEVIATION
-    broken = np.array(parsed.rhumb) & bends
-    legs = zip(broken, parsed.positions[:-1], parsed.positions[1:], orders[:-1], orders[1:])
-    for is_broken, start, end, order, last in legs:
-        if is_broken:
-            lat, lon, _ = rhumb_pieces([start[0], end[0]], [start[1], end[1]], RHUMB_DEVIATION)
-            places += [(float(y), float(x)) for y, x in zip(lat[1:-1], lon[1:-1])]
-            given += [WaypointOrder(0.0, order.speed)] * (len(lat) - 2)
-        places.append(end)
-        given.append(last)
+    limit = np.where(parsed.rhumb, RHUMB_DEVIATION, math.inf)
+    lat, lon = np.array(parsed.positions).T
+    lat, lon, leg = rhumb_pieces(lat, lon, limit)
+    at_vertex = np.append(np.diff(leg, prepend=-1) > 0, True)
+    given = [
+        orders[k] if whole else WaypointOrder(0.0, orders[k].speed)
+        for k, whole in zip([*leg.tolist(), len(orders) - 1], at_vertex.tolist())
+    ]
+    places = list(zip(lat.tolist(), lon.tolist()))
     return replace(parsed, positions=places, orders=given, rhumb=[])
 
 

@@ -12,6 +12,7 @@ from thalweg.core.units import NAUTICAL_MILE
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
+LEG_LINES = ("rhumb", "great-circle")
 RTZ_VERSIONS = ("1.0", "1.1", "1.2")
 #: Endings of the route files that can be written; ``gml`` is S-421.
 ROUTE_FORMATS = ("rtz", "rtzp", "gml", "gpx", "geojson", "kml", "csv")
@@ -27,16 +28,18 @@ class RouteFileOptions:
     start, goal : str
         Names of the places at both ends, for the names of waypoints.
     cross_track_nm : float
-        Cross-track limit [nm]: the rhumb lines between the waypoints of the file are closer to the
-        route than this. Above 0 and below 10.
+        Cross-track limit [nm]: the lines between the waypoints of the file are closer to the route
+        than this. Above 0 and below 10.
     spacing_nm : float or None
         Greatest distance between waypoints [nm]; None: as the cross-track limit requires.
     max_waypoints : int or None
         Greatest number of waypoints; the cross-track limit grows as far as this needs.
+    legs : {"rhumb", "great-circle"}
+        Lines between the waypoints of the file.
     rtz_version : {"1.2", "1.1", "1.0"}
         Version of RTZ files.
     chart : Chart or None
-        Rhumb lines that touch land of this chart are broken into shorter ones.
+        Lines that touch land of this chart are broken into shorter ones.
     thinning : float
         Waypoints this close to the line of their neighbours are left out [share of the cross-track
         limit], 0 to 1.
@@ -56,6 +59,7 @@ class RouteFileOptions:
     cross_track_nm: float = 0.1
     spacing_nm: float | None = None
     max_waypoints: int | None = None
+    legs: str = "rhumb"
     rtz_version: str = "1.2"
     chart: Chart | None = None
     thinning: float = 0.5
@@ -94,12 +98,23 @@ class RouteFileOptions:
                 f"Formats are {', '.join(ROUTE_FORMATS)} (gml is S-421).",
                 "Choose among them, separated by commas.",
             )
+        if self.legs not in LEG_LINES:
+            raise InputError(
+                f"Legs of route files are not written as {self.legs!r}.",
+                f"They are {' or '.join(LEG_LINES)}.",
+                "Choose one of them.",
+            )
         if self.rtz_version not in RTZ_VERSIONS:
             raise InputError(
                 f"RTZ {self.rtz_version} is not known.",
                 f"Versions {', '.join(RTZ_VERSIONS)} can be written.",
                 "Choose one of them.",
             )
+
+    @property
+    def great_circles(self) -> bool:
+        """Whether the waypoints are joined by great circles."""
+        return self.legs == "great-circle"
 
     @property
     def limit(self) -> float:

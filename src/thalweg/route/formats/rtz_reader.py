@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import io
 import math
-import re
 import zipfile
 from collections.abc import Mapping
 from typing import Any
@@ -17,7 +16,6 @@ from xml.etree import ElementTree
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position
 from thalweg.core.given_numbers import to_number
-from thalweg.core.time import parse_time
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route.formats.parsed_track import (
     ParsedTrack,
@@ -25,13 +23,11 @@ from thalweg.route.formats.parsed_track import (
     position_of,
     waypoint_order,
 )
-from thalweg.route.formats.rtz_writer import MANUFACTURER, ORDER, RTZ_NAMESPACE
+from thalweg.route.formats.rtz_checks import rtz_notes, schedule_elements, stated_stay, stated_time
+from thalweg.route.formats.rtz_writer import MANUFACTURER, ORDER
 from thalweg.route.formats.xml_elements import children, local_name, parse_xml
 
-LARGEST_RTZ = 5_000_000  #: bytes of XML; the standard requires 400 kB
-_DURATION = re.compile(r"^P(?:(\d+)D)?(?:T(?:(\d+)H)?(?:(\d+)M)?(?:(\d+(?:\.\d*)?)S)?)?$")
-_CLOCK = re.compile(r"^(\d{1,2}):(\d{2}):(\d{2})")
-_SCHEDULE_ELEMENTS = ("scheduleElement", "sheduleElement")  # the schema of 1.0 has the second
+LARGEST_RTZ = 20_000_000  #: bytes of XML, of some 30,000 waypoints with a schedule
 
 
 def parse_rtz(data: bytes) -> ParsedTrack:
@@ -42,7 +38,7 @@ def parse_rtz(data: bytes) -> ParsedTrack:
     InputError : If it is too large, not XML, declares entities, or is no route.
     """
     root = parse_xml(data, "RTZ", largest=LARGEST_RTZ)
-    notes = _version_notes(root)
+    notes: list[str] = []
     waypoints = [e for group in children(root, "waypoints") for e in children(group, "waypoint")]
     if local_name(root) != "route" or len(waypoints) < 2:
         raise InputError(
@@ -51,7 +47,7 @@ def parse_rtz(data: bytes) -> ParsedTrack:
             "Export the route as RTZ.",
         )
     positions = [_position(waypoint, i, notes) for i, waypoint in enumerate(waypoints, start=1)]
-    notes += _waypoint_notes(root, waypoints)
+    notes = [*rtz_notes(root, waypoints), *notes]
     first_time, stays = _schedule(root, waypoints, notes)
     orders = [_order(w, i, stay) for i, (w, stay) in enumerate(zip(waypoints, stays), start=1)]
     if first_time is not None:
@@ -65,7 +61,16 @@ def parse_rtz(data: bytes) -> ParsedTrack:
     legs = [[*children(waypoint, "leg"), *usual] for waypoint in waypoints[1:]]
     rhumb = [_is_rhumb(leg, notes) for leg in legs]
     corridors = [_corridor(leg) for leg in legs]
-    return ParsedTrack(positions, first_time, orders, rhumb, list(dict.fromkeys(notes)), corridors)
+    info = next(children(root, "routeInfo"), None)
+    return ParsedTrack(
+        positions,
+        first_time,
+        orders,
+        rhumb,
+        list(dict.fromkeys(notes)),
+        corridors,
+        None if info is None else info.get("routeName"),
+    )
 
 
 def parse_rtzp(data: bytes) -> ParsedTrack:
@@ -92,25 +97,6 @@ def parse_rtzp(data: bytes) -> ParsedTrack:
         f"It holds one, of {LARGEST_RTZ / 1e6:.0f} MB at most.",
         "Give the RTZ file itself.",
     )
-
-
-def _version_notes(root: ElementTree.Element) -> list[str]:
-    version = str(root.get("version", "none"))
-    namespace = str(root.tag).partition("}")[0].lstrip("{") if "}" in str(root.tag) else "none"
-    if namespace == RTZ_NAMESPACE + version.rpartition(".")[2] and version.startswith("1."):
-        return []
-    return [f"the version is {version} and the namespace {namespace}, which do not belong together"]
-
-
-def _waypoint_notes(root: ElementTree.Element, waypoints: list[ElementTree.Element]) -> list[str]:
-    """Return what the waypoints have otherwise than the standard."""
-    notes = []
-    names = [waypoint.get("id") for waypoint in waypoints]
-    if len(set(names)) < len(names) or None in names:
-        notes.append("waypoints have no id, or the id of another one: their order is used")
-    if root.get("version") == "1.2" and any(w.get("revision") is None for w in waypoints):
-        notes.append("waypoints have no revision, which version 1.2 requires")
-    return notes
 
 
 def _position(waypoint: ElementTree.Element, number: int, notes: list[str]) -> Position:
@@ -154,13 +140,10 @@ def _schedule(
         notes.append(f"it has {len(schedules)} schedules: the first with a departure is used")
     for kind in ("manual", "calculated"):
         for schedule in schedules:
-            parts = [e for group in children(schedule, kind) for e in group]
-            parts = [e for e in parts if local_name(e) in _SCHEDULE_ELEMENTS]
-            if any(e.get("waypointId") not in number_of for e in parts):
-                notes.append("a schedule names waypoints that the route does not have")
+            parts = schedule_elements(schedule, kind)
             rows = {number_of[n]: e for e in parts if (n := e.get("waypointId")) in number_of}
             first = rows.get(0)
-            if first is None or not first.get("etd"):
+            if first is None or math.isnan(stated_time(first, "etd")):
                 continue
             if any(row.get("speed") for row in rows.values()):
                 notes.append(
@@ -170,21 +153,18 @@ def _schedule(
             for number, row in rows.items():
                 if 0 < number < len(waypoints) - 1:
                     stays[number] = _stay(row)
-            return parse_time(str(first.get("etd"))), stays
+            return stated_time(first, "etd"), stays
     return None, stays
 
 
 def _stay(row: ElementTree.Element) -> float:
     """Return how long the ship stays at a waypoint of a schedule [s]."""
-    text = str(row.get("stay", "")).strip()
-    if (match := _DURATION.match(text)) is not None:
-        days, hours, minutes, seconds = (float(part or 0.0) for part in match.groups())
-        return 86_400.0 * days + 3_600.0 * hours + 60.0 * minutes + seconds
-    if (match := _CLOCK.match(text)) is not None:
-        hours, minutes, seconds = (float(part) for part in match.groups())
-        return 3_600.0 * hours + 60.0 * minutes + seconds
+    stay = stated_stay(row)
+    if stay is not None:
+        return stay
     if row.get("eta") and row.get("etd"):
-        return max(0.0, parse_time(str(row.get("etd"))) - parse_time(str(row.get("eta"))))
+        scheduled = stated_time(row, "etd") - stated_time(row, "eta")
+        return max(0.0, scheduled) if math.isfinite(scheduled) else 0.0
     return 0.0
 
 

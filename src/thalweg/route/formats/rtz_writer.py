@@ -1,7 +1,7 @@
 """Routes as RTZ, the route exchange format of IEC 61174 (versions 1.0, 1.1 and 1.2).
 
-A leg of RTZ belongs to the waypoint at its end. All legs are rhumb lines (``Loxodrome``), as the
-waypoints of files are chosen for them.
+A leg of RTZ belongs to the waypoint at its end. Legs are rhumb lines (``Loxodrome``) unless great
+circles are requested.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 from thalweg.core.file_writing import write_bytes
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route.formats.file_route import file_route
-from thalweg.route.formats.parsed_track import SPEEDS, WAITS
+from thalweg.route.formats.parsed_track import GEOMETRY, GREAT_CIRCLE, SPEEDS, WAITS
 from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.formats.xml_elements import decimal, xml_bytes
 from thalweg.route.route import Route
@@ -95,8 +95,7 @@ def _add_waypoint(
     place = {name: decimal(row[name], 6) for name in ("lat", "lon")}
     ElementTree.SubElement(waypoint, "position", place)
     if number > 1:
-        # a canal is joined from end to end: its leg must not be cut along a rhumb line
-        line = "Orthodrome" if before.get("leg_kind") == "canal" else "Loxodrome"
+        line = "Orthodrome" if before.get(GEOMETRY) == GREAT_CIRCLE else "Loxodrome"
         leg = {"starboardXTD": xtd, "portsideXTD": xtd, "geometryType": line}
         ElementTree.SubElement(waypoint, "leg", leg)
     orders = {name: decimal(row[name], 6) for name in (*WAITS, *SPEEDS) if row.get(name)}

@@ -20,7 +20,7 @@ from thalweg.route.formats.parsed_track import (
 from thalweg.route.formats.rtz_writer import MANUFACTURER
 from thalweg.route.formats.xml_elements import children, local_name, parse_xml
 
-LARGEST_S421 = 10_000_000  #: bytes of XML
+LARGEST_S421 = 50_000_000  #: bytes of XML, of some 20,000 waypoints with a schedule
 _LINES = {"1": True, "loxodrome": True, "2": False, "orthodrome": False}
 
 
@@ -141,4 +141,6 @@ def _value(element: ElementTree.Element, name: str) -> str | None:
 
 def _attribute(element: ElementTree.Element, name: str) -> str | None:
     """Return an attribute by its name without namespace."""
+    if not element.attrib:
+        return None
     return next((v for k, v in element.attrib.items() if k.rpartition("}")[2] == name), None)

@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route.formats.file_route import file_route
-from thalweg.route.formats.parsed_track import SPEEDS, WAITS
+from thalweg.route.formats.parsed_track import GEOMETRY, GREAT_CIRCLE, SPEEDS, WAITS
 from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.formats.rtz_writer import MANUFACTURER, ORDER, waypoint_times
 from thalweg.route.formats.xml_elements import decimal, write_xml
@@ -99,9 +99,8 @@ def _add_waypoints(root: ElementTree.Element, rows: Sequence[Mapping[str, Any]],
         leg = _member(root, "RouteWaypointLeg", f"RTE.WPT.LEG.{number}")
         _add(leg, "routeWaypointLegStarboardXTDL", side)
         _add(leg, "routeWaypointLegPortXTDL", side)
-        # a canal is joined from end to end: its leg must not be cut along a rhumb line
-        canal = rows[number - 1].get("leg_kind") == "canal"
-        _add(leg, "routeWaypointLegGeometryType", "2" if canal else "1")
+        great_circle = rows[number - 1].get(GEOMETRY) == GREAT_CIRCLE
+        _add(leg, "routeWaypointLegGeometryType", "2" if great_circle else "1")
         _link(leg, "routeWaypointLegCollection", f"RTE.WPT.{number + 1}")
 
 

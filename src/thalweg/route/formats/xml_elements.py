@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
-
-import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import write_bytes
@@ -59,9 +56,8 @@ def children(element: ElementTree.Element, name: str) -> Iterator[ElementTree.El
 def xml_bytes(root: ElementTree.Element) -> bytes:
     """Return an element as an indented XML text in UTF-8."""
     ElementTree.indent(root)
-    text = io.BytesIO()
-    ElementTree.ElementTree(root).write(text, encoding="utf-8", xml_declaration=True)
-    return text.getvalue()
+    text = ElementTree.tostring(root, encoding="unicode")
+    return f"<?xml version='1.0' encoding='utf-8'?>\n{text}".encode()
 
 
 def write_xml(root: ElementTree.Element, path: str | Path) -> None:
@@ -71,4 +67,5 @@ def write_xml(root: ElementTree.Element, path: str | Path) -> None:
 
 def decimal(value: float, digits: int) -> str:
     """Return a number without exponent and without needless zeros."""
-    return np.format_float_positional(round(float(value), digits), trim="-")
+    text = f"{float(value):.{digits}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text

@@ -109,7 +109,7 @@ def start_evaluation(
     idempotency_key: str | None = Header(None, max_length=200),
 ) -> dict[str, Any]:
     """Sail an imported route in given weather; the answer is a job like that of a plan."""
-    request.check_embedded()
+    request.check()
     return _start("evaluation", request.model_dump(mode="json"), response, idempotency_key, state)
 
 

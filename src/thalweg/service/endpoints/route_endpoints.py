@@ -58,10 +58,13 @@ class Comparison(BaseModel):
 
 @routes_router.post("/routes", status_code=201)
 async def add_route(state: State, file: UploadFile) -> dict[str, Any]:
-    """Upload a route as RTZ, RTZP, S-421, GPX, GeoJSON or CSV; returns its waypoints [lat, lon]."""
+    """Upload a route as RTZ, RTZP, S-421, GPX, GeoJSON or CSV; returns its waypoints [lat, lon].
+
+    ``notes`` names what the file has otherwise than its format, and how it was read.
+    """
 
     def facts(path: str) -> dict[str, Any]:
-        found, _ = state.file_worker.do("import_route", path=path)
+        found, _ = state.file_worker.do("import_route", path=path, name=file.filename or "")
         return found
 
     stored = await kept_upload(state.routes, file.filename or "", chunks_of(file), facts)

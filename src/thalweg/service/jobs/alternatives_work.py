@@ -21,8 +21,6 @@ def plan_alternatives(order: JobOrder, stages: StageMessages) -> tuple[str, dict
         Key figures of the fastest one.
     """
     from thalweg.planning import alternative_plans
-    from thalweg.route import RouteFileOptions
-    from thalweg.route.formats import ROUTE_FORMATS
 
     request = AlternativesRequest.model_validate(order.request)
     voyage = request.checked_voyage()
@@ -40,7 +38,7 @@ def plan_alternatives(order: JobOrder, stages: StageMessages) -> tuple[str, dict
     )
     stages("writing the files")
     ends = found.ends
-    options = RouteFileOptions(start=ends[0], goal=ends[1], formats=ROUTE_FORMATS)
+    options = request.route_files.options(start=ends[0], goal=ends[1])
     for number, choice in enumerate(found.choices, start=1):
         write_route_result(choice.route, order.path, number, options)
     provenance = {"from": ends[0], "to": ends[1]}

@@ -17,8 +17,8 @@ from thalweg.service.jobs.child_messages import MessageWriter
 from thalweg.service.jobs.closure_facts import PLACES, TIMES, closure_facts
 from thalweg.service.jobs.isochrone_lines import isochrone_lines
 from thalweg.service.jobs.job_order import JobOrder, StageMessages
-from thalweg.service.jobs.plan_request import EvaluationRequest, PlanRequest
-from thalweg.service.jobs.request_objects import WorldOfJob, network_of, open_world
+from thalweg.service.jobs.plan_request import EvaluationRequest, PlanRequest, RequestedRouteFiles
+from thalweg.service.jobs.request_objects import WorldOfJob, network_of, open_world, with_orders_of
 from thalweg.service.jobs.route_profiles import first_look, route_profile
 from thalweg.service.jobs.route_results import route_totals, write_json_file, write_route_result
 
@@ -72,11 +72,11 @@ def _plan(
         kept = (order.path / FIRST_FOLDER / "plan.json").exists()
         if kept or stages.route is None or voyage.via:
             raise
-        return "cancelled", _keep_shown(stages.route, voyage, order, stages)
+        return "cancelled", _keep_shown(stages.route, voyage, request, order, stages)
 
 
 def _keep_shown(
-    route: Route, voyage: Voyage, order: JobOrder, stages: StageMessages
+    route: Route, voyage: Voyage, request: PlanRequest, order: JobOrder, stages: StageMessages
 ) -> dict[str, Any]:
     """Write the route that was shown last as the result of a job that is stopped."""
     from thalweg.planning import Plan
@@ -91,7 +91,7 @@ def _keep_shown(
         provenance={"from": str(voyage.start), "to": str(voyage.goal)},
         cancelled=True,
     )
-    parts = write_plan_result(found, order.path, None)
+    parts = write_plan_result(found, order.path, None, request.route_files)
     return {**job_summary(found, stages.seconds()), "parts": parts}
 
 
@@ -122,7 +122,7 @@ def _plan_whole(
     folder = Path(order.folder)
     beside = None if found.cancelled else _beside(found, world, request, stages)
     stages("writing the files")
-    parts = write_plan_result(found, folder, beside)
+    parts = write_plan_result(found, folder, beside, request.route_files)
     summary = {**job_summary(found, stages.seconds()), "parts": parts}
     return "cancelled" if found.cancelled else "done", summary
 
@@ -155,7 +155,9 @@ def _plan_first(
         )
         note = "The job was stopped: this is the fastest route, the objective was not reached."
         found = replace(found, notes=(note, *found.notes), cancelled=True)
-        parts = write_plan_result(found, make_folder(Path(order.folder) / FIRST_FOLDER), None)
+        parts = write_plan_result(
+            found, make_folder(Path(order.folder) / FIRST_FOLDER), None, request.route_files
+        )
         summary = {**job_summary(found, stages.seconds()), "parts": parts}
         messages.send(
             "route", {"route": first_look(found.best), "final": False, "summary": summary}
@@ -181,26 +183,29 @@ def _beside(
     return None
 
 
-def write_plan_result(found: Plan, folder: Path, beside: Route | None) -> list[str]:
+def write_plan_result(
+    found: Plan,
+    folder: Path,
+    beside: Route | None,
+    files_as: RequestedRouteFiles | None = None,
+) -> list[str]:
     """Write all files of a plan: plan.json, route files, profiles, isochrones.
 
     Parameters
     ----------
     folder : It exists.
     beside : The route that ignores the weather.
+    files_as : How the route files are written; by default with rhumb lines within 0.1 nm.
 
     Returns
     -------
     list of str
         ``isochrones``, ``beside`` and ``space_time``, where there are such files.
     """
-    from thalweg.route import RouteFileOptions
-    from thalweg.route.formats import ROUTE_FORMATS
-
     found.to_json(folder / "plan.json")
     chart = None if found.plot_context is None else found.plot_context.chart
     start, goal = (str(found.provenance.get(key) or "") for key in ("from", "to"))
-    options = RouteFileOptions(chart=chart, start=start, goal=goal, formats=ROUTE_FORMATS)
+    options = (files_as or RequestedRouteFiles()).options(chart=chart, start=start, goal=goal)
     for number, route in enumerate(found.routes, start=1):
         write_route_result(route, folder, number, options, plan=found)
     lines = isochrone_lines(found)
@@ -238,17 +243,16 @@ def job_summary(found: Plan, seconds: float) -> dict[str, Any]:
 
 
 def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
-    from thalweg.route import RouteFileOptions, evaluate
-    from thalweg.route.formats import ROUTE_FORMATS
+    from thalweg.route import evaluate
 
     request = EvaluationRequest.model_validate(order.request)
-    request.check_embedded()
+    request.check()
     stages("reading the ship, the sea and the coastline")
     world = open_world(request, order.files)
     stages("sailing the route")
     route = evaluate(
         order.files[request.route],
-        ship=world.ship,
+        ship=with_orders_of(world.ship, request),
         sea=world.sea,
         chart=world.chart,
         depart=request.depart,
@@ -258,7 +262,7 @@ def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
     )
     folder = Path(order.folder)
     write_json_file(folder / "route.json", route.as_dict())
-    write_route_result(route, folder, 1, RouteFileOptions(formats=ROUTE_FORMATS))
+    write_route_result(route, folder, 1, request.route_files.options())
     return {
         "feasible": route.feasible,
         "seconds": stages.seconds(),

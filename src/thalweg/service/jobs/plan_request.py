@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -9,8 +10,11 @@ from pydantic import BaseModel, ConfigDict, Field
 from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import parse_position
+from thalweg.core.time import parse_time
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.request.european_scope import share_between_places
 from thalweg.planning.voyage import Voyage
+from thalweg.route.formats.route_file_options import ROUTE_FORMATS, RouteFileOptions
 
 EMBEDDED_SEAS: Final = ("calm", "storm")
 
@@ -63,6 +67,7 @@ EVALUATION_EXAMPLE: Final[dict[str, Any]] = {
 }
 
 FilledQuantity = Literal["currents", "wind", "waves"]
+FillPolicy = float | Annotated[str, Field(max_length=60)]
 UploadId = Annotated[str, Field(pattern=r"^[0-9a-f]{16,64}$")]
 FileId = Annotated[str, Field(pattern=r"^[0-9a-f]{16,64}$|^calm$|^storm$")]
 
@@ -86,13 +91,47 @@ class RequestedCharges(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    share_percent: Literal[0, 50, 100] = Field(
+    share_percent: Literal[0, 50, 100] | None = Field(
+        None,
         description="share of the voyage in their scope: 100 between two ports of the Union, 50 to "
-        "or from one"
+        "or from one; left out of a plan: by the countries of its two ports",
     )
     ets_price: float = Field(0.0, ge=0, le=1e5, description="of an allowance, per tonne of CO2")
     eur_rate: float = Field(0.0, ge=0, le=1e5, description="of a euro; 0: no FuelEU penalty")
     year: int = Field(2026, ge=2024, le=2060)
+
+
+class RequestedRouteFiles(BaseModel):
+    """How the routes of a result are written into files."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    legs: Annotated[
+        Literal["rhumb", "great-circle"], Field(description="lines between the waypoints of a file")
+    ] = "rhumb"
+    cross_track_nm: Annotated[
+        float, Field(ge=0.001, le=9.99, description="the lines are closer to the route than this")
+    ] = 0.1
+    waypoint_spacing_nm: Annotated[
+        float | None, Field(ge=0.1, le=10_000, description="longest leg")
+    ] = None
+    max_waypoints: Annotated[
+        int | None,
+        Field(ge=2, le=100_000, description="the cross-track limit grows as far as this needs"),
+    ] = None
+    rtz_version: Literal["1.0", "1.1", "1.2"] = "1.2"
+
+    def options(self, **given: Any) -> RouteFileOptions:
+        """Return the options of all formats, with some more."""
+        return RouteFileOptions(
+            cross_track_nm=self.cross_track_nm,
+            spacing_nm=self.waypoint_spacing_nm,
+            max_waypoints=self.max_waypoints,
+            legs=self.legs,
+            rtz_version=self.rtz_version,
+            formats=ROUTE_FORMATS,
+            **given,
+        )
 
 
 class ShipAndSea(BaseModel):
@@ -105,10 +144,20 @@ class ShipAndSea(BaseModel):
     seas: list[FileId] = Field(
         min_length=1, max_length=20, description="`calm`, `storm` or ids of /seas, by priority"
     )
-    fill: dict[FilledQuantity, float | str] = Field(
+    fill: dict[FilledQuantity, FillPolicy | Annotated[list[FillPolicy], Field(max_length=5)]] = (
+        Field(
+            default_factory=dict,
+            description="what unknown values are taken as: a number, `nearest:NM`, for waves also "
+            "`wind`, `head_seas`, `coastal_shelter`, `fetch_limited`; several are tried in order",
+            examples=[{"waves": ["nearest:25", 0.0]}],
+        )
+    )
+    variables: dict[str, str] = Field(
         default_factory=dict,
-        description="what unknown values are taken as: a number, `wind`, `head_seas`, `nearest:NM`",
-        examples=[{"waves": 0.0}],
+        max_length=30,
+        description="variable of the uploaded seas that holds a quantity (CF standard name); "
+        "`crs` names the projection of their grid",
+        examples=[{"eastward_wind": "u"}],
     )
     depths: list[FileId] = Field(default_factory=list, max_length=10, description="ids of /seas")
     areas: dict[str, Any] | None = Field(
@@ -132,9 +181,36 @@ class ShipAndSea(BaseModel):
         "i", description="resolution of GSHHG; `none`: no land"
     )
     load_factor: float | None = Field(None, ge=0, le=1, description="0 empty to 1 full")
+    route_files: RequestedRouteFiles = RequestedRouteFiles()
 
-    def check_embedded(self) -> None:
-        """Raise `InputError` if a calm sea stands beside another."""
+    @property
+    def fill_policies(self) -> list[tuple[str, float | str]]:
+        """The quantities to fill, with their values by priority."""
+        several = {k: v if isinstance(v, list) else [v] for k, v in self.fill.items()}
+        return [(name, value) for name, values in several.items() for value in values]
+
+    def check_sea(self) -> None:
+        """Raise `InputError` for fill values, a sampling or a calm sea that are impossible."""
+        self._check_calm()
+        from thalweg.sea import Sea
+        from thalweg.sea.fill_policies import check_fill
+
+        if self.variables and set(self.seas) <= set(EMBEDDED_SEAS):
+            raise InputError(
+                "Variables of files are named, and no file is among the seas.",
+                "They apply to uploaded seas.",
+                "Leave variables out, or add a file to seas.",
+                field="variables",
+            )
+        checks = [("fill", partial(check_fill, *one)) for one in self.fill_policies]
+        for field, check in [*checks, ("sampling", partial(Sea.calm().sampled, self.sampling))]:
+            try:
+                check()
+            except InputError as error:
+                error.details["field"] = field
+                raise
+
+    def _check_calm(self) -> None:
         if "calm" in self.seas and len(self.seas) > 1:
             raise InputError(
                 "A calm sea is given together with another.",
@@ -179,7 +255,7 @@ class PlanRequest(ShipAndSea):
         InputError
             With the entry of the voyage in ``details["field"]``.
         """
-        self.check_embedded()
+        self.check_sea()
         voyage = Voyage.from_dict(self.voyage)
         self._check_network(voyage)
         places = [("start", voyage.start), ("goal", voyage.goal)]
@@ -191,6 +267,12 @@ class PlanRequest(ShipAndSea):
                 except InputError as error:
                     error.details["field"] = name
                     raise
+        if self.charges is not None and self.charges.share_percent is None:
+            try:
+                share_between_places(voyage.start, voyage.goal)
+            except InputError as error:
+                error.details["field"] = "charges.share_percent"
+                raise
         return voyage
 
     def _check_network(self, voyage: Voyage) -> None:
@@ -235,4 +317,43 @@ class EvaluationRequest(ShipAndSea):
     route: UploadId = Field(description="id of a route of POST /routes")
     depart: str | None = Field(None, max_length=40, description="ISO 8601; default: of the file")
     speed_kn: float | None = Field(None, gt=0, lt=100)
+    hold: Literal["power", "speed"] | None = Field(
+        None, description="what is held at speed_kn; default: as the ship file orders"
+    )
     min_ukc_m: float = Field(0.0, ge=0, lt=100)
+    fuel_price_usd: float | None = Field(None, ge=0, le=1e5, description="per tonne")
+    eca_price_factor: float | None = Field(
+        None, gt=0, le=100, description="price of fuel inside control areas over that outside"
+    )
+    time_price_usd_per_h: float | None = Field(None, ge=0, le=1e7)
+
+    def check(self) -> None:
+        """Raise `InputError` for what needs neither route, chart nor data to be refused.
+
+        Raises
+        ------
+        InputError
+            With the entry in ``details["field"]``.
+        """
+        self.check_sea()
+        if self.depart is not None:
+            try:
+                parse_time(self.depart)
+            except InputError as error:
+                error.details["field"] = "depart"
+                raise
+        if self.hold is not None and self.speed_kn is None:
+            raise InputError(
+                f"hold {self.hold} is given without a speed.",
+                "It says what the engine holds at speed_kn.",
+                "Add speed_kn, or leave out hold.",
+                field="hold",
+            )
+        if self.charges is not None and self.charges.share_percent is None:
+            raise InputError(
+                "Charges are given without the share of the voyage.",
+                "It is 100 between two ports of the Union, 50 to or from one, else 0; a route has "
+                "no ports by which it could be found.",
+                "Add share_percent.",
+                field="charges.share_percent",
+            )

@@ -7,9 +7,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from thalweg.core.errors import InputError
-from thalweg.core.units import KNOT
+from thalweg.core.units import DAY, HOUR, KNOT
+from thalweg.planning.request.european_scope import share_between_places
+from thalweg.planning.request.filled_sea import filled_in_turns
 from thalweg.service.jobs.plan_request import (
     EMBEDDED_SEAS,
+    EvaluationRequest,
     PlanRequest,
     RequestedCharges,
     ShipAndSea,
@@ -53,8 +56,10 @@ def open_world(request: ShipAndSea, files: Mapping[str, str]) -> WorldOfJob:
     for name in request.traffic:
         chart = chart.with_traffic(files[name])
     chart = chart if request.eca else chart.without_eca()
-    fill = {str(name): value for name, value in request.fill.items()}
-    sea = open_seas(request.seas, fill, files, average_over_m=request.average_over_m)
+    sea = open_seas(
+        request.seas, files, average_over_m=request.average_over_m, variables=request.variables
+    )
+    sea = filled_in_turns(sea, request.fill_policies, chart)
     return WorldOfJob(open_ship_of(request, files), sea.sampled(request.sampling), chart)
 
 
@@ -80,7 +85,7 @@ def open_ship_of(request: ShipAndSea, files: Mapping[str, str]) -> Ship:
     if request.load_factor is not None:
         ship = ship.with_load_factor(request.load_factor)
     if request.charges is not None:
-        ship = ship.with_charges(_charges(request.charges))
+        ship = ship.with_charges(_charges(request.charges, request))
     given: dict[str, Any] = {}
     if request.limits.wave_height_m is not None:
         given["wave_height"] = request.limits.wave_height_m
@@ -89,11 +94,31 @@ def open_ship_of(request: ShipAndSea, files: Mapping[str, str]) -> Ship:
     return ship.with_limits(replace(ship.limits, **given)) if given else ship
 
 
-def _charges(given: RequestedCharges) -> EuropeanCharges:
+def _charges(given: RequestedCharges, request: ShipAndSea) -> EuropeanCharges:
     from thalweg.ship.methods.engine.european_charges import EuropeanCharges
 
-    share = given.share_percent / 100.0
-    return EuropeanCharges(share, given.ets_price, given.eur_rate, given.year)
+    prices = given.ets_price, given.eur_rate, given.year
+    if given.share_percent is not None:
+        return EuropeanCharges(given.share_percent / 100.0, *prices)
+    voyage = getattr(request, "voyage", {})
+    share, source = share_between_places(voyage.get("start"), voyage.get("goal"))
+    return EuropeanCharges(share, *prices, source)
+
+
+def with_orders_of(ship: Ship, request: EvaluationRequest) -> Ship:
+    """Return a ship with the prices of an evaluation, and what it holds at the ordered speed."""
+    from thalweg.ship.held_speed import with_held_power, with_held_speed
+
+    hourly = request.time_price_usd_per_h
+    ship = ship.with_prices(
+        request.fuel_price_usd,
+        request.eca_price_factor,
+        time_usd_per_day=None if hourly is None else hourly * DAY / HOUR,
+    )
+    if request.hold is None or request.speed_kn is None:
+        return ship
+    hold = with_held_speed if request.hold == "speed" else with_held_power
+    return hold(ship, request.speed_kn)
 
 
 def _with_comfort_limit(name: str, percent: float) -> Ship:
@@ -115,17 +140,17 @@ def _with_comfort_limit(name: str, percent: float) -> Ship:
 
 def open_seas(
     names: list[str],
-    fill: Mapping[str, Any],
     files: Mapping[str, str],
     *,
     average_over_m: float | None = None,
+    variables: Mapping[str, str] | None = None,
 ) -> Sea:
     """Return the sea of a list of names, the first with priority."""
     from thalweg.sea import Sea
 
     embedded = {"calm": Sea.calm, "storm": Sea.storm}
     uploaded = [files[name] for name in names if name not in EMBEDDED_SEAS]
-    parts = [Sea.open(*uploaded, draught_m=average_over_m)] if uploaded else []
+    options: dict[str, Any] = {"mapping": variables, "draught_m": average_over_m}
+    parts = [Sea.open(*uploaded, **options)] if uploaded else []
     parts += [embedded[name]() for name in names if name in EMBEDDED_SEAS]
-    sea = parts[0] if len(parts) == 1 else Sea.layered(*parts)
-    return sea.filled(**fill) if fill else sea
+    return parts[0] if len(parts) == 1 else Sea.layered(*parts)

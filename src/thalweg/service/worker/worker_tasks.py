@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import struct
+import warnings
 from collections.abc import Callable, Mapping
 from functools import lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from thalweg.core.errors import InputError
+from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.core.time import format_time
 from thalweg.service.jobs.sea_facts import FRAME_VARIABLES, forecast_run, sea_facts
 
@@ -70,7 +72,7 @@ def _as_integers(values: Any, scale: float) -> Any:
 def _sea(seas: tuple[str, ...], files: tuple[tuple[str, str], ...]) -> Sea:
     from thalweg.service.jobs.request_objects import open_seas
 
-    return open_seas(list(seas), {}, dict(files))
+    return open_seas(list(seas), dict(files))
 
 
 def inspect(task: Mapping[str, Any]) -> TaskResult:
@@ -90,26 +92,28 @@ def inspect(task: Mapping[str, Any]) -> TaskResult:
 
 
 def import_route(task: Mapping[str, Any]) -> TaskResult:
-    """Return the waypoints of a route file.
+    """Return the waypoints of a route file, and what it has otherwise than its format.
 
     Parameters
     ----------
     task : mapping
-        ``path``.
+        ``path``, and ``name`` of the file at the client.
     """
-    from thalweg.route import read_track
+    from thalweg.route.formats import route_file_contents
+    from thalweg.route.formats.parsed_track import track_of
 
-    try:
-        track, times = read_track(task["path"]), True
-    except InputError as error:
-        if "departure" not in error.asked.casefold():
-            raise
-        track, times = read_track(task["path"], depart=0.0), False
+    contents = route_file_contents(Path(task["path"]))
+    name = task.get("name") or Path(task["path"]).name
+    times = contents.first_time is not None
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ThalwegWarning)  # these are the notes
+        track = track_of(contents, None if times else 0.0, name)
     return {
         "waypoints": [
             [round(float(a), 6), round(float(b), 6)] for a, b in zip(track.lat, track.lon)
         ],
         "depart": format_time(track.depart) if times else None,
+        "notes": contents.all_notes(name),
     }, b""
 
 

@@ -1,0 +1,242 @@
+"""The waypoints of a route that a file needs: turns, waits, changes of speed, ends of canals."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thalweg.core.geodesy import MEAN_RADIUS, distance, inverse
+from thalweg.core.types import BoolArray, FloatArray, IntArray
+from thalweg.core.units import KNOT, NAUTICAL_MILE
+from thalweg.route.route import Route
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+_SAME_SPEED = 0.01 * KNOT  # differences of ordered speeds below this are none [m/s]
+_SAME_PLACE = 20.0  # waypoints closer than this are one [m]
+_SHORT_LEG = 0.5 * NAUTICAL_MILE  # shorter legs are joined where the cross-track limit allows it
+
+
+@dataclass(frozen=True, eq=False)
+class RouteLine:
+    """The waypoints and legs of a route, as thinning needs them.
+
+    Attributes
+    ----------
+    lat, lon : Waypoints [deg], (n,).
+    wait : Waits at the waypoints [s], (n,).
+    start : Distance of the waypoints from the start, as sailed [m], (n,).
+    canal : Which legs follow the line of a canal: those longer than their geodesic, (n - 1,).
+    approach : Which legs belong to canals or the approaches of ports, which may cross charted
+        land, (n - 1,).
+    held : Waypoints that are never left out, (n,).
+    samples : Of the route.
+    """
+
+    lat: FloatArray
+    lon: FloatArray
+    wait: FloatArray
+    start: FloatArray
+    canal: BoolArray
+    approach: BoolArray
+    held: BoolArray
+    samples: Mapping[str, FloatArray]
+
+    @classmethod
+    def of(cls, route: Route) -> RouteLine:
+        """Return the line of a route."""
+        track, length, speed = route.track, route.legs["length"], route.legs["ordered_speed"]
+        canal = np.asarray(length > 1.0001 * track.lengths + 1.0)
+        kind = np.asarray(route.legs.get("leg_kind", 0))
+        held = track.wait > 0.0
+        held[[0, -1]] = True
+        held[1:-1] |= np.abs(np.diff(speed)) > _SAME_SPEED
+        held[:-1] |= canal
+        held[1:] |= canal
+        start = np.concatenate([[0.0], np.cumsum(length)])
+        approach = np.broadcast_to(kind != 0, canal.shape).copy()
+        return cls(track.lat, track.lon, track.wait, start, canal, approach, held, route.samples)
+
+
+def kept_waypoints(line: RouteLine, chart: Chart | None, tolerance: float) -> IntArray:
+    """Return the waypoints of a route that its file keeps, in order.
+
+    Parameters
+    ----------
+    chart : Legs that would cross its land are not joined.
+    tolerance : Waypoints this close to the line of their neighbours are left out [m].
+    """
+    kept = _without_repeats(line, _turns(line, chart, tolerance))
+    return _without_short_legs(line, chart, kept, tolerance)
+
+
+def greatest_left_out(line: RouteLine, kept: IntArray) -> FloatArray:
+    """Return how far the waypoints left out are from each leg between those kept [m], or 0."""
+    found = np.zeros(len(kept) - 1)
+    wide = np.flatnonzero(np.diff(kept) > 1)
+    if wide.size:
+        apart, first = _inner_cross_tracks(line, kept[wide], kept[wide + 1])
+        found[wide] = np.maximum.reduceat(apart, first)
+    return found
+
+
+def geodesic_cross_track(
+    start: tuple[ArrayLike, ArrayLike],
+    end: tuple[ArrayLike, ArrayLike],
+    lat: ArrayLike,
+    lon: ArrayLike,
+) -> FloatArray:
+    """Return the distances [m] of positions from geodesics; beyond an end more than to that end.
+
+    Parameters
+    ----------
+    start, end : (lat, lon)
+        Ends of the geodesic [deg], or of one for each position, (n,).
+    lat, lon : Positions [deg], (n,).
+
+    Returns
+    -------
+    ndarray (n,) : Distances [m], positive.
+    """
+    length, course, _ = inverse(*start, *end)
+    away, bearing, _ = inverse(*start, lat, lon)
+    return _cross_track(length, course, away, bearing)
+
+
+def _cross_track(
+    length: FloatArray, course: FloatArray, away: FloatArray, bearing: FloatArray
+) -> FloatArray:
+    """Return distances [m] from geodesics of a length and course, seen from their start."""
+    arc = away / MEAN_RADIUS
+    aside = np.abs(np.arcsin(np.sin(arc) * np.sin(bearing - course))) * MEAN_RADIUS
+    along = away * np.cos(bearing - course)
+    beyond = (along < 0.0) | (along > length)
+    return np.asarray(np.where(beyond, np.minimum(away, np.abs(away - length)) + aside, aside))
+
+
+def _inner_cross_tracks(
+    line: RouteLine, first: IntArray, last: IntArray
+) -> tuple[FloatArray, IntArray]:
+    """Return how far the waypoints between pairs of others are from the lines of these.
+
+    Parameters
+    ----------
+    first, last : Waypoints, with one or more between the two of each pair, (m,).
+
+    Returns
+    -------
+    apart : Distances of all waypoints between, pair after pair [m].
+    start : Where each pair begins in them, (m,).
+    """
+    lat, lon = line.lat, line.lon
+    count = last - first - 1
+    start = np.cumsum(count) - count
+    pair = np.repeat(np.arange(len(count)), count)
+    inner = first[pair] + 1 + np.arange(len(pair)) - start[pair]
+    length, course, _ = inverse(lat[first], lon[first], lat[last], lon[last])
+    away, bearing, _ = inverse(lat[first[pair]], lon[first[pair]], lat[inner], lon[inner])
+    return _cross_track(length[pair], course[pair], away, bearing), start
+
+
+def _turns(line: RouteLine, chart: Chart | None, tolerance: float) -> IntArray:
+    """Return the waypoints to keep (Douglas and Peucker 1973), all stretches of a depth at once."""
+    keep = line.held.copy()
+    held = np.flatnonzero(keep)
+    first, last = held[:-1], held[1:]
+    while (wide := last - first > 1).any():
+        first, last = first[wide], last[wide]
+        apart, start = _inner_cross_tracks(line, first, last)
+        greatest = np.maximum.reduceat(apart, start)
+        stays = (greatest > tolerance) | _blocked(line, chart, first, last)
+        pair = np.repeat(np.arange(len(first)), last - first - 1)
+        top = np.flatnonzero(apart == greatest[pair])
+        _, one = np.unique(pair[top], return_index=True)
+        worst = (first + 1 + top[one] - start)[stays]
+        keep[worst] = True
+        first, last = np.append(first[stays], worst), np.append(worst, last[stays])
+    return np.flatnonzero(keep)
+
+
+def _blocked(line: RouteLine, chart: Chart | None, first: IntArray, last: IntArray) -> BoolArray:
+    """Return which legs between waypoints cross land; none without a chart."""
+    if chart is None:
+        return np.zeros(len(first), bool)
+    lat, lon = line.lat, line.lon
+    return np.asarray(chart.legs_blocked(lat[first], lon[first], lat[last], lon[last]))
+
+
+def _without_repeats(line: RouteLine, kept: IntArray) -> IntArray:
+    """Return the waypoints without those that are too close to the one before, if they may go."""
+    lat, lon, wait = line.lat, line.lon, line.wait
+    steps = distance(lat[kept[:-1]], lon[kept[:-1]], lat[kept[1:]], lon[kept[1:]])
+    if not (steps < _SAME_PLACE).any():
+        return kept
+    waypoints, final = [int(kept[0])], int(kept[-1])
+    for index, previous, step in zip(kept[1:].tolist(), kept[:-1].tolist(), steps.tolist()):
+        before = waypoints[-1]
+        if before != previous:
+            step = float(distance(lat[before], lon[before], lat[index], lon[index]))
+        if step < _SAME_PLACE and not line.canal[before:index].any():
+            if index == final and before != kept[0] and wait[before] == 0.0:
+                waypoints[-1] = index
+                continue
+            if index != final and wait[index] == 0.0 and not line.canal[index]:
+                continue
+        waypoints.append(index)
+    return np.array(waypoints)
+
+
+def _without_short_legs(
+    line: RouteLine, chart: Chart | None, kept: IntArray, tolerance: float
+) -> IntArray:
+    """Return the waypoints without those beside short legs that may go, the nearest first."""
+    lat, lon = line.lat, line.lon
+    lengths = distance(lat[kept[:-1]], lon[kept[:-1]], lat[kept[1:]], lon[kept[1:]])
+    shortest = np.minimum(lengths[:-1], lengths[1:])
+    near = np.flatnonzero(~line.held[kept[1:-1]] & (shortest < _SHORT_LEG))
+    waiting = list(zip(shortest[near].tolist(), kept[near + 1].tolist()))
+    heapq.heapify(waiting)
+    may_go = _may_join(line, chart, kept[near], kept[near + 2], tolerance)
+    known = dict(zip(zip(kept[near].tolist(), kept[near + 2].tolist()), may_go.tolist()))
+    before = dict(zip(kept[1:].tolist(), kept[:-1].tolist()))
+    after = dict(zip(kept[:-1].tolist(), kept[1:].tolist()))
+    step = dict(zip(kept[:-1].tolist(), lengths.tolist()))  # of the leg after a waypoint
+    stays = set(np.flatnonzero(line.held).tolist())
+    while waiting:
+        length, here = heapq.heappop(waiting)
+        if here in stays or here not in before or length != min(step[before[here]], step[here]):
+            continue  # the legs beside it have changed since
+        ends = before[here], after[here]
+        if ends not in known:
+            pair = np.array([ends[0]]), np.array([ends[1]])
+            known[ends] = bool(_may_join(line, chart, *pair, tolerance)[0])
+        if not known[ends]:
+            stays.add(here)
+            continue
+        del before[here], after[here], step[here]
+        after[ends[0]], before[ends[1]] = ends[1], ends[0]
+        first, last = np.array(ends)
+        step[ends[0]] = float(distance(lat[first], lon[first], lat[last], lon[last]))
+        for beside in ends:
+            if beside not in stays:
+                shorter = min(step[before[beside]], step[beside])
+                if shorter < _SHORT_LEG:
+                    heapq.heappush(waiting, (shorter, beside))
+    return np.array([*after, kept[-1]])
+
+
+def _may_join(
+    line: RouteLine, chart: Chart | None, first: IntArray, last: IntArray, tolerance: float
+) -> BoolArray:
+    """Return whether one leg may stand for those between two waypoints, for each pair."""
+    if not first.size:
+        return np.zeros(0, bool)
+    apart, start = _inner_cross_tracks(line, first, last)
+    close = np.maximum.reduceat(apart, start) <= tolerance
+    return np.asarray(close & ~_blocked(line, chart, first, last))
