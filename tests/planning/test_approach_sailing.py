@@ -92,6 +92,14 @@ def test_bounds_and_notes_count_the_approaches():
         assert name in texts
 
 
+@pytest.mark.slow
+def test_the_bound_of_a_front_counts_the_time_of_the_approaches():
+    plan = planned(objective="front", method="exact")
+    assert plan.lower_bound == pytest.approx(plan.front.certain[0].min())
+    assert plan.lower_bound < min(route.time_h for route in plan.routes)
+    assert 0.0 <= plan.gap < 0.3
+
+
 @pytest.mark.parametrize("form", ["route.gpx", "route.csv", "route.geojson"])
 def test_a_written_route_has_the_same_totals_when_it_is_read_back(form, tmp_path):
     plan = planned()

@@ -105,10 +105,11 @@ class ApproachSailing:
             return replace(plan, plot_context=plots)
         routes = tuple(self.joined(route, context) for route in plan.routes)
         added = _difference(routes[0], plan, voyage, context)
+        more = added[0] if voyage.objective == "front" else added[1]  # a front is bounded in time
         proof = Proof(
-            plan.proof.certain + added[1],
+            plan.proof.certain + more,
             f"{plan.proof.kind}; with the approaches of the ports",
-            plan.proof.solver_total + added[1],
+            plan.proof.solver_total + more,
         )
         front = plan.front and self._front(plan.front, added, context)
         return replace(
