@@ -239,8 +239,9 @@ def _compare(arguments: argparse.Namespace) -> int:
         if row["usual"] is None:
             print(f"  {title:14} not known")
         else:
+            saved = row["saving_percent"]
             print(f"  {title:14} usual {row['usual']:,.1f}, optimal {row['optimal']:,.1f}: "
-                  f"{row['saving_percent']:+.1f} % saved")  # fmt: skip
+                  f"{abs(saved):.1f} % {'less' if saved >= 0.0 else 'more'}")  # fmt: skip
     if not comparison["usual_within_limits"]:
         print("  the usual route exceeds a limit of this ship on this day")
     return SUCCESS
