@@ -19,11 +19,10 @@ export function remedyButtons(problem, form, done) {
   const reasons = problem.reasons || {};
   const departs = typedTime(form.depart);
   const earliest = seconds(problem.details?.earliest);
-  if (earliest !== null && earliest > (typedTime(form.arriveBy) ?? 0)) {
+  if (earliest !== null) {
     const minute = Math.ceil(earliest / 60) * 60;
     offer(`Arrive by ${time(minute)}`, "arrive_by", () => { form.arriveBy.value = inputTime(minute); });
-  } else if (earliest !== null) offer("Least time", "objective", () => { form.objective.value = "time"; });
-  else if (problem.field === "arrive_by") offer("Without an arrival", "arrive_by", () => { form.arriveBy.value = ""; });
+  } else if (problem.field === "arrive_by") offer("Without an arrival", "arrive_by", () => { form.arriveBy.value = ""; });
   if (problem.field === "depart" && sea.period) offer(`Depart ${time(sea.period[0], true)}`, "depart", () => { form.depart.value = inputTime(sea.period[0]); form.latest.value = ""; });
   const stormy = LIMITS.filter(([reason]) => reasons[reason]);
   if (stormy.length && departs !== null) offer("Depart a day later", "depart", () => { form.depart.value = inputTime(departs + DAY); });
