@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+import thalweg.ship
 from tests.browser.conftest import SHORT_REQUEST, playwright_api
 from tests.service.conftest import TOKEN, ended
 
@@ -16,6 +18,7 @@ TRAFFIC = {
     "elsewhere": {"encounters_per_h": 0.25},
     "features": [],
 }
+SHIP = Path(thalweg.ship.__file__).parent / "library" / "gunnerus.yaml"
 #: What a script of the page does between an answer and the end of drawing it.
 DRAWN = "() => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 0)))"
 
@@ -140,6 +143,21 @@ def test_what_is_typed_before_the_lists_arrive_stays(visit):
     held.release()
     page.wait_for_selector("#ship option", state="attached")
     assert page.locator(".field.start input").input_value() == "51.0N 2.0E"
+
+
+def test_a_plan_waits_for_the_ship_file_that_is_read(visit, tmp_path):
+    page = visit.open()
+    visit.fill_short()
+    page.locator("#ship-facts", has_text="kn").wait_for()
+    (tmp_path / "own.yaml").write_bytes(SHIP.read_bytes())
+    page.route("**/api/v1/plans", lambda route: route.abort())
+    held = Held(page, "**/api/v1/ships")
+    page.locator("#ship-file").set_input_files(str(tmp_path / "own.yaml"))
+    held.wait()
+    with page.expect_request("**/api/v1/plans") as sent:
+        page.locator("button.primary[type=submit]").click()
+        held.release()
+    assert sent.value.post_data_json["ship"] not in ("", "handysize-bulker")
 
 
 def test_a_second_click_sends_no_second_voyage(visit):

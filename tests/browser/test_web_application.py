@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.browser.conftest import Visit, playwright_api
+from tests.browser.conftest import SHORT_REQUEST, Visit, playwright_api
 from tests.service.conftest import ended
 
 pytestmark = pytest.mark.slow
@@ -25,6 +25,10 @@ def test_a_voyage_is_planned_by_clicking_on_the_chart(visit):
     page.wait_for_selector("#chart[data-idle]")
     page.wait_for_selector("#ship option", state="attached")
     visit.picture("form")
+    time = page.locator("#time")
+    time.focus()
+    page.keyboard.press("End")
+    assert page.locator("#valid b").inner_text() == "8 Sep 1998 06:00"
     chart = page.locator("#chart")
     box = chart.bounding_box()
     for share, choice in ((0.50, "From here"), (0.53, "To here")):
@@ -77,6 +81,20 @@ def test_what_is_missing_is_said_at_its_field(visit):
     assert "never assumed" in page.locator("[data-field=seas] .error").inner_text()
 
 
+def test_a_refusal_stands_at_its_field_and_offers_a_remedy(visit):
+    voyage = {**SHORT_REQUEST["voyage"], "depart": "2024-08-31T12:00Z"}
+    post, get = visit.service.http.post, visit.service.http.get
+    job = post("/api/v1/plans", json={**SHORT_REQUEST, "voyage": voyage}).raise_for_status().json()
+    assert ended(get, job["id"])["problem"]["field"] == "depart"
+    page = visit.open(f"#plan={job['id']}")
+    field = page.locator("[data-field=depart]")
+    field.locator(".error").wait_for()
+    assert "24 Aug 1998 06:00 UTC" in field.locator(".error").inner_text()
+    field.get_by_role("button", name="Depart 24 Aug 1998 06:00").click()
+    assert page.locator("#depart").input_value() == "1998-08-24 06:00"
+    assert field.locator(".error").count() == 0
+
+
 def test_points_are_dragged_and_a_voyage_file_and_a_link_restore_them(visit, tmp_path):
     page = visit.open()
     visit.fill_short("47.0N 20.0W", "47.0N 30.0W")
@@ -93,6 +111,9 @@ def test_points_are_dragged_and_a_voyage_file_and_a_link_restore_them(visit, tmp
     goal = page.locator(".field.goal input")
     playwright_api.expect(goal).not_to_have_value("47.0N 30.0W")
     moved = goal.input_value()
+    page.get_by_role("button", name="Undo move").click()
+    playwright_api.expect(goal).to_have_value("47.0N 30.0W")
+    goal.fill(moved)
     assert re.match(r"4[0-6]\.\d+N 2[6-9]\.\d+W", moved)
     with page.expect_download() as download:
         page.get_by_role("button", name="Save voyage file").click()

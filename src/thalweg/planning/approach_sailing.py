@@ -71,6 +71,7 @@ class ApproachSailing:
                     f"No route arrives by {format_time(latest)}.",
                     f"The approaches of the ports alone take {(first + last) / HOUR:.1f} h.",
                     "Allow more time.",
+                    field="arrive_by",
                 )
         window = voyage.depart_window
         shifted = None if window is None else tuple(float(t) + first for t in window)  # type: ignore[arg-type]
@@ -269,6 +270,7 @@ def plan_along_approaches(
             f"The approaches take {route.time_h:.1f} h at "
             f"{sailing.speed / KNOT:.1f} kn: arrival {format_time(route.arrive)}.",
             "Allow more time.",
+            field="arrive_by",
         )
     front, value = None, route.time_h
     if voyage.chooses_speeds:

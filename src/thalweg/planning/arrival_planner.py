@@ -112,6 +112,7 @@ def _check_end_of_data(request: ArrivalRequest) -> None:
             f"The arrival {format_time(request.arrive)} is outside the data.",
             f"The data run from {format_time(first)} to {format_time(last)}.",
             "Choose an arrival in that period, or add data.",
+            field="arrive_by",
         )
 
 

@@ -45,7 +45,7 @@ class ServiceLimits:
     store_bytes: int = 20 * 2**30
     small_upload_bytes: int = 20 * 2**20
     worker_seconds: float = 60.0
-    cancel_seconds: float = 30.0
+    cancel_seconds: float = 60.0
 
 
 @dataclass(frozen=True)

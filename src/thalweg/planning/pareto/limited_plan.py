@@ -77,6 +77,15 @@ class IndicatorLimit:
         value = indicator_value(route, self.name, self.at)
         return f"{words} ({value:.4g})" if math.isfinite(value) else f"{words} (not known)"
 
+    def value_text(self, route: Route) -> str:
+        """Return the value of a route in words."""
+        value = indicator_value(route, self.name, self.at)
+        unit = INDICATORS[self.name][0]
+        name = f"{self.name}:{self.at}" if self.at else self.name
+        return (
+            f"{name} {value:.4g} {unit}".rstrip() if math.isfinite(value) else f"{name} not known"
+        )
+
 
 def plan_within_limits(voyage: Voyage, plan_one: Callable[[Voyage], Plan]) -> Plan:
     """Plan a voyage whose route keeps limits of indicators.
@@ -223,10 +232,10 @@ def _no_route_within(plans: list[Plan], limits: tuple[IndicatorLimit, ...]) -> N
     routes = [route for plan in plans for route in plan.routes if route.feasible]
     nearest = min(routes, key=lambda route: sum(one.excess(route) for one in limits), default=None)
     asked = ", ".join(one.text() for one in limits)
-    got = "" if nearest is None else ", ".join(one.text(nearest) for one in limits)
+    got = "" if nearest is None else ", ".join(one.value_text(nearest) for one in limits)
     return NoRouteError(
         f"No route was found with {asked}.",
-        f"The nearest of {len(routes)} routes has: {got}." if got else "No route was found.",
+        f"The nearest of {len(routes)} routes has {got}." if got else "No route was found.",
         "Relax the limit, allow more time, or change the departure.",
         reasons={},
     )

@@ -6,6 +6,7 @@ import math
 from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
+from time import monotonic
 from typing import TypeVar
 
 import numpy as np
@@ -52,6 +53,7 @@ _NETWORK_ONLY = (
     "speed; the routes were not refined in open water."
 )
 _MAX_ROUTES_INTERRUPTED = 20  # after Ctrl-C
+_SECONDS_INTERRUPTED = 3.0  # for the referee after Ctrl-C, once one route is scored
 
 
 def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
@@ -226,10 +228,17 @@ def _refereed(
     """
     context = trade_off.context
     context.report_progress(f"evaluating {len(candidates)} routes")
-    scored = []
-    for candidate in candidates:
+    by_index: dict[int, RefereedCandidate] = {}
+    until = math.inf
+    for k in _from_coarse_to_fine(len(candidates)):
+        if trade_off.interrupt_guard.stopped():
+            until = min(until, monotonic() + _SECONDS_INTERRUPTED)
+            if monotonic() > until and any(item.route.feasible for item in by_index.values()):
+                break
+        candidate = candidates[k]
         route = context.evaluate(candidate.track, trade_off.objective.terms)
-        scored.append(RefereedCandidate(candidate, route, trade_off.objective.value(route)))
+        by_index[k] = RefereedCandidate(candidate, route, trade_off.objective.value(route))
+    scored = [by_index[k] for k in sorted(by_index)]
     latest = context.latest_arrival
     usable = [
         item
@@ -242,6 +251,11 @@ def _refereed(
     different = {(gap.reason, gap.lat, gap.lon, gap.time): gap for gap in gaps}
     sailed = [item for item in scored if math.isfinite(item.route.arrive)]
     return sailed, tuple(different.values())[:MAX_GAPS]
+
+
+def _from_coarse_to_fine(count: int) -> list[int]:
+    """Return all indices below a count: every 16th first, then every 8th, and so on."""
+    return list(dict.fromkeys(k for step in (16, 8, 4, 2, 1) for k in range(0, count, step)))
 
 
 def _not_dominated(scored: list[RefereedCandidate]) -> list[RefereedCandidate]:

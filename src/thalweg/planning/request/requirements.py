@@ -120,6 +120,7 @@ def _required_depth(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, notes: l
             "the chart nor the sea provides depth.",
             "Depth comes from a chart with depth (--depth FILE) or from a sea with a bed level.",
             "Add depth, or plan without a clearance and check the depth on the chart.",
+            field="min_ukc_m",
         )
     if "depth" in ship.reads and not known:
         raise MissingVariableError(
@@ -194,5 +195,6 @@ def check_departure_in_data(voyage: Voyage, sea: Sea, channels: Iterable[int]) -
             f"Departure {format_time(requested)} is outside the data.",
             f"The data run from {format_time(first)} to {format_time(last)}.",
             "Choose a departure in that period, or add data.",
+            field="depart",
         )
     return last

@@ -127,6 +127,7 @@ def late_arrival_error(
             f"The fastest route arrives at {format_time(earliest)}.",
             "Choose the objective 'time', or allow a later arrival.",
             reasons={codes.REASONS[codes.ARRIVE_BY]: 1},
+            field="arrive_by",
         )
     subject = "shortest passage of the window arrives at" if window else "earliest arrival is"
     return NoRouteError(
@@ -134,6 +135,7 @@ def late_arrival_error(
         f"The {subject} {format_time(earliest)}.",
         "Allow a later arrival, or depart earlier.",
         reasons={codes.REASONS[codes.ARRIVE_BY]: 1},
+        field="arrive_by",
         earliest=format_time(earliest),
     )
 

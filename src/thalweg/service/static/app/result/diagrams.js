@@ -1,11 +1,11 @@
 // The drawer: time and player, profile along time, front, legs. All follow the one selection.
 
-import uPlot from "../vendor/uplot.mjs";
-import { colour, fill, h } from "./elements.js";
-import { bearing, duration, known, number, plainPosition, seconds, time } from "./format.js";
+import uPlot from "../../vendor/uplot.mjs";
+import { colour, fill, h } from "../common/elements.js";
+import { bearing, duration, known, number, position, seconds, time } from "../common/format.js";
 import { FrontDiagram } from "./front_diagram.js";
-import { drawClosures } from "./project_diagrams.js";
-import { selection } from "./selection.js";
+import { drawClosures } from "../batch/project_diagrams.js";
+import { selection } from "../common/selection.js";
 
 const SERIES = [
   ["speed_over_ground_kn", "Speed over ground", "kn", "speed", "--imported", 1],
@@ -17,14 +17,17 @@ const SERIES = [
   ["under_keel_clearance_m", "Under-keel clearance", "m", "depth", "--coast", 1],
   ["depth_m", "Depth", "m", "depth", "--other", 0],
   ["current_speed_kn", "Current", "kn", "speed", "--isochrone", 1],
+  ["ice_fraction", "Ice cover", "", "ice", "--hatch", 2],
   ["weighted_acceleration_m_s2", "Motion felt on board", "m/s²", "motion", "--danger", 2],
 ];
+const figure = (value, decimals) => (known(value) ? number(value, decimals) : "–");
 const FIRST = ["speed_over_ground_kn", "wave_height_m"];
 
 export class Drawer {
-  constructor(element, onTab) {
+  /** @param {() => boolean} waits whether the weather of the time is still on its way */
+  constructor(element, waits) {
     this.element = element;
-    this.onTab = onTab;
+    this.waits = waits;
     this.shown = new Set(FIRST);
     this.tab = "profile";
     this.play = h("button.play", { type: "button", "aria-label": "Play (space)", onclick: () => this.toggle() });
@@ -34,7 +37,7 @@ export class Drawer {
     this.sheet = h("div.sheet", { role: "tabpanel", id: "sheet" });
     fill(element, h("div.player", {}, this.play, this.slider, this.output, this.tabs), this.sheet);
     this.#icon();
-    selection.addEventListener("time", () => this.#moved());
+    selection.addEventListener("time", () => this.moved());
     new ResizeObserver(() => this.#resize()).observe(this.sheet);
   }
 
@@ -43,24 +46,42 @@ export class Drawer {
     this.to = to;
   }
 
-  hide() { this.stop(); this.element.hidden = true; }
+  // The player alone, over the time of the data [s, s]; without data it cannot be moved.
+  showTimes(period) {
+    if (!period) this.stop();
+    this.#clear();
+    this.result = null;
+    this.element.hidden = false;
+    this.element.classList.add("slim");
+    fill(this.tabs);
+    fill(this.sheet);
+    this.range(...(period || [null, null]));
+    this.slider.disabled = this.play.disabled = !period;
+    if (!period) this.output.textContent = "no data in time";
+    this.moved();
+  }
+
+  #clear() {
+    this.plot?.destroy();
+    this.plot = this.front = this.chips = this.rows = null;
+  }
 
   // result: {plan, kind, profile, speedRange}; redraws the open tab.
   show(result) {
     this.element.hidden = false;
+    this.element.classList.remove("slim");
+    this.slider.disabled = this.play.disabled = false;
     this.result = result;
     if ((this.tab === "front" && !result.front) || (this.tab === "tide" && !result.spaceTime)) this.tab = "profile";
     const names = [["profile", "Profile"], ...(result.front ? [["front", "Front"]] : []), ...(result.spaceTime ? [["tide", "Place and time"]] : []), ["legs", "Legs"]];
     fill(this.tabs, names.map(([name, text]) => h("button", { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": "sheet", "aria-selected": String(name === this.tab), tabindex: name === this.tab ? 0 : -1, onclick: () => this.open(name), onkeydown: (event) => this.#tabKey(event, names) }, text)));
     this.sheet.setAttribute("aria-labelledby", `tab-${this.tab}`);
-    this.plot?.destroy();
-    this.plot = null;
-    this.front = null;
+    this.#clear();
     if (this.tab === "front") this.#showFront();
     else if (this.tab === "legs") this.#showLegs();
     else if (this.tab === "tide") this.#showTide();
     else this.#showProfile();
-    this.#moved();
+    this.moved();
   }
 
   open(tab) {
@@ -84,12 +105,16 @@ export class Drawer {
 
   start() {
     if (!known(this.to)) return;
-    const whole = 16000; // the voyage in milliseconds
-    let last = performance.now();
-    if (selection.time >= this.to - 60) selection.at(this.from);
+    const hours = (this.to - this.from) / 3600;
+    const whole = Math.max(16, hours / 12) * 1000; // all of it in milliseconds: no more than half a day in a second
+    let last = performance.now(), waited = 0;
+    if (!(selection.time >= this.from && selection.time < this.to - 60)) selection.at(this.from);
     const tick = (now) => {
-      const next = selection.time + ((now - last) / whole) * (this.to - this.from);
+      const step = now - last;
       last = now;
+      waited = this.waits() ? waited + step : 0;
+      if (waited > 0 && waited < 3000) { this.timer = requestAnimationFrame(tick); return; } // ship and weather move together
+      const next = selection.time + (Math.min(step, 100) / whole) * (this.to - this.from);
       if (next >= this.to) { selection.at(this.to); this.stop(); return; }
       selection.at(next);
       this.timer = requestAnimationFrame(tick);
@@ -111,13 +136,14 @@ export class Drawer {
     this.play.setAttribute("aria-label", this.timer ? "Pause (space)" : "Play (space)");
   }
 
-  #moved() {
+  moved() {
     const t = selection.time;
-    if (!known(t)) return;
+    if (!known(t) || !known(this.from)) return;
     this.output.textContent = time(t);
     if (document.activeElement !== this.slider || this.timer) this.slider.value = String(Math.round(((t - this.from) / Math.max(1, this.to - this.from)) * 1000));
     this.slider.style.setProperty("--share", `${(100 * (t - this.from)) / Math.max(1, this.to - this.from)}%`);
     this.slider.setAttribute("aria-valuetext", `${time(t)} UTC`);
+    this.output.classList.toggle("outside", t < this.from || t > this.to);
     const profile = this.result?.profile;
     if (this.plot?.status === 1 && profile && !this.inPlot) this.plot.setCursor({ left: this.plot.valToPos(t, "x"), top: 10 }, false);
     if (profile) this.#values(indexAt(profile.time, t));
@@ -133,11 +159,12 @@ export class Drawer {
     if (!there.some(([name]) => this.shown.has(name))) this.shown.add(there[0]?.[0]);
     this.holder = h("div.plot", { role: "img", "aria-label": "Profile of the route along time; the values at the chosen time stand beside it, and all legs in the table." });
     this.chips = there.map(([name, text, unitText, , paint]) => {
-      const value = h("span.value");
+      const value = h("span.value"), unitOf = h("span", {}, ` ${unitText}`);
       const mark = h("i");
       mark.style.background = `var(${paint})`;
-      const box = h("label.check", {}, h("input", { type: "checkbox", checked: this.shown.has(name), onchange: (event) => { event.target.checked ? this.shown.add(name) : this.shown.delete(name); this.#plot(); } }), mark, h("span", {}, text, h("small", {}, value, ` ${unitText}`)));
+      const box = h("label.check", {}, h("input", { type: "checkbox", checked: this.shown.has(name), onchange: (event) => { event.target.checked ? this.shown.add(name) : this.shown.delete(name); this.#plot(); } }), mark, h("span", {}, text, h("small", {}, value, unitOf)));
       box.value = value;
+      box.unitOf = unitOf;
       box.name = name;
       return box;
     });
@@ -157,25 +184,26 @@ export class Drawer {
       width: Math.max(200, this.holder.clientWidth - 8), height: Math.max(80, this.holder.clientHeight - 6), padding: [10, 8, 0, 0],
       tzDate: (t) => uPlot.tzDate(new Date(t * 1000), "UTC"),
       cursor: { y: false, points: { size: 6 }, drag: { x: false, y: false }, lock: false },
-      scales: { x: { time: true }, ...Object.fromEntries(scales.map((name) => [name, { range: (_, low, high) => uPlot.rangeNum(name === "depth" ? low : Math.min(0, low ?? 0), high ?? 1, { min: { pad: 0 }, max: { pad: 0.12, soft: 1 } }) }])) },
+      scales: { x: { time: true }, ...Object.fromEntries(scales.map((name) => [name, { range: (_, low, high) => (low === high ? [Math.min(0, low ?? 0), Math.max(1, 1.12 * (high ?? 0))] : uPlot.rangeNum(name === "depth" ? low : Math.min(0, low ?? 0), high ?? 1, { min: { pad: 0 }, max: { pad: 0.12, soft: 1 } })) }])) },
       axes: [
         { ...axis, size: 32, values: (u, ticks) => ticks.map((t, i) => { const d = new Date(t * 1000); const hour = d.getUTCHours(); return hour && i ? `${String(hour).padStart(2, "0")}:${String(d.getUTCMinutes()).padStart(2, "0")}` : time(t).split(" ").slice(0, 2).join(" "); }) },
         ...scales.slice(0, 3).map((name, i) => ({ ...axis, scale: name, side: i ? 1 : 3, size: 46, label: units[name], labelSize: 16, labelFont: axis.font, labelGap: 0, grid: { ...axis.grid, show: i === 0 } })),
       ],
       series: [{}, ...there.map(([name, text, , scale, paint]) => ({ label: text, scale, stroke: getComputedStyle(document.documentElement).getPropertyValue(paint), width: 1.8, spanGaps: false }))],
       legend: { show: false },
-      hooks: { ready: [() => this.#moved()], setCursor: [(u) => { if (this.inPlot && u.cursor.idx !== null && u.cursor.left >= 0) selection.at(profile.time[u.cursor.idx]); }] },
+      hooks: { ready: [() => this.moved()], setCursor: [(u) => { if (this.inPlot && u.cursor.idx !== null && u.cursor.left >= 0) selection.at(profile.time[u.cursor.idx]); }] },
     }, [profile.time, ...there.map(([name]) => profile[name])], this.holder);
     this.plot.over.addEventListener("pointerenter", () => { this.inPlot = true; });
-    this.plot.over.addEventListener("pointerleave", () => { this.inPlot = false; this.#moved(); });
-    this.#moved();
+    this.plot.over.addEventListener("pointerleave", () => { this.inPlot = false; this.moved(); });
+    this.moved();
   }
 
   #values(i) {
     for (const chip of this.chips || []) {
       const row = SERIES.find(([name]) => name === chip.name);
       const value = this.result.profile[chip.name]?.[i];
-      chip.value.textContent = known(value) ? number(value, row[5]) : "unknown";
+      chip.value.textContent = known(value) ? number(value, row[5]) : "not known here";
+      chip.unitOf.hidden = !known(value);
     }
   }
 
@@ -203,10 +231,10 @@ export class Drawer {
 
   #showLegs() {
     const rows = this.result.waypoints;
-    const cells = [["Time", "time", (w) => time(seconds(w.time)), true], ["Position", "", (w) => plainPosition(w.lat, w.lon), true], ["Course", "", (w) => bearing(w.course_deg)], ["Ordered", "kn", (w) => number(w.ordered_speed_kn, 1)], ["Over ground", "kn", (w) => number(w.speed_over_ground_kn, 1)], ["Distance", "nm", (w) => number(w.distance_nm, 1)], ["Wait", "", (w) => (w.waiting_h > 0 ? duration(w.waiting_h) : "")], ["Waves", "m", (w) => number(w.wave_height_m, 1)], ["Wind", "kn from", (w) => (known(w.wind_speed_kn) ? `${number(w.wind_speed_kn)} ${bearing(w.wind_from_deg)}` : "unknown")], ["UKC", "m", (w) => number(w.ukc_m, 1)], ["Fuel", "t", (w) => number(w.fuel_t, 1)]]
+    const cells = [["Time", "UTC", (w) => time(seconds(w.time)), true], ["Position", "", (w) => position(w.lat, w.lon), true], ["Course", "", (w) => bearing(w.course_deg)], ["Order", "kn", (w) => figure(w.ordered_speed_kn, 1)], ["Over ground", "kn", (w) => figure(w.speed_over_ground_kn, 1)], ["Distance", "nm", (w) => number(w.distance_nm, 1)], ["Wait", "", (w) => (w.waiting_h > 0 ? duration(w.waiting_h) : "")], ["Waves", "m", (w) => figure(w.wave_height_m, 1)], ["Wind", "kn from", (w) => (known(w.wind_speed_kn) ? `${number(w.wind_speed_kn)}${known(w.wind_from_deg) ? ` ${bearing(w.wind_from_deg)}` : ""}` : "–")], ["UKC", "m", (w) => figure(w.ukc_m, 1)], ["Fuel", "t", (w) => number(w.fuel_t, 1)]]
       .filter(([name]) => name !== "Wait" || rows.some((w) => w.waiting_h > 0)).filter(([name]) => name !== "UKC" || rows.some((w) => known(w.ukc_m)));
     this.rows = rows.map((w, i) => h("tr", { onclick: () => selection.at(seconds(w.time)), "data-time": seconds(w.time) }, h("td", {}, String(i + 1)), cells.map(([, , text, left]) => h(left ? "td.text" : "td", {}, text(w)))));
-    fill(this.sheet, h("div.table", { tabindex: 0 }, h("table", {}, h("caption.hidden", {}, "Waypoints of the chosen route, times in UTC"), h("thead", {}, h("tr", {}, h("th", {}, "#"), cells.map(([name, unitText, , left]) => h(left ? "th.text" : "th", { scope: "col" }, name, unitText && unitText !== "time" ? h("span.unit", {}, ` ${unitText}`) : null)))), h("tbody", {}, this.rows))));
+    fill(this.sheet, h("div.table", { tabindex: 0 }, h("table", {}, h("caption.hidden", {}, "Waypoints of the chosen route, times in UTC"), h("thead", {}, h("tr", {}, h("th", {}, "#"), cells.map(([name, unitText, , left]) => h(left ? "th.text" : "th", { scope: "col" }, name, unitText ? h("span.unit", {}, ` ${unitText}`) : null)))), h("tbody", {}, this.rows))));
   }
 
   #currentLeg(t) {
@@ -216,10 +244,17 @@ export class Drawer {
   }
 }
 
-export function indexAt(times, t) {
+function indexAt(times, t) {
   let low = 0, high = times.length - 1;
   while (high - low > 1) { const middle = (low + high) >> 1; times[middle] <= t ? (low = middle) : (high = middle); }
   return t - times[low] < times[high] - t ? low : high;
+}
+
+// The time at which a route passes nearest to a position [s].
+export function timeNear({ time: times, lat: lats, lon: lons }, lat, lon) {
+  const shrink = Math.cos((lat * Math.PI) / 180);
+  const apart = lats.map((value, i) => (value - lat) ** 2 + (shrink * (((lons[i] - lon + 540) % 360) - 180)) ** 2);
+  return times[apart.indexOf(Math.min(...apart))];
 }
 
 export function placeAt(profile, t) {

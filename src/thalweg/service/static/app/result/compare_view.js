@@ -1,13 +1,12 @@
 // Two to six routes side by side, with differences to the first; ready studies and scored files.
 
-import { get, post, uploadForm } from "./api.js";
-import { errorBox, fill, h } from "./elements.js";
-import { EXAMPLES, keyOf } from "./examples.js";
-import { duration, known, number, seconds, signed, signedDuration, time } from "./format.js";
+import { follow, get, hasEnded, post, uploadForm } from "../common/api.js";
+import { errorBox, fill, h } from "../common/elements.js";
+import { EXAMPLES, keyOf, VARIATIONS } from "./examples.js";
+import { PAINTS } from "./result_drawing.js";
+import { duration, known, number, readable, seconds, signed, signedDuration, time, titleOf } from "../common/format.js";
 
 const MOST = 6;
-export const DASHES = [null, [10, 6], [2, 6], [12, 5, 2, 5], [18, 6], [4, 4]];
-export const PAINTS = ["route", "imported", "good", "amber", "ink", "other"];
 const FIGURES = [["Time", "time_h", duration, signedDuration], ["Distance", "distance_nm", (v) => `${number(v, 1)} nm`, (v) => signed(v, 1)], ["Fuel", "fuel_t", (v) => (known(v) ? `${number(v, 1)} t` : "unknown"), (v) => signed(v, 1)], ["Cost", "cost", (v, row) => (known(v) ? `${number(v)} ${row.currency}` : "unknown"), (v) => signed(v, 0)], ["CO₂", "co2_t", (v) => (known(v) ? `${number(v)} t` : "unknown"), (v) => signed(v, 0)], ["Waves up to", "highest_waves_m", (v) => (known(v) ? `${number(v, 1)} m` : "unknown"), null], ["Wind up to", "strongest_wind_kn", (v) => (known(v) ? `${number(v)} kn` : "unknown"), null]];
 
 export class CompareView {
@@ -19,8 +18,8 @@ export class CompareView {
     this.table = h("div");
     this.problem = h("div");
     this.file = h("input.hidden", { type: "file", id: "route-file", "aria-label": "Route file", accept: ".rtz,.rtzp,.gml,.gpx,.geojson,.json,.csv", tabindex: "-1", onchange: () => this.#score() });
-    this.element = [h("div.scroll", {}, h("h1", {}, "Compare routes"), h("p.lead", {}, "Choose two to six. The first is the one that the others are compared with."), this.problem, h("div.block", {}, this.list), h("div.block", {}, h("h2", {}, "Examples"), EXAMPLES.map((example) => h("button.job.example", { type: "button", onclick: () => this.#example(example) }, h("b", {}, example.name), h("span", {}, example.facts)))), h("div.block", {}, h("h2", {}, "Ready studies"), h("p.facts", {}, "Each plans the voyage of the first chosen route again, and adds the results."), h("div.exports", {},
-      h("button.quiet.small", { type: "button", onclick: () => this.#study("speeds") }, "Three speeds"), h("button.quiet.small", { type: "button", onclick: () => this.#study("departures") }, "Departures +12, +24 h"), h("button.quiet.small", { type: "button", onclick: () => this.#study("calm") }, "Without weather"), h("button.quiet.small", { type: "button", onclick: () => this.#study("offing") }, "Without offing")),
+    this.element = [h("div.scroll", {}, h("h1", {}, "Compare routes"), h("p.lead", {}, "Choose two to six. The first is the one that the others are compared with."), this.problem, h("div.block", {}, this.list), h("div.block", {}, h("h2", {}, "Examples"), EXAMPLES.map((example) => h("button.job.example", { type: "button", onclick: () => this.#example(example) }, h("b", {}, example.name), h("span", {}, example.facts)))), h("div.block", {}, h("h2", {}, "Vary the first route"), h("p.facts", {}, "Its voyage is planned again with one change, and the results are added."), h("div.exports", {},
+      VARIATIONS.map(([text, plans]) => h("button.quiet.small", { type: "button", onclick: () => this.#study(plans) }, text))),
     h("div.block", {}, h("h2", {}, "A route of your own"), h("p.facts", {}, "An RTZ, S-421, GPX, GeoJSON or CSV file is sailed in the weather and by the ship of the first chosen route."), h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Score a route file …"), this.file)))];
   }
 
@@ -41,7 +40,7 @@ export class CompareView {
 
   #row(job) {
     const entry = (number_, text) => h("div.jobrow", {}, h("label.check", {}, h("input", { type: "checkbox", checked: this.chosen.some((one) => one.job === job.id && one.number === number_), onchange: (event) => this.#toggle(event.target, job, number_, text) }), h("span", {}, text, h("small", {}, `${number_ === 0 ? "planned without weather, sailed in it" : `${duration(job.summary.time_h)} · ${number(job.summary.distance_nm, 0)} nm`} · ${time(seconds(job.created))}`))));
-    const name = job.title || "Plan";
+    const name = titleOf(job);
     return [entry(1, job.kind === "evaluation" ? `${name} (from a file)` : name), job.kind === "plan" && job.request.seas[0] !== "calm" && job.summary.objective === "time" && !job.summary.cancelled ? entry(0, `${name}, weather ignored`) : null];
   }
 
@@ -58,7 +57,7 @@ export class CompareView {
     if (this.chosen.length < 2) {
       this.handlers.show([], h("p.empty", {}, h("b", {}, this.chosen.length ? "Choose one more route" : "Choose routes to compare"), "Their figures and differences stand here, and all of them on the chart."));
       if (!this.chosen.length) return;
-      const points = await this.#points();
+      const points = await this.#points().catch(() => []);
       if (ask === this.asked) this.handlers.show(points, null);
       return;
     }
@@ -100,8 +99,9 @@ export class CompareView {
     const jobs = [], problems = [];
     fill(this.problem);
     try {
-      for (const order of orders) {
-        await this.handlers.run(await post(...order), (job) => { if (job.result) jobs.push(job); else if (job.problem) problems.push(job.problem); });
+      for (const [i, order] of orders.entries()) {
+        const place = orders.length > 1 ? `${i + 1} of ${orders.length} · ` : "";
+        await this.#run(await post(...order), place, (job) => { if (job.result) jobs.push(job); else if (job.problem) problems.push(job.problem); });
       }
       await then(jobs);
       await this.show();
@@ -113,21 +113,27 @@ export class CompareView {
     fill(this.problem, problems.map(errorBox));
   }
 
+  #run(job, place, done) {
+    return new Promise((resolve, reject) => {
+      const said = h("p.note", { role: "status" }, `${place}${job.title} …`);
+      fill(this.problem, said);
+      follow(job.id, {
+        stage: (data) => { said.textContent = `${place}${job.title}: ${readable(data.text)} …`; },
+        state: async (data) => {
+          if (!hasEnded(data.state)) return;
+          try { done(await get(`/plans/${job.id}`)); resolve(); } catch (problem) { reject(problem); }
+        },
+      });
+    });
+  }
+
   // Plan the voyage of the first chosen route again, with changes.
-  async #study(kind) {
+  async #study(plansOf) {
     fill(this.problem);
     const first = this.jobs.find((job) => job.id === this.chosen[0]?.job && job.kind === "plan");
     if (!first) { fill(this.problem, errorBox({ asked: "No planned route is chosen.", remedy: "Choose a plan first; the study starts from its voyage." })); return; }
-    const base = structuredClone(first.request);
-    const plans = [];
-    const change = (title, edit) => { const request = structuredClone(base); edit(request); request.title = `${base.title || "Plan"}, ${title}`; plans.push(request); };
-    if (kind === "speeds") {
-      const top = Math.max(...(await get(`/ships/${encodeURIComponent(base.ship)}`)).settings.map((row) => row.speed_kn));
-      for (const share of [0.8, 0.9]) { const speed = Number((top * share).toFixed(1)); change(`${speed} kn`, (r) => { r.voyage.speed_kn = speed; r.voyage.objective = "time"; }); }
-    } else if (kind === "departures") {
-      for (const hours of [12, 24]) change(`+${hours} h`, (r) => { r.voyage.depart = new Date(Date.parse(r.voyage.depart || r.voyage.depart_window[0]) + hours * 3.6e6).toISOString().slice(0, 19) + "Z"; delete r.voyage.depart_window; });
-    } else if (kind === "calm") change("no weather", (r) => { r.seas = ["calm"]; r.fill = {}; });
-    else change("no offing", (r) => { r.voyage.offing_nm = 0; });
+    const { settings } = await get(`/ships/${encodeURIComponent(first.request.ship)}`);
+    const plans = plansOf(first.request, Math.max(...settings.map((row) => row.speed_kn)));
     await this.#planAll(plans.map((request) => ["/plans", request]), (jobs) => jobs.forEach((job) => this.add(job.id, 1, job.title)));
   }
 

@@ -1,8 +1,8 @@
 // Land and coast of the chart, in cells of the coastline that plans use.
 
-import { VectorLayer, VectorSource, Feature, MultiPolygon, MultiLineString, Style, Fill, Stroke, transformExtent } from "../vendor/ol.mjs";
-import { get } from "./api.js";
-import { colour } from "./elements.js";
+import { VectorLayer, VectorSource, Feature, MultiPolygon, MultiLineString, Style, Fill, Stroke, transformExtent } from "../../vendor/ol.mjs";
+import { get } from "../common/api.js";
+import { colour } from "../common/elements.js";
 
 const LEVELS = [["c", 0, 3.1], ["l", 3.1, 6.2], ["i", 6.2, 40]];
 const HALF = 20037508.342789244;
@@ -53,7 +53,14 @@ export class CoastLayers {
       level.index ||= get(`/coast/${level.name}`);
       level.index.catch(() => { level.index = null; });
     }
-    const { side, cells } = await level.index;
+    let index;
+    try {
+      index = await level.index;
+    } catch {
+      this.#again();
+      return;
+    }
+    const { side, cells } = index;
     const there = new Set(cells);
     const [west, south, east, north] = transformExtent(this.map.getView().calculateExtent(), "EPSG:3857", "EPSG:4326");
     const columns = Math.round(360 / side);
@@ -71,13 +78,32 @@ export class CoastLayers {
     }
   }
 
+  // What could not be read is read again after a pause.
+  #again() {
+    clearTimeout(this.retry);
+    this.retry = setTimeout(() => this.load(), 5000);
+  }
+
   async #fetch(level, name) {
+    this.#waitsFor(1);
     try {
       const { land, coast } = await get(`/coast/${level.name}/${name}.json`);
       level.land.getSource().addFeature(new Feature(new MultiPolygon(land.map((rings) => rings.map(toMap)))));
       level.coast.getSource().addFeature(new Feature(new MultiLineString(coast.map(toMap))));
     } catch {
       level.asked.delete(name);
+      this.#again();
+    } finally {
+      this.#waitsFor(-1);
     }
+  }
+
+  // Until the land is drawn the chart says so: water without land misleads.
+  #waitsFor(change) {
+    this.open = (this.open || 0) + change;
+    clearTimeout(this.timer);
+    const note = document.getElementById("coast-state");
+    if (!this.open) note.hidden = true;
+    else this.timer = setTimeout(() => { note.hidden = !this.open; }, 250);
   }
 }

@@ -22,6 +22,11 @@ export function time(s, withYear = false) {
   return `${d.getUTCDate()} ${MONTHS[d.getUTCMonth()]}${year} ${two(d.getUTCHours())}:${two(d.getUTCMinutes())}`;
 }
 
+// A text of the service: times such as 1998-08-31T12:00:00Z become 31 Aug 1998 12:00 UTC.
+export function readable(text) {
+  return text.replace(/\d{4}-\d\d-\d\dT\d\d:\d\d(:[\d.]+)?Z/g, (found) => `${time(seconds(found), true)} UTC`);
+}
+
 export function duration(hours) {
   if (!known(hours)) return "unknown";
   const minutes = Math.round(hours * 60);
@@ -46,12 +51,19 @@ function angle(value, digits, plus, minus) {
   const size = Math.abs(value);
   let degrees = Math.floor(size), minutes = (size - degrees) * 60;
   if (minutes >= 59.95) { degrees += 1; minutes = 0; }
-  return `${String(degrees).padStart(digits, "0")}° ${minutes.toFixed(1).padStart(4, "0")}′ ${value < 0 ? minus : plus}`;
+  return `${String(degrees).padStart(digits, "0")}°${minutes.toFixed(1).padStart(4, "0")}′${value < 0 ? minus : plus}`;
+}
+
+// The name of a job; those of programs may have none.
+export function titleOf({ title, kind, request }) {
+  const place = (given) => (Array.isArray(given) ? plainPosition(...given) : given);
+  const { start, goal } = request?.voyage || {};
+  return title || (start && goal ? `${place(start)} to ${place(goal)}` : { evaluation: "Route from a file", project: "Project", study: "Study", forecast: "Forecast" }[kind] || "Plan");
 }
 
 export function position(lat, lon) {
   const turned = ((((lon + 180) % 360) + 360) % 360) - 180;
-  return `${angle(lat, 2, "N", "S")}  ${angle(turned, 3, "E", "W")}`;
+  return `${angle(lat, 2, "N", "S")} ${angle(turned, 3, "E", "W")}`;
 }
 
 export function plainPosition(lat, lon) {

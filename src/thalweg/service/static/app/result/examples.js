@@ -26,6 +26,28 @@ export const EXAMPLES = [
   },
 ];
 
+// A change of a voyage: a text, and the requests that follow from that of the first route and the ship's top speed.
+const changed = (base, title, edit) => {
+  const request = structuredClone(base);
+  edit(request);
+  request.title = `${base.title || "Plan"}, ${title}`;
+  return request;
+};
+const later = (voyage, hours) => {
+  voyage.depart = `${new Date(Date.parse(voyage.depart || voyage.depart_window[0]) + hours * 3.6e6).toISOString().slice(0, 19)}Z`;
+  delete voyage.depart_window;
+};
+
+export const VARIATIONS = [
+  ["Three speeds", (base, top) => [0.8, 0.9].map((share) => Number((top * share).toFixed(1))).map((speed) => changed(base, `${speed} kn`, ({ voyage }) => { Object.assign(voyage, { speed_kn: speed, objective: "time" }); }))],
+  ["Departures +12, +24 h", (base) => [12, 24].map((hours) => changed(base, `+${hours} h`, ({ voyage }) => later(voyage, hours)))],
+  ["Shortest route", (base) => [changed(base, "shortest", ({ voyage }) => { voyage.objective = "distance"; })]],
+  ["Without weather", (base) => [changed(base, "no weather", (request) => { request.seas = ["calm"]; request.fill = {}; })]],
+  ["Without offing", (base) => [changed(base, "no offing", ({ voyage }) => { voyage.offing_nm = 0; })]],
+  ["Coarser networks", (base) => [2, 4].map((factor) => factor * (base.resolution_nm || 4)).map((spacing) => changed(base, `${spacing} nm`, (request) => { request.resolution_nm = spacing; }))],
+  ["Global grid", (base) => [changed(base, "global grid", (request) => { request.network = "globe"; delete request.resolution_nm; })]],
+];
+
 // The same request has the same key: an example that was planned is shown at once.
 export function keyOf(request) {
   let sum = 0;

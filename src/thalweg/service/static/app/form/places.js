@@ -1,8 +1,8 @@
 // A field for a place: suggestions of ports while typing, and how the text is understood.
 
-import { get } from "./api.js";
-import { errorBox, fill, h } from "./elements.js";
-import { plainPosition } from "./format.js";
+import { get } from "../common/api.js";
+import { errorBox, fill, h } from "../common/elements.js";
+import { plainPosition } from "../common/format.js";
 
 let count = 0;
 
@@ -39,12 +39,14 @@ export class PlaceField {
   }
 
   fail(problem) {
+    this.failed = this.value; // the error stays until the text changes
     this.element.classList.add("wrong");
     fill(this.problem, errorBox(problem));
     this.input.setAttribute("aria-invalid", "true");
   }
 
   clear() {
+    this.failed = null;
     this.element.classList.remove("wrong");
     fill(this.problem);
     this.input.removeAttribute("aria-invalid");
@@ -69,7 +71,7 @@ export class PlaceField {
   }
 
   #understood(place) {
-    this.clear();
+    if (this.failed !== this.value) this.clear();
     this.place = place;
     this.asked = this.value;
     this.said.textContent = place.kind === "port" ? `${place.label}${place.locode ? ` (${place.locode})` : ""} · ${plainPosition(place.lat, place.lon)}` : "Position";
@@ -121,4 +123,14 @@ export class PlaceField {
       this.#take(Math.max(0, this.at));
     }
   }
+}
+
+// The ends of a voyage as the chart shows them; a place is [latitude, longitude] or a text.
+export async function endsOf({ start, goal }) {
+  const end = async (given, role) => {
+    if (Array.isArray(given)) return { role, lat: given[0], lon: given[1], label: "" };
+    const { kind, name, lat, lon } = await get(`/places?text=${encodeURIComponent(given)}`);
+    return { role, lat, lon, label: kind === "port" ? name : "" };
+  };
+  return Promise.all([end(start, "start"), end(goal, "goal")]);
 }

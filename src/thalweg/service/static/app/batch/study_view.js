@@ -1,14 +1,14 @@
 // Studies: the voyage of the plan form over departures, speeds and ships, as a heat map.
 
-import { follow, get, hasEnded, resultAddress, start, tableAddress } from "./api.js";
-import { announce, errorBox, fill, h, unit } from "./elements.js";
-import { duration, inputTime, known, number, seconds, time } from "./format.js";
+import { follow, get, hasEnded, resultAddress, start, tableAddress } from "../common/api.js";
+import { announce, errorBox, fill, h, unit } from "../common/elements.js";
+import { duration, inputTime, known, number, seconds, time } from "../common/format.js";
 import { HeatMap } from "./heat_map.js";
-import { typedTime } from "./typed_time.js";
+import { typedTime } from "../common/typed_time.js";
 
 const SECONDS_EACH = 6; // of an ocean voyage, about
 
-import { jobFoot } from "./progress_view.js";
+import { jobFoot } from "../result/progress_view.js";
 
 export class StudyView {
   // handlers: sheet(element, tall), panel(elements), link(id), leave(), plan(), ends(voyage), voyage(request)
@@ -53,14 +53,14 @@ export class StudyView {
       this.from.value = inputTime(begin);
       this.to.value = inputTime(Math.min(begin + 3 * 86400, period[1]));
     }
-    const seas = plans.chosenSeas.map((id) => plans.seas.find((sea) => sea.id === id)?.name.split(":")[0] || id);
+    const seas = plans.sea.chosen.map((id) => plans.sea.list.find((sea) => sea.id === id)?.name.split(":")[0] || id);
     fill(this.voyage, ends
       ? h("p", {}, h("b", {}, plans.defaultTitle()), h("small.lead", {}, ` ${plans.objective.selectedOptions[0].text.toLowerCase()} · ${seas.join(", ") || "no sea chosen"}`))
       : h("p.note", {}, "The voyage has no ends yet. "), h("div.exports", { style: "margin-top: 8px" }, h("button.quiet.small", { type: "button", onclick: () => this.handlers.plan() }, ends ? "Change the voyage" : "Fill in the voyage"), ends ? null : h("button.quiet.small", { type: "button", onclick: async () => { this.handlers.demo(); this.handlers.panel([await this.show()]); } }, "Use the storm of 1998")),
-      plans.areas.length || plans.numbers.wave_height_m.value || plans.numbers.wind_speed_kn.value ? h("p.note", {}, "Areas and weather limits of the form are not used in studies; those of the ship file are.") : null);
+      plans.areas.list.length || plans.numbers.wave_height_m.value || plans.numbers.wind_speed_kn.value ? h("p.note", {}, "Areas and weather limits of the form are not used in studies; those of the ship file are.") : null);
     const before = [...this.ships.querySelectorAll("input:checked")].map((box) => box.value);
     const chosen = before.length ? before : [plans.ship.value];
-    fill(this.ships, (plans.ships || []).map((ship) => h("label.check", {}, h("input", { type: "checkbox", value: ship.id, checked: chosen.includes(ship.id) }), h("span", {}, ship.name))));
+    fill(this.ships, (plans.ship.list || []).map((ship) => h("label.check", {}, h("input", { type: "checkbox", value: ship.id, checked: chosen.includes(ship.id) }), h("span", {}, ship.name))));
     this.#count();
     this.#listReady();
     const { jobs } = await get("/plans?kind=study&size=20");

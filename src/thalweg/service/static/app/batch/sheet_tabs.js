@@ -1,6 +1,6 @@
 // Tabs over one sheet in the drawer: each draws itself when it is opened or resized.
 
-import { fill, h } from "./elements.js";
+import { fill, h } from "../common/elements.js";
 
 export class SheetTabs {
   // parts: [[name, text, draw(sheet)], ...]

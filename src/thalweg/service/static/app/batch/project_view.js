@@ -1,11 +1,11 @@
 // Dredging projects: the form, the simulation while it runs, and the result.
 
-import { follow, get, hasEnded, remove, resultAddress, start, tableAddress } from "./api.js";
-import { announce, errorBox, fill, h, unit } from "./elements.js";
-import { duration, inputTime, known, number, plainPosition, seconds, time } from "./format.js";
-import { PlaceField } from "./places.js";
+import { follow, get, hasEnded, remove, resultAddress, start, tableAddress } from "../common/api.js";
+import { announce, errorBox, fill, h, unit } from "../common/elements.js";
+import { duration, inputTime, known, number, plainPosition, seconds, time } from "../common/format.js";
+import { PlaceField } from "../form/places.js";
 import { drawActivities, drawLoads, drawPlaceAndTime, drawVolume, runColour, showCycles } from "./project_diagrams.js";
-import { jobFoot } from "./progress_view.js";
+import { jobFoot } from "../result/progress_view.js";
 import { SheetTabs } from "./sheet_tabs.js";
 
 const NUMBERS = [["volume_m3", "Volume to move", "m³"], ["hopper_m3", "Full load", "m³"], ["loading", "Loads at", "m³/s"], ["unloading", "Unloads at", "m³/s"], ["days", "At most", "days"], ["min_ukc_m", "Under-keel clearance", "m"], ["load_factors", "Loads to choose from", "count"], ["spacing_m", "Spacing of the network", "m"]];
@@ -71,12 +71,12 @@ export class ProjectView {
   lists() {
     const own = typeof this.rest.ship === "object" ? [h("option", { value: "own" }, this.rest.ship.name || "Ship of the project file")] : [];
     const chosen = this.ship.value;
-    fill(this.ship, own, (this.plans.ships || []).map((ship) => h("option", { value: ship.id }, ship.name)));
+    fill(this.ship, own, (this.plans.ship.list || []).map((ship) => h("option", { value: ship.id }, ship.name)));
     this.ship.value = chosen || (own.length ? "own" : "hopper-dredger");
     if (!this.ship.value) this.ship.selectedIndex = 0;
     const before = new Set([...this.sea.querySelectorAll("input:checked")].map((box) => box.value));
     if (!this.sea.childElementCount) before.add("synthetic-estuary");
-    const rows = [{ id: "synthetic-estuary", name: "Made-up estuary with tides", facts: "a bank that dries, and a gully behind it" }, ...(this.plans.seas || []).filter((sea) => !sea.embedded).map((sea) => ({ ...sea, facts: (sea.frames || []).join(", ") }))];
+    const rows = [{ id: "synthetic-estuary", name: "Made-up estuary with tides", facts: "a bank that dries, and a gully behind it" }, ...(this.plans.sea.list || []).filter((sea) => !sea.embedded).map((sea) => ({ ...sea, facts: (sea.frames || []).join(", ") }))];
     fill(this.sea, rows.map((sea) => h("label.check", {}, h("input", { type: "checkbox", value: sea.id, checked: before.has(sea.id), onchange: (event) => { if (event.target.checked) for (const box of this.sea.querySelectorAll("input")) if (box !== event.target && (box.value === "synthetic-estuary" || event.target.value === "synthetic-estuary")) box.checked = false; } }), h("span", {}, sea.name, h("small", {}, sea.facts)))));
   }
 

@@ -1,8 +1,8 @@
 // The front while it is searched: points appear as they are found.
 
-import { fill, h } from "./elements.js";
-import { duration, number } from "./format.js";
-import { svg, ticks } from "./svg_parts.js";
+import { fill, h } from "../common/elements.js";
+import { duration, number } from "../common/format.js";
+import { svg, ticks } from "../common/svg_parts.js";
 
 const WIDTH = 312, HEIGHT = 168, LEFT = 52, RIGHT = 8, TOP = 8, BOTTOM = 24;
 

@@ -1,7 +1,7 @@
 // Wind and current as moving particles, between the weather and the routes.
 
-import { ImageLayer } from "../vendor/ol.mjs";
-import { colour, h } from "./elements.js";
+import { ImageLayer } from "../../vendor/ol.mjs";
+import { colour, h } from "../common/elements.js";
 
 const CELL = 12; // pixels between computed velocities
 const SHARE = 1 / 900; // particles for each pixel

@@ -1,9 +1,9 @@
 // The progress of a job: what is done now, the best route so far, and stopping it.
 
-import { follow, remove } from "./api.js";
-import { announce, errorBox, fill, h, unit } from "./elements.js";
+import { follow, remove } from "../common/api.js";
+import { announce, errorBox, fill, h, unit } from "../common/elements.js";
 import { LiveFront } from "./live_front.js";
-import { duration, known, number, time, seconds } from "./format.js";
+import { duration, known, number, readable, titleOf } from "../common/format.js";
 
 // The buttons under a job that runs.
 export function jobFoot(job, words, { state, problem, leave }) {
@@ -21,7 +21,7 @@ export class ProgressView {
     this.problem = h("div");
     this.front = new LiveFront();
     this.cancel = h("button.quiet", { type: "button", onclick: () => this.stop() }, "Stop, keep the best");
-    this.element = [h("div.scroll", {}, h("h1", {}, job.title || "Plan"), this.state, this.steps, this.best, this.front.element, this.problem), h("div.foot", {}, this.cancel, h("button.quiet", { type: "button", onclick: handlers.leave }, "Leave it running"))];
+    this.element = [h("div.scroll", {}, h("h1", {}, titleOf(job)), this.state, this.steps, this.best, this.front.element, this.problem), h("div.foot", {}, this.cancel, h("button.quiet", { type: "button", onclick: handlers.leave }, "Leave it running"))];
     this.close = follow(job.id, { state: (data) => this.#state(data), stage: (data) => this.#stage(data), route: (data) => this.#route(data), front: (data) => this.front.show(data), waiting: () => { this.state.textContent = "The service does not answer; the job goes on when it runs again."; }, open: () => this.#say() });
   }
 
@@ -49,7 +49,7 @@ export class ProgressView {
       before.classList.remove("now");
       before.lastChild.textContent = `${number(Math.max(0, data.after_s - before.began), 1)} s`;
     }
-    const words = data.text.replace(/\d{4}-\d\d-\d\dT[\d:]+Z/g, (text) => `${time(seconds(text))} UTC`);
+    const words = readable(data.text);
     const row = h("li.now", {}, h("span", {}, words[0].toUpperCase() + words.slice(1)), h("span.unit", {}));
     row.began = data.after_s;
     this.steps.append(row);

@@ -1,7 +1,7 @@
 // A heat map of many voyages as a table: median of a figure in each cell, with its voyages.
 
-import { colour, fill, h } from "./elements.js";
-import { duration, known, number, seconds, time } from "./format.js";
+import { colour, fill, h } from "../common/elements.js";
+import { duration, known, number, seconds, time } from "../common/format.js";
 
 const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
 const two = (n) => String(n).padStart(2, "0");

@@ -1,7 +1,7 @@
 // Fields of the network that is searched, and of the traffic of other ships.
 
-import { get, uploadForm } from "./api.js";
-import { announce, errorBox, fill, h } from "./elements.js";
+import { get, uploadForm } from "../common/api.js";
+import { announce, errorBox, fill, h } from "../common/elements.js";
 
 const NETWORKS = [["auto", "Chosen"], ["lattice", "Grid around the route"], ["mesh", "Mesh of the sea data"], ["globe", "Global grid"], ["layered", "Layers between two places"], ["history", "Water that ships usually use"]];
 const NUMBERS = [["resolution_nm", "Spacing", "nm"], ["proof_s", "Time for the proof", "s"], ["corridor_gain_percent", "Leave it where that saves", "%"], ["near_coast_nm", "Finer near land", "nm"], ["within_percent", "Tolerance of length", "%"]];

@@ -1,10 +1,10 @@
 // Diagrams of a dredging project: volume, activities with the tide, place and time, loads, cycles.
 
-import { fill, h } from "./elements.js";
-import { known, number, seconds, time } from "./format.js";
-import { svg, ticks } from "./svg_parts.js";
+import { fill, h } from "../common/elements.js";
+import { known, number, seconds, time } from "../common/format.js";
+import { svg, ticks } from "../common/svg_parts.js";
 
-export const ACTIVITIES = [["loading", "Loading", "--act-1"], ["sailing full", "Sailing full", "--act-2"], ["unloading", "Unloading", "--act-3"], ["sailing empty", "Sailing empty", "--act-4"], ["waiting", "Waiting", "--accent"]];
+const ACTIVITIES = [["loading", "Loading", "--act-1"], ["sailing full", "Sailing full", "--act-2"], ["unloading", "Unloading", "--act-3"], ["sailing empty", "Sailing empty", "--act-4"], ["waiting", "Waiting", "--accent"]];
 export const runColour = (name) => (name === "base case" ? "--act-base" : "--accent");
 const FIRST_HOURS = 72;
 

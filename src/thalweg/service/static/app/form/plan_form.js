@@ -1,13 +1,16 @@
 // The form of a voyage. Errors stand at their field; what is missing is said, not greyed out.
 
-import { get, post, start, uploadForm, uploadSea } from "./api.js";
-import { announce, errorBox, fill, h } from "./elements.js";
-import { inputTime, known, number, seconds, time } from "./format.js";
-import { ForecastFetch } from "./forecast_fetch.js";
+import { get, post, start } from "../common/api.js";
+import { announce, errorBox, fill, h } from "../common/elements.js";
+import { inputTime, plainPosition, seconds, time } from "../common/format.js";
+import { typedTime } from "../common/typed_time.js";
+import { AreaFields } from "./area_fields.js";
 import { IndicatorLimits, IndicatorWeights } from "./indicators.js";
 import { NetworkFields } from "./network_fields.js";
 import { PlaceField } from "./places.js";
-import { typedTime } from "./typed_time.js";
+import { remedyButtons } from "./remedies.js";
+import { SeaChoice } from "./sea_choice.js";
+import { ShipChoice } from "./ship_choice.js";
 
 const OBJECTIVES = [
   ["front", "All trade-offs of time and fuel"], ["time", "Least time"], ["fuel", "Least fuel"], ["cost", "Least cost"],
@@ -18,8 +21,8 @@ const CANALS = [["suez", "Suez"], ["panama", "Panama"], ["kiel", "Kiel"], ["cori
 export const DEMO = { title: "Halifax to Bishop Rock", ship: "handysize-bulker", seas: ["storm"], voyage: { start: "Halifax", goal: "49.7N 6.5W", depart: "1998-08-31T12:00Z", objective: "time" } };
 
 export class PlanForm extends EventTarget {
-  areas = [];
   vias = [];
+  moves = []; // what the points were before they were dragged: [field, text, place]
 
   constructor(chart) {
     super();
@@ -32,25 +35,17 @@ export class PlanForm extends EventTarget {
 
   async load() {
     const [ships, seas] = await Promise.all([get("/ships"), get("/seas"), this.network.load()]);
-    this.ships = ships;
-    this.seas = seas;
-    this.#showShips();
-    this.#showSeas();
+    this.ship.show(ships, this.wanted?.ship);
+    this.sea.show(seas, this.wanted?.seas);
   }
 
   #build() {
     this.element.style.display = "contents";
     this.viaBox = h("div");
-    this.ship = h("select", { id: "ship", onchange: () => this.#showSheet() });
-    this.sheet = h("p.facts", { id: "ship-facts" });
-    this.shipFile = h("input.hidden", { type: "file", id: "ship-file", "aria-label": "Ship file", accept: ".yaml,.yml,.json", tabindex: "-1", onchange: () => this.#uploadShip() });
-    this.seaBox = h("div");
-    this.seaFile = h("input.hidden", { type: "file", id: "sea-file", "aria-label": "Sea files", accept: ".nc,.nc4,.grb,.grb2,.grib,.grib2", multiple: true, tabindex: "-1", onchange: () => this.#uploadSeas([...this.seaFile.files]) });
-    this.drop = h("div.drop", {
-      ondragover: (event) => { event.preventDefault(); this.drop.classList.add("over"); },
-      ondragleave: () => this.drop.classList.remove("over"),
-      ondrop: (event) => { event.preventDefault(); this.drop.classList.remove("over"); this.#uploadSeas([...event.dataTransfer.files]); },
-    }, "Drop a GRIB or NetCDF file here, or ", h("button.link", { type: "button", onclick: () => this.seaFile.click() }, "choose a file"), ".");
+    const problemAt = (name) => (problem) => (problem ? this.#fail(name, problem) : this.#clearField(name));
+    this.ship = new ShipChoice(problemAt("ship"));
+    this.sea = new SeaChoice({ ends: () => this.ends, departs: () => typedTime(this.depart), changed: () => this.#seaChanged(), problemAt: problemAt("seas") });
+    this.areas = new AreaFields(this.chart, () => this.#summaries());
     this.depart = h("input", { type: "text", id: "depart", autocomplete: "off", placeholder: "2026-01-31 12:00" });
     this.latest = h("input", { type: "text", id: "latest", autocomplete: "off", placeholder: "2026-01-31 12:00" });
     this.arriveBy = h("input", { type: "text", id: "arrive-by", autocomplete: "off", placeholder: "2026-01-31 12:00" });
@@ -63,7 +58,6 @@ export class PlanForm extends EventTarget {
     this.title = h("input", { type: "text", id: "title", maxlength: 200, placeholder: "Name of this plan" });
     this.numbers = {};
     this.problem = h("div");
-    this.areaBox = h("div");
     this.wait = h("input", { type: "checkbox", id: "wait", checked: true });
     this.forbid = CANALS.map(([value, text]) => [value, h("input", { type: "checkbox", id: `forbid-${value}` }), text]);
     this.avoid = h("input", { type: "text", id: "avoid", placeholder: "Pentland Firth, ..." });
@@ -71,17 +65,17 @@ export class PlanForm extends EventTarget {
       h("option", { value: "" }, "closed water"), h("option", { value: "0" }, "none (0)"), h("option", { value: "nearest:25" }, "nearest value within 25 nm"),
       name === "waves" ? [h("option", { value: "wind" }, "those that the wind raises"), h("option", { value: "head_seas" }, "head seas, where only heights are known")] : [])]);
     this.button = h("button.primary", { type: "submit" }, "Plan the voyage");
-    this.fetch = new ForecastFetch(() => this.ends, () => typedTime(this.depart), () => this.chosenSeas, (seas, before) => this.#fetched(seas, before));
     this.voyageFile = h("input.hidden", { type: "file", id: "voyage-file", "aria-label": "Voyage file", accept: ".json,.yaml,.yml", tabindex: "-1", onchange: () => this.#openFile() });
+    this.undoMove = h("button.quiet.small", { type: "button", hidden: true, onclick: () => this.#undoMove() }, "Undo move");
     const swap = h("button.quiet.small", { type: "button", onclick: () => this.#swap() }, "⇅ Swap");
     const addVia = h("button.quiet.small", { type: "button", onclick: () => this.addVia() }, "+ Via point");
     const body = h("div.scroll", {},
       h("h1", {}, "Plan a voyage"),
       h("p.lead", {}, "Type the ends or click them on the chart."),
-      h("div.block", {}, h("div.itinerary", {}, this.start.element, this.viaBox, this.goal.element), h("div.row", { style: null }, h("span"), swap, addVia)),
+      h("div.block", {}, h("div.itinerary", {}, this.start.element, this.viaBox, this.goal.element), h("div.row", {}, h("span"), this.undoMove, swap, addVia)),
       h("div.block", {},
-        h("div.field", { "data-field": "ship" }, h("label.label", { for: "ship" }, "Ship"), h("div.row", {}, this.ship, h("button.quiet", { type: "button", onclick: () => this.shipFile.click() }, "Ship file …")), this.shipFile, this.sheet, h("div.slot"))),
-      h("fieldset.block", { "data-field": "seas" }, h("legend", {}, "Sea"), this.seaBox, this.drop, this.seaFile, this.fetch.element, h("div.slot")),
+        this.ship.element),
+      this.sea.element,
       h("div.block", {},
         h("div.field", { "data-field": "depart" }, h("label.label", { for: "depart" }, "Departure ", h("span.unit", {}, "UTC")), this.depart, this.departFacts, h("div.slot")),
         h("div.field", { "data-field": "objective" }, h("label.label", { for: "objective" }, "Objective"), this.objective, h("div.slot")), this.weights.element),
@@ -98,7 +92,7 @@ export class PlanForm extends EventTarget {
           h("p.facts", {}, "Empty: as the ship file states; the distance from land by the size of the ship."),
         ]),
         this.#details("indicators", "Limits of key figures", [this.indicators.element]),
-        this.#details("areas", "Areas to avoid", [this.areaBox]),
+        this.#details("areas", "Areas to avoid", [this.areas.element]),
         this.#details("canals", "Canals and passages", [
           h("fieldset", {}, h("legend", {}, "Do not use"), this.forbid.map(([, input, text]) => h("label.check", {}, input, h("span", {}, text)))),
           h("div.field", { "data-field": "avoid" }, h("label.label", { for: "avoid" }, "Passages to avoid"), this.avoid, h("div.slot")),
@@ -118,7 +112,6 @@ export class PlanForm extends EventTarget {
         h("div.exports.block", {}, h("button.quiet.small", { type: "button", onclick: () => this.#saveFile() }, "Save voyage file"), h("button.quiet.small", { type: "button", onclick: () => this.voyageFile.click() }, "Open …"), h("button.quiet.small", { type: "button", onclick: () => { const request = this.request(); if (request) this.dispatchEvent(new CustomEvent("link", { detail: request })); } }, "Copy link"), this.voyageFile)),
       this.problem);
     fill(this.element, body, h("div.foot", {}, this.button));
-    this.#showAreas();
     this.element.addEventListener("input", () => { this.touched = true; this.#summaries(); });
     this.element.addEventListener("change", () => { this.#summaries(); this.dispatchEvent(new Event("change")); });
   }
@@ -149,7 +142,7 @@ export class PlanForm extends EventTarget {
     const said = {
       time: [text("speed_kn", "kn"), this.arriveBy.value ? "arrival set" : "", this.latest.value ? "window" : ""],
       limits: [text("wave_height_m", "m waves"), text("wind_speed_kn", "kn wind"), text("motion_sickness_percent", "% sick"), text("min_ukc_m", "m UKC"), text("offing_nm", "nm off")],
-      areas: [this.areas.length ? `${this.areas.length} drawn` : ""],
+      areas: [this.areas.list.length ? `${this.areas.list.length} drawn` : ""],
       canals: [...this.forbid.filter(([, input]) => input.checked).map(([, , name]) => `no ${name}`), this.avoid.value.trim() ? "passages" : ""],
       indicators: [this.indicators.words],
       traffic: [this.network.traffic.chosen.length ? `${this.network.traffic.chosen.length} chosen` : ""],
@@ -178,6 +171,13 @@ export class PlanForm extends EventTarget {
     this.#placesChanged();
   }
 
+  // The menu at a clicked position or port.
+  offer({ lat, lon, port, coordinate }) {
+    const name = port ? port.locode || port.label : "";
+    const set = (field) => () => (port ? field.set(name, { kind: "port", ...port }) : field.setPosition(lat, lon));
+    this.chart.choose(coordinate, port ? port.label : plainPosition(lat, lon), [["From here", set(this.start)], ["To here", set(this.goal)], ["Via here", () => this.addVia(name, port ? null : [lat, lon])], ["Close", () => {}]]);
+  }
+
   #swap() {
     const [a, pa, b, pb] = [this.start.value, this.start.place, this.goal.value, this.goal.place];
     this.start.set(b, pb);
@@ -193,125 +193,11 @@ export class PlanForm extends EventTarget {
     this.dispatchEvent(new Event("places"));
   }
 
-  // Ship
-
-  #showShips(chosen = this.ship.value || "handysize-bulker") {
-    fill(this.ship, this.ships.map((ship) => h("option", { value: ship.id }, ship.name)));
-    this.ship.value = chosen;
-    if (!this.ship.value) this.ship.selectedIndex = 0;
-    this.#showSheet();
-  }
-
-  async #showSheet() {
-    const id = this.ship.value;
-    this.sheet.textContent = " ";
-    try {
-      const sheet = await get(`/ships/${encodeURIComponent(id)}`);
-      if (id !== this.ship.value) return;
-      const speeds = (sheet.settings?.length ? sheet.settings : sheet.conditions || []).map((row) => row.speed_kn).filter(known);
-      this.speedRange = speeds.length ? [Math.min(...speeds), Math.max(...speeds)] : null;
-      const parts = [];
-      if (this.speedRange) parts.push(`${number(this.speedRange[0], 1)} to ${number(this.speedRange[1], 1)} kn`);
-      if (known(sheet.draught_m)) parts.push(`draught ${number(sheet.draught_m, 1)} m`);
-      if (known(sheet.limits?.wave_height_m)) parts.push(`waves up to ${number(sheet.limits.wave_height_m, 1)} m`);
-      this.sheet.textContent = parts.join(" · ") || sheet.name;
-    } catch (problem) {
-      this.sheet.textContent = problem.asked || "";
-    }
-  }
-
-  async #uploadShip() {
-    const [file] = this.shipFile.files;
-    this.shipFile.value = "";
-    if (!file) return;
-    this.#clearField("ship");
-    const before = this.ship.value;
-    try {
-      const ship = await uploadForm("/ships", file);
-      this.ships = await get("/ships");
-      const chosen = this.ship.value === before; // another choice that was made meanwhile stays
-      this.#showShips(chosen ? ship.id : this.ship.value);
-      announce(chosen ? `Ship ${ship.name} is chosen.` : `Ship ${ship.name} is in the list.`);
-    } catch (problem) {
-      this.#fail("ship", problem);
-    }
-  }
-
-  // Sea
-
-  get chosenSeas() {
-    return [...this.seaBox.querySelectorAll("input:checked")].map((input) => input.value);
-  }
-
-  #showSeas(chosen = null) {
-    const before = chosen || (this.seaBox.childElementCount ? this.chosenSeas : ["storm"]);
-    fill(this.seaBox, this.seas.slice().sort((a, b) => Boolean(a.embedded) - Boolean(b.embedded) || (a.id === "calm") - (b.id === "calm")).map((sea) => h("label.check", {},
-      h("input", { type: "checkbox", value: sea.id, checked: before.includes(sea.id), onchange: (event) => this.#seaChosen(event.target) }),
-      h("span", {}, sea.embedded ? sea.name.split(":")[0] : sea.name, h("small", {}, this.#seaFacts(sea))))));
-    this.#seaChosen(null);
-  }
-
-  #seaFacts(sea) {
-    if (sea.id === "calm") return "no wind, waves and currents anywhere";
-    const period = sea.start ? `${time(seconds(sea.start))} to ${time(seconds(sea.end), true)}` : "at all times";
-    return `${(sea.frames || []).join(", ") || "no field to draw"} · ${period}${sea.members ? ` · ${sea.members} members` : ""}`;
-  }
-
-  #seaChosen(input) {
-    if (input?.checked) {
-      for (const other of this.seaBox.querySelectorAll("input")) if (other !== input && (input.value === "calm" || other.value === "calm")) other.checked = false;
-    }
-    const period = this.period;
+  #seaChanged() {
+    const { period } = this.sea;
     this.departFacts.textContent = period ? `Data from ${time(period[0])} to ${time(period[1], true)}` : "";
     if (!this.depart.value && period) this.depart.value = inputTime(period[0]);
-    this.#clearField("seas");
     this.dispatchEvent(new Event("seas"));
-  }
-
-  get period() {
-    const rows = this.chosenSeas.map((id) => this.seas.find((sea) => sea.id === id)).filter((sea) => sea?.start);
-    return rows.length ? [Math.max(...rows.map((sea) => seconds(sea.start))), Math.min(...rows.map((sea) => seconds(sea.end)))] : null;
-  }
-
-  // The start of the oldest forecast among the chosen seas; null where none is known.
-  get run() {
-    const runs = this.chosenSeas.map((id) => this.seas.find((sea) => sea.id === id)?.run).filter(Boolean);
-    return runs.length ? Math.min(...runs.map(seconds)) : null;
-  }
-
-  get frameKinds() {
-    return [...new Set(this.chosenSeas.flatMap((id) => this.seas.find((sea) => sea.id === id)?.frames || []))];
-  }
-
-  async #uploadSeas(files) {
-    this.seaFile.value = "";
-    for (const file of files) {
-      this.#clearField("seas");
-      const bar = h("progress", { max: 1, value: 0, "aria-label": `Upload of ${file.name}` });
-      this.drop.append(bar);
-      try {
-        const sea = await uploadSea(file, (share) => { bar.value = share; });
-        this.seas = await get("/seas");
-        this.#showSeas([...this.chosenSeas.filter((id) => id !== "calm" && id !== "storm"), sea.id]);
-        announce(`${file.name} is read.`);
-      } catch (problem) {
-        this.#fail("seas", problem);
-      }
-      bar.remove();
-    }
-  }
-
-  // A forecast takes the place of the seas that were chosen when its download began.
-  async #fetched(seas, before) {
-    this.seas = await get("/seas");
-    const same = String(this.chosenSeas) === String(before);
-    this.#showSeas(same ? seas : this.chosenSeas);
-    if (!same) announce("The forecast is in the list of seas.");
-  }
-
-  openForecast(job) {
-    this.fetch.watch(job);
-    this.fetch.element.scrollIntoView({ block: "center" });
   }
 
   // Voyage files: the request as it is sent
@@ -341,54 +227,17 @@ export class PlanForm extends EventTarget {
 
   // A point that was dragged on the chart: its number counts the shown ends.
   moved(number_, lat, lon) {
-    const fields = [this.start, ...this.vias, this.goal].filter((field) => field.place);
-    fields[number_]?.setPosition(lat, lon);
+    const field = [this.start, ...this.vias, this.goal].filter((one) => one.place)[number_];
+    if (!field) return;
+    this.moves.push([field, field.value, field.place]);
+    field.setPosition(lat, lon);
+    this.undoMove.hidden = false;
   }
 
-  // Areas
-
-  async #drawArea(kind) {
-    const hint = document.getElementById("hint");
-    hint.textContent = "Click the corners; double click the last one. Escape stops.";
-    hint.hidden = false;
-    const ring = await this.chart.draw();
-    hint.hidden = true;
-    if (ring) this.#changeAreas([...this.areas, { kind, factor: kind === "penalty" ? 2 : null, ring }]);
-  }
-
-  #changeAreas(areas) {
-    (this.undo ||= []).push(this.areas);
-    this.areas = areas;
-    this.#showAreas();
-    this.#summaries();
-  }
-
-  #showAreas() {
-    const asText = (ring) => ring.slice(0, -1).map(([lon, lat]) => `${lat}, ${lon}`).join("\n");
-    fill(this.areaBox,
-      this.areas.length ? null : h("p.facts", {}, "Closed areas (no-go), and areas where each mile counts more (penalty). Drag a corner to move it."),
-      this.areas.map((area, i) => h("div.field", {}, h("div.row", {}, h("b", {}, `${i + 1}. ${area.kind === "no-go" ? "No-go" : `Penalty × ${area.factor}`}`),
-        h("button.quiet.small", { type: "button", onclick: () => this.#changeAreas(this.areas.filter((one) => one !== area)) }, "Remove")),
-        h("label.hidden", { for: `area-${i}` }, `Corners of area ${i + 1}: latitude, longitude`),
-        h("textarea", { id: `area-${i}`, rows: Math.min(6, area.ring.length - 1), onchange: (event) => this.#typedArea(i, event.target.value) }, asText(area.ring)))),
-      h("div.field", {}, h("div.row", {}, h("button.quiet.small", { type: "button", onclick: () => this.#drawArea("no-go") }, "Draw no-go"), h("button.quiet.small", { type: "button", onclick: () => this.#drawArea("penalty") }, "Draw penalty"),
-        this.undo?.length ? h("button.quiet.small", { type: "button", onclick: () => { this.areas = this.undo.pop(); this.#showAreas(); this.#summaries(); } }, "Undo") : null),
-      h("button.link", { type: "button", onclick: () => this.#areaInView() }, "Add an area in the middle of the chart, to type its corners")));
-    this.chart.showAreas(this.areas, (i, ring) => {
-      if (JSON.stringify(ring) !== JSON.stringify(this.areas[i]?.ring)) this.#changeAreas(this.areas.map((area, k) => (k === i ? { ...area, ring } : area)));
-    });
-  }
-
-  #areaInView() {
-    const [w, s, e, n] = this.chart.view;
-    const at = (a, b, f) => Number((a + f * (b - a)).toFixed(2));
-    const [x0, x1, y0, y1] = [at(w, e, 0.45), at(w, e, 0.55), at(s, n, 0.45), at(s, n, 0.55)];
-    this.#changeAreas([...this.areas, { kind: "no-go", factor: null, ring: [[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]] }]);
-  }
-
-  #typedArea(i, text) {
-    const ring = text.split("\n").map((row) => row.split(/[,;\s]+/).filter(Boolean).map(Number)).filter((row) => row.length === 2 && row.every(Number.isFinite)).map(([lat, lon]) => [lon, lat]);
-    if (ring.length >= 3) this.#changeAreas(this.areas.map((area, k) => (k === i ? { ...area, ring: [...ring, ring[0]] } : area)));
+  #undoMove() {
+    const [field, text, place] = this.moves.pop();
+    field.set(text, place);
+    this.undoMove.hidden = !this.moves.length;
   }
 
   // Errors
@@ -405,12 +254,24 @@ export class PlanForm extends EventTarget {
     if (place) { place.fail(problem); place.element.scrollIntoView({ block: "center" }); place.input.focus(); return; }
     const field = this.element.querySelector(`[data-field="${name}"]`);
     const slot = field?.querySelector(":scope > .slot");
-    if (!slot) { fill(this.problem, errorBox(problem)); this.problem.scrollIntoView({ block: "center" }); return; }
+    const parts = [errorBox(problem), remedyButtons(problem, this, (shown) => this.#remedied(shown))];
+    if (!slot) { fill(this.problem, ...parts.filter(Boolean)); this.problem.scrollIntoView({ block: "center" }); return; }
     field.closest("details")?.setAttribute("open", "");
     field.classList.add("wrong");
-    fill(slot, errorBox(problem));
+    fill(slot, ...parts.filter(Boolean));
     field.scrollIntoView({ block: "center" });
     field.querySelector("input, select, textarea")?.focus();
+  }
+
+  // A remedy was taken: the refusal goes, the changed field is shown.
+  #remedied(name) {
+    fill(this.problem);
+    this.element.querySelectorAll(".wrong[data-field]").forEach((one) => this.#clearField(one.dataset.field));
+    const field = this.element.querySelector(`[data-field="${name}"]`);
+    field?.closest("details")?.setAttribute("open", "");
+    field?.scrollIntoView({ block: "center" });
+    field?.querySelector("input, select")?.focus();
+    this.element.dispatchEvent(new Event("change"));
   }
 
   showProblem(problem) {
@@ -428,7 +289,7 @@ export class PlanForm extends EventTarget {
     }
     if (!this.start.value) return this.#missing("start", "The voyage has no start.", "Type a port or a position, or click it on the chart.");
     if (!this.goal.value) return this.#missing("goal", "The voyage has no destination.", "Type a port or a position, or click it on the chart.");
-    if (!this.chosenSeas.length) return this.#missing("seas", "No sea is chosen; calm weather is never assumed.", "Choose the storm of 1998, a calm sea, or a file.");
+    if (!this.sea.chosen.length) return this.#missing("seas", "No sea is chosen; calm weather is never assumed.", "Choose the storm of 1998, a calm sea, or a file.");
     if (!this.depart.value) return this.#missing("depart", "The voyage has no departure.", "Give a date and a time in UTC.");
     for (const [name, input] of [["depart", this.depart], ["depart_window", this.latest], ["arrive_by", this.arriveBy]]) {
       if (input.value.trim() && typedTime(input) === null) return this.#missing(name, `${input.value} is not a time.`, "Give year, month, day, hour and minute in UTC, such as 2026-01-31 12:00.");
@@ -445,7 +306,7 @@ export class PlanForm extends EventTarget {
     if (!this.wait.checked) voyage.wait = false;
     for (const name of ["speed_kn", "min_ukc_m", "offing_nm", "fuel_price_usd", "eca_price_factor", "time_price_usd_per_h"]) voyage[name] = value(name);
     for (const name of Object.keys(voyage)) if (voyage[name] === null || (Array.isArray(voyage[name]) && !voyage[name].length)) delete voyage[name];
-    const request = { title: this.title.value.trim() || this.defaultTitle(), voyage, ship: this.ship.value, seas: this.chosenSeas, limits: { wave_height_m: value("wave_height_m"), wind_speed_kn: value("wind_speed_kn"), motion_sickness_percent: value("motion_sickness_percent") } };
+    const request = { title: this.title.value.trim() || this.defaultTitle(), voyage, ship: this.ship.value, seas: this.sea.chosen, limits: { wave_height_m: value("wave_height_m"), wind_speed_kn: value("wind_speed_kn"), motion_sickness_percent: value("motion_sickness_percent") } };
     if (voyage.objective === "weighted") { voyage.weights = this.weights.value(); if (!voyage.weights) return this.#missing("weights", this.weights.fault.asked, this.weights.fault.remedy); }
     const limited = this.indicators.value();
     if (!limited) return this.#missing("indicators", this.indicators.fault.asked, this.indicators.fault.remedy);
@@ -455,7 +316,7 @@ export class PlanForm extends EventTarget {
     if (this.objective.value === "alternatives") request.most = 5;
     const filled = this.fills.filter(([, select]) => select.value).map(([name, select]) => [name, select.value === "0" ? 0 : select.value]);
     if (filled.length) request.fill = Object.fromEntries(filled);
-    if (this.areas.length) request.areas = { type: "FeatureCollection", features: this.areas.map((area) => ({ type: "Feature", properties: area.kind === "no-go" ? { kind: "no-go" } : { kind: area.kind, factor: area.factor }, geometry: { type: "Polygon", coordinates: [area.ring] } })) };
+    if (this.areas.list.length) request.areas = this.areas.features;
     return request;
   }
 
@@ -472,12 +333,16 @@ export class PlanForm extends EventTarget {
   async submit() {
     fill(this.problem);
     this.element.querySelectorAll(".wrong[data-field]").forEach((field) => this.#clearField(field.dataset.field));
+    for (const field of [this.start, this.goal, ...this.vias]) if (field.place) field.clear();
     if (this.sending) return;
-    const request = this.request();
-    if (!request) return;
     this.sending = true;
-    this.button.textContent = "Sending …";
     try {
+      this.button.textContent = "Reading the files …"; // a plan waits for the ship and the seas that are on their way
+      const read = [await this.ship.reading, await this.sea.reading];
+      const request = read.includes(false) ? null : this.request();
+      this.ship.reading = this.sea.reading = null;
+      if (!request) return;
+      this.button.textContent = "Sending …";
       const job = await start(this.objective.value === "alternatives" ? "/alternatives" : "/plans", request);
       this.dispatchEvent(new CustomEvent("started", { detail: job }));
     } catch (problem) {
@@ -491,6 +356,9 @@ export class PlanForm extends EventTarget {
   // Fill the form with a request.
   set(request) {
     const { voyage } = request;
+    this.fresh = true; // the chart has not shown its ends
+    fill(this.problem);
+    this.element.querySelectorAll(".wrong[data-field]").forEach((field) => this.#clearField(field.dataset.field));
     const text = (place) => (Array.isArray(place) ? `${place[0]}, ${place[1]}` : place || "");
     this.start.set(text(voyage.start));
     this.goal.set(text(voyage.goal));
@@ -512,10 +380,12 @@ export class PlanForm extends EventTarget {
     this.avoid.value = (voyage.avoid || []).join(", ");
     this.fills.forEach(([name, select]) => { select.value = String(request.fill?.[name] ?? ""); });
     this.title.value = request.title && request.title !== this.defaultTitle() ? request.title : "";
-    this.areas = (request.areas?.features || []).filter((f) => f.geometry?.type === "Polygon").map((f) => ({ kind: f.properties.kind, factor: f.properties.factor ?? null, ring: f.geometry.coordinates[0] }));
-    this.#showAreas();
-    if (this.ships) this.#showShips(request.ship || this.ship.value);
-    if (this.seas) this.#showSeas(request.seas || this.chosenSeas);
+    this.areas.set(request.areas);
+    this.moves = [];
+    this.undoMove.hidden = true;
+    this.wanted = request; // by the lists that have not arrived
+    if (this.ship.list.length) this.ship.show(this.ship.list, request.ship);
+    if (this.sea.list) this.sea.show(this.sea.list, request.seas);
     this.#summaries();
   }
 }

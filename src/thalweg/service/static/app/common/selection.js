@@ -1,6 +1,6 @@
 // One selection for chart, cards, profile, front and table: the route and the time.
 
-export class Selection extends EventTarget {
+class Selection extends EventTarget {
   route = 0;
   hovered = null;
   time = null;

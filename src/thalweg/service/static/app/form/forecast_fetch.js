@@ -1,9 +1,9 @@
 // Fetch a forecast from the page: the size first, then the download as a job.
 
-import { follow, get, hasEnded, post, remove, start } from "./api.js";
-import { announce, errorBox, fill, h } from "./elements.js";
-import { inputTime, number, seconds, time } from "./format.js";
-import { typedTime } from "./typed_time.js";
+import { follow, get, hasEnded, post, remove, start } from "../common/api.js";
+import { announce, errorBox, fill, h } from "../common/elements.js";
+import { inputTime, number, seconds, time } from "../common/format.js";
+import { typedTime } from "../common/typed_time.js";
 
 const SOURCES = [["gfs", "GFS and GFS-wave (NOAA)", ["wind", "waves"]], ["ecmwf", "ECMWF open data", ["wind", "waves"]], ["open-meteo", "Open-Meteo (small areas)", ["wind", "waves", "current"]], ["matroos", "Rijkswaterstaat, North Sea, 2 days", ["current", "waves"]], ["rws", "Rijkswaterstaat, level at one station", ["level"]], ["copernicus", "Copernicus Marine (account)", ["waves", "current"]], ["era5", "ERA5, past weather (account)", ["wind", "waves"]]];
 

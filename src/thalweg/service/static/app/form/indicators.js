@@ -1,10 +1,10 @@
 // Key performance indicators: names, units, values of a route, and the table of routes.
 
-import { fill, h } from "./elements.js";
-import { duration, known, number } from "./format.js";
+import { fill, h } from "../common/elements.js";
+import { duration, known, number } from "../common/format.js";
 
 // name of the API: label, unit, decimals, whether a limit is usually the greatest value
-export const INDICATORS = {
+const INDICATORS = {
   time: ["Time", "h", 1, true], distance: ["Distance", "nm", 1, true], fuel: ["Fuel", "t", 2, true], energy: ["Energy", "MWh", 1, true],
   co2: ["CO₂", "t", 1, true], cost: ["Cost", "", 0, true],
   sick_percent: ["People sick at the end", "%", 0, true], worst_hour_percent: ["People sick, worst hour", "%", 0, true],

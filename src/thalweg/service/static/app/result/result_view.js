@@ -1,17 +1,12 @@
 // The result of a plan or an evaluation: key figures, proof, warnings, exports.
 
-import { fileAddress, get, resultAddress } from "./api.js";
-import { fill, h, unit } from "./elements.js";
-import { indicatorTable } from "./indicators.js";
-import { duration, known, number, plainPosition, seconds, signed, signedDuration, time } from "./format.js";
-import { selection } from "./selection.js";
+import { fileAddress, get, resultAddress } from "../common/api.js";
+import { fill, h, REASONS, unit } from "../common/elements.js";
+import { indicatorTable } from "../form/indicators.js";
+import { duration, known, number, plainPosition, seconds, signed, signedDuration, time, titleOf } from "../common/format.js";
+import { selection } from "../common/selection.js";
 
 const OBJECTIVES = { time: "least time", distance: "shortest distance", fuel: "least fuel", energy: "least energy", cost: "least cost", comfort: "least motion sickness", co2: "least CO₂", encounters: "fewest encounters", inshore: "least length near land", weighted: "a weighted sum", front: "all trade-offs", alternatives: "routes that differ" };
-const REASONS = {
-  "nearer to land than the offing": "legs nearer to land than the offing", "no-go zone": "legs through closed areas", "outside the period of the data": "legs after the end of the data",
-  "wave height above the limit": "legs with waves above the limit", "wind speed above the limit": "legs with wind above the limit", "no data": "legs over water without data", land: "legs over land",
-};
-
 export async function loadResult(job) {
   const raw = await get(`/plans/${job.id}/result`);
   const evaluated = () => ({ routes: [raw], notes: raw.assumptions || [], rejections: {}, voyage: null, provenance: {} });
@@ -27,7 +22,7 @@ export async function profileOf(result, number_) {
   return result.profiles.get(number_);
 }
 
-export function costOf(route) {
+function costOf(route) {
   return route[`cost_${(route.currency || "usd").toLowerCase()}`];
 }
 
@@ -45,10 +40,11 @@ export class ResultView {
     const { job, plan, beside } = this.result;
     const route = plan.routes[selection.route];
     const top = this.body.scrollTop;
-    const from = plan.provenance.from || job.title, to = plan.provenance.to;
+    const { from, to } = plan.provenance;
     fill(this.body,
-      h("h1", {}, to ? `${from} to ${to}` : job.title || "Route"),
-      h("p.lead", {}, `${plan.voyage ? OBJECTIVES[plan.objective] : "given route"} · ${job.request.ship} · leaves ${time(seconds(route.depart), true)} UTC`),
+      h("h1", {}, titleOf(job)),
+      h("p.lead", {}, `${plan.voyage ? OBJECTIVES[plan.objective] : "given route"} · ${this.handlers.shipName(job.request.ship)}`),
+      h("p.lead", {}, to ? `${from} to ${to}, leaves ` : "Leaves ", h("b", {}, time(seconds(route.depart), true)), " UTC"),
       plan.cancelled ? h("p.note", {}, "Stopped: this is the best found so far.") : null,
       this.#faults(route),
       this.#cards(route, profile, beside),
@@ -68,7 +64,7 @@ export class ResultView {
 
   #cards(route, profile, beside) {
     const card = (name, value, unitText, more) => h("div.card", {}, h("dt", {}, name), h("dd", {}, value, unitText && value !== "unknown" ? unit(unitText) : null, more ? h("small", {}, more) : null));
-    const than = (mine, other, text) => (known(mine) && known(other) && Math.abs(mine - other) > 1e-6 ? [h(`span.${mine < other ? "less" : "more"}`, {}, text(mine - other)), " against weather ignored"] : null);
+    const than = (mine, other, text) => (known(mine) && known(other) && /[1-9]/.test(text(mine - other)) ? [h(`span.${mine < other ? "less" : "more"}`, {}, text(mine - other)), " against weather ignored"] : null);
     const cost = costOf(route), other = beside ? costOf(beside) : null;
     const waves = worst(profile, "wave_height_m"), wind = worst(profile, "wind_speed_kn");
     const besideWaves = worst(beside?.profile, "wave_height_m");
@@ -98,11 +94,12 @@ export class ResultView {
     const gap = plan.front ? point?.gap : plan.gap;
     const quality = this.result.job.summary.quality || "";
     const said = plan.front ? (known(gap) ? `At most ${number(Math.ceil(1000 * gap / (1 - gap)) / 10, 1)} % from the best possible at its time` : "No bound is known for this route") : quality ? quality[0].toUpperCase() + quality.slice(1) : "No bound is known";
+    const kind = plan.lower_bound_kind[0].toUpperCase() + plan.lower_bound_kind.slice(1);
     const bar = h("i");
     bar.style.width = `${known(gap) ? Math.max(2, 100 * (1 - gap)) : 0}%`;
     return h("div.proof", {}, h("b", {}, said), h("div.gauge", { role: "img", "aria-label": said }, bar),
       h("details", {}, h("summary", {}, "How this is known"), h("ul.list", {},
-        known(plan.lower_bound) ? h("li", {}, `No route is better than ${number(plan.lower_bound, 1)} ${plan.objective_unit}. ${plan.lower_bound_kind}.`) : h("li", {}, `${plan.lower_bound_kind}.`),
+        known(plan.lower_bound) ? h("li", {}, `No route is better than ${number(plan.lower_bound, 1)} ${plan.objective_unit}. ${kind}.`) : h("li", {}, `${kind}.`),
         h("li", {}, "Every figure comes from sailing the route again in small steps."),
         Object.entries(plan.rejections).map(([reason, count]) => h("li", {}, `${number(count)} ${REASONS[reason] || reason} were refused.`)))));
   }
@@ -139,11 +136,11 @@ export class ResultView {
 
   #exports(job, route) {
     const number_ = selection.route + 1;
-    return h("div.block", {}, h("h2", {}, "Take it along"), h("div.exports", {},
+    return h("div.block.take-along", {}, h("h2", {}, "Take it along"), h("div.exports", {},
       ["rtz", "rtzp", "gml", "gpx", "geojson", "kml", "csv"].map((form) => h("a.quiet.small", { href: fileAddress(job.id, number_, form), download: "" }, { gml: "S-421", geojson: "GeoJSON" }[form] || form.toUpperCase())),
       job.kind === "plan" ? h("a.quiet.small", { href: resultAddress(job.id), download: "plan.json" }, "plan.json") : job.kind === "alternatives" ? h("a.quiet.small", { href: resultAddress(job.id), download: "alternatives.json" }, "alternatives.json") : null,
       h("button.quiet.small", { type: "button", onclick: this.handlers.print }, "Print a brief"),
       h("button.quiet.small", { type: "button", onclick: this.handlers.link }, "Copy link")),
-    h("p.facts", {}, `Route ${number_}. Check it against official charts and notices before use.`));
+    h("p.facts", {}, `Route ${number_}. Great circles of the table of legs are written into route files as short rhumb lines, so these have more waypoints. Check the route against official charts and notices before use.`));
   }
 }

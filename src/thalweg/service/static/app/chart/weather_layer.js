@@ -1,8 +1,8 @@
 // Weather on the chart: bands of colour, barbs or arrows, and hatching where there are no data.
 
-import { ImageLayer, ImageCanvas, transformExtent } from "../vendor/ol.mjs";
-import { getBuffer } from "./api.js";
-import { colour } from "./elements.js";
+import { ImageLayer, ImageCanvas, transformExtent } from "../../vendor/ol.mjs";
+import { getBuffer } from "../common/api.js";
+import { colour } from "../common/elements.js";
 
 const HALF = 20037508.342789244;
 const KNOT = 1852 / 3600;
@@ -73,6 +73,7 @@ export class WeatherLayer {
   time = null;
   step = 3 * 3600;
   particles = null;
+  loading = false;
   onState = () => {};
 
   constructor(map) {
@@ -107,6 +108,7 @@ export class WeatherLayer {
 
   async refresh() {
     this.layer.setVisible(Boolean(this.kind));
+    this.loading = false;
     const ask = (this.ask = Symbol("ask"));
     const uploaded = this.seas.join("+");
     if (!this.kind || !uploaded || this.time === null) {
@@ -121,17 +123,19 @@ export class WeatherLayer {
     const ready = wanted.map((one) => one.frame);
     if (ready.every(Boolean)) this.#show(ready, first);
     else {
+      this.loading = true;
       this.onState("loading");
       try {
         const frames = await Promise.all(wanted.map((one) => one.promise));
         if (ask === this.ask) this.#show(frames, first);
       } catch (problem) {
-        if (ask === this.ask) this.onState("failed", problem);
+        if (ask === this.ask) { this.loading = false; this.onState("failed", problem); }
       }
     }
   }
 
   #show(frames, first) {
+    this.loading = false;
     this.shown = { frames, share: (this.time - first) / this.step, kind: this.kind };
     const known = frames.some((frame) => frame.values.subarray(0, frame.nx * frame.ny).some((v) => v !== UNKNOWN));
     this.onState(known ? "shown" : "no data");

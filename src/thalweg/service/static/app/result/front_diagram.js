@@ -1,9 +1,9 @@
 // The Pareto front of time against fuel or cost: hover, drag or arrow keys choose a route.
 
-import { fill, h } from "./elements.js";
-import { duration, known, number, signed, signedDuration } from "./format.js";
-import { selection } from "./selection.js";
-import { svg as s, ticks } from "./svg_parts.js";
+import { fill, h } from "../common/elements.js";
+import { duration, known, number, signed, signedDuration } from "../common/format.js";
+import { selection } from "../common/selection.js";
+import { svg as s, ticks } from "../common/svg_parts.js";
 
 export class FrontDiagram {
   constructor(plan) {

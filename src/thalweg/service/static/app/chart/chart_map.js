@@ -1,13 +1,13 @@
 // The chart: coast, graticule, ports, control areas, canals, weather, routes, drawn areas.
 
-import { Map as OlMap, View, Overlay, Graticule, ScaleLine, Zoom, Draw, Modify, Snap, Translate, GeoJSON, toLonLat, transformExtent, extent as extents, defaultInteractions } from "../vendor/ol.mjs";
-import { get } from "./api.js";
+import { Map as OlMap, View, Overlay, Graticule, ScaleLine, Zoom, Draw, Modify, Snap, Translate, GeoJSON, toLonLat, transformExtent, extent as extents, defaultInteractions } from "../../vendor/ol.mjs";
+import { get } from "../common/api.js";
 import { CoastLayers } from "./coast_layer.js";
 import { ParticleLayer } from "./particle_layer.js";
 import { bandColours, KINDS, WeatherLayer } from "./weather_layer.js";
-import { RouteLayers, layer, stroke, FONT, Feature, Point, Polygon, LineString, Style, Fill, Stroke, Circle, Text, fromLonLat } from "./route_layers.js";
-import { colour, fill, h } from "./elements.js";
-import { position } from "./format.js";
+import { RouteLayers, SPEED_COLOURS, layer, stroke, FONT, Feature, Point, Polygon, LineString, Style, Fill, Stroke, Circle, Text, fromLonLat } from "./route_layers.js";
+import { colour, fill, h } from "../common/elements.js";
+import { known, number, position, time } from "../common/format.js";
 
 export class Chart extends EventTarget {
   constructor(element) {
@@ -60,7 +60,13 @@ export class Chart extends EventTarget {
   }
 
   async #loadChart() {
-    const [chart, ports] = await Promise.all([get("/chart"), get("/ports?count=900")]);
+    let chart, ports;
+    try {
+      [chart, ports] = await Promise.all([get("/chart"), get("/ports?count=900")]);
+    } catch {
+      setTimeout(() => this.#loadChart(), 5000);
+      return;
+    }
     for (const area of chart.control_areas) {
       for (const ring of area.rings) {
         const feature = new Feature(new Polygon([ring.map((p) => fromLonLat(p))]));
@@ -150,18 +156,72 @@ export class Chart extends EventTarget {
     this.map.getView().fit(extents.buffer(box, Math.max(2e4, 0.06 * Math.max(extents.getWidth(box), extents.getHeight(box)))), { padding: [28, 40, 28, 40], maxZoom: 11, duration: 0 });
   }
 
+  // The chart moves only where one of two or more places [{lon, lat}] is outside of it.
+  fitOutside(places) {
+    const [w, s, e, n] = this.view;
+    if (places.length > 1 && !places.every(({ lon, lat }) => lat > s && lat < n && lon > w && lon < e)) this.fit(places.map(({ lon, lat }) => [lon, lat]));
+  }
+
+  // On paper the chart has another size: it shows the whole route, then what it showed before.
+  forPaper(begins, points) {
+    const root = document.documentElement;
+    if (begins) this.before = { place: this.place, palette: root.dataset.palette };
+    root.dataset.palette = begins ? "day" : this.before.palette;
+    this.paint();
+    this.map.updateSize();
+    if (begins && points) this.fit(points);
+    if (!begins) this.place = this.before.place;
+    for (const one of document.querySelectorAll("#panel .list ~ details, #panel .proof details")) one.open = begins;
+    this.map.renderSync();
+  }
+
+  get place() {
+    const view = this.map.getView();
+    return [view.getCenter(), view.getZoom()];
+  }
+
+  set place([center, zoom]) {
+    const view = this.map.getView();
+    view.setCenter(center);
+    view.setZoom(zoom);
+  }
+
+  // In the bar: the time of the weather, the end of the data [s, s], and the age of the forecast that ran at a time.
+  showValidity(t, period, run) {
+    const shown = this.weather.kind && known(t);
+    const outside = shown && period && (t < period[0] || t > period[1]);
+    const age = run === null ? "" : ` · forecast of ${time(run)}, ${number(Math.max(0, Date.now() / 1000 - run) / 3600)} h old`;
+    fill(document.getElementById("valid"), shown ? [h("b", {}, time(t, true)), " UTC"] : null, outside ? " · outside the data" : period ? ` · data until ${time(period[1])}${age}` : "");
+  }
+
   showLegend(state = this.legendState) {
     this.legendState = state;
     const box = document.getElementById("legend");
     const { kind } = this.weather;
-    box.hidden = !kind;
-    if (!kind) return;
+    box.hidden = !kind && !this.speeds;
+    fill(box, this.speeds ? this.#speedLegend(...this.speeds) : null, kind ? this.#weatherLegend(kind, state) : null);
+  }
+
+  // The range of the speed colours of the chosen route [kn, kn]; null where it has one colour.
+  showSpeeds(range) {
+    this.speeds = range;
+    this.showLegend();
+  }
+
+  clearRoutes() {
+    this.routes.clear();
+    this.showSpeeds(null);
+  }
+
+  #speedLegend(low, high) {
+    return h("section", {}, h("b", {}, "Speed over ground"), bar(SPEED_COLOURS), h("div.ends", {}, h("span", {}, number(low, 1)), h("span", {}, number((low + high) / 2, 1)), h("span", {}, `${number(high, 1)} kn`)));
+  }
+
+  #weatherLegend(kind, state) {
     const { title, unit, top } = KINDS[kind];
-    const bar = h("canvas", { width: 180, height: 10, "aria-hidden": "true" });
-    const colours = bandColours(kind), pen = bar.getContext("2d");
-    colours.forEach((c, i) => { pen.fillStyle = `rgb(${c.join(",")})`; pen.fillRect((180 * i) / colours.length, 0, 180 / colours.length + 1, 10); });
-    const words = { loading: "loading …", "no data": "no data at this time", failed: "the field cannot be read" }[state];
-    fill(box, h("b", {}, title), words ? ` · ${words}` : null, bar, h("div.ends", {}, h("span", {}, "0"), h("span", {}, `${top / 2}`), h("span", {}, `${top} ${unit}`)), h("div.none", {}, h("i", {}), "no data"));
+    const words = { "no data": "no data at this time", failed: "cannot be read" }[state];
+    return h("section", { "aria-busy": String(state === "loading") }, h("b", {}, title), words ? ` · ${words}` : null, bar(bandColours(kind).map((c) => `rgb(${c.join(",")})`)),
+      h("div.ends", {}, h("span", {}, "0"), h("span", {}, `${top / 2}`), h("span", {}, `${top} ${unit}`)), h("div.none", {}, h("i", {}), "no data"));
   }
 
   // Draw an area by hand; resolves with a ring [[lon, lat], ...] or null.
@@ -212,6 +272,13 @@ export class Chart extends EventTarget {
 function degrees(value, plus, minus) {
   const size = Math.abs(value), whole = Math.floor(size + 1e-9), minutes = Math.round((size - whole) * 60);
   return `${whole}°${minutes ? `${String(minutes).padStart(2, "0")}′` : ""}${size < 1e-9 ? "" : value < 0 ? minus : plus}`;
+}
+
+// A bar of colours from low to high.
+function bar(colours) {
+  const canvas = h("canvas", { width: 180, height: 10, "aria-hidden": "true" }), pen = canvas.getContext("2d");
+  colours.forEach((one, i) => { pen.fillStyle = one; pen.fillRect((180 * i) / colours.length, 0, 180 / colours.length + 1, 10); });
+  return canvas;
 }
 
 function hatch(color) {

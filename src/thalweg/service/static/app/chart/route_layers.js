@@ -1,15 +1,14 @@
 // Routes, isochrones, ship, ends and areas on the chart.
 
-import { VectorLayer, VectorSource, Feature, LineString, Point, Polygon, Style, Fill, Stroke, Circle, RegularShape, Text, fromLonLat } from "../vendor/ol.mjs";
-import { colour } from "./elements.js";
-import { time as timeText, unwrapped } from "./format.js";
+import { VectorLayer, VectorSource, Feature, LineString, Point, Polygon, Style, Fill, Stroke, Circle, RegularShape, Text, fromLonLat } from "../../vendor/ol.mjs";
+import { colour } from "../common/elements.js";
+import { time as timeText, unwrapped } from "../common/format.js";
 
 const FONT = '12px system-ui, "DejaVu Sans", sans-serif';
 
 // Slow to fast, evenly spaced in lightness.
-const SPEED = ["#2b1d6b", "#4b2a93", "#7a2f9c", "#a83a93", "#cf4f7f", "#ea6f66", "#f79a56", "#f9c86b"];
+export const SPEED_COLOURS = ["#2b1d6b", "#4b2a93", "#7a2f9c", "#a83a93", "#cf4f7f", "#ea6f66", "#f79a56", "#f9c86b"];
 
-export const speedColours = SPEED;
 
 export function line(points) {
   const lons = unwrapped(points.map((p) => p[0]));
@@ -98,13 +97,13 @@ export class RouteLayers {
     source.addFeature(whole);
     if (!speeds || !range) return;
     const lons = unwrapped(points.map((p) => p[0]));
-    const classOf = (v) => Math.max(0, Math.min(SPEED.length - 1, Math.floor(((v - range[0]) / Math.max(1e-9, range[1] - range[0])) * SPEED.length)));
+    const classOf = (v) => Math.max(0, Math.min(SPEED_COLOURS.length - 1, Math.floor(((v - range[0]) / Math.max(1e-9, range[1] - range[0])) * SPEED_COLOURS.length)));
     for (let i = 0; i + 1 < points.length; ) {
       const kind = classOf(speeds[i]);
       let j = i + 1;
       while (j + 1 < points.length && classOf(speeds[j]) === kind) j++;
       const part = new Feature(new LineString(points.slice(i, j + 1).map((p, k) => fromLonLat([lons[i + k], p[1]]))));
-      part.setStyle(stroke(SPEED[kind], 3.6));
+      part.setStyle(stroke(SPEED_COLOURS[kind], 3.6));
       source.addFeature(part);
       i = j;
     }

@@ -1,0 +1,47 @@
+// The menu of what the chart shows.
+
+import { fill, h } from "../common/elements.js";
+import { lessMotion } from "./particle_layer.js";
+import { KINDS } from "./weather_layer.js";
+
+export class LayerMenu {
+  bySpeed = false;
+  isochrones = true;
+  beside = true;
+
+  /** @param {{weather: () => void, routes: () => void}} changed what to do after a change */
+  constructor(chart, changed) {
+    Object.assign(this, { chart, changed });
+    this.button = document.getElementById("layers-button");
+    this.box = document.getElementById("layers");
+    this.button.addEventListener("click", () => this.open(this.box.hidden));
+  }
+
+  open(on) {
+    this.box.hidden = !on;
+    this.button.setAttribute("aria-expanded", String(on));
+  }
+
+  // kinds: the weather that the chosen seas hold.
+  show(kinds) {
+    const { chart } = this, { weather } = chart;
+    const there = [...new Set(kinds)].filter((kind) => KINDS[kind]);
+    const radio = (value, text) => h("label.check", {}, h("input", { type: "radio", name: "weather", value, checked: weather.kind === value, onchange: () => { weather.set({ kind: value }); chart.showLegend(); this.changed.weather(); } }), h("span", {}, text));
+    const toggle = (text, checked, act) => h("label.check", {}, h("input", { type: "checkbox", checked, onchange: (event) => act(event.target.checked) }), h("span", {}, text));
+    const route = (text, name) => toggle(text, this[name], (on) => { this[name] = on; this.changed.routes(); });
+    const layer = (text, one) => toggle(text, one.getVisible(), (on) => one.setVisible(on));
+    fill(this.box,
+      h("fieldset", {}, h("legend", {}, "Weather"), radio("", "None"), there.map((kind) => radio(kind, KINDS[kind].title)),
+        there.length ? null : h("p.facts", {}, "Choose a sea with data in the plan: waves, wind, current, depth and ice can be drawn."),
+        ["wind", "current"].some((kind) => there.includes(kind)) ? this.#particles() : null),
+      h("fieldset", {}, h("legend", {}, "Route"), route("Colour by speed over ground", "bySpeed"), route("Isochrones", "isochrones"), route("Route that ignores the weather", "beside")),
+      h("fieldset", {}, h("legend", {}, "Chart"), layer("Emission control areas", chart.eca), layer("Ports", chart.ports), layer("Canals", chart.canals)));
+  }
+
+  #particles() {
+    const { particles, weather } = this.chart;
+    const change = (event) => { particles.wanted = event.target.checked; localStorage.setItem("particles", String(particles.wanted)); weather.repaint(); };
+    const why = lessMotion.matches ? " (this computer is set to less motion)" : "";
+    return h("label.check", {}, h("input", { type: "checkbox", id: "particles", checked: particles.wanted, disabled: lessMotion.matches, onchange: change }), h("span", {}, `Wind and current as moving particles${why}`));
+  }
+}
