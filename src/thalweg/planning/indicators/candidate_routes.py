@@ -34,6 +34,7 @@ from thalweg.network.shortest_paths import (
 )
 from thalweg.planning.approach_sailing import (
     ApproachSailing,
+    SailedApproaches,
     plan_along_approaches,
     shared_line,
 )
