@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
@@ -76,10 +77,14 @@ class TradeOffContext:
 
     @property
     def detail(self) -> FrontDetail:
-        """How much of the front is computed."""
+        """How much of the front is computed.
+
+        With an arrival to keep, or in weather, the best route needs the front on both sides of it.
+        """
         voyage = self.context.voyage
         one = voyage.objective in _ONE_BEST and voyage.method == "default"
-        return BEST_ROUTE if one else WHOLE_FRONT
+        steady = math.isinf(self.context.data_end) and math.isinf(self.context.latest_arrival)
+        return BEST_ROUTE if one and steady else WHOLE_FRONT
 
     @property
     def via(self) -> tuple[Endpoint, ...]:
