@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from thalweg import Chart, Sea, Ship, evaluate
+from thalweg import Chart, Sea, Ship, Voyage, evaluate, plan
 from thalweg.cli.main import main
 from thalweg.cli.option_values import with_given_prices
 from thalweg.cli.options import add_price_options
@@ -43,6 +43,17 @@ def test_a_route_costs_the_same_by_plan_shell_and_library(capsys, track):
     for chart in (None, Chart.open_water(), Chart.open_water().with_eca()):
         given = evaluate([START, GOAL], ship=BULKER, sea=Sea.calm(), chart=chart, depart=0)
         assert given.cost == pytest.approx(scored["cost_usd"], rel=1e-9)
+
+
+def test_every_route_of_a_front_pays_for_its_fuel_in_control_areas():
+    voyage = Voyage(start=START, goal=GOAL, depart=0, objective="front", method="exact")
+    found = plan(
+        voyage, ship=BULKER, sea=Sea.calm(), chart=Chart.open_water(), resolution=40e3, proof=0
+    )
+    assert found.front.criterion == "cost" and len(found.routes) > 2
+    for route in found.routes:
+        assert route.fuel_eca_t == pytest.approx(route.fuel_t, rel=1e-9)
+        assert route.cost == pytest.approx(300.0 * 1.5593 * route.fuel_t, rel=1e-6)
 
 
 def test_without_control_areas_the_fuel_inside_is_unknown(capsys, track):

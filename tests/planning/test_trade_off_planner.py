@@ -68,6 +68,14 @@ def test_with_a_deadline_two_neighbouring_speeds_are_mixed():
     assert answer.best.fuel_t >= wanted * (1.0 - 1e-4)
 
 
+def test_for_one_objective_a_few_faster_routes_are_given_as_well():
+    one, whole = still("fuel", cubic_ship()), still_front()
+    assert one.best.fuel_t == pytest.approx(whole.routes[-1].fuel_t, rel=1e-6)
+    assert 3 <= len(one.routes) < len(whole.routes)
+    fastest = min(route.time_h for route in one.routes)
+    assert fastest == pytest.approx(whole.routes[0].time_h, rel=1e-6)
+
+
 def test_the_front_runs_from_fastest_to_cheapest_and_is_non_dominated():
     answer = still_front()
     time = np.array([route.time_h for route in answer.routes])

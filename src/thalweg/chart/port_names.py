@@ -40,15 +40,19 @@ _PORT_WORDS_AFTER: Final = (
 )
 #: A place name of fewer letters is not shortened further.
 _SHORTEST_PLACE: Final = 4
+#: A space for every ASCII character that is neither letter nor digit.
+_SPACES: Final = {code: " " for code in range(128) if not chr(code).isalnum()}
 
 
 def normalised_port_name(text: str) -> str:
     """Return text without case, accents, punctuation and double spaces; "St." is "saint"."""
     plain = text.casefold()
-    if not plain.isascii():
+    if plain.isascii():
+        words = plain.translate(_SPACES).split()
+    else:
         plain = unicodedata.normalize("NFKD", plain.translate(_LETTER_SUBSTITUTES))
-    kept = (c if c.isalnum() else " " for c in plain if not unicodedata.combining(c))
-    words = "".join(kept).split()
+        kept = (c if c.isalnum() else " " for c in plain if not unicodedata.combining(c))
+        words = "".join(kept).split()
     return " ".join("saint" if word == "st" else word for word in words)
 
 

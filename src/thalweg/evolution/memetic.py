@@ -61,6 +61,8 @@ class FrontRefinementSettings:
         Of the random numbers.
     operators : VariationSettings
         Variation operators and their probabilities.
+    exploration : int
+        Generations of the first evolution; with 0 only the seeds are refined.
 
     Raises
     ------
@@ -72,9 +74,11 @@ class FrontRefinementSettings:
     time_prices: int = TIME_PRICES
     seed: int = 0
     operators: VariationSettings = DEFAULT_OPERATORS
+    exploration: int = EXPLORATION_GENERATIONS
 
     def __post_init__(self) -> None:
         check_size(self.size)
+        check_whole_number("number of generations", self.exploration)
         check_whole_number("number of time prices", self.time_prices)
         check_whole_number("seed", self.seed)
 
@@ -134,15 +138,21 @@ def refine_front(
     genomes = as_genomes(evaluator, seeds)
     pool = _CandidatePool(evaluator)
     pool.add("seed", evaluator.population(genomes, capacity=capacity_for(genomes)))
-    explored = min(size, EXPLORATION_SIZE)
-    first = initial_population(
-        evaluator, genomes, size=explored, variation_settings=variation_settings, rng=rng
-    )
-    algorithm = _nsga2(evaluator, first, explored, variation_settings, rng)
-    exploration = StoppingCriteria(EXPLORATION_GENERATIONS)
-    work = run_algorithm(algorithm, evaluator, exploration, progress=progress, cancel=monitor.stop)
-    best = least_crowded_front(algorithm.scores, EXPLORATION_SEEDS)
-    pool.add("nsga2", algorithm.population.take(best))
+    work = RunSummary(0, 0, "generations")
+    if settings.exploration:
+        explored = min(size, EXPLORATION_SIZE)
+        first = initial_population(
+            evaluator, genomes, size=explored, variation_settings=variation_settings, rng=rng
+        )
+        algorithm = _nsga2(evaluator, first, explored, variation_settings, rng)
+        exploration = StoppingCriteria(settings.exploration)
+        work = run_algorithm(
+            algorithm, evaluator, exploration, progress=progress, cancel=monitor.stop
+        )
+        pool.add(
+            "nsga2",
+            algorithm.population.take(least_crowded_front(algorithm.scores, EXPLORATION_SEEDS)),
+        )
     if not monitor.stop():
         priced = seeds_with_time_prices(evaluator, pool.population, count=settings.time_prices)
         refined = scalarised_local_search(priced, stop=monitor.stop)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache, partial
 
 import numpy as np
 
@@ -104,7 +105,8 @@ class ApproachSailing:
         plots = plan.plot_context and _with_approach_lines(plan.plot_context, context)
         if self.outward is None and self.inward is None:
             return replace(plan, plot_context=plots)
-        routes = tuple(self.joined(route, context) for route in plan.routes)
+        sailing = SailedApproaches(self, context)
+        routes = tuple(sailing.joined(route) for route in plan.routes)
         added = _difference(routes[0], plan, voyage, context)
         more = added[0] if voyage.objective == "front" else added[1]  # a front is bounded in time
         proof = Proof(
@@ -112,7 +114,7 @@ class ApproachSailing:
             f"{plan.proof.kind}; with the approaches of the ports",
             plan.proof.solver_total + more,
         )
-        front = plan.front and self._front(plan.front, added, context)
+        front = plan.front and _front_with_approaches(plan.front, added, sailing)
         return replace(
             plan,
             voyage=voyage,
@@ -147,16 +149,6 @@ class ApproachSailing:
         """Return the time of an approach [s]."""
         return 0.0 if approach is None else approach.length / self.speed
 
-    def joined(self, route: Route, context: PlanningContext) -> Route:
-        """Return a route with the approaches at its ends."""
-        parts = [route]
-        if self.outward is not None and self.outward.length > 1.0:
-            depart = route.depart - self._duration(self.outward)
-            parts.insert(0, self.sail(self.outward.line, depart, context))
-        if self.inward is not None and self.inward.length > 1.0 and math.isfinite(route.arrive):
-            parts.append(self.sail(self.inward.line[::-1], route.arrive, context))
-        return join_routes([_connected(a, b) for a, b in zip(parts, [*parts[1:], None])])
-
     def sail(self, line: Sequence[Position], depart: float, context: PlanningContext) -> Route:
         """Return the line of an approach as sailed; departure in s since 1970."""
         lat, lon = np.array(line, float).T
@@ -165,29 +157,49 @@ class ApproachSailing:
         terms = priced_objective(voyage, context.ship).terms if voyage.chooses_speeds else None
         return context.evaluate(track, terms)
 
-    def _front(
-        self, front: ParetoFront, added: tuple[float, float], context: PlanningContext
-    ) -> ParetoFront:
-        """Return a front with the time [h] and value of the approaches added."""
-        comparison = front.comparison
-        if comparison is not None:
-            routes = tuple(self.joined(route, context) for route in comparison.routes)
-            values = np.asarray(comparison.values) + added[1]
-            rows = tuple(
-                row
-                | {"time_h": route.time_h, "value": float(value), "distance_nm": route.distance_nm}
-                | {"saved_percent": _percent(row["saved"], float(value))}
-                for row, route, value in zip(comparison.rows, routes, values)
-            )
-            comparison = BaselineComparison(routes, values, rows)
-        more = np.array(added)[:, None]
-        return replace(
-            front,
-            values=np.asarray(front.values) + added[1],
-            lower=np.asarray(front.lower) + more,
-            certain=np.asarray(front.certain) + more,
-            comparison=comparison,
+
+class SailedApproaches:
+    """The approaches of many routes of one plan: each sailed once for each time."""
+
+    def __init__(self, sailing: ApproachSailing, context: PlanningContext) -> None:
+        self._sailing = sailing
+        self._sail = cache(partial(sailing.sail, context=context))
+
+    def joined(self, route: Route) -> Route:
+        """Return a route with the approaches at its ends."""
+        outward, inward = self._sailing.outward, self._sailing.inward
+        parts = [route]
+        if outward is not None and outward.length > 1.0:
+            depart = route.depart - outward.length / self._sailing.speed
+            parts.insert(0, self._sail(tuple(outward.line), depart))
+        if inward is not None and inward.length > 1.0 and math.isfinite(route.arrive):
+            parts.append(self._sail(tuple(inward.line[::-1]), route.arrive))
+        return join_routes([_connected(a, b) for a, b in zip(parts, [*parts[1:], None])])
+
+
+def _front_with_approaches(
+    front: ParetoFront, added: tuple[float, float], sailing: SailedApproaches
+) -> ParetoFront:
+    """Return a front with the time [h] and value of the approaches added."""
+    comparison = front.comparison
+    if comparison is not None:
+        routes = tuple(sailing.joined(route) for route in comparison.routes)
+        values = np.asarray(comparison.values) + added[1]
+        rows = tuple(
+            row
+            | {"time_h": route.time_h, "value": float(value), "distance_nm": route.distance_nm}
+            | {"saved_percent": _percent(row["saved"], float(value))}
+            for row, route, value in zip(comparison.rows, routes, values)
         )
+        comparison = BaselineComparison(routes, values, rows)
+    more = np.array(added)[:, None]
+    return replace(
+        front,
+        values=np.asarray(front.values) + added[1],
+        lower=np.asarray(front.lower) + more,
+        certain=np.asarray(front.certain) + more,
+        comparison=comparison,
+    )
 
 
 def _with_approach_lines(plots: PlotContext, context: PlanningContext) -> PlotContext:

@@ -34,6 +34,7 @@ from thalweg.network.shortest_paths import (
 )
 from thalweg.planning.approach_sailing import (
     ApproachSailing,
+    SailedApproaches,
     plan_along_approaches,
     shared_line,
 )
@@ -82,7 +83,8 @@ def berth_to_berth_candidates(
         return with_trade_off(off_land, ends, _feasible_candidates)
 
     routes, notes = plan_off_land(at_sea, ends, offing, search)
-    return [sailing.joined(route, context) for route in routes], [*sailing.notes(context), *notes]
+    sailed = SailedApproaches(sailing, context)
+    return [sailed.joined(route) for route in routes], [*sailing.notes(context), *notes]
 
 
 def _feasible_candidates(

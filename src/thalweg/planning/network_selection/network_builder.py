@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from functools import partial
+
+import numpy as np
+
 from thalweg.chart import Chart
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import Position, distance
@@ -23,6 +27,7 @@ from thalweg.sea import Mesh, Sea
 #: Voyages of at least this distance [m] with a route longer than this multiple of it are searched
 #: in a corridor around the path over the globe network.
 _LONG_DISTANCE, _DETOUR_RATIO = 1500.0 * NAUTICAL_MILE, 1.3
+_SURE = 1.05  # over this multiple of a length on the globe network, a route is longer than it
 
 
 def build_network(
@@ -54,38 +59,61 @@ def build_network(
 
 
 def lattice_between(
-    chart: Chart,
-    start: Position,
-    goal: Position,
-    *,
-    spacing: float | None = None,
-    coast_levels: int | None = None,
+    chart: Chart, start: Position, goal: Position, *, spacing: float | None = None
 ) -> Network:
-    """Return a lattice between two places; around land, along the path of the globe network.
+    """Return a lattice between two places, as `LatticeBetween` builds it."""
+    return LatticeBetween(chart, start, goal).network(spacing=spacing)
 
-    It covers all water between the places unless the voyage is long and land is between them.
+
+class LatticeBetween:
+    """Lattices of several resolutions between two places; the way round land is found once.
+
+    They cover all water between the places unless the voyage is long and land is between them:
+    then the water along the path of the globe network.
     """
-    options = {"spacing": spacing, "coast_levels": coast_levels}
-    far = float(distance(*start, *goal)) >= _LONG_DISTANCE and chart.area.width >= 360.0
-    if not far:
-        return lattice(chart, start, goal, **options)  # type: ignore[arg-type]
-    try:
-        return lattice(chart, start, goal, detour=_DETOUR_RATIO, **options)  # type: ignore[arg-type]
-    except NoRouteError:
-        path = _globe_path(chart, start, goal)
-    if path is None:
-        return lattice(chart, start, goal, **options)  # type: ignore[arg-type]
-    return lattice(chart, start, goal, along=path, **options)  # type: ignore[arg-type]
 
+    def __init__(self, chart: Chart, start: Position, goal: Position) -> None:
+        self._chart, self._places = chart, (start, goal)
+        self._distance = float(distance(*start, *goal))
+        far = self._distance >= _LONG_DISTANCE and chart.area.width >= 360.0
+        self._limits_detour, self._path = far, self._long_way_round() if far else None
 
-def _globe_path(chart: Chart, start: Position, goal: Position) -> list[Position] | None:
-    """Return the shortest path over the globe network, or None."""
-    try:
-        network = globe(chart, start, goal)
-    except NoRouteError:
-        return None
-    _, path = shortest_path(network, network.meta.start, network.meta.goal)
-    return list(zip(network.lat[path].tolist(), network.lon[path].tolist())) if path else None
+    def network(self, *, spacing: float | None = None, coast_levels: int | None = None) -> Network:
+        """Return the lattice of one resolution.
+
+        Raises
+        ------
+        NoRouteError : If start and goal do not connect.
+        """
+        build = partial(
+            lattice, self._chart, *self._places, spacing=spacing, coast_levels=coast_levels
+        )
+        if self._limits_detour and self._path is None:
+            try:
+                return build(detour=_DETOUR_RATIO)
+            except NoRouteError:
+                self._limits_detour, self._path = False, self._globe_path()[0]
+        return build(along=self._path)
+
+    def _long_way_round(self) -> list[Position] | None:
+        """Return the path over the globe network if it is surely too long for a whole lattice."""
+        (lat, lon), (to_lat, to_lon) = self._places
+        if not np.any(self._chart.legs_blocked(lat, lon, to_lat, to_lon)):
+            return None
+        path, length = self._globe_path()
+        return path if length > _SURE * _DETOUR_RATIO * self._distance else None
+
+    def _globe_path(self) -> tuple[list[Position] | None, float]:
+        """Return the shortest path over the globe network and its length [m]; None without one."""
+        try:
+            network = globe(self._chart, *self._places)
+        except NoRouteError:
+            return None, 0.0
+        to, path = shortest_path(network, network.meta.start, network.meta.goal)
+        if not path:
+            return None, 0.0
+        found = list(zip(network.lat[path].tolist(), network.lon[path].tolist()))
+        return found, float(to[network.meta.goal])
 
 
 def _inside_mesh_extent(model: Mesh, ends: tuple[Position, Position]) -> bool:

@@ -9,10 +9,11 @@ from dataclasses import dataclass, replace
 
 from thalweg.chart import Chart
 from thalweg.core.errors import NoRouteError
+from thalweg.core.geodesy import Position
 from thalweg.network import Network, lattice, shortest_path
 from thalweg.network.alternatives.path_search import without_each_set_of_canals
 from thalweg.network.network_concatenation import concatenate_networks
-from thalweg.planning.network_selection.network_builder import build_network, lattice_between
+from thalweg.planning.network_selection.network_builder import LatticeBetween, build_network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
 
@@ -104,16 +105,33 @@ def _network(context: PlanningContext, start: Endpoint, goal: Endpoint) -> Netwo
         if network.meta.kind == "mesh":
             return network
     places = (start.lat, start.lon), (goal.lat, goal.lon)
-    for levels in range(_COAST_LEVELS, -1, -1):
-        network = lattice_between(context.chart, *places, coast_levels=levels)
-        if network.n_nodes <= MAX_FRONT_NODES:
-            return network
-    return _corridor_lattice(context.chart, network, places)
+    return _finest_small_lattice(context.chart, places)
 
 
-def _corridor_lattice(
-    chart: Chart, wide: Network, places: tuple[tuple[float, float], tuple[float, float]]
-) -> Network:
+def _finest_small_lattice(chart: Chart, places: tuple[Position, Position]) -> Network:
+    """Return the lattice with the finest coasts that is small enough, else one in a corridor.
+
+    The coarsest comes first: where it is too large, finer ones are too.
+    """
+    lattices = LatticeBetween(chart, *places)
+    found: Network | None = None
+    refusal: NoRouteError | None = None
+    for levels in range(_COAST_LEVELS + 1):
+        try:
+            network = lattices.network(coast_levels=levels)
+        except NoRouteError as error:  # straits narrower than the spacing
+            refusal = error
+            continue
+        if network.n_nodes > MAX_FRONT_NODES:
+            return found or _corridor_lattice(chart, network, places)
+        found = network
+    if found is None:
+        assert refusal is not None  # no lattice was built
+        raise refusal
+    return found
+
+
+def _corridor_lattice(chart: Chart, wide: Network, places: tuple[Position, Position]) -> Network:
     """Return a lattice in a corridor around the shortest path over a network that is too large."""
     _, path = shortest_path(wide, wide.meta.start, wide.meta.goal)
     centre_line = list(zip(wide.lat[path], wide.lon[path]))

@@ -40,10 +40,7 @@ from thalweg.route.sea_raster import RasterSize, freeze_raster
 if TYPE_CHECKING:
     from thalweg.sea import GridFields
 
-#: Greatest number of initial tracks: of the front, and dominated ones.
-_MAX_SEEDS, _MAX_DOMINATED_SEEDS = 48, 16
-#: Population and generations of refinement, and of an evolutionary method on its own.
-_REFINEMENT_POPULATION, _REFINEMENT_GENERATIONS = 140, 26
+#: Population and generations of an evolutionary method on its own.
 _EVOLUTION_POPULATION, _EVOLUTION_GENERATIONS = 100, 300
 _RASTER_SIZE = RasterSize(margin=0.15, min_cells=24, max_cells=240, largest=24_000_000)
 
@@ -53,6 +50,7 @@ def evolutionary_candidates(
 ) -> list[TrackCandidate]:
     """Return the candidates that evolutionary search finds for one alternative, from seeds."""
     context, method = trade_off.context, trade_off.context.voyage.method
+    detail = trade_off.detail
     seeds = _seeds(trade_off, explored, candidates)
     evaluator = _evaluator(trade_off, explored, seeds)
     genomes = [_genome(trade_off, seed) for seed in seeds]
@@ -61,8 +59,10 @@ def evolutionary_candidates(
         result = refine_front(
             evaluator,
             genomes,
-            settings=FrontRefinementSettings(_REFINEMENT_POPULATION, seed=seed),
-            stopping=StoppingCriteria(_REFINEMENT_GENERATIONS),
+            settings=FrontRefinementSettings(
+                detail.size, detail.time_prices, seed, exploration=detail.exploration
+            ),
+            stopping=StoppingCriteria(detail.generations),
             cancel=trade_off.interrupt_guard.stopped,
         )
     else:
@@ -84,18 +84,19 @@ def _seeds(
 
     Some are dominated: refinement may improve these more.
     """
+    detail = trade_off.detail
     time = np.array([item.time for item in candidates])
     value = np.array([item.value for item in candidates])
     non_dominated = non_dominated_indices(time, value, tolerance=ROUNDING_TOLERANCE)
     dominated = np.setdiff1d(np.arange(len(candidates)), non_dominated)
     chosen = non_dominated[
-        evenly_spaced_subset(time[non_dominated], value[non_dominated], _MAX_SEEDS)
+        evenly_spaced_subset(time[non_dominated], value[non_dominated], detail.seeds)
     ]
     if len(dominated):
         chosen = np.append(
             chosen,
             dominated[
-                evenly_spaced_subset(time[dominated], value[dominated], _MAX_DOMINATED_SEEDS)
+                evenly_spaced_subset(time[dominated], value[dominated], detail.dominated_seeds)
             ],
         )
     chosen = chosen[np.argsort(time[chosen], kind="stable")]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 
@@ -19,6 +21,34 @@ from thalweg.route import Route, Track
 from thalweg.search import NetworkFront, SearchResult
 from thalweg.ship import PerformanceTable
 from thalweg.ship.consumption import calm_water_consumption
+
+
+@dataclass(frozen=True)
+class FrontDetail:
+    """How many tracks of a front are refined and evaluated.
+
+    Attributes
+    ----------
+    seeds, dominated_seeds : Greatest number of tracks of the network's front, and of others, from
+        which refinement starts.
+    size, time_prices, exploration, generations : Of `thalweg.evolution.refine_front`.
+    least, most : Number of routes that the referee evaluates.
+    """
+
+    seeds: int
+    dominated_seeds: int
+    size: int
+    time_prices: int
+    exploration: int
+    generations: int
+    least: int
+    most: int
+
+
+WHOLE_FRONT = FrontDetail(48, 16, 140, 48, 60, 26, 40, 100)
+#: For the best route by one objective, with a few faster ones for comparison.
+BEST_ROUTE = FrontDetail(12, 6, 24, 6, 0, 0, 12, 12)
+_ONE_BEST: Final = ("fuel", "energy", "cost", "co2")
 
 
 @dataclass(frozen=True)
@@ -44,6 +74,17 @@ class TradeOffContext:
     limits: Limits
     interrupt_guard: InterruptGuard
     notes: list[str] = field(default_factory=list)
+
+    @property
+    def detail(self) -> FrontDetail:
+        """How much of the front is computed.
+
+        With an arrival to keep, or in weather, the best route needs the front on both sides of it.
+        """
+        voyage = self.context.voyage
+        one = voyage.objective in _ONE_BEST and voyage.method == "default"
+        steady = math.isinf(self.context.data_end) and math.isinf(self.context.latest_arrival)
+        return BEST_ROUTE if one and steady else WHOLE_FRONT
 
     @property
     def via(self) -> tuple[Endpoint, ...]:

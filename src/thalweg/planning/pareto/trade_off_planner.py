@@ -46,8 +46,7 @@ from thalweg.ship.consumption import consumption_table
 
 Result = TypeVar("Result")
 
-#: Least and greatest number of routes of a front, and of the steps of their evaluation.
-_MIN_ROUTES, _MAX_ROUTES, _MAX_STEPS = 40, 100, 150_000
+_MAX_STEPS = 150_000  # of the evaluation of the routes of a front
 _NETWORK_ONLY = (
     "Length, land and encounters were counted on the network only, encounters at the highest "
     "speed; the routes were not refined in open water."
@@ -161,7 +160,8 @@ def _candidates(
     )
     time, value = _times_and_values([candidates[index] for index in non_dominated])
     steps = max(len(one.fastest.samples["time"]) for one in explored)
-    most = min(max(_MAX_STEPS // max(steps, 1), _MIN_ROUTES), _MAX_ROUTES)
+    detail = trade_off.detail
+    most = min(max(_MAX_STEPS // max(steps, 1), detail.least), detail.most)
     if trade_off.interrupt_guard.stopped():
         most = min(most, _MAX_ROUTES_INTERRUPTED)
     return [
