@@ -169,7 +169,7 @@ def segments(folder: Path) -> None:
             problem = make_front_problem(given, query)
             out = np.empty((len(edges) * len(updates), 2))
             sail_departures(
-                problem.world, np.repeat(edges, 101), np.repeat(problem.tails, 101),
+                problem.arrays, np.repeat(edges, 101), np.repeat(problem.tails, 101),
                 np.zeros(len(out), np.int64), np.tile(updates, len(edges)), out,
                 new_edge_workspace(),
             )  # fmt: skip
