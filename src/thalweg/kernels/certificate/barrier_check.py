@@ -112,15 +112,14 @@ def _support(east, north, motion):
 
 
 @kernel_only
-def _triangle(p_east, p_north, corners, motion):
-    """Return the greatest of current and ship along a gradient [s/m] over a triangle.
+def greatest_current_along(p_east, p_north, corners, currents, instants):
+    """Return the greatest scalar product of (east, north) with a current over a triangle.
 
     ``corners`` are the two corners of the cell that the triangle has beside the centre.
     """
     one, two = corners
-    currents = motion.currents
     best = -math.inf
-    for k in range(motion.instants):
+    for k in range(instants):
         a = currents[k, one, 0] * p_east + currents[k, one, 1] * p_north
         b = currents[k, two, 0] * p_east + currents[k, two, 1] * p_north
         m = 0.0
@@ -130,7 +129,7 @@ def _triangle(p_east, p_north, corners, motion):
             m += 0.25 * (currents[k, c, 0] * p_east + currents[k, c, 1] * p_north)
         value = max(a, b, m) + _TWIST * abs(turn_east * p_east + turn_north * p_north)
         best = max(best, value)
-    return best + _support(p_east, p_north, motion)
+    return best
 
 
 @kernel_only
@@ -150,13 +149,15 @@ def _greatest_rate(phi, centre, scales, motion):
             x, y, pair = b + d - 2.0 * centre, d - b, (1, 3)
         y *= per_north
         for per_east in (per_east_low, per_east_high):
-            value = _triangle(x * per_east, y, pair, motion)
+            east = x * per_east
+            value = greatest_current_along(east, y, pair, motion.currents, motion.instants)
+            value += _support(east, y, motion)
             best = max(best, value + slack * abs(y))
     return best
 
 
 @kernel_only
-def _replace_unknown(currents, instants):
+def replace_unknown_currents(currents, instants):
     """Replace unknown currents at corners by the mean of the known ones; return the strongest."""
     strongest = 0.0
     for k in range(instants):
@@ -252,7 +253,7 @@ def _check_cell(world, phi, cell, window, forward, strict, buffers, kept):
     sign = 1.0 if forward else -1.0
     if instants < 0:  # a window of too many instants
         return math.inf, 0.25 * (a + b + c + d)
-    strongest = _replace_unknown(buffers.current, instants)
+    strongest = replace_unknown_currents(buffers.current, instants)
     dlat = world.raster.corner[1] / world.refinement
     dlon = world.raster.corner[3] / world.refinement
     south, north = world.metres_north[j] * dlat, world.metres_north[j + 1] * dlat

@@ -27,11 +27,11 @@ from thalweg.kernels.leg.point_speed import ShipArrays, point_speed_from_guess
 
 COURSES = 32  # directions to the square of neighbours round a node
 _RENEWAL = 0.02  # of the step of the data, after which times round a node are found again
-_PER_SIDE = COURSES // 8  # points between two neighbours
+PER_SIDE = COURSES // 8  # points between two neighbours
 UNREACHED = 1e29
 
 # offsets of the points on the square of neighbours: row, column, counterclockwise from the east
-_RING = np.array(
+RING = np.array(
     [[0, 1], [1, 1], [1, 0], [1, -1], [0, -1], [-1, -1], [-1, 0], [-1, 1]], dtype=np.int64
 )
 
@@ -73,12 +73,12 @@ class RingTimes(NamedTuple):
 
 
 @kernel_only
-def _course_offset(course):
+def course_offset(course):
     """Return (rows, columns) from a node to a point on the square of its neighbours."""
-    side, part = course // _PER_SIDE, (course % _PER_SIDE) / _PER_SIDE
+    side, part = course // PER_SIDE, (course % PER_SIDE) / PER_SIDE
     after = (side + 1) % 8
-    rows = _RING[side, 0] + part * (_RING[after, 0] - _RING[side, 0])
-    columns = _RING[side, 1] + part * (_RING[after, 1] - _RING[side, 1])
+    rows = RING[side, 0] + part * (RING[after, 0] - RING[side, 0])
+    columns = RING[side, 1] + part * (RING[after, 1] - RING[side, 1])
     return rows, columns
 
 
@@ -101,7 +101,7 @@ def _fill_times(world, ship, node, t, forward, sample, out):
     dlon = world.raster.corner[3] / world.refinement
     south, west = world.metres_north[j] * dlat, world.metres_east[j] * dlon
     for course in range(COURSES):
-        rows, columns = _course_offset(course)
+        rows, columns = course_offset(course)
         north, east = rows * south, columns * west
         size = math.hypot(east, north)
         east, north = east / size, north / size
@@ -131,12 +131,12 @@ def _least_in_cells(times, j, i, out):
     for course in range(COURSES):
         out[course] = times[j, i, course]
     for k in range(8):
-        a, b = j + _RING[k, 0], i + _RING[k, 1]
+        a, b = j + RING[k, 0], i + RING[k, 1]
         if a < 0 or b < 0 or a >= ny or b >= nx:
             continue
         # a corner counts for the courses of one cell, a neighbour in a row or column for two
-        reach = _PER_SIDE if k % 2 else 2 * _PER_SIDE
-        for course in range(k * _PER_SIDE - reach, k * _PER_SIDE + reach + 1):
+        reach = PER_SIDE if k % 2 else 2 * PER_SIDE
+        for course in range(k * PER_SIDE - reach, k * PER_SIDE + reach + 1):
             at = (course + COURSES) % COURSES
             value = times[a, b, at]
             if value < out[at]:
@@ -179,21 +179,21 @@ def _between(phi, f, j, i, course, share, times, aspect):
     """
     ny, nx = phi.shape
     after = (course + 1) % COURSES
-    row, column = _course_offset(course)
-    row_after, column_after = _course_offset(after)
+    row, column = course_offset(course)
+    row_after, column_after = course_offset(after)
     slow = times[course] / math.hypot(row, column * aspect)
     slow_after = times[after] / math.hypot(row_after, column_after * aspect)
     row += share * (row_after - row)
     column += share * (column_after - column)
     far = math.hypot(row, column * aspect)
-    side = course // _PER_SIDE
-    part = (course % _PER_SIDE + share) / _PER_SIDE
-    a, b = j + _RING[side, 0], i + _RING[side, 1]
+    side = course // PER_SIDE
+    part = (course % PER_SIDE + share) / PER_SIDE
+    a, b = j + RING[side, 0], i + RING[side, 1]
     if a < 0 or b < 0 or a >= ny or b >= nx:
         return UNREACHED
     value = phi[a, b]
     side = (side + 1) % 8
-    a, b = j + _RING[side, 0], i + _RING[side, 1]
+    a, b = j + RING[side, 0], i + RING[side, 1]
     if a < 0 or b < 0 or a >= ny or b >= nx:
         return UNREACHED
     value += part * (phi[a, b] - value)
@@ -205,14 +205,14 @@ def _between(phi, f, j, i, course, share, times, aspect):
 @kernel_only
 def _through(phi, f, j, i, course, times):
     ny, nx = phi.shape
-    side, part = course // _PER_SIDE, (course % _PER_SIDE) / _PER_SIDE
-    row, column = j + _RING[side, 0], i + _RING[side, 1]
+    side, part = course // PER_SIDE, (course % PER_SIDE) / PER_SIDE
+    row, column = j + RING[side, 0], i + RING[side, 1]
     if row < 0 or column < 0 or row >= ny or column >= nx:
         return UNREACHED
     value = phi[row, column]
     if part > 0.0:
         after = (side + 1) % 8
-        row, column = j + _RING[after, 0], i + _RING[after, 1]
+        row, column = j + RING[after, 0], i + RING[after, 1]
         if row < 0 or column < 0 or row >= ny or column >= nx:
             return UNREACHED
         value += part * (phi[row, column] - value)
@@ -246,8 +246,8 @@ def _update_by_cells(world, phi, nodes, j, i, times, buffers):
         if row < 0 or column < 0 or row >= ny or column >= nx:
             continue
         value = UNREACHED
-        for part in range(2 * _PER_SIDE + 1):
-            course = (2 * _PER_SIDE * quarter + part) % COURSES
+        for part in range(2 * PER_SIDE + 1):
+            course = (2 * PER_SIDE * quarter + part) % COURSES
             value = min(value, _through(phi, nodes.factor, j, i, course, times))
         if value >= best:
             continue
@@ -350,7 +350,7 @@ def solve_barrier(world, phi, nodes, windows, forward, cap, rings):
         for i in range(nx):
             if nodes.fixed[j, i]:
                 for k in range(8):
-                    row, column = j + _RING[k, 0], i + _RING[k, 1]
+                    row, column = j + RING[k, 0], i + RING[k, 1]
                     if 0 <= row < ny and 0 <= column < nx:
                         active[row, column] = True
     times = np.empty(COURSES)
@@ -375,7 +375,7 @@ def solve_barrier(world, phi, nodes, windows, forward, cap, rings):
                 if moment >= cap:
                     moment = UNREACHED
                     for k in range(8):
-                        a, b = j + _RING[k, 0], i + _RING[k, 1]
+                        a, b = j + RING[k, 0], i + RING[k, 1]
                         if 0 <= a < ny and 0 <= b < nx:
                             moment = min(moment, phi[a, b])
                 if moment >= cap:
@@ -391,7 +391,7 @@ def solve_barrier(world, phi, nodes, windows, forward, cap, rings):
                     phi[j, i] = value
                     changes += 1
                     for k in range(8):
-                        a, b = j + _RING[k, 0], i + _RING[k, 1]
+                        a, b = j + RING[k, 0], i + RING[k, 1]
                         if 0 <= a < ny and 0 <= b < nx:
                             active[a, b] = True
         if changes == 0:

@@ -320,6 +320,39 @@ def read_cell(world, j, i, first, last, buffers):
 
 
 @kernel_only
+def fill_ranges(winds, waves, buffers):
+    """Complete the ranges of the conditions of a cell; return those of the directions.
+
+    Returns
+    -------
+    tuple of four floats
+        First and last azimuth of the wind, and of the waves, the way they travel [rad].
+    """
+    low, high = buffers.low, buffers.high
+    wind_first, wind_last, shortest, longest = direction_range(buffers.wind, winds)
+    wave_first, wave_last, _, _ = direction_range(buffers.waves, waves)
+    low[AXIS_WIND_SPEED], high[AXIS_WIND_SPEED] = shortest, longest
+    for axis in range(low.shape[0]):
+        if not low[axis] <= high[axis]:  # nothing known: anything
+            low[axis], high[axis] = -math.inf, math.inf
+    return wind_first, wind_last, wave_first, wave_last
+
+
+@kernel_only
+def fill_angles(directions, heading, half, buffers):
+    """Fill the ranges of the angles from the bow for headings within ``half`` of one [rad]."""
+    low, high = buffers.low, buffers.high
+    wind_first, wind_last, wave_first, wave_last = directions
+    # what travels towards an azimuth comes from the opposite one
+    low[AXIS_WIND_ANGLE], high[AXIS_WIND_ANGLE] = angle_from_bow_range(
+        wind_first + math.pi - heading - half, wind_last + math.pi - heading + half
+    )
+    low[AXIS_WAVE_ANGLE], high[AXIS_WAVE_ANGLE] = angle_from_bow_range(
+        wave_first + math.pi - heading - half, wave_last + math.pi - heading + half
+    )
+
+
+@kernel_only
 def cell_speeds(world, instants, field_high, winds, waves, buffers):
     """Fill the greatest speed by sector of heading; return (greatest, same for all headings)."""
     index = world.raster.channel_index
@@ -332,12 +365,7 @@ def cell_speeds(world, instants, field_high, winds, waves, buffers):
         buffers.speed[:] = world.top_speed
         return world.top_speed, True
     low, high = buffers.low, buffers.high
-    wind_first, wind_last, shortest, longest = direction_range(buffers.wind, winds)
-    wave_first, wave_last, _, _ = direction_range(buffers.waves, waves)
-    low[AXIS_WIND_SPEED], high[AXIS_WIND_SPEED] = shortest, longest
-    for axis in range(low.shape[0]):
-        if not low[axis] <= high[axis]:  # nothing known: anything
-            low[axis], high[axis] = -math.inf, math.inf
+    directions = fill_ranges(winds, waves, buffers)
     if not needs & ANGLES:
         top = greatest_speed(table, setting, low, high, world.top_speed, buffers.place)
         buffers.speed[:] = top
@@ -346,13 +374,7 @@ def cell_speeds(world, instants, field_high, winds, waves, buffers):
     top = 0.0
     for sector in range(SECTORS):
         heading = 2.0 * half * sector
-        # what travels towards an azimuth comes from the opposite one
-        low[AXIS_WIND_ANGLE], high[AXIS_WIND_ANGLE] = angle_from_bow_range(
-            wind_first + math.pi - heading - half, wind_last + math.pi - heading + half
-        )
-        low[AXIS_WAVE_ANGLE], high[AXIS_WAVE_ANGLE] = angle_from_bow_range(
-            wave_first + math.pi - heading - half, wave_last + math.pi - heading + half
-        )
+        fill_angles(directions, heading, half, buffers)
         speed = greatest_speed(table, setting, low, high, world.top_speed, buffers.place)
         buffers.speed[sector] = speed
         top = max(top, speed)

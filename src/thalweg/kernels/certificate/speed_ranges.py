@@ -203,19 +203,21 @@ def _greatest_speed_at_intersection(table, setting, low, high, place):
 
 
 @kernel_only
-def _greatest_of_curve(table, setting, least, greatest):
+def _range_of_curve(table, setting, least, greatest):
+    """Return the least and the greatest point of a curve between two values of the sum."""
     last = table.curve.shape[1] - 1
     first_place = (least - table.curve_start[setting]) * table.curve_inv_step[setting]
     last_place = (greatest - table.curve_start[setting]) * table.curve_inv_step[setting]
     first_place = min(max(first_place, 0.0), float(last))
     last_place = min(max(last_place, 0.0), float(last))
-    found, place = -math.inf, first_place
+    low, high, place = math.inf, -math.inf, first_place
     while True:
         cell = min(int(place), last - 1)
         near, far = table.curve[setting, cell], table.curve[setting, cell + 1]
-        found = max(found, near + (place - cell) * (far - near))
+        value = near + (place - cell) * (far - near)
+        low, high = min(low, value), max(high, value)
         if place >= last_place:
-            return found
+            return low, high
         place = min(math.floor(place) + 1.0, last_place)
 
 
@@ -253,5 +255,40 @@ def greatest_speed(table, setting, low, high, top_speed, place):
     if greatest != greatest:
         return top_speed
     if table.finish == OUTPUT_CURVE:
-        greatest = _greatest_of_curve(table, setting, least, greatest)
+        greatest = _range_of_curve(table, setting, least, greatest)[1]
     return min(max(greatest, 0.0), top_speed)
+
+
+@kernel_only
+def least_consumption(table, setting, low, high, floor, place):
+    """Return a lower bound of the consumption over ranges of conditions.
+
+    Parameters
+    ----------
+    table : TableArrays
+        Consumption.
+    setting : int
+    low, high : float64[AXES]
+        Range of the value on every axis, by axis id, SI.
+    floor : float
+        Lower bound everywhere; the answer where the table has unknown values in the ranges.
+    place : float64[4 * AXES]
+        Work array.
+
+    Returns
+    -------
+    float
+        In the unit of the table, a second.
+    """
+    if outside_table(table, low, high) or table.finish == CURVE_INTERSECTION:
+        return floor
+    least, greatest = 0.0, 0.0
+    for part in range(table.part_axes.shape[0]):
+        part_low, part_high = part_range(table, part, setting, low, high, place)
+        least += part_low
+        greatest += part_high
+    if least != least:
+        return floor
+    if table.finish == OUTPUT_CURVE:
+        least = _range_of_curve(table, setting, least, greatest)[0]
+    return max(least, floor)

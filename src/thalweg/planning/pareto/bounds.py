@@ -29,7 +29,7 @@ _CURRENT_UNKNOWN = (
     "no bound: the strongest current of the water that the ship can reach was not found"
 )
 _NOTHING_LEAST = "no bound: the least that the data allow is zero"
-_SECONDS = 2.0  # for the bound of the length, by default
+_SECONDS = 2.0  # for the bound of the length, and for those of the cost, by default
 
 
 def open_water_lower_front(
@@ -76,24 +76,22 @@ def derive_proof(
     certain: FloatArray,
     kind: str,
     *,
-    whole: bool,
+    until: float,
 ) -> Proof:
     """Return the bound of a plan: of the least time for a whole front, else of the objective.
 
     Parameters
     ----------
-    certain : As `certain_front` returns it, (2, m).
-    kind : As `strongest_current_of_plan` returns it.
-    whole : Whether the whole front is wanted.
+    certain : A front that no route is below: hours and values, (2, m).
+    kind : How it was found.
+    until : Longest time of the routes that the bound is for [h].
     """
-    if whole:
+    if trade_off.context.voyage.objective == "front":
         fastest = min(one.first.duration for one in explored) / HOUR
         return _proof(float(certain[0].min()), kind, fastest)
     points = [point for one in explored if one.exact for point in one.exact.points]
     solver = min((point.cost for point in points), default=math.nan)
-    context = trade_off.context
-    allowed = (context.latest_arrival - context.voyage.earliest_departure) / HOUR
-    return _proof(certain_at(certain, allowed), kind, solver)
+    return _proof(certain_at(certain, until), kind, solver)
 
 
 def _proof(value: float, kind: str, solver: float) -> Proof:
@@ -160,12 +158,17 @@ def certified_length(trade_off: TradeOffContext, routes: Sequence[Route]) -> flo
     context, ends = trade_off.context, trade_off.ends
     geodesic = sum(float(distance(a.lat, a.lon, b.lat, b.lon)) for a, b in itertools.pairwise(ends))
     feasible = [route for route in routes if route.feasible]
-    seconds = context.proof_seconds if context.proof_seconds is not None else _SECONDS
     if len(ends) > 2 or not feasible or trade_off.interrupt_guard.stopped():
         return geodesic
     shortest = min(feasible, key=lambda route: float(route.legs["length"].sum()))
-    found = certified_distance(context, shortest, seconds=seconds)
+    found = certified_distance(context, shortest, seconds=seconds_of_proof(trade_off))
     return max(geodesic, found.value) if math.isfinite(found.value) else geodesic
+
+
+def seconds_of_proof(trade_off: TradeOffContext) -> float:
+    """Return the time that each part of the proof of a front may take [s]."""
+    seconds = trade_off.context.proof_seconds
+    return _SECONDS if seconds is None else seconds
 
 
 def correction_notes(share: np.ndarray) -> list[str]:

@@ -22,14 +22,12 @@ from thalweg.planning.pareto.baseline import (
     weather_blind_tracks,
 )
 from thalweg.planning.pareto.bounds import (
-    certain_front,
-    certified_length,
     correction_factors,
     correction_notes,
     derive_proof,
     open_water_lower_front,
-    strongest_current_of_plan,
 )
+from thalweg.planning.pareto.certified_costs import certified_front
 from thalweg.planning.pareto.route_names import route_labels
 from thalweg.planning.pareto.search_horizon import shortest_path_length
 from thalweg.planning.pareto.trade_off_context import (
@@ -77,10 +75,10 @@ def assemble_trade_off_plan(
             check_times_known(one.fastest, ends[0], ends[-1])
         raise _no_feasible_route_error(trade_off, explored)
     sailed = [item.route for item in constant if item.route not in blind]
-    routes = [item.route for item in ordered]
-    current, kind = strongest_current_of_plan(trade_off, explored, routes)
-    certain = certain_front(trade_off, certified_length(trade_off, routes), current)
-    front, corrections = _pareto_front(trade_off, explored, ordered, certain, (blind, sailed))
+    certain = certified_front(trade_off, explored, ordered)
+    front, corrections = _pareto_front(
+        trade_off, explored, ordered, certain.points, (blind, sailed)
+    )
     stopped = trade_off.interrupt_guard.stopped()
     notes = [
         *(_interruption_notes(explored, front) if stopped else ()),
@@ -91,9 +89,7 @@ def assemble_trade_off_plan(
     return Plan(
         voyage=context.voyage,
         routes=tuple(item.route for item in ordered),
-        proof=derive_proof(
-            trade_off, explored, certain, kind, whole=context.voyage.objective == "front"
-        ),
+        proof=derive_proof(trade_off, explored, certain.points, certain.kind, until=certain.until),
         rejections=_rejections(explored),
         notes=tuple(dict.fromkeys(notes)),
         provenance=provenance(context, ends, _network_summaries(explored), _speeds_kn(trade_off)),

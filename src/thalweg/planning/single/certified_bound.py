@@ -30,7 +30,7 @@ _BARRIER_KIND = (
 _GEODESIC_KIND = "certificate: the geodesic at the greatest speed over ground in the data"
 _HOLDS_FOR = "; it holds for all routes in open water"
 #: Tables of ships whose speed varies have an error; bounds are lowered by this share.
-_TABLE_MARGIN = 1e-3
+TABLE_MARGIN = 1e-3
 #: A bound this share above the value of a route contradicts it.
 _CONTRADICTION = 2e-3
 _NOT_SAILED = "no bound: the route breaks a limit"
@@ -76,7 +76,7 @@ def certified_bound(
     if not by_length:
         passage = replace(passage, depart=departures[0], latest=departures[1])
     found = certify_departures(passage, seconds=seconds)
-    margin = 1.0 if by_length or not context.table.axes else 1.0 - _TABLE_MARGIN
+    margin = 1.0 if by_length or not context.table.axes else 1.0 - TABLE_MARGIN
     if found.reached * margin > passage.known * (1.0 + _CONTRADICTION) + route.tolerance_s:
         return no_bound(_contradicted(found, passage.known, by_length=by_length))
     return LowerBound(min(found.value * margin, passage.known), _kind(context, found))

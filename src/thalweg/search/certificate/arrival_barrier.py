@@ -26,7 +26,11 @@ from thalweg.kernels.certificate.barrier_solver import (
 )
 from thalweg.kernels.certificate.cell_conditions import ANGLES, SECTORS, TimeWindows
 from thalweg.kernels.codes import SPEED_FIELD
-from thalweg.search.certificate.barrier_mesh import BarrierMesh, strongest_current_near
+from thalweg.search.certificate.barrier_mesh import (
+    BarrierMesh,
+    plane_at_source,
+    strongest_current_near,
+)
 
 _KEPT_SHARE = 0.02  # of the step of the data, for windows in which speeds of cells are kept
 _BESIDE_BAND = 3  # cells that are solved on either side, so that values on its edge are right
@@ -39,7 +43,6 @@ _CLOSING_GROWTH = 0.2  # of a correction, from one closing round to the next
 _GENTLE_ROUNDS = 3  # closing rounds that correct nodes beside a cell by half only
 _DIVISIONS = 3  # of a barrier that closing rounds do not correct
 _RAISE = 0.7  # of the slack, where the barrier rises more slowly than it may
-_PLANE_CELLS = 6.0  # half the width of the plane at the source
 _BESIDE_EXCESS = 0.5  # share of an excess by which nodes beside the corners of a cell are corrected
 _LINK_SLACK = 2e-3  # of the time of a canal, for the values at the centres of cells at its ends
 
@@ -117,10 +120,10 @@ def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
     may_close = np.zeros(cells, bool)
     closed_throughout(mesh.world, windows, closed, may_close)
     may_close |= (closed | ~around) if may_close.any() else closed
-    solvable = _nodes_of(around & ~closed, shape)
+    solvable = nodes_of(around & ~closed, shape)
     latest = windows.last + mesh.world.departures
     node_windows = TimeWindows(_node_minimum(windows.first), -_node_minimum(-latest))
-    given = _plane_at_source(task)
+    given = _plane_of_task(task)
     f = np.ones(shape) if task.factor is None else task.factor.copy()
     rings = _no_ring_times(shape)
     found = BarrierExcess(np.empty(cells), np.empty(cells))
@@ -151,7 +154,7 @@ def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
         if closing or number + 1 >= rounds or settled:
             closing += 1
         excess = found.excess + (closing > 0) * _CLOSING_MARGIN
-        _correct(f, excess, closing)
+        correct_factors(f, excess, closing)
     return None
 
 
@@ -180,7 +183,7 @@ def first_arrivals(task: BarrierTask) -> FloatArray:
     float64 array (Y, X) : Since departure; a multiple of the known time where they are later.
     """
     mesh, shape = task.mesh, task.mesh.shape
-    solvable = _nodes_of(task.band & ~mesh.world.closed, shape)
+    solvable = nodes_of(task.band & ~mesh.world.closed, shape)
     windows = TimeWindows(np.zeros(shape), np.zeros(shape))
     given = np.full(shape, math.nan)
     j, i = mesh.cell_of(*task.source)
@@ -296,39 +299,20 @@ def _least_scale(task: BarrierTask, phi: FloatArray, excess: FloatArray) -> floa
     return scale
 
 
-def _plane_at_source(task: BarrierTask) -> FloatArray:
-    """Return values at nodes round the source (NaN elsewhere): a plane that rises to the target.
+def _plane_of_task(task: BarrierTask) -> FloatArray:
+    """Return the plane at the source, as steep as the local speed over ground allows."""
+    course = task.course
+    if course is None:
+        course = float(inverse(*task.source, *task.target)[1])
 
-    The plane is zero at the source and rises no faster than the local speed over ground allows.
-    It is a few cells wide, so that fronts towards the target are straight and not curved.
-    """
-    mesh, (lat, lon) = task.mesh, task.source
-    j, i = mesh.cell_of(lat, lon)
-    rows, columns = _block(j, mesh.shape[0]), _block(i, mesh.shape[1])
-    toward = task.course if task.course is not None else float(inverse(lat, lon, *task.target)[1])
-    north = (mesh.lat[rows] - lat) * mesh.world.metres_north[j]
-    east = ((mesh.lon[columns] - lon + 180.0) % 360.0 - 180.0) * mesh.world.metres_east[j]
-    along = north[:, None] * math.cos(toward) + east[None, :] * math.sin(toward)
-    across = east[None, :] * math.cos(toward) - north[:, None] * math.sin(toward)
-    height = (mesh.lat[1] - mesh.lat[0]) * mesh.world.metres_north[j]
-    width = (mesh.lon[1] - mesh.lon[0]) * mesh.world.metres_east[j]
-    size = max(height, width)
-    part = (np.abs(along) <= size) & (np.abs(across) <= _PLANE_CELLS * size)
-    part[j - rows.start : j - rows.start + 2, i - columns.start : i - columns.start + 2] = True
-    values = np.full(mesh.shape, math.nan)
-    speed = (mesh.world.top_speed + strongest_current_near(mesh, rows, columns)) * 1.002
-    east_scale = mesh.world.metres_east[rows][part.any(axis=1)]
-    speed *= float(mesh.world.metres_east[j] / east_scale.min())  # meridians converge
-    values[rows, columns] = np.where(part, along / speed, math.nan)
-    return values
+    def slowness(rows: slice, columns: slice) -> float:
+        current = strongest_current_near(task.mesh, rows, columns)
+        return 1.0 / (task.mesh.world.top_speed + current)
+
+    return plane_at_source(task.mesh, task.source, course, slowness)
 
 
-def _block(middle: int, count: int) -> slice:
-    reach = int(2 * _PLANE_CELLS) + 2
-    return slice(max(middle - reach, 0), min(middle + reach + 2, count))
-
-
-def _correct(f: FloatArray, excess: FloatArray, closing: int) -> None:
+def correct_factors(f: FloatArray, excess: FloatArray, closing: int) -> None:
     """Lower the factor on the times where the barrier rises too fast, raise it where it may.
 
     Corners of cells that rise too fast are corrected in full, and nodes beside them by half.
@@ -363,7 +347,7 @@ def _windows(task: BarrierTask) -> TimeWindows:
     return TimeWindows(task.other, np.maximum(task.known - task.own, task.other))
 
 
-def _nodes_of(band: BoolArray, shape: tuple[int, int]) -> BoolArray:
+def nodes_of(band: BoolArray, shape: tuple[int, int]) -> BoolArray:
     """Return the nodes of the cells in a band."""
     nodes = np.zeros(shape, bool)
     for rows in (slice(None, -1), slice(1, None)):

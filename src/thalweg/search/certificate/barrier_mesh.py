@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,8 @@ from thalweg.search.certificate.closed_water import closed_cells
 if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.sea.freeze import DerivedChannel
+
+_PLANE_CELLS = 6.0  # half the width of the plane at the source
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,3 +216,40 @@ def slope_direction(mesh: BarrierMesh, phi: FloatArray, lat: float, lon: float) 
     width = (mesh.lon[1] - mesh.lon[0]) * mesh.world.metres_east[j]
     north, east = (c + d - a - b) / height, (b + d - a - c) / width
     return math.atan2(-east, -north) if math.hypot(east, north) > 0.0 else None
+
+
+def plane_at_source(
+    mesh: BarrierMesh, source: tuple[float, float], course: float, slowness: Callable[..., float]
+) -> FloatArray:
+    """Return values at nodes round the source (NaN elsewhere): a plane that rises on a course.
+
+    The plane is zero at the source. It is a few cells wide, so that fronts towards the target are
+    straight and not curved.
+
+    Parameters
+    ----------
+    course : [rad from north].
+    slowness : Returns how much the plane rises in a metre, given a block of rows and columns.
+    """
+    lat, lon = source
+    j, i = mesh.cell_of(lat, lon)
+    rows, columns = _block(j, mesh.shape[0]), _block(i, mesh.shape[1])
+    north = (mesh.lat[rows] - lat) * mesh.world.metres_north[j]
+    east = ((mesh.lon[columns] - lon + 180.0) % 360.0 - 180.0) * mesh.world.metres_east[j]
+    along = north[:, None] * math.cos(course) + east[None, :] * math.sin(course)
+    across = east[None, :] * math.cos(course) - north[:, None] * math.sin(course)
+    height = (mesh.lat[1] - mesh.lat[0]) * mesh.world.metres_north[j]
+    width = (mesh.lon[1] - mesh.lon[0]) * mesh.world.metres_east[j]
+    size = max(height, width)
+    part = (np.abs(along) <= size) & (np.abs(across) <= _PLANE_CELLS * size)
+    part[j - rows.start : j - rows.start + 2, i - columns.start : i - columns.start + 2] = True
+    values = np.full(mesh.shape, math.nan)
+    east_scale = mesh.world.metres_east[rows][part.any(axis=1)]
+    ratio = 1.002 * float(mesh.world.metres_east[j] / east_scale.min())  # meridians converge
+    values[rows, columns] = np.where(part, along * (slowness(rows, columns) / ratio), math.nan)
+    return values
+
+
+def _block(middle: int, count: int) -> slice:
+    reach = int(2 * _PLANE_CELLS) + 2
+    return slice(max(middle - reach, 0), min(middle + reach + 2, count))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -13,6 +14,7 @@ from thalweg.core.types import BoolArray, FloatArray
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.chart.zones.zone_set import Zones
 
 _OFFING_SHARE: Final = 0.98  # routes may be nearer to land than required by a small share
 _OUTLINE_PARTS: Final = 0.5  # of a cell: outlines of zones are great circles, split into these
@@ -57,6 +59,26 @@ def closed_cells(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> BoolA
         inside = np.asarray(chart.crosses_no_go_zone(*centres, *centres)).reshape(shape)
         closed |= inside & ~_touched(_zone_outlines(chart, lat[1] - lat[0]), lat, lon)
     result: BoolArray = closed
+    return result
+
+
+def cells_inside(areas: Zones, lat: FloatArray, lon: FloatArray) -> BoolArray:
+    """Return which cells of a mesh are all over in emission control areas.
+
+    Parameters
+    ----------
+    lat, lon : float64 array (Y,), (X,)
+        Nodes [deg].
+
+    Returns
+    -------
+    bool array (Y - 1, X - 1)
+    """
+    rows, columns = 0.5 * (lat[1:] + lat[:-1]), 0.5 * (lon[1:] + lon[:-1])
+    inside = areas.in_eca(*np.meshgrid(rows, columns, indexing="ij"))
+    rings = [area.rings for area in areas.eca]
+    lines = ((one.lat[a:b], one.lon[a:b]) for one in rings for a, b in pairwise(one.start))
+    result: BoolArray = np.asarray(inside & ~_touched(lines, lat, lon))
     return result
 
 

@@ -1,0 +1,198 @@
+"""Certified lower bounds of a front: least cost at prices of time, as lines below the front."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from thalweg.core.pareto_fronts import lower_hull
+from thalweg.core.types import FloatArray
+from thalweg.core.units import HOUR
+from thalweg.kernels.certificate.cost_conditions import PricedShip
+from thalweg.planning.pareto.bounds import (
+    certain_front,
+    certified_length,
+    seconds_of_proof,
+    strongest_current_of_plan,
+)
+from thalweg.planning.pareto.trade_off_context import (
+    ExploredAlternative,
+    RefereedCandidate,
+    TradeOffContext,
+)
+from thalweg.planning.single.certified_bound import TABLE_MARGIN
+from thalweg.search import table_bounds
+from thalweg.search.certificate.barrier_domain import PassageToBound
+from thalweg.search.certificate.barrier_mesh import ShipInBarrier
+from thalweg.search.certificate.cost_certificate import CostToBound, certify_costs
+
+_KIND = (
+    "certificate: no motion lowers a function of the place by more than it costs, checked in every "
+    "cell of a mesh, for routes of at most {until:.1f} h"
+)
+_MOST_PRICES = 8
+_AFTER = 1e-9  # share of a time, to its next point
+
+
+@dataclass(frozen=True, eq=False)
+class CertifiedFront:
+    """A front below all routes of a voyage.
+
+    Attributes
+    ----------
+    points : Times [h] and values, to be joined by lines, (2, n).
+    kind : How it was found and what it holds for.
+    until : Times up to here are those that the bound of the whole plan is for [h].
+    """
+
+    points: FloatArray
+    kind: str
+    until: float
+
+
+def certified_front(
+    trade_off: TradeOffContext,
+    explored: list[ExploredAlternative],
+    ordered: Sequence[RefereedCandidate],
+) -> CertifiedFront:
+    """Return the front that no route is below, by the least length and by barriers of cost.
+
+    Parameters
+    ----------
+    ordered : The front, with routes within the limits or not.
+    """
+    context, routes = trade_off.context, [item.route for item in ordered]
+    allowed = (context.latest_arrival - context.voyage.earliest_departure) / HOUR
+    current, kind = strongest_current_of_plan(trade_off, explored, routes)
+    points = certain_front(trade_off, certified_length(trade_off, routes), current)
+    if trade_off.interrupt_guard.stopped():
+        return CertifiedFront(points, kind, allowed)
+    lines, until, sampling = certified_lines(
+        trade_off, ordered, seconds=seconds_of_proof(trade_off)
+    )
+    raised = raised_by_lines(points, lines, until)
+    if raised is points:
+        return CertifiedFront(points, kind, allowed)
+    kind = _KIND.format(until=until) + (f", in {sampling}" if sampling else "") + f"; {kind}"
+    return CertifiedFront(raised, kind, min(allowed, until))
+
+
+def certified_lines(
+    trade_off: TradeOffContext, ordered: Sequence[RefereedCandidate], *, seconds: float
+) -> tuple[FloatArray, float, str]:
+    """Return lines that no point of a front is below, until the slowest of its routes.
+
+    Parameters
+    ----------
+    ordered : The front, with routes within the limits or not.
+    seconds : Time that the search for the bounds may take [s].
+
+    Returns
+    -------
+    lines : float64 array (2, n)
+        Prices of time [1/h], and the least values plus priced time; none where a canal may shorten
+        the way, with via points, and for ships whose speed is a field of the sea.
+    until : float
+        Longest time that they hold for [h].
+    sampling : str
+        How the sea of the proof differs from the data; "" where it does not.
+    """
+    none = np.empty((2, 0)), 0.0, ""
+    feasible = [item for item in ordered if item.route.feasible and math.isfinite(item.value)]
+    context = trade_off.context
+    if len(trade_off.ends) > 2 or not feasible or context.ship.speed_field is not None:
+        return none
+    hours = np.array([item.route.time_h for item in feasible])
+    values = np.array([item.value for item in feasible])
+    cost = _cost_to_bound(trade_off, feasible)
+    prices = _prices_of_time(hours, values)
+    known = np.array([float((values + price * hours).min()) for price in prices])
+    found = certify_costs(cost, prices / HOUR, known, seconds=seconds)
+    if not found.cells:
+        return none
+    margin = 1.0 - TABLE_MARGIN if context.table.axes or trade_off.consumption.axes else 1.0
+    return np.array([prices, margin * found.values]), float(hours.max()), found.sampling
+
+
+def _prices_of_time(hours: FloatArray, values: FloatArray) -> FloatArray:
+    """Return prices of time [1/h] at which a front is supported, no more than a few."""
+    hull = lower_hull(hours, values)
+    pairs = itertools.pairwise(hull)
+    slopes = [(values[a] - values[b]) / (hours[b] - hours[a]) for a, b in pairs]
+    known = np.unique([0.0, *(slope for slope in slopes if slope > 0.0)])
+    if known.size > _MOST_PRICES - 1:
+        known = np.quantile(known, np.linspace(0.0, 1.0, _MOST_PRICES - 1))
+    steeper = 4.0 * known[-1] if known[-1] > 0.0 else values.min() / hours.min()
+    return np.append(known, steeper)
+
+
+def _cost_to_bound(trade_off: TradeOffContext, feasible: list[RefereedCandidate]) -> CostToBound:
+    context, prices = trade_off.context, trade_off.objective.prices
+    table = trade_off.consumption.kernel_arrays()
+    settings = np.asarray(trade_off.settings, np.int64)
+    least = np.maximum(table_bounds(table, np.fmin), 0.0)[settings]
+    top = np.array([float(context.ship.top_speed(int(s)) or 0.0) for s in settings])
+    priced = PricedShip(settings, table, least, top)
+    ship = ShipInBarrier(
+        context.table.kernel_arrays(),
+        int(settings[np.argmax(top)]),
+        context.needs.limits.array,
+        float(top.max()),
+    )
+    routes = [item.route for item in feasible]
+    lat, lon = routes[0].track.lat, routes[0].track.lon
+    departures = [route.depart for route in routes]
+    passage = PassageToBound(
+        context.sea, context.chart, ship, context.needs.channels,
+        (float(lat[0]), float(lon[0])), (float(lat[-1]), float(lon[-1])),
+        depart=min(departures), known=max(route.time_h for route in routes) * HOUR,
+        latest=max(departures),
+    )  # fmt: skip
+    factor = 1.0
+    if prices.dues > 0.0:  # a route off the network may sail in the cheapest zone throughout
+        factor = min([1.0, *(float(one) for _, one in context.chart.zones.price)])
+    return CostToBound(
+        passage, priced, factor * prices.inside, factor * prices.outside, prices.time
+    )
+
+
+def raised_by_lines(certain: FloatArray, lines: FloatArray, until: float) -> FloatArray:
+    """Return a certain front raised to lines that hold until a time.
+
+    Parameters
+    ----------
+    certain : Times [h] and values, to be joined by lines that bend upwards, (2, m).
+    lines : Prices of time [1/h] and least values plus priced time, (2, n).
+    until : [h]
+
+    Returns
+    -------
+    float64 array (2, k)
+        Times from the first of ``certain`` on; after ``until`` that front itself.
+    """
+    if not lines.size or not certain.size or until <= certain[0, 0]:
+        return certain
+    slopes, offsets = [-lines[0], [0.0]], [lines[1], [certain[1].min()]]
+    with np.errstate(divide="ignore"):
+        slope = np.diff(certain[1]) / np.diff(certain[0])
+    slopes.append(slope)
+    offsets.append(certain[1, :-1] - slope * certain[0, :-1])
+    a, b = np.concatenate(slopes), np.concatenate(offsets)
+    first, second = np.triu_indices(a.size, 1)
+    crossing = a[first] != a[second]
+    first, second = first[crossing], second[crossing]
+    times = (b[second] - b[first]) / (a[first] - a[second])
+    times = times[(times > certain[0, 0]) & (times < until)]
+    times = np.unique([certain[0, 0], *times, until])
+    values = (a[:, None] * times + b[:, None]).max(axis=0)
+    later = certain[0] > until
+    after = until * (1.0 + _AFTER)
+    if not later.any() and values[-1] <= certain[1, -1]:
+        return np.array([times, values])
+    times = np.concatenate([times, [after], certain[0, later]])
+    values = np.concatenate([values, [np.interp(after, *certain)], certain[1, later]])
+    return np.array([times, values])
