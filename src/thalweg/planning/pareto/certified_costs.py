@@ -35,6 +35,7 @@ _KIND = (
     "cell of a mesh, for routes of at most {until:.1f} h"
 )
 _MOST_PRICES = 8
+_LEAST_GAIN = 1e-5  # share of the greatest value, below which the lines add nothing
 _AFTER = 1e-9  # share of a time, to its next point
 
 
@@ -75,7 +76,8 @@ def certified_front(
         trade_off, ordered, seconds=seconds_of_proof(trade_off)
     )
     raised = raised_by_lines(points, lines, until)
-    if raised is points:
+    gain = raised[1] - np.interp(raised[0], *points)
+    if not gain.max(initial=0.0) > _LEAST_GAIN * raised[1].max(initial=0.0):
         return CertifiedFront(points, kind, allowed)
     kind = _KIND.format(until=until) + (f", in {sampling}" if sampling else "") + f"; {kind}"
     return CertifiedFront(raised, kind, min(allowed, until))
