@@ -29,7 +29,7 @@ _CURRENT_UNKNOWN = (
     "no bound: the strongest current of the water that the ship can reach was not found"
 )
 _NOTHING_LEAST = "no bound: the least that the data allow is zero"
-_SECONDS = 2.0  # for the bound of the length, and for those of the cost, by default
+_SECONDS = 2.0  # for the bound of the length, by default
 
 
 def open_water_lower_front(
@@ -158,17 +158,12 @@ def certified_length(trade_off: TradeOffContext, routes: Sequence[Route]) -> flo
     context, ends = trade_off.context, trade_off.ends
     geodesic = sum(float(distance(a.lat, a.lon, b.lat, b.lon)) for a, b in itertools.pairwise(ends))
     feasible = [route for route in routes if route.feasible]
+    seconds = context.proof_seconds if context.proof_seconds is not None else _SECONDS
     if len(ends) > 2 or not feasible or trade_off.interrupt_guard.stopped():
         return geodesic
     shortest = min(feasible, key=lambda route: float(route.legs["length"].sum()))
-    found = certified_distance(context, shortest, seconds=seconds_of_proof(trade_off))
+    found = certified_distance(context, shortest, seconds=seconds)
     return max(geodesic, found.value) if math.isfinite(found.value) else geodesic
-
-
-def seconds_of_proof(trade_off: TradeOffContext) -> float:
-    """Return the time that each part of the proof of a front may take [s]."""
-    seconds = trade_off.context.proof_seconds
-    return _SECONDS if seconds is None else seconds
 
 
 def correction_notes(share: np.ndarray) -> list[str]:

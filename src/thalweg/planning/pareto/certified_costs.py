@@ -16,7 +16,6 @@ from thalweg.kernels.certificate.cost_conditions import PricedShip
 from thalweg.planning.pareto.bounds import (
     certain_front,
     certified_length,
-    seconds_of_proof,
     strongest_current_of_plan,
 )
 from thalweg.planning.pareto.trade_off_context import (
@@ -62,6 +61,9 @@ def certified_front(
 ) -> CertifiedFront:
     """Return the front that no route is below, by the least length and by barriers of cost.
 
+    Barriers of cost take some seconds to pay: they are searched where a time for the proof is
+    given.
+
     Parameters
     ----------
     ordered : The front, with routes within the limits or not.
@@ -70,11 +72,9 @@ def certified_front(
     allowed = (context.latest_arrival - context.voyage.earliest_departure) / HOUR
     current, kind = strongest_current_of_plan(trade_off, explored, routes)
     points = certain_front(trade_off, certified_length(trade_off, routes), current)
-    if trade_off.interrupt_guard.stopped():
+    if trade_off.interrupt_guard.stopped() or not context.proof_seconds:
         return CertifiedFront(points, kind, allowed)
-    lines, until, sampling = certified_lines(
-        trade_off, ordered, seconds=seconds_of_proof(trade_off)
-    )
+    lines, until, sampling = certified_lines(trade_off, ordered, seconds=context.proof_seconds)
     raised = raised_by_lines(points, lines, until)
     gain = raised[1] - np.interp(raised[0], *points)
     if not gain.max(initial=0.0) > _LEAST_GAIN * raised[1].max(initial=0.0):
