@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
 import pytest
 
 import thalweg.ship
-from tests.browser.conftest import SHORT_REQUEST, playwright_api
+from tests.browser.conftest import LONG_MS, SHORT_REQUEST, playwright_api
 from tests.service.conftest import TOKEN, ended
 
 pytestmark = pytest.mark.slow
@@ -38,7 +39,7 @@ class Held:
     """Requests of the page that are held until the test lets them go."""
 
     def __init__(self, page: Any, pattern: str) -> None:
-        self.page = page
+        self.page, self.pattern = page, pattern
         self.routes: list[Any] = []
         self.held = True
         page.route(pattern, self._hold)
@@ -50,7 +51,9 @@ class Held:
             route.continue_()
 
     def wait(self) -> None:
+        until = monotonic() + LONG_MS / 1000.0
         while not self.routes:
+            assert monotonic() < until, f"no request of {self.pattern}"
             self.page.wait_for_timeout(20)
 
     def release(self) -> None:

@@ -84,7 +84,8 @@ def test_what_is_missing_is_said_at_its_field(visit):
 def test_a_refusal_stands_at_its_field_and_offers_a_remedy(visit):
     voyage = {**SHORT_REQUEST["voyage"], "depart": "2024-08-31T12:00Z"}
     post, get = visit.service.http.post, visit.service.http.get
-    job = post("/api/v1/plans", json={**SHORT_REQUEST, "voyage": voyage}).raise_for_status().json()
+    request = {**SHORT_REQUEST, "title": "A refused voyage", "voyage": voyage}
+    job = post("/api/v1/plans", json=request).raise_for_status().json()
     assert ended(get, job["id"])["problem"]["field"] == "depart"
     page = visit.open(f"#plan={job['id']}")
     field = page.locator("[data-field=depart]")
