@@ -165,9 +165,10 @@ def weather_text(route: Route, sea: Sea | None) -> str:
 
 
 def _unknown_text(route: Route, waves: np.ndarray) -> str:
-    """Return on what share of the distance waves are not known; empty where they are known."""
+    """Return on what share of the way at sea waves are not known; empty where they are known."""
     step = np.diff(np.asarray(route.samples["distance"], float), prepend=0.0)
-    step = np.where(step > 0.0, step, 0.0)  # it begins again at every leg
+    kind = np.asarray(route.legs.get("leg_kind", np.zeros(len(route.legs["length"]))))
+    step = np.where(kind[route.samples["leg"]] == 0, step, 0.0)  # no canals and approaches
     if not np.isnan(waves).any() or not step.sum() > 0.0:
         return ""
     share = 100.0 * float(step[np.isnan(waves)].sum() / step.sum())
