@@ -87,7 +87,10 @@ def test_events_resume_after_the_last_one(client, done):
 
 def test_files_and_profile_of_a_route(client, done):
     base = f"/api/v1/plans/{done['id']}"
-    assert client.get(f"{base}/routes/1.rtz").text.startswith("<?xml")
+    rtz = client.get(f"{base}/routes/1.rtz")
+    name = f"thalweg_{done['id'][:6]}_01"  # the name of the file is that of the route in it
+    assert rtz.text.startswith("<?xml") and f'routeName="{name}"' in rtz.text
+    assert f'filename="{name}.rtz"' in rtz.headers["content-disposition"]
     track = client.get(f"{base}/routes/1.geojson").json()
     assert track["type"] == "FeatureCollection"
     profile = client.get(f"{base}/profiles/1").json()

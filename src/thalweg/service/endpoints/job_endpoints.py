@@ -22,6 +22,7 @@ from thalweg.service.jobs.batch_requests import (
     ProjectOrder,
     StudyOrder,
 )
+from thalweg.service.jobs.job_order import route_file_stem
 from thalweg.service.jobs.job_store import FINAL_STATES, Job
 from thalweg.service.jobs.named_uploads import named_uploads
 from thalweg.service.jobs.plan_request import (
@@ -374,6 +375,5 @@ def job_route_file(
     number: int = Path(ge=1, le=9999),
 ) -> FileResponse:
     """Return a route of a result as a file for other programs."""
-    path = result_file(job_id, f"route_{number:02d}.{form}", state)
-    name = f"thalweg_{job_id[:6]}_route_{number}.{form}"
-    return FileResponse(path, media_type=_MEDIA_TYPES[form], filename=name)
+    path = result_file(job_id, f"{route_file_stem(job_id)}_{number:02d}.{form}", state)
+    return FileResponse(path, media_type=_MEDIA_TYPES[form], filename=path.name)

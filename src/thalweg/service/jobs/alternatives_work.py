@@ -40,7 +40,7 @@ def plan_alternatives(order: JobOrder, stages: StageMessages) -> tuple[str, dict
     ends = found.ends
     options = request.route_files.options(start=ends[0], goal=ends[1])
     for number, choice in enumerate(found.choices, start=1):
-        write_route_result(choice.route, order.path, number, options)
+        write_route_result(choice.route, order.path, number, options, stem=order.stem)
     provenance = {"from": ends[0], "to": ends[1]}
     result = {**found.to_dict(), "cancelled": found.cancelled, "provenance": provenance}
     order.write_json("alternatives.json", result)

@@ -21,6 +21,11 @@ if TYPE_CHECKING:
 _MOST_SHOWN: Final = 40  # stretches of a voyage whose routes are shown before the end
 
 
+def route_file_stem(job_id: str) -> str:
+    """Return the beginning of the names of the route files of a job."""
+    return f"thalweg_{job_id[:6]}"
+
+
 @dataclass(frozen=True)
 class JobOrder:
     """What the server sends to a child.
@@ -45,6 +50,11 @@ class JobOrder:
     def path(self) -> Path:
         """The draft folder."""
         return Path(self.folder)
+
+    @property
+    def stem(self) -> str:
+        """Beginning of the names of route files, and so of the routes in them."""
+        return route_file_stem(self.path.name)
 
     def write_json(self, name: str, data: Mapping[str, Any] | None) -> None:
         """Write a file of the result, if there are data; ids stand in place of paths."""

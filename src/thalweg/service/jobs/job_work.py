@@ -91,7 +91,7 @@ def _keep_shown(
         provenance={"from": str(voyage.start), "to": str(voyage.goal)},
         cancelled=True,
     )
-    parts = write_plan_result(found, order.path, None, request.route_files)
+    parts = write_plan_result(found, order.path, None, request.route_files, stem=order.stem)
     return {**job_summary(found, stages.seconds()), "parts": parts}
 
 
@@ -122,7 +122,7 @@ def _plan_whole(
     folder = Path(order.folder)
     beside = None if found.cancelled else _beside(found, world, request, stages)
     stages("writing the files")
-    parts = write_plan_result(found, folder, beside, request.route_files)
+    parts = write_plan_result(found, folder, beside, request.route_files, stem=order.stem)
     summary = {**job_summary(found, stages.seconds()), "parts": parts}
     return "cancelled" if found.cancelled else "done", summary
 
@@ -155,9 +155,8 @@ def _plan_first(
         )
         note = "The job was stopped: this is the fastest route, the objective was not reached."
         found = replace(found, notes=(note, *found.notes), cancelled=True)
-        parts = write_plan_result(
-            found, make_folder(Path(order.folder) / FIRST_FOLDER), None, request.route_files
-        )
+        folder = make_folder(order.path / FIRST_FOLDER)
+        parts = write_plan_result(found, folder, None, request.route_files, stem=order.stem)
         summary = {**job_summary(found, stages.seconds()), "parts": parts}
         messages.send(
             "route", {"route": first_look(found.best), "final": False, "summary": summary}
@@ -188,6 +187,8 @@ def write_plan_result(
     folder: Path,
     beside: Route | None,
     files_as: RequestedRouteFiles | None = None,
+    *,
+    stem: str = "route",
 ) -> list[str]:
     """Write all files of a plan: plan.json, route files, profiles, isochrones.
 
@@ -196,6 +197,7 @@ def write_plan_result(
     folder : It exists.
     beside : The route that ignores the weather.
     files_as : How the route files are written; by default with rhumb lines within 0.1 nm.
+    stem : Beginning of their names.
 
     Returns
     -------
@@ -207,7 +209,7 @@ def write_plan_result(
     start, goal = (str(found.provenance.get(key) or "") for key in ("from", "to"))
     options = (files_as or RequestedRouteFiles()).options(chart=chart, start=start, goal=goal)
     for number, route in enumerate(found.routes, start=1):
-        write_route_result(route, folder, number, options, plan=found)
+        write_route_result(route, folder, number, options, plan=found, stem=stem)
     lines = isochrone_lines(found)
     other = None if beside is None else {**beside.as_dict(), "profile": route_profile(beside)}
     parts = {"isochrones": lines, "beside": other, "space_time": _space_time(found)}
@@ -262,7 +264,7 @@ def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
     )
     folder = Path(order.folder)
     write_json_file(folder / "route.json", route.as_dict())
-    write_route_result(route, folder, 1, request.route_files.options())
+    write_route_result(route, folder, 1, request.route_files.options(), stem=order.stem)
     return {
         "feasible": route.feasible,
         "seconds": stages.seconds(),

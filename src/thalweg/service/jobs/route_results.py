@@ -16,7 +16,13 @@ if TYPE_CHECKING:
 
 
 def write_route_result(
-    route: Route, folder: Path, number: int, options: Any, *, plan: Plan | None = None
+    route: Route,
+    folder: Path,
+    number: int,
+    options: Any,
+    *,
+    plan: Plan | None = None,
+    stem: str = "route",
 ) -> None:
     """Write one route in every format, and its profile."""
     from thalweg.planning.report.output_files import keeping_limits
@@ -24,7 +30,7 @@ def write_route_result(
 
     if plan is not None:
         options = keeping_limits(plan, route, options)
-    write_route_files(route, folder, f"route_{number:02d}", options)
+    write_route_files(route, folder, f"{stem}_{number:02d}", options)
     write_json_file(folder / f"profile_{number:02d}.json", route_profile(route))
 
 
