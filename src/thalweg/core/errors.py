@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -49,6 +50,16 @@ class ThalwegError(Exception):
             "remedy": self.remedy,
             "details": {key: _json_value(value) for key, value in self.details.items()},
         }
+
+
+@contextmanager
+def errors_about(field: str) -> Iterator[None]:
+    """Name the field of a request in errors that do not name one."""
+    try:
+        yield
+    except ThalwegError as error:
+        error.details.setdefault("field", field)
+        raise
 
 
 class InputError(ThalwegError, ValueError):

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from numbers import Integral
 from typing import Any, Literal, TypeAlias
 
-from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.errors import InputError, errors_about, unknown_name_error
 from thalweg.core.geodesy import Position, check_position
 from thalweg.core.given_numbers import shortened_repr, to_number
 from thalweg.core.objective import OBJECTIVE_NAMES, ObjectiveName
@@ -66,8 +66,9 @@ class Itinerary:
             )
         places = [_place(place, f"via point {i + 1}") for i, place in enumerate(self.via)]
         forbidden = (self.forbid,) if isinstance(self.forbid, str) else _as_list(self.forbid)
-        object.__setattr__(self, "start", _place(self.start, "start"))
-        object.__setattr__(self, "goal", _place(self.goal, "goal"))
+        for entry in ("start", "goal"):
+            with errors_about(entry):
+                object.__setattr__(self, entry, _place(getattr(self, entry), entry))
         object.__setattr__(self, "via", tuple(places))
         object.__setattr__(self, "forbid", tuple(str(name).casefold() for name in forbidden))
         for entry in ("open", "avoid"):
@@ -114,14 +115,17 @@ class Schedule:
                 "Give one of them.",
             )
         if self.depart_window is not None:
-            object.__setattr__(self, "depart_window", _window(self.depart_window))
+            with errors_about("depart_window"):
+                object.__setattr__(self, "depart_window", _window(self.depart_window))
         elif self.depart is not None:
-            object.__setattr__(self, "depart", parse_time(self.depart))
+            with errors_about("depart"):
+                object.__setattr__(self, "depart", parse_time(self.depart))
         for name, words in (("arrive_by", "The latest arrival"), ("arrive", "The arrival")):
             given = getattr(self, name)
             if given is None:
                 continue
-            latest = parse_time(given)
+            with errors_about(name):
+                latest = parse_time(given)
             object.__setattr__(self, name, latest)
             if not self.departure_is_open and latest <= self.earliest_departure:
                 raise InputError(
@@ -129,6 +133,7 @@ class Schedule:
                     f"({format_time(self.earliest_departure)}).",
                     "A voyage arrives after it departs.",
                     "Give a later arrival or an earlier departure.",
+                    field=name,
                 )
 
     def _check_arrival(self) -> None:
@@ -377,6 +382,7 @@ def _check_number(name: str, value: Any, *, above: float, below: float, unit: st
             f"{name} must be a number, not {shortened_repr(value)}.",
             f"It is between {max(above, 0):g} and {below:g} {unit}.",
             f"Give it in {unit}." if unit else "Give a number.",
+            field=name,
         )
     if not above < value < below:
         raise InputError(

@@ -106,7 +106,7 @@ def _unauthorised() -> Response:
     return problem_response(
         ServiceError(
             401,
-            "The request does not state the token of the service.",
+            "The request states no token, or not that of the service.",
             "It is a header 'Authorization: Bearer TOKEN', or the cookie of the first page.",
             "Open the address that 'thalweg serve' printed; the token is also in the file 'token' "
             "of its data folder.",

@@ -11,6 +11,7 @@ from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
 from thalweg.core.errors import CoverageError, InputError, NoRouteError, ThalwegError
+from thalweg.core.given_numbers import shortened_repr
 
 MEDIA_TYPE: Final = "application/problem+json"
 _TITLES: Final = {
@@ -30,7 +31,11 @@ _TITLES: Final = {
 _SHAPES: Final = {
     "missing": "is missing",
     "extra_forbidden": "is not a known entry",
-    "json_invalid": "is not JSON",
+}
+#: What texts of a form may be, by the last name of their place.
+_FORMS: Final = {
+    "seas": "'calm', 'storm', or the id of an uploaded sea (GET /seas lists them)",
+    "sampling": "nearest, nearest:HOURS or step",
 }
 
 
@@ -123,8 +128,20 @@ def _shape_error(error: RequestValidationError) -> ServiceError:
     """Return the first fault of a request that has not the form of its schema."""
     first = error.errors()[0]
     place = [str(part) for part in first["loc"] if part not in ("body", "query", "path", "header")]
+    if first["type"] == "json_invalid":
+        why = (first.get("ctx") or {}).get("error", first["msg"])
+        return ServiceError(
+            422,
+            f"The body of the request is not JSON: {why} at character {place[-1]}.",
+            "The form of requests is in /openapi.json, with examples.",
+            "Correct the request.",
+        )
     name = ".".join(place) or "The body"
     what = _SHAPES.get(first["type"], f"is not possible: {first['msg']}")
+    if first["type"] == "string_pattern_mismatch":
+        kind = next((part for part in reversed(place) if not part.isdigit()), "")
+        known = _FORMS.get(kind, f"a text of the pattern {first['ctx']['pattern']}")
+        what = f"is {shortened_repr(first['input'])}; it is {known}"
     return ServiceError(
         422,
         f"{name} {what}.",
