@@ -7,6 +7,7 @@ import pytest
 
 from thalweg import Chart, NoRouteError, Sea, Ship, Voyage, plan
 from thalweg.core.geodesy import distance
+from thalweg.core.time import parse_time
 from thalweg.planning.single import route_candidates, stretch
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error
 
@@ -61,3 +62,25 @@ def test_a_route_that_the_referee_finds_late_is_not_reported_as_in_time(monkeypa
     with pytest.raises(NoRouteError, match="No route arrives by") as caught:
         plan(Voyage(**ENDS, arrive_by=latest), **given)
     assert "earliest arrival is 2026-01-01T13:0" in caught.value.possible
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("objective", ["time", "fuel"])
+def test_a_latest_arrival_that_only_the_refined_route_keeps_is_kept(objective) -> None:
+    ship = Ship.load("handysize-bulker")
+    ring = [[0.9, -0.33], [1.0, -0.33], [1.0, 0.47], [0.9, 0.47], [0.9, -0.33]]
+    chart = Chart.from_geojson({"type": "Polygon", "coordinates": [ring]})
+    ends = {"start": (0.0, 0.0), "goal": (0.0, 2.0), "depart": DEPART, "offing_nm": 0.0}
+    given = {"ship": ship, "sea": Sea.calm(), "chart": chart, "resolution": 20_000.0}
+    fastest = plan(Voyage(**ends), **given)
+    settled = fastest.solver_total * HOUR
+    latest = DEPART + 0.5 * (fastest.best.time_h * HOUR + settled)
+    assert settled > fastest.best.time_h * HOUR + 60.0  # the path on the network is late
+    ends |= {"objective": objective, "method": "default" if objective == "time" else "exact"}
+    found = plan(Voyage(**ends, arrive_by=latest), **given).best
+    assert found.feasible and found.arrive <= latest + 1.0
+    with pytest.raises(NoRouteError, match="No route arrives by") as caught:
+        early = DEPART + fastest.best.time_h * HOUR - 600.0
+        plan(Voyage(**ends, arrive_by=early), **given)
+    earliest = parse_time(caught.value.details["earliest"])
+    assert earliest == pytest.approx(fastest.best.arrive, abs=5.0)

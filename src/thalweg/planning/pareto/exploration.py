@@ -133,12 +133,15 @@ def _fastest_route(
             fields=horizon.frozen.stations,
             required=trade_off.limits.required_depth,
         )
-    if first.arrive > context.latest_arrival:
-        raise late_arrival_error(
-            context.latest_arrival, first.arrive, approach=context.approach_times[1]
-        )
     track = track_from_result(alternative.network, first, horizon.setting)
-    return horizon, refine_track(context, track, trade_off.limits)
+    route, latest = refine_track(context, track, trade_off.limits), context.latest_arrival
+    if first.arrive <= latest:
+        return horizon, route
+    if not (route.feasible and route.arrive <= latest + 1.0):
+        earliest = min(first.arrive, route.arrive if route.feasible else math.inf)
+        raise late_arrival_error(latest, earliest, approach=context.approach_times[1])
+    # in time as refined: paths of the network are longer, and those of its front may be later
+    return replace(horizon, latest=first.arrive + 1.0), route
 
 
 def network_pareto_front(

@@ -12,7 +12,7 @@ import numpy as np
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import distance, positions_along
 from thalweg.core.limits import TIGHTENING, Limits
-from thalweg.core.time import format_time
+from thalweg.core.time import TimeLike, format_time
 from thalweg.core.units import HOUR
 from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network
@@ -233,7 +233,8 @@ def _search(
 ) -> tuple[FrozenSea, SearchResult]:
     straight = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon))
     usual = straight / _expected_speed(context, ends, window[0])
-    latest = min(context.data_end, context.latest_arrival)
+    arrive_by = _deadline_of_search(context, window)
+    latest = min(context.data_end, math.inf if arrive_by is None else float(arrive_by))  # type: ignore[arg-type]
     for number in range(seas.first_horizon(network), len(_HORIZONS)):
         end = window[1] + _HORIZONS[number] * usual + (_TWO_TIDES if number else 0.0)
         end = min(end, latest)
@@ -247,7 +248,7 @@ def _search(
     if result.found:
         seas.horizon = number
     else:
-        if context.voyage.arrive_by is not None:
+        if arrive_by is not None:
             raise _late_arrival_error(context, network, limits, window, ends, seas)
         raise no_route_error(
             network, result, ends,
@@ -256,6 +257,12 @@ def _search(
             fields=frozen.stations, required=limits.required_depth,
         )  # fmt: skip
     return frozen, result
+
+
+def _deadline_of_search(context: PlanningContext, window: tuple[float, float]) -> TimeLike | None:
+    """Return the latest arrival of paths; None where the fastest is searched and then refined."""
+    fastest = context.voyage.objective == "time" and window[0] == window[1]
+    return None if fastest else context.voyage.arrive_by
 
 
 def _late_arrival_error(
@@ -301,7 +308,7 @@ def _run_search(
         "goal": network.meta.goal,
         "objective": context.voyage.objective,
         "wait": context.voyage.wait,
-        "arrive_by": context.voyage.arrive_by,
+        "arrive_by": _deadline_of_search(context, window),
     }
     if window[1] > window[0]:
         return best_departure(ship, window=DepartureWindow(*window), **options)  # type: ignore[arg-type]
