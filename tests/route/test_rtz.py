@@ -320,3 +320,86 @@ def test_the_cross_track_limits_of_a_file_are_checked(tmp_path, port, starboard,
     assert f"The cross-track limits of the file {words}" in found.assumptions
     without = evaluate(read_track(path, depart=DEPART), ship=ship(7.5), sea=Sea.calm(), chart=chart)
     assert not any("cross-track" in text for text in without.assumptions)
+
+
+PREFIXED = """<r:route xmlns:r="http://www.cirm.org/RTZ/1/2" xmlns:stm="urn:stm" xmlns:x="urn:x"
+ version="1.2"><r:routeInfo routeName="a"><r:extensions><r:extension name="info" manufacturer="M"
+ version="1" x:kind="x:a"><stm:change by="&lt;&quot;&gt;"> a &amp; b </stm:change><plain/>
+ </r:extension></r:extensions></r:routeInfo><r:waypoints><r:defaultWaypoint><r:leg><r:extensions>
+ <r:extension name="usual" manufacturer="M"><r:more n="1"/></r:extension></r:extensions></r:leg>
+ </r:defaultWaypoint>
+ <r:waypoint id="1" revision="0"><r:position lat="50" lon="-5"/></r:waypoint>
+ <r:waypoint id="2" revision="0"><r:position lat="50.1" lon="-5"/><r:leg><r:extensions>
+ <r:extension name="leg" manufacturer="M"><f xmlns="urn:f"><g xmlns=""/><r:h/></f></r:extension>
+ </r:extensions></r:leg></r:waypoint>
+ <r:waypoint id="3" revision="0"><r:position lat="50.2" lon="-5"/></r:waypoint>
+ <r:waypoint id="4" revision="0"><r:position lat="50.1" lon="-5"/><r:extensions>
+ <r:extension name="again" manufacturer="M"/><loose/></r:extensions></r:waypoint>
+ </r:waypoints><r:schedules><r:schedule id="1"><r:manual>
+ <r:scheduleElement waypointId="1" etd="2026-03-01T06:00:00Z"/>
+ <r:scheduleElement waypointId="3"><r:extensions><r:extension name="tide" manufacturer="M"/>
+ </r:extensions></r:scheduleElement></r:manual></r:schedule></r:schedules>
+ <r:extensions><r:extension name="route" manufacturer="M"/></r:extensions></r:route>"""
+
+
+@pytest.mark.parametrize("version", ["1.0", "1.1", "1.2"])
+def test_extensions_of_other_makers_are_kept(tmp_path, version):
+    (tmp_path / "a.rtz").write_text(PREFIXED)
+    track = read_track(tmp_path / "a.rtz")
+    sailed = evaluate(track, ship=ship(7.0), sea=Sea.calm())
+    again, written = [], tmp_path / "b.rtz"
+    for _ in range(2):
+        write_rtz(sailed, written, RouteFileOptions(rtz_version=version))
+        again.append(read_track(written))
+        sailed = evaluate(again[-1], ship=ship(7.0), sea=Sea.calm())
+    assert again[0].extensions == again[1].extensions
+    assert sorted(track.extensions.general) == ["defaultLeg", "route", "routeInfo"]
+    text = written.read_text()
+    assert f'xmlns="http://www.cirm.org/RTZ/1/{version[-1]}"' in text
+    assert '<stm:change by="&lt;&quot;&gt;"> a &amp; b </stm:change><plain xmlns="" />' in text
+    assert 'x:kind="x:a"' in text and 'xmlns:x="urn:x"' in text and 'xmlns:stm="urn:stm"' in text
+    assert '<f xmlns="urn:f"><g xmlns="" /><r:h /></f>' in text  # r is declared around it
+    assert text.count('name="again"') == text.count('name="tide"') == text.count("<loose") == 1
+    if version == "1.2":
+        assert again[0].extensions.general == track.extensions.general
+        assert '<extension name="usual" manufacturer="M"><more n="1" /></extension>' in text
+    fourth = again[0].extensions.there((50.1, -5.0, 1), "waypoint")
+    assert len(fourth) == 2 and ("unknown" in fourth[1]) == (version != "1.0")
+    etree = pytest.importorskip("lxml.etree")
+    schema = data_file(f"rtz/schema/RTZ Schema version {version.replace('.', '_')}.xsd")
+    etree.XMLSchema(etree.parse(str(schema))).assertValid(etree.parse(str(written)))
+
+
+def test_extensions_stay_with_waypoints_that_could_be_left_out(tmp_path):
+    extension = '<extensions><extension name="a" manufacturer="M"/></extensions>'
+    points = POINTS.replace('"50.1" lon="-5"/>', f'"50.1" lon="-5"/>{extension}')
+    for place, kept in ((points, 3), (POINTS, 2)):
+        (tmp_path / "a.rtz").write_text(f"{HEAD}<waypoints>{place}</waypoints></route>")
+        track = read_track(tmp_path / "a.rtz", depart=0)
+        write_rtz(evaluate(track, ship=ship(7.0), sea=Sea.calm()), tmp_path / "b.rtz")
+        assert (tmp_path / "b.rtz").read_text().count("<waypoint ") == kept
+
+
+def test_extensions_nested_too_deep_are_refused(tmp_path):
+    deep = f'<extension name="a" manufacturer="M">{"<a>" * 60}{"</a>" * 60}</extension>'
+    text = f"{HEAD}<waypoints>{POINTS}</waypoints><extensions>{deep}</extensions></route>"
+    (tmp_path / "a.rtz").write_text(text)
+    with pytest.raises(InputError, match="too deep"):
+        read_track(tmp_path / "a.rtz", depart=0)
+
+
+def test_extensions_of_samples_are_kept(tmp_path):
+    held = 0
+    for name in ("AllOptionalElements", "MikhailTestFilesConvertedTo12"):
+        path = sorted(data_file(f"rtz/samples/{name}").glob("*.rtz"))[-1]
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ThalwegWarning)
+            track = read_track(path, depart=0)
+            if track.extensions:
+                held += 1
+                sailed = evaluate(track, ship=ship(7.0), sea=Sea.calm(), strict=False)
+                write_rtz(sailed, tmp_path / "b.rtz", RouteFileOptions(legs="great-circle"))
+                again = read_track(tmp_path / "b.rtz").extensions
+                assert again.general == track.extensions.general
+                assert list(again.at.values()) == list(track.extensions.at.values())
+    assert held == 2

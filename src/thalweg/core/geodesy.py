@@ -303,7 +303,7 @@ def check_position(lat: float, lon: float, what: str = "position") -> Position:
             "Give lat, lon in degrees.",
             value=(lat, lon),
         )
-    return lat, float(wrap_longitude(lon))
+    return lat, lon if -180.0 <= lon < 180.0 else float(wrap_longitude(lon))
 
 
 _NUMBER = r"(\d+(?:\.\d+)?)"

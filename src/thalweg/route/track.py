@@ -16,9 +16,10 @@ from thalweg.core.geodesy import Position, check_position, distance, wrap_longit
 from thalweg.core.given_numbers import float_array, shortened_repr
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.types import FloatArray
+from thalweg.route.carried_extensions import NO_EXTENSIONS, CarriedExtensions
 
 TOP_SETTING = -1  #: the ship's highest speed setting, counted from the end as in Python
-_FIELDS = ("lat", "lon", "depart", "wait", "setting", "speed")
+_FIELDS = ("lat", "lon", "depart", "wait", "setting", "speed", "extensions")
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +41,9 @@ class Track:
     speed : array_like of float, shape (n - 1,), optional
         Ordered calm-water speed on each leg [m/s]; it overrides the setting. NaN (or None): the
         setting is used. Files contain speeds, since they are independent of a ship.
+    extensions : CarriedExtensions, optional
+        Extensions of other makers in the RTZ file that it was read from; RTZ files that are written
+        of it have them too.
 
     Raises
     ------
@@ -53,6 +57,7 @@ class Track:
     wait: FloatArray = None  # type: ignore[assignment]
     setting: NDArray[np.int64] = None  # type: ignore[assignment]
     speed: FloatArray = None  # type: ignore[assignment]
+    extensions: CarriedExtensions = NO_EXTENSIONS
 
     def __post_init__(self) -> None:
         lat = float_array(self.lat, "latitudes").reshape(-1)
@@ -139,8 +144,8 @@ class Track:
         Parameters
         ----------
         **changes
-            By the names ``lat``, ``lon``, ``depart``, ``wait``, ``setting`` and
-            ``speed``.
+            By the names ``lat``, ``lon``, ``depart``, ``wait``, ``setting``, ``speed`` and
+            ``extensions``.
 
         Returns
         -------

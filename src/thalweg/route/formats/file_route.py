@@ -12,6 +12,7 @@ import numpy as np
 from thalweg.core.geodesy import inverse
 from thalweg.core.rhumb_lines import inverse_rhumb
 from thalweg.core.types import FloatArray, IntArray
+from thalweg.route.carried_extensions import Visit, visits_of
 from thalweg.route.formats.file_waypoints import FileVertices, file_vertices
 from thalweg.route.formats.parsed_track import GEOMETRY, GREAT_CIRCLE, RHUMB_LINE
 from thalweg.route.formats.route_file_options import RouteFileOptions
@@ -40,10 +41,12 @@ class FileRoute:
         the courses of the file's lines, and ``geometry``, the line of the leg that begins there: RL
         (rhumb line) or GC (great circle).
     cross_track_m : Greatest distance of the route from the lines between the waypoints [m].
+    visits : The waypoint of the route at each row; None between two of them.
     """
 
     rows: list[dict[str, Any]]
     cross_track_m: float
+    visits: list[Visit | None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +94,17 @@ def _cut_at_waypoints(route: Route, options: RouteFileOptions) -> FileRoute:
         }
         for name, row, bearing, line in zip(names, rows, bearings, lines)
     ]
-    return FileRoute(rows, vertices.cross_track)
+    return FileRoute(rows, vertices.cross_track, _waypoints_at(route, vertices))
+
+
+def _waypoints_at(route: Route, vertices: FileVertices) -> list[Visit | None]:
+    """Return the waypoint of the route at each waypoint of the file; None between two of them."""
+    start = np.concatenate([[0.0], np.cumsum(route.legs["length"])])
+    nearest = np.searchsorted(start, vertices.at - 1e-3)
+    nearest = np.minimum(nearest, len(start) - 1)
+    same = np.abs(start[nearest] - vertices.at) < 1e-3
+    visits = visits_of(route.track.positions)
+    return [visits[k] if there else None for k, there in zip(nearest.tolist(), same.tolist())]
 
 
 def file_track(route: Route, options: RouteFileOptions | None = None) -> Track:

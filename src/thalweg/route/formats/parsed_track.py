@@ -17,6 +17,7 @@ from thalweg.core.given_numbers import shortened_repr, to_number
 from thalweg.core.rhumb_lines import rhumb_pieces
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.units import DAY, HOUR, KNOT
+from thalweg.route.carried_extensions import NO_EXTENSIONS, CarriedExtensions
 from thalweg.route.track import Track
 
 
@@ -34,6 +35,7 @@ class ParsedTrack:
     notes : What the file has otherwise than its format, and how it was read.
     corridors : By leg, the cross-track limits to port and starboard [m]; NaN: none. Empty: none.
     route_name : Where the format requires that the file has this name.
+    extensions : Of other makers.
     """
 
     positions: list[Position]
@@ -43,6 +45,7 @@ class ParsedTrack:
     notes: list[str] = field(default_factory=list)
     corridors: list[tuple[float, float]] = field(default_factory=list)
     route_name: str | None = None
+    extensions: CarriedExtensions = NO_EXTENSIONS
 
     def all_notes(self, name: str) -> list[str]:
         """Return the notes of a file of a name."""
@@ -225,4 +228,4 @@ def _track(parsed: ParsedTrack, depart: float) -> Track:
     lat, lon = np.array([place for place, _ in merged]).T
     wait = np.array([order.wait for _, order in merged])
     speed = np.array([order.speed for _, order in merged[:-1]])
-    return Track(lat, lon, depart, wait, speed=speed)
+    return Track(lat, lon, depart, wait, speed=speed, extensions=parsed.extensions)

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from thalweg.core.geodesy import MEAN_RADIUS, distance, inverse
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import KNOT, NAUTICAL_MILE
+from thalweg.route.carried_extensions import visits_of
 from thalweg.route.route import Route
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ class RouteLine:
     approach : Which legs belong to canals or the approaches of ports, which may cross charted
         land, (n - 1,).
     held : Waypoints that are never left out, (n,).
+    carried : Waypoints with extensions of other makers, which no waypoint beside stands for, (n,).
     samples : Of the route.
     """
 
@@ -46,6 +48,7 @@ class RouteLine:
     canal: BoolArray
     approach: BoolArray
     held: BoolArray
+    carried: BoolArray
     samples: Mapping[str, FloatArray]
 
     @classmethod
@@ -59,9 +62,13 @@ class RouteLine:
         held[1:-1] |= np.abs(np.diff(speed)) > _SAME_SPEED
         held[:-1] |= canal
         held[1:] |= canal
+        carried = np.array([at in track.extensions.at for at in visits_of(track.positions)])
+        held |= carried
         start = np.concatenate([[0.0], np.cumsum(length)])
         approach = np.broadcast_to(kind != 0, canal.shape).copy()
-        return cls(track.lat, track.lon, track.wait, start, canal, approach, held, route.samples)
+        return cls(
+            track.lat, track.lon, track.wait, start, canal, approach, held, carried, route.samples
+        )
 
 
 def kept_waypoints(line: RouteLine, chart: Chart | None, tolerance: float) -> IntArray:
@@ -173,7 +180,7 @@ def _blocked(line: RouteLine, chart: Chart | None, first: IntArray, last: IntArr
 
 def _without_repeats(line: RouteLine, kept: IntArray) -> IntArray:
     """Return the waypoints without those that are too close to the one before, if they may go."""
-    lat, lon, wait = line.lat, line.lon, line.wait
+    lat, lon, fixed = line.lat, line.lon, (line.wait > 0.0) | line.carried
     steps = distance(lat[kept[:-1]], lon[kept[:-1]], lat[kept[1:]], lon[kept[1:]])
     if not (steps < _SAME_PLACE).any():
         return kept
@@ -183,10 +190,10 @@ def _without_repeats(line: RouteLine, kept: IntArray) -> IntArray:
         if before != previous:
             step = float(distance(lat[before], lon[before], lat[index], lon[index]))
         if step < _SAME_PLACE and not line.canal[before:index].any():
-            if index == final and before != kept[0] and wait[before] == 0.0:
+            if index == final and before != kept[0] and not fixed[before]:
                 waypoints[-1] = index
                 continue
-            if index != final and wait[index] == 0.0 and not line.canal[index]:
+            if index != final and not fixed[index] and not line.canal[index]:
                 continue
         waypoints.append(index)
     return np.array(waypoints)

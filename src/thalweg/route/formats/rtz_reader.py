@@ -24,8 +24,14 @@ from thalweg.route.formats.parsed_track import (
     waypoint_order,
 )
 from thalweg.route.formats.rtz_checks import rtz_notes, schedule_elements, stated_stay, stated_time
+from thalweg.route.formats.rtz_extensions import rtz_extensions
 from thalweg.route.formats.rtz_writer import MANUFACTURER, ORDER
-from thalweg.route.formats.xml_elements import children, local_name, parse_xml
+from thalweg.route.formats.xml_elements import (
+    NamespaceTreeBuilder,
+    children,
+    local_name,
+    parse_xml,
+)
 
 LARGEST_RTZ = 20_000_000  #: bytes of XML, of some 30,000 waypoints with a schedule
 
@@ -37,7 +43,8 @@ def parse_rtz(data: bytes) -> ParsedTrack:
     ------
     InputError : If it is too large, not XML, declares entities, or is no route.
     """
-    root = parse_xml(data, "RTZ", largest=LARGEST_RTZ)
+    builder = NamespaceTreeBuilder()
+    root = parse_xml(data, "RTZ", largest=LARGEST_RTZ, builder=builder)
     notes: list[str] = []
     waypoints = [e for group in children(root, "waypoints") for e in children(group, "waypoint")]
     if local_name(root) != "route" or len(waypoints) < 2:
@@ -70,6 +77,7 @@ def parse_rtz(data: bytes) -> ParsedTrack:
         list(dict.fromkeys(notes)),
         corridors,
         None if info is None else info.get("routeName"),
+        rtz_extensions(root, waypoints, positions, builder),
     )
 
 

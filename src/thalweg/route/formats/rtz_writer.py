@@ -7,26 +7,32 @@ circles are requested.
 from __future__ import annotations
 
 import io
+import re
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
 
 from thalweg.core.file_writing import write_bytes
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.route.formats.file_route import file_route
+from thalweg.route.carried_extensions import CarriedExtensions, Visit
+from thalweg.route.formats.file_route import FileRoute, file_route
 from thalweg.route.formats.parsed_track import GEOMETRY, GREAT_CIRCLE, SPEEDS, WAITS
 from thalweg.route.formats.route_file_options import RouteFileOptions
-from thalweg.route.formats.xml_elements import decimal, xml_bytes
+from thalweg.route.formats.xml_elements import decimal, xml_file, xml_text
 from thalweg.route.route import Route
 
 #: Beginning of the namespaces of RTZ; the minor version follows.
 RTZ_NAMESPACE = "http://www.cirm.org/RTZ/1/"
 MANUFACTURER, ORDER = "Thalweg", "order"  #: of the extension that holds waits and ordered speeds
 _LARGEST_XTD = 9.99  # [nm]
+#: An extension as the schemas of 1.1 and 1.2 want it: a maker and a name with a letter or digit.
+_NAMED = re.compile(
+    r'<extension(?=[ ])(?=[^>]*\smanufacturer="[^"]*[0-9a-zA-Z])(?=[^>]*\sname="[^"]*[0-9a-zA-Z])'
+    r'(?![^>]*\sversion="[^"0-9a-zA-Z]*")(?![^>]*\sxmlns=)'
+)
 _ZIP_TIME = (1980, 1, 1, 0, 0, 0)  # the same route gives the same bytes
 
 
@@ -63,63 +69,121 @@ def write_rtzp(route: Route, path: str | Path, options: RouteFileOptions | None 
 
 
 def _rtz_bytes(route: Route, name: str, options: RouteFileOptions) -> bytes:
-    written = file_route(route, options)
-    minor = options.rtz_version.rpartition(".")[2]
-    root = ElementTree.Element(
-        "route", {"version": options.rtz_version, "xmlns": RTZ_NAMESPACE + minor}
-    )
+    written, version = file_route(route, options), options.rtz_version
+    carried = route.track.extensions
     info = {"routeName": name, "routeAuthor": "Thalweg"}
     if options.start and options.goal:
         info["vesselVoyage"] = f"{options.start} to {options.goal}"
-    ElementTree.SubElement(root, "routeInfo", info)
-    waypoints = ElementTree.SubElement(root, "waypoints")
     side = max(options.cross_track_nm, written.cross_track_m / NAUTICAL_MILE)
     xtd = decimal(min(side + 0.0005, _LARGEST_XTD) if side > options.cross_track_nm else side, 3)
     rows = written.rows
-    for number, (before, row) in enumerate(zip([{}, *rows], rows), start=1):
-        _add_waypoint(waypoints, number, row, before, xtd)
-    if all(row["time"] is not None for row in written.rows):
-        _add_schedule(root, written.rows, options.rtz_version)
-    return xml_bytes(root)
+    waypoints = [
+        *_default_waypoint(carried, version),
+        *(
+            _waypoint(number, row, before, xtd, _extensions_there(carried, visit, version), version)
+            for number, (before, row, visit) in enumerate(
+                zip([{}, *rows], rows, written.visits), start=1
+            )
+        ),
+        *_extensions(carried.of("waypoints"), version, 2),
+    ]
+    inside = [
+        xml_text("routeInfo", info, _extensions(carried.of("routeInfo"), version, 2), 1),
+        xml_text("waypoints", {}, waypoints, 1),
+        *_schedules(written, carried, version),
+        *_extensions(carried.of("route"), version, 1),
+    ]
+    minor = version.rpartition(".")[2]
+    about = {"version": version, "xmlns": RTZ_NAMESPACE + minor}
+    return xml_file(xml_text("route", about, inside))
 
 
-def _add_waypoint(
-    waypoints: ElementTree.Element,
+def _extensions(texts: Iterable[str], version: str, depth: int) -> list[str]:
+    """Return the element that holds extensions, as the schema of a version has them; or nothing.
+
+    The schema of 1.0 allows any element there; those of 1.1 and 1.2 want a maker and a name, and
+    what has none gets them.
+    """
+    held = [text if version == "1.0" or _NAMED.match(text) else _named(text) for text in texts]
+    if not held:
+        return []
+    return [xml_text("extensions", {}, [f"{'  ' * depth}  {text}" for text in held], depth)]
+
+
+def _named(text: str) -> str:
+    return f'<extension manufacturer="unknown" name="unnamed">{text}</extension>'
+
+
+def _extensions_there(
+    carried: CarriedExtensions, visit: Visit | None, version: str
+) -> tuple[list[str], list[str]]:
+    """Return the extensions of other makers of a leg and of the waypoint at its end.
+
+    Only the schema of 1.2 has those of legs: in others they belong to the waypoint.
+    """
+    leg, waypoint = (list(carried.there(visit, name)) for name in ("leg", "waypoint"))
+    return (leg, waypoint) if version == "1.2" else ([], leg + waypoint)
+
+
+def _default_waypoint(carried: CarriedExtensions, version: str) -> list[str]:
+    """Return the default waypoint; none where it would have nothing."""
+    leg, own = list(carried.of("defaultLeg")), list(carried.of("defaultWaypoint"))
+    if version != "1.2":
+        leg, own = [], leg + own
+    inside = _extensions(own, version, 3)
+    if leg:
+        inside = [xml_text("leg", {}, _extensions(leg, version, 4), 3), *inside]
+    return [xml_text("defaultWaypoint", {}, inside, 2)] if inside else []
+
+
+def _waypoint(
     number: int,
     row: Mapping[str, Any],
     before: Mapping[str, Any],
     xtd: str,
-) -> None:
+    carried: tuple[list[str], list[str]],
+    version: str,
+) -> str:
     names = {"id": str(number), "revision": "0", "name": str(row["name"])}
-    waypoint = ElementTree.SubElement(waypoints, "waypoint", names)
     place = {name: decimal(row[name], 6) for name in ("lat", "lon")}
-    ElementTree.SubElement(waypoint, "position", place)
+    inside = [xml_text("position", place, (), 3)]
+    of_leg, own = carried
     if number > 1:
         line = "Orthodrome" if before.get(GEOMETRY) == GREAT_CIRCLE else "Loxodrome"
         leg = {"starboardXTD": xtd, "portsideXTD": xtd, "geometryType": line}
-        ElementTree.SubElement(waypoint, "leg", leg)
+        inside.append(xml_text("leg", leg, _extensions(of_leg, version, 4), 3))
+    else:
+        own = of_leg + own
     orders = {name: decimal(row[name], 6) for name in (*WAITS, *SPEEDS) if row.get(name)}
     if orders:
-        extensions = ElementTree.SubElement(waypoint, "extensions")
         about = {"manufacturer": MANUFACTURER, "name": ORDER, "version": "1"}
-        ElementTree.SubElement(extensions, "extension", about | orders)
+        own = [xml_text("extension", about | orders), *own]
+    return xml_text("waypoint", names, [*inside, *_extensions(own, version, 3)], 2)
 
 
-def _add_schedule(
-    root: ElementTree.Element, rows: Sequence[Mapping[str, Any]], version: str
-) -> None:
-    """Add the planned times, and the speeds, weather and fuel they were calculated with."""
-    schedules = ElementTree.SubElement(root, "schedules")
-    schedule = ElementTree.SubElement(schedules, "schedule", {"id": "1", "name": "Thalweg plan"})
-    manual = ElementTree.SubElement(schedule, "manual")
-    calculated = ElementTree.SubElement(schedule, "calculated")
+def _schedules(written: FileRoute, carried: CarriedExtensions, version: str) -> list[str]:
+    """Return the planned times, and the speeds, weather and fuel they were calculated with."""
+    rows = written.rows
+    shared = _extensions(carried.of("schedules"), version, 2)
+    if any(row["time"] is None for row in rows):
+        return [xml_text("schedules", {}, shared, 1)] if shared else []
     tag = "sheduleElement" if version == "1.0" else "scheduleElement"  # as the schema of 1.0 has it
-    for number, row in enumerate(rows, start=1):
+    parts: dict[str, list[str]] = {"manual": [], "calculated": []}
+    for number, (row, before, visit) in enumerate(
+        zip(rows, [None, *rows], written.visits), start=1
+    ):
         times = waypoint_times(row, number == 1, number == len(rows), version)
-        ElementTree.SubElement(manual, tag, {"waypointId": str(number)} | times)
-        before = rows[number - 2] if number > 1 else None
-        found = times | _calculated(row, before)
-        ElementTree.SubElement(calculated, tag, {"waypointId": str(number)} | found)
+        values = {"manual": times, "calculated": times | _calculated(row, before)}
+        for kind, found in values.items():
+            held = _extensions(carried.there(visit, f"{kind}Element"), version, 5)
+            parts[kind].append(xml_text(tag, {"waypointId": str(number)} | found, held, 4))
+    inside = [
+        xml_text(kind, {}, [*elements, *_extensions(carried.of(kind), version, 4)], 3)
+        for kind, elements in parts.items()
+    ]
+    inside += _extensions(carried.of("schedule"), version, 3)
+    schedule = xml_text("schedule", {"id": "1", "name": "Thalweg plan"}, inside, 2)
+    return [xml_text("schedules", {}, [schedule, *shared], 1)]
 
 
 def waypoint_times(row: Mapping[str, Any], first: bool, last: bool, version: str) -> dict[str, str]:

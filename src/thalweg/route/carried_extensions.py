@@ -1,0 +1,59 @@
+"""Extensions of other makers in a route file, carried by its track into files written of it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from thalweg.core.geodesy import Position
+
+#: Latitude and longitude [deg] of a waypoint, and how often the route was there before.
+Visit: TypeAlias = tuple[float, float, int]
+
+
+def visits_of(positions: Iterable[Position]) -> list[Visit]:
+    """Return the visits of positions in order; positions repeated at once are one visit."""
+    seen: Counter[Position] = Counter()
+    before: Position | None = None
+    found = []
+    for place in positions:
+        seen[place] += place != before
+        before = place
+        found.append((*place, seen[place] - 1))
+    return found
+
+
+@dataclass(frozen=True)
+class CarriedExtensions:
+    """XML texts of extensions, each an element that declares the prefixes it uses.
+
+    Elements of the namespace of RTZ have no prefix: they belong to the version of the file they are
+    written into.
+
+    Attributes
+    ----------
+    general : By element that holds them: ``route``, ``routeInfo``, ``waypoints``,
+        ``defaultWaypoint``, ``defaultLeg``, ``schedules``, ``schedule``, ``manual`` and
+        ``calculated``.
+    at : By visit of a waypoint and by element there: ``waypoint``, ``leg``, ``manualElement``,
+        ``calculatedElement``.
+    """
+
+    general: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    at: Mapping[Visit, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
+
+    def __bool__(self) -> bool:
+        return bool(self.general or self.at)
+
+    def of(self, element: str) -> tuple[str, ...]:
+        """Return the extensions of an element that the file has once."""
+        return self.general.get(element, ())
+
+    def there(self, visit: Visit | None, element: str) -> tuple[str, ...]:
+        """Return the extensions of an element at a waypoint."""
+        return () if visit is None else self.at.get(visit, {}).get(element, ())
+
+
+NO_EXTENSIONS = CarriedExtensions()
