@@ -77,8 +77,11 @@ def kept_waypoints(line: RouteLine, chart: Chart | None, tolerance: float) -> In
     Parameters
     ----------
     chart : Legs that would cross its land are not joined.
-    tolerance : Waypoints this close to the line of their neighbours are left out [m].
+    tolerance : Waypoints this close to the line of their neighbours are left out [m]; 0: only those
+        that repeat another.
     """
+    if tolerance <= 0.0:
+        return _without_repeats(line, np.arange(len(line.lat)))
     kept = _without_repeats(line, _turns(line, chart, tolerance))
     return _without_short_legs(line, chart, kept, tolerance)
 

@@ -127,14 +127,21 @@ def _is_rhumb(legs: list[ElementTree.Element], notes: list[str]) -> bool:
 
 def _leg_attribute(legs: list[ElementTree.Element], name: str) -> str:
     """Return an attribute of the first leg that has it: the own ones, then the default; or ''."""
-    return next((leg.get(name, "") for leg in legs if leg.get(name)), "")
+    for leg in legs:
+        if text := leg.get(name):
+            return text
+    return ""
 
 
 def _corridor(legs: list[ElementTree.Element]) -> tuple[float, float]:
     """Return the cross-track limits (port, starboard) of the leg that ends at a waypoint [m]."""
-    miles = (to_number(_leg_attribute(legs, name)) for name in ("portsideXTD", "starboardXTD"))
-    port, starboard = (x * NAUTICAL_MILE if 0.0 < x < 10.0 else math.nan for x in miles)
-    return port, starboard
+    return _limit(legs, "portsideXTD"), _limit(legs, "starboardXTD")
+
+
+def _limit(legs: list[ElementTree.Element], name: str) -> float:
+    """Return a cross-track limit [m]; NaN where there is none, or none that the format allows."""
+    miles = to_number(_leg_attribute(legs, name))
+    return miles * NAUTICAL_MILE if 0.0 < miles < 10.0 else math.nan
 
 
 def _schedule(

@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 import re
 import zipfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -98,15 +98,15 @@ def _rtz_bytes(route: Route, name: str, options: RouteFileOptions) -> bytes:
     return xml_file(xml_text("route", about, inside))
 
 
-def _extensions(texts: Iterable[str], version: str, depth: int) -> list[str]:
+def _extensions(texts: Sequence[str], version: str, depth: int) -> list[str]:
     """Return the element that holds extensions, as the schema of a version has them; or nothing.
 
     The schema of 1.0 allows any element there; those of 1.1 and 1.2 want a maker and a name, and
     what has none gets them.
     """
-    held = [text if version == "1.0" or _NAMED.match(text) else _named(text) for text in texts]
-    if not held:
+    if not texts:
         return []
+    held = [text if version == "1.0" or _NAMED.match(text) else _named(text) for text in texts]
     return [xml_text("extensions", {}, [f"{'  ' * depth}  {text}" for text in held], depth)]
 
 
@@ -121,6 +121,8 @@ def _extensions_there(
 
     Only the schema of 1.2 has those of legs: in others they belong to the waypoint.
     """
+    if visit not in carried.at:
+        return [], []
     leg, waypoint = (list(carried.there(visit, name)) for name in ("leg", "waypoint"))
     return (leg, waypoint) if version == "1.2" else ([], leg + waypoint)
 

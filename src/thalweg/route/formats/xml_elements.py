@@ -107,7 +107,7 @@ def children(element: ElementTree.Element, name: str) -> Iterator[ElementTree.El
 
 def escaped(text: str) -> str:
     """Return a text as it stands in an attribute or an element."""
-    return _SPECIAL.sub(lambda found: _ESCAPES[found[0]], text) if _SPECIAL.search(text) else text
+    return _SPECIAL.sub(lambda found: _ESCAPES[found[0]], text)
 
 
 def xml_text(
@@ -120,7 +120,9 @@ def xml_text(
     inside : Texts of the elements in it, indented.
     depth : Of the element in the tree: it is indented by two spaces for each.
     """
-    given = "".join([f' {key}="{escaped(text)}"' for key, text in attributes.items()])
+    if _SPECIAL.search("".join(attributes.values())):
+        attributes = {key: escaped(text) for key, text in attributes.items()}
+    given = "".join([f' {key}="{text}"' for key, text in attributes.items()])
     within = "\n".join(inside)
     edge = "  " * depth
     if not within:
