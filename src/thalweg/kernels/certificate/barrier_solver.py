@@ -93,10 +93,7 @@ def wake_neighbours(active, j, i):
 
 @kernel_only
 def _fill_times(world, ship, node, t, forward, sample, out):
-    """Fill the times [s] from the points round a node to it (or from it to them) at one moment.
-
-    They are those of the conditions at the node itself.
-    """
+    """Fill the times [s] round a node, to it or from it, in its own conditions at one moment."""
     j, i = node
     step, fraction = time_step_of(world.raster.times, t)
     sample_node(world, j, i, step, fraction, sample)
