@@ -313,3 +313,24 @@ def test_slower_settings_remain_where_waves_forbid_the_highest():
     )
     assert all(route.feasible for route in found.routes)
     assert found.best.time_h == pytest.approx(LENGTH / (18.0 * KNOT) / HOUR, rel=2e-3)
+
+
+@pytest.mark.parametrize("objective", ["fuel", "front"])
+def test_no_route_of_a_front_crosses_a_penalty_zone_that_it_can_pass(objective):
+    """Over the zone 20 times as dear, round it 2 % longer: speeds and the referee count it too."""
+    square = [[0.9, -0.4], [1.1, -0.4], [1.1, 0.1], [0.9, 0.1], [0.9, -0.4]]
+    zone = {
+        "type": "Feature",
+        "properties": {"kind": "penalty", "factor": 20.0, "name": "bank"},
+        "geometry": {"type": "Polygon", "coordinates": [square]},
+    }
+    voyage = Voyage(start=START, goal=GOAL, depart="2026-01-01T00:00Z", objective=objective)
+    water = CHART.with_zones(zone)
+    ship = cubic_ship((8.0, 12.0))
+    found = plan(voyage, ship=ship, sea=Sea.calm(), chart=water, resolution=20_000.0)
+    assert len(found.routes) > 2 or objective == "fuel"
+    for route in found.routes:
+        inside = (route.samples["lon"] > 0.905) & (route.samples["lon"] < 1.095)
+        assert route.samples["lat"][inside].min() > 0.099
+        assert route.distance_nm * 1852.0 < 1.03 * LENGTH
+    assert found.lower_bound <= found.objective_value

@@ -286,7 +286,8 @@ def _raised_counts(
     if pending.size:
         apart = _deviation(lat[pending], lon[pending], lat[pending + 1], lon[pending + 1])
         least = np.ceil(np.sqrt(apart / limit[pending]))
-        count[pending] = np.maximum(count[pending], np.nan_to_num(least, nan=1.0).astype(np.int64))
+        least = np.where(np.isnan(least), 1.0, np.minimum(least, _MOST_PIECES))
+        count[pending] = np.maximum(count[pending], least.astype(np.int64))
     while pending.size:
         pieces = count[pending]
         first = np.cumsum(pieces + 1) - pieces - 1

@@ -112,6 +112,24 @@ def _support(east, north, motion):
 
 
 @kernel_only
+def triangle_differences(corners, centre, side):
+    """Return the differences of a barrier over a triangle of a cell and its two outer corners.
+
+    ``corners`` are the values at south-west, south-east, north-west and north-east; the triangles
+    between a side and the centre are those in the south, north, west and east. The differences
+    are those eastwards over the width of the cell and northwards over its height.
+    """
+    a, b, c, d = corners
+    if side == 0:
+        return b - a, 2.0 * centre - a - b, (0, 1)
+    if side == 1:
+        return d - c, c + d - 2.0 * centre, (2, 3)
+    if side == 2:
+        return 2.0 * centre - a - c, c - a, (0, 2)
+    return b + d - 2.0 * centre, d - b, (1, 3)
+
+
+@kernel_only
 def greatest_current_along(p_east, p_north, corners, currents, instants):
     """Return the greatest scalar product of (east, north) with a current over a triangle.
 
@@ -135,18 +153,10 @@ def greatest_current_along(p_east, p_north, corners, currents, instants):
 @kernel_only
 def _greatest_rate(phi, centre, scales, motion):
     """Return the greatest rate of the barrier along any motion in a cell (1 is as fast as time)."""
-    a, b, c, d = phi
     per_east_low, per_east_high, per_north, slack = scales
     best = -math.inf
     for side in range(4):
-        if side == 0:
-            x, y, pair = b - a, 2.0 * centre - a - b, (0, 1)
-        elif side == 1:
-            x, y, pair = d - c, c + d - 2.0 * centre, (2, 3)
-        elif side == 2:
-            x, y, pair = 2.0 * centre - a - c, c - a, (0, 2)
-        else:
-            x, y, pair = b + d - 2.0 * centre, d - b, (1, 3)
+        x, y, pair = triangle_differences(phi, centre, side)
         y *= per_north
         for per_east in (per_east_low, per_east_high):
             east = x * per_east

@@ -83,11 +83,17 @@ def course_offset(course):
 
 
 @kernel_only
-def _fill_times(world, ship, node, t, forward, sample, out):
-    """Fill the times [s] from the points round a node to it (or from it to them) at one moment.
+def wake_neighbours(active, j, i):
+    """Let the eight neighbours of a node be computed again."""
+    for k in range(8):
+        row, column = j + RING[k, 0], i + RING[k, 1]
+        if 0 <= row < active.shape[0] and 0 <= column < active.shape[1]:
+            active[row, column] = True
 
-    They are those of the conditions at the node itself.
-    """
+
+@kernel_only
+def _fill_times(world, ship, node, t, forward, sample, out):
+    """Fill the times [s] round a node, to it or from it, in its own conditions at one moment."""
     j, i = node
     step, fraction = time_step_of(world.raster.times, t)
     sample_node(world, j, i, step, fraction, sample)
@@ -349,10 +355,7 @@ def solve_barrier(world, phi, nodes, windows, forward, cap, rings):
     for j in range(ny):
         for i in range(nx):
             if nodes.fixed[j, i]:
-                for k in range(8):
-                    row, column = j + RING[k, 0], i + RING[k, 1]
-                    if 0 <= row < ny and 0 <= column < nx:
-                        active[row, column] = True
+                wake_neighbours(active, j, i)
     times = np.empty(COURSES)
     work = (np.full(CHANNEL_COUNT, np.nan), np.empty(COURSES), np.empty(COURSES))
     limits = world.ship.limits.copy()
@@ -390,10 +393,7 @@ def solve_barrier(world, phi, nodes, windows, forward, cap, rings):
                 if value < phi[j, i] - 1e-9 * max(abs(phi[j, i]), 1.0):
                     phi[j, i] = value
                     changes += 1
-                    for k in range(8):
-                        a, b = j + RING[k, 0], i + RING[k, 1]
-                        if 0 <= a < ny and 0 <= b < nx:
-                            active[a, b] = True
+                    wake_neighbours(active, j, i)
         if changes == 0:
             break
     return sweep + 1

@@ -11,6 +11,7 @@ import numpy as np
 from thalweg.kernels.certificate.barrier_check import (
     greatest_current_along,
     replace_unknown_currents,
+    triangle_differences,
 )
 from thalweg.kernels.certificate.cell_conditions import make_buffers, read_cell
 from thalweg.kernels.compilation.decorators import kernel_only
@@ -61,19 +62,11 @@ def _greatest_gain(east, north, speed, consumption, price):
 @kernel_only
 def _greatest_fall(corners, centre, scales, motion, price):
     """Return how far a barrier falls in a second along any motion in a cell, less consumption."""
-    a, b, c, d = corners
     per_east_low, per_east_high, per_north, slack = scales
     currents, instants, speed, consumption = motion
     best = -math.inf
     for side in range(4):
-        if side == 0:
-            x, y, pair = b - a, 2.0 * centre - a - b, (0, 1)
-        elif side == 1:
-            x, y, pair = d - c, c + d - 2.0 * centre, (2, 3)
-        elif side == 2:
-            x, y, pair = 2.0 * centre - a - c, c - a, (0, 2)
-        else:
-            x, y, pair = b + d - 2.0 * centre, d - b, (1, 3)
+        x, y, pair = triangle_differences(corners, centre, side)
         north = -y * per_north
         for per_east in (per_east_low, per_east_high):
             east = -x * per_east

@@ -3,7 +3,13 @@
 Any function may be checked as a barrier; this one is near the least cost.
 """
 
-from thalweg.kernels.certificate.barrier_solver import COURSES, PER_SIDE, RING, UNREACHED
+from thalweg.kernels.certificate.barrier_solver import (
+    COURSES,
+    PER_SIDE,
+    RING,
+    UNREACHED,
+    wake_neighbours,
+)
 from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit
 
@@ -90,14 +96,13 @@ def solve_cost_barrier(motions, rates, phi, factor, solvable, cap):
                 if not active[j, i]:
                     continue
                 active[j, i] = False
+                if not solvable[j, i]:
+                    continue
                 value = _least_cost(phi, factor, j, i, motions, rates)
                 if value < cap and value < phi[j, i] - _LEAST_CHANGE * abs(phi[j, i]):
                     phi[j, i] = value
                     changes += 1
-                    for k in range(8):
-                        a, b = j + RING[k, 0], i + RING[k, 1]
-                        if 0 <= a < ny and 0 <= b < nx:
-                            active[a, b] = solvable[a, b]
+                    wake_neighbours(active, j, i)
         if changes == 0:
             break
     return sweep + 1

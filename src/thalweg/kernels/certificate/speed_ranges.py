@@ -222,6 +222,17 @@ def _range_of_curve(table, setting, least, greatest):
 
 
 @kernel_only
+def _range_of_sum(table, setting, low, high, place):
+    """Return the least and the greatest sum of the parts of a table over ranges of conditions."""
+    least, greatest = 0.0, 0.0
+    for part in range(table.part_axes.shape[0]):
+        part_low, part_high = part_range(table, part, setting, low, high, place)
+        least += part_low
+        greatest += part_high
+    return least, greatest
+
+
+@kernel_only
 def greatest_speed(table, setting, low, high, top_speed, place):
     """Return an upper bound of the speed through water over ranges of conditions.
 
@@ -247,11 +258,7 @@ def greatest_speed(table, setting, low, high, top_speed, place):
     if table.finish == CURVE_INTERSECTION:
         speed = _greatest_speed_at_intersection(table, setting, low, high, place)
         return top_speed if speed != speed else min(max(speed, 0.0), top_speed)
-    least, greatest = 0.0, 0.0
-    for part in range(table.part_axes.shape[0]):
-        part_low, part_high = part_range(table, part, setting, low, high, place)
-        least += part_low
-        greatest += part_high
+    least, greatest = _range_of_sum(table, setting, low, high, place)
     if greatest != greatest:
         return top_speed
     if table.finish == OUTPUT_CURVE:
@@ -282,11 +289,7 @@ def least_consumption(table, setting, low, high, floor, place):
     """
     if outside_table(table, low, high) or table.finish == CURVE_INTERSECTION:
         return floor
-    least, greatest = 0.0, 0.0
-    for part in range(table.part_axes.shape[0]):
-        part_low, part_high = part_range(table, part, setting, low, high, place)
-        least += part_low
-        greatest += part_high
+    least, greatest = _range_of_sum(table, setting, low, high, place)
     if least != least:
         return floor
     if table.finish == OUTPUT_CURVE:

@@ -22,7 +22,10 @@ _SAMPLES: Final = 8  # along each edge
 def edge_costs(
     network: Network, chart: Chart, prices: LegPrices, *, depart: float, speed: float
 ) -> FloatArray | None:
-    """Return the cost of length, land and other ships on every edge; None where they cost nothing.
+    """Return the cost of every edge besides consumption and time; None where there is none.
+
+    It is that of length, land and other ships, and what the penalty factor adds to the price of
+    time at the highest speed.
 
     Parameters
     ----------
@@ -35,10 +38,12 @@ def edge_costs(
     InputError
         If encounters have a price and the traffic on some edge is not known.
     """
-    if not prices.counts_water:
+    penalty = np.asarray(network.edges.penalty_factor, float) - 1.0
+    priced = prices.time > 0.0 and bool(penalty.any())
+    if not (prices.counts_water or priced):
         return None
     length = np.asarray(network.edges.length, float)
-    cost = prices.length * length
+    cost = prices.length * length + prices.time * penalty * length / speed
     if max(prices.inshore, prices.encounters) <= 0.0:
         return np.asarray(cost)
     lat, lon = _edge_samples(network)

@@ -200,6 +200,7 @@ def front_search(
             depart=depart,
             speed=float(context.ship.speeds[trade_off.settings[-1]]),
         ),
+        penalty_factor=network.edges.penalty_factor,
         wait=context.voyage.wait and not (prices.counts_dose or prices.counts_water),
     )
     return ship, query

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import NoRouteError
-from thalweg.core.pareto_fronts import ROUNDING_TOLERANCE, non_dominated_indices
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT
@@ -35,6 +34,8 @@ from thalweg.planning.pareto.trade_off_context import (
     RefereedCandidate,
     TrackCandidate,
     TradeOffContext,
+    non_dominated_candidates,
+    scored_candidate,
 )
 from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import PlotContext
@@ -192,8 +193,11 @@ def _constant_speed_candidates(
         ]
     priced = [(route, name, objective.value(route)) for route, name in found]
     return [
-        RefereedCandidate(
-            TrackCandidate(r.track, "constant speed", name, r.time_h * HOUR, value), r, value
+        scored_candidate(
+            trade_off,
+            TrackCandidate(r.track, "constant speed", name, r.time_h * HOUR, value),
+            r,
+            value,
         )
         for r, name, value in priced
         if r.feasible and math.isfinite(value) and r.arrive <= context.latest_arrival + 1.0
@@ -206,12 +210,7 @@ def _including_constant_speeds(
     """Return the non-dominated routes, with those at constant speeds included."""
     if not any(item.route.feasible for item in scored):
         return constant or scored
-    pool = [*scored, *constant]
-    time = np.array([item.route.time_h for item in pool])
-    value = np.array([item.value for item in pool])
-    return [
-        pool[index] for index in non_dominated_indices(time, value, tolerance=ROUNDING_TOLERANCE)
-    ]
+    return non_dominated_candidates([*scored, *constant])
 
 
 def _rejections(explored: list[ExploredAlternative]) -> dict[str, int]:

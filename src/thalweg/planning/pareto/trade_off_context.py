@@ -11,13 +11,16 @@ import numpy as np
 
 from thalweg.core.interrupt import InterruptGuard
 from thalweg.core.limits import Limits
+from thalweg.core.pareto_fronts import ROUNDING_TOLERANCE, non_dominated_indices
 from thalweg.core.types import FloatArray
+from thalweg.core.units import HOUR
 from thalweg.planning.frozen_sea import FrozenSea
 from thalweg.planning.network_selection.route_alternatives import RouteAlternative
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import PricedObjective
 from thalweg.route import Route, Track
+from thalweg.route.refinement.better_route import penalty_excess
 from thalweg.search import NetworkFront, SearchResult
 from thalweg.ship import PerformanceTable
 from thalweg.ship.consumption import calm_water_consumption
@@ -144,8 +147,36 @@ class TrackCandidate:
 
 @dataclass(frozen=True)
 class RefereedCandidate:
-    """A candidate with its route and value as scored by the referee."""
+    """A candidate with its route and value as scored by the referee.
+
+    Attributes
+    ----------
+    penalty : What penalty zones, shoals and lanes add, as a share of the time.
+    """
 
     candidate: TrackCandidate
     route: Route
     value: float
+    penalty: float = 0.0
+
+
+def scored_candidate(
+    trade_off: TradeOffContext, candidate: TrackCandidate, route: Route, value: float
+) -> RefereedCandidate:
+    """Return a candidate with its route, its value and what penalties add to it."""
+    penalty = penalty_excess(route, "time", trade_off.context.chart)
+    return RefereedCandidate(candidate, route, value, penalty / max(route.time_h * HOUR, 1.0))
+
+
+def non_dominated_candidates(scored: list[RefereedCandidate]) -> list[RefereedCandidate]:
+    """Return the routes that no other one beats in time and value, penalties included.
+
+    Of those that are left none beats another one without the penalties either.
+    """
+    for counted in (1.0, 0.0):
+        factor = np.array([1.0 + counted * item.penalty for item in scored])
+        time = factor * [item.route.time_h for item in scored]
+        value = factor * [item.value for item in scored]
+        kept = non_dominated_indices(time, value, tolerance=ROUNDING_TOLERANCE)
+        scored = [scored[index] for index in kept]
+    return scored

@@ -34,6 +34,8 @@ from thalweg.planning.pareto.trade_off_context import (
     RefereedCandidate,
     TrackCandidate,
     TradeOffContext,
+    non_dominated_candidates,
+    scored_candidate,
 )
 from thalweg.planning.pareto.weighted_sums import normalised_trade_off
 from thalweg.planning.plan import Plan
@@ -89,7 +91,7 @@ def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
                 ]
                 steps.appendleft(step)
         if not interrupt_guard.stopped() and any(item.route.feasible for item in scored):
-            scored = _not_dominated(in_speed_blocks(trade_off, scored))
+            scored = non_dominated_candidates(in_speed_blocks(trade_off, scored))
         return assemble_trade_off_plan(trade_off, ends, explored, scored)
 
 
@@ -237,7 +239,9 @@ def _refereed(
                 break
         candidate = candidates[k]
         route = context.evaluate(candidate.track, trade_off.objective.terms)
-        by_index[k] = RefereedCandidate(candidate, route, trade_off.objective.value(route))
+        by_index[k] = scored_candidate(
+            trade_off, candidate, route, trade_off.objective.value(route)
+        )
     scored = [by_index[k] for k in sorted(by_index)]
     latest = context.latest_arrival
     usable = [
@@ -246,7 +250,7 @@ def _refereed(
         if item.route.feasible and math.isfinite(item.value) and item.route.arrive <= latest + 1.0
     ]
     if usable:
-        return _not_dominated(usable), ()
+        return non_dominated_candidates(usable), ()
     gaps = [gap for item in scored for gap in data_gaps_on_route(item.route)]
     different = {(gap.reason, gap.lat, gap.lon, gap.time): gap for gap in gaps}
     sailed = [item for item in scored if math.isfinite(item.route.arrive)]
@@ -256,12 +260,3 @@ def _refereed(
 def _from_coarse_to_fine(count: int) -> list[int]:
     """Return all indices below a count: every 16th first, then every 8th, and so on."""
     return list(dict.fromkeys(k for step in (16, 8, 4, 2, 1) for k in range(0, count, step)))
-
-
-def _not_dominated(scored: list[RefereedCandidate]) -> list[RefereedCandidate]:
-    """Return the routes that no other one beats in time and value."""
-    time = np.array([item.route.time_h for item in scored])
-    value = np.array([item.value for item in scored])
-    return [
-        scored[index] for index in non_dominated_indices(time, value, tolerance=ROUNDING_TOLERANCE)
-    ]

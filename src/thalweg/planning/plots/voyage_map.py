@@ -335,8 +335,18 @@ def _decorate_axes(axes: Any, plan: PlanData, box: MapExtent) -> None:
     )
     box.draw_scale(axes)
     if axes.get_legend_handles_labels()[0]:
-        legend = axes.legend(loc="best", fontsize=7, framealpha=0.9)
+        legend = axes.legend(loc=_corner_off_route(axes, plan, box), fontsize=7, framealpha=0.9)
         legend.set_zorder(11)
+
+
+def _corner_off_route(axes: Any, plan: PlanData, box: MapExtent) -> str:
+    """Return the corner of the map that is farthest from the route; the scale is at the fourth."""
+    samples = plan.best.samples
+    line = np.column_stack([box.line(samples["lon"]), samples["lat"]])
+    places = axes.transAxes.inverted().transform(axes.transData.transform(line))
+    corners = {"upper left": (0, 1), "upper right": (1, 1), "lower right": (1, 0)}
+    distances = {name: np.hypot(*(places - corner).T).min() for name, corner in corners.items()}
+    return max(distances, key=lambda name: float(distances[name]))
 
 
 def _colours(name: str) -> Any:

@@ -39,9 +39,7 @@ def closed_cells(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> BoolA
     shape = lat.size - 1, lon.size - 1
     if chart is None:
         return np.zeros(shape, bool)
-    rows, columns = 0.5 * (lat[1:] + lat[:-1]), 0.5 * (lon[1:] + lon[:-1])
-    grid = np.meshgrid(rows, columns, indexing="ij")
-    centres = grid[0].ravel(), grid[1].ravel()
+    centres = _centres(lat, lon)
     kept = chart.offing_arrays.distance
     shore = np.asarray(chart.coastline.shore_distance(*centres, cap=max(1.0, kept)))
     lines = chart.coastline.lines(lat[0], lat[-1], lon[0], lon[-1])
@@ -74,12 +72,18 @@ def cells_inside(areas: Zones, lat: FloatArray, lon: FloatArray) -> BoolArray:
     -------
     bool array (Y - 1, X - 1)
     """
-    rows, columns = 0.5 * (lat[1:] + lat[:-1]), 0.5 * (lon[1:] + lon[:-1])
-    inside = areas.in_eca(*np.meshgrid(rows, columns, indexing="ij"))
+    inside = areas.in_eca(*_centres(lat, lon)).reshape(lat.size - 1, lon.size - 1)
     rings = [area.rings for area in areas.eca]
     lines = ((one.lat[a:b], one.lon[a:b]) for one in rings for a, b in pairwise(one.start))
     result: BoolArray = np.asarray(inside & ~_touched(lines, lat, lon))
     return result
+
+
+def _centres(lat: FloatArray, lon: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the latitudes and longitudes [deg] of the centres of all cells, row by row."""
+    rows, columns = 0.5 * (lat[1:] + lat[:-1]), 0.5 * (lon[1:] + lon[:-1])
+    grid = np.meshgrid(rows, columns, indexing="ij")
+    return grid[0].ravel(), grid[1].ravel()
 
 
 def _outside_area(chart: Chart, lat: FloatArray, lon: FloatArray) -> BoolArray:

@@ -97,6 +97,8 @@ class FrontQuery:
         `thalweg.network.eca_fractions`.
     edge_cost : array_like (E,), optional
         Further cost of each edge, at any setting and time, zero or more (default: 0).
+    penalty_factor : array_like (E,), optional
+        Factor on the cost of the consumption on each edge, one or more (default: 1).
     wait : bool
         Whether the ship may wait at nodes that allow it, as long as it stays afloat.
     """
@@ -109,6 +111,7 @@ class FrontQuery:
     prices: LegPrices = FUEL_MASS
     eca_fraction: ArrayLike | None = None
     edge_cost: ArrayLike | None = None
+    penalty_factor: ArrayLike | None = None
     wait: bool = True
 
 

@@ -382,8 +382,15 @@ def _request(ship_on_network: MultiSettingShipOnNetwork, query: FrontQuery) -> F
             f"Each of the {network.n_edges} edges has one.",
             "Correct the costs.",
         )
+    penalty = np.asarray(1.0 if query.penalty_factor is None else query.penalty_factor, float)
+    if penalty.shape not in ((), (network.n_edges,)) or not (penalty >= 1.0).all():
+        raise InputError(
+            "A penalty factor of an edge is not a number of one or more.",
+            f"Each of the {network.n_edges} edges has one.",
+            "Correct the factors.",
+        )
     return FrontRequest(
         int(start), int(goal), float(depart), float(latest), chosen, query.prices,
-        query.prices.of_legs(inside, np.asarray(network.edges.price_factor, float)),
+        query.prices.of_legs(inside, np.asarray(network.edges.price_factor, float)) * penalty,
         bool(query.wait), further,
     )  # fmt: skip
