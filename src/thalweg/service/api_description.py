@@ -1,4 +1,4 @@
-"""The description of the interface: `/openapi.json` with the errors of every operation."""
+"""The description of the interface: `/openapi.json` with answers and errors of every operation."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from typing import Any, Final
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 
+from thalweg.service.answers.answer_descriptions import answer_content, answer_schemas
+from thalweg.service.endpoints.job_endpoints import ROUTE_MEDIA_TYPES
 from thalweg.service.problem_details import MEDIA_TYPE
 
 _TEXT: Final = {"type": "string"}
@@ -61,8 +63,8 @@ _STARTS: Final = ("plans", "alternatives", "evaluate", "projects", "studies", "f
 _UPLOADS: Final = ("ships", "seas", "routes", "traffic", "histories")
 
 
-def describe_errors(application: FastAPI) -> None:
-    """Make an application state the errors of every operation as problem details."""
+def describe_answers(application: FastAPI) -> None:
+    """Make an application state the answers of every operation, with examples and its errors."""
 
     def described() -> dict[str, Any]:
         if application.openapi_schema is None:
@@ -76,17 +78,29 @@ def describe_errors(application: FastAPI) -> None:
             schemas = components.setdefault("schemas", {})
             for name in ("HTTPValidationError", "ValidationError"):
                 schemas.pop(name, None)
-            schemas["Problem"] = _PROBLEM
+            schemas |= {"Problem": _PROBLEM, **answer_schemas()}
             components["securitySchemes"] = {"token": {"type": "http", "scheme": "bearer"}}
             found["security"] = [{"token": []}]
             for path, methods in found["paths"].items():
                 for method, operation in methods.items():
+                    _describe_success(f"{method} {path.removeprefix('/api/v1')}", operation)
                     for status in _errors_of(path, method, operation):
                         operation["responses"][status] = _answer(status)
             application.openapi_schema = found
         return application.openapi_schema
 
     application.openapi = described  # type: ignore[method-assign]
+
+
+def _describe_success(name: str, operation: dict[str, Any]) -> None:
+    """State the form and examples of the answer of an operation; one of 204 has none."""
+    status = next(code for code in operation["responses"] if code.startswith("2"))
+    if status != "204":
+        content = answer_content(name)
+        if name.endswith("/routes/{number}.{form}"):
+            others = set(ROUTE_MEDIA_TYPES.values()) - set(content)
+            content |= {kind: {"schema": {"type": "string"}} for kind in sorted(others)}
+        operation["responses"][status]["content"] = content
 
 
 def _answer(status: str) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from thalweg.service.access_control import AccessControl
-from thalweg.service.api_description import describe_errors
+from thalweg.service.api_description import describe_answers
 from thalweg.service.endpoints.catalogue_endpoints import catalogue
 from thalweg.service.endpoints.chart_endpoints import chart_router
 from thalweg.service.endpoints.chart_file_endpoints import chart_files_router
@@ -153,7 +153,7 @@ def create_application(settings: ServiceSettings) -> FastAPI:
     ):
         application.include_router(router, prefix="/api/v1")
     _add_pages(application)
-    describe_errors(application)
+    describe_answers(application)
     application.add_middleware(BodyLimit, largest=settings.limits.small_upload_bytes)
     application.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=4)
     application.add_middleware(AccessControl, settings=settings)

@@ -33,6 +33,7 @@ def health(state: State) -> dict[str, Any]:
             "queue": limits.queue,
             "job_seconds": limits.job_seconds,
             "upload_bytes": limits.upload_bytes,
+            "small_upload_bytes": limits.small_upload_bytes,
         },
     }
 

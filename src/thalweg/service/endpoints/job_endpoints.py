@@ -42,7 +42,8 @@ JobId = Annotated[str, Path(pattern=r"^[0-9a-f]{16}$")]
 Kind = Literal["plan", "alternatives", "evaluation", "project", "study", "forecast"]
 JobState = Literal["queued", "running", "done", "failed", "cancelled"]
 KEEP_ALIVE_SECONDS: Final = 15.0
-_MEDIA_TYPES: Final = {
+#: Of route files, by their ending.
+ROUTE_MEDIA_TYPES: Final = {
     "rtz": "application/xml",
     "rtzp": "application/zip",
     "gml": "application/gml+xml",
@@ -376,4 +377,4 @@ def job_route_file(
 ) -> FileResponse:
     """Return a route of a result as a file for other programs."""
     path = result_file(job_id, f"{route_file_stem(job_id)}_{number:02d}.{form}", state)
-    return FileResponse(path, media_type=_MEDIA_TYPES[form], filename=path.name)
+    return FileResponse(path, media_type=ROUTE_MEDIA_TYPES[form], filename=path.name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+from pathlib import Path
 from typing import Any, Literal
 
 from fastapi import APIRouter, Query, Request, Response
@@ -66,6 +67,9 @@ async def add_sea(
         found, _ = state.file_worker.do(
             "inspect", seas=["file"], files={"file": path}, in_detail=True
         )
+        own = f"{Path(path).name}: "  # the name of the file while it arrives
+        missing = found["missing_fraction"].items()
+        found["missing_fraction"] = {key.removeprefix(own): share for key, share in missing}
         return found
 
     stored = await kept_upload(state.seas, name, request.stream(), facts)

@@ -1,0 +1,1 @@
+"""The answers of the interface: their form and an example of each."""
