@@ -14,6 +14,11 @@ from starlette.concurrency import run_in_threadpool
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time
+from thalweg.service.endpoints.order_checks import (
+    check_evaluation_order,
+    check_plan_order,
+    check_project_order,
+)
 from thalweg.service.jobs.batch_requests import (
     FORECAST_EXAMPLE,
     PROJECT_EXAMPLE,
@@ -86,8 +91,10 @@ def start_plan(
     idempotency_key: str | None = Header(None, max_length=200),
 ) -> dict[str, Any]:
     """Start planning a voyage; the answer comes at once, with the address of the job."""
-    request.checked_voyage()
-    return _start("plan", request.model_dump(mode="json"), response, idempotency_key, state)
+    voyage, given = request.checked_voyage(), request.model_dump(mode="json")
+    _check_files(given, state)
+    check_plan_order(request, voyage, state)
+    return _start("plan", given, response, idempotency_key, state)
 
 
 @jobs_router.post("/alternatives", status_code=202)
@@ -98,8 +105,9 @@ def start_alternatives(
     idempotency_key: str | None = Header(None, max_length=200),
 ) -> dict[str, Any]:
     """Start planning routes that differ, each the best in something; a job like that of a plan."""
-    request.checked_voyage()
-    given = request.model_dump(mode="json")
+    voyage, given = request.checked_voyage(), request.model_dump(mode="json")
+    _check_files(given, state)
+    check_plan_order(request, voyage, state)
     return _start("alternatives", given, response, idempotency_key, state)
 
 
@@ -112,7 +120,10 @@ def start_evaluation(
 ) -> dict[str, Any]:
     """Sail an imported route in given weather; the answer is a job like that of a plan."""
     request.check()
-    return _start("evaluation", request.model_dump(mode="json"), response, idempotency_key, state)
+    given = request.model_dump(mode="json")
+    _check_files(given, state)
+    check_evaluation_order(request, state)
+    return _start("evaluation", given, response, idempotency_key, state)
 
 
 @jobs_router.post("/projects", status_code=202)
@@ -125,6 +136,8 @@ def start_project(
     """Start the simulation of a dredging project; the answer is a job like that of a plan."""
     entries, project = request.checked_project()
     given = {"title": request.title or project.name, "project": entries}
+    _check_files(given, state)
+    check_project_order(project, entries["sea"], state)
     return _start("project", given, response, idempotency_key, state)
 
 
@@ -163,6 +176,7 @@ def start_study(
     """
     entries, study = request.checked_study()
     given = {"title": request.title or study.name, "study": entries}
+    _check_files(given, state)
     return _start("study", given, response, idempotency_key, state)
 
 
@@ -191,7 +205,6 @@ def estimate_download(
 def _start(
     kind: str, request: dict[str, Any], response: Response, key: str | None, state: ServiceState
 ) -> dict[str, Any]:
-    _check_files(request, state)
     job, _ = state.store.add(
         secrets.token_hex(8), kind, request, key=key, queue=state.settings.limits.queue
     )

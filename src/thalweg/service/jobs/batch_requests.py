@@ -108,6 +108,7 @@ class StudyOrder(BaseModel):
         InputError
             With the entry in ``details["field"]``.
         """
+        from thalweg.planning.request.itinerary_check import check_itinerary
         from thalweg.planning.voyage import Voyage
         from thalweg.studies import Study
         from thalweg.studies.study_parts import require_parquet
@@ -123,7 +124,7 @@ class StudyOrder(BaseModel):
                 "Use fewer values, or 'thalweg study run' on the command line.",
                 field="axes",
             )
-        Voyage.from_dict(study.rows()[0].request["voyage"])
+        check_itinerary(Voyage.from_dict(study.rows()[0].request["voyage"]))
         return data, study
 
 

@@ -7,12 +7,11 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import parse_position
 from thalweg.core.time import parse_time
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.request.european_scope import share_between_places
+from thalweg.planning.request.itinerary_check import check_itinerary
 from thalweg.planning.voyage import Voyage
 from thalweg.route.formats.route_file_options import ROUTE_FORMATS, RouteFileOptions
 
@@ -258,15 +257,7 @@ class PlanRequest(ShipAndSea):
         self.check_sea()
         voyage = Voyage.from_dict(self.voyage)
         self._check_network(voyage)
-        places = [("start", voyage.start), ("goal", voyage.goal)]
-        places += [(f"via.{i}", place) for i, place in enumerate(voyage.via)]
-        for name, place in places:
-            if isinstance(place, str) and parse_position(place) is None:
-                try:
-                    PORTS.lookup(place)
-                except InputError as error:
-                    error.details["field"] = name
-                    raise
+        check_itinerary(voyage)
         if self.charges is not None and self.charges.share_percent is None:
             try:
                 share_between_places(voyage.start, voyage.goal)

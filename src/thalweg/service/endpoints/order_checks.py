@@ -1,0 +1,114 @@
+"""Checks of an order at the door: what the known facts of its ship and seas make impossible."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cache
+from typing import Any
+
+from thalweg.core.errors import OutsidePeriodError, errors_about
+from thalweg.core.time import format_time, parse_time
+from thalweg.operations.dredging import Project
+from thalweg.planning.request.ordered_speed import with_exact_speed, with_order
+from thalweg.planning.voyage import Voyage
+from thalweg.service.jobs.named_uploads import ESTUARY
+from thalweg.service.jobs.plan_request import EvaluationRequest, PlanRequest
+from thalweg.service.jobs.request_objects import open_seas, open_ship_of
+from thalweg.service.jobs.sea_facts import sea_facts
+from thalweg.service.service_state import ServiceState
+
+_WITHOUT_TIMES = ("sea_floor_depth",)  # begins the names of variables that do not change
+
+
+def check_plan_order(request: PlanRequest, voyage: Voyage, state: ServiceState) -> None:
+    """Check that the ship has the speed and the seas the departure of a voyage.
+
+    Raises
+    ------
+    InputError : If the ship does not have the speed.
+    OutsidePeriodError : If no sea has data at the departure.
+    """
+    if voyage.speed_kn is not None:
+        with errors_about("speed_kn"):
+            with_order(open_ship_of(request, _ship_files(request.ship, state)), voyage)
+    if not voyage.departure_is_open and not request.fill:
+        times = voyage.earliest_departure, voyage.latest_departure
+        field = "depart" if voyage.depart_window is None else "depart_window"
+        _check_period(times, request.seas, state, field)
+
+
+def check_evaluation_order(request: EvaluationRequest, state: ServiceState) -> None:
+    """Check that the ship has the speed and the seas the departure of a route.
+
+    Raises
+    ------
+    InputError : If the ship does not have the speed, or the route has no departure.
+    OutsidePeriodError : If no sea has data at the departure.
+    """
+    if request.speed_kn is not None:
+        with errors_about("speed_kn"):
+            ship = open_ship_of(request, _ship_files(request.ship, state))
+            with_exact_speed(ship, request.speed_kn, request.hold)
+    given = request.depart or state.routes.get(request.route).facts.get("depart")
+    if given is not None and not request.fill:
+        _check_period((parse_time(given),) * 2, request.seas, state, "depart")
+
+
+def check_project_order(project: Project, sea: str | Sequence[str], state: ServiceState) -> None:
+    """Check that a sea of a project has data at its start.
+
+    Raises
+    ------
+    OutsidePeriodError : If none has.
+    """
+    seas = [sea] if isinstance(sea, str) else sea
+    _check_period((project.start, project.start), seas, state, "start")
+
+
+def _ship_files(ship: str, state: ServiceState) -> dict[str, str]:
+    if ship in state.library_ships:
+        return {}
+    return {ship: str(state.ships.get(ship).path)}
+
+
+def _check_period(
+    departure: tuple[float, float], seas: Sequence[str], state: ServiceState, field: str
+) -> None:
+    """Check that seas have data at the earliest and the latest departure.
+
+    A sea without times, which holds always, makes every departure possible.
+    """
+    periods = []
+    for name in seas:
+        facts = _facts(name, state)
+        if all(one.startswith(_WITHOUT_TIMES) for one in facts["variables"]):
+            continue
+        if facts["start"] is None or facts["end"] is None:
+            return
+        periods.append((parse_time(facts["start"]), parse_time(facts["end"])))
+    end = max((last for _, last in periods), default=math.inf)
+    begun = any(first <= departure[0] < last for first, last in periods)
+    if not periods or (begun and departure[1] < end):
+        return
+    outside = departure[1] if departure[1] >= end else departure[0]
+    known = [f"{format_time(first)} to {format_time(last)}" for first, last in sorted(periods)]
+    raise OutsidePeriodError(
+        f"Departure {format_time(outside)} is outside the data.",
+        f"The data run from {', and from '.join(known)}.",
+        "Choose a departure in that period, or add data.",
+        field=field,
+    )
+
+
+def _facts(name: str, state: ServiceState) -> dict[str, Any]:
+    if name == ESTUARY:
+        return {"variables": [name], "start": None, "end": None}
+    if name in ("calm", "storm"):
+        return _embedded_facts(name)
+    return state.seas.get(name).facts
+
+
+@cache
+def _embedded_facts(name: str) -> dict[str, Any]:
+    return sea_facts(open_seas([name], {}))
