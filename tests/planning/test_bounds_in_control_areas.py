@@ -12,7 +12,7 @@ KNOT = 1852.0 / 3600.0
 
 
 def area(west, east):
-    ring = [[west, -1.0], [east, -1.0], [east, 1.0], [west, 1.0], [west, -1.0]]
+    ring = [[west, -2.0], [east, -2.0], [east, 2.0], [west, 2.0], [west, -2.0]]
     return {
         "type": "Feature",
         "properties": {"kind": "eca", "name": "made area"},
