@@ -8,7 +8,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from thalweg.core.geodesy import distance
+from thalweg.chart.zones.zone_set import Zones
+from thalweg.core.geodesy import METRES_PER_DEGREE, distance
 from thalweg.core.pareto_fronts import ROUNDING_TOLERANCE, lower_hull, non_dominated_indices
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
@@ -17,6 +18,7 @@ from thalweg.planning.pareto.exploration import strongest_current
 from thalweg.planning.pareto.trade_off_context import ExploredAlternative, TradeOffContext
 from thalweg.planning.plan_data import Proof
 from thalweg.planning.plan_front import certain_at
+from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.single.certified_bound import certified_distance, strongest_current_in_data
 from thalweg.route import Route
 from thalweg.search import table_bounds
@@ -29,6 +31,7 @@ _CURRENT_UNKNOWN = (
     "no bound: the strongest current of the water that the ship can reach was not found"
 )
 _NOTHING_LEAST = "no bound: the least that the data allow is zero"
+_OUTLINE_STEP = 0.05  # between positions on the outlines of control areas [deg]
 _SECONDS = 2.0  # for the bound of the length, by default
 
 
@@ -134,19 +137,50 @@ def certain_front(trade_off: TradeOffContext, length: float, current: float) -> 
     At a setting a route covers a metre in no less than ``1 / v`` seconds, with the ship's top speed
     and the strongest current, for no less than ``rate / v``, with the least rate of consumption
     and the least price. A route that mixes settings has time and value above a mean of these
-    points: not below their lower convex hull.
+    points: not below their lower convex hull. At the ends the price is that of control areas, as
+    far as it takes to leave them.
     """
     context, prices = trade_off.context, trade_off.objective.prices
-    least = min(prices.inside, prices.outside)
-    if prices.dues > 0.0:  # a route off the network may sail in the cheapest zone throughout
-        least *= min([1.0, *(float(factor) for _, factor in context.chart.zones.price)])
     rates = np.maximum(table_bounds(trade_off.consumption.kernel_arrays(), np.fmin), 0.0)
+    rates = rates[trade_off.settings]
     top = np.array([float(context.ship.top_speed(int(s)) or math.inf) for s in trade_off.settings])
-    seconds = length / (top + current)
-    values = seconds * (least * rates[trade_off.settings] + prices.time)
+    zone_factor = 1.0
+    if prices.dues > 0.0:  # a route off the network may sail in the cheapest zone throughout
+        zone_factor = min([1.0, *(float(factor) for _, factor in context.chart.zones.price)])
+    inside = 0.0
+    if prices.inside > prices.outside:
+        ends = trade_off.ends[0], trade_off.ends[-1]
+        inside = min(length, sum(_least_to_leave(context.chart.zones, end) for end in ends))
+    parts = [(inside, prices.inside), (length - inside, min(prices.inside, prices.outside))]
+    slow = 1.0 / (top + current)
+    (time, value), (more_time, more_value) = (
+        (part * slow, part * slow * (zone_factor * price * rates + prices.time))
+        for part, price in parts
+    )
+    seconds = np.add.outer(time, more_time).ravel()
+    values = np.add.outer(value, more_value).ravel()
     hull = lower_hull(seconds, values)
     hull = hull[: int(np.argmin(values[hull])) + 1]
     return np.array([seconds[hull] / HOUR, values[hull]])
+
+
+def _least_to_leave(zones: Zones, end: Endpoint) -> float:
+    """Return a length [m] that no way out of the control areas is shorter than; 0 outside them."""
+    if not bool(zones.in_eca(end.lat, end.lon)):
+        return 0.0
+    least = math.inf
+    for zone in zones.eca:
+        rings = zone.rings
+        for first, last in itertools.pairwise(rings.start):
+            lat, lon = rings.lat[first:last], rings.lon[first:last]
+            pieces = np.ceil(np.hypot(np.diff(lat), np.diff(lon)) / _OUTLINE_STEP)
+            place = np.concatenate([[0.0], np.cumsum(np.maximum(pieces, 1.0))])
+            along = np.arange(place[-1] + 1.0)
+            near = distance(
+                end.lat, end.lon, np.interp(along, place, lat), np.interp(along, place, lon)
+            )
+            least = min(least, float(np.min(near)))
+    return max(least - 0.5 * _OUTLINE_STEP * METRES_PER_DEGREE, 0.0)
 
 
 def certified_length(trade_off: TradeOffContext, routes: Sequence[Route]) -> float:

@@ -20,7 +20,7 @@ from thalweg.planning.pareto.trade_off_context import ExploredAlternative, Trade
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.single.route_candidates import refine_track, track_from_result
-from thalweg.planning.single.stretch import isochrones
+from thalweg.planning.single.stretch import isochrones, plan_stretch
 from thalweg.planning.single.weather_gaps import (
     MAX_GAPS,
     check_times_known,
@@ -138,10 +138,28 @@ def _fastest_route(
     if first.arrive <= latest:
         return horizon, route
     if not (route.feasible and route.arrive <= latest + 1.0):
-        earliest = min(first.arrive, route.arrive if route.feasible else math.inf)
-        raise late_arrival_error(latest, earliest, approach=context.approach_times[1])
+        alone = _fastest_alone(trade_off)
+        earliest = min([first.arrive, *(r.arrive for r in (route, alone) if r and r.feasible)])
+        if alone is None or earliest > latest + 1.0:
+            raise late_arrival_error(latest, earliest, approach=context.approach_times[1])
+        route = alone
     # in time as refined: paths of the network are longer, and those of its front may be later
     return replace(horizon, latest=first.arrive + 1.0), route
+
+
+def _fastest_alone(trade_off: TradeOffContext) -> Route | None:
+    """Return the route of the plan by least time, which is refined further; None with via points.
+
+    A latest arrival is refused only if that plan does not keep it either.
+    """
+    context = trade_off.context
+    if len(trade_off.ends) > 2:
+        return None
+    by_time = replace(context.voyage, objective="time", arrive_by=None)
+    depart = context.voyage.earliest_departure
+    free = replace(context, voyage=by_time)
+    start, goal = trade_off.ends
+    return plan_stretch(free, start, goal, (depart, depart)).route
 
 
 def network_pareto_front(
