@@ -196,6 +196,7 @@ def test_approaches_pass_known_places(name, lat, lon, within):
     assert distance(lat, lon, places[:, 0], places[:, 1]).min() <= within * NAUTICAL_MILE
 
 
+@pytest.mark.slow
 def test_ports_of_one_river_share_its_line():
     pairs = [
         ("Rotterdam", "Hook of Holland", 14.0),  # km 1000 to km 1030 of the Rhine: 16.5 nm

@@ -32,6 +32,7 @@ def ends_of(canal):
     return lat1, lon1, lat2, lon2
 
 
+@pytest.mark.slow
 def test_every_gshhg_chart_has_the_five_canals_and_others_none(chart):
     assert [canal.name for canal in chart.canals] == NAMES
     assert Chart.open_water().canals == ()

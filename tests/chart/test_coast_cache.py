@@ -46,6 +46,7 @@ def test_a_folder_that_cannot_be_written_is_no_harm(tmp_path):
     assert not path.exists()
 
 
+@pytest.mark.slow
 def test_gshhg_is_cached(tmp_path, monkeypatch):
     monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
     first = Chart.gshhg("c")

@@ -132,6 +132,7 @@ def test_places_inside_and_outside(seas, lat, lon, within):
     assert bool(seas.zones.in_eca(lat, lon + 360.0)) is within
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "box"),
     [

@@ -49,6 +49,7 @@ def test_islets_are_small_boxes_that_the_coarser_scale_lacks():
     assert len(read_land_rings("l")) < len(bare)
 
 
+@pytest.mark.slow
 def test_lines_of_passages_are_clear_of_islets(world):
     bare = read_land_rings("i", islets=False)
     before = Coastline("bare", build_index(bare, 256), lambda: bare)

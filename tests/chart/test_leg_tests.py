@@ -33,6 +33,7 @@ def random_legs(seed, count, window, lengths):
     return lat, lon, lat2, lon2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("window", "lengths"),
     [
@@ -194,6 +195,7 @@ def test_own_land_across_the_antimeridian():
     assert chart.legs_blocked(0.0, 178.0, 0.0, -178.0)
 
 
+@pytest.mark.slow
 @given(
     st.floats(50.2, 51.8),
     st.floats(10.2, 11.8),
@@ -246,6 +248,7 @@ def test_an_area_that_is_none_is_refused(box):
         Chart.open_water(*box)
 
 
+@pytest.mark.slow
 def test_shore_distance_is_a_lower_bound_near_the_exact_value(world):
     rng = np.random.default_rng(8)
     lat, lon = rng.uniform(49, 60, 300), rng.uniform(-8, 10, 300)

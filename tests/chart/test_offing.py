@@ -36,6 +36,7 @@ def least_distance(chart, leg):
     return float(chart.coastline.shore_distance(lat, lon).min())
 
 
+@pytest.mark.slow
 def test_legs_keep_the_offing_to_one_per_cent(island):
     offing = 2.0 * NM
     legs = legs_around(3000)

@@ -182,6 +182,7 @@ def test_a_wide_zone_is_not_silently_turned_inside_out(west, east):
     assert f"longitude {west:g} to {east:g}" in str(caught.value)
 
 
+@pytest.mark.slow
 def test_a_wide_zone_with_points_in_between_is_what_is_written():
     corners = [(-100, -10), (0, -10), (100, -10), (100, 10), (0, 10), (-100, 10)]
     chart = OPEN.with_zones(_ring_of(*corners))
@@ -190,6 +191,7 @@ def test_a_wide_zone_with_points_in_between_is_what_is_written():
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("west", "east"), [(100, -100), (170, -170), (350, 10), (170, 190)])
 def test_a_zone_across_the_antimeridian_or_greenwich_takes_the_short_side(west, east):
     chart = OPEN.with_zones(zone(west, -10, east, 10, kind="no-go"))

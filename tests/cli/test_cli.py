@@ -54,6 +54,7 @@ def run_json(capsys, *arguments):
     return code, json.loads(capsys.readouterr().out)
 
 
+@pytest.mark.slow
 def test_plan_prints_one_object_and_writes_files(capsys, tmp_path, ship, currents):
     out = tmp_path / "out"
     code, found = run_json(
@@ -83,6 +84,7 @@ def test_plan_prints_one_object_and_writes_files(capsys, tmp_path, ship, current
     assert json.loads((out / "plan.json").read_text()) == found
 
 
+@pytest.mark.slow
 def test_a_written_route_can_be_evaluated(capsys, tmp_path, ship, currents):
     world = ["--ship", ship, "--sea", currents, "--coast", "none"]
     when = ["--depart", "2026-01-01T00:00Z"]
@@ -111,6 +113,7 @@ def test_the_waits_of_a_route_are_totalled(capsys, tmp_path, ship):
     assert "waiting" not in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_plan_for_a_person(capsys, ship):
     code = main(
         ["plan", HERE, THERE, "--ship", ship, "--calm", "--coast", "none", "--speed", "8",
@@ -124,6 +127,7 @@ def test_plan_for_a_person(capsys, ship):
         assert jargon not in text
 
 
+@pytest.mark.slow
 def test_details_of_a_plan_on_request(capsys, ship):
     arguments = ["plan", HERE, THERE, "--ship", ship, "--calm", "--coast", "none", "--speed", "8"]
     assert main([*arguments, "--depart", "2026-01-01T00:00Z", "--verbose"]) == 0
@@ -132,6 +136,7 @@ def test_details_of_a_plan_on_request(capsys, ship):
         assert word in text
 
 
+@pytest.mark.slow
 def test_inspect_states_ranges_and_draws_one_picture_per_grid(capsys, tmp_path, currents):
     other = str(tmp_path / "other.nc")
     xr.open_dataset(currents).isel(lon=slice(None, -1)).to_netcdf(other)
@@ -211,6 +216,7 @@ def test_errors_as_json(capsys, ship):
     assert "Rotterdam" in found["remedy"] + found["possible"]
 
 
+@pytest.mark.slow
 def test_no_route_has_code_4_and_reasons(capsys, tmp_path, ship, currents):
     code, found = run_json(
         capsys, "plan", HERE, THERE, "--ship", ship, "--sea", currents, "--coast", "none",
@@ -220,6 +226,7 @@ def test_no_route_has_code_4_and_reasons(capsys, tmp_path, ship, currents):
     assert found["details"]["reasons"]
 
 
+@pytest.mark.slow
 def test_southern_positions_are_not_options(capsys, ship):
     code, found = run_json(
         capsys, "plan", "-33.5,152.0", "-33.0,152.5", "--ship", ship, "--calm", "--coast", "none"
@@ -285,6 +292,7 @@ def test_half_a_vector_is_no_sea(capsys, tmp_path, currents):
     assert "the other part of this vector" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_high_latitudes_give_a_warning(capsys, ship):
     code, found = run_json(
         capsys, "plan", "75N 0E", "75N 4E", "--ship", ship, "--calm", "--coast", "none"

@@ -31,6 +31,7 @@ def run_json(capsys, *arguments):
     return code, json.loads(capsys.readouterr().out)
 
 
+@pytest.mark.slow
 def test_a_route_costs_the_same_by_plan_shell_and_library(capsys, track):
     """Table 5.2 of Seuren (2020): 300 USD/t outside, 1.5593 times that inside."""
     code, plan = run_json(capsys, "plan", "55,4", "55,5", *SHIP, *DEPART)
@@ -45,6 +46,7 @@ def test_a_route_costs_the_same_by_plan_shell_and_library(capsys, track):
         assert given.cost == pytest.approx(scored["cost_usd"], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_every_route_of_a_front_pays_for_its_fuel_in_control_areas():
     voyage = Voyage(start=START, goal=GOAL, depart=0, objective="front", method="exact")
     found = plan(
@@ -56,6 +58,7 @@ def test_every_route_of_a_front_pays_for_its_fuel_in_control_areas():
         assert route.cost == pytest.approx(300.0 * 1.5593 * route.fuel_t, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_without_control_areas_the_fuel_inside_is_unknown(capsys, track):
     _, plan = run_json(capsys, "plan", "55,4", "55,5", *SHIP, *DEPART, "--no-eca")
     _, scored = run_json(capsys, "evaluate", track, *SHIP, *DEPART, "--no-eca")
@@ -64,6 +67,7 @@ def test_without_control_areas_the_fuel_inside_is_unknown(capsys, track):
         assert route["cost_usd"] == pytest.approx(300.0 * route["fuel_t"], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_prices_of_the_command_count_whatever_is_minimised(capsys, track):
     prices = ("--fuel-price", "600", "--eca-price-factor", "2", "--time-price", "100")
     _, plan = run_json(capsys, "plan", "55,4", "55,5", *SHIP, *DEPART, *prices)
@@ -146,6 +150,7 @@ def test_a_held_speed_is_named_and_needs_a_speed(capsys, track):
     assert code == 2
 
 
+@pytest.mark.slow
 def test_charges_without_prices_are_unknown_and_not_zero(capsys, track):
     """0.0 would say that the European Union charges nothing."""
     _, plan = run_json(capsys, "plan", "55,4", "55,5", *SHIP, *DEPART)

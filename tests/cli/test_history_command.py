@@ -106,6 +106,7 @@ def test_shortest_ways_know_the_draught(files, capsys, monkeypatch):
     assert asked == [9.5] and "Alpha,0.0,1.0" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_tracks_away_from_known_ports_are_refused_with_what_was_found(files, capsys, tmp_path):
     words = ["history", "build", str(files / "tracks.csv"), "--out", str(tmp_path / "n.json")]
     assert main([*words, "--quiet"]) == 2

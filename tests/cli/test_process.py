@@ -26,6 +26,7 @@ def _run(words, redirect="", **variables):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "redirect", "code"),
     [
@@ -43,6 +44,7 @@ def test_closed_outputs_do_not_change_the_result(words, redirect, code):
     assert b"Traceback" not in done.stderr and b"Exception" not in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("words", [LIST, [*UNKNOWN, "--json"]])
 def test_a_full_output_is_an_error_with_a_cause(words):
     done = _run(words, "> /dev/full")
@@ -51,6 +53,7 @@ def test_a_full_output_is_an_error_with_a_cause(words):
     assert b"Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 def test_texts_can_be_written_in_any_encoding():
     done = _run(
         ["ship", "n\N{LATIN SMALL LETTER E WITH ACUTE}", "--json", "--quiet"],
@@ -104,6 +107,7 @@ def test_names_that_are_not_utf_8(tmp_path):
     assert done.returncode == 2 and b"holds 0 waypoints" in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("words", [
     ["plan", "Atlantis", "London", "--ship", "handysize-bulker", "--calm"],
     ["distance", "Rotterdam", "95.0,3.0"],

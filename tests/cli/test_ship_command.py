@@ -137,6 +137,7 @@ def test_the_table_for_people_names_estimates_and_sources(capsys, ship_file):
     assert "Seuren" in _run(capsys, "handysize-bulker")
 
 
+@pytest.mark.slow
 def test_pictures_and_json_are_written(capsys, ship_file, tmp_path):
     folder = tmp_path / "out"
     _run(capsys, ship_file, "--speed", "8:14", "--hs", 2, "--out", folder)
@@ -146,6 +147,7 @@ def test_pictures_and_json_are_written(capsys, ship_file, tmp_path):
     assert all(path.stat().st_size > 1000 for path in folder.iterdir())
 
 
+@pytest.mark.slow
 def test_a_single_speed_is_drawn_too(capsys, ship_file, tmp_path):
     _run(capsys, ship_file, "--speed", 12, "--wind", 10, "--out", tmp_path / "one")
     assert (tmp_path / "one" / "resistance.png").stat().st_size > 1000
@@ -168,6 +170,7 @@ def test_weather_that_is_half_told_is_completed_and_said(capsys, ship_file):
     assert "Assumed: waves from ahead" in _run(capsys, ship_file, "--speed", 12, "--hs", 2)
 
 
+@pytest.mark.slow
 def test_what_is_not_known_comes_with_the_keys_that_would_tell_it(capsys, ship_file):
     def missing(text):
         ship_file.write_text(text)
@@ -299,6 +302,7 @@ def test_the_list_of_ships_can_be_json(capsys):
     assert "kvlcc2" in json.loads(_run(capsys, "--list", "--json"))["ships"]
 
 
+@pytest.mark.slow
 def test_names_that_look_like_markup_or_formulas_are_shown_as_they_are(capsys, tmp_path):
     path = tmp_path / "ship.yaml"
     name = "MV [/] x$^$ [red]y"
@@ -340,6 +344,7 @@ def test_a_name_longer_than_files_may_have_is_refused(capsys):
         _run(capsys, "a" * 300)
 
 
+@pytest.mark.slow
 def test_a_reader_that_leaves_early_is_no_fault():
     command = [sys.executable, "-m", "thalweg", "ship", "kvlcc2", "--json", "--quiet"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
@@ -364,6 +369,7 @@ def test_beyond_the_range_of_the_speed_loss_no_speed_is_given(capsys):
     assert any("no speed is given" in text for text in top["warnings"])
 
 
+@pytest.mark.slow
 def test_motions_and_sickness_by_place_and_heading(capsys, tmp_path):
     """Motions are those at the speed that the ship attains: slower in head seas than ordered."""
     words = ("gunnerus-2019", "--hs", 2, "--tp", 8, "--speed", 4.83 / 0.514444)

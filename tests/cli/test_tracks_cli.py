@@ -53,6 +53,7 @@ def asked(folder, *more):
     return ["tracks", str(folder / "ais.csv"), "--areas", str(folder / "areas.geojson"), *more]
 
 
+@pytest.mark.slow
 def test_json(folder, capsys):
     assert main(asked(folder, "--sea", str(folder / "tide.nc"), "--json")) == 0
     found = json.loads(capsys.readouterr().out)
@@ -64,6 +65,7 @@ def test_json(folder, capsys):
     }
 
 
+@pytest.mark.slow
 def test_files_and_tables(folder, tmp_path, capsys):
     more = ("--sea", str(folder / "tide.nc"), "--ship", "hopper-dredger")
     fills = ("--fill", "wind=0", "waves=0", "--speed", "11", "--out", str(tmp_path))

@@ -13,6 +13,7 @@ NEAP = [*ENDS, "--ship", "vox-olympia", "--north-sea", "neap", "--depart", "2026
 QUICK = ["--coast", "none", "--step", "20"]
 
 
+@pytest.mark.slow
 def test_json_tells_savings_and_break_even_powers(capsys):
     assert main(["waiting", *NEAP, *QUICK, "--hotel-kw", "0", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
@@ -36,6 +37,7 @@ def test_the_hotel_load_of_the_ship_ends_all_waiting(capsys):
     assert rows[rows.rule == "optimum"].saving_percent.max() < 0.01
 
 
+@pytest.mark.slow
 def test_files_and_the_table(tmp_path, capsys):
     out = tmp_path / "study"
     assert main(["waiting", *NEAP, *QUICK, "--cycles", "0", "--out", str(out)]) == 0
@@ -47,6 +49,7 @@ def test_files_and_the_table(tmp_path, capsys):
     assert (out / "waiting.png").stat().st_size > 20_000
 
 
+@pytest.mark.slow
 def test_a_sea_from_a_file_must_last_long_enough(tmp_path, capsys):
     xr = pytest.importorskip("xarray")
     times = np.datetime64("2026-01-01", "ns") + np.arange(30) * np.timedelta64(1, "h")

@@ -55,12 +55,14 @@ def test_builder_passes_the_check(name):
     assert not blocked.any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["lattice", "mesh 3"])
 def test_building_twice_gives_the_same(name):
     first, second = BUILDERS[name](), BUILDERS[name]()
     np.testing.assert_equal(asdict(first), asdict(second))
 
 
+@pytest.mark.slow
 def test_reading_does_not_write():
     network = lattice(Chart.open_water(), (10, -40), (11, -39), directions=8)
     before = network.edges.length.copy()

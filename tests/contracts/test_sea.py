@@ -108,6 +108,7 @@ def test_series_equal_samples(sea) -> None:
         assert series[name] == pytest.approx(one, rel=1e-9, abs=1e-12, nan_ok=True)
 
 
+@pytest.mark.slow
 def test_frozen_fields_have_the_layout_of_kernels(sea) -> None:
     _, lat, lon = points(sea)
     fields = sea.freeze_stations(lat, lon, T0, T0 + 3600.0, range(codes.CHANNEL_COUNT))

@@ -13,6 +13,7 @@ from thalweg.ship.tables.tabulate import constant_part
 _QUICK = [name for name in library_names() if name not in ("jbc", "kvlcc2", "s175", "gunnerus")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", _QUICK)
 def test_library_ships_keep_the_contract(name):
     check_ship_model(Ship.load(name))

@@ -90,6 +90,7 @@ _OWN_TEXTS = {
 }
 
 
+@pytest.mark.slow
 def test_json_is_never_written_with_nan_or_infinity():
     root = Path(thalweg.__file__).parent
     lax: Counter[str] = Counter()

@@ -133,6 +133,7 @@ def test_refined_front_among_islands_is_feasible_repeatable_and_ahead_of_evoluti
         assert jet.refereed(genome, islands())[2] == 0
 
 
+@pytest.mark.slow
 def test_without_evolution_the_seeds_alone_are_refined():
     evaluator, seeds = jet.evaluator(), [jet.straight(s) for s in range(0, 12, 3)]
     settings = FrontRefinementSettings(8, 4, exploration=0)
@@ -141,6 +142,7 @@ def test_without_evolution_the_seeds_alone_are_refined():
     assert front.objectives[:, 1].min() < 0.98 * evaluator(seeds)[1].min()
 
 
+@pytest.mark.slow
 def test_cancelled_runs_keep_the_best_so_far_and_say_so():
     evaluator, told = jet.evaluator(), []
     calls = iter([False] * 5 + [True] * 100)

@@ -66,6 +66,7 @@ def aws(gfs_run):
         yield recorded, Gfs(server="aws", aws=address)
 
 
+@pytest.mark.slow
 def test_gfs_fields_of_a_box_across_the_antimeridian(tmp_path, aws, client):
     recorded, source = aws
     out = tmp_path / "wind.nc"
@@ -101,6 +102,7 @@ def test_what_has_arrived_is_not_downloaded_again(tmp_path, aws, client):
         xr.testing.assert_equal(a, b)
 
 
+@pytest.mark.slow
 def test_broken_downloads_go_on_where_they_stopped(tmp_path, aws, client):
     recorded, source = aws
     recorded.fault = lambda path, time: "half" if path.endswith("f004") and time == 1 else ""
@@ -112,6 +114,7 @@ def test_broken_downloads_go_on_where_they_stopped(tmp_path, aws, client):
     assert any(98 + 8192 <= start <= half for start in starts)  # the rest, not the whole again
 
 
+@pytest.mark.slow
 def test_busy_servers_are_asked_again_after_the_pause_they_want(tmp_path, aws, client):
     recorded, source = aws
     recorded.fault = lambda path, time: "429" if path.endswith("f007") and time < 3 else ""
@@ -142,6 +145,7 @@ def test_the_run_before_is_taken_while_the_latest_is_not_complete(aws, client):
     assert plan.times == (RUN + 7 * HOUR, RUN + 8 * HOUR)
 
 
+@pytest.mark.slow
 def test_the_estimate_is_the_size_of_the_download(tmp_path, aws, client):
     _, source = aws
     plan = estimate_forecast(request(), source, client=client, now=NOW)
@@ -188,6 +192,7 @@ def test_ecmwf_members(tmp_path, client):
     assert Sea.open(out).members == 3
 
 
+@pytest.mark.slow
 def test_ecmwf_single_forecast(tmp_path, client):
     recorded = Recorded()
     ecmwf_files(recorded, RUN, (0, 3, 6, 9))

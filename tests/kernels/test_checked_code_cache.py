@@ -62,6 +62,7 @@ def test_files_cut_short_or_changed_are_compiled_again(run, tmp_path):
     assert run() == (42.0, 1)
 
 
+@pytest.mark.slow
 def test_code_that_cannot_be_kept_is_used(run, tmp_path):
     limit = (
         "import resource, signal; signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"

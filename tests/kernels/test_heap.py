@@ -25,6 +25,7 @@ def drain(first, second, order):
     return count, taken, at, place
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 2, 5, 6, 400])
 def test_nodes_come_out_once_and_in_order_of_their_lowered_keys(count):
     rng = np.random.default_rng(count)

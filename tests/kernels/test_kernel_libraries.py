@@ -6,6 +6,8 @@ import os
 import subprocess
 import sys
 
+import pytest
+
 KERNELS = """
 from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit
@@ -27,6 +29,7 @@ def fourth_power(x):
 """
 
 
+@pytest.mark.slow
 def test_an_inner_kernel_is_compiled_once_for_all_processes(tmp_path):
     (tmp_path / "some_kernels.py").write_text(KERNELS)
     environment = os.environ | {

@@ -139,6 +139,7 @@ def test_point_speed_without_weather_is_the_published_triangle():
             assert found == pytest.approx(float(expected.speed_over_ground), rel=2e-6, abs=2e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", ["tabulate", "tabulate_fuel"])
 @pytest.mark.parametrize("name", ["s175", "vox-olympia"])
 def test_table_value_is_the_lookup_of_the_table(name, what):

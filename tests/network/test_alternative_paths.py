@@ -35,6 +35,7 @@ def world():
     return chart, lattice(chart, WEST, EAST, slack=1.0)
 
 
+@pytest.mark.slow
 def test_both_sides_of_an_island_are_found_and_shortened(world):
     chart, network = world
     ways = alternative_paths(network, chart)
@@ -53,6 +54,7 @@ def test_both_sides_of_an_island_are_found_and_shortened(world):
         assert len(way.lat) < 12 < len(way.path)
 
 
+@pytest.mark.slow
 def test_the_least_width_of_islands_can_be_set(world):
     chart, network = world
     assert len(alternative_paths(network, chart, island=1000.0)) == 3
@@ -60,6 +62,7 @@ def test_the_least_width_of_islands_can_be_set(world):
     assert len(alternative_paths(network, chart, island=1000.0, most=2)) == 2
 
 
+@pytest.mark.slow
 def test_stretch_limits_the_paths(world):
     chart, network = world
     north = corner_way((0.1, -0.2), (0.1, 0.2))
@@ -109,6 +112,7 @@ def test_a_ring_round_a_point_crosses_its_meridian_once(lat, lon, radius, count,
     assert back.sum() == -answer.sum()
 
 
+@pytest.mark.slow
 @given(st.integers(0, 2**31))
 @settings(max_examples=15)
 def test_pulling_never_costs_more_and_never_touches_land(seed):
@@ -175,6 +179,7 @@ def test_paths_without_canals_are_returned_up_to_the_threshold(start, goal, thro
         assert way.length == pytest.approx(sea + sum(canals), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_path_by_two_canals_is_searched_without_their_subsets():
     chart = Chart.gshhg("i")
     network = globe(chart, (38.2, 22.5), (27.0, 34.5), slack=0.6)  # Gulf of Corinth to Red Sea

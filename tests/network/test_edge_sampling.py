@@ -26,6 +26,7 @@ def test_it_is_a_sound_network_whose_stations_are_its_nodes(network):
     assert len(network.samples.station_a) > network.n_edges / 2
 
 
+@pytest.mark.slow
 def test_samples_lie_on_their_edges(network):
     tails = network.tails()
     of = np.repeat(np.arange(network.n_edges), np.diff(network.samples.ptr))

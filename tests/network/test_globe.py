@@ -66,6 +66,7 @@ def test_canals_are_taken_where_they_are_shorter(
     assert least < length < most
 
 
+@pytest.mark.slow
 def test_the_black_sea_and_the_baltic_are_joined_to_the_ocean(chart):
     bare = chart.without_canals("all")
     for start in ((46.3, 30.9), (54.5, 18.9), (59.7, 10.6)):
@@ -74,6 +75,7 @@ def test_the_black_sea_and_the_baltic_are_joined_to_the_ocean(chart):
         assert crow < length < 4.0 * crow
 
 
+@pytest.mark.slow
 def test_a_quay_up_a_fjord_gets_an_approach(chart):
     quay = chart.nearest_navigable(60.39, 5.32)[:2]
     network = globe(chart, quay, ROTTERDAM)
@@ -83,6 +85,7 @@ def test_a_quay_up_a_fjord_gets_an_approach(chart):
     assert 500 < length < 560
 
 
+@pytest.mark.slow
 def test_edges_are_sampled_and_legs_are_free(chart):
     network = globe(chart, NEW_YORK, (49.7, -7.0))
     check_network(network, symmetric=True)
@@ -117,6 +120,7 @@ def test_the_arctic_is_closed_unless_it_is_opened_or_an_end_lies_there():
     assert 72.0 < north.lat.max() <= 75.0
 
 
+@pytest.mark.slow
 def test_no_go_zones_and_areas_have_no_nodes(chart):
     wall = [[[-31.0, 20.0], [-29.0, 20.0], [-29.0, 71.0], [-31.0, 71.0], [-31.0, 20.0]]]
     zone = {"type": "Feature", "properties": {"kind": "no-go"},
@@ -133,6 +137,7 @@ def test_no_go_zones_and_areas_have_no_nodes(chart):
     assert network.lat.min() >= 30.0 and network.lon.max() <= 0.0
 
 
+@pytest.mark.slow
 def test_no_route_without_canals_names_the_canals_needed(chart):
     wall = [[[6.0, 57.0], [12.6, 57.0], [12.6, 57.4], [6.0, 57.4], [6.0, 57.0]]]
     shut = {"type": "Feature", "properties": {"kind": "no-go"},
@@ -177,6 +182,7 @@ def test_ends_on_land_are_refused():
         globe(Chart.gshhg("c"), (47.0, 8.0), NEW_YORK)
 
 
+@pytest.mark.slow
 def test_the_grid_is_cached_and_a_damaged_file_is_replaced(tmp_path, monkeypatch):
     monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
     chart = Chart.gshhg("c")
@@ -244,6 +250,7 @@ def test_canals_of_ones_own_are_edges_too():
     assert sorted(set(network.edges.fixed_time[np.isfinite(network.edges.fixed_time)])) == [3600.0]
 
 
+@pytest.mark.slow
 def test_borders_of_priced_zones_are_finer():
     chart = Chart.gshhg("c")
     box = [[[-40.0, 30.0], [-20.0, 30.0], [-20.0, 45.0], [-40.0, 45.0], [-40.0, 30.0]]]
@@ -260,6 +267,7 @@ def test_borders_of_priced_zones_are_finer():
     assert near[1] > 20 * max(near[0], 1) and near[2] == near[0]
 
 
+@pytest.mark.slow
 @given(st.integers(0, 10_000), st.integers(0, 10_000))
 @settings(max_examples=20)
 def test_astar_finds_the_same_as_dijkstra(a, b):

@@ -1,6 +1,7 @@
 """Geodesic grids: halves shared, faces without gaps, leaves joined without holes."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -50,6 +51,7 @@ def side(grid, a, b):
     return [a] if m is None else side(grid, a, m) + side(grid, m, b)
 
 
+@pytest.mark.slow
 @given(SEEDS, st.integers(0, 3), st.integers(0, 4))
 @settings(max_examples=40)
 def test_faces_tile_the_sphere_and_leaves_are_joined_without_holes(seed, level, extra):

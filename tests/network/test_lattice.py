@@ -81,6 +81,7 @@ def test_latlon_lattice_has_rows_along_parallels():
     )
 
 
+@pytest.mark.slow
 def test_exact_ends():
     network = lattice(OPEN, (52.123456789, 3.987654321), (53.5, 2.5))
     start, goal = network.meta.start, network.meta.goal
@@ -147,6 +148,7 @@ def test_no_edge_touches_an_island_and_the_path_passes_its_corner():
     assert corner < distance[network.meta.goal] < 1.0131 * corner
 
 
+@pytest.mark.slow
 def test_narrow_strait_is_found_through_coast_levels():
     # a wall from 60 S to 60 N but for a strait half a mile wide; the coarse spacing is 25 nm
     chart = land_chart((-60, 0.2, -0.05, 0.05), (0.21, 60, -0.05, 0.05))
@@ -155,6 +157,7 @@ def test_narrow_strait_is_found_through_coast_levels():
     assert ratio(network) < 1.05
 
 
+@pytest.mark.slow
 def test_across_the_antimeridian():
     network = lattice(OPEN, (-18.2, 178.4), (-13.7, -171.8), directions=16)
     check_network(network, symmetric=True)
@@ -164,6 +167,7 @@ def test_across_the_antimeridian():
     assert (network.lon < -170).any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("orientation", ["great_circle", "latlon"])
 def test_high_latitude(orientation):
     network = lattice(OPEN, (80, 10), (80, 40), directions=32, orientation=orientation, slack=0.2)
@@ -177,6 +181,7 @@ def test_over_the_pole():
     assert ratio(network) == pytest.approx(1.0, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_region_grows_until_a_long_detour_fits():
     # a wall far longer than the first ellipse
     chart = land_chart((-12, 12, -0.1, 0.1))

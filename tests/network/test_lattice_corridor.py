@@ -10,6 +10,7 @@ from thalweg.core import geodesy
 from thalweg.network import check_network, lattice, shortest_path
 
 
+@pytest.mark.slow
 def test_a_corridor_holds_only_water_near_its_path():
     chart = Chart.open_water(-10.0, 10.0, -10.0, 30.0)
     way = [(0.0, 0.0), (5.0, 10.0), (0.0, 20.0)]

@@ -133,6 +133,7 @@ def test_shortest_path_is_the_least_of_all_walks():
     assert float(least[network.meta.goal]) == pytest.approx(min(walks(0)), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_the_suggested_shape_is_the_coarsest_that_is_good_enough():
     open_water = suggested_shape(Chart.open_water(), (65.0, 0.0), (65.0, 4.0))
     assert open_water.layers == 5  # an odd fan has the geodesic itself
@@ -233,6 +234,7 @@ def test_requests_for_a_chosen_shape():
             LayeredRequest.from_dict(bad)
 
 
+@pytest.mark.slow
 def test_a_chosen_network_turns_where_land_is_across_the_direct_line():
     """A bay with one mouth to the south, and the goal north of it: no rhombus holds a path."""
     bay = [box(1.0, 64.6, 1.2, 65.4), box(1.0, 65.3, 2.6, 65.4), box(2.4, 64.6, 2.6, 65.4)]

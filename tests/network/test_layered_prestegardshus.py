@@ -147,6 +147,7 @@ def test_counts_of_table_3(shape, expected):
     assert (own.n_nodes, own.n_segments) == expected
 
 
+@pytest.mark.slow
 def test_closed_forms_are_the_counts_of_the_segments_themselves():
     for layers in range(1, 31):
         for fan in range(2, 21):
@@ -252,6 +253,7 @@ def test_nodes_of_the_fine_three_sections_are_where_the_thesis_has_them():
         assert (x[node - 1], y[node - 1]) == pytest.approx(there, abs=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layers, fan, offset, printed, rule, crossing, usable", FILTERED)
 def test_filtered_and_usable_counts(chart, layers, fan, offset, printed, rule, crossing, usable):
     """His rule (nodes on water in the box) within 5 % of print; exact test and sweeps, exactly."""
@@ -292,6 +294,7 @@ def test_every_printed_path_crosses_land(chart):
     assert all(crossed.values())
 
 
+@pytest.mark.slow
 def test_a_route_by_the_strait_of_node_120_exists_where_the_shape_must_contain_it(chart):
     """The Naeroysund at Rorvik; the detour is 5 to 6 km of 95, as on the lattice."""
     strait, places = (64.862, 11.253), ((64.6047, 10.5371), (65.3480, 11.3946))
@@ -309,6 +312,7 @@ def test_a_route_by_the_strait_of_node_120_exists_where_the_shape_must_contain_i
         suggested_shape(chart, *places, contain=[(64.87, 12.5)])
 
 
+@pytest.mark.slow
 def test_straits_narrower_than_the_coastline_shows_are_noted(chart):
     request = LayeredRequest(contain=((64.862, 11.253),), within_percent=2.0)
     places = (64.6047, 10.5371), (65.3480, 11.3946)

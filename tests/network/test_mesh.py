@@ -72,6 +72,7 @@ def test_rings_of_a_regular_mesh():
         assert np.sum((a == middle) | (b == middle)) == 6 * number
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("rings", "directions", "worst"), [(1, 6, 1.1547), (2, 12, 1.0353), (3, 24, 1.0141)]
 )

@@ -42,6 +42,7 @@ def test_wide_water_gets_no_more_nodes():
     assert amid.sum() <= 12  # those of the lattice, 10 km apart
 
 
+@pytest.mark.slow
 def test_a_kyle_of_the_highlands_is_passed_on_a_coarse_lattice():
     chart = Chart.gshhg("i", narrows_closed=False)
     network = lattice(chart, (58.5, -6.0), (56.0, -7.0), spacing=15_000.0, coast_levels=0)

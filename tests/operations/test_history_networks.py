@@ -56,6 +56,7 @@ def network(fleet):
     return history_from_tracks(fleet, Chart.open_water(), ports=PORTS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("start", "goal", "month", "truth"), [
     ("Alpha", "Bravo", 1, WINTER), ("Alpha", "Bravo", 7, SUMMER), ("Bravo", "Alpha", None, BACK),
     ("Bravo", "Charlie", None, ONWARD), ("Charlie", "Alpha", None, HOME),

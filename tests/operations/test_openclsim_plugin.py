@@ -110,6 +110,7 @@ def test_a_project_in_openclsim_sails_planned_legs(yard, leg_planner, estuary):
     assert yard.env.now - START == pytest.approx(pumping + sailing, abs=1.0)
 
 
+@pytest.mark.slow
 def test_the_log_contains_distance_energy_and_waits(yard):
     project(yard, cycles=2, amount=4000.0)  # a full ship waits for the tide on one of them
     vessel = yard.vessel
@@ -134,6 +135,7 @@ def test_the_log_contains_distance_energy_and_waits(yard):
     assert abs((last - ended.replace(tzinfo=None)).total_seconds()) < 0.01
 
 
+@pytest.mark.slow
 def test_speed_and_route_depend_on_the_load(yard, estuary):
     vessel = yard.vessel
     assert vessel.load_factor == 0.0

@@ -60,6 +60,7 @@ def result():
     return run_project(project, ship=ship, sea=sea, chart=chart)
 
 
+@pytest.mark.slow
 def test_the_volume_is_moved_cycle_after_cycle(result):
     work = result.project.work
     for run in result.runs:
@@ -104,6 +105,7 @@ def test_the_least_clearance_is_unknown_where_that_of_a_leg_is(result):
     assert run.totals["least_clearance_m"] is None
 
 
+@pytest.mark.slow
 def test_the_mean_load_factor_is_that_of_the_volumes():
     """Cycles times mean load is the volume; the last cycle carries what is left."""
     project = Project.from_dict(example(base_case=None, volume_m3=15_000, load_factors=[0.5, 1.0]))
@@ -191,6 +193,7 @@ def test_cost_is_that_of_van_halem(result):
     assert run.totals["cost"] == pytest.approx(total, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_leg_that_breaks_a_limit_between_the_nodes_is_planned_with_more_water():
     project = Project.from_dict(example(margin_m=0.0, spacing_m=1200.0, rings=3))
     ship, sea, chart = open_project_inputs(project)
@@ -247,6 +250,7 @@ def test_the_load_chosen_produces_most(result):
     assert first.production == pytest.approx(produced[first.load_factor], rel=0.01)
 
 
+@pytest.mark.slow
 def test_files_and_pictures(result, tmp_path):
     files = write_project_files(result, tmp_path)
     assert [file.name for file in files] == [
@@ -350,6 +354,7 @@ def test_a_dry_site_is_reported_with_its_highest_water():
     assert 0.5 < caught.value.details["missing_m"] < 4.5
 
 
+@pytest.mark.slow
 def test_an_impossible_clearance_is_reported_with_highest_water_and_missing_depth():
     with pytest.raises(NoRouteError, match="no route at any tide") as caught:
         sail(min_ukc_m=6.0, load_factors=[0.5, 1.0])
@@ -360,6 +365,7 @@ def test_an_impossible_clearance_is_reported_with_highest_water_and_missing_dept
     assert "m too shallow: at" in caught.value.possible
 
 
+@pytest.mark.slow
 def test_too_few_days_are_reported_with_the_volume_moved():
     with pytest.raises(OutsidePeriodError, match=r"can be moved \(optimised\)") as caught:
         sail(volume_m3=60_000, days=1.0)

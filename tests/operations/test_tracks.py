@@ -48,6 +48,7 @@ def analysis(made):
     return analyse_tracks(made.frame, CYCLE.areas, sea=TIDAL, ship=ship)
 
 
+@pytest.mark.slow
 def test_the_true_factor_and_speeds_are_found(analysis):
     """Without speed noise the factor is met within 0.02 and the speeds within 0.03 kn."""
     found = analysis.calibration

@@ -59,6 +59,7 @@ def test_still_water_takes_length_over_speed():
     assert table.current == pytest.approx(0.0, abs=1e-15)
 
 
+@pytest.mark.slow
 def test_a_tide_is_met_as_the_referee_meets_it():
     ship = vox()
     sea = sea_of(

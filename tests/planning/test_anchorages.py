@@ -85,6 +85,7 @@ def waits(route):
     return [(float(route.track.lat[k]), float(route.track.lon[k])) for k in at]
 
 
+@pytest.mark.slow
 def test_the_ship_waits_in_the_anchorage_or_at_the_start() -> None:
     free = sail(Chart.open_water(*AREA))
     route = sail(chart(ANCHORAGE))
@@ -95,6 +96,7 @@ def test_the_ship_waits_in_the_anchorage_or_at_the_start() -> None:
     assert free.time_h - 1e-3 <= route.time_h < free.time_h + 0.2
 
 
+@pytest.mark.slow
 def test_the_ship_does_not_wait_before_the_bar_where_that_is_barred() -> None:
     route = sail(chart(BARRED))
     assert route.feasible and route.waiting_h > 1.0
@@ -114,6 +116,7 @@ def test_the_referee_finds_waits_where_there_should_be_none() -> None:
     assert evaluate(at_berth, ship=SHIP, sea=SEA, chart=chart(BARRED)).feasible
 
 
+@pytest.mark.slow
 def test_without_anchorages_the_ship_waits_at_the_berth_for_a_closed_bar() -> None:
     everywhere = chart(zone("no-waiting", *AREA))
     route = sail(everywhere)

@@ -57,6 +57,7 @@ def test_the_chart_of_the_plots_keeps_its_offing_and_its_approaches():
     assert kept.approaches is PORT_APPROACHES
 
 
+@pytest.mark.slow
 def test_totals_are_those_of_the_sea_and_the_two_approaches():
     route = planned().best
     start, goal = approach_of("Amsterdam"), approach_of("Rotterdam")
@@ -159,6 +160,7 @@ def test_latest_arrival_counts_the_approaches():
         planned(arrive_by="2024-01-01T02:00Z")
 
 
+@pytest.mark.slow
 def test_a_position_on_land_near_a_port_is_that_port():
     end = resolve_endpoint((51.9, 4.4833), chart(), "start")  # Rotterdam in the World Port Index
     assert end.approach == approach_of("Rotterdam")
@@ -167,6 +169,7 @@ def test_a_position_on_land_near_a_port_is_that_port():
         assert resolve_endpoint((lat, lon), chart(), "start").lat
 
 
+@pytest.mark.slow
 def test_a_position_far_from_the_sea_is_refused_with_the_nearest_water():
     with pytest.raises(InputError, match=r"not on navigable water|nearest navigable water"):
         resolve_endpoint((48.1, 11.6), chart(), "goal")  # Munich
@@ -235,6 +238,7 @@ def test_slow_ships_keep_their_own_speed_in_approaches():
     assert route.time_h * HOUR == pytest.approx(approach_of("Rotterdam").length / (7.0 * KNOT))
 
 
+@pytest.mark.slow
 def test_departure_is_from_the_berth():
     plan = planned(goal="Rotterdam", objective="distance")
     assert plan.best.depart == plan.voyage.earliest_departure

@@ -41,6 +41,7 @@ def mid_speed_time(current_kn: float = 0.0) -> float:
     return LENGTH / (0.8 * float(SHIP.speeds[-1]) + current_kn * KNOT)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hold", [None, "power", "speed"])
 def test_the_speed_found_is_that_of_length_time_and_current(hold) -> None:
     time = mid_speed_time(current_kn=1.0)
@@ -57,6 +58,7 @@ def test_the_speed_found_is_that_of_length_time_and_current(hold) -> None:
     assert f", {lowest}, to arrive at " in str(found).splitlines()[0]
 
 
+@pytest.mark.slow
 def test_one_speed_over_ground_in_a_current_that_turns() -> None:
     time = mid_speed_time()
     sea = sea_with_current(0.8, period=12.42 * HOUR)
@@ -72,6 +74,7 @@ def test_one_speed_over_ground_in_a_current_that_turns() -> None:
     assert "set hour by hour" in found.notes[0]
 
 
+@pytest.mark.slow
 def test_the_latest_departure_is_the_arrival_less_the_passage() -> None:
     arrive = DEPART + 40.0 * HOUR
     found = planned(sea_with_current(1.0), arrive=arrive)

@@ -61,6 +61,7 @@ def test_start_on_land_names_the_nearest_water():
     assert "land" in str(caught.value)
 
 
+@pytest.mark.slow
 def test_enclosed_goal_is_no_route():
     chart = Chart.from_geojson(land=ring(0.2, 0.1))
     with pytest.raises(NoRouteError) as caught:
@@ -95,6 +96,7 @@ def test_a_data_gap_across_the_area_is_reported_as_no_route():
     assert "gap" in caught.value.remedy
 
 
+@pytest.mark.slow
 def test_a_gap_is_sailed_round_never_through():
     sea = current(lambda t, lat, lon: np.where((np.abs(lon - 2) < 0.2) & (lat < 50.7), np.nan, 0.0))
     best = ask(sea=sea).best
@@ -103,6 +105,7 @@ def test_a_gap_is_sailed_round_never_through():
     assert best.samples["lat"][inside].min() > 50.699
 
 
+@pytest.mark.slow
 def test_a_requested_fill_value_closes_the_gap_and_is_reported():
     sea = current(lambda t, lat, lon: np.where(np.abs(lon - 2.0) < 0.2, np.nan, 0.0))
     found = ask(sea=sea.filled(currents=0.0))
@@ -154,6 +157,7 @@ def test_a_speed_the_ship_does_not_have():
         ask(speed_kn=14.0)
 
 
+@pytest.mark.slow
 def test_a_speed_between_the_settings_is_sailed_by_the_law_of_the_ship():
     """Seuren's bulk carrier has no 12 kn: one engine ends at 10.8, two begin at 14.1 kn."""
     ship = Ship.load("handysize-bulker")
@@ -214,6 +218,7 @@ def test_unknown_objective_has_near_matches():
         Voyage(start=(50, 1), goal=(51, 2), depart=DEPART, objective="tiem")
 
 
+@pytest.mark.slow
 def test_output_folder_that_cannot_be(tmp_path):
     (tmp_path / "file").write_text("x")
     with pytest.raises(InputError, match="cannot be written"):
@@ -228,6 +233,7 @@ def test_network_unknown_or_absent():
         plan(voyage, ship=SHIP, sea=Sea.calm(), chart=WATER, network="mesh")
 
 
+@pytest.mark.slow
 def test_wind_speed_without_direction_suffices_for_ships_that_use_only_speed():
     sea = Sea.from_functions({"wind_speed": lambda t, lat, lon: 10.0 + 0.0 * lat})
     ship = Ship.from_speed_function(lambda c: 6.0 - 0.1 * c.wind_speed, draught_m=5.0)

@@ -69,6 +69,7 @@ def _wave_channels():
     return tuple(sorted(channel for channel, name in names if name in WAVES))
 
 
+@pytest.mark.slow
 def test_front_of_time_and_comfort_is_that_of_all_walks(problem):
     """Dynamic programming against every walk at every choice of speed, in weather that changes."""
     network = problem.network

@@ -54,6 +54,7 @@ def test_a_path_too_shallow_at_any_tide_is_reported_with_place_time_and_depth() 
     assert error.remedy
 
 
+@pytest.mark.slow
 def test_a_path_that_opens_at_high_water_is_sailed() -> None:
     best = asked(estuary(6.5)).best
     assert best.feasible and best.waiting_h > 0.0
@@ -103,6 +104,7 @@ def test_an_arrival_before_a_window_allows_it() -> None:
     assert "shortest passage of the window" in caught.value.possible
 
 
+@pytest.mark.slow
 def test_the_best_departure_of_a_window_goes_straight_over_the_bar() -> None:
     # at the first moment of the tide the referee still finds the limit exceeded at the bar's edge
     def bar(time, lat, lon):
@@ -164,6 +166,7 @@ def test_levels_without_a_bed_are_not_a_depth() -> None:
     assert "bed level" in caught.value.possible and caught.value.remedy
 
 
+@pytest.mark.slow
 def test_routes_do_not_pass_a_gap_in_time() -> None:
     """No data from 3 h to 9 h: the ship stays at its berth until then, or has no route."""
     sea = Sea.open(hydro.dhi().isel(time=[0, 1, 2, 3, 9, 10, 11, 12]))

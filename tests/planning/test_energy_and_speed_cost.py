@@ -114,11 +114,13 @@ def test_least_energy_weighs_the_hotel_load_against_the_speed():
     assert answer.best.fuel_t is None  # its fuel is not known, and not needed
 
 
+@pytest.mark.slow
 def test_without_a_hotel_load_the_slowest_speed_takes_least():
     answer = planned("energy", powered(hotel_kw=0.0))
     assert answer.best.energy_mwh == pytest.approx(power(4.0) * hours(4.0), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_deadline_mixes_two_speeds_at_least_energy():
     # 9 kn on the mean: half the time at 8, half at 10 kn
     time = hours(9.0)
@@ -142,6 +144,7 @@ def test_waiting_consumes_the_hotel_load_and_saves_energy_only_if_it_is_small(ho
     assert best.energy_mwh == pytest.approx(wanted, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_energy_of_a_resistance_ship_is_its_power_and_hotel_load_over_time():
     hull = {"length_between_perpendiculars_m": 169.0, "length_waterline_m": 172.4}
     hull |= {"breadth_m": 32.0, "draught_m": 10.0, "block_coefficient": 0.785}
@@ -171,6 +174,7 @@ def test_energy_of_a_ship_whose_power_is_unknown_is_refused():
         planned("energy", field)
 
 
+@pytest.mark.slow
 def test_json_and_files_contain_the_energy(tmp_path):
     answer = planned("energy", powered())
     told = json.loads(answer.to_json())
@@ -187,6 +191,7 @@ def test_json_and_files_contain_the_energy(tmp_path):
     assert float(last["energy_mwh"]) == pytest.approx(answer.best.energy_mwh, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_the_command_line_plans_for_energy(tmp_path, capsys):
     path = tmp_path / "ship.yaml"
     path.write_text(
@@ -201,6 +206,7 @@ def test_the_command_line_plans_for_energy(tmp_path, capsys):
     assert "brake power" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("objective", ["energy", "cost"])
 def test_search_and_referee_agree_in_a_steady_current(objective):
     # against 3 kn a mile over ground takes 1 / (v - 3) hours: a higher speed saves fuel
@@ -220,6 +226,7 @@ def test_search_and_referee_agree_in_a_steady_current(objective):
 # time and cubed speed
 
 
+@pytest.mark.slow
 def test_least_cost_by_lambda_is_at_the_speed_of_the_closed_form():
     # (lambda_t + lambda_f v^3) / v is least at v = (lambda_t / (2 lambda_f))^(1/3), 8.1 kn here
     best = (PER_WEEK / WEEK / (2.0 * PER_CUBE)) ** (1.0 / 3.0) / KNOT
@@ -240,6 +247,7 @@ def test_the_library_dredger_has_the_cost_of_its_study():
     assert answer.best.cost == pytest.approx(per_second(speed) * hours(speed) * HOUR, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_deadline_mixes_two_speeds_at_least_cost():
     time = hours(9.0)
     answer = planned("cost", dredger(), arrive_by=DEPART + time * HOUR)
@@ -251,6 +259,7 @@ def test_a_deadline_mixes_two_speeds_at_least_cost():
     assert answer.best.cost >= wanted * (1.0 - 1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("per_cube", [0.008, 0.002])
 def test_waiting_costs_time_and_no_speed(per_cube):
     costs = {"per_week": 350_000.0, "per_second_per_cubed_speed": per_cube}
@@ -265,6 +274,7 @@ def test_waiting_costs_time_and_no_speed(per_cube):
     assert best.cost == pytest.approx(wanted, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_a_price_of_fuel_overrides_the_price_of_speed():
     data = {"fuel": {"reference_t_per_day": 24.0}, "engine": {"reference_speed_kn": 12.0}}
     ship = dredger(models={"calm_water": "cubic"}, **data)

@@ -67,6 +67,7 @@ def test_a_member_that_closes_every_route_leaves_the_choice_to_the_others(object
     assert times == sorted(times) and len(times) >= (2 if objective == "front" else 1)
 
 
+@pytest.mark.slow
 def test_with_a_route_open_in_all_members_the_risk_is_of_all():
     found = planned(Sea.ensemble(member(1.0, 1.0), member(-1.0, 1.0)), "front")
     row = found.ensemble[0]

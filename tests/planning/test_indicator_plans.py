@@ -50,6 +50,7 @@ def _plan(ship, chart=None, **more):
     return plan(_voyage(**more), ship=ship, sea=_sea(), chart=chart, proof=0.0)
 
 
+@pytest.mark.slow
 def test_prices_of_a_weighted_sum_add_up(ship):
     both = leg_prices(Objective(fuel=2.0, comfort=0.5, time=36.0, distance=1852.0), ship)
     assert both.consumption == "mixed" and both.outside == both.inside == 1.0

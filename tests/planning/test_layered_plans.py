@@ -22,6 +22,7 @@ def _voyage(**changes):
     return Voyage(depart="2026-01-01T00:00Z", offing_nm=0.0, **(PLACES | changes))
 
 
+@pytest.mark.slow
 def test_offshore_is_practically_the_geodesic():
     offshore = _plan(_voyage(objective="distance"), network="layered")
     assert offshore.provenance["networks"][0]["kind"] == "layered"
@@ -39,6 +40,7 @@ def test_layers_belong_to_the_layered_network():
         _plan(_voyage(layered={"layers": 5, "fan": 3, "offset_nm": 1.0}), network="lattice")
 
 
+@pytest.mark.slow
 def test_a_shape_without_a_route_is_refused_in_words():
     with pytest.raises(NoRouteError, match="section 1 of 1: it ends between layer 0 and layer 1"):
         _plan(_voyage(layered={"layers": 5, "fan": 3, "offset_nm": 9.0}))

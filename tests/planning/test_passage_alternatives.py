@@ -38,6 +38,7 @@ def planned(small):
     )
 
 
+@pytest.mark.slow
 def test_ways_by_and_round_the_kiel_canal(planned):
     first, *others = passage_alternatives(planned)
     assert first.without == () and first.passes[0] == "kiel"
@@ -51,6 +52,7 @@ def test_ways_by_and_round_the_kiel_canal(planned):
     assert round_it.time == pytest.approx(round_it.distance / (12.0 * KNOT), rel=0.01)
 
 
+@pytest.mark.slow
 def test_they_are_in_the_data_of_the_plan_when_asked_for(planned):
     assert "passage_alternatives" not in planned.to_dict()
     rows = planned.with_alternatives().to_dict()["passage_alternatives"]

@@ -37,6 +37,7 @@ def answer():
     return plan(voyage, ship=Ship.simple(speed_kn=8.0, draught_m=5.0), sea=sea, chart=chart)
 
 
+@pytest.mark.slow
 def test_at_most_twelve_lines_with_what_a_master_needs(answer):
     text = str(answer)
     lines = text.splitlines()

@@ -14,6 +14,7 @@ from thalweg.ship import Ship
 VOYAGE = Voyage(start="48.0N 8.0W", goal="46.0N 8.0W", depart="2026-01-01", offing_nm=0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("objective", ["time", "distance"])
 def test_in_still_water_a_plan_is_proven_to_half_a_per_cent(objective):
     voyage = replace(VOYAGE, objective=objective)

@@ -96,6 +96,7 @@ def named_land() -> dict[str, list]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["Great Britain", "Ireland", "Iceland", "Viti Levu", "Australia"])
 def test_land_is_named(named_land, name):
     (lat,) = named_land[name]

@@ -35,6 +35,7 @@ def on_the_way(lat, lon, half_width):
     return across * along
 
 
+@pytest.mark.slow
 def test_a_reference_that_breaks_a_limit_saves_nothing():
     waves = {
         "sea_surface_wave_significant_height": lambda t, a, o: 6.0 * on_the_way(a, o, 0.2),
@@ -48,6 +49,7 @@ def test_a_reference_that_breaks_a_limit_saves_nothing():
     assert note.startswith("No weather-blind route is feasible: wave height")
 
 
+@pytest.mark.slow
 def test_a_saving_is_that_of_the_route_and_that_of_the_speeds():
     """Against 4 kn on the way alone: at a constant speed the ship saves by sailing round it."""
     sea = Sea.from_functions(
@@ -66,6 +68,7 @@ def test_a_saving_is_that_of_the_route_and_that_of_the_speeds():
     assert middle["saved_by_route"] > 0.5 * middle["saved"] > 0.0
 
 
+@pytest.mark.slow
 def test_in_calm_water_neither_part_saves():
     for row in front(Sea.calm()).front.comparison.rows:
         assert row["saved_by_route"] == pytest.approx(0.0, abs=1e-6 * row["value"])

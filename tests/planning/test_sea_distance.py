@@ -24,6 +24,7 @@ PUBLISHED = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("start", "goal", "miles"), PUBLISHED)
 def test_published_distances(start, goal, miles):
     assert sea_distance(start, goal).nm == pytest.approx(miles, rel=0.015)
@@ -45,6 +46,7 @@ def test_the_whole_is_the_sum_of_its_line():
     assert "Dover" in found.straits
 
 
+@pytest.mark.slow
 def test_canals_are_used_avoided_and_have_their_own_length():
     short = sea_distance("Rotterdam", "Singapore")
     long = sea_distance("Rotterdam", "Singapore", avoid=["suez"])
@@ -58,11 +60,13 @@ def test_canals_are_used_avoided_and_have_their_own_length():
         sea_distance("Rotterdam", "Singapore", avoid=["sues"])
 
 
+@pytest.mark.slow
 def test_corinth_is_used_only_when_asked():
     assert sea_distance("Piraeus", "Messina").canals == ()
     assert sea_distance("Piraeus", "Messina", avoid=()).canals == ("Corinth Canal",)
 
 
+@pytest.mark.slow
 def test_ways_do_not_cross_ice_unless_they_begin_there():
     north = np.array(sea_distance("Yokohama", "Bremerhaven", avoid=["suez", "panama"]).line)
     assert np.abs(north[:, 0]).max() < 66.0
@@ -79,6 +83,7 @@ def test_only_passages_whose_water_the_way_goes_through_are_named():
     assert found.straits.index("Verrazano Narrows") < found.straits.index("Dover")
 
 
+@pytest.mark.slow
 def test_passages_for_small_ships_are_used_only_when_opened():
     cabot = sea_distance("Baltimore", "Montreal")
     canso = sea_distance("Baltimore", "Montreal", open=["Canso"])
@@ -87,6 +92,7 @@ def test_passages_for_small_ships_are_used_only_when_opened():
     assert 50.0 < cabot.nm - canso.nm < 200.0
 
 
+@pytest.mark.slow
 def test_passages_can_be_avoided():
     direct = sea_distance("Rotterdam", "New York")
     north = sea_distance("Rotterdam", "New York", avoid=["Dover"])
@@ -110,6 +116,7 @@ def test_ways_keep_off_land():
         sea_distance("Recife", "Las Palmas", offing_nm=-1.0)
 
 
+@pytest.mark.slow
 def test_places_to_pass():
     direct = sea_distance("Rotterdam", "New York")
     north = sea_distance("Rotterdam", "New York", via=["58.7N 4.0W"])
@@ -155,6 +162,7 @@ def test_command(capsys):
     assert main(["distance", "Rotterdam", "Nowhere", "--quiet"]) == 2
 
 
+@pytest.mark.slow
 def test_with_a_draught_shallow_canals_are_closed_and_shoals_avoided_or_named():
     plain = sea_distance("USNYC", "USBOS")
     assert plain.canals == ("Cape Cod Canal",) and plain.nm < 260.0 and not plain.notes
@@ -168,6 +176,7 @@ def test_with_a_draught_shallow_canals_are_closed_and_shoals_avoided_or_named():
             sea_distance("USNYC", "USBOS", draught_m=wrong)
 
 
+@pytest.mark.slow
 def test_deep_ships_pass_outside_nantucket_sound():
     # tables of distances have 379 nm round the shoals, and the canal is 9.75 m deep
     deep = sea_distance("New York City, US", "Boston, US", draught_m=10.0)

@@ -53,6 +53,7 @@ def test_deep_ships_from_new_york_pass_outside_nantucket_shoals(goal):
     assert not any("Check the depth" in note for note in found.notes)
 
 
+@pytest.mark.slow
 def test_with_shoals_ignored_the_legs_to_check_are_named():
     request = voyage("USNYC", "USBOS", ignore_shoals=True)
     found = plan(request, ship=BULKER, sea=Sea.calm())
@@ -79,6 +80,7 @@ def test_deep_ships_stay_in_water_that_is_deep_enough_by_the_layer(start, goal, 
     assert np.nanmin(coarse_depth(*open_part(found.best, 30.0))) >= least
 
 
+@pytest.mark.slow
 def test_in_the_open_english_channel_no_depth_is_in_doubt():
     found = plan(voyage((50.1, -2.5), (49.6, -5.0)), ship=BULKER, sea=Sea.calm())
     assert not any("depth" in note and " 0 m" in note for note in found.notes)
@@ -101,6 +103,7 @@ def test_plans_with_depth_or_without_offing_or_of_own_charts_are_left_alone():
         assert same.zones.shoals is None and notes == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("start", "goal", "draught", "length"), [("Rotterdam", "Esbjerg", 6.0, 110.0)]
 )

@@ -113,6 +113,7 @@ def waiting():
     return plan(voyage, ship=SHIP, sea=bar(), chart=Chart.open_water(*AREA), resolution=1000.0)
 
 
+@pytest.mark.slow
 def test_the_route_avoids_closed_periods(waiting) -> None:
     """Every fine sample of the route lies in an open period of its own diagram."""
     best = waiting.best
@@ -142,6 +143,7 @@ def test_diagrams_of_plans_and_routes(waiting, tmp_path) -> None:
         draw_space_time_diagram(waiting.best)
 
 
+@pytest.mark.slow
 def test_it_is_written_only_where_the_tide_matters(waiting, tmp_path) -> None:
     assert write_space_time_diagram(waiting, tmp_path) == [tmp_path / "st.png"]
     deep = Sea.from_functions(
@@ -158,6 +160,7 @@ def test_it_is_written_only_where_the_tide_matters(waiting, tmp_path) -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_window_of_departure_is_drawn() -> None:
     voyage = Voyage(offing_nm=0.0,
         start=(51.71, 3.45), goal=(51.77, 3.70), min_ukc_m=1.0,

@@ -22,6 +22,7 @@ def gauge():
     return Constituents.single(nm.WATER_LEVEL, {"M2": (1.4, 59.5), "S2": (0.3, 117.7)}, lat=51.4)
 
 
+@pytest.mark.slow
 def test_a_bar_is_crossed_when_the_tide_of_that_day_allows(gauge):
     start = parse_time("2031-07-05T00:00Z")
     times = start + 600.0 * np.arange(150)
@@ -39,6 +40,7 @@ def test_a_bar_is_crossed_when_the_tide_of_that_day_allows(gauge):
     assert best.arrive < opening + 2.5 * 3600.0
 
 
+@pytest.mark.slow
 def test_departing_with_the_flood_shortens_the_passage():
     coast = stratified_coast_current(
         "spring", coast=(51.75, 4.0), onshore_deg=90.0, flood="2031-07-05T06:00Z", draught=5.0
@@ -57,6 +59,7 @@ def test_departing_with_the_flood_shortens_the_passage():
     assert found["04:15"] < still - 0.2 < still + 0.1 < found["10:30"]
 
 
+@pytest.mark.slow
 def test_a_data_gap_during_a_wait_is_reported(tmp_path):
     hours = np.array([0.0, 0.5, 1.0, 5.0, 5.5, 6.0, 6.5, 7.0])
     axes, ones = ("time", "lat", "lon"), np.ones((8, 5, 5))

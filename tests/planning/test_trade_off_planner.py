@@ -47,6 +47,7 @@ def still_front(method=None):
     return still("front", cubic_ship(), **({"method": method} if method else {}))
 
 
+@pytest.mark.slow
 def test_least_fuel_is_the_slowest_speed_on_the_geodesic():
     answer = still("fuel", cubic_ship())
     wanted = fuel_per_second(6.0) * LENGTH / (6.0 * KNOT)
@@ -56,6 +57,7 @@ def test_least_fuel_is_the_slowest_speed_on_the_geodesic():
     assert answer.proof.certain == pytest.approx(wanted, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_with_a_deadline_two_neighbouring_speeds_are_mixed():
     # at 9 kn on the mean, time is shared between 8 and 10 kn so that the distance is covered
     hours = LENGTH / (9.0 * KNOT) / HOUR
@@ -68,6 +70,7 @@ def test_with_a_deadline_two_neighbouring_speeds_are_mixed():
     assert answer.best.fuel_t >= wanted * (1.0 - 1e-4)
 
 
+@pytest.mark.slow
 def test_for_one_objective_a_few_faster_routes_are_given_as_well():
     one, whole = still("fuel", cubic_ship()), still_front()
     assert one.best.fuel_t == pytest.approx(whole.routes[-1].fuel_t, rel=1e-6)
@@ -95,6 +98,7 @@ def test_the_front_runs_from_fastest_to_cheapest_and_is_non_dominated():
     assert gaps and max(gaps) < 0.07
 
 
+@pytest.mark.slow
 def test_least_cost_weighs_time_against_fuel():
     # cost per metre (p k v^3 + c) / v is least where 2 p k v^3 = c
     price, per_hour = 500.0, 2.0 * 500.0 * 24.0 / 24.0 * (10.0 / 12.0) ** 3
@@ -126,6 +130,7 @@ def against(head_kn, speeds, **more):
     return plan(voyage, ship=cubic_ship(speeds), sea=sea, chart=NEAR_CHART, resolution=2000.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("speeds", "best"),
     [
@@ -153,12 +158,14 @@ def test_the_earliest_arrival_is_reported_however_slow_the_current_makes_it():
     assert hours == pytest.approx(NEAR_LENGTH / KNOT / HOUR, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_current_faster_than_the_ship_is_the_reason():
     with pytest.raises(NoRouteError) as refusal:
         against(6.0, (4.0, 5.0))
     assert "current" in refusal.value.remedy
 
 
+@pytest.mark.slow
 def test_waiting_is_rarely_chosen_in_constant_conditions():
     answer = still_front("exact")
     bins = 25.1 / 720  # a ship may wait for the next bin of time
@@ -172,6 +179,7 @@ def test_what_the_front_saves_over_constant_speeds_is_reported():
     assert all(abs(row["saved"]) < 0.01 * row["value"] for row in rows)  # still water: nothing
 
 
+@pytest.mark.slow
 def test_the_json_contains_the_complete_front():
     answer = still("front", cubic_ship(), fuel_price_usd=500.0, method="exact")
     told = json.loads(answer.to_json())
@@ -182,6 +190,7 @@ def test_the_json_contains_the_complete_front():
     assert told["comparison"]
 
 
+@pytest.mark.slow
 def test_the_same_request_gives_the_same_plan():
     first, second = still_front(), still("front", cubic_ship())
     assert [r.time_h for r in first.routes] == [r.time_h for r in second.routes]
@@ -212,6 +221,7 @@ def test_co2_of_an_unknown_fuel_is_refused():
         still("co2", cubic_ship())
 
 
+@pytest.mark.slow
 def test_co2_is_fuel_times_carbon():
     answer = still("co2", cubic_ship(type="HFO"), method="exact")
     assert answer.objective_value == pytest.approx(3.114 * answer.best.fuel_t, rel=1e-6)
@@ -259,6 +269,7 @@ def test_a_voyage_with_prices_round_trips(tmp_path):
     assert not math.isnan(voyage.fuel_price_usd)
 
 
+@pytest.mark.slow
 def test_the_routes_with_least_fuel_are_evaluated_in_all_members():
     """They come with the best first and the rest by time: the first ten would be the fastest."""
     answer = still("fuel", cubic_ship(), method="exact")
@@ -274,6 +285,7 @@ def test_a_choice_over_members_needs_members():
         still("fuel", cubic_ship(), ensemble="mean")
 
 
+@pytest.mark.slow
 def test_slower_settings_remain_where_waves_forbid_the_highest():
     # 1.8 sqrt(150) = 22.05 kn dead astern: 24 kn would surf, 18 kn does not
     ship = Ship.from_dict(

@@ -48,6 +48,7 @@ def test_a_penalty_zone_is_avoided_when_that_costs_less():
     assert best.samples["lat"][inside].min() > 52.39
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("objective", ["time", "distance"])
 def test_the_bound_states_that_it_leaves_out_a_penalty_zone(objective):
     """A square of factor 2 that the best route passes: the bound leaves it out and says so."""

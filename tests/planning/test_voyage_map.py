@@ -116,6 +116,7 @@ def lagoon():
     return plan(voyage, ship=SHIP, sea=Sea.storm(), chart=chart.within(50.5, 52.0, 1.0, 4.0))
 
 
+@pytest.mark.slow
 def test_labels_do_not_lie_on_each_other(lagoon):
     figure = draw_map(lagoon)
     axes = figure.axes[0]
@@ -128,6 +129,7 @@ def test_labels_do_not_lie_on_each_other(lagoon):
     assert "depart 1998-08-30 05:10 UTC" in axes.get_title(loc="left")
 
 
+@pytest.mark.slow
 def test_enclosed_water_is_hatched_and_the_sea_is_not(lagoon):
     from matplotlib.contour import ContourSet
 
@@ -141,6 +143,7 @@ def test_enclosed_water_is_hatched_and_the_sea_is_not(lagoon):
     assert x.min() > 2.35 and x.max() < 2.65 and y.min() > 51.25 and y.max() < 51.55
 
 
+@pytest.mark.slow
 def test_a_route_beside_that_of_the_plan_is_drawn(lagoon):
     axes = draw_map(lagoon, beside=lagoon.best).axes[0]
     labels = [line.get_label() for line in axes.lines]

@@ -93,6 +93,7 @@ def test_a_gap_between_the_stations_is_planned_round():
     assert not inside(np.asarray(along["lat"]), np.asarray(along["lon"])).any()
 
 
+@pytest.mark.slow
 def test_a_gap_across_the_way_is_named():
     """A strip of 4 km from one side of the chart to the other."""
     sea = current_unknown_where(lambda lat, lon: np.abs(lon - 2.013) < 0.03)
@@ -139,6 +140,7 @@ def test_a_front_is_planned_round_a_gap():
     assert found.front.values[-1] < 1.05 * clear.front.values[-1]
 
 
+@pytest.mark.slow
 def test_a_gap_across_a_front_is_named():
     sea = current_unknown_where(lambda lat, lon: np.abs(lon - 2.013) < 0.008)
     voyage = dataclasses.replace(VOYAGE, objective="fuel", method="exact")

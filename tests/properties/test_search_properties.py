@@ -3,6 +3,7 @@
 from itertools import pairwise
 
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -85,6 +86,7 @@ def check_path(network, fields, result):
         assert abs(then - result.path_arrive[i + 1]) < 1e-6
 
 
+@pytest.mark.slow
 @given(seeds, st.sampled_from([(False, False), (True, False), (True, True)]))
 @settings(max_examples=90)
 def test_astar_is_dijkstra_is_brute_force(seed, case):

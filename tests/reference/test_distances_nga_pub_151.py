@@ -95,6 +95,7 @@ def test_largest_error_and_its_cause(errors):
     assert worst <= {("Recife", "Bridgetown"), ("Vladivostok", "Yokohama")}
 
 
+@pytest.mark.slow
 def test_both_ways_round_greece_are_those_published():
     """The publication has 1,162 nm south of Greece and 1,063 nm by the Corinth Canal."""
     south = sea_distance("Istanbul", "Trieste", avoid=SMALL_CANALS)

@@ -146,6 +146,7 @@ def zones_of(route: Route, chart: Chart) -> tuple[np.ndarray, dict[bool, float]]
     return inside, {True: float(length[inside].sum()), False: float(length[~inside].sum())}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", list(WAYS))
 def test_lengths_of_the_routes(fastest, chart, way):
     route = fastest[way]
@@ -164,6 +165,7 @@ def test_cheapest_speeds_for_the_time(fastest, chart, way, days, thousands):
     assert route.cost / 1000.0 == pytest.approx(thousands, rel=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("way", "days"), [("R1", 4.28), ("R2", 5.0)])
 def test_cost_refinement_finds_the_speeds_or_better(fastest, chart, way, days):
     inside, zones = zones_of(fastest[way], chart)

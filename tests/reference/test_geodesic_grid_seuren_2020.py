@@ -65,6 +65,7 @@ def water_at(grid, root, place):
     return root[np.argmin(away)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("coast_levels", "joined"), [(0, False), (3, True)])
 def test_gibraltar_is_closed_at_level_6_and_open_with_3_more(coast_levels, joined):
     grid = make_grid(Chart.gshhg("i"), GridResolution(6, coast_levels, directions=6))

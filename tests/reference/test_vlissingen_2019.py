@@ -63,6 +63,7 @@ def test_names_give_the_printed_speeds():
         assert schureman.frequency(name) * 360.0 == pytest.approx(float(speed), abs=2e-6), name
 
 
+@pytest.mark.slow
 def test_prediction_of_2019(official, vlissingen):
     times, level = official
     assert level.size == 365 * 144
@@ -72,6 +73,7 @@ def test_prediction_of_2019(official, vlissingen):
     assert abs(difference.mean()) < 1e-4
 
 
+@pytest.mark.slow
 def test_what_remains_is_mid_year_nodal_corrections_and_rounding(official, vlissingen):
     times, level = official
     middle = parse_time("2019-07-02T12:00+01:00")

@@ -37,6 +37,7 @@ def study(trips, hotel_power=0.0):
     return waiting_study(trips, starts=QUARTERS, max_waits=WAITS, hotel_power=hotel_power)
 
 
+@pytest.mark.slow
 def test_a_single_trip_at_neap_tide_saves_four_and_a_half_per_cent():
     saving = 100.0 * study(one_way(HALVED["neap"])).saving("current")
     assert saving.max() == pytest.approx(4.5, abs=0.4)
@@ -75,12 +76,14 @@ def test_five_cycles_save_three_per_cent_at_most_when_waiting_is_free():
     assert hours == pytest.approx([10.0, 60.0], rel=0.1)
 
 
+@pytest.mark.slow
 def test_spring_tide_saves_one_and_a_half_per_cent():
     assert 100.0 * study(five_cycles(HALVED["spring"])).saving("current").max() == pytest.approx(
         1.5, abs=0.15
     )
 
 
+@pytest.mark.slow
 def test_savings_shrink_from_neap_to_spring_tide():
     best = [study(five_cycles(s)).saving("current").max() for s in HALVED.values()]
     assert (np.diff(best) < 0.0).all()
@@ -125,6 +128,7 @@ def test_generators_of_table_4_11():
     assert five.argmax() < len(waits) - 1  # both curves turn again
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rudder", [True, False])
 def test_break_even_power_is_between_five_and_ten_per_cent(rudder):
     """Of the 327.1 kW, one way from t0 = 0 by his rule with the 180 minutes allowed."""
@@ -135,6 +139,7 @@ def test_break_even_power_is_between_five_and_ten_per_cent(rudder):
     assert 0.10 < best / GENERATOR < 0.25  # shorter waits still save a little
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", TIDAL_ELLIPSES)
 def test_the_optimum_is_never_worse_than_a_rule(name):
     for power in (0.0, 0.1 * GENERATOR):

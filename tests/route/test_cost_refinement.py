@@ -61,6 +61,7 @@ def refined(route, ship=BULKER, sea=None, chart=OPEN, **more):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("hours", "best", "floor"), [(20, 23.436, 22.977), (24, 19.870, 19.459), (28, 17.633, 17.338)]
 )
@@ -103,6 +104,7 @@ def cubic_ship() -> Ship:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("lengths", "currents", "hours", "speeds", "fuel"),
     [
@@ -139,6 +141,7 @@ def test_cubic_law_speeds(lengths, currents, hours, speeds, fuel):
         assert mean - currents[k] == pytest.approx(speed, abs=0.05)
 
 
+@pytest.mark.slow
 def test_slower_inside_a_control_area_at_the_same_arrival():
     """Half the way inside: against the linear program over speeds and zones by brute force."""
     chart = OPEN.with_zones(zone(2, -1, 4.5, 1))
@@ -176,6 +179,7 @@ def _cheapest(length, speeds, rate, time):
     return best * length
 
 
+@pytest.mark.slow
 def test_never_worse_and_invalid_objectives_are_refused():
     start = evaluate([(0, 0), (0, 2)], ship=BULKER, sea=Sea.calm(), chart=OPEN, depart=0)
     same = refined(start)
@@ -241,6 +245,7 @@ def test_refinement_is_never_worse_for_any_sea_and_start(u, v, later, setting):
     assert route.co2_t <= start.co2_t * (1 + 1e-12)
 
 
+@pytest.mark.slow
 def test_refinement_avoids_land():
     island = {
         "type": "Polygon",
@@ -335,6 +340,7 @@ def _through_suez(route) -> bool:
     )
 
 
+@pytest.mark.slow
 def test_canals_count_by_cubed_speed_where_the_rest_does(world):
     ship = by_cubed_speed(currency="USD")
     lat, lon = np.array([(33.5, 30.0), (32.6, 31.0), *SUEZ.ends, (28.9, 32.75), (28.2, 33.35)]).T
@@ -350,6 +356,7 @@ def test_canals_count_by_cubed_speed_where_the_rest_does(world):
     assert start.cost - route.cost >= 0.999 * saved
 
 
+@pytest.mark.slow
 def test_cost_refinement_keeps_the_canal(world):
     start = suez_route(world)
     assert start.feasible, start.violations
@@ -360,6 +367,7 @@ def test_cost_refinement_keeps_the_canal(world):
     assert route.cost > 112_327.0  # the dues
 
 
+@pytest.mark.slow
 def test_refining_for_time_keeps_the_canal_and_the_settings(world):
     start = suez_route(world, wait=[0, 0, 3600.0, 0, 0, 0], setting=[11, 11, 5, 5, 8])
     better = better_route(

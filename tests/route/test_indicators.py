@@ -66,6 +66,7 @@ def test_squared_dose_adds_up_over_the_legs_to_the_last_digits(ship):
     assert first.comfort == pytest.approx(float(route.legs["squared_dose:mess"][0]), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_waiting_counts_head_to_sea_but_not_at_the_berth(ship):
     track = Track.from_positions(PLACES, depart="2026-01-01T00:00Z")
     there = evaluate(track, ship=ship, sea=_sea(), chart=Chart.open_water())

@@ -63,6 +63,7 @@ def test_light_through_layers(edges, speeds, slope, goal):
     assert y - slope * x == pytest.approx(edges, abs=1e-5)  # a centimetre
 
 
+@pytest.mark.slow
 def test_a_current_that_ends_at_a_line():
     """A current of 2 m/s west of x = 4 only, as at the edge of data filled with still water."""
     sea = PLANE.sea(lambda t, x, y: 0.0 * x, lambda t, x, y: np.where(x < 4.0, 2.0, 0.0))

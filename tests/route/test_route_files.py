@@ -96,6 +96,7 @@ def test_the_lines_of_a_file_are_sailed_when_it_is_read(tmp_path, suffix, legs, 
     assert read.depart == ocean.depart
 
 
+@pytest.mark.slow
 def test_the_work_for_many_waypoints_is_done_at_once(tmp_path, monkeypatch):
     """Sixteen times the legs, all kept in the file, need a few more calls of the geodesic."""
     counts = []

@@ -257,6 +257,7 @@ def test_ordered_speed_counts_and_planned_speed_over_ground_does_not(tmp_path):
     assert sailed.distance_nm / sailed.time_h == pytest.approx(5.0 / KNOT, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_samples_of_the_reference_data_are_read():
     folder = data_file("rtz/samples")
     read, refused = {}, []

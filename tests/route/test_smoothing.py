@@ -89,6 +89,7 @@ WORLDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", WORLDS)
 def test_reaches_the_optimum_of_a_known_flow(name):
     flow, speed, points, seconds = WORLDS[name]
@@ -99,6 +100,7 @@ def test_reaches_the_optimum_of_a_known_flow(name):
     assert better.arrive < scored.arrive
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("swing", "seconds"), [(False, 26240.4617), (True, 31512.4115)])
 def test_halem_rotating_flow(swing, seconds):
     # van Halem (2019) trivial cases 1 and 2, certified by extremals; shrunk a hundred times
@@ -121,6 +123,7 @@ def test_halem_rotating_flow(swing, seconds):
     optimum_is_met(better, seconds / 100)
 
 
+@pytest.mark.slow
 def test_halem_bar_waits_no_second_too_long():
     # trivial case 3: a bar dry until 18000 s; waiting is faster than the detour
     plane = Plane(unit=HALEM_DEGREE / 100)
@@ -156,6 +159,7 @@ def test_cycloid_of_a_speed_field():
     optimum_is_met(better, (s - 0.6) * np.sqrt(r) * plane.unit)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("objective", ["distance", "time"])
 @pytest.mark.parametrize(
     "points",
@@ -174,6 +178,7 @@ def test_the_route_around_a_square_island_is_shortest(points, objective):
     assert len(better.track) <= 6
 
 
+@pytest.mark.slow
 def test_smoothing_passes_land_on_the_given_side():
     plane, boat = Plane(unit=1000.0), ship(5.0)
     chart = Islands(rectangle(plane, -1, -1, 1, 3))
@@ -283,6 +288,7 @@ def test_the_time_evaluator_respects_the_edges_of_its_raster():
     assert arrive[0, 1] == pytest.approx(0.5 * 111319.49 / 5.0, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_penalty_zones_are_avoided_when_that_is_cheaper():
     plane, boat = Plane(unit=1000.0), ship(5.0)
     ring = np.array([plane.place(*p) for p in [(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)]])
@@ -301,6 +307,7 @@ def test_penalty_zones_are_avoided_when_that_is_cheaper():
     assert better.distance_nm * 1.852 > round_it * 0.999
 
 
+@pytest.mark.slow
 def test_waits_for_the_tide_are_found_and_cut_to_what_they_must_be():
     # two bars, 4 m at datum; the tide gives the metre that is needed from 26585 s on
     def bed(t, lat, lon):

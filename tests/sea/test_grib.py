@@ -89,6 +89,7 @@ def test_wind_of_both_editions(tmp_path, edition) -> None:
     assert sorted(p.name for p in tmp_path.iterdir()) == [path.name]
 
 
+@pytest.mark.slow
 def test_waves_with_missing_values(tmp_path) -> None:
     sea = Sea.open(grib(tmp_path, 1, "waves"))
     time = parse_time("2026-01-01T02:00Z")
@@ -98,6 +99,7 @@ def test_waves_with_missing_values(tmp_path) -> None:
     assert got["sea_surface_wave_to_direction"][0] == pytest.approx(270.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.45, 0.97])
 def test_truncated(tmp_path, share) -> None:
     path = grib(tmp_path, 2, "wind")
@@ -108,6 +110,7 @@ def test_truncated(tmp_path, share) -> None:
         Sea.open(cut)
 
 
+@pytest.mark.slow
 def test_corrupt_inside_a_message_does_not_end_the_process(tmp_path) -> None:
     path = grib(tmp_path, 2, "wind")
     data = bytearray(path.read_bytes())

@@ -107,6 +107,7 @@ def test_hourly_level_with_wind_speed_only() -> None:
     assert sea.layers[1].axis.step == 3600.0
 
 
+@pytest.mark.slow
 def test_oresund_in_utm_with_velocities_rotated_by_the_meridian_convergence() -> None:
     path = data_file("metocean/oresund_hd_daily_20180307_11_dhi_ugrid.nc")
     raw, sea = xr.open_dataset(path), Sea.open(path)
@@ -274,6 +275,7 @@ def test_san_diego_tide_needs_a_projection_and_names() -> None:
     assert -118.0 < where[2] < -116.5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "why"),
     [
@@ -305,6 +307,7 @@ def test_herwart_over_era5_by_priority() -> None:
     )
 
 
+@pytest.mark.slow
 def test_inspection_and_map_of_a_real_file(tmp_path) -> None:
     sea = Sea.open(data_file("metocean/northsea_storm_herwart_20171027_29_dhi_ugrid.nc"))
     report = sea.describe().as_dict()

@@ -185,6 +185,7 @@ def test_records_are_distinguished_from_model_runs(name, is_one):
     assert is_text_record(data_file(name)) == is_one
 
 
+@pytest.mark.slow
 def test_the_official_files_are_read_completely():
     noos = read_record(data_file("tide/rws_vlissingen_waterlevel_20180101_20180401.noos"))
     assert noos.times.size == 12752  # lines; 209 of the 10-min steps are not given

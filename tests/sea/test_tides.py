@@ -110,6 +110,7 @@ def test_unknown_names_are_refused(name):
 # --- analysis
 
 
+@pytest.mark.slow
 def test_honolulu_round_trip_with_utide():
     raw = np.loadtxt(data_file("tide/utide_HNL2010_hourly.asc"))
     times = parse_time("2010-01-01") + np.round((raw[:, 0] - raw[0, 0]) * 86400.0)

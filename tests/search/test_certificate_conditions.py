@@ -136,6 +136,7 @@ def test_the_bound_of_the_geodesic_takes_the_strongest_current_of_the_data():
     assert 0.98 * STRAIGHT * 5.0 / 7.0 < found.value < 1.02 * STRAIGHT * 5.0 / 7.0
 
 
+@pytest.mark.slow
 def test_the_limit_of_the_wind_is_one_over_the_ground():
     """A wind of 14 m/s against a current of 3 m/s: 17 m/s over the water, and within the limit."""
     winds = {"eastward_wind": lambda t, y, x: 14.0 + 0 * x, "northward_wind": lambda t, y, x: 0 * x}

@@ -134,6 +134,7 @@ def test_front_is_that_of_brute_force_without_waiting(seed):
         assert reached <= cost * (1 + 1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1, 3])
 def test_lower_front_is_below_brute_force_with_waiting(seed):
     """Pauses of 1000 and 3000 s before any edge; also no front point is far above."""
@@ -148,6 +149,7 @@ def test_lower_front_is_below_brute_force_with_waiting(seed):
         assert reached <= cost * (1 + 5e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("wait", [True, False])
 @pytest.mark.parametrize("seed", range(3))
 def test_lower_front_is_below_brute_force(seed, wait):
@@ -171,6 +173,7 @@ def eddies(network, strength=1.0):
     return make_fields(network, times, current_east=flow(0.0), current_north=flow(1.0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("wait", [True, False])
 def test_certificate_closes_with_the_bins(wait):
     network = grid(5, 8)

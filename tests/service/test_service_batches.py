@@ -224,6 +224,7 @@ def test_a_forecast_that_is_not_possible_is_refused(client):
     assert problem(client.post("/api/v1/forecasts", json={**given, "source": "x"}), 422)
 
 
+@pytest.mark.slow
 def test_ready_studies_are_requests_that_start(client):
     found = client.get("/api/v1/studies/ready").json()
     assert {"season", "speeds", "step-length"} <= {one["name"] for one in found}

@@ -472,6 +472,7 @@ def test_files_of_traffic_are_checked_when_they_arrive(client):
     problem(client.delete("/api/v1/traffic/0123456789abcdef"), 404)
 
 
+@pytest.mark.slow
 def test_history_networks_are_checked_when_they_arrive(client):
     answer = client.post("/api/v1/histories", files={"file": ("net.json", b'{"format": "other"}')})
     assert "history network" in problem(answer, 422)["asked"]

@@ -101,6 +101,7 @@ def test_impossible_places_and_tasks_are_refused(gunnerus, change, words):
         onboard_motions(ship)
 
 
+@pytest.mark.slow
 def test_the_table_of_the_dose_is_near_the_motions(gunnerus):
     table = squared_dose_table(gunnerus)
     assert table.error.mean < 0.02

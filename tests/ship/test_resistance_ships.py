@@ -53,6 +53,7 @@ def ship():
     return _ship()
 
 
+@pytest.mark.slow
 @given(
     st.floats(0, 25),
     st.floats(0, np.pi),

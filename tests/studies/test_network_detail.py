@@ -92,6 +92,7 @@ def series(folder, **changes) -> DepartureSeries:
     )
 
 
+@pytest.mark.slow
 def test_figures_are_those_of_the_referee(folder):
     """Time and fuel within 0.1 %, the sick within 1 % of them, for each leg of two sections."""
     prepared = series(folder, via=[(65.05, 1.0)])
@@ -122,6 +123,7 @@ def test_a_season_is_the_same_in_any_order_and_has_its_calm_month(folder, tmp_pa
     assert rows[february].max() < 0.2 * rows[~february].min()
 
 
+@pytest.mark.slow
 def test_routes_are_no_better_than_the_refined_ones(folder):
     row = study(folder, axes={"depart": ["2026-01-05T00:00Z"]}).rows()[0]
     refined = study(folder, axes={"depart": ["2026-01-05T00:00Z"]}, detail="refined").rows()[0]
@@ -148,6 +150,7 @@ def test_a_missing_month_is_rows_that_say_so(folder):
     assert all(row.get("time_h") is None for row in rows[1:])
 
 
+@pytest.mark.slow
 def test_limits_close_departures_in_words(folder):
     library = resources.files("thalweg.ship.library").joinpath("gunnerus-2019.yaml")
     ship = yaml.safe_load(library.read_text("utf-8")) | {

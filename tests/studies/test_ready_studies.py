@@ -20,6 +20,7 @@ from thalweg.studies.annual_figures import annual_figures, checked_annual, share
 from thalweg.studies.study_summary import StudySummary
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ready_studies())
 def test_ready_studies_are_understood(name):
     study = Study.from_dict(yaml.safe_load(ready_study(name)))

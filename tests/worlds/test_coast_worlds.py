@@ -35,6 +35,7 @@ def test_floro_to_santander(coast):
     ).any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("start", "goal"),
     [

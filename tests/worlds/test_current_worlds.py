@@ -14,6 +14,7 @@ def steady(u, v):
     return lambda t, x, y: (u + 0 * x, v + 0 * x)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("speed", "current", "goal_km", "seconds"),
     [

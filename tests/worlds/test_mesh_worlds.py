@@ -112,6 +112,7 @@ def test_the_run_itself_as_the_sea():
     assert found.best.time_h * 3600.0 == pytest.approx(26240.4617, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_waiting_for_the_bank():
     """Case 3: still water and a bank that opens at 18,000 s."""
     still = model(lambda t, x, y: (0.0 * x, 0.0 * x), 0.025, step=18_000.0)

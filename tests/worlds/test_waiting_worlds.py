@@ -38,6 +38,7 @@ def test_tidal_bar(opens_h, seconds):
     assert found.best.waiting_h * 3600.0 == pytest.approx(seconds - 20000.0, abs=60.0)
 
 
+@pytest.mark.slow
 def test_halem_waits_for_the_bank():
     """Van Halem (2019) case 3: waiting takes 31903.29 s, the detour 33367.90 s."""
     inside = lambda x, y: (np.abs(x) < 0.4) & (np.abs(y) < 0.1)  # noqa: E731
