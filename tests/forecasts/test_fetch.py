@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import zipfile
 from dataclasses import replace
 from urllib.parse import parse_qs, urlsplit
 
@@ -20,6 +21,8 @@ from thalweg.core.time import parse_time
 from thalweg.core.units import HOUR
 from thalweg.forecasts import ForecastRequest, estimate_forecast, fetch_forecast
 from thalweg.forecasts.download_client import DownloadClient, DownloadPart, TransferError
+from thalweg.forecasts.source_table import SOURCES, usual_quantities
+from thalweg.forecasts.sources import era5
 from thalweg.forecasts.sources.copernicus_marine import CopernicusMarine
 from thalweg.forecasts.sources.ecmwf import EcmwfOpenData
 from thalweg.forecasts.sources.era5 import Era5
@@ -395,11 +398,13 @@ def test_era5_month_by_month(tmp_path, monkeypatch):
     assert len(asked) == count
 
 
-def test_copernicus_marine_on_both_sides_of_the_antimeridian(tmp_path, client):
+@pytest.mark.parametrize("stamp", [0.0, 0.5])  # start of the hour, as documented; middle, as before
+def test_copernicus_marine_on_both_sides_of_the_antimeridian(tmp_path, client, stamp):
     def open_dataset(**wanted):
+        assert wanted["start_datetime"] == "2026-11-22T00:00:00Z"
         lat = np.arange(-12.0, 14.0, 0.5)
         lon = np.arange(-180.0, 180.0, 0.5)
-        time = RUN + HOUR * (np.arange(24) + 0.5)
+        time = RUN + HOUR * (np.arange(24) + stamp)
         shape = len(time), 1, len(lat), len(lon)
         field = np.broadcast_to(lon[None, None, None, :], shape).copy()
         stamps = (time * 1e9).astype("int64").astype("datetime64[ns]")
@@ -418,6 +423,23 @@ def test_copernicus_marine_on_both_sides_of_the_antimeridian(tmp_path, client):
         lon = found["longitude"].values
         assert lon[0] <= 171.0 and lon[-1] >= 191.0 and np.allclose(np.diff(lon), 0.5)
         assert np.allclose(found["uo"].values[0, 0], np.where(lon < 180.0, lon, lon - 360.0))
+        first = found["time"].values[0].astype("datetime64[s]")
+        assert str(first) == "2026-11-22T00:30:00"  # the middle of the hour
+
+
+def test_an_archive_of_era5_is_unpacked(tmp_path):
+    path = tmp_path / "a.grib"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("wind.grib", b"GRIB1")
+        archive.writestr("waves.grib", b"GRIB2")
+    era5._unpack(path)
+    era5._unpack(path)  # what is none stays
+    assert path.read_bytes() == b"GRIB1GRIB2"
+
+
+def test_sources_have_usual_quantities():
+    for name, source in SOURCES.items():
+        assert set(usual_quantities(name)) <= set(source.quantities)
 
 
 @pytest.mark.parametrize(

@@ -42,9 +42,9 @@ def add_command(commands: Any) -> None:
     parser.add_argument("--out", metavar="FILE", help="NetCDF file to write")
     parser.add_argument(
         "--quantities",
-        default="wind,waves",
         metavar="LIST",
-        help="of wind,waves,current,level,ice,pressure (default: wind,waves)",
+        help="of wind,waves,current,level,ice,pressure (default: current of matroos and "
+        "copernicus, level of rws, else wind,waves)",
     )
     parser.add_argument(
         "--step", type=float, default=3.0, metavar="H", help="hours between fields (default: 3)"
@@ -82,7 +82,7 @@ def add_command(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Download a forecast, or list the sources."""
     from thalweg.forecasts.fetching import estimate_forecast, fetch_forecast, source_named
-    from thalweg.forecasts.source_table import SOURCES
+    from thalweg.forecasts.source_table import SOURCES, usual_quantities
     from thalweg.forecasts.sources.gfs import Gfs
 
     if arguments.source is None:
@@ -90,7 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
     source = source_named(arguments.source)
     if isinstance(source, Gfs):
         source = replace(source, server=arguments.server)
-    request = _request(arguments)
+    request = _request(arguments, usual_quantities(source.name))
     if arguments.estimate:
         arguments.progress(f"asking {source.title} what it has")
         plan = estimate_forecast(request, source)
@@ -134,7 +134,7 @@ def run(arguments: argparse.Namespace) -> int:
     return SUCCESS
 
 
-def _request(arguments: argparse.Namespace) -> ForecastRequest:
+def _request(arguments: argparse.Namespace, usual: tuple[str, ...]) -> ForecastRequest:
     from thalweg.core.bounding_box import BoundingBox
     from thalweg.forecasts import ForecastRequest
 
@@ -160,12 +160,13 @@ def _request(arguments: argparse.Namespace) -> ForecastRequest:
             "A box is south,north,west,east in degrees.",
             "Give four values, for example --box 40,60,-75,5.",
         )
+    given = arguments.quantities
     south, north, west, east = (to_number(side) for side in sides)
     return ForecastRequest(
         BoundingBox.checked(south, north, west, east),
         arguments.start,
         arguments.end,
-        tuple(word.strip() for word in arguments.quantities.split(",") if word.strip()),
+        usual if given is None else tuple(w.strip() for w in given.split(",") if w.strip()),
         arguments.step * HOUR,
         arguments.run_time,
         arguments.members,

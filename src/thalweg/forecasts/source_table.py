@@ -27,3 +27,19 @@ SOURCES: Final[Mapping[str, ForecastSource]] = MappingProxyType(
         )
     }
 )
+
+_USUAL: Final[Mapping[str, tuple[str, ...]]] = {
+    "matroos": ("current",),
+    "rws": ("level",),
+    "copernicus": ("current",),
+}
+
+
+def usual_quantities(source: str) -> tuple[str, ...]:
+    """Return what is fetched from a source where nothing is chosen.
+
+    Parameters
+    ----------
+    source : Name of the source.
+    """
+    return _USUAL.get(source, ("wind", "waves"))

@@ -2,8 +2,9 @@
 
 The client ``copernicusmarine`` is used; it reads the account from its own file or from
 ``COPERNICUSMARINE_SERVICE_USERNAME`` and ``_PASSWORD``. Its ``subset`` needs memory as large as the
-request, so the dataset is opened and read in slices of time. Not tried against the live service by
-the tests.
+request, so the dataset is opened and read in slices of time. The service stamps means with the
+start of their interval (https://help.marine.copernicus.eu/en/articles/8656000): the fields written
+here have the middle. Not tried against the live service by the tests.
 """
 
 from __future__ import annotations
@@ -25,11 +26,17 @@ from thalweg.forecasts.forecast_request import ForecastRequest
 
 _SPACING: Final = 1.0 / 12.0
 _SLICE: Final = 8  #: times read at once
+_STAMP: Final = "datetime64[ns]"
 
 
 @dataclass(frozen=True)
 class _Product:
-    """A dataset: its name, variables, time between fields [s], and whether it has depths."""
+    """A dataset: its name, variables, time between fields [s], and whether it has depths.
+
+    Attributes
+    ----------
+    first : Time of fields after the start of their interval: half of it for means [s].
+    """
 
     dataset: str
     variables: tuple[str, ...]
@@ -132,7 +139,7 @@ class CopernicusMarine:
             "maximum_longitude": min(span[1] + margin, 180.0),
             "minimum_latitude": request.box.south - margin,
             "maximum_latitude": request.box.north + margin,
-            "start_datetime": format_time(plan.times[0]),
+            "start_datetime": format_time(plan.times[0] - product.first),
             "end_datetime": format_time(plan.times[-1]),
         }
         if product.depth:
@@ -141,7 +148,9 @@ class CopernicusMarine:
             remote = self.open_dataset(**wanted)
             if "depth" in remote.dims:
                 remote = remote.isel(depth=0, drop=True)
-            stamps = remote["time"].values.astype("datetime64[s]").astype(float)
+            given = remote["time"].values.astype("datetime64[s]").astype(float)
+            stamps = given // product.step * product.step + product.first
+            remote = remote.assign_coords(time=(stamps * 1e9).astype("int64").astype(_STAMP))
             at = [k for k, stamp in enumerate(stamps) if np.min(np.abs(stamp - plan.times)) < 60.0]
             slices = [
                 remote.isel(time=at[k : k + _SLICE]).load() for k in range(0, len(at), _SLICE)

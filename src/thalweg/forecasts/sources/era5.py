@@ -11,6 +11,7 @@ from __future__ import annotations
 import datetime
 import hashlib
 import os
+import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -114,6 +115,7 @@ class Era5:
                         "Months that have arrived are kept.",
                         "Accept the licence of the dataset on its page, or try again later.",
                     ) from error
+                _unpack(draft)
                 os.replace(draft, path)
             paths.append(path)
         wanted_times = set(plan.times)
@@ -147,6 +149,15 @@ class Era5:
             for (year, month), (days, hours) in sorted(months.items())
             for low, high in spans
         ]
+
+
+def _unpack(path: Path) -> None:
+    """Put the GRIB files of an archive in its place: the service may send one all the same."""
+    if not zipfile.is_zipfile(path):
+        return
+    with zipfile.ZipFile(path) as archive:
+        whole = b"".join(archive.read(name) for name in archive.namelist())
+    path.write_bytes(whole)
 
 
 def _at_times(dataset: Any, wanted: set[float]) -> Any:

@@ -128,6 +128,12 @@ class StudyOrder(BaseModel):
         return data, study
 
 
+Quantities = Annotated[
+    list[Literal["wind", "waves", "current", "level", "ice", "pressure"]],
+    Field(min_length=1, max_length=5),
+]
+
+
 class FetchOrder(BaseModel):
     """A forecast to download; it becomes a sea."""
 
@@ -141,8 +147,10 @@ class FetchOrder(BaseModel):
     ]
     start: str = Field(max_length=40, description="ISO 8601")
     end: str = Field(max_length=40, description="ISO 8601")
-    quantities: list[Literal["wind", "waves", "current", "level", "ice", "pressure"]] = Field(
-        default=["wind", "waves"], min_length=1, max_length=5
+    quantities: Quantities | None = Field(
+        None,
+        description="left out: current of matroos and copernicus, level of rws, else wind and "
+        "waves",
     )
     step_h: int = Field(3, ge=1, le=24, description="hours between fields")
     members: int = Field(0, ge=0, le=200, description="members of the ensemble (ecmwf)")
@@ -156,6 +164,7 @@ class FetchOrder(BaseModel):
             If box or period is not possible.
         """
         from thalweg.forecasts import ForecastRequest
+        from thalweg.forecasts.source_table import usual_quantities
 
         try:
             box = BoundingBox.checked(*self.box)
@@ -166,7 +175,7 @@ class FetchOrder(BaseModel):
             box,
             self.start,  # type: ignore[arg-type]  # becomes seconds
             self.end,  # type: ignore[arg-type]
-            tuple(dict.fromkeys(self.quantities)),
+            tuple(dict.fromkeys(self.quantities or usual_quantities(self.source))),
             self.step_h * HOUR,
             None,
             self.members,
