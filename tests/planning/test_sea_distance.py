@@ -71,7 +71,7 @@ def test_ways_do_not_cross_ice_unless_they_begin_there():
     north = np.array(sea_distance("Yokohama", "Bremerhaven", avoid=["suez", "panama"]).line)
     assert np.abs(north[:, 0]).max() < 66.0
     south = sea_distance("Rio de Janeiro", "Brisbane")  # the great circle reaches 72 S
-    assert np.array(south.line)[:, 0].min() >= -65.001
+    assert np.array(south.line)[:, 0].min() >= -60.001
     assert np.array(sea_distance("Murmansk", "Hammerfest").line)[:, 0].max() < 72.0
     assert 514.0 < sea_distance("Longyearbyen", "Tromso").nm < 590.0  # great circle: 514 nm
 

@@ -202,7 +202,8 @@ def _add_passage_options(group: Any) -> None:
         "--ignore-shoals",
         action="store_true",
         help="count miles in shallow water like others; default: without depth data the ship keeps "
-        "out of water shallower than one and a half draughts where it can",
+        "out of water shallower than the next depth contour beyond one and a half draughts where "
+        "it can",
     )
     group.add_argument(
         "--ignore-lanes",

@@ -172,7 +172,7 @@ def sea_distance(
     -----
     The way is the shortest over a graph of all seas, where water within 2 nautical miles of land
     counts up to half more, after string pulling. Passages for small or local ships are closed.
-    Water north of 72 N and south of 65 S is used only by ways that begin or end there. Traffic
+    Water north of 72 N and south of 60 S is used only by ways that begin or end there. Traffic
     rules and weather are not considered. The graph is made once (10 to 20 s) and kept in
     the cache.
     """

@@ -49,8 +49,9 @@ _LINK_REACH: Final = 2.2  # positions are joined to nodes within this many legs 
 _OFFING: Final = 2.0 * NAUTICAL_MILE
 _NEAR_LAND_FACTOR: Final = 1.5
 #: Water beyond these latitudes [deg], where ice is likely, is used only by ways that begin or end
-#: there: 72 N closes the Northwest and Northeast Passages and leaves the North Cape open.
-ICE_LATITUDES: Final = (-65.0, 72.0)
+#: there: 72 N closes the Northwest and Northeast Passages and leaves the North Cape open; south of
+#: 60 S is the Antarctic area of the Polar Code (SOLAS chapter XIV).
+ICE_LATITUDES: Final = (-60.0, 72.0)
 _ICE_MARGIN: Final = 1.0  # ends this near to a limit count as beyond it [deg]
 _IN_ICE: Final = -2  # among the canals of edges
 _LONGEST_EDGE: Final = 250e3  # of edges across a passage, between two coasts [m]

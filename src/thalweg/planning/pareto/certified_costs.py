@@ -30,8 +30,8 @@ from thalweg.search.certificate.barrier_mesh import ShipInBarrier
 from thalweg.search.certificate.cost_certificate import CostToBound, certify_costs
 
 _KIND = (
-    "certificate: no motion lowers a function of the place by more than it costs, checked in every "
-    "cell of a mesh, for routes of at most {until:.1f} h"
+    "certificate: checked in every cell of a mesh that no course and speed costs less than the "
+    "bound counts there, for routes of at most {until:.1f} h between the sea ends of approaches"
 )
 _MOST_PRICES = 8
 _LEAST_GAIN = 1e-5  # share of the greatest value, below which the lines add nothing

@@ -127,7 +127,7 @@ def limits_text(plan: PlanData) -> str:
     if not met:
         only = "; nothing but land and zones stood in the way" if plan.rejections else ""
         return kept + only
-    return f"{kept}; other water was closed by: {', '.join(met[:3])}"
+    return f"{kept}; other water was refused: {', '.join(met[:3])}"
 
 
 def quality_text(plan: PlanData) -> str:
