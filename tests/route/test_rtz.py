@@ -237,7 +237,7 @@ def test_rtz_in_a_zip(tmp_path, monkeypatch):
         archive.writestr("a.rtz", f"{HEAD}<waypoints>{POINTS}</waypoints></route>")
         archive.writestr("note.txt", "x")
     assert len(read_track(path, depart=0)) == 3
-    monkeypatch.setattr("thalweg.route.formats.rtz_reader.LARGEST_RTZ", 100)
+    monkeypatch.setattr("thalweg.route.formats.rtz_reader.LARGEST_FILE", 100)
     with pytest.raises(InputError, match="too large"):
         read_track(path, depart=0)
     path.write_text("no zip")

@@ -215,6 +215,33 @@ def test_a_direction_without_units_is_refused_where_it_could_be_radians() -> Non
     assert float(sea.sample([WAVE_TO_EAST], T0, 11.0, 21.0)[WAVE_TO_EAST]) == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+@pytest.mark.parametrize(
+    ("south", "west", "step"), [(-90.0, -180.0, 1.0), (51.0, 2.0, 0.25), (0.0, 0.0, 1.0 / 12.0)]
+)
+def test_positions_in_radians(kind, south, west, step) -> None:
+    lat, lon = south + step * np.arange(9.0), west + step * np.arange(11.0)
+    axes = {
+        "time": np.array(["2026-01-01", "2026-01-02"], "M8[ns]"),
+        "latitude": lat,
+        "longitude": lon,
+    }
+    field = np.broadcast_to(lat[None, :, None], (2, 9, 11)).copy()
+    given = xr.Dataset(
+        {name: (tuple(axes), field, {"units": "m s-1"}) for name in ("u10", "v10")}, axes
+    )
+    turned = given.assign_coords(
+        latitude=np.radians(lat).astype(kind), longitude=np.radians(lon).astype(kind)
+    )
+    with pytest.raises(DatasetError, match="look like radians"):
+        Sea.open(turned)
+    for axis in ("latitude", "longitude"):
+        turned[axis].attrs["units"] = "radian"
+    sample = Sea.open(turned).sample(["eastward_wind"], parse_time("2026-01-01"), lat[3], lon[4])
+    assert float(sample["eastward_wind"]) == pytest.approx(lat[3], abs=1e-4)
+    assert Sea.open(given).variables  # degrees near 0 stay degrees
+
+
 # --------------------------------------------------------------------------- ranges and times
 
 

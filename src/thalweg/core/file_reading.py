@@ -44,11 +44,7 @@ def read_text_file(path: str | PathLike[str], kind: str, largest: int = 1_000_00
             "Check the path and the permissions.",
         ) from None
     if len(raw) > largest:
-        raise InputError(
-            f"The {kind} file {name} is too large.",
-            f"At most {largest / 1e6:g} MB are read.",
-            "Check the path.",
-        )
+        raise InputError(*too_large(f"{kind} file {name}", largest), "Check the path.")
     try:
         return raw.decode("utf-8").replace("\r\n", "\n")
     except UnicodeDecodeError:
@@ -57,3 +53,14 @@ def read_text_file(path: str | PathLike[str], kind: str, largest: int = 1_000_00
             "Only text in UTF-8 is read.",
             "Save it as UTF-8.",
         ) from None
+
+
+def too_large(what: str, largest: float, size: float | None = None) -> tuple[str, str]:
+    """Return what is wrong with something that is too large, and what is possible.
+
+    Parameters
+    ----------
+    largest, size : Bytes; the size if it is known.
+    """
+    has = "" if size is None else f": it has {size / 1e6:.1f} MB"
+    return f"The {what} is too large{has}.", f"At most {largest / 1e6:,g} MB are taken."

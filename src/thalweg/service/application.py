@@ -18,6 +18,7 @@ from starlette.middleware.gzip import GZipMiddleware
 from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from thalweg.core.file_reading import too_large
 from thalweg.service.access_control import AccessControl
 from thalweg.service.api_description import describe_answers
 from thalweg.service.endpoints.catalogue_endpoints import catalogue
@@ -87,12 +88,7 @@ class BodyLimit:
             return
         stated = dict(scope["headers"]).get(b"content-length", b"0")
         if not stated.isdigit() or int(stated) > self.largest:
-            error = ServiceError(
-                413,
-                "The request is too large.",
-                f"It may have {self.largest / 1e6:.0f} MB.",
-                "Send less.",
-            )
+            error = ServiceError(413, *too_large("request", self.largest), "Send less.")
             await problem_response(error)(scope, receive, send)
             return
         await self.application(scope, self._limited(receive), send)

@@ -12,6 +12,7 @@ from typing import Final
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import make_folder, write_text
 from thalweg.core.memory import machine_memory
+from thalweg.route.formats.route_file_options import LARGEST_FILE
 
 LOOPBACK_HOSTS: Final = ("127.0.0.1", "localhost", "::1")
 DEFAULT_PORT: Final = 8765
@@ -43,7 +44,7 @@ class ServiceLimits:
     job_bytes: int = field(default_factory=lambda: machine_memory() // 2)
     upload_bytes: int = 2 * 2**30
     store_bytes: int = 20 * 2**30
-    small_upload_bytes: int = 20 * 2**20
+    small_upload_bytes: int = LARGEST_FILE
     worker_seconds: float = 60.0
     cancel_seconds: float = 60.0
 

@@ -14,6 +14,7 @@ from typing import Any, BinaryIO, Final
 
 from starlette.concurrency import run_in_threadpool
 
+from thalweg.core.file_reading import too_large
 from thalweg.core.file_writing import make_folder, write_text
 from thalweg.service.problem_details import ServiceError, not_found
 
@@ -132,8 +133,7 @@ class UploadStore:
             )
         return ServiceError(
             413,
-            f"The file has more than {self.largest / 1e6:,.0f} MB.",
-            "Larger files are not taken.",
+            *too_large(f"{self.kind} file", self.largest),
             "Cut it to the area and period of the voyage.",
             field="file",
         )

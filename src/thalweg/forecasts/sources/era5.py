@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from thalweg.core.errors import InputError
+from thalweg.core.file_writing import write_bytes
 from thalweg.core.time import format_time
 from thalweg.core.units import DAY, HOUR
 from thalweg.forecasts.box_cut import read_grib_files
@@ -157,7 +158,7 @@ def _unpack(path: Path) -> None:
         return
     with zipfile.ZipFile(path) as archive:
         whole = b"".join(archive.read(name) for name in archive.namelist())
-    path.write_bytes(whole)
+    write_bytes(path, whole)
 
 
 def _at_times(dataset: Any, wanted: set[float]) -> Any:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from thalweg.core.errors import InputError
+from thalweg.core.file_reading import too_large
 from thalweg.core.time import TimeLike
 from thalweg.route.formats.csv_format import parse_csv, write_csv
 from thalweg.route.formats.geojson_format import parse_geojson, write_geojson
@@ -18,7 +19,11 @@ from thalweg.route.formats.gpx_format import parse_gpx, write_gpx
 from thalweg.route.formats.kml_writer import write_kml
 from thalweg.route.formats.leg_corridors import corridor_notes
 from thalweg.route.formats.parsed_track import ParsedTrack, track_of
-from thalweg.route.formats.route_file_options import ROUTE_FORMATS, RouteFileOptions
+from thalweg.route.formats.route_file_options import (
+    LARGEST_FILE,
+    ROUTE_FORMATS,
+    RouteFileOptions,
+)
 from thalweg.route.formats.rtz_reader import parse_rtz, parse_rtzp
 from thalweg.route.formats.rtz_writer import write_rtz, write_rtzp
 from thalweg.route.formats.s421_reader import parse_s421
@@ -44,8 +49,6 @@ __all__ = [
     "write_rtzp",
     "write_s421",
 ]
-
-LARGEST_FILE = 50_000_000  #: bytes; larger files are refused
 
 _PARSERS: dict[str, Callable[[str], ParsedTrack]] = {
     ".csv": parse_csv,
@@ -169,12 +172,8 @@ def _bytes_of(path: Path) -> bytes:
             file=str(path),
         ) from None
     if size > LARGEST_FILE:
-        raise InputError(
-            f"The route file {path.name!r} has {size / 1e6:.0f} MB.",
-            f"Files up to {LARGEST_FILE / 1e6:.0f} MB are read.",
-            "Reduce it to the route.",
-            file=str(path),
-        )
+        words = too_large(f"route file {path.name!r}", LARGEST_FILE, size)
+        raise InputError(*words, "Reduce it to the route.", file=str(path))
     return data
 
 

@@ -16,6 +16,8 @@ LEG_LINES = ("rhumb", "great-circle")
 RTZ_VERSIONS = ("1.0", "1.1", "1.2")
 #: Endings of the route files that can be written; ``gml`` is S-421.
 ROUTE_FORMATS = ("rtz", "rtzp", "gml", "gpx", "geojson", "kml", "csv")
+#: Bytes of a route file that is read, of some 50,000 waypoints with a schedule in any format.
+LARGEST_FILE = 50_000_000
 _MAX_CROSS_TRACK = 9.99  #: RTZ allows less than 10 nm [nm]
 
 

@@ -9,11 +9,13 @@ from __future__ import annotations
 import io
 import math
 import zipfile
+import zlib
 from collections.abc import Mapping
 from typing import Any
 from xml.etree import ElementTree
 
 from thalweg.core.errors import InputError
+from thalweg.core.file_reading import too_large
 from thalweg.core.geodesy import Position
 from thalweg.core.given_numbers import to_number
 from thalweg.core.units import NAUTICAL_MILE
@@ -23,6 +25,7 @@ from thalweg.route.formats.parsed_track import (
     position_of,
     waypoint_order,
 )
+from thalweg.route.formats.route_file_options import LARGEST_FILE
 from thalweg.route.formats.rtz_checks import rtz_notes, schedule_elements, stated_stay, stated_time
 from thalweg.route.formats.rtz_extensions import rtz_extensions
 from thalweg.route.formats.rtz_writer import MANUFACTURER, ORDER
@@ -33,18 +36,16 @@ from thalweg.route.formats.xml_elements import (
     parse_xml,
 )
 
-LARGEST_RTZ = 20_000_000  #: bytes of XML, of some 30,000 waypoints with a schedule
-
 
 def parse_rtz(data: bytes) -> ParsedTrack:
     """Read the route of an RTZ file.
 
     Raises
     ------
-    InputError : If it is too large, not XML, declares entities, or is no route.
+    InputError : If it is not XML, declares entities, or is no route.
     """
     builder = NamespaceTreeBuilder()
-    root = parse_xml(data, "RTZ", largest=LARGEST_RTZ, builder=builder)
+    root = parse_xml(data, "RTZ", builder)
     notes: list[str] = []
     waypoints = [e for group in children(root, "waypoints") for e in children(group, "waypoint")]
     if local_name(root) != "route" or len(waypoints) < 2:
@@ -91,20 +92,24 @@ def parse_rtzp(data: bytes) -> ParsedTrack:
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             members = [i for i in archive.infolist() if i.filename.casefold().endswith(".rtz")]
-            if len(members) == 1 and members[0].file_size <= LARGEST_RTZ:
+            if len(members) == 1:
                 with archive.open(members[0]) as file:
-                    return parse_rtz(file.read(LARGEST_RTZ + 1))
-    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, OSError) as error:
+                    found = file.read(LARGEST_FILE + 1)
+    except (zipfile.BadZipFile, zlib.error, RuntimeError, EOFError, OSError) as error:
         raise InputError(
             f"The RTZP cannot be read: {error}.",
             "It is a ZIP file with one RTZ file in it.",
             "Give the RTZ file itself.",
         ) from None
-    raise InputError(
-        f"The RTZP holds {len(members)} RTZ files" + (", too large." if len(members) == 1 else "."),
-        f"It holds one, of {LARGEST_RTZ / 1e6:.0f} MB at most.",
-        "Give the RTZ file itself.",
-    )
+    if len(members) != 1:
+        raise InputError(
+            f"The RTZP holds {len(members)} RTZ files.",
+            "It holds one.",
+            "Give the RTZ file itself.",
+        )
+    if len(found) > LARGEST_FILE:
+        raise InputError(*too_large("RTZ in the RTZP", LARGEST_FILE), "Reduce it to the route.")
+    return parse_rtz(found)
 
 
 def _position(waypoint: ElementTree.Element, number: int, notes: list[str]) -> Position:

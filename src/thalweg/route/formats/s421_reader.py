@@ -20,7 +20,6 @@ from thalweg.route.formats.parsed_track import (
 from thalweg.route.formats.rtz_writer import MANUFACTURER
 from thalweg.route.formats.xml_elements import children, local_name, parse_xml
 
-LARGEST_S421 = 50_000_000  #: bytes of XML, of some 20,000 waypoints with a schedule
 _LINES = {"1": True, "loxodrome": True, "2": False, "orthodrome": False}
 
 
@@ -36,7 +35,7 @@ def parse_s421(data: bytes) -> ParsedTrack:
     ------
     InputError : If it is too large, not XML, declares entities, or holds no route or several.
     """
-    root = parse_xml(data, "S-421 file", largest=LARGEST_S421)
+    root = parse_xml(data, "S-421 file")
     features = _features_of(root)
     by_name = {name: e for e in root.iter() if (name := _attribute(e, "id"))}
     waypoints = _in_order(features, by_name)

@@ -49,33 +49,22 @@ class NamespaceTreeBuilder(ElementTree.TreeBuilder):
 
 
 def parse_xml(
-    data: bytes | str,
-    what: str,
-    *,
-    largest: int | None = None,
-    builder: NamespaceTreeBuilder | None = None,
+    data: bytes | str, what: str, builder: NamespaceTreeBuilder | None = None
 ) -> ElementTree.Element:
     """Return the root element of an XML text that declares no entities.
 
     Parameters
     ----------
     what : The format, for messages.
-    largest : Bytes that are read at most.
     builder : Keeps the prefixes of namespaces.
 
     Raises
     ------
-    InputError : If it is too large, not XML, or declares entities.
+    InputError : If it is not XML, or declares entities.
     """
     from defusedxml import DefusedXmlException
     from defusedxml.ElementTree import DefusedXMLParser
 
-    if largest is not None and len(data) > largest:
-        raise InputError(
-            f"The {what} has {len(data) / 1e6:.1f} MB.",
-            f"It may have {largest / 1e6:.0f} MB at most.",
-            "Remove what is not the route.",
-        )
     try:
         parser = DefusedXMLParser(target=builder)
         parser.feed(data)

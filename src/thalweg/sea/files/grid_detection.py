@@ -92,6 +92,7 @@ def _coordinate_rank(array: Any, order: tuple[str, ...]) -> tuple[int, int]:
 def _rectilinear_grid(lat: Any, lon: Any, source: str) -> GridPlacement:
     y = _read_axis(lat, source, "latitude")
     x = np.unwrap(_read_axis(lon, source, "longitude"), period=360.0)
+    co.check_no_radians(y, x, source)
     if np.abs(y).max() > 90.0 + 1e-6:
         raise _axis_fault(source, str(lat.name), f"reaches {y[np.argmax(np.abs(y))]:g} degrees")
     flipped = x.size > 1 and x[1] < x[0]
@@ -109,9 +110,7 @@ def _is_decreasing(axis: FloatArray) -> bool:
 
 
 def _read_axis(array: Any, source: str, what: str) -> FloatArray:
-    values = np.asarray(array.values, np.float64)
-    if str(array.attrs.get("units", "")).lower() in ("radian", "radians"):
-        values = np.degrees(values)
+    values = co.in_degrees(array)
     if not np.isfinite(values).all():
         raise _axis_fault(source, str(array.name), f"has a missing {what}")
     return values
@@ -128,7 +127,7 @@ def _axis_fault(source: str, name: str, fault: str) -> DatasetError:
 
 
 def _curvilinear_placement(dataset: Any, lat: Any, lon: Any) -> GridPlacement:
-    y, x = np.asarray(lat.values, np.float64), np.asarray(lon.values, np.float64)
+    y, x = co.in_degrees(lat), co.in_degrees(lon)
     dims = (str(lat.dims[0]), str(lat.dims[1]))
     key = (*dims, str(lat.name), str(lon.name))
     rows, columns = y[:, 0], np.unwrap(x[0], period=360.0)

@@ -215,7 +215,7 @@ def _node_positions(
     first, second = dataset[axes[0]], dataset[axes[1]]
     if co.is_latitude(first, axes[0]) or "y" in str(first.attrs.get("standard_name", ""))[:12]:
         first, second = second, first
-    x, y = np.asarray(first.values, np.float64), np.asarray(second.values, np.float64)
+    x, y = co.in_degrees(first), co.in_degrees(second)
     if co.is_longitude(first, str(first.name)) and co.is_latitude(second, str(second.name)):
         return x, y, None
     crs = projections.projection_of(dataset, first, mapping, source)
