@@ -204,11 +204,17 @@ def test_limits_of_totals_are_kept_at_the_least_cost(ship):
     assert kept.best.indicators["places"]["mess"]["sick_percent"] <= limit
     assert kept.best.time_h > free.best.time_h
     assert kept.objective_value == kept.best.time_h and len(kept.routes) == 1
-    assert any("Limits of the route: sick_percent at most" in text for text in kept.notes)
+    assert any(
+        "Limits of the route: people sick at the end (sick_percent) at most" in text
+        for text in kept.notes
+    )
     assert kept.voyage.at_most == {"sick_percent": limit}
     easy = _plan(ship, objective="time", at_most={"sick_percent": 2.0 * sick})
     assert easy.best.time_h == free.best.time_h
-    with pytest.raises(NoRouteError, match=r"No route was found with sick_percent at most 0\.1"):
+    with pytest.raises(
+        NoRouteError,
+        match=r"No route was found with people sick at the end \(sick_percent\) at most 0\.1",
+    ):
         _plan(ship, objective="time", at_most={"sick_percent": 0.1})
     with pytest.raises(InputError, match="not known on this voyage"):
         _plan(ship, objective="time", at_most={"encounters": 5.0})

@@ -152,7 +152,7 @@ def test_the_uniform_sea_around_a_storm_is_named(answer):
 def test_the_prices_and_their_sources_stand_beside_the_cost(answer):
     ship = Ship.load("handysize-bulker")
     assert prices_text(ship.fuel_terms.prices()) == (
-        "fuel 300 USD/t and 468 in control areas (ship file)"
+        "fuel 300 USD/t and 468 in control areas (ship file), no price of time"
     )
     dearer = ship.with_prices(600.0, 1.0, time_usd_per_day=12000.0).fuel_terms.prices()
     assert prices_text(dearer) == "fuel 600 USD/t (given), time 12,000 USD/day (given)"

@@ -60,8 +60,9 @@ def add_command(commands: Any) -> None:
         "--draught",
         type=float,
         metavar="M",
-        help="keep out of water shallower than the next depth contour (5, 10, 20, 30, 40, 50 m) beyond one "
-        "and a half draughts [m] where it can, as plans do; default: shoals do not count",
+        help="keep out of water shallower than the next depth contour (5, 10, 20, 30, 40, 50 m) "
+        "beyond one and a half draughts [m] where it can, as plans do; default: shoals do not "
+        "count",
     )
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.set_defaults(run=run)

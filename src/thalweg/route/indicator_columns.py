@@ -58,6 +58,25 @@ INDICATORS: Final[dict[str, tuple[str, bool]]] = {
     "dense_traffic_h": ("h", True),
     "workable_percent": ("%", False),
 }
+#: Indicators in words, where the name does not say enough.
+INDICATOR_WORDS: Final[dict[str, str]] = {
+    "comfort": "dose of vertical motion",
+    "sick_percent": "people sick at the end",
+    "worst_hour_percent": "people sick, worst hour",
+    "max_acceleration": "greatest acceleration",
+    "uncomfortable_percent": "time above 0.05 g",
+    "inshore_nm": "length within 3 nm of land",
+    "inshore_percent": "share within 3 nm of land",
+    "land_distance_nm": "least distance from land",
+    "inshore_h": "time within 3 nm of land",
+    "contour_distance_nm": "least distance from shoals",
+    "near_ground_h": "time within 1 nm of the ground",
+    "shallow_h": "time in shallow water",
+    "min_ukc": "least under-keel clearance",
+    "encounters": "encounters with other ships",
+    "dense_traffic_h": "time in dense traffic",
+    "workable_percent": "time in which people can work",
+}
 #: Indicators of surroundings: column of the legs, and what one unit of the indicator is in SI.
 _WATER_COLUMNS: Final = {
     "inshore_nm": ("inshore_length", NAUTICAL_MILE),

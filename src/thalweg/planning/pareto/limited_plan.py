@@ -15,7 +15,7 @@ from thalweg.planning.plan import Plan
 from thalweg.planning.plan_front import ParetoFront
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route
-from thalweg.route.indicator_columns import INDICATORS, indicator_value
+from thalweg.route.indicator_columns import INDICATOR_WORDS, INDICATORS, indicator_value
 
 _ROUNDS: Final = 5  # halvings of the weight of the limited key figure
 #: Key figure that lowers an indicator.
@@ -70,21 +70,26 @@ class IndicatorLimit:
     def text(self, route: Route | None = None) -> str:
         """Return the limit, and the value of a route, in words."""
         unit = INDICATORS[self.name][0]
-        name = f"{self.name}:{self.at}" if self.at else self.name
-        words = f"{name} at {'most' if self.sense > 0 else 'least'} {self.value:g} {unit}".rstrip()
+        sense = "most" if self.sense > 0 else "least"
+        words = f"{self._words} at {sense} {self.value:g} {unit}".rstrip()
         if route is None:
             return words
         value = indicator_value(route, self.name, self.at)
-        return f"{words} ({value:.4g})" if math.isfinite(value) else f"{words} (not known)"
+        return f"{words} ({value:.3g})" if math.isfinite(value) else f"{words} (not known)"
 
     def value_text(self, route: Route) -> str:
         """Return the value of a route in words."""
         value = indicator_value(route, self.name, self.at)
         unit = INDICATORS[self.name][0]
+        known = f"{value:.3g} {unit}".rstrip() if math.isfinite(value) else "not known"
+        return f"{self._words} {known}"
+
+    @property
+    def _words(self) -> str:
+        """The indicator in words, with its name and its place."""
         name = f"{self.name}:{self.at}" if self.at else self.name
-        return (
-            f"{name} {value:.4g} {unit}".rstrip() if math.isfinite(value) else f"{name} not known"
-        )
+        words = INDICATOR_WORDS.get(self.name, "")
+        return f"{words} ({name})" if words else name
 
 
 def plan_within_limits(voyage: Voyage, plan_one: Callable[[Voyage], Plan]) -> Plan:
@@ -235,7 +240,9 @@ def _no_route_within(plans: list[Plan], limits: tuple[IndicatorLimit, ...]) -> N
     got = "" if nearest is None else ", ".join(one.value_text(nearest) for one in limits)
     return NoRouteError(
         f"No route was found with {asked}.",
-        f"The nearest of {len(routes)} routes has {got}." if got else "No route was found.",
+        f"Of {len(routes)} routes found, the one nearest to that has {got}."
+        if got
+        else "No route was found.",
         "Relax the limit, allow more time, or change the departure.",
         reasons={},
     )

@@ -130,6 +130,8 @@ def prices_text(prices: Mapping[str, Any]) -> str:
         texts.append(f"{cubed:g} {currency}/s per cubed speed ({source})")
     if hire is not None:
         texts.append(f"time {hire:,.0f} {currency}/day ({_source(prices, 'time_per_day')})")
+    elif texts:
+        texts.append("no price of time")
     charges = prices.get("european_charges") or {}
     if charges.get("voyage_share"):
         texts.append(f"EU charges on {100.0 * charges['voyage_share']:.0f} %")
