@@ -206,3 +206,14 @@ def test_canals_and_their_dues_are_in_the_lines_of_distance_and_cost(answer):
     assert lines[3].endswith(", by Great Ditch")
     assert "canal dues 12,345 USD" in lines[5]
     assert len(lines) <= MAX_LINES
+
+
+@pytest.mark.parametrize(("year", "words"), [("1850", ["1850"]), ("1998", []), ("2200", ["2200"])])
+def test_a_year_without_weather_is_noted(year, words):
+    from types import SimpleNamespace
+
+    from thalweg.core.time import parse_time
+    from thalweg.planning.report.provenance import year_warnings
+
+    notes = year_warnings(SimpleNamespace(depart=parse_time(f"{year}-06-01")))
+    assert [word for word in words if word in notes[0]] == words and len(notes) == len(words)

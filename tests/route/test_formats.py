@@ -232,3 +232,12 @@ def test_a_file_of_another_kind_is_refused_with_the_endings_that_are_read(tmp_pa
     with pytest.raises(InputError) as caught:
         read_track(path)
     assert ".rtz" in caught.value.possible and "KML is written only" in caught.value.possible
+
+
+def test_a_column_without_any_value_is_left_out(tmp_path):
+    track = Track([50.0, 50.1, 50.2], [-5.0, -5.0, -4.9], 0.0)
+    write_csv(evaluate(track, ship=ship(6.0), sea=Sea.calm()), tmp_path / "a.csv")
+    header, *rows = (tmp_path / "a.csv").read_text().splitlines()
+    columns = list(zip(*(row.split(",") for row in rows)))
+    assert all(any(column) for column in columns) and len(columns) == header.count(",") + 1
+    assert header.startswith("name,lat,lon,time,waiting_h") and "cost" not in header

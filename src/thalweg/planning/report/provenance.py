@@ -25,6 +25,8 @@ from thalweg.ship import Ship
 
 #: Latitude [deg] beyond which a warning about ice is given.
 _ICE_WARNING_LATITUDE = 72.0
+#: Years between which a departure needs no warning: the reanalysis ERA5 begins in 1940.
+_FIRST_YEAR, _LAST_YEAR = "1940", "2100"
 
 
 def route_warnings(context: PlanningContext, route: Route) -> list[str]:
@@ -39,7 +41,8 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     -------
     list of str : One sentence for each warning.
     """
-    notes = land_notes(context, route) + ice_warnings(route) + data_gap_warnings(context.sea, route)
+    notes = year_warnings(route) + land_notes(context, route) + ice_warnings(route)
+    notes += data_gap_warnings(context.sea, route)
     notes += [text for text in route.assumptions if text.startswith(OUT_OF_RANGE)]
     notes += lane_notes(context, route)
     if context.needs.limits.depth_checked:
@@ -50,7 +53,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
 def given_route_warnings(
     route: Route, *, chart: Chart, sea: Sea, ship: Ship, min_ukc: float | None
 ) -> list[str]:
-    """Return the warnings about a route from a file: ice, gaps of data, depth and shoals.
+    """Return the warnings about a route from a file: its year, ice, gaps of data, depth and shoals.
 
     Parameters
     ----------
@@ -58,11 +61,19 @@ def given_route_warnings(
     chart, sea, ship : With which it was evaluated.
     min_ukc : Required under the keel [m]; None: by the ship file.
     """
-    notes = ice_warnings(route) + data_gap_warnings(sea, route)
+    notes = year_warnings(route) + ice_warnings(route) + data_gap_warnings(sea, route)
     if route.min_ukc_m is not None:
         return notes
     clearance = ship.min_under_keel_clearance if min_ukc is None else min_ukc
     return notes + depth_notes(chart, route, ship, clearance)
+
+
+def year_warnings(route: Route) -> list[str]:
+    """Return a warning for a departure in a year of which no weather is known."""
+    year = format_time(route.depart)[:4]
+    if _FIRST_YEAR <= year <= _LAST_YEAR:
+        return []
+    return [f"The departure is in the year {year}: check it."]
 
 
 def data_gap_warnings(sea: Sea, route: Route) -> list[str]:

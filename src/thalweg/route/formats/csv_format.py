@@ -30,6 +30,8 @@ _NAMES = {
     "time": ("time", "datetime", "timestamp", "eta", "date"),
 }
 
+_SUMS = ("fuel_t", "energy_mwh", "co2_t", "cost_")  # columns that are sums from the start
+
 
 def parse_csv(text: str) -> ParsedTrack:
     """Read CSV text with columns lat and lon, separated by comma, semicolon or tab.
@@ -82,6 +84,8 @@ def parse_csv(text: str) -> ParsedTrack:
 def write_csv(route: Route, path: str | Path, options: RouteFileOptions | None = None) -> None:
     """Write the table of waypoints of a route; unknown values are left empty.
 
+    A column without any value, such as the cost of a ship without prices, is left out.
+
     Parameters
     ----------
     route : Route
@@ -90,8 +94,14 @@ def write_csv(route: Route, path: str | Path, options: RouteFileOptions | None =
         Names and waypoints.
     """
     rows = file_route(route, options).rows
-    cells = [[_cell(value) for value in row.values()] for row in rows]
-    write_csv_rows(path, [list(rows[0]), *cells])
+    names = [name for name in rows[0] if _is_known(name, [_cell(row[name]) for row in rows])]
+    write_csv_rows(path, [names, *([_cell(row[name]) for name in names] for row in rows)])
+
+
+def _is_known(name: str, values: list[object]) -> bool:
+    """Return whether a column has a value; an unknown sum has that of the start alone, zero."""
+    known = [value for value in values if value != ""]
+    return bool(known) and not (name.startswith(_SUMS) and known == [0.0])
 
 
 def _bare(name: str) -> str:
