@@ -193,6 +193,27 @@ def test_a_departure_within_one_of_several_seas_is_taken(client):
             check_plan_order(request, voyage, client.app.state.service)
 
 
+@pytest.mark.parametrize(
+    ("kind", "change", "field"),
+    [
+        ("studies", {"voyage": {"start": "Hull", "goal": "GBHUL", "depart": "1998-09-01"}}, "goal"),
+        ("studies", {"voyage": {"start": "Hull", "goal": "Halifax", "depart": "2020"}}, "depart"),
+        ("studies", {"axes": {"depart": ["2020-01-01", "2021-01-01"]}}, "depart"),
+        ("projects", {"start": "2026-05-01"}, "start"),
+    ],
+)
+def test_a_study_or_project_without_data_at_any_departure_is_refused(client, kind, change, field):
+    pytest.importorskip("pyarrow", reason='the extra "studies" is not installed')
+    from thalweg.service.jobs.batch_requests import PROJECT_EXAMPLE, STUDY_EXAMPLE
+
+    if kind == "studies":
+        body = {"study": {**STUDY_EXAMPLE["study"], "axes": {"speed_kn": [12]}, **change}}
+    else:
+        body = {"project": {**PROJECT_EXAMPLE["project"], "sea": "storm", **change}}
+    found = problem(client.post(f"/api/v1/{kind}", json=body), 422)
+    assert found["field"] == field and found["remedy"]
+
+
 def test_unknown_jobs_and_paths_are_problems(client):
     problem(client.get("/api/v1/plans/0123456789abcdef"), 404)
     problem(client.get("/api/v1/plans/..%2f..%2fetc"), 404)

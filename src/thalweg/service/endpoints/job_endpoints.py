@@ -18,6 +18,7 @@ from thalweg.service.endpoints.order_checks import (
     check_evaluation_order,
     check_plan_order,
     check_project_order,
+    check_study_order,
 )
 from thalweg.service.jobs.batch_requests import (
     FORECAST_EXAMPLE,
@@ -177,6 +178,7 @@ def start_study(
     entries, study = request.checked_study()
     given = {"title": request.title or study.name, "study": entries}
     _check_files(given, state)
+    check_study_order(study, state)
     return _start("study", given, response, idempotency_key, state)
 
 

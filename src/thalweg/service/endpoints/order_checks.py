@@ -17,6 +17,7 @@ from thalweg.service.jobs.plan_request import EvaluationRequest, PlanRequest
 from thalweg.service.jobs.request_objects import open_seas, open_ship_of
 from thalweg.service.jobs.sea_facts import sea_facts
 from thalweg.service.service_state import ServiceState
+from thalweg.studies import Study
 
 _WITHOUT_TIMES = ("sea_floor_depth",)  # begins the names of variables that do not change
 
@@ -64,6 +65,35 @@ def check_project_order(project: Project, sea: str | Sequence[str], state: Servi
     """
     seas = [sea] if isinstance(sea, str) else sea
     _check_period((project.start, project.start), seas, state, "start")
+
+
+def check_study_order(study: Study, state: ServiceState) -> None:
+    """Check that the seas of a study have data at the departure of one of its voyages at least.
+
+    Voyages that cannot be planned are rows with a refusal; a study of nothing else is refused.
+
+    Raises
+    ------
+    OutsidePeriodError : If no voyage departs within the data.
+    """
+    first: OutsidePeriodError | None = None
+    tried = set()
+    for row in study.rows():
+        sea, depart = row.request.get("sea"), row.request["voyage"].get("depart")
+        if sea is None or depart is None or row.request.get("fill"):
+            return
+        seas = (sea,) if isinstance(sea, str) else tuple(sea)
+        if (seas, depart) in tried:
+            continue
+        tried.add((seas, depart))
+        try:
+            _check_period((parse_time(depart),) * 2, seas, state, "depart")
+        except OutsidePeriodError as error:
+            first = first or error
+        else:
+            return
+    if first is not None:
+        raise first
 
 
 def _ship_files(ship: str, state: ServiceState) -> dict[str, str]:
