@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.browser.conftest import SHORT_REQUEST, Visit, playwright_api
+from tests.browser.conftest import Visit, playwright_api
 from tests.service.conftest import ended
 
 pytestmark = pytest.mark.slow
@@ -82,12 +82,10 @@ def test_what_is_missing_is_said_at_its_field(visit):
 
 
 def test_a_refusal_stands_at_its_field_and_offers_a_remedy(visit):
-    voyage = {**SHORT_REQUEST["voyage"], "depart": "2024-08-31T12:00Z"}
-    post, get = visit.service.http.post, visit.service.http.get
-    request = {**SHORT_REQUEST, "title": "A refused voyage", "voyage": voyage}
-    job = post("/api/v1/plans", json=request).raise_for_status().json()
-    assert ended(get, job["id"])["problem"]["field"] == "depart"
-    page = visit.open(f"#plan={job['id']}")
+    page = visit.open()
+    visit.fill_short()
+    page.locator("#depart").fill("2024-08-31 12:00")
+    page.get_by_role("button", name="Plan the voyage").click()
     field = page.locator("[data-field=depart]")
     field.locator(".error").wait_for()
     assert "24 Aug 1998 06:00 UTC" in field.locator(".error").inner_text()

@@ -35,8 +35,7 @@ def check_plan_order(request: PlanRequest, voyage: Voyage, state: ServiceState) 
             with_order(open_ship_of(request, _ship_files(request.ship, state)), voyage)
     if not voyage.departure_is_open and not request.fill:
         times = voyage.earliest_departure, voyage.latest_departure
-        field = "depart" if voyage.depart_window is None else "depart_window"
-        _check_period(times, request.seas, state, field)
+        _check_period(times, request.seas, state, "depart")
 
 
 def check_evaluation_order(request: EvaluationRequest, state: ServiceState) -> None:
