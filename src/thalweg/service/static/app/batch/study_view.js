@@ -57,7 +57,7 @@ export class StudyView {
     fill(this.voyage, ends
       ? h("p", {}, h("b", {}, plans.defaultTitle()), h("small.lead", {}, ` ${plans.objective.selectedOptions[0].text.toLowerCase()} · ${seas.join(", ") || "no sea chosen"}`))
       : h("p.note", {}, "The voyage has no ends yet. "), h("div.exports", { style: "margin-top: 8px" }, h("button.quiet.small", { type: "button", onclick: () => this.handlers.plan() }, ends ? "Change the voyage" : "Fill in the voyage"), ends ? null : h("button.quiet.small", { type: "button", onclick: async () => { this.handlers.demo(); this.handlers.panel([await this.show()]); } }, "Use the storm of 1998")),
-      plans.areas.list.length || plans.numbers.wave_height_m.value || plans.numbers.wind_speed_kn.value ? h("p.note", {}, "Areas and weather limits of the form are not used in studies; those of the ship file are.") : null);
+      plans.areas.list.length || plans.fields.inputs.wave_height_m.value || plans.fields.inputs.wind_speed_kn.value ? h("p.note", {}, "Areas and weather limits of the form are not used in studies; those of the ship file are.") : null);
     const before = [...this.ships.querySelectorAll("input:checked")].map((box) => box.value);
     const chosen = before.length ? before : [plans.ship.value];
     fill(this.ships, (plans.ship.list || []).map((ship) => h("label.check", {}, h("input", { type: "checkbox", value: ship.id, checked: chosen.includes(ship.id) }), h("span", {}, ship.name))));

@@ -249,7 +249,7 @@ export class Chart extends EventTarget {
     areas.forEach((area, number) => {
       const feature = new Feature({ geometry: new Polygon([area.ring.map((p) => fromLonLat(p))]), area: number });
       const name = area.kind === "no-go" ? "danger" : "amber";
-      feature.setStyle(() => new Style({ stroke: new Stroke({ color: colour(name), width: 1.8 }), fill: new Fill({ color: hatch(colour(name)) }), text: new Text({ text: area.kind === "no-go" ? "no-go" : `× ${area.factor}`, font: `600 ${FONT}`, fill: new Fill({ color: colour(name) }), stroke: new Stroke({ color: colour("casing"), width: 3.5 }) }) }));
+      feature.setStyle(() => new Style({ stroke: new Stroke({ color: colour(name), width: 1.8 }), fill: new Fill({ color: hatch(colour(name)) }), text: new Text({ text: area.factor ? `× ${area.factor}` : area.kind, font: `600 ${FONT}`, fill: new Fill({ color: colour(name) }), stroke: new Stroke({ color: colour("casing"), width: 3.5 }) }) }));
       source.addFeature(feature);
     });
     if (!this.modify) {

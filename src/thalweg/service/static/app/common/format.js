@@ -10,8 +10,10 @@ export function number(value, decimals = 0) {
   return value.toLocaleString("en-GB", { minimumFractionDigits: decimals, maximumFractionDigits: decimals });
 }
 
+// A time of the service or of a voyage file; without a zone it is UTC.
 export function seconds(text) {
-  const value = Date.parse(text);
+  if (typeof text === "number") return text;
+  const value = Date.parse(/T[\d:.]+$/.test(text) ? `${text}Z` : text);
   return Number.isFinite(value) ? value / 1000 : null;
 }
 
@@ -74,7 +76,7 @@ export function plainPosition(lat, lon) {
 export const bearing = (degrees) => (known(degrees) ? `${String(Math.round(degrees) % 360).padStart(3, "0")}°` : "unknown");
 
 export function inputTime(s) {
-  return new Date(s * 1000).toISOString().slice(0, 16).replace("T", " ");
+  return new Date(s * 1000).toISOString().slice(0, s % 60 ? 19 : 16).replace("T", " ");
 }
 
 export function unwrapped(lons) {
