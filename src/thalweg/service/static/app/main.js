@@ -32,7 +32,8 @@ class Application {
     this.chart.particles.wanted = localStorage.getItem("particles") === "true";
     this.drawer = new Drawer(document.getElementById("drawer"), () => this.chart.weather.loading);
     this.form = new PlanForm(this.chart);
-    this.compare = new CompareView({ show: (routes, table) => this.#showCompared(routes, table) });
+    const shipName = (id) => this.form.ship.list.find((ship) => ship.id === id)?.name || id;
+    this.compare = new CompareView({ shipName, show: (routes, table) => this.#showCompared(routes, table), link: (routes) => { if (this.view === "compare") this.address.write(`view=compare${routes && `&routes=${routes}`}`); } });
     this.batch = new BatchViews(this.chart, this.form, {
       view: () => this.view, open: (view) => this.#switch(view), sheet: (element, tall) => this.#sheet(element, tall), write: (address) => this.address.write(address),
       plan: () => { this.result = null; this.#switch("plan"); }, fillIn: (request) => this.#fillIn(request),
@@ -66,6 +67,7 @@ class Application {
     }
     if (given.has("demo")) { this.#fillIn(DEMO); return; }
     if (given.get("plan")) { await this.openJob(given.get("plan"), Number(given.get("route") || 1) - 1, given.has("t") ? Number(given.get("t")) : null); return; }
+    if (given.get("routes")) this.compare.address = given.get("routes");
     if (given.get("view")) this.#switch(given.get("view"));
     else if (!this.form.start.value) this.#showForm();
   }
@@ -279,7 +281,7 @@ class Application {
       change: () => { this.result = null; this.address.write(""); this.#showForm(); },
       compare: () => { this.compare.add(result.job.id, selection.route + 1, `${titleOf(result.job)}${result.plan.routes.length > 1 ? `, route ${selection.route + 1}` : ""}`); this.#switch("compare"); },
       link: () => this.address.copy(this.#place),
-      shipName: (id) => this.form.ship.list.find((ship) => ship.id === id)?.name || id,
+      shipName: this.compare.handlers.shipName,
       print: () => { this.drawer.open("legs"); print(); },
     });
     fill(panel, result.view.element);

@@ -37,6 +37,13 @@ export function duration(hours) {
   return d ? `${d} d ${two(h)} h` : `${h} h ${two(m)} min`;
 }
 
+// To the minute, also over a day: for figures whose differences are shown.
+export function exactDuration(hours) {
+  if (!known(hours)) return "unknown";
+  const minutes = Math.round(hours * 60), days = Math.floor(minutes / 1440);
+  return days ? `${days} d ${duration((minutes % 1440) / 60)}` : duration(hours);
+}
+
 export function signedDuration(hours) {
   if (!known(hours)) return "";
   if (Math.round(hours * 60) === 0) return "0 min";
