@@ -3,7 +3,7 @@
 import { follow, get, hasEnded, post, uploadForm } from "../common/api.js";
 import { errorBox, fill, h } from "../common/elements.js";
 import { EXAMPLES, keyOf, VARIATIONS } from "./examples.js";
-import { PAINTS } from "./result_drawing.js";
+import { drawCompared, PAINTS } from "./result_drawing.js";
 import { duration, exactDuration, known, number, readable, seconds, signed, time, titleOf } from "../common/format.js";
 
 const MOST = 6;
@@ -21,10 +21,15 @@ const FIGURES = [
 const rounded = (value, decimals) => (decimals === null ? Math.round(value * 60) / 60 : Number(value.toFixed(decimals)));
 
 export class CompareView {
+  drawn = []; // what the chart shows: {name, points}
   chosen = []; // {job, number, title}, the first is the reference
 
-  constructor(handlers) {
-    this.handlers = handlers;
+  /**
+   * @param {Chart} chart
+   * @param {{shipName: (id: string) => string, sheet: (element: Element) => void, write: (address: string) => void, hidden: () => boolean}} handlers
+   */
+  constructor(chart, handlers) {
+    Object.assign(this, { chart, handlers });
     this.list = h("div.pick");
     this.picked = h("ol.picked");
     this.counted = h("span.set");
@@ -50,6 +55,24 @@ export class CompareView {
   }
 
   async show() {
+    try {
+      await this.#list();
+    } catch (problem) {
+      fill(this.problem, errorBox(problem));
+    }
+  }
+
+  // The chosen routes on the chart, and their table below it.
+  #draw(routes, table) {
+    if (this.handlers.hidden()) return;
+    drawCompared(this.chart.routes, routes);
+    if (table) this.handlers.sheet(h("div.sheet", {}, table));
+    if (!routes.length) return;
+    this.chart.map.updateSize();
+    this.chart.fit(routes.flat());
+  }
+
+  async #list() {
     const ask = (this.listed = Symbol("ask"));
     const { jobs } = await get("/plans?size=60");
     const older = await Promise.all([...new Set(this.chosen.map((one) => one.job))].filter((id) => !jobs.some((job) => job.id === id)).map((id) => get(`/plans/${id}`).catch(() => null)));
@@ -113,18 +136,21 @@ export class CompareView {
   async #compare() {
     const ask = (this.asked = Symbol("ask")); // the answer to an earlier choice is not shown
     this.#showChosen();
-    this.handlers.link(this.address);
+    if (!this.handlers.hidden()) this.handlers.write(`view=compare${this.chosen.length ? `&routes=${this.address}` : ""}`);
     if (this.chosen.length < 2) {
-      this.handlers.show([], h("p.empty", {}, h("b", {}, this.chosen.length ? "Choose one more route" : "Choose routes to compare"), "Their figures and differences stand here, and all of them on the chart."));
+      this.drawn = [];
+      this.#draw([], h("p.empty", {}, h("b", {}, this.chosen.length ? "Choose one more route" : "Choose routes to compare"), "Their figures and differences stand here, and all of them on the chart."));
       if (!this.chosen.length) return;
       const points = await this.#points().catch(() => []);
-      if (ask === this.asked) this.handlers.show(points, null);
+      if (ask === this.asked) this.#draw(points, null);
       return;
     }
     try {
       const { routes } = await post("/compare", { routes: this.chosen.map(({ job, number: n }) => ({ job, number: n })) });
       const points = await this.#points();
-      if (ask === this.asked) this.handlers.show(points, this.#table(routes));
+      if (ask !== this.asked) return;
+      this.drawn = points.map((line, i) => ({ name: this.chosen[i].title, points: line }));
+      this.#draw(points, this.#table(routes));
     } catch (problem) {
       if (ask === this.asked) fill(this.problem, errorBox(problem));
     }
