@@ -53,7 +53,7 @@ def chart_depth_frame(
 ) -> Response:
     """Return the depth of the global layer [m] as a frame, in the form of /seas/{sea_ids}/frames.
 
-    Points of ETOPO1 at every tenth of a degree, at most 254 m: for a picture, never for a clearance.
+    Points of ETOPO1 at every tenth of a degree, at most 254 m: a picture, no clearance.
     """
     _, data = state.map_worker.do("chart_depth", box=parsed_box(box), nx=nx, ny=ny)
     return packed_frame(data)
