@@ -9,6 +9,8 @@ import { HeatMap } from "./heat_map.js";
 import { typedTime } from "../common/typed_time.js";
 
 const SECONDS_EACH = 6; // of an ocean voyage, about
+const TAKEN = ["fill", "load_factor", "sampling", "coast", "network", "resolution_nm"]; // of the request, beside its voyage
+const NOT_TAKEN = { limits: "limits of weather", areas: "areas", depths: "depth files", charges: "charges", eca: "control areas left out", traffic: "traffic", history: "the history network", average_over_m: "the depth of currents", route_files: "route files", proof_s: "the time for the proof" };
 const WORDS = { path: "/studies", earlier: "Earlier studies", stopped: "The study was stopped before a voyage was planned." };
 
 export class StudyView extends BatchView {
@@ -48,11 +50,12 @@ export class StudyView extends BatchView {
       this.from.value = inputTime(begin);
       this.to.value = inputTime(Math.min(begin + 3 * 86400, period[1]));
     }
+    const set = plans.settings(), left = Object.keys(NOT_TAKEN).filter((name) => set[name] !== undefined).map((name) => NOT_TAKEN[name]);
     const seas = plans.sea.chosen.map((id) => plans.sea.list.find((sea) => sea.id === id)?.name.split(":")[0] || id);
     fill(this.voyage, ends
       ? h("p", {}, h("b", {}, plans.defaultTitle()), h("small.lead", {}, ` ${plans.objective.selectedOptions[0].text.toLowerCase()} · ${seas.join(", ") || "no sea chosen"}`))
       : h("p.note", {}, "The voyage has no ends yet. "), h("div.exports", { style: "margin-top: 8px" }, h("button.quiet.small", { type: "button", onclick: () => this.handlers.plan() }, ends ? "Change the voyage" : "Fill in the voyage"), ends ? null : h("button.quiet.small", { type: "button", onclick: async () => { this.handlers.demo(); this.handlers.panel([await this.show()]); } }, "Use the storm of 1998")),
-      plans.areas.list.length || plans.fields.inputs.wave_height_m.value || plans.fields.inputs.wind_speed_kn.value ? h("p.note", {}, "Areas and weather limits of the form are not used in studies; those of the ship file are.") : null);
+      left.length ? h("p.note", {}, `Not used in studies: ${left.join(", ")} of the form.`) : null);
     const before = [...this.ships.querySelectorAll("input:checked")].map((box) => box.value);
     const chosen = before.length ? before : [plans.ship.value];
     fill(this.ships, (plans.ship.list || []).map((ship) => h("label.check", {}, h("input", { type: "checkbox", value: ship.id, checked: chosen.includes(ship.id) }), h("span", {}, ship.name))));
@@ -93,7 +96,8 @@ export class StudyView extends BatchView {
     if (!base) { this.handlers.plan(); return null; }
     const { depart, depart_window: window, arrive_by: latest, ...voyage } = base.voyage;
     const study = { name: this.title.value.trim() || base.title, ship: ships[0], sea: base.seas.length === 1 ? base.seas[0] : base.seas, voyage, axes: { depart: { from: `${inputTime(from).replace(" ", "T")}Z`, to: `${inputTime(to).replace(" ", "T")}Z`, step_h: step } } };
-    if (base.fill) study.fill = base.fill;
+    for (const name of TAKEN) if (base[name] !== undefined) study[name] = base[name];
+    if (base.variables) study.map = base.variables;
     if (ships.length > 1) study.axes.ship = ships;
     if (speeds.length > 1) study.axes.speed_kn = speeds;
     else if (speeds.length) [study.voyage.speed_kn] = speeds;

@@ -5,7 +5,7 @@ import { get } from "../common/api.js";
 import { CoastLayers } from "./coast_layer.js";
 import { ParticleLayer } from "./particle_layer.js";
 import { bandColours, KINDS, WeatherLayer } from "./weather_layer.js";
-import { RouteLayers, SPEED_COLOURS, layer, stroke, FONT, Feature, Point, Polygon, LineString, Style, Fill, Stroke, Circle, Text, fromLonLat } from "./route_layers.js";
+import { RouteLayers, speedColours, layer, stroke, FONT, Feature, Point, Polygon, LineString, Style, Fill, Stroke, Circle, Text, fromLonLat } from "./route_layers.js";
 import { colour, fill, h } from "../common/elements.js";
 import { known, number, position, time } from "../common/format.js";
 
@@ -221,7 +221,7 @@ export class Chart extends EventTarget {
   }
 
   #speedLegend(low, high) {
-    return h("section", {}, h("b", {}, "Speed over ground"), bar(SPEED_COLOURS), h("div.ends", {}, h("span", {}, number(low, 1)), h("span", {}, number((low + high) / 2, 1)), h("span", {}, `${number(high, 1)} kn`)));
+    return h("section", {}, h("b", {}, "Speed over ground"), bar(speedColours()), h("div.ends", {}, h("span", {}, number(low, 1)), h("span", {}, number((low + high) / 2, 1)), h("span", {}, `${number(high, 1)} kn`)));
   }
 
   // Depths of the package, for a picture of the sea; never for a clearance.

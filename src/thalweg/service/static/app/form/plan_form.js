@@ -278,7 +278,7 @@ export class PlanForm extends EventTarget {
     else if (this.depart.value) voyage.depart = utc(this.depart);
     for (const name of ["via", "forbid"]) if (!voyage[name].length) delete voyage[name];
     const request = { title: this.title.value.trim() || this.defaultTitle(), voyage, ship: this.ship.value, seas: this.sea.chosen };
-    const fault = this.fields.fill(request) || this.data.fill(request) || this.network.fill(request);
+    const fault = this.#fillParts(request);
     if (fault) return this.#missing(fault.field, fault.asked, fault.remedy);
     if (request.charges && Object.keys(request.charges).join() === "year") delete request.charges;
     if (voyage.objective === "weighted") { voyage.weights = this.weights.value(); if (!voyage.weights) return this.#missing("weights", this.weights.fault.asked, this.weights.fault.remedy); }
@@ -288,8 +288,19 @@ export class PlanForm extends EventTarget {
     if (this.objective.value === "alternatives") request.most = this.most;
     const filled = this.fills.filter(([, select]) => select.value).map(([name, select]) => [name, fillOf(select.value)]);
     if (filled.length) request.fill = Object.fromEntries(filled);
-    if (this.areas.list.length || this.areas.kept.length) request.areas = this.areas.features;
     return request;
+  }
+
+  #fillParts(request) {
+    if (this.areas.list.length || this.areas.kept.length) request.areas = this.areas.features;
+    return this.fields.fill(request) || this.data.fill(request) || this.network.fill(request);
+  }
+
+  // What is set beside the voyage itself, whether it is right or not.
+  settings() {
+    const found = { voyage: {} };
+    this.#fillParts(found);
+    return found;
   }
 
   defaultTitle() {
