@@ -153,7 +153,6 @@ class Application {
     this.form.areas.draw(true);
     this.departure = null;
     this.#fieldTime();
-    this.#valid();
   }
 
   #placesOnChart() {
@@ -177,6 +176,7 @@ class Application {
     weather.set({ seas: sea.chosen, time: t });
     if (t !== null) selection.at(t);
     this.drawer.moved();
+    this.#valid();
   }
 
   async openJob(id, route = 0, t = null) {

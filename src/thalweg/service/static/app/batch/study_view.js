@@ -44,9 +44,9 @@ export class StudyView extends BatchView {
 
   async show() {
     this.begin();
-    const { plans } = this, { period } = plans, ends = plans.start.value && plans.goal.value;
+    const { plans } = this, { period } = plans.sea, ends = plans.start.value && plans.goal.value;
     if (!this.from.value && period) {
-      const begin = Math.ceil(period[0] / 43200) * 43200;
+      const begin = Math.ceil((typedTime(plans.depart) ?? period[0]) / 43200) * 43200;
       this.from.value = inputTime(begin);
       this.to.value = inputTime(Math.min(begin + 3 * 86400, period[1]));
     }

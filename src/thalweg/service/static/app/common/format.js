@@ -41,7 +41,7 @@ export function duration(hours) {
 export function exactDuration(hours) {
   if (!known(hours)) return "unknown";
   const minutes = Math.round(hours * 60), days = Math.floor(minutes / 1440);
-  return days ? `${days} d ${duration((minutes % 1440) / 60)}` : duration(hours);
+  return days ? `${days} d ${two(Math.floor((minutes % 1440) / 60))} h ${two(minutes % 60)} min` : duration(hours);
 }
 
 export function signedDuration(hours) {

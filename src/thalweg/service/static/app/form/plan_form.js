@@ -199,7 +199,7 @@ export class PlanForm extends EventTarget {
   #seaChanged() {
     const { period } = this.sea;
     this.departFacts.textContent = period ? `Data from ${time(period[0])} to ${time(period[1], true)}` : "";
-    if (!this.depart.value && period) this.depart.value = inputTime(period[0]);
+    if (period && [this.proposed, ""].includes(this.depart.value)) this.depart.value = this.proposed = inputTime(period[0]); // until another is typed
     this.dispatchEvent(new Event("seas"));
   }
 

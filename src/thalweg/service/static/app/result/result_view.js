@@ -106,7 +106,7 @@ export class ResultView {
 
   #routes(plan) {
     const { front } = plan;
-    return h("div.block", {}, h("h2", {}, `${plan.routes.length} routes, fastest first`), h("ol.routes", {}, plan.routes.map((route, i) => h("li", {}, h("button", {
+    return h("div.block.no-print", {}, h("h2", {}, `${plan.routes.length} routes, fastest first`), h("ol.routes", {}, plan.routes.map((route, i) => h("li", {}, h("button", {
       type: "button", "aria-pressed": String(i === selection.route), onclick: () => selection.choose(i), onpointerenter: () => selection.hover(i), onpointerleave: () => selection.hover(null),
     }, h("span.swatch"), h("span", {}, exactDuration(route.time_h), front && front.points[i]?.way !== "open sea" ? h("small.unit", {}, ` ${front.points[i]?.way}`) : null), h("span", {}, number(route.fuel_t, 1), unit("t")), h("span", {}, known(costOf(route)) ? [number(costOf(route)), unit(route.currency)] : ""))))));
   }
