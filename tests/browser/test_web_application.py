@@ -82,17 +82,29 @@ def test_what_is_missing_is_said_at_its_field(visit):
 
 
 def test_a_refusal_stands_at_its_field_and_offers_a_remedy(visit):
-    voyage = {**SHORT_REQUEST["voyage"], "depart": "2024-08-31T12:00Z"}
-    post, get = visit.service.http.post, visit.service.http.get
-    request = {**SHORT_REQUEST, "title": "A refused voyage", "voyage": voyage}
-    job = post("/api/v1/plans", json=request).raise_for_status().json()
-    assert ended(get, job["id"])["problem"]["field"] == "depart"
-    page = visit.open(f"#plan={job['id']}")
+    page = visit.open()
+    visit.fill_short()
+    page.locator("#depart").fill("2024-08-31 12:00")
+    page.get_by_role("button", name="Plan the voyage").click()
     field = page.locator("[data-field=depart]")
     field.locator(".error").wait_for()
     assert "24 Aug 1998 06:00 UTC" in field.locator(".error").inner_text()
     field.get_by_role("button", name="Depart 24 Aug 1998 06:00").click()
     assert page.locator("#depart").input_value() == "1998-08-24 06:00"
+    assert field.locator(".error").count() == 0
+
+
+def test_a_refused_job_fills_the_form_and_stands_at_its_field(visit):
+    voyage = {**SHORT_REQUEST["voyage"], "arrive_by": "1998-08-31T12:30Z"}
+    post, get = visit.service.http.post, visit.service.http.get
+    request = {**SHORT_REQUEST, "title": "A refused voyage", "voyage": voyage}
+    job = post("/api/v1/plans", json=request).raise_for_status().json()
+    assert ended(get, job["id"])["problem"]["field"] == "arrive_by"
+    page = visit.open(f"#plan={job['id']}")
+    field = page.locator("[data-field=arrive_by]")
+    field.locator(".error").wait_for()
+    field.get_by_role("button", name=re.compile("Arrive by 31 Aug 13:")).click()
+    assert page.locator("#arrive-by").input_value().startswith("1998-08-31 13:")
     assert field.locator(".error").count() == 0
 
 

@@ -20,7 +20,7 @@ const OBJECTIVES = [
   ["co2", "Least CO₂"], ["energy", "Least energy"], ["comfort", "Least motion sickness"], ["encounters", "Fewest encounters with ships"], ["inshore", "Least length near land"], ["distance", "Shortest distance"],
   ["weighted", "A weighted sum …"], ["alternatives", "Routes that differ, to choose from"],
 ];
-const CANALS = [["suez", "Suez"], ["panama", "Panama"], ["kiel", "Kiel"], ["corinth", "Corinth"]];
+const CANALS = [["suez", "Suez"], ["panama", "Panama"], ["kiel", "Kiel"], ["corinth", "Corinth"], ["cape-cod", "Cape Cod"]];
 export const DEMO = { title: "Halifax to Bishop Rock", ship: "handysize-bulker", seas: ["storm"], voyage: { start: "Halifax", goal: "49.7N 6.5W", depart: "1998-08-31T12:00Z", objective: "time" } };
 
 export class PlanForm extends EventTarget {
@@ -359,7 +359,7 @@ export class PlanForm extends EventTarget {
     this.fields.set(request);
     this.data.set(request);
     this.most = request.most ?? 5;
-    this.forbid.forEach(([name, box]) => { box.checked = (voyage.forbid || []).some((one) => one === name || one === "all"); });
+    this.forbid.forEach(([name, box]) => { box.checked = [voyage.forbid || []].flat().some((one) => one === name || one === "all"); });
     this.fills.forEach(([name, select]) => showChoice(select, [request.fill?.[name] ?? ""].flat().join(", then ")));
     this.title.value = request.title && request.title !== this.defaultTitle() ? request.title : "";
     this.areas.set(request.areas);

@@ -102,7 +102,7 @@ export class RequestFields {
       if (kind === "tick") input.checked = given !== unit;
       else if (given === null) { if (kind === "choice") input.selectedIndex = 0; else input.value = ""; }
       else if (kind === "number") input.value = String(Number((given * (scale || 1)).toPrecision(12)));
-      else if (kind === "words") input.value = given.join(", ");
+      else if (kind === "words") input.value = [given].flat().join(", ");
       else if (kind === "time") input.value = inputTime(seconds(given));
       else showChoice(input, given);
     }
