@@ -19,7 +19,7 @@ PICTURES = os.environ.get("THALWEG_SCREENSHOTS")
 #: The script axe.min.js of axe-core 4.14.1.
 AXE = Path(__file__).parent / "axe" / "axe.min.js.gz"
 #: Time in which something appears on a loaded machine [ms]; ``expect`` of playwright has 5 s.
-LONG_MS = 120_000
+LONG_MS = 600_000
 playwright_api.expect.set_options(timeout=LONG_MS)
 PALETTES = ("day", "dusk", "night")
 
