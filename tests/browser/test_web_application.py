@@ -94,6 +94,20 @@ def test_a_refusal_stands_at_its_field_and_offers_a_remedy(visit):
     assert field.locator(".error").count() == 0
 
 
+def test_a_refused_job_fills_the_form_and_stands_at_its_field(visit):
+    voyage = {**SHORT_REQUEST["voyage"], "arrive_by": "1998-08-31T12:30Z"}
+    post, get = visit.service.http.post, visit.service.http.get
+    request = {**SHORT_REQUEST, "title": "A refused voyage", "voyage": voyage}
+    job = post("/api/v1/plans", json=request).raise_for_status().json()
+    assert ended(get, job["id"])["problem"]["field"] == "arrive_by"
+    page = visit.open(f"#plan={job['id']}")
+    field = page.locator("[data-field=arrive_by]")
+    field.locator(".error").wait_for()
+    field.get_by_role("button", name=re.compile("Arrive by 31 Aug 13:")).click()
+    assert page.locator("#arrive-by").input_value().startswith("1998-08-31 13:")
+    assert field.locator(".error").count() == 0
+
+
 def test_points_are_dragged_and_a_voyage_file_and_a_link_restore_them(visit, tmp_path):
     page = visit.open()
     visit.fill_short("47.0N 20.0W", "47.0N 30.0W")
@@ -154,27 +168,41 @@ def test_a_broken_upload_is_an_error_at_the_sea(visit, tmp_path):
     assert "waves.nc" in error.inner_text()
 
 
+def tab_to(page, selector: str, most: int = 120) -> None:
+    """Press Tab until an element has the focus."""
+    for _ in range(most):
+        page.keyboard.press("Tab")
+        if page.evaluate("s => document.activeElement.matches(s)", selector):
+            return
+    raise AssertionError(f"{selector} is not reached by {most} Tabs")
+
+
 def test_keyboard_only(visit):
     page = visit.open()
     page.wait_for_selector("#ship option", state="attached")
-    page.locator(".field.start input").focus()
+    tab_to(page, ".field.start input")
     page.keyboard.type("halif")
     page.wait_for_selector(".field.start .options li")
     page.keyboard.press("ArrowDown")
     page.keyboard.press("Enter")
     assert page.locator(".field.start input").input_value() == "CAHAL"
     assert "Halifax, CA" in page.locator(".field.start .understood").inner_text()
-    page.locator(".field.start input").fill("47.0N 20.0W")
-    page.keyboard.press("Tab")
+    page.keyboard.press("ControlOrMeta+a")
+    page.keyboard.type("47.0N 20.0W")
+    tab_to(page, ".field.goal input")
     page.keyboard.type("47.6N 18.0W")
-    page.locator("#depart").fill("1998-08-31T12:00")
-    page.locator(".field.goal input").focus()
+    tab_to(page, "#depart")
+    page.keyboard.press("ControlOrMeta+a")
+    page.keyboard.type("1998-08-31 12:00")
     page.keyboard.press("Enter")
     page.wait_for_selector(".proof")
-    page.locator("#panel h1").click()
     before = page.locator(".player output").inner_text()
+    tab_to(page, "#time")
     page.keyboard.press(".")
     assert page.locator(".player output").inner_text() != before
+    tab_to(page, "#tab-profile")
+    page.keyboard.press("ArrowRight")
+    assert page.locator("#tab-legs").get_attribute("aria-selected") == "true"
     page.keyboard.press("?")
     assert page.locator("dialog").is_visible()
     page.keyboard.press("Escape")
@@ -182,6 +210,11 @@ def test_keyboard_only(visit):
     page.keyboard.press("n")
     assert page.locator("html").get_attribute("data-palette") == "night"
     visit.picture("night")
+    page.keyboard.press("v")
+    page.locator("#panel h1", has_text="Voyages").wait_for()
+    tab_to(page, "button.job")
+    page.keyboard.press("Enter")
+    page.wait_for_selector(".proof")
 
 
 def test_an_area_is_drawn_and_the_route_avoids_it(visit):
@@ -235,12 +268,20 @@ def test_choosing_a_route_of_a_front_changes_cards_and_profile(visit):
     visit.plan()
     assert page.locator(".routes button").count() >= 2
     page.locator("#tab-front").click()
+    shown = (
+        "({ chart, drawer }) => [chart.routes.chosen.getSource().getFeatures()[0].get('number'),"
+    )
+    shown = f"({shown} drawer.result.profile.time.at(-1)])(window.thalweg)"
+    number, arrival = page.evaluate(shown)
     first = visit.figure("Fuel"), page.locator(".player output").inner_text()
     page.locator(".front circle[aria-pressed=true]").focus()
     page.keyboard.press("ArrowRight")
     page.wait_for_url(re.compile("route=2"))
     visit.picture("front")
     assert visit.figure("Fuel") != first[0]
+    later = page.evaluate(shown)
+    assert later[0] == number + 1, "the route on the chart"
+    assert later[1] > arrival, "the profile"
     assert (
         page.locator(".routes button[aria-pressed=true]")
         .inner_text()
@@ -255,8 +296,9 @@ def test_choosing_a_route_of_a_front_changes_cards_and_profile(visit):
 def test_an_exported_route_is_scored_beside_its_plan(visit, planned, tmp_path):
     page = visit.open(f"#plan={planned}")
     page.wait_for_selector(".proof")
-    rtz = visit.service.http.get(f"/api/v1/plans/{planned}/routes/1.rtz").content
-    (tmp_path / "mine.rtz").write_bytes(rtz)
+    with page.expect_download() as download:
+        page.get_by_role("link", name="RTZ", exact=True).click()
+    (tmp_path / "mine.rtz").write_bytes(Path(download.value.path()).read_bytes())
     page.get_by_role("button", name="Compare").last.click()
     page.wait_for_selector("#route-file", state="attached")
     page.locator(".jobrow input:checked").first.wait_for()

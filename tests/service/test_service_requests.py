@@ -325,6 +325,24 @@ def test_unknown_values_of_a_frame_stay_unknown(client):
     assert (np.frombuffer(data, "<i2", offset=32) == -32768).all()
 
 
+def test_the_depth_of_the_chart_is_that_of_the_global_layer(client):
+    from thalweg.chart.depth.global_depth import coarse_depth
+
+    query = {"box": "50,60,-5,10", "nx": 7, "ny": 5}
+    answer = client.get("/api/v1/chart/depth", params=query)
+    data = answer.content
+    magic, nx, ny, fields, _, scale, *box = struct.unpack_from("<4sHHHHf4f", data)
+    assert (magic, nx, ny, fields) == (b"TWF1", 7, 5, 1)
+    assert box == [50.0, 60.0, -5.0, 10.0]
+    values = np.frombuffer(data, "<i2", offset=32).reshape(5, 7) * scale
+    lon = np.linspace(-5.0, 10.0, 7)
+    wanted = coarse_depth(np.full(7, 60.0), lon)  # the first row is the north of the box
+    known = np.isfinite(wanted)
+    np.testing.assert_allclose(values[0][known], wanted[known], atol=0.3)
+    assert (values[0][~known] == -32768 * scale).all()
+    problem(client.get("/api/v1/chart/depth", params={**query, "box": "60,50,-5,10"}), 422)
+
+
 def test_coast_cells_are_the_land_of_the_chart(client):
     import shapely
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from thalweg.chart import Chart
 from thalweg.planning.plan import Plan
 from thalweg.planning.planner import plan
+from thalweg.planning.request.ordered_speed import with_order
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, evaluate
 from thalweg.sea import Sea
@@ -25,5 +24,6 @@ def demo_voyage() -> Voyage:
 
 def weather_blind(found: Plan, *, ship: Ship, sea: Sea, chart: Chart) -> Route:
     """Return the route planned without weather, evaluated in the weather of the plan."""
-    calm = plan(replace(found.voyage), ship=ship, sea=Sea.calm(), chart=chart, proof=0.0)
-    return evaluate(calm.best.track, ship=ship, sea=sea, chart=chart, strict=False)
+    calm = plan(found.voyage, ship=ship, sea=Sea.calm(), chart=chart, proof=0.0)
+    ordered = with_order(ship, found.voyage)  # the settings of the track are those of this ship
+    return evaluate(calm.best.track, ship=ordered, sea=sea, chart=chart, strict=False)

@@ -6,9 +6,10 @@ from functools import cache
 from typing import Any, Literal
 
 import numpy as np
-from fastapi import APIRouter, Path, Response
+from fastapi import APIRouter, Path, Query, Response
 
 from thalweg.service.coast_map import CELL_SIDES, cell_names, cells_folder
+from thalweg.service.endpoints.sea_endpoints import packed_frame, parsed_box
 from thalweg.service.problem_details import not_found
 from thalweg.service.service_state import State
 
@@ -37,6 +38,25 @@ def coast_cell(level: Level, cell: str = Path(pattern=r"^\d{1,3}_\d{1,3}$")) -> 
         raise not_found("cell", cell, "The cells with land are listed at /coast/{level}.")
     headers = {**_FOREVER, "Content-Encoding": "gzip"}
     return Response(path.read_bytes(), media_type="application/json", headers=headers)
+
+
+@chart_router.get(
+    "/chart/depth",
+    response_class=Response,
+    responses={200: {"content": {"application/octet-stream": {}}}},
+)
+def chart_depth_frame(
+    state: State,
+    box: str = Query(max_length=80, examples=["30,60,-80,10"], description="south,north,west,east"),
+    nx: int = Query(96, ge=2, le=512),
+    ny: int = Query(64, ge=2, le=512),
+) -> Response:
+    """Return the depth of the global layer [m] as a frame, in the form of /seas/{sea_ids}/frames.
+
+    Points of ETOPO1 at every tenth of a degree, at most 254 m: a picture, no clearance.
+    """
+    _, data = state.map_worker.do("chart_depth", box=parsed_box(box), nx=nx, ny=ny)
+    return packed_frame(data)
 
 
 @chart_router.get("/chart")

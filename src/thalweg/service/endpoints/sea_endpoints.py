@@ -109,16 +109,28 @@ def sea_frame(
         files=files,
         variable=variable,
         time=parse_time(time),
-        box=_box(box),
+        box=parsed_box(box),
         nx=nx,
         ny=ny,
     )
+    return packed_frame(data)
+
+
+def packed_frame(data: bytes) -> Response:
+    """Return the answer that holds a frame."""
     headers = {"Content-Encoding": "gzip", "Cache-Control": "private, max-age=86400, immutable"}
     packed = gzip.compress(data, 4, mtime=0)
     return Response(packed, media_type="application/octet-stream", headers=headers)
 
 
-def _box(text: str) -> list[float]:
+def parsed_box(text: str) -> list[float]:
+    """Return south, north, west and east [deg] of a text.
+
+    Raises
+    ------
+    InputError
+        If it holds no box that is possible.
+    """
     try:
         south, north, west, east = (float(part) for part in text.split(","))
     except ValueError:

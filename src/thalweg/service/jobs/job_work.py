@@ -172,7 +172,7 @@ def _beside(
     if found.front is not None:
         compared = found.front.comparison
         return compared.routes[0] if compared is not None and compared.routes else None
-    if found.voyage.depart is None:
+    if found.voyage.depart is None or found.voyage.arrive is not None:
         return None
     from thalweg.planning.demo_voyage import weather_blind
 

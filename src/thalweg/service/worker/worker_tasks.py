@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import struct
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -13,6 +13,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.core.time import format_time
+from thalweg.core.types import FloatArray
 from thalweg.service.jobs.sea_facts import FRAME_VARIABLES, forecast_run, sea_facts
 
 if TYPE_CHECKING:
@@ -41,22 +42,45 @@ def frame(task: Mapping[str, Any]) -> TaskResult:
         16-bit integers, little-endian, in units of the scale; `UNKNOWN` where unknown.
     """
     names, scale = FRAME_VARIABLES[task["variable"]]
+    at = _raster(task)
     sea = _sea(tuple(task["seas"]), tuple(sorted(task["files"].items())))
     if sea.members:
         sea = sea.member(0)
-    south, north, west, east = task["box"]
-    nx, ny = task["nx"], task["ny"]
-    y = np.linspace(_mercator(north), _mercator(south), ny)
-    lat = np.degrees(2.0 * np.arctan(np.exp(y)) - np.pi / 2)
-    lon = np.linspace(west, east, nx)
-    at = np.meshgrid(lat, (lon + 180.0) % 360.0 - 180.0, indexing="ij")
     known = [name for name in names if name in sea.variables]
     values = sea.sample(known, task["time"], *at) if known else {}
-    shape = (ny, nx)
-    fields = [values.get(name, np.full(shape, np.nan)) for name in names]
+    fields = [values.get(name, np.full(at[0].shape, np.nan)) for name in names]
+    return {}, _packed(task, fields, scale)
+
+
+def chart_depth(task: Mapping[str, Any]) -> TaskResult:
+    """Return the depth of the global layer on a raster, as `frame` returns that of a sea.
+
+    Parameters
+    ----------
+    task : mapping
+        ``box``, ``nx`` and ``ny``.
+    """
+    from thalweg.chart.depth.global_depth import coarse_depth
+
+    _, scale = FRAME_VARIABLES["depth"]
+    return {}, _packed(task, [coarse_depth(*_raster(task))], scale)
+
+
+def _raster(task: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
+    """Return the latitudes and longitudes of a raster of Mercator rows [deg]."""
+    south, north, west, east = task["box"]
+    y = np.linspace(_mercator(north), _mercator(south), task["ny"])
+    lat = np.degrees(2.0 * np.arctan(np.exp(y)) - np.pi / 2)
+    lon = np.linspace(west, east, task["nx"])
+    at_lat, at_lon = np.meshgrid(lat, (lon + 180.0) % 360.0 - 180.0, indexing="ij")
+    return at_lat, at_lon
+
+
+def _packed(task: Mapping[str, Any], fields: Sequence[Any], scale: float) -> bytes:
+    shape = (task["ny"], task["nx"])
     data = np.stack([_as_integers(np.broadcast_to(field, shape), scale) for field in fields])
-    header = FRAME_HEADER.pack(b"TWF1", nx, ny, len(names), 0, scale, south, north, west, east)
-    return {}, header + data.astype("<i2").tobytes()
+    size = task["nx"], task["ny"], len(fields)
+    return FRAME_HEADER.pack(b"TWF1", *size, 0, scale, *task["box"]) + data.astype("<i2").tobytes()
 
 
 def _mercator(lat: float) -> float:
@@ -222,6 +246,7 @@ def forecast_size(task: Mapping[str, Any]) -> TaskResult:
 
 TASKS: Final[Mapping[str, Callable[[Mapping[str, Any]], TaskResult]]] = {
     "frame": frame,
+    "chart_depth": chart_depth,
     "inspect": inspect,
     "import_route": import_route,
     "inspect_traffic": inspect_traffic,

@@ -8,13 +8,14 @@ import { typedTime } from "./common/typed_time.js";
 import { Address } from "./address.js";
 import { BatchViews } from "./batch/batch_views.js";
 import { Chart } from "./chart/chart_map.js";
+import { chartTables } from "./chart/chart_tables.js";
 import { LayerMenu } from "./chart/layer_menu.js";
 import { DEMO, PlanForm } from "./form/plan_form.js";
 import { listenToKeys, nextPalette, showKeys } from "./keyboard.js";
 import { CompareView } from "./result/compare_view.js";
 import { Drawer, placeAt, timeNear } from "./result/diagrams.js";
 import { ProgressView } from "./result/progress_view.js";
-import { drawCompared, drawResult } from "./result/result_drawing.js";
+import { drawResult } from "./result/result_drawing.js";
 import { loadResult, profileOf, ResultView } from "./result/result_view.js";
 import { VoyageList } from "./result/voyage_list.js";
 
@@ -32,12 +33,14 @@ class Application {
     this.chart.particles.wanted = localStorage.getItem("particles") === "true";
     this.drawer = new Drawer(document.getElementById("drawer"), () => this.chart.weather.loading);
     this.form = new PlanForm(this.chart);
-    this.compare = new CompareView({ show: (routes, table) => this.#showCompared(routes, table) });
+    const sheet = (element, tall) => this.#sheet(element, tall), write = (address) => this.address.write(address);
+    const shipName = (id) => this.form.ship.list.find((ship) => ship.id === id)?.name || id;
+    this.compare = new CompareView(this.chart, { shipName, sheet, write, hidden: () => this.view !== "compare" });
     this.batch = new BatchViews(this.chart, this.form, {
-      view: () => this.view, open: (view) => this.#switch(view), sheet: (element, tall) => this.#sheet(element, tall), write: (address) => this.address.write(address),
+      view: () => this.view, open: (view) => this.#switch(view), sheet, write,
       plan: () => { this.result = null; this.#switch("plan"); }, fillIn: (request) => this.#fillIn(request),
     });
-    this.layers = new LayerMenu(this.chart, { weather: () => this.#valid(), routes: () => { if (this.result?.profile) this.chart.showSpeeds(drawResult(this.chart.routes, this.result, this.result.profile, this.layers, this.form.ship.speedRange)); } });
+    this.layers = new LayerMenu(this.chart, { weather: () => this.#valid(), routes: () => this.#draw(), tables: () => this.#showTables() });
     this.#listen();
     this.#keys();
     this.#begin();
@@ -66,6 +69,7 @@ class Application {
     }
     if (given.has("demo")) { this.#fillIn(DEMO); return; }
     if (given.get("plan")) { await this.openJob(given.get("plan"), Number(given.get("route") || 1) - 1, given.has("t") ? Number(given.get("t")) : null); return; }
+    if (given.get("routes")) this.compare.address = given.get("routes");
     if (given.get("view")) this.#switch(given.get("view"));
     else if (!this.form.start.value) this.#showForm();
   }
@@ -116,7 +120,7 @@ class Application {
     this.form.areas.draw(false);
     this.chart.closeMenu();
     this.address.write(job ? `plan=${job}` : `view=${view}`);
-    if (view === "compare") this.#showCompare();
+    if (view === "compare") { fill(panel, this.compare.element); this.compare.show(); }
     else if (view === "projects" || view === "studies") this.batch.show(view, job);
     else this.#showVoyages();
   }
@@ -149,7 +153,6 @@ class Application {
     this.form.areas.draw(true);
     this.departure = null;
     this.#fieldTime();
-    this.#valid();
   }
 
   #placesOnChart() {
@@ -173,9 +176,8 @@ class Application {
     weather.set({ seas: sea.chosen, time: t });
     if (t !== null) selection.at(t);
     this.drawer.moved();
+    this.#valid();
   }
-
-  // Jobs
 
   async openJob(id, route = 0, t = null) {
     let job;
@@ -279,7 +281,7 @@ class Application {
       change: () => { this.result = null; this.address.write(""); this.#showForm(); },
       compare: () => { this.compare.add(result.job.id, selection.route + 1, `${titleOf(result.job)}${result.plan.routes.length > 1 ? `, route ${selection.route + 1}` : ""}`); this.#switch("compare"); },
       link: () => this.address.copy(this.#place),
-      shipName: (id) => this.form.ship.list.find((ship) => ship.id === id)?.name || id,
+      shipName: this.compare.handlers.shipName,
       print: () => { this.drawer.open("legs"); print(); },
     });
     fill(panel, result.view.element);
@@ -290,18 +292,30 @@ class Application {
     const route = result.plan.routes[number_];
     this.drawer.range(profile.time[0], profile.time.at(-1));
     if (selection.time === null || selection.time < profile.time[0] || selection.time > profile.time.at(-1)) selection.time = profile.time[0];
-    this.chart.showSpeeds(drawResult(this.chart.routes, result, profile, this.layers, this.form.ship.speedRange));
+    result.profile = profile;
+    this.#draw();
     const { seas } = result.job.request, { weather } = this.chart;
     const kinds = (this.form.sea.list || []).filter((sea) => seas.includes(sea.id)).flatMap((sea) => sea.frames || []);
     weather.set({ seas, time: selection.time, kind: kinds.includes(weather.kind) ? weather.kind : "" });
     this.chart.showLegend();
     result.view.show(profile);
-    result.profile = profile;
     this.drawer.show({ plan: result.plan, front: result.front, spaceTime: selection.route === 0 ? result.spaceTime : null, profile, waypoints: route.waypoints });
     if (fit) { this.chart.map.updateSize(); this.chart.fit(profile.lon.map((lon, i) => [lon, profile.lat[i]])); }
     this.#time();
     this.layers.show(kinds);
     this.#permalink();
+  }
+
+  #draw() {
+    if (this.result?.profile && this.view === "plan") this.chart.showSpeeds(drawResult(this.chart.routes, this.result, this.result.profile, this.layers, this.form.ship.speedRange));
+  }
+
+  // The tables take the place of the diagrams until they are closed.
+  #showTables() {
+    const { result } = this, shown = this.view === "plan" && result;
+    const routes = shown ? result.plan.routes.map((route, i) => ({ name: `Route ${i + 1}`, points: route.waypoints.map((w) => [w.lon, w.lat]) })) : this.view === "compare" ? this.compare.drawn : [];
+    this.drawer.stop();
+    this.#sheet(chartTables(this.chart, { isochrones: shown && this.layers.isochrones ? result.isochrones : null, routes }, () => this.#switch(this.view, this.batch.job(this.view))).element, true);
   }
 
   #time() {
@@ -331,25 +345,11 @@ class Application {
 
   // Compare and voyages
 
-  #showCompare() {
-    fill(panel, this.compare.element);
-    this.compare.show().catch((problem) => fill(this.compare.problem, errorBox(problem)));
-  }
-
-  #showCompared(routes, table) {
-    if (this.view !== "compare") return;
-    drawCompared(this.chart.routes, routes);
-    if (routes.length) this.chart.fit(routes.flat());
-    if (table) this.#sheet(h("div.sheet", {}, table));
-  }
-
   #showVoyages() {
     const list = new VoyageList({ open: (id) => this.openJob(id), demo: () => this.#fillIn(DEMO) });
     fill(panel, list.element);
     list.show();
   }
-
-  // Events
 
   #listen() {
     const { chart, form } = this;
@@ -361,7 +361,7 @@ class Application {
     document.getElementById("help").addEventListener("click", showKeys);
     addEventListener("palette", () => { chart.paint(); if (this.result?.profile && this.view === "plan") this.drawer.show(this.drawer.result); });
     form.addEventListener("places", () => this.#placesOnChart());
-    form.addEventListener("seas", () => { if (this.view !== "plan" || this.result || this.progress) return; if (!this.chart.weather.kind && form.sea.frameKinds.includes("waves") && form.sea.chosen[0] !== "calm") this.chart.weather.set({ kind: "waves" }); this.#fieldTime(); });
+    form.addEventListener("seas", () => { if (this.view !== "plan" || this.result || this.progress) return; if (!chart.weather.kind && !chart.weather.byHand && form.sea.frameKinds.includes("waves") && form.sea.chosen[0] !== "calm") this.chart.weather.set({ kind: "waves" }); this.#fieldTime(); });
     form.addEventListener("link", ({ detail }) => this.address.copy(`voyage=${encodeURIComponent(JSON.stringify(detail))}`));
     chart.addEventListener("dragged", ({ detail: { number: n, lat, lon } }) => { if (this.view === "projects") this.batch.projects.moved(n, lat, lon); else form.moved(n, lat, lon); });
     form.addEventListener("change", () => { if (this.view === "plan" && !this.result && !this.progress) this.#fieldTime(); });

@@ -33,6 +33,11 @@ export class BatchViews {
     this.studies = new StudyView(form, handlers("studies"));
   }
 
+  // The id of the job that a view shows.
+  job(view) {
+    return this[view]?.job?.id || null;
+  }
+
   close() {
     this.projects.close?.();
     this.studies.close?.();

@@ -1,8 +1,9 @@
 // Dredging projects: the form, the simulation while it runs, and the result.
 
-import { follow, get, hasEnded, remove, resultAddress, start, tableAddress } from "../common/api.js";
+import { get, resultAddress, tableAddress } from "../common/api.js";
 import { announce, errorBox, fill, h, unit } from "../common/elements.js";
 import { duration, inputTime, known, number, plainPosition, seconds, time } from "../common/format.js";
+import { BatchView } from "./batch_view.js";
 import { PlaceField } from "../form/places.js";
 import { drawActivities, drawLoads, drawPlaceAndTime, drawVolume, runColour, showCycles } from "./project_diagrams.js";
 import { jobFoot } from "../result/progress_view.js";
@@ -11,12 +12,14 @@ import { SheetTabs } from "./sheet_tabs.js";
 const NUMBERS = [["volume_m3", "Volume to move", "m³"], ["hopper_m3", "Full load", "m³"], ["loading", "Loads at", "m³/s"], ["unloading", "Unloads at", "m³/s"], ["days", "At most", "days"], ["min_ukc_m", "Under-keel clearance", "m"], ["load_factors", "Loads to choose from", "count"], ["spacing_m", "Spacing of the network", "m"]];
 const asRow = ([lat, lon]) => `${lat}, ${lon}`;
 
-export class ProjectView {
-  // handlers: sheet(element), link(id), fit(points)
+const WORDS = { path: "/projects", earlier: "Earlier projects", stopped: "The simulation was stopped." };
+
+export class ProjectView extends BatchView {
+  // handlers also: fit(points)
   constructor(chart, form, handlers) {
+    super("project", WORDS, handlers);
     this.chart = chart;
     this.plans = form; // its lists of ships and seas
-    this.handlers = handlers;
     this.load = new PlaceField("start", "Loads at", () => this.places());
     this.unload = new PlaceField("goal", "Unloads at", () => this.places());
     this.rest = {};
@@ -34,8 +37,6 @@ export class ProjectView {
     this.base = h("textarea", { id: "p-base", rows: 4, placeholder: "51.7449, 3.5790\n51.6964, 3.4370\n51.6596, 3.6514" });
     this.baseLoad = h("select", { id: "p-base-load" }, h("option", { value: "best" }, "in each cycle the one that moves most"), h("option", { value: "1" }, "always full"));
     this.file = h("input.hidden", { type: "file", id: "project-file", "aria-label": "Project file", accept: ".yaml,.yml,.json", tabindex: "-1", onchange: () => this.#open() });
-    this.problem = h("div");
-    this.earlier = h("div");
     this.button = h("button.primary", { type: "submit" }, "Simulate the project");
     this.element = h("form", { novalidate: true, class: "form", style: "display: contents", oninput: () => { this.touched = true; }, onsubmit: (event) => { event.preventDefault(); this.submit(); } },
       h("div.scroll", {}, h("h1", {}, "Dredging project"), h("p.lead", {}, "Load, sail full, unload, sail empty, until a volume is moved. Each cycle takes the load and the routes that move most."),
@@ -54,17 +55,12 @@ export class ProjectView {
   // The form
 
   async show() {
-    this.asked = Symbol("ask");
-    this.job = null;
-    this.close?.();
-    this.handlers.link("");
-    this.handlers.sheet(null);
+    this.begin();
     this.chart.routes.clear();
     this.lists();
     this.places();
     if (!this.touched) await this.example(true).catch((problem) => fill(this.problem, errorBox(problem)));
-    const { jobs } = await get("/plans?kind=project&size=20");
-    fill(this.earlier, jobs.length ? h("details", {}, h("summary", {}, "Earlier projects", h("span.set", {}, String(jobs.length))), h("div.inside", {}, jobs.map((job) => h("button.job", { type: "button", onclick: () => this.openJob(job.id) }, h("b", {}, job.title), " ", job.state === "done" ? null : h(`span.state.${job.state}`, {}, job.state), h("span", {}, job.summary ? `${number(job.summary.duration_days, 1)} days · ${number(job.summary.cycles)} cycles · ${time(seconds(job.created))}` : time(seconds(job.created))))))) : null);
+    await this.listEarlier(({ summary, created }) => (summary ? `${number(summary.duration_days, 1)} days · ${number(summary.cycles)} cycles · ${time(seconds(created))}` : time(seconds(created))));
     return this.element;
   }
 
@@ -95,11 +91,9 @@ export class ProjectView {
   }
 
   async #open() {
-    const [file] = this.file.files;
-    this.file.value = "";
-    if (!file) return;
+    const project = await this.fileText(this.file);
     fill(this.problem);
-    await this.#start({ project: await file.text() });
+    if (project !== null) await this.order({ project });
   }
 
   set(project) {
@@ -164,49 +158,27 @@ export class ProjectView {
     return { title: project.name, project };
   }
 
+  // A fault of a site stands at its place.
   fail(problem) {
-    const name = { load: "start", unload: "goal" }[problem.field] || problem.field;
-    const slot = this.element.querySelector(`[data-field="${name}"] .slot`);
-    slot?.closest("details")?.setAttribute("open", "");
-    fill(slot || this.problem, errorBox(problem));
-    (slot || this.problem).scrollIntoView({ block: "center" });
+    const place = { load: this.load, unload: this.unload }[problem.field];
+    if (!place) { super.fail(problem); return; }
+    place.fail(problem);
+    place.input.focus();
   }
 
   async submit() {
-    this.element.querySelectorAll(".slot").forEach((slot) => fill(slot));
-    fill(this.problem);
+    this.clearFaults();
     const request = this.request();
-    if (request) await this.#start(request);
-  }
-
-  async #start(request) {
-    if (this.sending) return;
-    this.sending = true;
-    try {
-      const job = await start("/projects", request);
-      if (!this.handlers.hidden()) await this.openJob(job.id);
-    } catch (problem) {
-      this.fail(problem);
-    } finally {
-      this.sending = false;
-    }
+    if (request) await this.order(request);
   }
 
   // A job
 
-  async openJob(id) {
-    const ask = (this.asked = Symbol("ask")); // a form or job that is wanted later stays
-    const job = await get(`/plans/${id}`);
-    if (ask !== this.asked || this.handlers.hidden()) return;
-    this.job = job;
-    this.handlers.link(id);
+  shown(job) {
     this.set(job.request.project);
-    if (hasEnded(job.state)) await this.#ended(job);
-    else this.#watch(job);
   }
 
-  #watch(job) {
-    this.close?.();
+  watch(job) {
     const runs = { optimised: [], "base case": [] };
     if (!job.request.project.base_case) delete runs["base case"];
     const state = h("p.lead", { role: "status" }, "Waiting for its turn."), steps = h("ol.steps"), cards = h("dl.cards"), problem = h("div");
@@ -215,7 +187,8 @@ export class ProjectView {
     this.handlers.sheet(tabs.element);
     let pending = false;
     const redraw = () => { if (pending) return; pending = true; requestAnimationFrame(() => { pending = false; tabs.redraw(); this.#cards(cards, runs); }); };
-    this.close = follow(job.id, {
+    const again = () => { fill(steps); for (const name of Object.keys(runs)) runs[name] = []; };
+    this.followJob(job, state, { again }, {
       stage: (data) => {
         if (/^\d+ cycles/.test(data.text)) return;
         state.textContent = "Simulating.";
@@ -229,13 +202,6 @@ export class ProjectView {
         this.chart.routes.showChosen(cycle.out, null, null, 0);
         redraw();
       },
-      state: async (data) => {
-        if (data.state === "queued" && data.why) { fill(steps); for (const name of Object.keys(runs)) runs[name] = []; state.textContent = `Started again: ${data.why}.`; return; }
-        if (!hasEnded(data.state)) return;
-        const done = await get(`/plans/${job.id}`);
-        if (this.job?.id === job.id) await this.#ended(done);
-      },
-      waiting: () => { state.textContent = "The service does not answer; the job goes on when it runs again."; },
     });
   }
 
@@ -246,16 +212,8 @@ export class ProjectView {
     fill(cards, card(name === "optimised" ? "Optimised: cycles" : "Base case: cycles", number(cycles.length)), card("Moved", number(cycles.reduce((sum, c) => sum + c.volume_m3, 0)), "m³"), card("Mean load", number(100 * cycles.reduce((sum, c) => sum + c.load_factor, 0) / cycles.length), "%"), card("Waited", duration(cycles.reduce((sum, c) => sum + c.waiting_h, 0))));
   }
 
-  async #ended(job) {
-    this.job = job;
-    if (!job.result) {
-      const element = await this.show();
-      this.handlers.panel([element]);
-      if (job.problem) this.fail(job.problem);
-      else fill(this.problem, h("p.note", {}, "The simulation was stopped."));
-      return;
-    }
-    const [result, diagrams] = await Promise.all([get(`/plans/${job.id}/result`), get(`/plans/${job.id}/diagrams.json`)]);
+  async drawn(job, result) {
+    const diagrams = await get(`/plans/${job.id}/diagrams.json`);
     if (this.job !== job || this.handlers.hidden()) return;
     this.result = result;
     this.diagrams = diagrams;

@@ -1,20 +1,23 @@
 // Studies: the voyage of the plan form over departures, speeds and ships, as a heat map.
 
-import { follow, get, hasEnded, resultAddress, start, tableAddress } from "../common/api.js";
+import { get, resultAddress, tableAddress } from "../common/api.js";
 import { announce, errorBox, fill, h, unit } from "../common/elements.js";
 import { duration, inputTime, known, number, seconds, time } from "../common/format.js";
+import { jobFoot } from "../result/progress_view.js";
+import { BatchView } from "./batch_view.js";
 import { HeatMap } from "./heat_map.js";
 import { typedTime } from "../common/typed_time.js";
 
 const SECONDS_EACH = 6; // of an ocean voyage, about
+const TAKEN = ["fill", "load_factor", "sampling", "coast", "network", "resolution_nm"]; // of the request, beside its voyage
+const NOT_TAKEN = { limits: "limits of weather", areas: "areas", depths: "depth files", charges: "charges", eca: "control areas left out", traffic: "traffic", history: "the history network", average_over_m: "the depth of currents", route_files: "route files", proof_s: "the time for the proof" };
+const WORDS = { path: "/studies", earlier: "Earlier studies", stopped: "The study was stopped before a voyage was planned." };
 
-import { jobFoot } from "../result/progress_view.js";
-
-export class StudyView {
-  // handlers: sheet(element, tall), panel(elements), link(id), leave(), plan(), ends(voyage), voyage(request)
+export class StudyView extends BatchView {
+  // handlers also: plan(), ends(voyage), voyage(request)
   constructor(form, handlers) {
+    super("study", WORDS, handlers);
     this.plans = form;
-    this.handlers = handlers;
     this.from = h("input", { type: "text", id: "s-from", autocomplete: "off", placeholder: "2026-01-01 00:00", oninput: () => this.#count() });
     this.to = h("input", { type: "text", id: "s-to", autocomplete: "off", placeholder: "2026-12-31 00:00", oninput: () => this.#count() });
     this.step = h("input", { type: "text", inputmode: "decimal", id: "s-step", value: "12", oninput: () => this.#count() });
@@ -23,9 +26,7 @@ export class StudyView {
     this.blind = h("input", { type: "checkbox", id: "s-blind" });
     this.title = h("input", { type: "text", id: "s-title", maxlength: 200 });
     this.counted = h("p.facts", { role: "status" });
-    this.problem = h("div");
     this.voyage = h("div");
-    this.earlier = h("div");
     this.ready = h("div");
     this.file = h("input.hidden", { type: "file", id: "study-file", "aria-label": "Study file", accept: ".yaml,.yml,.json", tabindex: "-1", onchange: () => this.#open() });
     const field = (name, label, input, more = null) => h("div.field", { "data-field": name }, h("label.label", { for: input.id }, label), input, more, h("div.slot"));
@@ -42,36 +43,32 @@ export class StudyView {
   }
 
   async show() {
-    this.asked = Symbol("ask");
-    this.job = null;
-    this.close?.();
-    this.handlers.link("");
-    this.handlers.sheet(null);
-    const { plans } = this, { period } = plans, ends = plans.start.value && plans.goal.value;
+    this.begin();
+    const { plans } = this, { period } = plans.sea, ends = plans.start.value && plans.goal.value;
     if (!this.from.value && period) {
-      const begin = Math.ceil(period[0] / 43200) * 43200;
+      const begin = Math.ceil((typedTime(plans.depart) ?? period[0]) / 43200) * 43200;
       this.from.value = inputTime(begin);
       this.to.value = inputTime(Math.min(begin + 3 * 86400, period[1]));
     }
+    const set = plans.settings(), left = Object.keys(NOT_TAKEN).filter((name) => set[name] !== undefined).map((name) => NOT_TAKEN[name]);
     const seas = plans.sea.chosen.map((id) => plans.sea.list.find((sea) => sea.id === id)?.name.split(":")[0] || id);
     fill(this.voyage, ends
       ? h("p", {}, h("b", {}, plans.defaultTitle()), h("small.lead", {}, ` ${plans.objective.selectedOptions[0].text.toLowerCase()} · ${seas.join(", ") || "no sea chosen"}`))
       : h("p.note", {}, "The voyage has no ends yet. "), h("div.exports", { style: "margin-top: 8px" }, h("button.quiet.small", { type: "button", onclick: () => this.handlers.plan() }, ends ? "Change the voyage" : "Fill in the voyage"), ends ? null : h("button.quiet.small", { type: "button", onclick: async () => { this.handlers.demo(); this.handlers.panel([await this.show()]); } }, "Use the storm of 1998")),
-      plans.areas.list.length || plans.numbers.wave_height_m.value || plans.numbers.wind_speed_kn.value ? h("p.note", {}, "Areas and weather limits of the form are not used in studies; those of the ship file are.") : null);
+      left.length ? h("p.note", {}, `Not used in studies: ${left.join(", ")} of the form.`) : null);
     const before = [...this.ships.querySelectorAll("input:checked")].map((box) => box.value);
     const chosen = before.length ? before : [plans.ship.value];
     fill(this.ships, (plans.ship.list || []).map((ship) => h("label.check", {}, h("input", { type: "checkbox", value: ship.id, checked: chosen.includes(ship.id) }), h("span", {}, ship.name))));
     this.#count();
     this.#listReady();
-    const { jobs } = await get("/plans?kind=study&size=20");
-    fill(this.earlier, jobs.length ? h("details", {}, h("summary", {}, "Earlier studies", h("span.set", {}, String(jobs.length))), h("div.inside", {}, jobs.map((job) => h("button.job", { type: "button", onclick: () => this.openJob(job.id) }, h("b", {}, job.title), " ", job.state === "done" ? null : h(`span.state.${job.state}`, {}, job.state), h("span", {}, job.summary ? `${number(job.summary.voyages)} voyages · ${time(seconds(job.created))}` : time(seconds(job.created))))))) : null);
+    await this.listEarlier(({ summary, created }) => (summary ? `${number(summary.voyages)} voyages · ${time(seconds(created))}` : time(seconds(created))));
     return this.element;
   }
 
   async #listReady() {
     if (this.ready.childElementCount) return;
     const studies = await get("/studies/ready").catch(() => []);
-    fill(this.ready, studies.length ? h("details", {}, h("summary", {}, "Ready studies", h("span.set", {}, String(studies.length))), h("div.inside", {}, studies.map(({ about, voyages, request }) => h("button.job", { type: "button", onclick: () => this.#start(request) }, h("b", {}, request.title), h("span", {}, about), h("span", {}, `${number(voyages)} voyages`))))) : null);
+    fill(this.ready, studies.length ? h("details", {}, h("summary", {}, "Ready studies", h("span.set", {}, String(studies.length))), h("div.inside", {}, studies.map(({ about, voyages, request }) => h("button.job", { type: "button", onclick: () => this.order(request) }, h("b", {}, request.title), h("span", {}, about), h("span", {}, `${number(voyages)} voyages`))))) : null);
   }
 
   get #axes() {
@@ -87,15 +84,8 @@ export class StudyView {
     this.counted.textContent = this.size ? `${number(this.size)} voyage${this.size === 1 ? "" : "s"}; an ocean voyage takes a few seconds: about ${duration((this.size * SECONDS_EACH) / 3600)}.` : "";
   }
 
-  fail(problem) {
-    const slot = this.element.querySelector(`[data-field="${problem.field}"] .slot`) || this.problem;
-    fill(slot, errorBox(problem));
-    slot.scrollIntoView({ block: "center" });
-  }
-
   async submit() {
-    this.element.querySelectorAll(".slot").forEach((slot) => fill(slot));
-    fill(this.problem);
+    this.clearFaults();
     const { ships, speeds, from, to, step } = this.#axes;
     if (from === null) return this.fail({ field: "from", asked: "The first departure is not a time.", remedy: "Give year, month, day, hour and minute, such as 2026-01-31 12:00." });
     if (to === null || to < from) return this.fail({ field: "to", asked: "The last departure is not a time after the first.", remedy: "Correct it." });
@@ -106,54 +96,33 @@ export class StudyView {
     if (!base) { this.handlers.plan(); return null; }
     const { depart, depart_window: window, arrive_by: latest, ...voyage } = base.voyage;
     const study = { name: this.title.value.trim() || base.title, ship: ships[0], sea: base.seas.length === 1 ? base.seas[0] : base.seas, voyage, axes: { depart: { from: `${inputTime(from).replace(" ", "T")}Z`, to: `${inputTime(to).replace(" ", "T")}Z`, step_h: step } } };
-    if (base.fill) study.fill = base.fill;
+    for (const name of TAKEN) if (base[name] !== undefined) study[name] = base[name];
+    if (base.variables) study.map = base.variables;
     if (ships.length > 1) study.axes.ship = ships;
     if (speeds.length > 1) study.axes.speed_kn = speeds;
     else if (speeds.length) [study.voyage.speed_kn] = speeds;
     if (this.blind.checked) study.compare = "weather_blind";
-    return this.#start({ title: study.name, study });
+    return this.order({ title: study.name, study });
   }
 
   async #open() {
-    const [file] = this.file.files;
-    this.file.value = "";
-    if (file) await this.#start({ study: await file.text() });
+    const study = await this.fileText(this.file);
+    if (study !== null) await this.order({ study });
   }
 
-  async #start(request) {
-    if (this.sending) return;
-    this.sending = true;
-    try {
-      const job = await start("/studies", request);
-      if (!this.handlers.hidden()) await this.openJob(job.id);
-    } catch (problem) {
-      this.fail(problem);
-    } finally {
-      this.sending = false;
-    }
-  }
-
-  async openJob(id) {
-    const ask = (this.asked = Symbol("ask")); // a form or job that is wanted later stays
-    const job = await get(`/plans/${id}`);
-    if (ask !== this.asked || this.handlers.hidden()) return;
-    this.job = job;
-    this.handlers.link(id);
+  shown(job) {
     const drawn = Object.keys(job.request.study.sample || {}).filter((name) => !["count", "seed"].includes(name));
     this.map = new HeatMap([...Object.keys(job.request.study.axes || {}), ...drawn], (name, cell) => this.#cell(name, cell));
     this.handlers.sheet(this.map.element, true);
     this.cellBox = h("div.block", {}, h("p.facts", {}, "Choose a cell to see its voyages."));
     this.handlers.ends(job.request.study.voyage);
-    if (hasEnded(job.state)) await this.#ended(job);
-    else this.#watch(job);
   }
 
-  #watch(job) {
-    this.close?.();
+  watch(job) {
     this.map.draw();
     const state = h("p.lead", { role: "status" }, "Waiting for its turn."), meter = h("progress.meter", { max: 1, value: 0, "aria-label": "Voyages planned" }), facts = h("p.facts"), problem = h("div");
     this.handlers.panel([h("div.scroll", {}, h("h1", {}, job.title), state, meter, facts, this.cellBox, problem), jobFoot(job, "Stop, keep these", { state, problem, leave: () => this.handlers.leave() })]);
-    this.close = follow(job.id, {
+    this.followJob(job, state, { kept: " Voyages that were planned are kept." }, {
       progress: (data) => {
         state.textContent = `${number(data.done)} of ${number(data.total)} voyages`;
         meter.value = data.done / data.total;
@@ -161,26 +130,10 @@ export class StudyView {
         facts.textContent = [known(data.left_s) && data.done < data.total ? `about ${duration(data.left_s / 3600)} left` : "", refused ? `${refused} without a route` : ""].filter(Boolean).join(" · ");
         this.map.add(data.rows);
       },
-      state: async (data) => {
-        if (data.state === "queued" && data.why) { state.textContent = `Started again: ${data.why}. Voyages that were planned are kept.`; return; }
-        if (!hasEnded(data.state)) return;
-        const done = await get(`/plans/${job.id}`);
-        if (this.job?.id === job.id) await this.#ended(done);
-      },
-      waiting: () => { state.textContent = "The service does not answer; the study goes on when it runs again."; },
     });
   }
 
-  async #ended(job) {
-    this.job = job;
-    if (!job.result) {
-      this.handlers.panel([await this.show()]);
-      if (job.problem) this.fail(job.problem);
-      else fill(this.problem, h("p.note", {}, "The study was stopped before a voyage was planned."));
-      return;
-    }
-    const result = await get(`/plans/${job.id}/result`);
-    if (this.job !== job || this.handlers.hidden()) return;
+  async drawn(job, result) {
     this.map.axes = result.axes;
     this.map.rows = [];
     this.map.add(result.rows.map((row) => Object.fromEntries(result.columns.map((name, i) => [name, row[i]]))));

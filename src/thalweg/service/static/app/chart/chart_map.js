@@ -5,7 +5,7 @@ import { get } from "../common/api.js";
 import { CoastLayers } from "./coast_layer.js";
 import { ParticleLayer } from "./particle_layer.js";
 import { bandColours, KINDS, WeatherLayer } from "./weather_layer.js";
-import { RouteLayers, SPEED_COLOURS, layer, stroke, FONT, Feature, Point, Polygon, LineString, Style, Fill, Stroke, Circle, Text, fromLonLat } from "./route_layers.js";
+import { RouteLayers, speedColours, layer, stroke, FONT, Feature, Point, Polygon, LineString, Style, Fill, Stroke, Circle, Text, fromLonLat } from "./route_layers.js";
 import { colour, fill, h } from "../common/elements.js";
 import { known, number, position, time } from "../common/format.js";
 
@@ -23,12 +23,15 @@ export class Chart extends EventTarget {
     this.coast = new CoastLayers(this.map);
     this.weather = new WeatherLayer(this.map);
     this.particles = this.weather.particles = new ParticleLayer(this.map, this.weather);
+    this.depths = new WeatherLayer(this.map, { zIndex: 4, address: (_, query) => `/chart/depth?${query}`, still: true, bare: true });
+    this.depths.set({ seas: ["chart"], time: 0 });
     this.routes = new RouteLayers();
+    this.content = { control_areas: [], canals: [] }; // as the service describes them
     this.eca = layer(13, { visible: false });
     this.canals = layer(14);
     this.ports = layer(15, { declutter: true, minZoom: 2.5, updateWhileInteracting: false, renderBuffer: 300 });
     this.areas = layer(18);
-    [...this.coast.layers, this.weather.layer, this.particles.layer, this.eca, this.canals, this.ports, this.areas, ...this.routes.layers].forEach((one) => this.map.addLayer(one));
+    [...this.coast.layers, this.depths.layer, this.weather.layer, this.particles.layer, this.eca, this.canals, this.ports, this.areas, ...this.routes.layers].forEach((one) => this.map.addLayer(one));
     this.graticule = null;
     this.#pointer();
     this.#chooser();
@@ -56,6 +59,7 @@ export class Chart extends EventTarget {
     this.portStyles?.splice(0); // of the palette before
     for (const one of [...this.routes.layers, this.eca, this.canals, this.ports, this.areas]) one.changed();
     this.weather.repaint();
+    this.depths.repaint();
     this.showLegend();
   }
 
@@ -67,6 +71,7 @@ export class Chart extends EventTarget {
       setTimeout(() => this.#loadChart(), 5000);
       return;
     }
+    this.content = chart;
     for (const area of chart.control_areas) {
       for (const ring of area.rings) {
         const feature = new Feature(new Polygon([ring.map((p) => fromLonLat(p))]));
@@ -190,7 +195,9 @@ export class Chart extends EventTarget {
   showValidity(t, period, run) {
     const shown = this.weather.kind && known(t);
     const outside = shown && period && (t < period[0] || t > period[1]);
-    const age = run === null ? "" : ` · forecast of ${time(run)}, ${number(Math.max(0, Date.now() / 1000 - run) / 3600)} h old`;
+    const forecast = run === null ? "" : `forecast of ${time(run)}, ${number(Math.max(0, Date.now() / 1000 - run) / 3600)} h old`;
+    const age = forecast && ` · ${forecast}`;
+    if (this.run !== forecast) { this.run = forecast; this.showLegend(); }
     fill(document.getElementById("valid"), shown ? [h("b", {}, time(t, true)), " UTC"] : null, outside ? " · outside the data" : period ? ` · data until ${time(period[1])}${age}` : "");
   }
 
@@ -198,8 +205,8 @@ export class Chart extends EventTarget {
     this.legendState = state;
     const box = document.getElementById("legend");
     const { kind } = this.weather;
-    box.hidden = !kind && !this.speeds;
-    fill(box, this.speeds ? this.#speedLegend(...this.speeds) : null, kind ? this.#weatherLegend(kind, state) : null);
+    box.hidden = !kind && !this.speeds && !this.depths.kind;
+    fill(box, this.speeds ? this.#speedLegend(...this.speeds) : null, kind ? this.#weatherLegend(kind, state) : null, this.depths.kind ? this.#depthLegend() : null);
   }
 
   // The range of the speed colours of the chosen route [kn, kn]; null where it has one colour.
@@ -214,14 +221,24 @@ export class Chart extends EventTarget {
   }
 
   #speedLegend(low, high) {
-    return h("section", {}, h("b", {}, "Speed over ground"), bar(SPEED_COLOURS), h("div.ends", {}, h("span", {}, number(low, 1)), h("span", {}, number((low + high) / 2, 1)), h("span", {}, `${number(high, 1)} kn`)));
+    return h("section", {}, h("b", {}, "Speed over ground"), bar(speedColours()), h("div.ends", {}, h("span", {}, number(low, 1)), h("span", {}, number((low + high) / 2, 1)), h("span", {}, `${number(high, 1)} kn`)));
+  }
+
+  // Depths of the package, for a picture of the sea; never for a clearance.
+  showDepths(on) {
+    this.depths.set({ kind: on ? "depth" : "" });
+    this.showLegend();
+  }
+
+  #depthLegend() {
+    return h("section", {}, h("b", {}, "Depth, every 6 nm"), bar(bandColours("depth").map((c) => `rgb(${c.join(",")})`)), h("div.ends", {}, h("span", {}, "0"), h("span", {}, "100"), h("span", {}, "200 m")));
   }
 
   #weatherLegend(kind, state) {
     const { title, unit, top } = KINDS[kind];
     const words = { "no data": "no data at this time", failed: "cannot be read" }[state];
     return h("section", { "aria-busy": String(state === "loading") }, h("b", {}, title), words ? ` · ${words}` : null, bar(bandColours(kind).map((c) => `rgb(${c.join(",")})`)),
-      h("div.ends", {}, h("span", {}, "0"), h("span", {}, `${top / 2}`), h("span", {}, `${top} ${unit}`)), h("div.none", {}, h("i", {}), "no data"));
+      h("div.ends", {}, h("span", {}, "0"), h("span", {}, `${top / 2}`), h("span", {}, `${top} ${unit}`.trim())), h("div.none", {}, h("i", {}), "no data"), this.run ? h("div.run", {}, this.run) : null);
   }
 
   // Draw an area by hand; resolves with a ring [[lon, lat], ...] or null.
@@ -249,7 +266,7 @@ export class Chart extends EventTarget {
     areas.forEach((area, number) => {
       const feature = new Feature({ geometry: new Polygon([area.ring.map((p) => fromLonLat(p))]), area: number });
       const name = area.kind === "no-go" ? "danger" : "amber";
-      feature.setStyle(() => new Style({ stroke: new Stroke({ color: colour(name), width: 1.8 }), fill: new Fill({ color: hatch(colour(name)) }), text: new Text({ text: area.kind === "no-go" ? "no-go" : `× ${area.factor}`, font: `600 ${FONT}`, fill: new Fill({ color: colour(name) }), stroke: new Stroke({ color: colour("casing"), width: 3.5 }) }) }));
+      feature.setStyle(() => new Style({ stroke: new Stroke({ color: colour(name), width: 1.8 }), fill: new Fill({ color: hatch(colour(name)) }), text: new Text({ text: area.factor ? `× ${area.factor}` : area.kind, font: `600 ${FONT}`, fill: new Fill({ color: colour(name) }), stroke: new Stroke({ color: colour("casing"), width: 3.5 }) }) }));
       source.addFeature(feature);
     });
     if (!this.modify) {

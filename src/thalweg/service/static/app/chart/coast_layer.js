@@ -4,7 +4,7 @@ import { VectorLayer, VectorSource, Feature, MultiPolygon, MultiLineString, Styl
 import { get } from "../common/api.js";
 import { colour } from "../common/elements.js";
 
-const LEVELS = [["c", 0, 3.1], ["l", 3.1, 6.2], ["i", 6.2, 40]];
+const LEVELS = [["c", 2.8], ["l", 5.6], ["i", 40]]; // resolutions of GSHHG, each up to a zoom
 const HALF = 20037508.342789244;
 const LIMIT = 85.05;
 
@@ -18,23 +18,19 @@ function toMap(flat) {
 }
 
 export class CoastLayers {
+  waiting = 0; // cells that are on their way
+
   constructor(map) {
     this.map = map;
-    this.levels = LEVELS.map(([name, from, to]) => this.#level(name, from, to));
+    this.levels = LEVELS.map(([name, to]) => {
+      const options = { visible: false, updateWhileInteracting: true, updateWhileAnimating: true };
+      return { name, to, index: null, cells: null, asked: new Set(), drawn: new Set(), land: new VectorLayer({ ...options, source: new VectorSource(), zIndex: 10 }), coast: new VectorLayer({ ...options, source: new VectorSource(), zIndex: 11 }) };
+    });
     map.on("moveend", () => this.load());
   }
 
   get layers() {
     return this.levels.flatMap((level) => [level.land, level.coast]);
-  }
-
-  #level(name, from, to) {
-    const options = { minZoom: from, maxZoom: to, updateWhileInteracting: true, updateWhileAnimating: true };
-    return {
-      name, from, to, index: null, asked: new Set(),
-      land: new VectorLayer({ ...options, source: new VectorSource(), zIndex: 10 }),
-      coast: new VectorLayer({ ...options, source: new VectorSource(), zIndex: 11 }),
-    };
   }
 
   paint() {
@@ -46,35 +42,61 @@ export class CoastLayers {
     }
   }
 
-  async load() {
+  // The crude coast of the view comes first and stays until the one for the zoom is there.
+  load() {
     const zoom = this.map.getView().getZoom();
-    const level = this.levels.find((one) => zoom > one.from && zoom <= one.to) || this.levels[0];
-    if (!level.index) {
-      level.index ||= get(`/coast/${level.name}`);
-      level.index.catch(() => { level.index = null; });
-    }
-    let index;
+    this.wanted = this.levels.find((one) => zoom <= one.to) || this.levels.at(-1);
+    this.#show();
+    for (const level of new Set([this.levels[0], this.wanted])) this.#read(level);
+  }
+
+  async #read(level) {
+    this.#waitsFor(1);
     try {
-      index = await level.index;
+      level.index ||= get(`/coast/${level.name}`);
+      const { side, cells } = await level.index;
+      level.cells ||= { side, names: new Set(cells) };
     } catch {
+      level.index = null;
       this.#again();
       return;
+    } finally {
+      this.#waitsFor(-1);
     }
-    const { side, cells } = index;
-    const there = new Set(cells);
+    for (const name of this.#inView(level)) {
+      if (level.asked.has(name)) continue;
+      level.asked.add(name);
+      this.#fetch(level, name);
+    }
+    this.#show();
+  }
+
+  // Names of the cells with land in the view.
+  #inView({ cells: { side, names } }) {
     const [west, south, east, north] = transformExtent(this.map.getView().calculateExtent(), "EPSG:3857", "EPSG:4326");
-    const columns = Math.round(360 / side);
-    const from = Math.floor((Math.max(west, -540) + 180) / side);
-    const to = Math.floor((Math.min(east, 540) + 180) / side);
-    for (let k = from; k <= to; k++) {
+    const columns = Math.round(360 / side), found = new Set();
+    for (let k = Math.floor((Math.max(west, -540) + 180) / side); k <= Math.floor((Math.min(east, 540) + 180) / side); k++) {
       const column = ((k % columns) + columns) % columns;
       for (let row = Math.floor((Math.max(south, -89.9) + 90) / side); row <= Math.floor((Math.min(north, 89.9) + 90) / side); row++) {
         const name = `${column}_${row}`;
-        if (there.has(name) && !level.asked.has(name)) {
-          level.asked.add(name);
-          this.#fetch(level, name);
-        }
+        if (names.has(name)) found.add(name);
       }
+    }
+    return found;
+  }
+
+  #ready(level) {
+    return Boolean(level.cells) && [...this.#inView(level)].every((name) => level.drawn.has(name));
+  }
+
+  // The wanted level, and under it the best that is there.
+  #show() {
+    const place = this.levels.indexOf(this.wanted);
+    const best = this.levels.slice(0, place + 1).reverse().find((level) => this.#ready(level));
+    for (const level of this.levels) {
+      const on = level === this.wanted || level === best;
+      level.land.setVisible(on);
+      level.coast.setVisible(level === (best || this.wanted));
     }
   }
 
@@ -90,6 +112,8 @@ export class CoastLayers {
       const { land, coast } = await get(`/coast/${level.name}/${name}.json`);
       level.land.getSource().addFeature(new Feature(new MultiPolygon(land.map((rings) => rings.map(toMap)))));
       level.coast.getSource().addFeature(new Feature(new MultiLineString(coast.map(toMap))));
+      level.drawn.add(name);
+      this.#show();
     } catch {
       level.asked.delete(name);
       this.#again();
@@ -100,10 +124,10 @@ export class CoastLayers {
 
   // Until the land is drawn the chart says so: water without land misleads.
   #waitsFor(change) {
-    this.open = (this.open || 0) + change;
+    this.waiting += change;
     clearTimeout(this.timer);
     const note = document.getElementById("coast-state");
-    if (!this.open) note.hidden = true;
-    else this.timer = setTimeout(() => { note.hidden = !this.open; }, 250);
+    if (!this.waiting) note.hidden = true;
+    else this.timer = setTimeout(() => { note.textContent = this.#ready(this.levels[0]) ? "The finer coastline is loading …" : "The coastline is loading …"; note.hidden = !this.waiting; }, 250);
   }
 }

@@ -9,7 +9,7 @@ export class LayerMenu {
   isochrones = true;
   beside = true;
 
-  /** @param {{weather: () => void, routes: () => void}} changed what to do after a change */
+  /** @param {{weather: () => void, routes: () => void, tables: () => void}} changed what to do after a change, or to show tables */
   constructor(chart, changed) {
     Object.assign(this, { chart, changed });
     this.button = document.getElementById("layers-button");
@@ -26,7 +26,7 @@ export class LayerMenu {
   show(kinds) {
     const { chart } = this, { weather } = chart;
     const there = [...new Set(kinds)].filter((kind) => KINDS[kind]);
-    const radio = (value, text) => h("label.check", {}, h("input", { type: "radio", name: "weather", value, checked: weather.kind === value, onchange: () => { weather.set({ kind: value }); chart.showLegend(); this.changed.weather(); } }), h("span", {}, text));
+    const radio = (value, text) => h("label.check", {}, h("input", { type: "radio", name: "weather", value, checked: weather.kind === value, onchange: () => { weather.byHand = true; weather.set({ kind: value }); chart.showLegend(); this.changed.weather(); } }), h("span", {}, text));
     const toggle = (text, checked, act) => h("label.check", {}, h("input", { type: "checkbox", checked, onchange: (event) => act(event.target.checked) }), h("span", {}, text));
     const route = (text, name) => toggle(text, this[name], (on) => { this[name] = on; this.changed.routes(); });
     const layer = (text, one) => toggle(text, one.getVisible(), (on) => one.setVisible(on));
@@ -35,7 +35,8 @@ export class LayerMenu {
         there.length ? null : h("p.facts", {}, "Choose a sea with data in the plan: waves, wind, current, depth and ice can be drawn."),
         ["wind", "current"].some((kind) => there.includes(kind)) ? this.#particles() : null),
       h("fieldset", {}, h("legend", {}, "Route"), route("Colour by speed over ground", "bySpeed"), route("Isochrones", "isochrones"), route("Route that ignores the weather", "beside")),
-      h("fieldset", {}, h("legend", {}, "Chart"), layer("Emission control areas", chart.eca), layer("Ports", chart.ports), layer("Canals", chart.canals)));
+      h("fieldset", {}, h("legend", {}, "Chart"), toggle("Depth (global layer, for a picture)", Boolean(chart.depths.kind), (on) => chart.showDepths(on)), layer("Emission control areas", chart.eca), layer("Ports", chart.ports), layer("Canals", chart.canals)),
+      h("button.quiet.small", { type: "button", id: "as-tables", onclick: () => { this.open(false); this.changed.tables(); } }, "Show as tables"));
   }
 
   #particles() {

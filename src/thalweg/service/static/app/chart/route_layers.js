@@ -7,8 +7,13 @@ import { time as timeText, unwrapped } from "../common/format.js";
 const FONT = '12px system-ui, "DejaVu Sans", sans-serif';
 
 // Slow to fast, evenly spaced in lightness.
-export const SPEED_COLOURS = ["#2b1d6b", "#4b2a93", "#7a2f9c", "#a83a93", "#cf4f7f", "#ea6f66", "#f79a56", "#f9c86b"];
+const SPEED_COLOURS = ["#2b1d6b", "#4b2a93", "#7a2f9c", "#a83a93", "#cf4f7f", "#ea6f66", "#f79a56", "#f9c86b"];
 
+// The colours of speeds in the palette of the page.
+export function speedColours() {
+  const dim = Number(colour("speed-dim"));
+  return SPEED_COLOURS.map((hex) => `rgb(${[1, 3, 5].map((i) => Math.round(dim * parseInt(hex.slice(i, i + 2), 16))).join(",")})`);
+}
 
 export function line(points) {
   const lons = unwrapped(points.map((p) => p[0]));
@@ -103,7 +108,7 @@ export class RouteLayers {
       let j = i + 1;
       while (j + 1 < points.length && classOf(speeds[j]) === kind) j++;
       const part = new Feature(new LineString(points.slice(i, j + 1).map((p, k) => fromLonLat([lons[i + k], p[1]]))));
-      part.setStyle(stroke(SPEED_COLOURS[kind], 3.6));
+      part.setStyle(() => stroke(speedColours()[kind], 3.6));
       source.addFeature(part);
       i = j;
     }

@@ -18,7 +18,7 @@ export const KINDS = {
   current: { title: "Current", unit: "kn", step: 0.25, top: 4, marks: "arrows",
     stops: [[0, "#e4f1ee"], [0.3, "#97cfc3"], [0.6, "#4f9eaa"], [1, "#27508a"]] },
   ice: { title: "Sea ice", unit: "", step: 0.1, top: 1, marks: "", stops: [[0, "#d9ecf5"], [1, "#ffffff"]] },
-  depth: { title: "Depth", unit: "m", step: 10, top: 200, marks: "", stops: [[0, "#5aa9d6"], [0.3, "#8fc7e6"], [0.6, "#b7dcef"], [1, "#d9ecf5"]] },
+  depth: { title: "Depth", unit: "m", step: 10, top: 200, marks: "", stops: [[0, "#5aa9d6"], [0.1, "#8fc7e6"], [0.25, "#b7dcef"], [1, "#d9ecf5"]] },
 };
 
 const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
@@ -76,11 +76,12 @@ export class WeatherLayer {
   loading = false;
   onState = () => {};
 
-  constructor(map) {
-    this.map = map;
+  // of: where frames come from, and what is true of them: still (at no time), bare (what is unknown is not hatched)
+  constructor(map, { zIndex = 5, address = (seas, query) => `/seas/${encodeURIComponent(seas)}/frames?${query}`, still = false, bare = false } = {}) {
+    Object.assign(this, { map, address, still, bare });
     this.frames = new Map();
     this.shown = null;
-    this.layer = new ImageLayer({ zIndex: 5, source: new ImageCanvas({ canvasFunction: (...given) => this.#draw(...given), ratio: 1.4 }) });
+    this.layer = new ImageLayer({ zIndex, source: new ImageCanvas({ canvasFunction: (...given) => this.#draw(...given), ratio: 1.4 }) });
     map.on("moveend", () => this.refresh());
   }
 
@@ -101,6 +102,13 @@ export class WeatherLayer {
     return parts.every(Number.isFinite) ? parts : null;
   }
 
+  // The fields at a place; null where nothing is loaded.
+  fieldsAt(lon, lat) {
+    if (!this.shown) return null;
+    const [first] = this.shown.frames;
+    return Array.from({ length: first.fields }, (_, i) => this.#blended(i, this.#turned(lon, first), mercator(lat)));
+  }
+
   #blended(field, lon, y) {
     const { frames, share } = this.shown;
     return (1 - share) * frames[0].at(field, lon, y) + (share ? share * frames[1].at(field, lon, y) : 0);
@@ -119,7 +127,7 @@ export class WeatherLayer {
     }
     const box = this.#box();
     const first = Math.floor(this.time / this.step) * this.step;
-    const wanted = [first, first + this.step].map((time) => this.#frame(uploaded, time, box));
+    const wanted = [first, this.still ? first : first + this.step].map((time) => this.#frame(uploaded, time, box));
     const ready = wanted.map((one) => one.frame);
     if (ready.every(Boolean)) this.#show(ready, first);
     else {
@@ -159,7 +167,7 @@ export class WeatherLayer {
     if (!entry) {
       const query = new URLSearchParams({ variable: this.kind, time: new Date(time * 1000).toISOString().slice(0, 19) + "Z", box: box.join(","), nx: NX, ny: NY });
       entry = { frame: null };
-      entry.promise = getBuffer(`/seas/${encodeURIComponent(seas)}/frames?${query}`).then((buffer) => (entry.frame = new Frame(buffer)));
+      entry.promise = getBuffer(this.address(seas, query)).then((buffer) => (entry.frame = new Frame(buffer)));
       entry.promise.catch(() => this.frames.delete(key));
       this.frames.set(key, entry);
       if (this.frames.size > MOST_FRAMES) this.frames.delete(this.frames.keys().next().value);
@@ -193,7 +201,7 @@ export class WeatherLayer {
     }
     const context = canvas.getContext("2d");
     this.#paste(context, image);
-    if (holes) this.#hatch(canvas, missing);
+    if (holes && !this.bare) this.#hatch(canvas, missing);
     if (KINDS[kind].marks && !this.particles?.shown) this.#marks(context, canvas, extent, resolution / ratio, ratio);
     return canvas;
   }

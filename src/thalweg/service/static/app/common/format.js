@@ -10,8 +10,10 @@ export function number(value, decimals = 0) {
   return value.toLocaleString("en-GB", { minimumFractionDigits: decimals, maximumFractionDigits: decimals });
 }
 
+// A time of the service or of a voyage file; without a zone it is UTC.
 export function seconds(text) {
-  const value = Date.parse(text);
+  if (typeof text === "number") return text;
+  const value = Date.parse(/T[\d:.]+$/.test(text) ? `${text}Z` : text);
   return Number.isFinite(value) ? value / 1000 : null;
 }
 
@@ -33,6 +35,13 @@ export function duration(hours) {
   if (minutes < 60) return `${minutes} min`;
   const d = Math.floor(minutes / 1440), h = Math.floor((minutes % 1440) / 60), m = minutes % 60;
   return d ? `${d} d ${two(h)} h` : `${h} h ${two(m)} min`;
+}
+
+// To the minute, also over a day: for figures whose differences are shown.
+export function exactDuration(hours) {
+  if (!known(hours)) return "unknown";
+  const minutes = Math.round(hours * 60), days = Math.floor(minutes / 1440);
+  return days ? `${days} d ${two(Math.floor((minutes % 1440) / 60))} h ${two(minutes % 60)} min` : duration(hours);
 }
 
 export function signedDuration(hours) {
@@ -74,7 +83,7 @@ export function plainPosition(lat, lon) {
 export const bearing = (degrees) => (known(degrees) ? `${String(Math.round(degrees) % 360).padStart(3, "0")}°` : "unknown");
 
 export function inputTime(s) {
-  return new Date(s * 1000).toISOString().slice(0, 16).replace("T", " ");
+  return new Date(s * 1000).toISOString().slice(0, s % 60 ? 19 : 16).replace("T", " ");
 }
 
 export function unwrapped(lons) {

@@ -3,7 +3,8 @@
 import { fill, h } from "../common/elements.js";
 
 export class AreaFields {
-  list = []; // [{kind, factor, ring: [[lon, lat], ...]}]
+  list = []; // [{kind, factor, ring: [[lon, lat], ...], properties}]
+  kept = []; // features of a voyage file that cannot be changed here: several parts, or holes
   #before = [];
 
   constructor(chart, changed) {
@@ -13,11 +14,15 @@ export class AreaFields {
   }
 
   get features() {
-    return { type: "FeatureCollection", features: this.list.map((area) => ({ type: "Feature", properties: area.kind === "no-go" ? { kind: "no-go" } : { kind: area.kind, factor: area.factor }, geometry: { type: "Polygon", coordinates: [area.ring] } })) };
+    const drawn = this.list.map(({ kind, factor, ring, properties }) => ({ type: "Feature", properties: { ...properties, kind, ...(factor === null ? {} : { factor }) }, geometry: { type: "Polygon", coordinates: [ring] } }));
+    return { type: "FeatureCollection", features: [...drawn, ...this.kept] };
   }
 
   set(areas) {
-    this.list = (areas?.features || []).filter((one) => one.geometry?.type === "Polygon").map((one) => ({ kind: one.properties.kind, factor: one.properties.factor ?? null, ring: one.geometry.coordinates[0] }));
+    const simple = (one) => one.geometry?.type === "Polygon" && one.geometry.coordinates.length === 1 && one.properties?.kind;
+    const all = areas?.features || (areas ? [areas] : []);
+    this.list = all.filter(simple).map(({ properties, geometry }) => ({ kind: properties.kind, factor: properties.factor ?? null, ring: geometry.coordinates[0], properties }));
+    this.kept = all.filter((one) => !simple(one));
     this.#before = [];
     this.#show();
   }
@@ -87,8 +92,9 @@ export class AreaFields {
   #show() {
     const button = (text, act) => h("button.quiet.small", { type: "button", onclick: act }, text);
     fill(this.element,
-      this.list.length ? null : h("p.facts", {}, "Closed areas (no-go), and areas where each mile counts more (penalty). Drag a corner to move it."),
+      this.list.length || this.kept.length ? null : h("p.facts", {}, "Closed areas (no-go), and areas where each mile counts more (penalty). Drag a corner to move it."),
       this.list.map((area, i) => this.#row(area, i)),
+      this.kept.length ? h("p.facts", {}, `${this.kept.length} more of the voyage file, in several parts or with holes. `, h("button.link", { type: "button", onclick: () => { this.kept = []; this.#put(this.list); } }, "Remove them")) : null,
       h("div.field", {}, h("div.row.tools", {}, button("Draw no-go", () => this.#drawn("no-go")), button("Draw penalty", () => this.#drawn("penalty")), this.#before.length ? button("Undo", () => this.#put(this.#before.pop())) : null),
         h("button.link", { type: "button", onclick: () => this.#inView() }, "Add an area in the middle of the chart, to type its corners")),
       h("div.slot"));

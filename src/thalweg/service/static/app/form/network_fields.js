@@ -1,59 +1,16 @@
 // Fields of the network that is searched, and of the traffic of other ships.
 
-import { get, uploadForm } from "../common/api.js";
-import { announce, errorBox, fill, h } from "../common/elements.js";
+import { h } from "../common/elements.js";
+import { UploadedFiles } from "./uploaded_files.js";
 
 const NETWORKS = [["auto", "Chosen"], ["lattice", "Grid around the route"], ["mesh", "Mesh of the sea data"], ["globe", "Global grid"], ["layered", "Layers between two places"], ["history", "Water that ships usually use"]];
 const NUMBERS = [["resolution_nm", "Spacing", "nm"], ["proof_s", "Time for the proof", "s"], ["corridor_gain_percent", "Leave it where that saves", "%"], ["near_coast_nm", "Finer near land", "nm"], ["within_percent", "Tolerance of length", "%"]];
 const asNumber = (text) => Number(text.trim().replace(",", "."));
 
-// A file that is uploaded and chosen from a list: `path` of the API holds the list.
-class UploadedFiles {
-  constructor(path, words, accept, many) {
-    Object.assign(this, { path, words, many, files: [], chosen: [] });
-    this.list = h("div");
-    this.input = h("input.hidden", { type: "file", "aria-label": words, accept, tabindex: "-1", onchange: () => this.#upload() });
-    this.slot = h("div.slot");
-    this.element = h("div.field", {}, this.list, h("button.quiet.small", { type: "button", onclick: () => this.input.click() }, `${words} …`), this.input, this.slot);
-  }
-
-  async load() {
-    this.files = await get(this.path);
-    this.chosen = this.chosen.filter((id) => this.files.some((file) => file.id === id));
-    this.#show();
-  }
-
-  #show() {
-    fill(this.list, this.files.map((file) => h("label.check", {}, h("input", { type: this.many ? "checkbox" : "radio", name: this.path, value: file.id, checked: this.chosen.includes(file.id), onchange: () => { this.chosen = [...this.list.querySelectorAll("input:checked")].map((box) => box.value); } }), h("span", {}, file.name))));
-  }
-
-  async #upload() {
-    const [file] = this.input.files;
-    this.input.value = "";
-    if (!file) return;
-    fill(this.slot, h("p.facts", {}, `Reading ${file.name} …`));
-    try {
-      const kept = await uploadForm(this.path, file);
-      this.chosen = this.many ? [...this.chosen, kept.id] : [kept.id];
-      await this.load();
-      fill(this.slot);
-      announce(`${file.name} is read.`);
-      this.element.dispatchEvent(new Event("change", { bubbles: true }));
-    } catch (problem) {
-      fill(this.slot, errorBox(problem));
-    }
-  }
-
-  set(ids) {
-    this.chosen = [...ids];
-    this.#show();
-  }
-}
-
 export class NetworkFields {
   constructor() {
-    this.traffic = new UploadedFiles("/traffic", "Traffic file", ".geojson,.json,.nc,.nc4", true);
-    this.histories = new UploadedFiles("/histories", "History network", ".json", false);
+    this.traffic = new UploadedFiles("/traffic", "Traffic file", ".geojson,.json,.nc,.nc4", { many: true });
+    this.histories = new UploadedFiles("/histories", "History network", ".json");
     this.numbers = Object.fromEntries(NUMBERS.map(([name]) => [name, h("input", { type: "text", inputmode: "decimal", id: `net-${name}`, autocomplete: "off" })]));
     this.kind = h("select", { id: "network", onchange: () => this.#parts() }, NETWORKS.map(([value, text]) => h("option", { value }, text)));
     this.shape = Object.fromEntries([["layers", "Layers"], ["fan", "Fan"], ["offset_nm", "Offset"]].map(([name, label]) => [name, h("input", { type: "text", id: `net-${name}`, autocomplete: "off", placeholder: "chosen", "aria-label": label })]));

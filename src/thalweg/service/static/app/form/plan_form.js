@@ -1,27 +1,31 @@
 // The form of a voyage. Errors stand at their field; what is missing is said, not greyed out.
 
-import { get, post, start } from "../common/api.js";
-import { announce, errorBox, fill, h } from "../common/elements.js";
+import { get, start } from "../common/api.js";
+import { errorBox, fill, h } from "../common/elements.js";
 import { inputTime, plainPosition, seconds, time } from "../common/format.js";
 import { typedTime } from "../common/typed_time.js";
 import { AreaFields } from "./area_fields.js";
+import { DataFields } from "./data_fields.js";
 import { IndicatorLimits, IndicatorWeights } from "./indicators.js";
 import { NetworkFields } from "./network_fields.js";
 import { PlaceField } from "./places.js";
 import { remedyButtons } from "./remedies.js";
+import { RequestFields, showChoice } from "./request_fields.js";
 import { SeaChoice } from "./sea_choice.js";
 import { ShipChoice } from "./ship_choice.js";
+import { VoyageFiles } from "./voyage_files.js";
 
 const OBJECTIVES = [
   ["front", "All trade-offs of time and fuel"], ["time", "Least time"], ["fuel", "Least fuel"], ["cost", "Least cost"],
   ["co2", "Least CO₂"], ["energy", "Least energy"], ["comfort", "Least motion sickness"], ["encounters", "Fewest encounters with ships"], ["inshore", "Least length near land"], ["distance", "Shortest distance"],
   ["weighted", "A weighted sum …"], ["alternatives", "Routes that differ, to choose from"],
 ];
-const CANALS = [["suez", "Suez"], ["panama", "Panama"], ["kiel", "Kiel"], ["corinth", "Corinth"]];
+const CANALS = [["suez", "Suez"], ["panama", "Panama"], ["kiel", "Kiel"], ["corinth", "Corinth"], ["cape-cod", "Cape Cod"]];
 export const DEMO = { title: "Halifax to Bishop Rock", ship: "handysize-bulker", seas: ["storm"], voyage: { start: "Halifax", goal: "49.7N 6.5W", depart: "1998-08-31T12:00Z", objective: "time" } };
 
 export class PlanForm extends EventTarget {
   vias = [];
+  most = 5; // routes that differ
   moves = []; // what the points were before they were dragged: [field, text, place]
 
   constructor(chart) {
@@ -34,7 +38,7 @@ export class PlanForm extends EventTarget {
   }
 
   async load() {
-    const [ships, seas] = await Promise.all([get("/ships"), get("/seas"), this.network.load()]);
+    const [ships, seas] = await Promise.all([get("/ships"), get("/seas"), this.network.load(), this.data.depths.load()]);
     this.ship.show(ships, this.wanted?.ship);
     this.sea.show(seas, this.wanted?.seas);
   }
@@ -48,7 +52,6 @@ export class PlanForm extends EventTarget {
     this.areas = new AreaFields(this.chart, () => this.#summaries());
     this.depart = h("input", { type: "text", id: "depart", autocomplete: "off", placeholder: "2026-01-31 12:00" });
     this.latest = h("input", { type: "text", id: "latest", autocomplete: "off", placeholder: "2026-01-31 12:00" });
-    this.arriveBy = h("input", { type: "text", id: "arrive-by", autocomplete: "off", placeholder: "2026-01-31 12:00" });
     this.departFacts = h("p.facts");
     this.weights = new IndicatorWeights();
     this.indicators = new IndicatorLimits(() => this.#summaries());
@@ -56,19 +59,19 @@ export class PlanForm extends EventTarget {
     this.objective = h("select", { id: "objective", onchange: () => this.#objectiveChosen() }, OBJECTIVES.map(([value, text]) => h("option", { value }, text)));
     this.objective.value = "time";
     this.title = h("input", { type: "text", id: "title", maxlength: 200, placeholder: "Name of this plan" });
-    this.numbers = {};
+    this.fields = new RequestFields();
+    this.data = new DataFields((list) => this.sea.show(list));
     this.problem = h("div");
-    this.wait = h("input", { type: "checkbox", id: "wait", checked: true });
     this.forbid = CANALS.map(([value, text]) => [value, h("input", { type: "checkbox", id: `forbid-${value}` }), text]);
-    this.avoid = h("input", { type: "text", id: "avoid", placeholder: "Pentland Firth, ..." });
     this.fills = ["waves", "wind", "currents"].map((name) => [name, h("select", { id: `fill-${name}` },
       h("option", { value: "" }, "closed water"), h("option", { value: "0" }, "none (0)"), h("option", { value: "nearest:25" }, "nearest value within 25 nm"),
       name === "waves" ? [h("option", { value: "wind" }, "those that the wind raises"), h("option", { value: "head_seas" }, "head seas, where only heights are known")] : [])]);
     this.button = h("button.primary", { type: "submit" }, "Plan the voyage");
-    this.voyageFile = h("input.hidden", { type: "file", id: "voyage-file", "aria-label": "Voyage file", accept: ".json,.yaml,.yml", tabindex: "-1", onchange: () => this.#openFile() });
+    this.files = new VoyageFiles(this);
     this.undoMove = h("button.quiet.small", { type: "button", hidden: true, onclick: () => this.#undoMove() }, "Undo move");
     const swap = h("button.quiet.small", { type: "button", onclick: () => this.#swap() }, "⇅ Swap");
     const addVia = h("button.quiet.small", { type: "button", onclick: () => this.addVia() }, "+ Via point");
+    const { fields } = this;
     const body = h("div.scroll", {},
       h("h1", {}, "Plan a voyage"),
       h("p.lead", {}, "Type the ends or click them on the chart."),
@@ -81,35 +84,43 @@ export class PlanForm extends EventTarget {
         h("div.field", { "data-field": "objective" }, h("label.label", { for: "objective" }, "Objective"), this.objective, h("div.slot")), this.weights.element),
       h("div.block", {},
         this.#details("time", "Time and speed", [
-          h("div.pair", {}, this.#number("speed_kn", "Ordered speed", "kn"), this.#timeField("arrive_by", "Arrive by", this.arriveBy)),
-          this.#timeField("depart_window", "Latest departure (finds the best between)", this.latest),
-          h("label.check", {}, this.wait, h("span", {}, "The ship may stop and wait")),
+          fields.pair("speed_kn", "arrive_by"),
+          h("div.field", { "data-field": "depart_window" }, h("label.label", { for: "latest" }, "Latest departure (finds the best between)"), this.latest, h("div.slot")),
+          fields.field("wait"), fields.pair("arrive", "speed_block_h"), fields.field("hold"),
+          h("p.facts", {}, "Arrive at: in the minute before it, at one speed that is found. A speed is held longer than the hours given where speeds are chosen."),
         ]),
         this.#details("limits", "Limits", [
-          h("div.pair", {}, this.#number("wave_height_m", "Waves at most", "m"), this.#number("wind_speed_kn", "Wind at most", "kn")),
-          h("div.pair", {}, this.#number("min_ukc_m", "Under-keel clearance", "m"), this.#number("offing_nm", "Distance from land", "nm")),
-          this.#number("motion_sickness_percent", "Sick after two hours at most", "% of people"),
+          fields.pair("wave_height_m", "wind_speed_kn"), fields.pair("min_ukc_m", "offing_nm"), fields.field("motion_sickness_percent"),
           h("p.facts", {}, "Empty: as the ship file states; the distance from land by the size of the ship."),
         ]),
         this.#details("indicators", "Limits of key figures", [this.indicators.element]),
         this.#details("areas", "Areas to avoid", [this.areas.element]),
         this.#details("canals", "Canals and passages", [
-          h("fieldset", {}, h("legend", {}, "Do not use"), this.forbid.map(([, input, text]) => h("label.check", {}, input, h("span", {}, text)))),
-          h("div.field", { "data-field": "avoid" }, h("label.label", { for: "avoid" }, "Passages to avoid"), this.avoid, h("div.slot")),
+          h("fieldset", { "data-field": "forbid" }, h("legend", {}, "Do not use"), this.forbid.map(([, input, text]) => h("label.check", {}, input, h("span", {}, text))), h("div.slot")),
+          fields.field("avoid"), fields.field("open"),
         ]),
-        this.#details("prices", "Prices", [
-          h("div.pair", {}, this.#number("fuel_price_usd", "Fuel", "USD/t"), this.#number("eca_price_factor", "Factor in control areas", "×")),
-          this.#number("time_price_usd_per_h", "Time without fuel", "USD/h"),
-          h("p.facts", {}, "Empty: the prices of the ship file."),
+        this.#details("prices", "Prices and charges", [
+          fields.pair("fuel_price_usd", "eca_price_factor"), fields.field("time_price_usd_per_h"), fields.field("eca"),
+          h("p.facts", {}, "Empty: the prices of the ship file. Canal dues are those of the package."),
+          h("fieldset.part", {}, h("legend", {}, "Charges of the European Union"), fields.pair("ets_price", "eur_rate"), fields.pair("share_percent", "year"),
+            h("p.facts", {}, "An allowance for each tonne of CO₂; the price of a euro adds the FuelEU penalty. Both empty: no charges.")),
+        ]),
+        this.#details("chart", "Ship's load, chart and depth", [
+          fields.pair("load_factor", "coast"), this.data.depthElement, fields.field("ignore_shoals"), fields.field("ignore_lanes"),
         ]),
         this.#details("traffic", "Other ships", [this.network.trafficElement]),
-        this.#details("network", "Network", [this.network.element]),
-        this.#details("fill", "Where data are missing", [
+        this.#details("network", "Network and search", [this.network.element, fields.field("method"), fields.pair("ensemble", "seed")]),
+        this.#details("fill", "Data of the sea", [
           h("p.facts", {}, "Water without data is closed; it never becomes calm. A filling is noted in the result."),
-          this.fills.map(([name, select]) => h("div.field", { "data-field": "fill" }, h("label.label", { for: select.id }, `Unknown ${name}`), select)),
+          this.fills.map(([name, select]) => h("div.field", { "data-field": "fill" }, h("label.label", { for: select.id }, `Unknown ${name}`), select, h("div.slot"))),
+          fields.pair("sampling", "average_over_m"), this.data.nameElement,
+        ]),
+        this.#details("files", "Route files", [
+          fields.pair("legs", "rtz_version"), fields.pair("cross_track_nm", "waypoint_spacing_nm"), fields.field("max_waypoints"),
+          h("p.facts", {}, "Empty: the lines of a file stay within 0.1 nm of the route. With fewer waypoints this limit grows, and the result says how far."),
         ]),
         h("div.field", {}, h("label.label", { for: "title" }, "Name"), this.title),
-        h("div.exports.block", {}, h("button.quiet.small", { type: "button", onclick: () => this.#saveFile() }, "Save voyage file"), h("button.quiet.small", { type: "button", onclick: () => this.voyageFile.click() }, "Open …"), h("button.quiet.small", { type: "button", onclick: () => { const request = this.request(); if (request) this.dispatchEvent(new CustomEvent("link", { detail: request })); } }, "Copy link"), this.voyageFile)),
+        this.files.element),
       this.problem);
     fill(this.element, body, h("div.foot", {}, this.button));
     this.element.addEventListener("input", () => { this.touched = true; this.#summaries(); });
@@ -127,28 +138,20 @@ export class PlanForm extends EventTarget {
     return (this.parts = { ...this.parts, [name]: details })[name];
   }
 
-  #number(name, label, unitText) {
-    const input = h("input", { type: "text", inputmode: "decimal", id: `n-${name}`, autocomplete: "off" });
-    this.numbers[name] = input;
-    return h("div.field", { "data-field": name }, h("label.label", { for: input.id }, label), h("div.with-unit", {}, input, h("span.unit", {}, unitText)), h("div.slot"));
-  }
-
-  #timeField(name, label, input) {
-    return h("div.field", { "data-field": name }, h("label.label", { for: input.id }, label), input, h("div.slot"));
-  }
-
   #summaries() {
-    const text = (name, unitText) => { const value = this.numbers[name].value.trim(); return value ? `${value} ${unitText}` : ""; };
+    const set = (...names) => this.fields.words(names);
     const said = {
-      time: [text("speed_kn", "kn"), this.arriveBy.value ? "arrival set" : "", this.latest.value ? "window" : ""],
-      limits: [text("wave_height_m", "m waves"), text("wind_speed_kn", "kn wind"), text("motion_sickness_percent", "% sick"), text("min_ukc_m", "m UKC"), text("offing_nm", "nm off")],
-      areas: [this.areas.list.length ? `${this.areas.list.length} drawn` : ""],
-      canals: [...this.forbid.filter(([, input]) => input.checked).map(([, , name]) => `no ${name}`), this.avoid.value.trim() ? "passages" : ""],
+      time: [...set("speed_kn", "arrive_by"), this.latest.value ? "window" : "", ...set("wait", "arrive", "speed_block_h", "hold")],
+      limits: set("wave_height_m", "wind_speed_kn", "motion_sickness_percent", "min_ukc_m", "offing_nm"),
+      areas: [this.areas.list.length + this.areas.kept.length ? `${this.areas.list.length + this.areas.kept.length} drawn` : ""],
+      canals: [...this.forbid.filter(([, input]) => input.checked).map(([, , name]) => `no ${name}`), ...set("avoid", "open")],
       indicators: [this.indicators.words],
       traffic: [this.network.traffic.chosen.length ? `${this.network.traffic.chosen.length} chosen` : ""],
-      network: this.network.words,
-      prices: [text("fuel_price_usd", "USD/t"), text("time_price_usd_per_h", "USD/h")],
-      fill: this.fills.filter(([, select]) => select.value).map(([name, select]) => `${name}: ${select.value}`),
+      network: [...this.network.words, ...set("method", "ensemble", "seed")],
+      prices: set("fuel_price_usd", "eca_price_factor", "time_price_usd_per_h", "eca", "ets_price", "eur_rate", "share_percent"),
+      chart: [...set("load_factor", "coast"), this.data.depths.chosen.length ? "depth from files" : "", ...set("ignore_shoals", "ignore_lanes")],
+      fill: [...this.fills.filter(([, select]) => select.value).map(([name, select]) => `${name}: ${select.selectedOptions[0].text}`), ...set("sampling", "average_over_m")],
+      files: set("legs", "rtz_version", "cross_track_nm", "waypoint_spacing_nm", "max_waypoints"),
     };
     for (const [name, parts] of Object.entries(said)) this.parts[name].said.textContent = parts.filter(Boolean).join(", ");
   }
@@ -196,33 +199,8 @@ export class PlanForm extends EventTarget {
   #seaChanged() {
     const { period } = this.sea;
     this.departFacts.textContent = period ? `Data from ${time(period[0])} to ${time(period[1], true)}` : "";
-    if (!this.depart.value && period) this.depart.value = inputTime(period[0]);
+    if (period && [this.proposed, ""].includes(this.depart.value)) this.depart.value = this.proposed = inputTime(period[0]); // until another is typed
     this.dispatchEvent(new Event("seas"));
-  }
-
-  // Voyage files: the request as it is sent
-
-  #saveFile() {
-    const request = this.request();
-    if (!request) return;
-    const address = URL.createObjectURL(new Blob([JSON.stringify(request, null, 2)], { type: "application/json" }));
-    h("a", { href: address, download: `${request.title.replace(/[^\w. -]+/g, "_")}.voyage.json` }).click();
-    setTimeout(() => URL.revokeObjectURL(address), 10_000);
-  }
-
-  async #openFile() {
-    const [file] = this.voyageFile.files;
-    this.voyageFile.value = "";
-    if (!file) return;
-    fill(this.problem);
-    try {
-      this.set(await post("/voyages/read", { text: await file.text() }));
-      announce(`${file.name} is filled in.`);
-      this.element.querySelector(".scroll").scrollTop = 0;
-    } catch (problem) {
-      fill(this.problem, errorBox(problem));
-      this.problem.scrollIntoView({ block: "center" });
-    }
   }
 
   // A point that was dragged on the chart: its number counts the shown ends.
@@ -275,7 +253,7 @@ export class PlanForm extends EventTarget {
   }
 
   showProblem(problem) {
-    const field = problem.field?.replace(/^(voyage|limits)\./, "").replace(/^(seas|traffic|layered)\..*/, "$1");
+    const field = problem.field?.replace(/^(voyage|limits|charges|route_files)\./, "").replace(/^(seas|traffic|layered|depths|fill|forbid)\..*/, "$1");
     const name = { speed: "speed_kn", file: "seas", at_most: "indicators", at_least: "indicators" }[field] || field;
     this.#fail(name, problem);
   }
@@ -283,41 +261,46 @@ export class PlanForm extends EventTarget {
   // Request
 
   request() {
-    const value = (name) => { const text = this.numbers[name].value.trim().replace(",", "."); return text === "" ? null : Number(text); };
-    for (const [name, input] of Object.entries(this.numbers)) {
-      if (input.value.trim() && !Number.isFinite(value(name))) return this.#missing(name, `${input.value} is not a number.`, "Give a number, such as 12.5.");
-    }
     if (!this.start.value) return this.#missing("start", "The voyage has no start.", "Type a port or a position, or click it on the chart.");
     if (!this.goal.value) return this.#missing("goal", "The voyage has no destination.", "Type a port or a position, or click it on the chart.");
     if (!this.sea.chosen.length) return this.#missing("seas", "No sea is chosen; calm weather is never assumed.", "Choose the storm of 1998, a calm sea, or a file.");
-    if (!this.depart.value) return this.#missing("depart", "The voyage has no departure.", "Give a date and a time in UTC.");
-    for (const [name, input] of [["depart", this.depart], ["depart_window", this.latest], ["arrive_by", this.arriveBy]]) {
+    if (!this.depart.value && !this.fields.inputs.arrive.value) return this.#missing("depart", "The voyage has no departure.", "Give a date and a time in UTC.");
+    for (const [name, input] of [["depart", this.depart], ["depart_window", this.latest]]) {
       if (input.value.trim() && typedTime(input) === null) return this.#missing(name, `${input.value} is not a time.`, "Give year, month, day, hour and minute in UTC, such as 2026-01-31 12:00.");
     }
     const utc = (input) => { const t = typedTime(input); return t === null ? null : `${inputTime(t).replace(" ", "T")}Z`; };
     const voyage = {
       start: this.start.value, goal: this.goal.value, objective: this.objective.value === "alternatives" ? "time" : this.objective.value,
-      via: this.vias.map((field) => field.value).filter(Boolean), arrive_by: utc(this.arriveBy),
+      via: this.vias.map((field) => field.value).filter(Boolean),
       forbid: this.forbid.filter(([, input]) => input.checked).map(([name]) => name),
-      avoid: this.avoid.value.split(",").map((name) => name.trim()).filter(Boolean),
     };
     if (this.latest.value) voyage.depart_window = [utc(this.depart), utc(this.latest)];
-    else voyage.depart = utc(this.depart);
-    if (!this.wait.checked) voyage.wait = false;
-    for (const name of ["speed_kn", "min_ukc_m", "offing_nm", "fuel_price_usd", "eca_price_factor", "time_price_usd_per_h"]) voyage[name] = value(name);
-    for (const name of Object.keys(voyage)) if (voyage[name] === null || (Array.isArray(voyage[name]) && !voyage[name].length)) delete voyage[name];
-    const request = { title: this.title.value.trim() || this.defaultTitle(), voyage, ship: this.ship.value, seas: this.sea.chosen, limits: { wave_height_m: value("wave_height_m"), wind_speed_kn: value("wind_speed_kn"), motion_sickness_percent: value("motion_sickness_percent") } };
+    else if (this.depart.value) voyage.depart = utc(this.depart);
+    for (const name of ["via", "forbid"]) if (!voyage[name].length) delete voyage[name];
+    const request = { title: this.title.value.trim() || this.defaultTitle(), voyage, ship: this.ship.value, seas: this.sea.chosen };
+    const fault = this.#fillParts(request);
+    if (fault) return this.#missing(fault.field, fault.asked, fault.remedy);
+    if (request.charges && Object.keys(request.charges).join() === "year") delete request.charges;
     if (voyage.objective === "weighted") { voyage.weights = this.weights.value(); if (!voyage.weights) return this.#missing("weights", this.weights.fault.asked, this.weights.fault.remedy); }
     const limited = this.indicators.value();
     if (!limited) return this.#missing("indicators", this.indicators.fault.asked, this.indicators.fault.remedy);
     for (const [side, values] of Object.entries(limited)) if (Object.keys(values).length) voyage[side] = values;
-    const fault = this.network.fill(request);
-    if (fault) return this.#missing(fault.field, fault.asked, fault.remedy);
-    if (this.objective.value === "alternatives") request.most = 5;
-    const filled = this.fills.filter(([, select]) => select.value).map(([name, select]) => [name, select.value === "0" ? 0 : select.value]);
+    if (this.objective.value === "alternatives") request.most = this.most;
+    const filled = this.fills.filter(([, select]) => select.value).map(([name, select]) => [name, fillOf(select.value)]);
     if (filled.length) request.fill = Object.fromEntries(filled);
-    if (this.areas.list.length) request.areas = this.areas.features;
     return request;
+  }
+
+  #fillParts(request) {
+    if (this.areas.list.length || this.areas.kept.length) request.areas = this.areas.features;
+    return this.fields.fill(request) || this.data.fill(request) || this.network.fill(request);
+  }
+
+  // What is set beside the voyage itself, whether it is right or not.
+  settings() {
+    const found = { voyage: {} };
+    this.#fillParts(found);
+    return found;
   }
 
   defaultTitle() {
@@ -373,12 +356,11 @@ export class PlanForm extends EventTarget {
     const input = (value) => (value ? inputTime(seconds(value)) : "");
     this.depart.value = input(voyage.depart_window ? voyage.depart_window[0] : voyage.depart);
     this.latest.value = input(voyage.depart_window?.[1]);
-    this.arriveBy.value = input(voyage.arrive_by);
-    this.wait.checked = voyage.wait !== false;
-    for (const [name, element] of Object.entries(this.numbers)) element.value = voyage[name] ?? request.limits?.[name] ?? "";
-    this.forbid.forEach(([name, box]) => { box.checked = (voyage.forbid || []).includes(name); });
-    this.avoid.value = (voyage.avoid || []).join(", ");
-    this.fills.forEach(([name, select]) => { select.value = String(request.fill?.[name] ?? ""); });
+    this.fields.set(request);
+    this.data.set(request);
+    this.most = request.most ?? 5;
+    this.forbid.forEach(([name, box]) => { box.checked = [voyage.forbid || []].flat().some((one) => one === name || one === "all"); });
+    this.fills.forEach(([name, select]) => showChoice(select, [request.fill?.[name] ?? ""].flat().join(", then ")));
     this.title.value = request.title && request.title !== this.defaultTitle() ? request.title : "";
     this.areas.set(request.areas);
     this.moves = [];
@@ -388,4 +370,10 @@ export class PlanForm extends EventTarget {
     if (this.sea.list) this.sea.show(this.sea.list, request.seas);
     this.#summaries();
   }
+}
+
+// The filling of an entry of a list: a number or a name, or several in turn.
+function fillOf(text) {
+  const values = text.split(", then ").map((one) => (Number.isFinite(Number(one)) ? Number(one) : one));
+  return values.length > 1 ? values : values[0];
 }

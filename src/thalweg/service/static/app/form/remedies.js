@@ -21,15 +21,15 @@ export function remedyButtons(problem, form, done) {
   const earliest = seconds(problem.details?.earliest);
   if (earliest !== null) {
     const minute = Math.ceil(earliest / 60) * 60;
-    offer(`Arrive by ${time(minute)}`, "arrive_by", () => { form.arriveBy.value = inputTime(minute); });
-  } else if (problem.field === "arrive_by") offer("Without an arrival", "arrive_by", () => { form.arriveBy.value = ""; });
+    offer(`Arrive by ${time(minute)}`, "arrive_by", () => { form.fields.inputs.arrive_by.value = inputTime(minute); });
+  } else if (problem.field === "arrive_by") offer("Without an arrival", "arrive_by", () => { form.fields.inputs.arrive_by.value = ""; });
   if (problem.field === "depart" && sea.period) offer(`Depart ${time(sea.period[0], true)}`, "depart", () => { form.depart.value = inputTime(sea.period[0]); form.latest.value = ""; });
   const stormy = LIMITS.filter(([reason]) => reasons[reason]);
   if (stormy.length && departs !== null) offer("Depart a day later", "depart", () => { form.depart.value = inputTime(departs + DAY); });
   for (const [, field, text] of stormy) offer(text, field, () => {});
-  if (reasons["nearer to land than the offing"]) offer("No distance from land", "offing_nm", () => { form.numbers.offing_nm.value = "0"; });
-  if (problem.field?.endsWith("speed_kn") && known(ship.speedRange?.[1])) offer(`Order ${number(ship.speedRange[1], 1)} kn`, "speed_kn", () => { form.numbers.speed_kn.value = String(ship.speedRange[1]); });
-  if (problem.field === "min_ukc_m") offer("Without a clearance", "min_ukc_m", () => { form.numbers.min_ukc_m.value = ""; });
+  if (reasons["nearer to land than the offing"]) offer("No distance from land", "offing_nm", () => { form.fields.inputs.offing_nm.value = "0"; });
+  if (problem.field?.endsWith("speed_kn") && known(ship.speedRange?.[1])) offer(`Order ${number(ship.speedRange[1], 1)} kn`, "speed_kn", () => { form.fields.inputs.speed_kn.value = String(ship.speedRange[1]); });
+  if (problem.field === "min_ukc_m") offer("Without a clearance", "min_ukc_m", () => { form.fields.inputs.min_ukc_m.value = ""; });
   if (reasons["no data"]) offer("Fill with the nearest value within 25 nm", "fill", () => { for (const [, select] of form.fills) select.value = "nearest:25"; });
   return found.length ? h("div.exports.remedies", {}, found) : null;
 }

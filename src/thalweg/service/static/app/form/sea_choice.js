@@ -7,6 +7,7 @@ import { ForecastFetch } from "./forecast_fetch.js";
 
 export class SeaChoice {
   list = null;
+  order = []; // ids of the seas by priority, where a request or the hand gave it
   reading = null; // resolves when the files that were chosen last are read: whether all are seas
 
   /**
@@ -26,7 +27,8 @@ export class SeaChoice {
   }
 
   get chosen() {
-    return [...this.box.querySelectorAll("input:checked")].map((input) => input.value);
+    const place = (id) => (this.order.indexOf(id) + 1 || Infinity);
+    return [...this.box.querySelectorAll("input:checked")].map((input) => input.value).sort((a, b) => (place(a) === place(b) ? 0 : place(a) - place(b)));
   }
 
   get #rows() {
@@ -51,6 +53,7 @@ export class SeaChoice {
 
   show(list = this.list, chosen = null) {
     const before = chosen || (this.list ? this.chosen : ["storm"]);
+    this.order = before;
     this.list = list;
     const order = list.slice().sort((a, b) => Boolean(a.embedded) - Boolean(b.embedded) || (a.id === "calm") - (b.id === "calm"));
     fill(this.box, order.map((sea) => h("label.check", {},

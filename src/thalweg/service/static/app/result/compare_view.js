@@ -3,24 +3,41 @@
 import { follow, get, hasEnded, post, uploadForm } from "../common/api.js";
 import { errorBox, fill, h } from "../common/elements.js";
 import { EXAMPLES, keyOf, VARIATIONS } from "./examples.js";
-import { PAINTS } from "./result_drawing.js";
-import { duration, known, number, readable, seconds, signed, signedDuration, time, titleOf } from "../common/format.js";
+import { drawCompared, PAINTS } from "./result_drawing.js";
+import { duration, exactDuration, known, number, readable, seconds, signed, time, titleOf } from "../common/format.js";
 
 const MOST = 6;
-const FIGURES = [["Time", "time_h", duration, signedDuration], ["Distance", "distance_nm", (v) => `${number(v, 1)} nm`, (v) => signed(v, 1)], ["Fuel", "fuel_t", (v) => (known(v) ? `${number(v, 1)} t` : "unknown"), (v) => signed(v, 1)], ["Cost", "cost", (v, row) => (known(v) ? `${number(v)} ${row.currency}` : "unknown"), (v) => signed(v, 0)], ["CO₂", "co2_t", (v) => (known(v) ? `${number(v)} t` : "unknown"), (v) => signed(v, 0)], ["Waves up to", "highest_waves_m", (v) => (known(v) ? `${number(v, 1)} m` : "unknown"), null], ["Wind up to", "strongest_wind_kn", (v) => (known(v) ? `${number(v)} kn` : "unknown"), null]];
+// Column, name in the answer, decimals (of time: minutes), text, text of a difference (null: none is shown).
+// Differences are those of the rounded figures, so that they agree with what stands beside them.
+const FIGURES = [
+  ["Time", "time_h", null, exactDuration, (v) => (v ? `${v < 0 ? "−" : "+"}${exactDuration(Math.abs(v))}` : "0 min")],
+  ["Distance", "distance_nm", 1, (v) => `${number(v, 1)} nm`, (v) => signed(v, 1)],
+  ["Fuel", "fuel_t", 1, (v) => (known(v) ? `${number(v, 1)} t` : "unknown"), (v) => signed(v, 1)],
+  ["Cost", "cost", 0, (v, row) => (known(v) ? `${number(v)} ${row.currency}` : "unknown"), (v) => signed(v, 0)],
+  ["CO₂", "co2_t", 0, (v) => (known(v) ? `${number(v)} t` : "unknown"), (v) => signed(v, 0)],
+  ["Waves up to", "highest_waves_m", 1, (v) => (known(v) ? `${number(v, 1)} m` : "unknown"), null],
+  ["Wind up to", "strongest_wind_kn", 0, (v) => (known(v) ? `${number(v)} kn` : "unknown"), null],
+];
+const rounded = (value, decimals) => (decimals === null ? Math.round(value * 60) / 60 : Number(value.toFixed(decimals)));
 
 export class CompareView {
-  chosen = []; // {job, number, title}
+  drawn = []; // what the chart shows: {name, points}
+  chosen = []; // {job, number, title}, the first is the reference
 
-  constructor(handlers) {
-    this.handlers = handlers;
-    this.list = h("div");
-    this.table = h("div");
+  /**
+   * @param {Chart} chart
+   * @param {{shipName: (id: string) => string, sheet: (element: Element) => void, write: (address: string) => void, hidden: () => boolean}} handlers
+   */
+  constructor(chart, handlers) {
+    Object.assign(this, { chart, handlers });
+    this.list = h("div.pick");
+    this.picked = h("ol.picked");
+    this.counted = h("span.set");
     this.problem = h("div");
     this.file = h("input.hidden", { type: "file", id: "route-file", "aria-label": "Route file", accept: ".rtz,.rtzp,.gml,.gpx,.geojson,.json,.csv", tabindex: "-1", onchange: () => this.#score() });
-    this.element = [h("div.scroll", {}, h("h1", {}, "Compare routes"), h("p.lead", {}, "Choose two to six. The first is the one that the others are compared with."), this.problem, h("div.block", {}, this.list), h("div.block", {}, h("h2", {}, "Examples"), EXAMPLES.map((example) => h("button.job.example", { type: "button", onclick: () => this.#example(example) }, h("b", {}, example.name), h("span", {}, example.facts)))), h("div.block", {}, h("h2", {}, "Vary the first route"), h("p.facts", {}, "Its voyage is planned again with one change, and the results are added."), h("div.exports", {},
+    this.element = [h("div.scroll", {}, h("h1", {}, "Compare routes"), h("p.lead", {}, "Choose two to six. The differences are those to the reference."), this.problem, h("div.block", {}, h("h2.with-count", {}, "Chosen", this.counted), this.picked), h("div.block", {}, h("h2", {}, "Routes to choose from"), this.list), h("div.block", {}, h("h2", {}, "Examples"), EXAMPLES.map((example) => h("button.job.example", { type: "button", onclick: () => this.#example(example) }, h("b", {}, example.name), h("span", {}, example.facts)))), h("div.block", {}, h("h2", {}, "Vary the reference"), h("p.facts", {}, "Its voyage is planned again with one change, and the results are added."), h("div.exports", {},
       VARIATIONS.map(([text, plans]) => h("button.quiet.small", { type: "button", onclick: () => this.#study(plans) }, text))),
-    h("div.block", {}, h("h2", {}, "A route of your own"), h("p.facts", {}, "An RTZ, S-421, GPX, GeoJSON or CSV file is sailed in the weather and by the ship of the first chosen route."), h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Score a route file …"), this.file)))];
+    h("div.block", {}, h("h2", {}, "A route of your own"), h("p.facts", {}, "An RTZ, S-421, GPX, GeoJSON or CSV file is sailed in the weather and by the ship of the reference."), h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Score a route file …"), this.file)))];
   }
 
   add(job, number_, title) {
@@ -28,43 +45,112 @@ export class CompareView {
     if (this.chosen.length < MOST) this.chosen.push({ job, number: number_, title });
   }
 
+  // What the address says: job.number, with commas between them.
+  get address() {
+    return this.chosen.map(({ job, number: n }) => `${job}.${n}`).join(",");
+  }
+
+  set address(text) {
+    this.chosen = text.split(",").map((one) => /^([0-9a-f]{16})\.(\d+)$/.exec(one)).filter(Boolean).slice(0, MOST).map(([, job, n]) => ({ job, number: Number(n) }));
+  }
+
   async show() {
+    try {
+      await this.#list();
+    } catch (problem) {
+      fill(this.problem, errorBox(problem));
+    }
+  }
+
+  // The chosen routes on the chart, and their table below it.
+  #draw(routes, table) {
+    if (this.handlers.hidden()) return;
+    drawCompared(this.chart.routes, routes);
+    if (table) this.handlers.sheet(h("div.sheet", {}, table));
+    if (!routes.length) return;
+    this.chart.map.updateSize();
+    this.chart.fit(routes.flat());
+  }
+
+  async #list() {
     const ask = (this.listed = Symbol("ask"));
     const { jobs } = await get("/plans?size=60");
+    const older = await Promise.all([...new Set(this.chosen.map((one) => one.job))].filter((id) => !jobs.some((job) => job.id === id)).map((id) => get(`/plans/${id}`).catch(() => null)));
     if (ask !== this.listed) return;
-    this.jobs = jobs.filter((job) => job.result);
-    this.chosen = this.chosen.filter((one) => this.jobs.some((job) => job.id === one.job));
-    fill(this.list, this.jobs.length ? this.jobs.map((job) => this.#row(job)) : h("p.empty", {}, h("b", {}, "No routes yet"), "Plan a voyage first; its routes can then be compared here."));
+    this.jobs = [...jobs, ...older].filter((job) => job?.result && ["plan", "alternatives", "evaluation"].includes(job.kind));
+    this.chosen = this.chosen.filter((one) => this.#jobOf(one));
+    for (const one of this.chosen) one.title ||= this.#nameOf(this.#jobOf(one), one.number);
+    fill(this.list, this.jobs.length ? this.jobs.map((job) => this.#row(job)) : h("p.empty", {}, h("b", {}, "No routes yet"), "Plan a voyage, or take one of the examples below."));
     await this.#compare();
   }
 
-  #row(job) {
-    const entry = (number_, text) => h("div.jobrow", {}, h("label.check", {}, h("input", { type: "checkbox", checked: this.chosen.some((one) => one.job === job.id && one.number === number_), onchange: (event) => this.#toggle(event.target, job, number_, text) }), h("span", {}, text, h("small", {}, `${number_ === 0 ? "planned without weather, sailed in it" : `${duration(job.summary.time_h)} · ${number(job.summary.distance_nm, 0)} nm`} · ${time(seconds(job.created))}`))));
-    const name = titleOf(job);
-    return [entry(1, job.kind === "evaluation" ? `${name} (from a file)` : name), job.kind === "plan" && job.request.seas[0] !== "calm" && job.summary.objective === "time" && !job.summary.cancelled ? entry(0, `${name}, weather ignored`) : null];
+  #jobOf(one) {
+    return this.jobs.find((job) => job.id === one.job);
   }
 
-  #toggle(box, job, number_, title) {
+  #nameOf(job, n) {
+    const name = titleOf(job);
+    return n === 0 ? `${name}, weather ignored` : job.kind === "evaluation" ? `${name} (from a file)` : n > 1 ? `${name}, route ${n}` : name;
+  }
+
+  // The ends, where the name of the job does not say them, and the ship.
+  #about(job) {
+    const ends = titleOf({ request: job.request });
+    const said = [job.request?.voyage && ends !== titleOf(job) ? ends : "", this.handlers.shipName(job.request?.ship)];
+    return said.filter(Boolean).join(" · ");
+  }
+
+  #row(job) {
+    const box = (n) => h("input", { type: "checkbox", value: `${job.id}.${n}`, checked: this.chosen.some((one) => one.job === job.id && one.number === n), onchange: (event) => this.#toggle(event.target, job, n) });
+    const entry = (n, facts) => h("div.jobrow", {}, h("label.check", {}, box(n), h("span", {}, this.#nameOf(job, n), h("small", {}, this.#about(job)), h("small", {}, facts))));
+    const made = time(seconds(job.created));
+    const blind = job.kind === "plan" && job.request.seas[0] !== "calm" && job.summary.objective === "time" && !job.summary.cancelled;
+    return [entry(1, `${duration(job.summary.time_h)} · ${number(job.summary.distance_nm, 0)} nm · ${made}`), blind ? entry(0, "planned without weather, sailed in it") : null];
+  }
+
+  // The chosen routes in the order of the table; each can become the reference, or be left out.
+  #showChosen() {
+    const put = (list) => { this.chosen = list; this.#tick(); this.#compare(); };
+    this.counted.textContent = this.chosen.length ? `${this.chosen.length} of ${MOST}` : "";
+    fill(this.picked, this.chosen.map((one, i) => {
+      const job = this.#jobOf(one), rest = this.chosen.filter((other) => other !== one);
+      return h("li", {}, keyOfRoute(i), h("span", {}, h("b", {}, one.title), h("small", {}, job ? this.#about(job) : "")),
+        i ? h("button.quiet.small", { type: "button", "aria-label": `Make ${one.title} the reference`, onclick: () => put([one, ...rest]) }, "Reference") : h("span.state", {}, "reference"),
+        h("button.quiet.small", { type: "button", "aria-label": `Leave out ${one.title}`, onclick: () => put(rest) }, "✕"));
+    }));
+    if (!this.chosen.length) fill(this.picked, h("li.none", {}, "None yet: tick routes below, or take an example."));
+  }
+
+  #tick() {
+    for (const box of this.list.querySelectorAll("input")) box.checked = this.address.split(",").includes(box.value);
+  }
+
+  #toggle(box, job, n) {
     if (box.checked && this.chosen.length >= MOST) { box.checked = false; fill(this.problem, errorBox({ asked: "Six routes are chosen.", remedy: "Remove one first." })); return; }
-    if (box.checked) this.chosen.push({ job: job.id, number: number_, title });
-    else this.chosen = this.chosen.filter((one) => !(one.job === job.id && one.number === number_));
+    if (box.checked) this.chosen.push({ job: job.id, number: n, title: this.#nameOf(job, n) });
+    else this.chosen = this.chosen.filter((one) => !(one.job === job.id && one.number === n));
     fill(this.problem);
     this.#compare();
   }
 
   async #compare() {
     const ask = (this.asked = Symbol("ask")); // the answer to an earlier choice is not shown
+    this.#showChosen();
+    if (!this.handlers.hidden()) this.handlers.write(`view=compare${this.chosen.length ? `&routes=${this.address}` : ""}`);
     if (this.chosen.length < 2) {
-      this.handlers.show([], h("p.empty", {}, h("b", {}, this.chosen.length ? "Choose one more route" : "Choose routes to compare"), "Their figures and differences stand here, and all of them on the chart."));
+      this.drawn = [];
+      this.#draw([], h("p.empty", {}, h("b", {}, this.chosen.length ? "Choose one more route" : "Choose routes to compare"), "Their figures and differences stand here, and all of them on the chart."));
       if (!this.chosen.length) return;
       const points = await this.#points().catch(() => []);
-      if (ask === this.asked) this.handlers.show(points, null);
+      if (ask === this.asked) this.#draw(points, null);
       return;
     }
     try {
       const { routes } = await post("/compare", { routes: this.chosen.map(({ job, number: n }) => ({ job, number: n })) });
       const points = await this.#points();
-      if (ask === this.asked) this.handlers.show(points, this.#table(routes));
+      if (ask !== this.asked) return;
+      this.drawn = points.map((line, i) => ({ name: this.chosen[i].title, points: line }));
+      this.#draw(points, this.#table(routes));
     } catch (problem) {
       if (ask === this.asked) fill(this.problem, errorBox(problem));
     }
@@ -78,8 +164,12 @@ export class CompareView {
   }
 
   #table(rows) {
-    const key = (i) => { const mark = h("span.key"); mark.style.borderTopColor = `var(--${PAINTS[i]})`; mark.style.borderTopStyle = i ? "dashed" : "solid"; return mark; };
-    return h("div.table", { tabindex: 0 }, h("table.compare-table", {}, h("caption.hidden", {}, "Routes compared with the first"), h("thead", {}, h("tr", {}, h("th.text", { scope: "col" }, "Route"), h("th.text", { scope: "col" }, "Leaves, arrives"), FIGURES.map(([name]) => h("th", { scope: "col" }, name)))), h("tbody", {}, rows.map((row, i) => h("tr", {}, h("td.text", {}, key(i), h("b", {}, this.chosen[i].title), row.feasible ? null : h("small", {}, `breaks ${row.violations} limits`)), h("td.text", {}, time(seconds(row.depart)), h("small", {}, time(seconds(row.arrive)))), FIGURES.map(([, name, text, change]) => h("td", {}, h("b", {}, text(row[name], row)), i && change && known(row.difference[name]) ? h("small", {}, change(row.difference[name])) : null)))))));
+    const [first] = rows;
+    const than = (row, name, decimals, text) => (known(row.difference[name]) && known(row[name]) && known(first[name]) ? text(rounded(row[name], decimals) - rounded(first[name], decimals)) : null);
+    const cell = (row, i) => ([, name, decimals, text, change]) => h("td", {}, h("b", {}, text(row[name], row)), i && change ? h("small", {}, than(row, name, decimals, change)) : null);
+    const about = (row, i) => [i ? null : "reference", row.feasible ? null : `breaks ${row.violations} limit${row.violations === 1 ? "" : "s"}`].filter(Boolean).join(", ");
+    return h("div.table", { tabindex: 0 }, h("table.compare-table", {}, h("caption.hidden", {}, "Routes compared with the reference, the first"), h("thead", {}, h("tr", {}, h("th.text", { scope: "col" }, "Route"), h("th.text", { scope: "col" }, "Leaves, arrives"), FIGURES.map(([name]) => h("th", { scope: "col" }, name)))),
+      h("tbody", {}, rows.map((row, i) => h("tr", { "aria-current": i ? null : "true" }, h("td.text", {}, keyOfRoute(i), h("b", {}, this.chosen[i].title), h("small", {}, about(row, i))), h("td.text", {}, time(seconds(row.depart)), h("small", {}, time(seconds(row.arrive)))), FIGURES.map(cell(row, i)))))));
   }
 
   // Plan the voyages of an example, or find them planned, and compare them.
@@ -131,7 +221,7 @@ export class CompareView {
   async #study(plansOf) {
     fill(this.problem);
     const first = this.jobs.find((job) => job.id === this.chosen[0]?.job && job.kind === "plan");
-    if (!first) { fill(this.problem, errorBox({ asked: "No planned route is chosen.", remedy: "Choose a plan first; the study starts from its voyage." })); return; }
+    if (!first) { fill(this.problem, errorBox({ asked: "The reference is no planned route.", remedy: "Choose a plan first; its voyage is varied." })); return; }
     const { settings } = await get(`/ships/${encodeURIComponent(first.request.ship)}`);
     const plans = plansOf(first.request, Math.max(...settings.map((row) => row.speed_kn)));
     await this.#planAll(plans.map((request) => ["/plans", request]), (jobs) => jobs.forEach((job) => this.add(job.id, 1, job.title)));
@@ -154,4 +244,12 @@ export class CompareView {
       fill(this.problem, errorBox(problem));
     }
   }
+}
+
+// The line of a route as the chart draws it.
+function keyOfRoute(i) {
+  const mark = h("span.key");
+  mark.style.borderTopColor = `var(--${PAINTS[i]})`;
+  mark.style.borderTopStyle = i ? "dashed" : "solid";
+  return mark;
 }

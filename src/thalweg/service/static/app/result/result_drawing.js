@@ -33,6 +33,7 @@ const DASHES = [null, [10, 6], [2, 6], [12, 5, 2, 5], [18, 6], [4, 4]];
 
 export function drawCompared(layers, routes) {
   layers.clear();
+  if (routes.length) layers.showEnds([["start", routes[0][0]], ["goal", routes[0].at(-1)]].map(([role, [lon, lat]]) => ({ role, lon, lat, label: "" })));
   layers.others.getSource().addFeatures(routes.map((points, i) => {
     const feature = new Feature(line(points));
     feature.setStyle(() => [...(i ? [] : [stroke(colour("casing"), 6.5)]), stroke(colour(PAINTS[i]), i ? 2.4 : 4, DASHES[i] || undefined)]);

@@ -3,7 +3,7 @@
 import { fileAddress, get, resultAddress } from "../common/api.js";
 import { fill, h, REASONS, unit } from "../common/elements.js";
 import { indicatorTable } from "../form/indicators.js";
-import { duration, known, number, plainPosition, seconds, signed, signedDuration, time, titleOf } from "../common/format.js";
+import { duration, exactDuration, known, number, plainPosition, seconds, signed, signedDuration, time, titleOf } from "../common/format.js";
 import { selection } from "../common/selection.js";
 
 const OBJECTIVES = { time: "least time", distance: "shortest distance", fuel: "least fuel", energy: "least energy", cost: "least cost", comfort: "least motion sickness", co2: "least CO₂", encounters: "fewest encounters", inshore: "least length near land", weighted: "a weighted sum", front: "all trade-offs", alternatives: "routes that differ" };
@@ -106,9 +106,9 @@ export class ResultView {
 
   #routes(plan) {
     const { front } = plan;
-    return h("div.block", {}, h("h2", {}, `${plan.routes.length} routes, fastest first`), h("ol.routes", {}, plan.routes.map((route, i) => h("li", {}, h("button", {
+    return h("div.block.no-print", {}, h("h2", {}, `${plan.routes.length} routes, fastest first`), h("ol.routes", {}, plan.routes.map((route, i) => h("li", {}, h("button", {
       type: "button", "aria-pressed": String(i === selection.route), onclick: () => selection.choose(i), onpointerenter: () => selection.hover(i), onpointerleave: () => selection.hover(null),
-    }, h("span.swatch"), h("span", {}, duration(route.time_h), front && front.points[i]?.way !== "open sea" ? h("small.unit", {}, ` ${front.points[i]?.way}`) : null), h("span", {}, number(route.fuel_t, 1), unit("t")), h("span", {}, known(costOf(route)) ? [number(costOf(route)), unit(route.currency)] : ""))))));
+    }, h("span.swatch"), h("span", {}, exactDuration(route.time_h), front && front.points[i]?.way !== "open sea" ? h("small.unit", {}, ` ${front.points[i]?.way}`) : null), h("span", {}, number(route.fuel_t, 1), unit("t")), h("span", {}, known(costOf(route)) ? [number(costOf(route)), unit(route.currency)] : ""))))));
   }
 
   // Routes that differ: what each is best in, and how it differs from the fastest.
