@@ -45,6 +45,7 @@ ANSWERS: Final[Mapping[str, OperationAnswer]] = {
     "get /coast/{level}": OperationAnswer(answers.CoastIndexAnswer, ("coast index",)),
     "get /coast/{level}/{cell}.json": OperationAnswer(answers.CoastCellAnswer, ("coast cell",)),
     "get /chart": OperationAnswer(answers.ChartAnswer, ("chart",)),
+    "get /chart/depth": OperationAnswer(None, ("frame as base64",), "application/octet-stream"),
     "get /traffic": OperationAnswer(list[answers.TrafficAnswer], ("traffic files",)),
     "post /traffic": OperationAnswer(answers.TrafficAnswer, ("traffic file",)),
     "get /histories": OperationAnswer(list[answers.HistoryAnswer], ("history networks",)),
