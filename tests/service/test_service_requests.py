@@ -64,6 +64,8 @@ def test_health_ships_and_ports(client):
     assert ships["handysize-bulker"]["library"] is True
     best = client.get("/api/v1/ports", params={"q": "rotter", "count": 1}).json()[0]
     assert best["locode"] == "NLRTM"
+    listed = client.get("/api/v1/ports", params={"q": "Dover"}).json()
+    assert listed[0]["label"] == "Dover Harbor, GB"  # as the name alone is understood
     near = client.get("/api/v1/ports", params={"near": "51.9,4.1", "count": 3}).json()
     assert [p["distance_nm"] for p in near] == sorted(p["distance_nm"] for p in near)
 

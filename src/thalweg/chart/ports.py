@@ -154,6 +154,14 @@ class Ports:
             raise self._unknown(text)
         return _clearly_largest(named, text)
 
+    def find(self, text: str) -> Port | None:
+        """Return the port of a name or UN/LOCODE as `lookup` does; None where that raises."""
+        try:
+            known = self._named(text) or "".join(text.split()).upper() in self._by_locode
+            return self.lookup(text) if known else None
+        except InputError:
+            return None
+
     def _named(self, text: str) -> dict[Port, bool]:
         """Return the ports of a name, with or without its country or region."""
         found = self._with_name(text)

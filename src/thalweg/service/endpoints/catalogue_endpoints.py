@@ -106,12 +106,13 @@ def _matching(text: str) -> list[Port]:
     if not text:
         return sorted(PORTS.all, key=lambda port: -port.importance)
     word, code = normalised_port_name(text), text.upper().replace(" ", "")
+    meant = PORTS.find(text)  # what the name alone stands for in a request
     ranked = []
     for port, name in _searched_names():
         starts = name.startswith(word)
-        if port.locode == code:
+        if port is meant:
             rank = 0
-        elif name == word:
+        elif name == word or port.locode == code:
             rank = 1
         elif starts or (len(word) > 2 and f" {word}" in name):
             rank = 2 if starts else 3
