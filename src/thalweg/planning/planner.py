@@ -25,6 +25,7 @@ from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import PlotContext, Proof, in_objective_unit
 from thalweg.planning.planning_context import PlanningContext, ShipTables, performance_table_of
+from thalweg.planning.report.lane_report import lane_detour_notes
 from thalweg.planning.report.provenance import (
     finite_or_none,
     network_summary,
@@ -332,6 +333,7 @@ def _assemble_plan(
     notes = [end.note for end in ends if end.note] + list(context.needs.notes)
     notes += [note for stretch in stretches for note in stretch.notes]
     notes += route_warnings(context, route)
+    notes += lane_detour_notes(context.chart, [stretch.network for stretch in stretches])
     return Plan(
         voyage=voyage,
         routes=(route,),

@@ -5,7 +5,7 @@ port (the general direction of traffic of all schemes in the table; Rule 10 (b) 
 Regulations, 1972). The lines are rounded to about half a mile and are not charted: they decide on
 which side of a strait a plan passes, not where the lanes are. Beyond the lane on a landward side
 lies the inshore traffic zone, which ships of 20 m and more do not use unless their port is there
-(Rule 10 (d)). Lanes among the zones of a user (`thalweg.chart.zones.traffic_lanes`) take their
+(Rule 10 (d)); it is open to voyages that begin or end inside it. Lanes among the zones of a user (`thalweg.chart.zones.traffic_lanes`) take their
 place. Schemes that are not in the table are not known.
 """
 
@@ -66,16 +66,38 @@ class TrafficScheme:
     inshore: str = ""
     source: str = ""
 
-    @cached_property
+    @property
     def lanes(self) -> tuple[TrafficLane, ...]:
         """A lane for each side and part of the line, and the inshore traffic zones.
 
         The separation zone and `_CLEAR` of the other lane beside it belong to the lanes of both
         sides, so that plans keep clear of it (Rule 10 (b)).
         """
+        return tuple(lane for _, lane in self._lanes_and_zones)
+
+    def lanes_of_voyage(
+        self, ends: Sequence[Position], *, inshore: bool = True
+    ) -> list[TrafficLane]:
+        """Return the lanes, and the inshore traffic zones without an end (lat, lon) inside."""
+        import shapely
+
+        places = shapely.points([(lon, lat) for lat, lon in ends])
+        opened = {
+            side for side, lane in self._lanes_and_zones if side and lane.shape.covers(places).any()
+        }
+        return [
+            lane
+            for side, lane in self._lanes_and_zones
+            if not side or (inshore and side not in opened)
+        ]
+
+    @cached_property
+    def _lanes_and_zones(self) -> tuple[tuple[str, TrafficLane], ...]:
+        """The side of each inshore traffic zone, "" for lanes, and its area."""
         lat, lon = np.array(self.line, float).T
         course = np.degrees(np.asarray(inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])[1]))
-        lanes, inner = [], self.zone + _CLEAR * self.lane
+        lanes: list[tuple[str, TrafficLane]] = []
+        inner = self.zone + _CLEAR * self.lane
         for side, reach, sign, turn in (
             ("starboard", self.starboard, 1.0, 0.0),
             ("port", self.port, -1.0, 180.0),
@@ -85,11 +107,13 @@ class TrafficScheme:
             for k, heading in enumerate((course + turn) % 360.0):
                 name = f"{self.name}, {_POINTS[round(heading / 45.0) % 8]}-bound"
                 shape = self._part(k, -sign * inner, sign * edge)
-                lanes.append(TrafficLane(name, shape, float(heading), factor=AGAINST_FACTOR))
+                lane = TrafficLane(name, shape, float(heading), factor=AGAINST_FACTOR)
+                lanes.append(("", lane))
                 if edge < reach:
                     shape = self._part(k, sign * edge, sign * reach)
                     name = f"{self.name}, {INSHORE}"
-                    lanes.append(TrafficLane(name, shape, 0.0, _ANY_COURSE, AGAINST_FACTOR))
+                    zone = TrafficLane(name, shape, 0.0, _ANY_COURSE, AGAINST_FACTOR)
+                    lanes.append((side, zone))
         return tuple(lanes)
 
     @cached_property
@@ -138,6 +162,8 @@ def _quadrangle(*corners: FloatArray) -> Any:
 def lanes_of_schemes(ends: Sequence[Position], *, inshore: bool = True) -> tuple[TrafficLane, ...]:
     """Return the lanes of the schemes that a voyage may meet, without the water near its ends.
 
+    An inshore traffic zone with one of the ends inside does not count (Rule 10 (d) (ii)).
+
     Parameters
     ----------
     ends : sequence of (lat, lon)
@@ -152,9 +178,7 @@ def lanes_of_schemes(ends: Sequence[Position], *, inshore: bool = True) -> tuple
     for scheme in TRAFFIC_SCHEMES:
         if not any(_may_meet(scheme, *pair) for pair in itertools.pairwise(ends)):
             continue
-        for lane in scheme.lanes:
-            if not inshore and lane.name.endswith(INSHORE):
-                continue
+        for lane in scheme.lanes_of_voyage(ends, inshore=inshore):
             shape = lane.shape.difference(near) if lane.shape.intersects(near) else lane.shape
             lanes += [replace(lane, shape=part) for part in shapely.get_parts(shape)]
     return tuple(lane for lane in lanes if not lane.shape.is_empty)

@@ -47,6 +47,29 @@ class EdgeWeights:
     leg_cost: LegCost | None = None
 
     @classmethod
+    def penalised(cls, network: Network, chart: Chart) -> EdgeWeights:
+        """Return lengths times the factors of penalty zones, shoals and lanes.
+
+        Parameters
+        ----------
+        network : Network
+        chart : Chart
+            With the zones.
+
+        Returns
+        -------
+        EdgeWeights
+            Lengths alone where the chart has nothing of the kind.
+        """
+        if not chart.zones.has_penalty:
+            return cls(network.edges.length)
+
+        def leg_cost(*ends: FloatArray) -> FloatArray:
+            return np.asarray(leg_lengths(*ends) * chart.zones.factors(*ends)[0])
+
+        return cls(network.edges.length * network.edges.penalty_factor, leg_cost)
+
+    @classmethod
     def priced(cls, network: Network, chart: Chart, factor: float = 1.0) -> EdgeWeights:
         """Return lengths times the factors of zones, and another inside emission control areas.
 

@@ -1,7 +1,9 @@
 """Candidates for alternatives of a voyage, all on the networks and the frozen sea of one trade-off.
 
 The key figures are minimised on one network in the weather. Ways round islands, by and round named
-passages and farther off land are its shortest paths, pulled taut, at the fastest route's speed.
+passages and farther off land are its shortest paths, pulled taut, at the fastest route's speed. A
+mile in shoals, penalty zones and against lanes counts more in all of them, as in plans; ways that
+run farther against lanes than the fastest route are left out.
 """
 
 from __future__ import annotations
@@ -25,6 +27,7 @@ from thalweg.core.objective import Objective
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network import Network, alternative_paths
+from thalweg.network.alternatives.alternative_path import EdgeWeights
 from thalweg.network.alternatives.path_shortening import string_pull_path
 from thalweg.network.assembly import allowed_legs
 from thalweg.network.shortest_paths import (
@@ -53,6 +56,7 @@ from thalweg.planning.pareto.weighted_sums import (
 )
 from thalweg.planning.plan_front import knee
 from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.lane_report import lane_detour_notes, length_against_lanes
 from thalweg.planning.request.offing_choice import chart_off_land, chosen_offing
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route, Track
@@ -65,6 +69,7 @@ _DETOUR: Final = 0.35  # ways that are longer by this share of the shortest are 
 _REACH: Final = 12.0 * NAUTICAL_MILE  # from nodes to the ends of the line of a passage
 _ISLAND_WAYS, _PASSAGE_WAYS = 3, 5
 _ROUNDS: Final = 3  # of string pulling
+_AGAINST: Final = 2.0 * NAUTICAL_MILE  # farther against lanes than the fastest route: left out
 
 
 def berth_to_berth_candidates(
@@ -138,7 +143,8 @@ def candidate_routes(
     for other in alternatives[1:]:
         if not search.stopped:
             search.try_alternative(other)
-    return search.routes, search.notes
+    search.notes += lane_detour_notes(search.context.chart, [first.network])
+    return search.within_lanes(), search.notes
 
 
 class _PassageWay(NamedTuple):
@@ -199,6 +205,20 @@ class _Candidates:
         except SearchInterrupted:
             self.notes.append(f"{STOPPED} while the routes {words} were searched.")
 
+    def within_lanes(self) -> list[Route]:
+        """Return the routes without those that run farther against lanes than the fastest one."""
+        chart = self.context.chart
+        if not chart.zones.lanes:
+            return self.routes
+        against = [length_against_lanes(chart, route) for route in self.routes]
+        kept = [r for r, metres in zip(self.routes, against) if metres <= against[0] + _AGAINST]
+        if len(kept) < len(self.routes):
+            self.notes.append(
+                f"{len(self.routes) - len(kept)} of {len(self.routes)} ways found run against lanes "
+                "or through inshore traffic zones, farther than the fastest route: left out."
+            )
+        return kept
+
     def _scored(self, track: Track) -> Route:
         route = self.context.evaluate(track, self.terms)
         self.context.show_route(route)
@@ -244,7 +264,11 @@ class _Candidates:
     def round_islands(self, network: Network) -> Iterator[Track]:
         """Yield the shortest ways on the other sides of islands."""
         for path in alternative_paths(
-            network, self.context.chart, most=_ISLAND_WAYS, stretch=_DETOUR
+            network,
+            self.context.chart,
+            edge_weight_sets=(self._weights(network),),
+            most=_ISLAND_WAYS,
+            stretch=_DETOUR,
         )[1:]:
             yield self._at_full_speed(*np.array(path.waypoints, float).T)
 
@@ -257,7 +281,8 @@ class _Candidates:
             off_land, network.lat, network.lon, network.tails(), network.graph.target
         )
         keep |= np.isfinite(network.edges.fixed_time)
-        tree = shortest_path_tree(network.graph, _open(network, keep), network.meta.start)
+        weight = self._open(network, keep)
+        tree = shortest_path_tree(network.graph, weight, network.meta.start)
         path = tree.path(network.meta.goal)
         if not path:
             raise NoRouteError(
@@ -273,7 +298,7 @@ class _Candidates:
         chart, through = self.context.chart, self._through(network)
         shortest = self._trees(network)[0].distance[network.meta.goal]
         for name in self._passed(network, through)[:_PASSAGE_WAYS]:
-            weight = _open(network, ~through[name])
+            weight = self._open(network, ~through[name])
             tree = shortest_path_tree(network.graph, weight, network.meta.start)
             path = tree.path(network.meta.goal)
             if path and tree.distance[network.meta.goal] <= (1.0 + _DETOUR) * shortest:
@@ -288,9 +313,11 @@ class _Candidates:
         others = [passage for passage in chart.passages if passage.name not in passed]
         ways = [self._way_by(network, passage, trees) for passage in others]
         found = sorted((way for way in ways if way and way.length <= longest), key=itemgetter(0))
+        cost = self._weights(network).leg_cost
         for way in found[:_PASSAGE_WAYS]:
             parts = [
-                string_pull_path(chart, *line, rounds=_ROUNDS) for line in (way.before, way.after)
+                string_pull_path(chart, *line, leg_cost=cost, rounds=_ROUNDS)
+                for line in (way.before, way.after)
             ]
             lat, lon = (np.concatenate([parts[0][k], parts[1][k][1:]]) for k in (0, 1))
             yield self._at_full_speed(lat, lon)
@@ -335,11 +362,19 @@ class _Candidates:
     def _trees(self, network: Network) -> tuple[ShortestPathTree, ShortestPathTree]:
         """Return the trees of shortest paths from the start and to the goal."""
         graph, edge = reversed_graph(network)
-        length = network.edges.length
+        weight = self._open(network, np.ones(network.n_edges, bool))
         return (
-            shortest_path_tree(network.graph, length, network.meta.start),
-            shortest_path_tree(graph, length[edge], network.meta.goal),
+            shortest_path_tree(network.graph, weight, network.meta.start),
+            shortest_path_tree(graph, weight[edge], network.meta.goal),
         )
+
+    def _weights(self, network: Network) -> EdgeWeights:
+        """Return the weights of ways: a mile counts more where it does so in plans."""
+        return EdgeWeights.penalised(network, self.context.chart)
+
+    def _open(self, network: Network, keep: NDArray[np.bool_]) -> FloatArray:
+        """Return the weights of the edges of a network, infinite where they are closed."""
+        return np.where(keep, np.asarray(self._weights(network).weight), np.inf)
 
     def _through(self, network: Network) -> dict[str, NDArray[np.bool_]]:
         """Return which edges lead through each passage, by its name."""
@@ -356,9 +391,9 @@ class _Candidates:
 
     def _pulled(self, network: Network, chart: Chart, path: list[int]) -> Track:
         """Return a path of the network, pulled taut on a chart."""
-        return self._at_full_speed(
-            *string_pull_path(chart, network.lat[path], network.lon[path], rounds=_ROUNDS)
-        )
+        cost = self._weights(network).leg_cost
+        lat, lon = network.lat[path], network.lon[path]
+        return self._at_full_speed(*string_pull_path(chart, lat, lon, leg_cost=cost, rounds=_ROUNDS))
 
     def _at_full_speed(self, lat: FloatArray, lon: FloatArray) -> Track:
         """Return a line as a track with the departure and the speed of the fastest route."""
@@ -370,8 +405,3 @@ class _Candidates:
 def _places(network: Network) -> tuple[FloatArray, FloatArray]:
     """Return latitudes and longitudes of the nodes [deg]."""
     return network.lat, network.lon
-
-
-def _open(network: Network, keep: NDArray[np.bool_]) -> FloatArray:
-    """Return the lengths of the edges of a network, infinite where they are closed."""
-    return np.where(keep, network.edges.length, np.inf)

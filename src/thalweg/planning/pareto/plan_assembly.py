@@ -41,6 +41,7 @@ from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import PlotContext
 from thalweg.planning.plan_front import ParetoFront
 from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.lane_report import lane_detour_notes
 from thalweg.planning.report.provenance import (
     finite_or_none,
     network_summary,
@@ -263,6 +264,7 @@ def _notes(
     notes = [end.note for end in ends if end.note] + list(context.needs.notes)
     notes += [f"The referee finds a limit exceeded: {v}." for v in best.violations[:5]]
     notes += route_warnings(context, best)
+    notes += lane_detour_notes(context.chart, [explored[0].alternative.network])
     slowest = max(item.route.arrive for item in ordered)
     bounded = context.voyage.arrive_by is None and math.isfinite(context.data_end)
     if bounded and slowest > context.data_end - _DATA_END_MARGIN:

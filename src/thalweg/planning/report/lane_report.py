@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 
+from thalweg.chart import Chart
 from thalweg.chart.zones.traffic_schemes import INSHORE, TRAFFIC_SCHEMES
 from thalweg.core.geodesy import distance
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.network import Network
+from thalweg.network.shortest_paths import shortest_path
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.route import Route
 
+AGAINST_TRAFFIC: Final = "Runs against the traffic"  #: a note on such miles begins so
+INSHORE_USED: Final = "Uses the inshore traffic zone"  #: a note on such miles begins so
+LANE_DETOUR: Final = "Keeping out of"  #: a note on a detour by lanes and inshore zones begins so
 _LEAST: Final = 2.0 * NAUTICAL_MILE  # shorter stretches in a scheme are crossings
+_LONG_DETOUR: Final = 5.0 * NAUTICAL_MILE  # detours are stated from this length ...
+_LARGE_DETOUR: Final = 0.03  # ... or this share of the shortest way
 
 
 def lane_notes(context: PlanningContext, route: Route) -> list[str]:
@@ -27,42 +36,116 @@ def lane_notes(context: PlanningContext, route: Route) -> list[str]:
     -------
     list of str : Empty where the route meets none, and for charts with lanes of their own.
     """
-    names = [scheme.name for scheme in TRAFFIC_SCHEMES]
-    lanes = context.chart.zones.lanes
-    if not lanes or not all(lane.name.partition(",")[0] in names for lane in lanes):
+    chart = context.chart
+    if not _has_schemes(chart):
         return []
-    lat, lon = np.asarray(route.track.lat, float), np.asarray(route.track.lon, float)
-    legs = lat[:-1], lon[:-1], lat[1:], lon[1:]
-    against = _miles(context, legs)
-    along = _miles(context, (*legs[2:], *legs[:2]))
-    inshore = _miles(context, legs, inshore=True)
-    kept = [name for name in names if along.get(name, 0.0) > max(_LEAST, against.get(name, 0.0))]
+    legs = _legs(*_positions(route))
+    against = _metres(chart, legs)
+    along = _metres(chart, (*legs[2:], *legs[:2]))
+    inshore = _metres(chart, legs, inshore=True)
+    wrong = {name: metres for name, metres in against.items() if metres > _LEAST}
+    kept = [s.name for s in TRAFFIC_SCHEMES if along.get(s.name, 0.0) > _LEAST]
+    kept = [name for name in kept if name not in wrong]
     notes = []
     if kept:
         notes.append(
             f"Keeps to starboard of the separation lines of {', '.join(kept)}: these are "
             "approximate and not charted; lay the route off in the lanes of the chart. Schemes "
-            f"other than the {len(names)} of the package are not known here."
+            f"other than the {len(TRAFFIC_SCHEMES)} of the package are not known here."
         )
     notes += [
-        f"Uses the inshore traffic zone of {name} for about {metres / NAUTICAL_MILE:.0f} nm: check "
-        "the route in the chart."
+        f"{INSHORE_USED} of {name} for about {metres / NAUTICAL_MILE:.0f} nm: check the route in "
+        "the chart."
         for name, metres in inshore.items()
         if metres > _LEAST
     ]
     return notes + [
-        f"Runs against the traffic of {name} for about {metres / NAUTICAL_MILE:.0f} nm, by an "
-        "approximate separation line: check the route in the chart."
-        for name, metres in against.items()
-        if metres > _LEAST
+        f"{AGAINST_TRAFFIC} of {name}, or within a quarter of a lane of its separation zone, for "
+        f"about {metres / NAUTICAL_MILE:.0f} nm, by an approximate separation line: check the "
+        "route in the chart."
+        for name, metres in wrong.items()
     ]
 
 
-def _miles(
-    context: PlanningContext, legs: tuple[FloatArray, ...], *, inshore: bool = False
+def lane_detour_notes(chart: Chart, networks: Sequence[Network]) -> list[str]:
+    """Return a note where lanes and inshore traffic zones make the shortest way much longer.
+
+    Shortest paths of the networks are compared, with the lanes and without.
+
+    Parameters
+    ----------
+    chart : With the lanes.
+    networks : Of the stretches of a voyage, each with start and goal.
+
+    Returns
+    -------
+    list of str : Empty below 5 nm and 3 %, and for charts with lanes of their own.
+    """
+    if not _has_schemes(chart):
+        return []
+    kept = free = 0.0
+    names: dict[str, float] = {}
+    for network in networks:
+        edges, length = network.edges, network.edges.length
+        penalty = np.asarray(edges.penalty_factor, float)
+        some = np.flatnonzero(penalty > 1.0)
+        tail, head = network.tails()[some], network.graph.target[some]
+        ends = network.lat[tail], network.lon[tail], network.lat[head], network.lon[head]
+        without = penalty.copy()
+        without[some] = np.maximum(penalty[some] - chart.zones.lane_group.excess(*ends), 1.0)
+        places = [_shortest(network, length * factor) for factor in (penalty, without)]
+        kept += float(np.sum(distance(*_legs(*places[0]))))
+        free += float(np.sum(distance(*_legs(*places[1]))))
+        for inshore in (False, True):
+            for name, metres in _metres(chart, _legs(*places[1]), inshore=inshore).items():
+                if metres > _LEAST:
+                    what = "the inshore traffic zone of" if inshore else "the opposite lane of"
+                    names[f"{what} {name}"] = metres
+    longer = kept - free
+    if not names or (longer < _LONG_DETOUR and longer < _LARGE_DETOUR * free):
+        return []
+    return [
+        f"{LANE_DETOUR} {' and '.join(names)} makes the shortest way about "
+        f"{longer / NAUTICAL_MILE:.0f} nm ({longer / free:.0%}) longer: ignore_lanes "
+        "(--ignore-lanes) plans without the schemes. An inshore traffic zone is open to ships "
+        "under 20 m and to voyages from or to a place inside it (Rule 10 (d))."
+    ]
+
+
+def length_against_lanes(chart: Chart, route: Route) -> float:
+    """Return how far a route runs against lanes and in inshore traffic zones [m]."""
+    legs = _legs(*_positions(route))
+    leg, _, share = chart.zones.lane_group.shares_against(*legs)
+    return float(np.sum(share * np.asarray(distance(*legs))[leg]))
+
+
+def _has_schemes(chart: Chart) -> bool:
+    """Return whether all lanes of a chart are those of the package."""
+    names = [scheme.name for scheme in TRAFFIC_SCHEMES]
+    lanes = chart.zones.lanes
+    return bool(lanes) and all(lane.name.partition(",")[0] in names for lane in lanes)
+
+
+def _shortest(network: Network, weight: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the positions [deg] of the path of least weight; none where there is no path."""
+    meta = network.meta
+    _, path = shortest_path(network, meta.start, meta.goal, weight=weight, per_metre=1.0)
+    return network.lat[path], network.lon[path]
+
+
+def _positions(route: Route) -> tuple[FloatArray, FloatArray]:
+    return np.asarray(route.track.lat, float), np.asarray(route.track.lon, float)
+
+
+def _legs(lat: FloatArray, lon: FloatArray) -> tuple[FloatArray, ...]:
+    return lat[:-1], lon[:-1], lat[1:], lon[1:]
+
+
+def _metres(
+    chart: Chart, legs: tuple[FloatArray, ...], *, inshore: bool = False
 ) -> dict[str, float]:
     """Return the distance [m] that legs run against each scheme, or in its inshore zones."""
-    group = context.chart.zones.lane_group
+    group = chart.zones.lane_group
     length = np.asarray(distance(*legs))
     found: dict[str, float] = {}
     for leg, lane, share in zip(*group.shares_against(*legs)):

@@ -57,6 +57,7 @@ _LOADED: Final = (
     *((2.4, -10.6, 9.5), (2.6, -13.1, 15.1), (3.1, -18.7, 28.0)),
 )
 _BALLAST: Final = (*_LOADED[:4], (2.6, -12.5, 13.5), (3.0, -16.3, 21.6), (3.4, -20.9, 31.8))
+LARGEST_FORM_COEFFICIENT: Final = 50.0  #: C_form [%] above which losses are no predictions
 _DISPUTED_ROWS: Final = (4, 5)  # rows whose last sign is in doubt
 
 
@@ -230,28 +231,41 @@ def kwon_speed_loss(
 
 
 def kwon_notes(
-    wind_speed: ArrayLike, *, block_coefficient: ArrayLike, displacement_volume: ArrayLike
+    wind_speed: ArrayLike,
+    *,
+    block_coefficient: ArrayLike,
+    displacement_volume: ArrayLike,
+    loading: LoadingCondition = "loaded",
+    ship_type: ShipType = "other",
 ) -> list[RangeNote]:
     """Where Kwon's method is used outside its range; parameters as for `kwon_speed_loss`.
 
-    The bound of Beaufort 6 is for displacements under 100,000 m3 (C_form passes 50 % there), that
-    of 8 for larger ones.
+    The bound of Beaufort 6 is for displacements under 100,000 m3, that of 8 for larger ones. C_form
+    was fitted to large ships: it passes `LARGEST_FORM_COEFFICIENT` at Beaufort 6 for 27,000 m3, and
+    at Beaufort 5 for 4,500 m3.
 
     Parameters
     ----------
     wind_speed : Wind speed at 10 m [m/s].
     block_coefficient : C_B [-].
     displacement_volume : Displaced volume [m3].
+    loading, ship_type
+        See `kwon_form_coefficient`.
 
     Returns
     -------
     list of RangeNote : Empty inside the range.
     """
     highest = 6.0 if np.nanmin(np.asarray(displacement_volume, float)) < 1e5 else 8.0
+    number = beaufort_number(wind_speed)
+    form = kwon_form_coefficient(
+        number, displacement_volume=displacement_volume, loading=loading, ship_type=ship_type
+    )
     return range_notes(
         "kwon_2008",
         {
-            "Beaufort number": (beaufort_number(wind_speed), 0.0, highest),
+            "Beaufort number": (number, 0.0, highest),
+            "C_form in per cent": (form, 0.0, LARGEST_FORM_COEFFICIENT),
             "block coefficient": (
                 block_coefficient,
                 _BLOCK_COEFFICIENTS[0],

@@ -73,6 +73,8 @@ class KwonSpeedLoss:
             conditions.wind_speed,
             block_coefficient=self.block_coefficient,
             displacement_volume=self.loading.displacement_at(conditions.load_factor),
+            loading=self.loading.condition,
+            ship_type=self.ship_type,
         )
 
 
