@@ -158,7 +158,7 @@ def test_notes_report_where_kwon_is_out_of_range():
     note, form = ship.notes(GALE)
     assert note.quantity == "Beaufort number" and note.high == 6.0
     assert note.value == pytest.approx((18.0 / 0.836) ** (2 / 3))
-    assert form.quantity == "C_form in per cent" and form.high == 50.0
+    assert form.quantity == "C_form (loss from ahead in per cent)" and form.high == 50.0
     with pytest.raises(ModelRangeError, match="Beaufort number"):
         ship.notes(GALE, strict=True)
 
@@ -171,6 +171,6 @@ def test_a_small_ship_leaves_the_range_of_kwon_in_less_wind():
     (note,) = ferry.notes(wind)
     number = (11.6 / 0.836) ** (2 / 3)
     volume = 95.0 * 16.0 * 4.5 * 0.62
-    assert note.quantity == "C_form in per cent"
+    assert note.quantity == "C_form (loss from ahead in per cent)"
     assert note.value == pytest.approx(0.5 * number + number**6.5 / (2.7 * volume ** (2 / 3)))
     assert ferry.notes(Conditions({"wind_speed": 7.0, "wind_angle": 0.0})) == []

@@ -35,10 +35,12 @@ def new_table(title: str, columns: Sequence[str], *, left: Sequence[str], wrap: 
 
 
 def print_notes(console: Any, notes: Iterable[str]) -> None:
-    """Print notes, each on a line of its own."""
+    """Print notes, each on a line of its own, those on danger first."""
     from rich.markup import escape
 
-    for note in notes:
+    from thalweg.planning.report.note_order import danger_first
+
+    for note in danger_first(notes):
         console.print(f"[yellow]note:[/yellow] {escape(note)}", soft_wrap=True)
 
 
@@ -49,7 +51,7 @@ def print_written(files: Iterable[Any]) -> None:
 
 
 def print_plan(plan: Plan, files: Sequence[Path] = (), *, verbose: bool = False) -> None:
-    """Print a plan in at most twelve lines.
+    """Print a plan in at most twelve lines, more where there are several notes on danger.
 
     Parameters
     ----------
@@ -184,7 +186,7 @@ def print_route(
     *,
     verbose: bool = False,
 ) -> None:
-    """Print an evaluated route in at most twelve lines.
+    """Print an evaluated route in at most twelve lines, more with several notes on danger.
 
     Parameters
     ----------

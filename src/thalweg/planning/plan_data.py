@@ -16,6 +16,7 @@ from thalweg.core.objective import Objective
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.planning.plan_front import ParetoFront
+from thalweg.planning.report.note_order import danger_first
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route
 
@@ -181,7 +182,7 @@ class PlanData:
             "gap": _finite_or_none(self.gap),
             "solver_total": _finite_or_none(self.solver_total),
             "rejections": dict(self.rejections),
-            "notes": list(self.notes),
+            "notes": danger_first(self.notes),
             **more,
             "provenance": dict(self.provenance),
         }

@@ -42,6 +42,7 @@ from thalweg.planning.plan_data import PlotContext
 from thalweg.planning.plan_front import ParetoFront
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.lane_report import lane_detour_notes
+from thalweg.planning.report.note_order import LIMIT_EXCEEDED
 from thalweg.planning.report.provenance import (
     finite_or_none,
     network_summary,
@@ -262,7 +263,7 @@ def _notes(
 ) -> list[str]:
     context, best = trade_off.context, ordered[0].route
     notes = [end.note for end in ends if end.note] + list(context.needs.notes)
-    notes += [f"The referee finds a limit exceeded: {v}." for v in best.violations[:5]]
+    notes += [f"{LIMIT_EXCEEDED}: {v}." for v in best.violations[:5]]
     notes += route_warnings(context, best)
     notes += lane_detour_notes(context.chart, [explored[0].alternative.network])
     slowest = max(item.route.arrive for item in ordered)

@@ -23,6 +23,7 @@ _NARROW: Final = 3.0 * NAUTICAL_MILE  # half width of passages that the layer do
 _ENDS: Final = 12.0 * NAUTICAL_MILE  # from the ends, where ports have dredged channels
 _MOST_LEGS: Final = 5
 CHECK_DEPTH: Final = "Check the depth"  #: a note on legs that may be too shallow begins so
+CROSSES_SHOAL: Final = "Crosses"  #: a note on a named shoal area begins so
 
 
 def depth_notes(chart: Chart, route: Route, ship: Ship, clearance: float) -> list[str]:
@@ -48,7 +49,7 @@ def depth_notes(chart: Chart, route: Route, ship: Ship, clearance: float) -> lis
     lat, lon, leg = densify(route.track.lat, route.track.lon, _STEP)
     leg = np.append(leg, leg[-1:])
     notes = [
-        f"Crosses {area.name} (charted as shoal area; {area.source})."
+        f"{CROSSES_SHOAL} {area.name} (charted as shoal area; {area.source})."
         for area in SHOAL_AREAS
         if area.contains(lat, lon).any()
     ]

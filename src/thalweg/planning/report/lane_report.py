@@ -106,7 +106,7 @@ def lane_detour_notes(chart: Chart, networks: Sequence[Network]) -> list[str]:
         return []
     return [
         f"{LANE_DETOUR} {' and '.join(names)} makes the shortest way about "
-        f"{longer / NAUTICAL_MILE:.0f} nm ({longer / free:.0%}) longer: ignore_lanes "
+        f"{longer / NAUTICAL_MILE:.0f} nm ({100.0 * longer / free:.0f} %) longer: ignore_lanes "
         "(--ignore-lanes) plans without the schemes. An inshore traffic zone is open to ships "
         "under 20 m and to voyages from or to a place inside it (Rule 10 (d))."
     ]

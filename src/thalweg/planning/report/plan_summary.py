@@ -12,7 +12,7 @@ import numpy as np
 from thalweg.core.time import utc_text
 from thalweg.kernels.codes import OUTSIDE_PERIOD, REASONS
 from thalweg.planning.plan_front import knee
-from thalweg.planning.report.depth_report import CHECK_DEPTH
+from thalweg.planning.report.note_order import count_of_dangers, danger_first
 from thalweg.planning.report.route_summary import (
     arrival_text,
     canals_passed,
@@ -25,7 +25,6 @@ from thalweg.planning.report.route_summary import (
     weather_on_route,
     weather_text,
 )
-from thalweg.planning.request.voyage_endpoints import CHECK_POSITION
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData
@@ -42,8 +41,6 @@ _LEAST = {
     "inshore": "least length near land",
     "weighted": "least weighted sum",
 }
-#: Notes on the safety of the ship come first.
-_FIRST = (CHECK_POSITION, CHECK_DEPTH)
 _ALWAYS = ("land", "no-go zone")  # reasons that every coastal route meets
 
 
@@ -58,16 +55,18 @@ def plan_summary(plan: PlanData) -> list[str]:
 
 
 def summary_with_notes(plan: PlanData, lines: int = MAX_LINES) -> list[str]:
-    """Return the summary and as many notes as fit into a number of lines."""
+    """Return the summary, all notes on danger, and as many others as fit into a number of lines."""
     found = plan_summary(plan)
-    notes = sorted(plan.notes, key=lambda note: not note.startswith(_FIRST))
-    return found + notes_lines(notes, lines - len(found), where="--verbose, plan.notes")
+    return found + notes_lines(plan.notes, lines - len(found), where="--verbose, plan.notes")
 
 
 def notes_lines(notes: Sequence[str], room: int, where: str = "--verbose") -> list[str]:
-    """Return as many notes as fit into a number of lines, one at least, and how many are left."""
-    notes = [note for note in notes if not note.startswith(_STATED)]
-    shown = list(notes[: max(1, room)])
+    """Return as many notes as fit into a number of lines, one at least, and how many are left.
+
+    All notes on danger are returned, first, whatever the number of lines.
+    """
+    notes = danger_first(note for note in notes if not note.startswith(_STATED))
+    shown = notes[: max(1, room, count_of_dangers(notes))]
     if len(shown) < len(notes):
         shown[-1] += f" ({len(notes) - len(shown)} more notes: {where})"
     return [f"Note      {note}" for note in shown]
@@ -98,7 +97,7 @@ def summary_html(plan: PlanData) -> str:
     rows = "".join(
         f"<tr><th style='text-align:left'>{html.escape(name)}</th>"
         f"<td style='text-align:left'>{html.escape(text)}</td></tr>"
-        for name, text in [*summary_items(plan), *(("Note", note) for note in plan.notes)]
+        for name, text in [*summary_items(plan), *(("Note", note) for note in danger_first(plan.notes))]
     )
     return f"<table><caption>{html.escape(_title(plan))}</caption>{rows}</table>"
 

@@ -16,6 +16,7 @@ from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.depth_report import depth_notes
 from thalweg.planning.report.land_report import land_notes
 from thalweg.planning.report.lane_report import lane_notes
+from thalweg.planning.report.note_order import ICE_NOT_MODELLED
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
 from thalweg.route.referee.route_assembly import OUT_OF_RANGE
@@ -96,7 +97,7 @@ def ice_warnings(route: Route) -> list[str]:
         return []
     place = format_position(float(lat[worst]), float(route.samples["lon"][worst]))
     return [
-        f"The route reaches {place}, and sea ice is not modelled: give a via point or a no-go zone "
+        f"{ICE_NOT_MODELLED} {place}, and sea ice is not modelled: give a via point or a no-go zone "
         "if that water is closed."
     ]
 

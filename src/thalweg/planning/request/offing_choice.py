@@ -26,6 +26,7 @@ _DISC_RADII: Final = (0.0, 10.0 * NAUTICAL_MILE, 40.0 * NAUTICAL_MILE)
 _LOOK_BEYOND: Final = 12.0 * NAUTICAL_MILE
 _ENOUGH_POSITIONS: Final = 30  # positions of a grid as far from land as the offing: open water
 _RIVER_OFFING: Final = 300.0  # off the banks before a canal [m]
+NO_OFFING_ROUTE: Final = "No route exists"  #: a note on less distance from land begins so
 _NEAR_ENOUGH: Final = 0.9  # an end at this share of the offing leaves it without a test
 
 
@@ -133,7 +134,7 @@ def offing_note(chart: Chart, ends: Sequence[Endpoint], wanted: float) -> str:
     kept = chart.offing.distance
     text = f"Keeps {wanted / NAUTICAL_MILE:.2g} nm off land"
     if kept < wanted:
-        text = f"No route exists {wanted / NAUTICAL_MILE:.2g} nm off land: "
+        text = f"{NO_OFFING_ROUTE} {wanted / NAUTICAL_MILE:.2g} nm off land: "
         text += f"keeps {kept / NAUTICAL_MILE:.2g} nm" if kept else "keeps no distance from land"
     names = []
     for disc in chart.offing.discs:

@@ -265,7 +265,7 @@ def kwon_notes(
         "kwon_2008",
         {
             "Beaufort number": (number, 0.0, highest),
-            "C_form in per cent": (form, 0.0, LARGEST_FORM_COEFFICIENT),
+            "C_form (loss from ahead in per cent)": (form, 0.0, LARGEST_FORM_COEFFICIENT),
             "block coefficient": (
                 block_coefficient,
                 _BLOCK_COEFFICIENTS[0],

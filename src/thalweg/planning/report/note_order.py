@@ -1,0 +1,43 @@
+"""Notes of a plan in the order of their weight: those on danger first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Final
+
+from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
+from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, LANE_DETOUR
+from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
+from thalweg.planning.request.voyage_endpoints import CHECK_POSITION
+from thalweg.route.referee.route_assembly import OUT_OF_RANGE
+
+LIMIT_EXCEEDED: Final = "The referee finds a limit exceeded"  #: a note on a limit begins so
+ICE_NOT_MODELLED: Final = "The route reaches"  #: a note on ice begins so
+#: First words of notes that no summary may leave out, the most dangerous first.
+_FIRST: Final = (
+    LIMIT_EXCEEDED,
+    CHECK_POSITION,
+    CHECK_DEPTH,
+    CROSSES_SHOAL,
+    AGAINST_TRAFFIC,
+    NO_OFFING_ROUTE,
+    ICE_NOT_MODELLED,
+    INSHORE_USED,
+    LANE_DETOUR,
+    OUT_OF_RANGE,
+)
+
+
+def danger_first(notes: Iterable[str]) -> list[str]:
+    """Return notes with those on danger first, the others in their order."""
+    return sorted(notes, key=_weight)
+
+
+def count_of_dangers(notes: Iterable[str]) -> int:
+    """Return how many notes no summary may leave out."""
+    return sum(_weight(note) < len(_FIRST) for note in notes)
+
+
+def _weight(note: str) -> int:
+    words = note.partition(": ")[2] if note.startswith("Route ") else note
+    return next((k for k, begin in enumerate(_FIRST) if words.startswith(begin)), len(_FIRST))
