@@ -9,6 +9,7 @@ from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.chart.canals import Canal
 from thalweg.core.geodesy import format_position_minutes, parse_position
 from thalweg.core.time import duration_text, utc_text
+from thalweg.planning.report.note_order import notes_of_routes
 from thalweg.planning.report.plan_summary import (
     MAX_LINES,
     limits_text,
@@ -68,6 +69,21 @@ def test_notes_that_do_not_fit_are_counted(answer):
     assert len(lines) == MAX_LINES
     assert lines[-1] == "Note      note 1 (7 more notes: --verbose, plan.notes)"
     assert "No depth" not in "".join(lines)
+
+
+def test_notes_on_danger_come_first_and_are_never_hidden(answer):
+    dangers = ["Check the depth: x.", "Crosses a bank.", "Runs against the traffic of A.",
+               "Keeping out of B makes the way longer."]  # fmt: skip
+    many = replace(answer, notes=(*(f"note {n}" for n in range(9)), *dangers[::-1]))
+    shown = [line.partition("      ")[2] for line in summary_with_notes(many)[10:]]
+    assert shown[:3] == dangers[:3]
+    assert shown[3] == f"{dangers[3]} (9 more notes: --verbose, plan.notes)"
+    assert many.to_dict()["notes"][:4] == dangers
+
+
+def test_notes_of_several_routes():
+    found = notes_of_routes(["a."], [["b.", "c.", "Crosses D."], ["b."]])
+    assert found == ["Route 1: Crosses D.", "a.", "b."]
 
 
 def with_bound(answer, certain, kind="certificate"):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -16,9 +18,12 @@ from thalweg.chart.zones.traffic_schemes import (
 from thalweg.chart.zones.zone_set import Zones
 from thalweg.core.geodesy import direct, inverse
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.network import lattice
 from thalweg.planning import Voyage, plan
+from thalweg.planning.report.lane_report import lane_detour_notes, routes_within_lanes
 from thalweg.planning.request.lane_choice import add_traffic_schemes
 from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.route import evaluate
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 
@@ -148,3 +153,47 @@ def test_own_lanes_no_offing_and_ports_in_a_scheme():
     assert float(far.factors(*leg)[0]) == pytest.approx(AGAINST_FACTOR)
     assert lanes_of_schemes([(40.0, -70.0), (39.0, -70.0)]) == ()
     assert NAUTICAL_MILE * 11.9 < DOVER.port < NAUTICAL_MILE * 12.1
+
+
+FINISTERRE = next(scheme for scheme in TRAFFIC_SCHEMES if scheme.name == "Off Finisterre")
+
+
+def test_an_inshore_zone_is_open_to_a_port_inside_it_and_not_to_one_beside_it():
+    inside, beside, far = (43.11, -9.22), (43.37, -8.4), (42.0, -9.3)
+    for port, closed in ((inside, False), (beside, True)):
+        found = lanes_of_schemes([far, port])
+        zones = [lane for lane in found if lane.name == f"Off Finisterre, {INSHORE}"]
+        assert bool(zones) == closed
+        assert any(lane.name.startswith("Off Finisterre, N") for lane in found)
+
+
+@pytest.fixture(scope="module")
+def past_finisterre():
+    """A lattice past Cape Finisterre on open water, with the lanes of its scheme."""
+    open_water = Chart.open_water(42.0, 44.3, -10.8, -8.9)
+    zones = replace(open_water.zones, lanes=tuple(FINISTERRE.lanes))
+    chart = replace(open_water, zones=zones)
+    return chart, lattice(chart, (42.4, -9.3), (43.9, -9.2), spacing=4000.0, slack=1.6)
+
+
+def test_a_detour_by_a_scheme_is_stated(past_finisterre):
+    chart, network = past_finisterre
+    (note,) = lane_detour_notes(chart, [network])
+    assert note.startswith("Keeping out of the inshore traffic zone of Off Finisterre")
+    assert "ignore_lanes" in note and "Rule 10 (d)" in note
+    miles = float(note.split(" about ")[1].split(" nm")[0])
+    assert 10.0 < miles < 60.0
+    free = replace(chart, zones=replace(chart.zones, lanes=()))
+    assert lane_detour_notes(free, [network]) == []
+
+
+def test_ways_against_lanes_are_left_out_of_alternatives(past_finisterre):
+    chart, _ = past_finisterre
+    depart = "2026-01-01T00:00Z"
+    ways = ([(42.4, -9.3), (42.7, -10.2), (43.7, -10.2), (43.9, -9.2)],
+            [(42.4, -9.3), (43.9, -9.2)])  # fmt: skip
+    routes = [evaluate(way, ship=SHIP, sea=Sea.calm(), depart=depart) for way in ways]
+    kept, (note,) = routes_within_lanes(chart, routes)
+    assert kept == routes[:1]
+    assert note.startswith("1 of 2 ways found are left out")
+    assert routes_within_lanes(chart, routes[:1]) == (routes[:1], [])

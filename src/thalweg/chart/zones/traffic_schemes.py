@@ -5,7 +5,8 @@ port (the general direction of traffic of all schemes in the table; Rule 10 (b) 
 Regulations, 1972). The lines are rounded to about half a mile and are not charted: they decide on
 which side of a strait a plan passes, not where the lanes are. Beyond the lane on a landward side
 lies the inshore traffic zone, which ships of 20 m and more do not use unless their port is there
-(Rule 10 (d)); it is open to voyages that begin or end inside it. Lanes among the zones of a user (`thalweg.chart.zones.traffic_lanes`) take their
+(Rule 10 (d)); voyages from, to or by a place inside it may use all of it.
+Lanes among the zones of a user (`thalweg.chart.zones.traffic_lanes`) take their
 place. Schemes that are not in the table are not known.
 """
 

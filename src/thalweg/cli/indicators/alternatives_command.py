@@ -23,6 +23,17 @@ _IN_TABLE: Final = (
     "inshore_percent", "land_distance_nm", "contour_distance_nm", "near_ground_h",
     "workable_percent",
 )  # fmt: skip
+#: What their names in the table mean.
+_MEANINGS: Final = {
+    "sick_percent": "sick: share of people seasick at the first place of the ship file",
+    "max_acceleration": "acceleration: greatest root mean square there, vertical",
+    "encounters": "encounters: ships expected to be met",
+    "inshore_percent": "inshore: share of the length within 3 nm of land",
+    "land_distance_nm": "off land: least distance from land",
+    "contour_distance_nm": "off shoals: least distance from charted water that is too shallow",
+    "near_ground_h": "near ground: time within 1 nm of land or such water",
+    "workable_percent": "workable: share of the time in which the first task can be done",
+}
 
 
 def add_command(commands: Any) -> None:
@@ -31,7 +42,8 @@ def add_command(commands: Any) -> None:
         "alternatives",
         help="compare routes of a voyage that differ",
         description="Plan a voyage for several objectives and by several ways, and print 2 to 5 "
-        "routes that differ, with their key performance indicators and the difference in words. "
+        "routes that differ in their way, or by 5 % in time on the same way, with their key performance "
+        "indicators and the difference in words. "
         "With --front, print the front of two key figures instead. Places and options are those "
         "of 'thalweg plan'.",
         epilog="Example: thalweg alternatives 63.67,9.30 66.57,11.67 --ship gunnerus-2019 "
@@ -131,16 +143,20 @@ def _print_alternatives(found: AlternativePlans) -> None:
     values = [compared_values(one.route) for one in found.choices]
     numbers = tuple(str(k) for k in range(1, len(values) + 1))
     table = new_table("", ("", *numbers), left=("",))
+    shown: list[str] = []
     for name in _IN_TABLE:
         row = [one.get(name, float("nan")) for one in values]
         if name not in COMPARED_FIGURES or all(value != value for value in row):
             continue
         figure = COMPARED_FIGURES[name]
         unit = INDICATORS[name][0] or (found.choices[0].route.currency if name == "cost" else "")
+        shown.append(name)
         cells = ("-" if v != v else f"{v:,.{figure.digits}f}" for v in row)
         table.add_row(f"{figure.short} {unit}".rstrip(), *cells)
     if any(slack is not None for slack in found.slack_h):
         table.add_row("slack h", *("-" if s is None else f"{s:.1f}" for s in found.slack_h))
     console = Console()
     console.print(table)
+    explained = [_MEANINGS[name] for name in _IN_TABLE if name in shown and name in _MEANINGS]
+    console.print("; ".join(explained) + ("." if explained else ""), soft_wrap=True)
     print_notes(console, found.notes)

@@ -15,11 +15,10 @@ from thalweg.chart import Chart
 from thalweg.chart.passage_crossings import names_passed
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.file_writing import make_folder, write_csv_rows, write_text
-from thalweg.core.geodesy import distance
-from thalweg.core.types import FloatArray
-from thalweg.core.units import HOUR, NAUTICAL_MILE
+from thalweg.core.units import HOUR
 from thalweg.network.history.history_corridor import HistoryCorridor
 from thalweg.planning.indicators.candidate_routes import STOPPED, berth_to_berth_candidates
+from thalweg.planning.indicators.route_differences import line_at_shares, lines_differ
 from thalweg.planning.indicators.route_figures import (
     COMPARED_FIGURES,
     all_figures,
@@ -29,6 +28,8 @@ from thalweg.planning.indicators.route_figures import (
 )
 from thalweg.planning.pareto.limited_plan import IndicatorLimit
 from thalweg.planning.planner import voyage_context
+from thalweg.planning.report.note_order import notes_of_routes
+from thalweg.planning.report.provenance import route_warnings
 from thalweg.planning.request.coverage_check import check_argument_types
 from thalweg.planning.request.network_choice import (
     NetworkBuilder,
@@ -44,9 +45,6 @@ from thalweg.sea import Sea
 from thalweg.ship import Ship
 
 _INSHORE, _OFFSHORE = 50.0, 15.0  # share of the length near land above and below which [%]
-_SAMPLES: Final = 60
-_APART: Final = 0.02  # of the length: routes this far apart somewhere differ ...
-_LEAST_APART: Final = 1.0 * NAUTICAL_MILE  # ... but not below this [m]
 _SLOWER: Final = 0.05  # routes on the same way differ where one takes this share longer
 
 
@@ -232,6 +230,7 @@ def alternative_plans(
     routes, notes = berth_to_berth_candidates(context, ends)
     kept = _kept(routes, limits)
     chosen = _chosen(kept, most)
+    notes = notes_of_routes(notes, [route_warnings(context, route) for route in chosen])
     latest = context.latest_arrival
     slack = [(latest - one.arrive) / HOUR if math.isfinite(latest) else None for one in chosen]
     return AlternativePlans(
@@ -323,40 +322,21 @@ def _chosen(routes: Sequence[Route], most: int) -> list[Route]:
     values = [compared_values(route) for route in routes]
     best = champions(values)
     order = list(dict.fromkeys([best.get("time", 0), *best.values()]))
-    lines = [_line(route) for route in routes]
+    lines = [line_at_shares(route) for route in routes]
     found: list[int] = []
     for same_way_too in (False, True):
         for k in order:
             if len(found) == most or k in found:
                 continue
-            apart = all(_differ(lines[k], lines[j]) for j in found)
+            apart = all(lines_differ(lines[k], lines[j]) for j in found)
             slower = all(
-                _differ(lines[k], lines[j])
+                lines_differ(lines[k], lines[j])
                 or abs(routes[k].time_h / routes[j].time_h - 1.0) > _SLOWER
                 for j in found
             )
             if apart or (same_way_too and slower):
                 found.append(k)
     return sorted((routes[k] for k in found), key=lambda route: route.time_h)
-
-
-def _line(route: Route) -> tuple[FloatArray, FloatArray]:
-    """Return positions at equal shares of the length of a route [deg]."""
-    at = route.samples
-    share = np.linspace(at["distance"][0], at["distance"][-1], _SAMPLES)
-    lon = np.degrees(np.unwrap(np.radians(at["lon"])))
-    lat = np.interp(share, at["distance"], at["lat"])
-    return lat, np.interp(share, at["distance"], lon)
-
-
-def _differ(one: tuple[FloatArray, FloatArray], other: tuple[FloatArray, FloatArray]) -> bool:
-    """Return whether two routes are far apart somewhere: each position to the nearest other."""
-    lat, lon = one
-    away = np.asarray(distance(lat[:, None], lon[:, None], other[0][None, :], other[1][None, :]))
-    steps = np.asarray(distance(lat[:-1], lon[:-1], lat[1:], lon[1:]))
-    length = float(steps.sum())
-    grid = 0.5 * length / (_SAMPLES - 1)  # positions of one line are this far from the other's
-    return float(away.min(axis=1).max()) - grid > max(_APART * length, _LEAST_APART)
 
 
 def _named(chosen: Sequence[Route], chart: Chart) -> tuple[RouteChoice, ...]:
@@ -369,13 +349,16 @@ def _named(chosen: Sequence[Route], chart: Chart) -> tuple[RouteChoice, ...]:
         _label(route, [name for name in names if name not in common])
         for route, names in zip(chosen, passes)
     ]
-    found = []
+    found, lines = [], [line_at_shares(route) for route in chosen]
     for k, route in enumerate(chosen):
         words = tuple(COMPARED_FIGURES[name].words for name, j in best.items() if j == k)
         name = labels[k]
         if labels.count(name) > 1:
             name = f"{name}, {words[0] if words else f'number {k + 1}'}"
         difference = difference_in_words(values[k], values[0]) if k else "the fastest"
+        same = next((j for j in range(k) if not lines_differ(lines[k], lines[j])), None)
+        if same is not None:
+            difference = f"the way of route {same + 1}, slower: {difference}"
         found.append(RouteChoice(name, route, words, difference, passes[k]))
     return tuple(found)
 

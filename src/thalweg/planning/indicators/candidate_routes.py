@@ -56,7 +56,7 @@ from thalweg.planning.pareto.weighted_sums import (
 )
 from thalweg.planning.plan_front import knee
 from thalweg.planning.planning_context import PlanningContext
-from thalweg.planning.report.lane_report import lane_detour_notes, length_against_lanes
+from thalweg.planning.report.lane_report import lane_detour_notes, routes_within_lanes
 from thalweg.planning.request.offing_choice import chart_off_land, chosen_offing
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route, Track
@@ -69,7 +69,6 @@ _DETOUR: Final = 0.35  # ways that are longer by this share of the shortest are 
 _REACH: Final = 12.0 * NAUTICAL_MILE  # from nodes to the ends of the line of a passage
 _ISLAND_WAYS, _PASSAGE_WAYS = 3, 5
 _ROUNDS: Final = 3  # of string pulling
-_AGAINST: Final = 2.0 * NAUTICAL_MILE  # farther against lanes than the fastest route: left out
 
 
 def berth_to_berth_candidates(
@@ -144,7 +143,8 @@ def candidate_routes(
         if not search.stopped:
             search.try_alternative(other)
     search.notes += lane_detour_notes(search.context.chart, [first.network])
-    return search.within_lanes(), search.notes
+    kept, note = routes_within_lanes(search.context.chart, search.routes)
+    return kept, [*search.notes, *note]
 
 
 class _PassageWay(NamedTuple):
@@ -205,20 +205,6 @@ class _Candidates:
         except SearchInterrupted:
             self.notes.append(f"{STOPPED} while the routes {words} were searched.")
 
-    def within_lanes(self) -> list[Route]:
-        """Return the routes without those that run farther against lanes than the fastest one."""
-        chart = self.context.chart
-        if not chart.zones.lanes:
-            return self.routes
-        against = [length_against_lanes(chart, route) for route in self.routes]
-        kept = [r for r, metres in zip(self.routes, against) if metres <= against[0] + _AGAINST]
-        if len(kept) < len(self.routes):
-            self.notes.append(
-                f"{len(self.routes) - len(kept)} of {len(self.routes)} ways found run against lanes "
-                "or through inshore traffic zones, farther than the fastest route: left out."
-            )
-        return kept
-
     def _scored(self, track: Track) -> Route:
         route = self.context.evaluate(track, self.terms)
         self.context.show_route(route)
@@ -251,9 +237,10 @@ class _Candidates:
         front = network_pareto_front(own, network, horizon.frozen, horizon.latest, lower=False)
         points = sorted(front.points, key=lambda point: point.time)
         if not points:
+            why = " and ".join(front.refused) or "too late for the period of the data"
             raise NoRouteError(
-                "no path of the network keeps the limits.",
-                "The limits, or the end of the data, leave none.",
+                f"no path of the network has this key figure; legs were refused as {why}.",
+                "The other routes were found by other objectives and keep the limits.",
                 "Relax the limits, or extend the data.",
                 reasons=front.refused,
             )
@@ -393,7 +380,9 @@ class _Candidates:
         """Return a path of the network, pulled taut on a chart."""
         cost = self._weights(network).leg_cost
         lat, lon = network.lat[path], network.lon[path]
-        return self._at_full_speed(*string_pull_path(chart, lat, lon, leg_cost=cost, rounds=_ROUNDS))
+        return self._at_full_speed(
+            *string_pull_path(chart, lat, lon, leg_cost=cost, rounds=_ROUNDS)
+        )
 
     def _at_full_speed(self, lat: FloatArray, lon: FloatArray) -> Track:
         """Return a line as a track with the departure and the speed of the fastest route."""

@@ -112,7 +112,32 @@ def lane_detour_notes(chart: Chart, networks: Sequence[Network]) -> list[str]:
     ]
 
 
-def length_against_lanes(chart: Chart, route: Route) -> float:
+def routes_within_lanes(chart: Chart, routes: list[Route]) -> tuple[list[Route], list[str]]:
+    """Return the routes that run no farther against lanes than the first one, and a note.
+
+    Parameters
+    ----------
+    chart : With lanes, of the package or of the user.
+    routes : The first of them keeps the lanes as far as it pays.
+
+    Returns
+    -------
+    routes : Those within two miles of the first, which is one of them.
+    notes : How many were left out; empty where none was.
+    """
+    if not chart.zones.lanes:
+        return routes, []
+    against = [_length_against(chart, route) for route in routes]
+    kept = [one for one, metres in zip(routes, against) if metres <= against[0] + _LEAST]
+    if len(kept) == len(routes):
+        return routes, []
+    return kept, [
+        f"{len(routes) - len(kept)} of {len(routes)} ways found are left out: they run against "
+        "lanes or through inshore traffic zones, farther than the fastest route."
+    ]
+
+
+def _length_against(chart: Chart, route: Route) -> float:
     """Return how far a route runs against lanes and in inshore traffic zones [m]."""
     legs = _legs(*_positions(route))
     leg, _, share = chart.zones.lane_group.shares_against(*legs)

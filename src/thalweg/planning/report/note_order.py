@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Final
 
 from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
@@ -36,6 +36,24 @@ def danger_first(notes: Iterable[str]) -> list[str]:
 def count_of_dangers(notes: Iterable[str]) -> int:
     """Return how many notes no summary may leave out."""
     return sum(_weight(note) < len(_FIRST) for note in notes)
+
+
+def notes_of_routes(notes: Iterable[str], of_each: Sequence[Sequence[str]]) -> list[str]:
+    """Return notes on all of some routes, and notes on danger of each with its number.
+
+    Parameters
+    ----------
+    notes : On all routes.
+    of_each : Notes of each route; of those that differ only the ones on danger are returned.
+    """
+    found = list(notes)
+    for number, own in enumerate(of_each, start=1):
+        for note in own:
+            if all(note in other for other in of_each):
+                found.append(note)
+            elif count_of_dangers([note]):
+                found.append(f"Route {number}: {note}")
+    return danger_first(dict.fromkeys(found))
 
 
 def _weight(note: str) -> int:

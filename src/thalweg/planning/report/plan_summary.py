@@ -97,7 +97,10 @@ def summary_html(plan: PlanData) -> str:
     rows = "".join(
         f"<tr><th style='text-align:left'>{html.escape(name)}</th>"
         f"<td style='text-align:left'>{html.escape(text)}</td></tr>"
-        for name, text in [*summary_items(plan), *(("Note", note) for note in danger_first(plan.notes))]
+        for name, text in [
+            *summary_items(plan),
+            *(("Note", note) for note in danger_first(plan.notes)),
+        ]
     )
     return f"<table><caption>{html.escape(_title(plan))}</caption>{rows}</table>"
 

@@ -97,8 +97,8 @@ def ice_warnings(route: Route) -> list[str]:
         return []
     place = format_position(float(lat[worst]), float(route.samples["lon"][worst]))
     return [
-        f"{ICE_NOT_MODELLED} {place}, and sea ice is not modelled: give a via point or a no-go zone "
-        "if that water is closed."
+        f"{ICE_NOT_MODELLED} {place}, and sea ice is not modelled: give a via point or a no-go "
+        "zone if that water is closed."
     ]
 
 
