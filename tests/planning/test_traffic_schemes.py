@@ -159,7 +159,7 @@ FINISTERRE = next(scheme for scheme in TRAFFIC_SCHEMES if scheme.name == "Off Fi
 
 
 def test_an_inshore_zone_is_open_to_a_port_inside_it_and_not_to_one_beside_it():
-    inside, beside, far = (43.11, -9.22), (43.37, -8.4), (42.0, -9.3)
+    inside, beside, far = (43.05, -9.35), (43.37, -8.4), (42.0, -9.3)
     for port, closed in ((inside, False), (beside, True)):
         found = lanes_of_schemes([far, port])
         zones = [lane for lane in found if lane.name == f"Off Finisterre, {INSHORE}"]
