@@ -42,8 +42,8 @@ def add_command(commands: Any) -> None:
         "alternatives",
         help="compare routes of a voyage that differ",
         description="Plan a voyage for several objectives and by several ways, and print 2 to 5 "
-        "routes that differ in their way, or in time on one way, with their key performance indicators "
-        "and the difference in words. "
+        "routes that differ in their way, or in time on one way, with their key performance "
+        "indicators and the difference in words. "
         "With --front, print the front of two key figures instead. Places and options are those "
         "of 'thalweg plan'.",
         epilog="Example: thalweg alternatives 63.67,9.30 66.57,11.67 --ship gunnerus-2019 "
