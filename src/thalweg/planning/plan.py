@@ -8,6 +8,7 @@ from typing import Any
 
 from thalweg.planning.plan_data import PlanData
 from thalweg.planning.plots.voyage_map import draw_map
+from thalweg.planning.report.note_order import danger_first
 from thalweg.planning.report.output_files import write_plan
 from thalweg.planning.report.plan_summary import one_line, summary_html, summary_with_notes
 from thalweg.route import Route, RouteFileOptions
@@ -30,6 +31,16 @@ class Plan(PlanData):
     def _repr_html_(self) -> str:
         """Return the summary as a table for notebooks."""
         return summary_html(self)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the plan as plain data, ready for JSON (unknown numbers are None).
+
+        Returns
+        -------
+        dict
+            As of `PlanData`; notes on danger come first.
+        """
+        return super().to_dict() | {"notes": danger_first(self.notes)}
 
     def with_alternatives(self) -> Plan:
         """Return this plan with the ways round the canals and passages it uses.

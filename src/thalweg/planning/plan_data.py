@@ -16,7 +16,6 @@ from thalweg.core.objective import Objective
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.planning.plan_front import ParetoFront
-from thalweg.planning.report.note_order import danger_first
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route
 
@@ -182,7 +181,7 @@ class PlanData:
             "gap": _finite_or_none(self.gap),
             "solver_total": _finite_or_none(self.solver_total),
             "rejections": dict(self.rejections),
-            "notes": danger_first(self.notes),
+            "notes": list(self.notes),
             **more,
             "provenance": dict(self.provenance),
         }
