@@ -28,6 +28,7 @@ from thalweg.planning.indicators.route_figures import (
 )
 from thalweg.planning.pareto.limited_plan import IndicatorLimit
 from thalweg.planning.planner import voyage_context
+from thalweg.planning.report.land_report import NEAREST_LAND
 from thalweg.planning.report.note_order import notes_of_routes
 from thalweg.planning.report.provenance import route_warnings
 from thalweg.planning.request.coverage_check import check_argument_types
@@ -230,7 +231,11 @@ def alternative_plans(
     routes, notes = berth_to_berth_candidates(context, ends)
     kept = _kept(routes, limits)
     chosen = _chosen(kept, most)
-    notes = notes_of_routes(notes, [route_warnings(context, route) for route in chosen])
+    warnings = [
+        [note for note in route_warnings(context, one) if not note.startswith(NEAREST_LAND)]
+        for one in chosen
+    ]  # the nearest land of each is a key figure
+    notes = notes_of_routes(notes, warnings)
     latest = context.latest_arrival
     slack = [(latest - one.arrive) / HOUR if math.isfinite(latest) else None for one in chosen]
     return AlternativePlans(

@@ -19,6 +19,7 @@ from thalweg.route.referee.land_clearance import least_land_clearance
 _PIECE: Final = 20.0 * NAUTICAL_MILE  # routes are split so to find where a passage would leave them
 _LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE  # closed passages that save less are not mentioned
 _FARTHEST: Final = 120.0 * NAUTICAL_MILE  # nor are those farther from the route
+NEAREST_LAND: Final = "Nearest land"  #: a note on it begins so
 _NEAR: Final = 30.0 * NAUTICAL_MILE  # land farther from the route is not mentioned
 
 
@@ -34,7 +35,7 @@ def land_notes(context: PlanningContext, route: Route) -> list[str]:
     if nearest is not None and nearest.distance < _NEAR:
         place = format_position(nearest.lat, nearest.lon)
         notes.append(
-            f"Nearest land: {nearest.distance / NAUTICAL_MILE:.1f} nm off, from {place} "
+            f"{NEAREST_LAND}: {nearest.distance / NAUTICAL_MILE:.1f} nm off, from {place} "
             f"(leg {nearest.leg + 1})."
         )
     for passage in passages_used(context.chart, route):
