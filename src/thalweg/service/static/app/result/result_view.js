@@ -54,7 +54,7 @@ export class ResultView {
       h("p.lead", {}, `${plan.voyage ? OBJECTIVES[plan.objective] : "given route"} · ${this.handlers.shipName(job.request.ship)}`),
       h("p.lead", {}, to ? `${from} to ${to}, leaves ` : "Leaves ", h("b", {}, time(seconds(route.depart), true)), " UTC"),
       plan.cancelled ? h("p.note", {}, "Stopped: this is the best found so far.") : null,
-      this.#faults(route),
+      this.#faults(route, job.kind === "evaluation"),
       this.#cards(route, profile, beside),
       plan.voyage && !plan.alternatives ? this.#proof(plan) : null,
       plan.alternatives ? this.#alternatives(plan) : plan.routes.length > 1 ? this.#routes(plan) : null,
@@ -65,9 +65,10 @@ export class ResultView {
     if (inList) this.body.querySelector(".routes [aria-pressed=true]").focus({ preventScroll: true });
   }
 
-  #faults(route) {
+  // Legs of a file are sailed in pieces, so numbers of legs are not those of the file.
+  #faults(route, fromFile) {
     if (route.feasible) return null;
-    const row = (one) => h("li", {}, `${one.reason} at ${plainPosition(one.lat, one.lon)}${one.time ? `, ${time(seconds(one.time))}` : ""}${known(one.value) && known(one.limit) ? `: ${number(one.value, 1)}, limit ${number(one.limit, 1)}` : ""}`);
+    const row = (one) => h("li", {}, `${fromFile ? one.reason.replace(/: leg \d+$/, "") : one.reason} at ${plainPosition(one.lat, one.lon)}${one.time ? `, ${time(seconds(one.time))}` : ""}${known(one.value) && known(one.limit) ? `: ${number(one.value, 1)}, limit ${number(one.limit, 1)}` : ""}`);
     const { violations } = route, shown = violations.slice(0, 6), rest = violations.slice(6);
     return h("div.error", { role: "alert" }, h("b", {}, `This route ${faultWords(violations)}.`), h("ul.list", {}, shown.map(row)),
       rest.length ? h("details", {}, h("summary", {}, `${number(rest.length)} more`), h("ul.list", {}, rest.map(row))) : null,
