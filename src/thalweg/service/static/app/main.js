@@ -284,7 +284,7 @@ class Application {
       shipName: this.compare.handlers.shipName,
       print: () => { this.drawer.open("legs"); print(); },
     });
-    fill(panel, result.view.element);
+    if (!panel.contains(result.view.body)) fill(panel, result.view.element); // else the focus would be lost
     this.chart.closeMenu();
     this.form.areas.draw(false);
     const profile = await profileOf(result, number_);

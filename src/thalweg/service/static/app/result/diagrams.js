@@ -192,7 +192,7 @@ export class Drawer {
       cursor: { y: false, points: { size: 6 }, drag: { x: false, y: false }, lock: false },
       scales: { x: { time: true }, ...Object.fromEntries(scales.map((name) => [name, { range: (_, low, high) => (low === high ? [Math.min(0, low ?? 0), Math.max(1, 1.12 * (high ?? 0))] : uPlot.rangeNum(name === "depth" ? low : Math.min(0, low ?? 0), high ?? 1, { min: { pad: 0 }, max: { pad: 0.12, soft: 1 } })) }])) },
       axes: [
-        { ...axis, size: 32, values: (u, ticks) => ticks.map((t, i) => { const d = new Date(t * 1000); const hour = d.getUTCHours(); return hour && i ? `${String(hour).padStart(2, "0")}:${String(d.getUTCMinutes()).padStart(2, "0")}` : time(t).split(" ").slice(0, 2).join(" "); }) },
+        { ...axis, size: 32, values: (u, ticks) => ticks.map((t, i) => { const d = new Date(t * 1000); const hour = d.getUTCHours(); return (hour || d.getUTCMinutes()) && i ? `${String(hour).padStart(2, "0")}:${String(d.getUTCMinutes()).padStart(2, "0")}` : time(t).split(" ").slice(0, 2).join(" "); }) },
         ...scales.slice(0, 3).map((name, i) => ({ ...axis, scale: name, side: i ? 1 : 3, size: 46, label: units[name], labelSize: 16, labelFont: axis.font, labelGap: 0, grid: { ...axis.grid, show: i === 0 } })),
       ],
       series: [{}, ...there.map(([name, text, , scale, paint]) => ({ label: text, scale, stroke: getComputedStyle(document.documentElement).getPropertyValue(paint), width: 1.8, spanGaps: false }))],

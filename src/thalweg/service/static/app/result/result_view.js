@@ -81,6 +81,8 @@ export class ResultView {
     const cost = costOf(route), other = beside ? costOf(beside) : null;
     const waves = worst(profile, "wave_height_m"), wind = worst(profile, "wind_speed_kn");
     const besideWaves = worst(beside?.profile, "wave_height_m"), calm = isCalm(this.result.job.request);
+    const assumed = card("Waves and wind", "calm", null, "assumed: no weather data");
+    if (!known(route.min_ukc_m)) assumed.classList.add("wide");
     const complete = beside && beside.feasible !== undefined && known(beside.time_h);
     return h("dl.cards", {},
       card("Time", duration(route.time_h), null, complete ? than(route.time_h, beside.time_h, signedDuration) : null),
@@ -89,8 +91,8 @@ export class ResultView {
       card("Cost", number(cost), route.currency, complete ? than(cost, other, (d) => `${signed(d, 0)}`) : null),
       card("Distance", number(route.distance_nm, 1), "nm", known(route.time_h) ? `mean ${number(route.distance_nm / route.time_h, 1)} kn` : null),
       card("CO₂", number(route.co2_t, 0), "t"),
-      calm ? card("Waves and wind", "calm", null, "assumed: no weather data") : card("Highest waves", number(waves, 1), "m", known(besideWaves) && known(waves) ? `weather ignored: ${number(besideWaves, 1)} m` : known(waves) ? null : "no waves in the data"),
-      known(route.min_ukc_m) ? card("Least under-keel clearance", number(route.min_ukc_m, 1), "m") : calm ? card("Mean speed", known(route.time_h) ? number(route.distance_nm / route.time_h, 1) : "unknown", "kn") : card("Strongest wind", number(wind), "kn", known(wind) ? null : "no wind in the data"),
+      calm ? assumed : card("Highest waves", number(waves, 1), "m", known(besideWaves) && known(waves) ? `weather ignored: ${number(besideWaves, 1)} m` : known(waves) ? null : "no waves in the data"),
+      known(route.min_ukc_m) ? card("Least under-keel clearance", number(route.min_ukc_m, 1), "m") : calm ? null : card("Strongest wind", number(wind), "kn", known(wind) ? null : "no wind in the data"),
       this.#comfort(route, card));
   }
 
