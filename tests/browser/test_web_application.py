@@ -306,6 +306,10 @@ def test_choosing_a_route_of_a_front_changes_cards_and_profile(visit):
     page.wait_for_url(re.compile("route=1(&|$)"))
     page.keyboard.press("ArrowRight")
     page.wait_for_url(re.compile("route=2"))
+    page.locator(".routes button").first.focus()
+    page.keyboard.press("Enter")
+    page.wait_for_url(re.compile("route=1(&|$)"))
+    playwright_api.expect(page.locator(".routes button").first).to_be_focused()
     assert (
         page.locator(".routes button[aria-pressed=true]")
         .inner_text()

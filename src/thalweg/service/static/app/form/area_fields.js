@@ -102,6 +102,7 @@ export class AreaFields {
   }
 
   #show() {
+    this.element.classList.remove("wrong");
     const button = (text, act) => h("button.quiet.small", { type: "button", onclick: act }, text);
     fill(this.element,
       this.list.length || this.kept.length ? null : h("p.facts", {}, "Closed areas (no-go), and areas where each mile counts more (penalty). Drag a corner to move it."),
