@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.browser.conftest import Visit, playwright_api
+from tests.browser.conftest import SHORT_REQUEST, Visit, playwright_api
 from tests.service.conftest import ended
 
 pytestmark = pytest.mark.slow

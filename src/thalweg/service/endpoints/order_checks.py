@@ -9,6 +9,7 @@ from typing import Any
 
 from thalweg.core.errors import InputError, OutsidePeriodError, errors_about
 from thalweg.core.time import format_time, parse_time
+from thalweg.core.units import KNOT
 from thalweg.operations.dredging import Project
 from thalweg.planning.request.ordered_speed import with_exact_speed, with_order
 from thalweg.planning.voyage import Voyage
@@ -73,7 +74,7 @@ def check_study_order(study: Study, state: ServiceState) -> None:
 
     Raises
     ------
-    InputError : If no ship of the study has one of its speeds.
+    InputError : If no ship of the study reaches one of its speeds.
     OutsidePeriodError : If no voyage departs within the data.
     """
     _check_speeds(study, state)
@@ -98,11 +99,11 @@ def check_study_order(study: Study, state: ServiceState) -> None:
 
 
 def _check_speeds(study: Study, state: ServiceState) -> None:
-    """Check that for every speed of a study one of its ships has it.
+    """Check that for every speed of a study one of its ships is as fast.
 
     Raises
     ------
-    InputError : If no ship of the study has one of the speeds.
+    InputError : If no ship of the study reaches one of the speeds.
     """
     from thalweg.studies.row_runner import ship_of_request
     from thalweg.studies.study import canonical_json
@@ -119,8 +120,9 @@ def _check_speeds(study: Study, state: ServiceState) -> None:
         files = _ship_files(named, state) if isinstance(named, str) else {}
         try:
             ship = ship_of_request({**request, "ship": files.get(str(named), named)}, "")
-            with errors_about("speed_kn"):
-                with_order(ship, Voyage.from_dict(given))
+            if speed * KNOT > max(ship.speeds):  # slower ones are rows with a refusal
+                with errors_about("speed_kn"):
+                    with_order(ship, Voyage.from_dict(given))
             reached.add(speed)
         except InputError as refusal:
             refusals.setdefault(speed, refusal)
