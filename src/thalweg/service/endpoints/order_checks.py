@@ -120,9 +120,10 @@ def _check_speeds(study: Study, state: ServiceState) -> None:
         files = _ship_files(named, state) if isinstance(named, str) else {}
         try:
             ship = ship_of_request({**request, "ship": files.get(str(named), named)}, "")
-            if speed * KNOT > max(ship.speeds):  # slower ones are rows with a refusal
+            voyage = Voyage.from_dict(given)
+            if (voyage.speed_kn or 0.0) * KNOT > max(ship.speeds):  # slower ones: refusals of rows
                 with errors_about("speed_kn"):
-                    with_order(ship, Voyage.from_dict(given))
+                    with_order(ship, voyage)
             reached.add(speed)
         except InputError as refusal:
             refusals.setdefault(speed, refusal)
