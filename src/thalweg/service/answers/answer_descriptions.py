@@ -53,7 +53,6 @@ ANSWERS: Final[Mapping[str, OperationAnswer]] = {
     "get /seas": OperationAnswer(list[answers.SeaAnswer], ("seas",)),
     "post /seas": OperationAnswer(answers.SeaAnswer, ("uploaded sea",)),
     "get /seas/{sea_id}": OperationAnswer(answers.SeaAnswer, ("storm", "uploaded sea")),
-    "get /chart/depth": OperationAnswer(None, ("frame as base64",), "application/octet-stream"),
     "get /seas/{sea_ids}/frames": OperationAnswer(
         None, ("frame as base64",), "application/octet-stream"
     ),
