@@ -235,6 +235,11 @@ def test_an_area_is_drawn_and_the_route_avoids_it(visit):
     x, y = page.evaluate(place, list(corners[0]))
     chart.click(position={"x": x, "y": y})
     page.wait_for_selector("#area-0")
+    page.get_by_role("button", name="Draw penalty").click()
+    page.get_by_role("button", name="Plan the voyage").click()
+    page.locator("[data-field=areas] .error", has_text="still being drawn").wait_for()
+    page.get_by_role("button", name="Leave it out").click()
+    assert not page.locator("#hint").is_visible()
     visit.picture("area")
     visit.plan()
     base = f"/api/v1/plans/{job_of(page)}"
@@ -282,6 +287,29 @@ def test_choosing_a_route_of_a_front_changes_cards_and_profile(visit):
     later = page.evaluate(shown)
     assert later[0] == number + 1, "the route on the chart"
     assert later[1] > arrival, "the profile"
+    points = page.locator(".front circle:not(.base)")
+    chosen = page.locator(".front circle[aria-pressed=true]")
+    number = page.locator(".front + .aside b")
+    routes = points.count()
+    for key, route in (("End", routes), ("ArrowLeft", max(1, routes - 1)), ("Home", 1)):
+        page.keyboard.press(key)  # the focus stays in the diagram
+        playwright_api.expect(chosen).to_be_focused()
+        playwright_api.expect(number).to_have_text(f"Route {route} of {routes}")
+    box, end = points.first.bounding_box(), points.last.bounding_box()
+    page.mouse.move(box["x"] + 4, box["y"] + 4)
+    page.mouse.down()
+    page.mouse.move(end["x"] + 4, end["y"] + 4, steps=12)
+    page.mouse.up()
+    page.wait_for_url(re.compile(f"route={routes}"))
+    playwright_api.expect(number).to_have_text(f"Route {routes} of {routes}")
+    page.keyboard.press("Home")
+    page.wait_for_url(re.compile("route=1(&|$)"))
+    page.keyboard.press("ArrowRight")
+    page.wait_for_url(re.compile("route=2"))
+    page.locator(".routes button").first.focus()
+    page.keyboard.press("Enter")
+    page.wait_for_url(re.compile("route=1(&|$)"))
+    playwright_api.expect(page.locator(".routes button").first).to_be_focused()
     assert (
         page.locator(".routes button[aria-pressed=true]")
         .inner_text()

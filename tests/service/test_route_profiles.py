@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -34,6 +36,17 @@ def test_a_ship_with_places_has_the_motion_along_the_route():
     motion = np.array(profile["weighted_acceleration_m_s2"])
     assert len(motion) == len(profile["time"]) and (motion > 0.05).all()
     assert route.indicators["places"]["mess"]["sick_percent"] > 0.0
+
+
+def test_motion_is_unknown_where_the_waves_are():
+    from thalweg.service.jobs.route_profiles import route_profile
+
+    route, _ = profile_in_waves("gunnerus-2019")
+    name = "sea_surface_wave_significant_height"
+    waves = np.array(route.samples[name], float)
+    waves[:3] = np.nan
+    profile = route_profile(replace(route, samples={**route.samples, name: waves}))
+    assert profile["weighted_acceleration_m_s2"][:4].count(None) == 3
 
 
 def test_a_ship_without_places_has_none():

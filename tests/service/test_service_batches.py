@@ -136,6 +136,9 @@ def test_a_study_states_what_is_wrong(client):
     many = {**STUDY["study"], "axes": {"speed_kn": {"from": 1, "to": 30000, "step": 1}}}
     found = problem(client.post("/api/v1/studies", json={"study": many}), 422)
     assert "20,000" in found["possible"] and found["field"] == "axes"
+    fast = {**STUDY["study"], "axes": {"speed_kn": [10, 90]}}
+    found = problem(client.post("/api/v1/studies", json={"study": fast}), 422)
+    assert found["field"] == "speed_kn" and "90" in found["asked"]
 
 
 @pytest.mark.slow

@@ -112,6 +112,20 @@ def test_an_exported_route_is_evaluated_and_compared(client, done):
     rows = client.post("/api/v1/compare", json=body).json()["routes"]
     assert rows[1]["time_h"] == pytest.approx(rows[0]["time_h"], rel=1e-3)
     assert rows[1]["difference"]["fuel_t"] == pytest.approx(rows[1]["fuel_t"] - rows[0]["fuel_t"])
+    assert rows[1]["broken"] == []
+
+
+def test_a_route_over_land_is_compared_with_the_place_of_the_land(client, done):
+    over_land = b"lat,lon\n47.0,-5.0\n48.0,-3.0\n49.0,-4.0\n"  # through Brittany
+    route = client.post("/api/v1/routes", files={"file": ("r.csv", over_land)}).json()
+    given = {name: SHORT[name] for name in ("ship", "seas", "coast")}
+    order = {**given, "route": route["id"], "depart": "2026-01-01T00:00Z"}
+    job = ended(client.get, client.post("/api/v1/evaluate", json=order).json()["id"])
+    body = {"routes": [{"job": done["id"]}, {"job": job["id"]}]}
+    row = client.post("/api/v1/compare", json=body).json()["routes"][1]
+    assert not row["feasible"] and row["violations"] == len(row["broken"]) >= 1
+    land = [one for one in row["broken"] if one["reason"].startswith("land")]
+    assert land and all(47.0 < one["lat"] < 49.0 for one in land)
 
 
 def test_a_voyage_without_a_route_fails_with_its_reasons(client):

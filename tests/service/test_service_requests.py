@@ -35,8 +35,9 @@ def test_a_request_without_the_token_is_refused(client):
 def test_the_first_page_turns_the_token_into_a_strict_cookie(client):
     plain = {"Authorization": ""}
     assert client.get("/", headers=plain).status_code == 401
+    assert 'name="token"' in client.get("/", headers=plain).text  # a field to type it in
     wrong = client.get("/?token=wrong", headers=plain, follow_redirects=False)
-    assert wrong.status_code == 401
+    assert wrong.status_code == 401 and "not the token" in wrong.text
     right = client.get(f"/?token={TOKEN}", headers=plain, follow_redirects=False)
     assert right.status_code == 303 and right.headers["location"] == "/"
     cookie = right.headers["set-cookie"]

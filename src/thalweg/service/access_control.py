@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import hmac
 from http.cookies import SimpleCookie
 from typing import Final
@@ -23,10 +25,20 @@ SECURITY_HEADERS: Final = {
     "Cross-Origin-Opener-Policy": "same-origin",
     "Cross-Origin-Resource-Policy": "same-origin",
 }
+_STYLE: Final = """:root { color-scheme: light dark; font: 16px/1.5 system-ui, sans-serif; }
+body { max-width: 32rem; margin: 12vh auto; padding: 0 1.5rem; }
+form { display: flex; gap: .5rem; flex-wrap: wrap; } label { flex-basis: 100%; font-weight: 600; }
+input { flex: 1; min-width: 12rem; } input, button { font: inherit; padding: .4rem .6rem; }
+"""
+#: The form sends the token as the printed address does; the browser keeps the part after '#'.
 _NO_TOKEN_PAGE: Final = """<!doctype html><html lang="en"><meta charset="utf-8">
-<title>Thalweg</title><h1>Thalweg</h1>
-<p>This address needs the token of the service.</p>
-<p>Open the complete address that <code>thalweg serve</code> printed when it started.</p></html>"""
+<meta name="viewport" content="width=device-width"><title>Thalweg</title><style>{style}</style>
+<main><h1>Thalweg</h1><p{role}>{said}</p>
+<form><label for="token">Token of the service</label>
+<input id="token" name="token" type="password" autocomplete="current-password" required autofocus>
+<button>Open</button></form>
+<p>The token is at the end of the address that <code>thalweg serve</code> printed when it started,
+and in the file <code>token</code> of its data folder.</p></main></html>"""
 
 
 class AccessControl:
@@ -85,7 +97,7 @@ class AccessControl:
             return answer
         if self._knows_token(headers):
             return None
-        return HTMLResponse(_NO_TOKEN_PAGE, 401)
+        return _page_for_the_token(wrong=bool(given))
 
     def _knows_token(self, headers: Headers) -> bool:
         kind, _, given = headers.get("authorization", "").partition(" ")
@@ -100,6 +112,15 @@ class AccessControl:
 
     def _is_token(self, given: str) -> bool:
         return hmac.compare_digest(given.encode("utf-8", "replace"), self.settings.token.encode())
+
+
+def _page_for_the_token(*, wrong: bool) -> Response:
+    """Return a page with a field for the token, which then opens the address that was wanted."""
+    text = "This is not the token of the service." if wrong else "This address needs the token."
+    page = _NO_TOKEN_PAGE.format(style=_STYLE, role=' role="alert"' if wrong else "", said=text)
+    digest = base64.b64encode(hashlib.sha256(_STYLE.encode()).digest()).decode()
+    policy = f"{SECURITY_HEADERS['Content-Security-Policy']}; style-src 'sha256-{digest}'"
+    return HTMLResponse(page, 401, {"Content-Security-Policy": policy})
 
 
 def _unauthorised() -> Response:

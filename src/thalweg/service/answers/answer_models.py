@@ -207,6 +207,14 @@ class VoyageRequestAnswer(OpenAnswer):
     voyage: dict[str, Any]
 
 
+class BrokenLimit(AnswerModel):
+    """Where a route breaks a limit."""
+
+    reason: str
+    lat: float | None
+    lon: float | None
+
+
 class ComparedRouteAnswer(AnswerModel):
     """Key figures of a route; `difference` to the first."""
 
@@ -217,6 +225,7 @@ class ComparedRouteAnswer(AnswerModel):
     arrive: str | None
     feasible: bool
     violations: int
+    broken: list[BrokenLimit]
     currency: str | None
     cost: float | None
     time_h: float | None

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
-from thalweg.core.errors import OutsidePeriodError, errors_about
+from thalweg.core.errors import InputError, OutsidePeriodError, errors_about
 from thalweg.core.time import format_time, parse_time
+from thalweg.core.units import KNOT
 from thalweg.operations.dredging import Project
 from thalweg.planning.request.ordered_speed import with_exact_speed, with_order
 from thalweg.planning.voyage import Voyage
@@ -73,8 +74,10 @@ def check_study_order(study: Study, state: ServiceState) -> None:
 
     Raises
     ------
+    InputError : If no ship of the study reaches one of its speeds.
     OutsidePeriodError : If no voyage departs within the data.
     """
+    _check_speeds(study, state)
     first: OutsidePeriodError | None = None
     tried = set()
     for row in study.rows():
@@ -93,6 +96,40 @@ def check_study_order(study: Study, state: ServiceState) -> None:
             return
     if first is not None:
         raise first
+
+
+def _check_speeds(study: Study, state: ServiceState) -> None:
+    """Check that for every speed of a study one of its ships is as fast.
+
+    Raises
+    ------
+    InputError : If no ship of the study reaches one of the speeds.
+    """
+    from thalweg.studies.row_runner import ship_of_request
+    from thalweg.studies.study import canonical_json
+
+    refusals: dict[float, InputError] = {}
+    reached, tried = set(), set()
+    for row in study.rows():
+        request, given = row.request, row.request["voyage"]
+        speed, named = given.get("speed_kn"), request.get("ship")
+        key = canonical_json([named, request.get("load_factor"), speed, given.get("hold")])
+        if speed is None or key in tried:
+            continue
+        tried.add(key)
+        files = _ship_files(named, state) if isinstance(named, str) else {}
+        try:
+            ship = ship_of_request({**request, "ship": files.get(str(named), named)}, "")
+            voyage = Voyage.from_dict(given)
+            if (voyage.speed_kn or 0.0) * KNOT > max(ship.speeds):  # slower ones: refusals of rows
+                with errors_about("speed_kn"):
+                    with_order(ship, voyage)
+            reached.add(speed)
+        except InputError as refusal:
+            refusals.setdefault(speed, refusal)
+    for speed, why in refusals.items():
+        if speed not in reached:
+            raise why
 
 
 def _ship_files(ship: str, state: ServiceState) -> dict[str, str]:

@@ -16,6 +16,7 @@ from thalweg.service.service_state import ServiceState, State
 from thalweg.studies.study_axes import plain_data
 
 routes_router = APIRouter(tags=["routes"])
+_MOST_BROKEN = 1000  # limits of a route that are listed
 _FIGURES = (
     "time_h",
     "distance_nm",
@@ -130,6 +131,10 @@ def _row(one: ComparedRoute, state: ServiceState) -> dict[str, Any]:
         "arrive": route["arrive"],
         "feasible": route["feasible"],
         "violations": len(route["violations"]),
+        "broken": [
+            {name: one[name] for name in ("reason", "lat", "lon")}
+            for one in route["violations"][:_MOST_BROKEN]
+        ],
         "currency": currency,
         "cost": route.get(f"cost_{str(currency).casefold()}"),
         **figures,

@@ -64,7 +64,10 @@ def route_profile(route: Route) -> dict[str, Any]:
         _add(columns, "waves_from_deg", _bearing(east, north, 180.0), 0)
     motion = next((name for name in samples if name.startswith(_COMFORT)), None)
     if motion is not None:  # of the first place of the ship file
-        _add(columns, "weighted_acceleration_m_s2", np.asarray(samples[motion], float)[take], 3)
+        felt = np.asarray(samples[motion], float)[take]
+        if nm.WAVE_HEIGHT in samples:  # sheltered legs count as calm, but their waves are unknown
+            felt = np.where(np.isfinite(samples[nm.WAVE_HEIGHT][take]), felt, np.nan)
+        _add(columns, "weighted_acceleration_m_s2", felt, 3)
     return columns
 
 

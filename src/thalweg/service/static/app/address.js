@@ -26,9 +26,9 @@ export class Address {
     this.write(text);
     try {
       await navigator.clipboard.writeText(location.href);
-      hint("The link is copied.");
+      hint("The link is copied. It opens where the token of this service is known.");
     } catch {
-      hint("The link is in the address line.");
+      hint("The link is in the address line. It opens where the token of this service is known.");
     }
   }
 }

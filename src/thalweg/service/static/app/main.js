@@ -2,7 +2,7 @@
 
 import { get, hasEnded } from "./common/api.js";
 import { announce, errorBox, fill, h, hint } from "./common/elements.js";
-import { known, titleOf } from "./common/format.js";
+import { isCalm, known, titleOf } from "./common/format.js";
 import { selection } from "./common/selection.js";
 import { typedTime } from "./common/typed_time.js";
 import { Address } from "./address.js";
@@ -16,7 +16,7 @@ import { CompareView } from "./result/compare_view.js";
 import { Drawer, placeAt, timeNear } from "./result/diagrams.js";
 import { ProgressView } from "./result/progress_view.js";
 import { drawResult } from "./result/result_drawing.js";
-import { loadResult, profileOf, ResultView } from "./result/result_view.js";
+import { inOrderOfTime, loadResult, profileOf, ResultView } from "./result/result_view.js";
 import { VoyageList } from "./result/voyage_list.js";
 
 const panel = document.getElementById("panel");
@@ -284,7 +284,7 @@ class Application {
       shipName: this.compare.handlers.shipName,
       print: () => { this.drawer.open("legs"); print(); },
     });
-    fill(panel, result.view.element);
+    if (!panel.contains(result.view.body)) fill(panel, result.view.element); // else the focus would be lost
     this.chart.closeMenu();
     this.form.areas.draw(false);
     const profile = await profileOf(result, number_);
@@ -299,7 +299,7 @@ class Application {
     weather.set({ seas, time: selection.time, kind: kinds.includes(weather.kind) ? weather.kind : "" });
     this.chart.showLegend();
     result.view.show(profile);
-    this.drawer.show({ plan: result.plan, front: result.front, spaceTime: selection.route === 0 ? result.spaceTime : null, profile, waypoints: route.waypoints });
+    this.drawer.show({ plan: result.plan, calm: isCalm(result.job.request), front: result.front, spaceTime: selection.route === 0 ? result.spaceTime : null, profile, waypoints: route.waypoints });
     if (fit) { this.chart.map.updateSize(); this.chart.fit(profile.lon.map((lon, i) => [lon, profile.lat[i]])); }
     this.#time();
     this.layers.show(kinds);
@@ -383,7 +383,7 @@ class Application {
   }
 
   #keys() {
-    const step = (by) => { if (this.result) selection.choose(Math.max(0, Math.min(this.result.plan.routes.length - 1, selection.route + by))); };
+    const step = (by) => { if (this.result) { const order = inOrderOfTime(this.result.plan); selection.choose(order[Math.max(0, Math.min(order.length - 1, order.indexOf(selection.route) + by))]); } };
     const view = (name) => () => document.querySelector(`.tab[data-view="${name}"]`).click();
     listenToKeys({
       Escape: () => { this.chart.closeMenu(); this.layers.open(false); },

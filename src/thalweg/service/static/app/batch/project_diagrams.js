@@ -1,7 +1,7 @@
 // Diagrams of a dredging project: volume, activities with the tide, place and time, loads, cycles.
 
 import { fill, h } from "../common/elements.js";
-import { known, number, seconds, time } from "../common/format.js";
+import { duration, known, number, seconds, time } from "../common/format.js";
 import { svg, ticks } from "../common/svg_parts.js";
 
 const ACTIVITIES = [["loading", "Loading", "--act-1"], ["sailing full", "Sailing full", "--act-2"], ["unloading", "Unloading", "--act-3"], ["sailing empty", "Sailing empty", "--act-4"], ["waiting", "Waiting", "--accent"]];
@@ -29,11 +29,11 @@ function axis(drawing, values, at, place) {
   }
 }
 
-// runs: {name: [{end, volume_m3}]}; whole [m3]; start [s].
-export function drawVolume(sheet, runs, whole, start, wholeDays = null) {
+// runs: {name: [{end, volume_m3}]}; whole [m3]; start [s]; lasted: {name: [h]}, so far where a run goes on.
+export function drawVolume(sheet, runs, whole, start, lasted = {}) {
   const names = Object.keys(runs).filter((name) => runs[name].length);
-  const last = Math.max(wholeDays ? 0 : 1, ...names.map((name) => (runs[name].at(-1).end - start) / 86400));
-  const [drawing, width, height] = frame(sheet, "Volume moved over time", [names.map((name) => mark(runColour(name), [name[0].toUpperCase() + name.slice(1), h("small", {}, `${number(runs[name].reduce((sum, c) => sum + c.volume_m3, 0))} m³ in ${number((runs[name].at(-1).end - start) / 86400, 1)} days`)])), mark("--ink-3", "Whole volume", ".dashed")]);
+  const last = Math.max(1, ...names.map((name) => (runs[name].at(-1).end - start) / 86400));
+  const [drawing, width, height] = frame(sheet, "Volume moved over time", [names.map((name) => mark(runColour(name), [name[0].toUpperCase() + name.slice(1), h("small", {}, `${number(runs[name].reduce((sum, c) => sum + c.volume_m3, 0))} m³ in ${duration(lasted[name] ?? (runs[name].at(-1).end - start) / 3600)}`)])), mark("--ink-3", "Whole volume", ".dashed")]);
   const left = 62, right = 16, top = 12, bottom = 30, reach = last * 1.02;
   const px = (day) => left + (day / reach) * (width - left - right), py = (v) => height - bottom - (v / (whole * 1.06)) * (height - top - bottom);
   axis(drawing, ticks(0, reach, Math.max(3, width / 110)).map((v) => [v, `${Number(v.toFixed(2))} d`]), px, { from: top, to: height - bottom, text: height - bottom + 17 });

@@ -224,7 +224,7 @@ export class ProjectView extends BatchView {
     const ordered = Object.fromEntries(names.map((name) => [name, cycles[name]]));
     let spaceRun = names.at(-1);
     const tabs = new SheetTabs("Diagrams of the project", [
-      ["volume", "Volume", (sheet) => drawVolume(sheet, ordered, result.project.volume_m3, start)],
+      ["volume", "Volume", (sheet) => drawVolume(sheet, ordered, result.project.volume_m3, start, lastedOf(result))],
       ["days", "First days", (sheet) => drawActivities(sheet, { ...diagrams, runs: Object.fromEntries(names.map((name) => [name, diagrams.runs[name]])) }, start)],
       ["space", "Place and time", (sheet) => drawPlaceAndTime(sheet, diagrams, spaceRun, (name) => { spaceRun = name; tabs.redraw(); })],
       ["loads", "Loads", (sheet) => drawLoads(sheet, ordered)],
@@ -252,17 +252,20 @@ export class ProjectView extends BatchView {
     const card = (name, value, unitText, more) => h("div.card", {}, h("dt", {}, name), h("dd", {}, value, unitText ? unit(unitText) : null, more ? h("small", {}, more) : null));
     const gain = (share, good) => (known(share) ? [h(`span.${(share > 0) === good ? "less" : "more"}`, {}, `${share > 0 ? "+" : "−"}${number(Math.abs(100 * share), 0)} %`), " against the base case"] : null);
     const notes = Object.entries(result.runs).flatMap(([name, run]) => run.notes.map((text) => `${name}: ${text}`));
-    const [head, ...rows] = diagrams.table;
+    const [head, ...rows] = diagrams.table.map((row) => (row[0] === "duration" ? [row[0], ...diagrams.table[0].slice(1).map((name) => duration(lastedOf(result)[name]))] : row));
     return [h("div.scroll", {},
       h("h1", {}, result.project.name), h("p.lead", {}, `${number(result.project.volume_m3)} m³ from ${time(seconds(result.project.start), true)} UTC`),
       best.feasible ? null : h("div.error", { role: "alert" }, h("b", {}, "Some legs break a limit."), "The notes state how many."),
-      h("dl.cards", {}, card("Production", number(totals.production_m3_week), "m³/week", gain(gains.production_gain, true)), card("Duration", duration(totals.duration_days * 24), null, known(gains.time_saved) ? gain(-gains.time_saved, false) : null), card("Cycles", number(totals.cycles), null, `mean load ${number(100 * totals.mean_load_factor)} %`), card("Waiting", `${number(100 * totals.waiting_share, 1)}`, "% of the time"), card("Fuel", known(totals.fuel_t) ? number(totals.fuel_t, 1) : "unknown", known(totals.fuel_t) ? "t" : null), card("CO₂ per volume", known(totals.co2_kg_m3) ? number(totals.co2_kg_m3, 2) : "unknown", known(totals.co2_kg_m3) ? "kg/m³" : null)),
+      h("dl.cards", {}, card("Production", number(totals.production_m3_week), "m³/week", gain(gains.production_gain, true)), card("Duration", duration(lastedOf(result).optimised), null, known(gains.time_saved) ? gain(-gains.time_saved, false) : null), card("Cycles", number(totals.cycles), null, `mean load ${number(100 * totals.mean_load_factor)} %`), card("Waiting", `${number(100 * totals.waiting_share, 1)}`, "% of the time"), card("Fuel", known(totals.fuel_t) ? number(totals.fuel_t, 1) : "unknown", known(totals.fuel_t) ? "t" : null), card("CO₂ per volume", known(totals.co2_kg_m3) ? number(totals.co2_kg_m3, 2) : "unknown", known(totals.co2_kg_m3) ? "kg/m³" : null)),
       h("div.block", {}, h("h2", {}, "All figures"), h("div.table.narrow", { tabindex: 0 }, h("table", {}, h("caption.hidden", {}, "Figures of the runs, as in Table 5.1 of van Halem (2019)"), h("thead", {}, h("tr", {}, head.map((text, i) => h(i ? "th" : "th.text", { scope: "col" }, text || h("span.hidden", {}, "Figure"))))), h("tbody", {}, rows.map((row) => h("tr", {}, row.map((text, i) => (i ? h("td", {}, text) : h("th.text", { scope: "row" }, (text[0].toUpperCase() + text.slice(1)).replace(/m3/g, "m³").replace("CO2", "CO₂")))))))))),
       notes.length ? h("div.block", {}, h("h2", {}, "Notes"), h("ul.list", {}, notes.map((text) => h("li", {}, text)))) : null,
       h("div.block", {}, h("h2", {}, "Files"), h("div.exports", {}, h("a.quiet.small", { href: tableAddress(job.id, "cycles"), download: "" }, "Cycles as CSV"), h("a.quiet.small", { href: resultAddress(job.id), download: "project.json" }, "project.json")))),
     h("div.foot", {}, h("button.primary", { type: "button", onclick: async () => this.handlers.panel([await this.show()]) }, "Change the project"))];
   }
 }
+
+// The duration of each run [h].
+const lastedOf = ({ runs }) => Object.fromEntries(Object.entries(runs).map(([name, { totals }]) => [name, 24 * totals.duration_days]));
 
 function distinct(lines) {
   const found = new Map(lines.map((points) => [points.map((p) => p.map((v) => v.toFixed(3))).join(), points]));

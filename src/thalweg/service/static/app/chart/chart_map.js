@@ -241,18 +241,34 @@ export class Chart extends EventTarget {
       h("div.ends", {}, h("span", {}, "0"), h("span", {}, `${top / 2}`), h("span", {}, `${top} ${unit}`.trim())), h("div.none", {}, h("i", {}), "no data"), this.run ? h("div.run", {}, this.run) : null);
   }
 
+  // End the area that is drawn: with the corners it has, where they are three or more, or without it.
+  // Returns whether it ended.
+  endDrawing(keep) {
+    return this.drawing ? this.drawing.ended(keep) : true;
+  }
+
   // Draw an area by hand; resolves with a ring [[lon, lat], ...] or null.
   draw() {
+    this.endDrawing(false);
     const interaction = new Draw({ source: new (this.areas.getSource().constructor)(), type: "Polygon" });
     this.map.addInteraction(interaction);
     this.drawing = interaction;
     return new Promise((resolve) => {
+      let corners = null;
       const end = (ring) => {
         this.map.removeInteraction(interaction);
         document.removeEventListener("keydown", escape, true);
-        setTimeout(() => { this.drawing = null; }, 300); // the double click that ends it is no click
+        setTimeout(() => { if (this.drawing === interaction) this.drawing = null; }, 300); // the double click that ends it is no click
+        interaction.ended = () => true;
         resolve(ring);
       };
+      interaction.ended = (keep) => {
+        const enough = corners?.getCoordinates()[0].length > 4; // the pointer and the first corner again count, too
+        if (keep && enough) interaction.finishDrawing();
+        else if (!keep) end(null);
+        return !keep || Boolean(enough);
+      };
+      interaction.on("drawstart", (event) => { corners = event.feature.getGeometry(); });
       const escape = (event) => { if (event.key === "Escape") { event.stopPropagation(); end(null); } };
       document.addEventListener("keydown", escape, true);
       interaction.on("drawend", (event) => end(event.feature.getGeometry().getCoordinates()[0].map((c) => toLonLat(c).map((v) => Number(v.toFixed(4))))));

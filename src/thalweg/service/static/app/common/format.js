@@ -17,12 +17,16 @@ export function seconds(text) {
   return Number.isFinite(value) ? value / 1000 : null;
 }
 
+// To the nearest minute, as all times of the page.
 export function time(s, withYear = false) {
   if (!known(s)) return "unknown";
-  const d = new Date(s * 1000);
+  const d = new Date(Math.round(s / 60) * 60000);
   const year = withYear ? ` ${d.getUTCFullYear()}` : "";
   return `${d.getUTCDate()} ${MONTHS[d.getUTCMonth()]}${year} ${two(d.getUTCHours())}:${two(d.getUTCMinutes())}`;
 }
+
+// Whether a plan has no weather data: the sea was assumed to be calm.
+export const isCalm = (request) => request?.seas?.length === 1 && request.seas[0] === "calm";
 
 // A text of the service: times such as 1998-08-31T12:00:00Z become 31 Aug 1998 12:00 UTC.
 export function readable(text) {
@@ -33,8 +37,8 @@ export function duration(hours) {
   if (!known(hours)) return "unknown";
   const minutes = Math.round(hours * 60);
   if (minutes < 60) return `${minutes} min`;
-  const d = Math.floor(minutes / 1440), h = Math.floor((minutes % 1440) / 60), m = minutes % 60;
-  return d ? `${d} d ${two(h)} h` : `${h} h ${two(m)} min`;
+  if (minutes < 1440) return `${Math.floor(minutes / 60)} h ${two(minutes % 60)} min`;
+  return `${Math.floor(Math.round(hours) / 24)} d ${two(Math.round(hours) % 24)} h`;
 }
 
 // To the minute, also over a day: for figures whose differences are shown.

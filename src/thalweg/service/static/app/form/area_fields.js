@@ -5,6 +5,7 @@ import { fill, h } from "../common/elements.js";
 export class AreaFields {
   list = []; // [{kind, factor, ring: [[lon, lat], ...], properties}]
   kept = []; // features of a voyage file that cannot be changed here: several parts, or holes
+  drawing = false; // whether the corners of one are being clicked
   #before = [];
 
   constructor(chart, changed) {
@@ -29,9 +30,12 @@ export class AreaFields {
 
   // The areas are drawn on the chart; where they may be moved by hand, so say it.
   draw(movable) {
-    this.chart.showAreas(this.list, movable ? (i, ring) => {
-      if (JSON.stringify(ring) !== JSON.stringify(this.list[i]?.ring)) this.#change(this.list.map((area, k) => (k === i ? { ...area, ring } : area)));
-    } : null);
+    if (!movable) this.chart.endDrawing(false);
+    this.chart.showAreas(this.list, movable ? (i, ring) => this.#moved(i, ring) : null);
+  }
+
+  #moved(i, ring) {
+    if (JSON.stringify(ring) !== JSON.stringify(this.list[i]?.ring)) this.#change(this.list.map((area, k) => (k === i ? { ...area, ring } : area)));
   }
 
   #change(list) {
@@ -46,12 +50,20 @@ export class AreaFields {
   }
 
   async #drawn(kind) {
-    const hint = document.getElementById("hint");
+    const hint = document.getElementById("hint"), begun = this.chart.draw();
     hint.textContent = "Click the corners; double click the last one. Escape stops.";
     hint.hidden = false;
-    const ring = await this.chart.draw();
+    this.drawing = true;
+    this.#show();
+    const ring = await begun;
     hint.hidden = true;
+    this.drawing = false;
+    this.#show();
     if (ring) this.#change([...this.list, { kind, factor: kind === "penalty" ? 2 : null, ring }]);
+  }
+
+  #finish() {
+    if (!this.chart.endDrawing(true)) fill(this.element.querySelector(":scope > .slot"), h("div.error", { role: "alert" }, h("b", {}, "An area has three corners or more."), h("span.remedy", {}, "Click them on the chart, or leave the area out.")));
   }
 
   #inView() {
@@ -90,14 +102,15 @@ export class AreaFields {
   }
 
   #show() {
+    this.element.classList.remove("wrong");
     const button = (text, act) => h("button.quiet.small", { type: "button", onclick: act }, text);
     fill(this.element,
       this.list.length || this.kept.length ? null : h("p.facts", {}, "Closed areas (no-go), and areas where each mile counts more (penalty). Drag a corner to move it."),
       this.list.map((area, i) => this.#row(area, i)),
       this.kept.length ? h("p.facts", {}, `${this.kept.length} more of the voyage file, in several parts or with holes. `, h("button.link", { type: "button", onclick: () => { this.kept = []; this.#put(this.list); } }, "Remove them")) : null,
-      h("div.field", {}, h("div.row.tools", {}, button("Draw no-go", () => this.#drawn("no-go")), button("Draw penalty", () => this.#drawn("penalty")), this.#before.length ? button("Undo", () => this.#put(this.#before.pop())) : null),
+      this.drawing ? h("div.field", {}, h("p.facts", { role: "status" }, "An area is being drawn: click its corners."), h("div.row.tools", {}, button("Finish the area", () => this.#finish()), button("Leave it out", () => this.chart.endDrawing(false)))) : h("div.field", {}, h("div.row.tools", {}, button("Draw no-go", () => this.#drawn("no-go")), button("Draw penalty", () => this.#drawn("penalty")), this.#before.length ? button("Undo", () => this.#put(this.#before.pop())) : null),
         h("button.link", { type: "button", onclick: () => this.#inView() }, "Add an area in the middle of the chart, to type its corners")),
       h("div.slot"));
-    this.draw(true);
+    this.chart.showAreas(this.list, (i, ring) => this.#moved(i, ring));
   }
 }

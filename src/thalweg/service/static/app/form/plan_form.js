@@ -265,6 +265,7 @@ export class PlanForm extends EventTarget {
     if (!this.goal.value) return this.#missing("goal", "The voyage has no destination.", "Type a port or a position, or click it on the chart.");
     if (!this.sea.chosen.length) return this.#missing("seas", "No sea is chosen; calm weather is never assumed.", "Choose the storm of 1998, a calm sea, or a file.");
     if (!this.depart.value && !this.fields.inputs.arrive.value) return this.#missing("depart", "The voyage has no departure.", "Give a date and a time in UTC.");
+    if (this.areas.drawing) return this.#missing("areas", "An area is still being drawn.", "Finish it, or leave it out.");
     for (const [name, input] of [["depart", this.depart], ["depart_window", this.latest]]) {
       if (input.value.trim() && typedTime(input) === null) return this.#missing(name, `${input.value} is not a time.`, "Give year, month, day, hour and minute in UTC, such as 2026-01-31 12:00.");
     }

@@ -4,7 +4,8 @@ import { follow, get, hasEnded, post, uploadForm } from "../common/api.js";
 import { errorBox, fill, h } from "../common/elements.js";
 import { EXAMPLES, keyOf, VARIATIONS } from "./examples.js";
 import { drawCompared, PAINTS } from "./result_drawing.js";
-import { duration, exactDuration, known, number, readable, seconds, signed, time, titleOf } from "../common/format.js";
+import { faultWords } from "../common/faults.js";
+import { duration, exactDuration, isCalm, known, number, readable, seconds, signed, time, titleOf } from "../common/format.js";
 
 const MOST = 6;
 // Column, name in the answer, decimals (of time: minutes), text, text of a difference (null: none is shown).
@@ -18,6 +19,7 @@ const FIGURES = [
   ["Waves up to", "highest_waves_m", 1, (v) => (known(v) ? `${number(v, 1)} m` : "unknown"), null],
   ["Wind up to", "strongest_wind_kn", 0, (v) => (known(v) ? `${number(v)} kn` : "unknown"), null],
 ];
+const WEATHER = ["highest_waves_m", "strongest_wind_kn"];
 const rounded = (value, decimals) => (decimals === null ? Math.round(value * 60) / 60 : Number(value.toFixed(decimals)));
 
 export class CompareView {
@@ -63,9 +65,10 @@ export class CompareView {
   }
 
   // The chosen routes on the chart, and their table below it.
-  #draw(routes, table) {
+  #draw(routes, table, broken = []) {
     if (this.handlers.hidden()) return;
     drawCompared(this.chart.routes, routes);
+    this.chart.routes.showFaults(broken);
     if (table) this.handlers.sheet(h("div.sheet", {}, table));
     if (!routes.length) return;
     this.chart.map.updateSize();
@@ -150,7 +153,7 @@ export class CompareView {
       const points = await this.#points();
       if (ask !== this.asked) return;
       this.drawn = points.map((line, i) => ({ name: this.chosen[i].title, points: line }));
-      this.#draw(points, this.#table(routes));
+      this.#draw(points, this.#table(routes), routes.flatMap((row) => row.broken));
     } catch (problem) {
       if (ask === this.asked) fill(this.problem, errorBox(problem));
     }
@@ -166,10 +169,10 @@ export class CompareView {
   #table(rows) {
     const [first] = rows;
     const than = (row, name, decimals, text) => (known(row.difference[name]) && known(row[name]) && known(first[name]) ? text(rounded(row[name], decimals) - rounded(first[name], decimals)) : null);
-    const cell = (row, i) => ([, name, decimals, text, change]) => h("td", {}, h("b", {}, text(row[name], row)), i && change ? h("small", {}, than(row, name, decimals, change)) : null);
-    const about = (row, i) => [i ? null : "reference", row.feasible ? null : `breaks ${row.violations} limit${row.violations === 1 ? "" : "s"}`].filter(Boolean).join(", ");
+    const calm = rows.map((row) => isCalm(this.#jobOf(row).request));
+    const cell = (row, i) => ([, name, decimals, text, change]) => h("td", {}, h("b", {}, calm[i] && WEATHER.includes(name) ? "calm assumed" : text(row[name], row)), i && change ? h("small", {}, than(row, name, decimals, change)) : null);
     return h("div.table", { tabindex: 0 }, h("table.compare-table", {}, h("caption.hidden", {}, "Routes compared with the reference, the first"), h("thead", {}, h("tr", {}, h("th.text", { scope: "col" }, "Route"), h("th.text", { scope: "col" }, "Leaves, arrives"), FIGURES.map(([name]) => h("th", { scope: "col" }, name)))),
-      h("tbody", {}, rows.map((row, i) => h("tr", { "aria-current": i ? null : "true" }, h("td.text", {}, keyOfRoute(i), h("b", {}, this.chosen[i].title), h("small", {}, about(row, i))), h("td.text", {}, time(seconds(row.depart)), h("small", {}, time(seconds(row.arrive)))), FIGURES.map(cell(row, i)))))));
+      h("tbody", {}, rows.map((row, i) => h("tr", { "aria-current": i ? null : "true" }, h("td.text", {}, keyOfRoute(i), h("b", {}, this.chosen[i].title), i ? null : h("small", {}, "reference"), row.feasible ? null : h("small.broken", {}, faultWords(row.broken))), h("td.text", {}, time(seconds(row.depart)), h("small", {}, time(seconds(row.arrive)))), FIGURES.map(cell(row, i)))))));
   }
 
   // Plan the voyages of an example, or find them planned, and compare them.

@@ -21,6 +21,7 @@ const SERIES = [
   ["weighted_acceleration_m_s2", "Motion felt on board", "m/s²", "motion", "--danger", 2],
 ];
 const figure = (value, decimals) => (known(value) ? number(value, decimals) : "–");
+const WEATHER = ["wave_height_m", "wind_speed_kn", "current_speed_kn"];
 const FIRST = ["speed_over_ground_kn", "wave_height_m"];
 
 export class Drawer {
@@ -38,6 +39,7 @@ export class Drawer {
     fill(element, h("div.player", {}, this.play, this.slider, this.output, this.tabs), this.sheet);
     this.#icon();
     selection.addEventListener("time", () => this.moved());
+    for (const kind of ["route", "hover"]) selection.addEventListener(kind, () => this.front?.mark());
     new ResizeObserver(() => this.#resize()).observe(this.sheet);
   }
 
@@ -76,6 +78,10 @@ export class Drawer {
     const names = [["profile", "Profile"], ...(result.front ? [["front", "Front"]] : []), ...(result.spaceTime ? [["tide", "Place and time"]] : []), ["legs", "Legs"]];
     fill(this.tabs, names.map(([name, text]) => h("button", { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": "sheet", "aria-selected": String(name === this.tab), tabindex: name === this.tab ? 0 : -1, onclick: () => this.open(name), onkeydown: (event) => this.#tabKey(event, names) }, text)));
     this.sheet.setAttribute("aria-labelledby", `tab-${this.tab}`);
+    if (this.tab === "front" && this.front?.plan === result.plan && this.sheet.contains(this.front.element)) { // it is held by mouse or keyboard
+      this.moved();
+      return;
+    }
     this.#clear();
     if (this.tab === "front") this.#showFront();
     else if (this.tab === "legs") this.#showLegs();
@@ -186,7 +192,7 @@ export class Drawer {
       cursor: { y: false, points: { size: 6 }, drag: { x: false, y: false }, lock: false },
       scales: { x: { time: true }, ...Object.fromEntries(scales.map((name) => [name, { range: (_, low, high) => (low === high ? [Math.min(0, low ?? 0), Math.max(1, 1.12 * (high ?? 0))] : uPlot.rangeNum(name === "depth" ? low : Math.min(0, low ?? 0), high ?? 1, { min: { pad: 0 }, max: { pad: 0.12, soft: 1 } })) }])) },
       axes: [
-        { ...axis, size: 32, values: (u, ticks) => ticks.map((t, i) => { const d = new Date(t * 1000); const hour = d.getUTCHours(); return hour && i ? `${String(hour).padStart(2, "0")}:${String(d.getUTCMinutes()).padStart(2, "0")}` : time(t).split(" ").slice(0, 2).join(" "); }) },
+        { ...axis, size: 32, values: (u, ticks) => ticks.map((t, i) => { const d = new Date(t * 1000); const hour = d.getUTCHours(); return (hour || d.getUTCMinutes()) && i ? `${String(hour).padStart(2, "0")}:${String(d.getUTCMinutes()).padStart(2, "0")}` : time(t).split(" ").slice(0, 2).join(" "); }) },
         ...scales.slice(0, 3).map((name, i) => ({ ...axis, scale: name, side: i ? 1 : 3, size: 46, label: units[name], labelSize: 16, labelFont: axis.font, labelGap: 0, grid: { ...axis.grid, show: i === 0 } })),
       ],
       series: [{}, ...there.map(([name, text, , scale, paint]) => ({ label: text, scale, stroke: getComputedStyle(document.documentElement).getPropertyValue(paint), width: 1.8, spanGaps: false }))],
@@ -202,8 +208,9 @@ export class Drawer {
     for (const chip of this.chips || []) {
       const row = SERIES.find(([name]) => name === chip.name);
       const value = this.result.profile[chip.name]?.[i];
-      chip.value.textContent = known(value) ? number(value, row[5]) : "not known here";
-      chip.unitOf.hidden = !known(value);
+      const calm = this.result.calm && WEATHER.includes(chip.name);
+      chip.value.textContent = calm ? "calm assumed" : known(value) ? number(value, row[5]) : "not known here";
+      chip.unitOf.hidden = calm || !known(value);
     }
   }
 

@@ -16,10 +16,11 @@ export class FrontDiagram {
     this.element = h("div.front");
     this.svg = s("svg", { role: "group", "aria-label": `Front of time against ${front.criterion}. Arrow keys move along it.` });
     this.element.append(this.svg);
+    this.svg.addEventListener("pointerdown", (event) => { this.svg.setPointerCapture(event.pointerId); this.dragging = true; this.#drag(event); });
     this.svg.addEventListener("pointermove", (event) => this.#drag(event));
-    this.svg.addEventListener("pointerdown", (event) => { this.dragging = true; this.#drag(event); });
-    addEventListener("pointerup", () => { this.dragging = false; });
-    for (const kind of ["route", "hover"]) selection.addEventListener(kind, () => this.svg.isConnected && this.mark());
+    for (const end of ["pointerup", "pointercancel"]) this.svg.addEventListener(end, () => { this.dragging = false; });
+    this.svg.addEventListener("mousedown", (event) => { event.preventDefault(); this.#focus(); }); // the focus stays on the chosen point
+    this.svg.addEventListener("keydown", (event) => this.#key(event));
   }
 
   draw() {
@@ -35,6 +36,7 @@ export class FrontDiagram {
     this.px = (x) => left + ((x - xa) / (xb - xa)) * (width - left - right);
     this.py = (y) => height - bottom - ((y - ya) / (yb - ya)) * (height - top - bottom);
     this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    const focused = this.svg.contains(document.activeElement);
     this.svg.replaceChildren();
     const days = xb - xa > 60;
     for (const x of ticks(days ? xa / 24 : xa, days ? xb / 24 : xb, Math.max(3, width / 110))) {
@@ -48,7 +50,7 @@ export class FrontDiagram {
       const step = inside.map(([x, y], k) => `${k ? `H${this.px(Math.max(x, xa))}V` : `M${this.px(Math.max(x, xa))} `}${this.py(Math.min(yb, Math.max(ya, y)))}`).join("") + `H${this.px(xb)}`;
       this.svg.append(s("path", { class: "below", d: `${step}V${this.py(ya)}H${this.px(Math.max(inside[0][0], xa))}Z` }), s("path", { class: "lower", d: step }));
     }
-    const order = this.points.slice().sort((a, b) => a.x - b.x);
+    const order = this.order = this.points.slice().sort((a, b) => a.x - b.x);
     this.svg.append(s("path", { class: "join", d: order.map((p, k) => `${k ? "L" : "M"}${this.px(p.x)} ${this.py(p.y)}`).join("") }));
     for (const p of this.base) {
       if (p.x < xa || p.x > xb || p.y < ya || p.y > yb) continue;
@@ -57,47 +59,59 @@ export class FrontDiagram {
       this.svg.append(dot);
     }
     this.dots = order.map((p) => {
-      const dot = s("circle", { cx: this.px(p.x), cy: this.py(p.y), r: 5, tabindex: p.i === selection.route ? 0 : -1, role: "button", "aria-label": `Route ${p.i + 1}: ${duration(p.x)}, ${number(p.y, 1)} ${front.unit}` });
-      dot.addEventListener("click", () => selection.choose(p.i));
-      dot.addEventListener("pointerenter", () => selection.hover(p.i));
+      const dot = s("circle", { cx: this.px(p.x), cy: this.py(p.y), r: 5, role: "button", "aria-label": `Route ${p.i + 1}: ${duration(p.x)}, ${number(p.y, 1)} ${front.unit}` });
+      dot.addEventListener("click", () => this.#choose(p.i)); // of a screen reader
+      dot.addEventListener("pointerenter", () => { if (!this.dragging) selection.hover(p.i); });
       dot.addEventListener("pointerleave", () => selection.hover(null));
-      dot.addEventListener("keydown", (event) => this.#key(event, order));
       dot.number = p.i;
       this.svg.append(dot);
       return dot;
     });
     this.mark();
+    if (focused) this.#focus();
   }
 
+  // The chosen and the hovered route are marked.
   mark() {
+    const entry = this.order?.find((p) => p.i === selection.route) || this.order?.[0];
     for (const dot of this.dots || []) {
       const chosen = dot.number === selection.route;
       dot.setAttribute("aria-pressed", String(chosen));
       dot.setAttribute("r", chosen ? 7 : dot.number === selection.hovered ? 7 : 5);
-      dot.setAttribute("tabindex", chosen ? 0 : -1);
+      dot.setAttribute("tabindex", dot.number === entry.i ? 0 : -1);
     }
     this.#facts();
   }
 
   #facts() {
     if (!this.facts) return;
-    const p = this.points.find((one) => one.i === (selection.hovered ?? selection.route)) || this.points[0];
+    const pointed = this.points.find((one) => one.i === selection.hovered && one.i !== selection.route);
+    const p = pointed || this.points.find((one) => one.i === selection.route) || this.points[0];
     const fastest = this.points.reduce((a, b) => (b.x < a.x ? b : a));
     const { unit: unitText, criterion } = this.plan.front;
-    fill(this.facts, h("p", {}, h("b", {}, `Route ${p.i + 1} of ${this.points.length}`)), h("p", {}, `${duration(p.x)}, ${number(p.y, p.y < 1000 ? 1 : 0)} ${unitText}`),
+    fill(this.facts, h("p", {}, h("b", {}, `Route ${p.i + 1} of ${this.points.length}`), pointed ? ", pointed at" : ""), h("p", {}, `${duration(p.x)}, ${number(p.y, p.y < 1000 ? 1 : 0)} ${unitText}`),
       p === fastest ? h("p", {}, "The fastest of all.") : h("p", {}, `${signedDuration(p.x - fastest.x)} and ${signed(p.y - fastest.y, p.y < 1000 ? 1 : 0)} ${unitText} against the fastest.`),
-      known(p.gap) ? h("p", {}, `At its time no route has a ${criterion} more than ${number(Math.ceil(1000 * p.gap) / 10, 1)} % lower.`) : null,
+      p.gap < 1 ? h("p", {}, `At its time no route has a ${criterion} more than ${number(Math.ceil(1000 * p.gap) / 10, 1)} % lower.`) : h("p", {}, `How much lower the ${criterion} could be at its time is not known.`),
       h("p", {}, "Grey: below the lower front of the network. Rings: weather ignored, constant speed."));
   }
 
-  #key(event, order) {
-    const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
-    if (!step) return;
+  #choose(route) {
+    selection.hover(null);
+    selection.choose(route);
+  }
+
+  #focus() {
+    this.dots.find((dot) => dot.getAttribute("tabindex") === "0").focus({ preventScroll: true });
+  }
+
+  #key(event) {
+    const last = this.order.length - 1, at = this.order.findIndex((p) => p.i === selection.route);
+    const to = { ArrowRight: at + 1, ArrowDown: at + 1, ArrowLeft: at - 1, ArrowUp: at - 1, Home: 0, End: last, Enter: at, " ": at }[event.key];
+    if (to === undefined) return;
     event.preventDefault();
     event.stopPropagation();
-    const at = order.findIndex((p) => p.i === selection.route);
-    selection.choose(order[Math.max(0, Math.min(order.length - 1, at + step))].i);
-    this.dots.find((dot) => dot.number === selection.route)?.focus();
+    this.#choose(this.order[Math.max(0, Math.min(last, to))].i);
+    this.#focus();
   }
 
   #drag(event) {
@@ -105,6 +119,6 @@ export class FrontDiagram {
     const box = this.svg.getBoundingClientRect();
     const x = event.clientX - box.left, y = event.clientY - box.top;
     const near = this.points.reduce((a, b) => (Math.hypot(this.px(b.x) - x, this.py(b.y) - y) < Math.hypot(this.px(a.x) - x, this.py(a.y) - y) ? b : a));
-    selection.choose(near.i);
+    this.#choose(near.i);
   }
 }

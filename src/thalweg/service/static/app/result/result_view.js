@@ -2,8 +2,9 @@
 
 import { fileAddress, get, resultAddress } from "../common/api.js";
 import { fill, h, REASONS, unit } from "../common/elements.js";
+import { faultWords, remedyOf } from "../common/faults.js";
 import { indicatorTable } from "../form/indicators.js";
-import { duration, exactDuration, known, number, plainPosition, seconds, signed, signedDuration, time, titleOf } from "../common/format.js";
+import { duration, exactDuration, isCalm, known, number, plainPosition, seconds, signed, signedDuration, time, titleOf } from "../common/format.js";
 import { selection } from "../common/selection.js";
 
 const OBJECTIVES = { time: "least time", distance: "shortest distance", fuel: "least fuel", energy: "least energy", cost: "least cost", comfort: "least motion sickness", co2: "least CO₂", encounters: "fewest encounters", inshore: "least length near land", weighted: "a weighted sum", front: "all trade-offs", alternatives: "routes that differ" };
@@ -26,6 +27,12 @@ function costOf(route) {
   return route[`cost_${(route.currency || "usd").toLowerCase()}`];
 }
 
+// The numbers of the routes from 0, in the order of the list.
+export function inOrderOfTime(plan) {
+  const numbers = plan.routes.map((_, i) => i), { routes } = plan;
+  return plan.alternatives ? numbers : numbers.sort((a, b) => routes[a].time_h - routes[b].time_h);
+}
+
 const worst = (profile, column) => { const values = (profile?.[column] || []).filter(known); return values.length ? Math.max(...values) : null; };
 
 export class ResultView {
@@ -41,12 +48,13 @@ export class ResultView {
     const route = plan.routes[selection.route];
     const top = this.body.scrollTop;
     const { from, to } = plan.provenance;
+    const inList = this.body.querySelector(".routes")?.contains(document.activeElement);
     fill(this.body,
       h("h1", {}, titleOf(job)),
       h("p.lead", {}, `${plan.voyage ? OBJECTIVES[plan.objective] : "given route"} · ${this.handlers.shipName(job.request.ship)}`),
       h("p.lead", {}, to ? `${from} to ${to}, leaves ` : "Leaves ", h("b", {}, time(seconds(route.depart), true)), " UTC"),
       plan.cancelled ? h("p.note", {}, "Stopped: this is the best found so far.") : null,
-      this.#faults(route),
+      this.#faults(route, job.kind === "evaluation"),
       this.#cards(route, profile, beside),
       plan.voyage && !plan.alternatives ? this.#proof(plan) : null,
       plan.alternatives ? this.#alternatives(plan) : plan.routes.length > 1 ? this.#routes(plan) : null,
@@ -54,12 +62,17 @@ export class ResultView {
       this.#notes(plan, route),
       this.#exports(job, route));
     this.body.scrollTop = top;
+    if (inList) this.body.querySelector(".routes [aria-pressed=true]").focus({ preventScroll: true });
   }
 
-  #faults(route) {
+  // Legs of a file are sailed in pieces, so numbers of legs are not those of the file.
+  #faults(route, fromFile) {
     if (route.feasible) return null;
-    const rows = route.violations.slice(0, 6).map((one) => h("li", {}, `${one.reason} at ${plainPosition(one.lat, one.lon)}${one.time ? `, ${time(seconds(one.time))}` : ""}${known(one.value) && known(one.limit) ? `: ${number(one.value, 1)}, limit ${number(one.limit, 1)}` : ""}`));
-    return h("div.error", { role: "alert" }, h("b", {}, `This route breaks ${route.violations.length} limit${route.violations.length === 1 ? "" : "s"}.`), h("ul.list", {}, rows), h("span.remedy", {}, "The rings on the chart show where. A later departure or a lower speed may keep them."));
+    const row = (one) => h("li", {}, `${fromFile ? one.reason.replace(/: leg \d+$/, "") : one.reason} at ${plainPosition(one.lat, one.lon)}${one.time ? `, ${time(seconds(one.time))}` : ""}${known(one.value) && known(one.limit) ? `: ${number(one.value, 1)}, limit ${number(one.limit, 1)}` : ""}`);
+    const { violations } = route, shown = violations.slice(0, 6), rest = violations.slice(6);
+    return h("div.error", { role: "alert" }, h("b", {}, `This route ${faultWords(violations)}.`), h("ul.list", {}, shown.map(row)),
+      rest.length ? h("details", {}, h("summary", {}, `${number(rest.length)} more`), h("ul.list", {}, rest.map(row))) : null,
+      h("span.remedy", {}, `The rings on the chart show where.${remedyOf(violations)}`));
   }
 
   #cards(route, profile, beside) {
@@ -67,7 +80,9 @@ export class ResultView {
     const than = (mine, other, text) => (known(mine) && known(other) && /[1-9]/.test(text(mine - other)) ? [h(`span.${mine < other ? "less" : "more"}`, {}, text(mine - other)), " against weather ignored"] : null);
     const cost = costOf(route), other = beside ? costOf(beside) : null;
     const waves = worst(profile, "wave_height_m"), wind = worst(profile, "wind_speed_kn");
-    const besideWaves = worst(beside?.profile, "wave_height_m");
+    const besideWaves = worst(beside?.profile, "wave_height_m"), calm = isCalm(this.result.job.request);
+    const assumed = card("Waves and wind", "calm", null, "assumed: no weather data");
+    if (!known(route.min_ukc_m)) assumed.classList.add("wide");
     const complete = beside && beside.feasible !== undefined && known(beside.time_h);
     return h("dl.cards", {},
       card("Time", duration(route.time_h), null, complete ? than(route.time_h, beside.time_h, signedDuration) : null),
@@ -76,8 +91,8 @@ export class ResultView {
       card("Cost", number(cost), route.currency, complete ? than(cost, other, (d) => `${signed(d, 0)}`) : null),
       card("Distance", number(route.distance_nm, 1), "nm", known(route.time_h) ? `mean ${number(route.distance_nm / route.time_h, 1)} kn` : null),
       card("CO₂", number(route.co2_t, 0), "t"),
-      card("Highest waves", number(waves, 1), "m", known(besideWaves) && known(waves) ? `weather ignored: ${number(besideWaves, 1)} m` : known(waves) ? null : "no waves in the data"),
-      known(route.min_ukc_m) ? card("Least under-keel clearance", number(route.min_ukc_m, 1), "m") : card("Strongest wind", number(wind), "kn", known(wind) ? null : "no wind in the data"),
+      calm ? assumed : card("Highest waves", number(waves, 1), "m", known(besideWaves) && known(waves) ? `weather ignored: ${number(besideWaves, 1)} m` : known(waves) ? null : "no waves in the data"),
+      known(route.min_ukc_m) ? card("Least under-keel clearance", number(route.min_ukc_m, 1), "m") : calm ? null : card("Strongest wind", number(wind), "kn", known(wind) ? null : "no wind in the data"),
       this.#comfort(route, card));
   }
 
@@ -91,7 +106,7 @@ export class ResultView {
 
   #proof(plan) {
     const point = plan.front?.points[selection.route];
-    const gap = plan.front ? point?.gap : plan.gap;
+    const found = plan.front ? point?.gap : plan.gap, gap = found < 1 ? found : null; // at 1 the bound is zero: none
     const quality = this.result.job.summary.quality || "";
     const said = plan.front ? (known(gap) ? `At most ${number(Math.ceil(1000 * gap / (1 - gap)) / 10, 1)} % from the best possible at its time` : "No bound is known for this route") : quality ? quality[0].toUpperCase() + quality.slice(1) : "No bound is known";
     const kind = plan.lower_bound_kind[0].toUpperCase() + plan.lower_bound_kind.slice(1);
@@ -106,9 +121,11 @@ export class ResultView {
 
   #routes(plan) {
     const { front } = plan;
-    return h("div.block.no-print", {}, h("h2", {}, `${plan.routes.length} routes, fastest first`), h("ol.routes", {}, plan.routes.map((route, i) => h("li", {}, h("button", {
+    const best = plan.objective in OBJECTIVES && plan.objective !== "front" ? OBJECTIVES[plan.objective] : null; // of the first route
+    const row = (route, i) => h("li", {}, h("button", {
       type: "button", "aria-pressed": String(i === selection.route), onclick: () => selection.choose(i), onpointerenter: () => selection.hover(i), onpointerleave: () => selection.hover(null),
-    }, h("span.swatch"), h("span", {}, exactDuration(route.time_h), front && front.points[i]?.way !== "open sea" ? h("small.unit", {}, ` ${front.points[i]?.way}`) : null), h("span", {}, number(route.fuel_t, 1), unit("t")), h("span", {}, known(costOf(route)) ? [number(costOf(route)), unit(route.currency)] : ""))))));
+    }, h("span.swatch"), h("span", {}, exactDuration(route.time_h), front && front.points[i]?.way !== "open sea" ? h("small.unit", {}, ` ${front.points[i]?.way}`) : null, h("small", {}, `route ${i + 1}${best && !i ? `, ${best}` : ""}`)), h("span", {}, number(route.fuel_t, 1), unit("t")), h("span", {}, known(costOf(route)) ? [number(costOf(route)), unit(route.currency)] : "")));
+    return h("div.block.no-print", {}, h("h2", {}, `${plan.routes.length} routes, fastest first`), h("ol.routes", {}, inOrderOfTime(plan).map((i) => row(plan.routes[i], i))));
   }
 
   // Routes that differ: what each is best in, and how it differs from the fastest.
