@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -16,7 +14,6 @@ from thalweg.core.limits import Limits
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Voyage, plan
 from thalweg.planning.offing_attempts import plan_off_land
-from thalweg.planning.pareto.trade_off_context import RefereedCandidate, not_dominated
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.provenance import given_route_warnings
 from thalweg.planning.request.requirements import Requirements
@@ -177,13 +174,3 @@ def test_shoals_are_closed_and_open_again_where_no_other_way_exists():
     two = 2.0 * NAUTICAL_MILE
     assert tries == [(True, two), (False, two), (False, 0.5 * two)]
     assert not any(note.startswith("Closed:") for note in found.needs.notes)
-
-
-def test_fronts_compare_routes_with_their_penalties():
-    def candidate(hours, value, penalty):
-        return RefereedCandidate(None, SimpleNamespace(time_h=hours), value, penalty)
-
-    clear, against = candidate(100.0, 50.0, 0.0), candidate(99.0, 49.0, 0.05)
-    cheap = candidate(110.0, 40.0, 0.0)
-    assert not_dominated([cheap, against, clear]) == [clear, cheap]
-    assert against.compared_value == pytest.approx(51.45)

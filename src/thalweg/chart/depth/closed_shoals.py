@@ -40,7 +40,7 @@ _TURNS: Final = (-360.0, 0.0, 360.0)
 
 
 def closing_depth(required: float) -> float:
-    """Return the depth of the layer below which water is closed [m].
+    """Return the depth of the layer below which water is closed [m], in tenths of a metre.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def closing_depth(required: float) -> float:
     -------
     float : 2 m less, and at least a fifth less; 0 where that is not above zero.
     """
-    return max(min(required - _MARGIN, (1.0 - _SHARE) * required), 0.0)
+    return round(max(min(required - _MARGIN, (1.0 - _SHARE) * required), 0.0), 1)
 
 
 @dataclass(frozen=True)
