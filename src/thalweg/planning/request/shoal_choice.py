@@ -194,7 +194,7 @@ def _open_radius(chart: Chart, closed: ClosedShoals, place: Position) -> float |
     """Return the least radius [m] of open water that joins a place to the sea; None without one."""
     for radius in _RADII:
         half = radius + _LOOK_BEYOND
-        box = _box_round(*(np.array([degrees]) for degrees in place), half)
+        box = _box_round(np.array([place[0]]), np.array([place[1]]), half)
         local = replace(closed, discs=((*place, radius),), box=box)
         if not local.shapes:
             return radius
