@@ -8,11 +8,16 @@ import pytest
 from thalweg.chart import Chart
 from thalweg.chart.depth.global_depth import coarse_depth
 from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
+from thalweg.core.errors import NoPathError
 from thalweg.core.geodesy import densify, distance
+from thalweg.core.limits import Limits
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Voyage, plan
+from thalweg.planning.offing_attempts import plan_off_land
+from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.provenance import given_route_warnings
-from thalweg.planning.request.shoal_choice import add_shoals
+from thalweg.planning.request.requirements import Requirements
+from thalweg.planning.request.shoal_choice import add_shoals, close_shoals
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import evaluate
 from thalweg.sea import Sea
@@ -143,3 +148,29 @@ def test_ships_that_fit_take_the_kiel_canal_and_others_are_told_why_not():
     assert any("Elbe (Brunsbuttel to sea)" in note for note in small.notes)
     assert large.best.distance_nm > 750.0
     assert any("Kiel Canal" in note and "above 160 m of length" in note for note in large.notes)
+
+
+def test_shoals_are_closed_and_open_again_where_no_other_way_exists():
+    ends = [Endpoint("A", 40.4, -73.8, 0.0), Endpoint("Sound", 41.45, -70.2, 0.0)]
+    chart, _ = add_shoals(WORLD, voyage((40.4, -73.8), (42.4, -70.7)), BULKER, Sea.calm(), ends)
+    closed, note = close_shoals(chart, ENDS)
+    assert closed.zones.closed_shoals.depth == 9.6 and "less than 9.6 m" in note
+    assert closed.legs_blocked(41.45, -70.3, 41.45, -70.1)
+    inside, _ = close_shoals(chart, ends)  # a place in the sound opens it
+    assert not inside.legs_blocked(41.45, -70.3, 41.45, -70.1)
+    assert close_shoals(WORLD, ENDS) == (WORLD, "")
+
+    def run(tried):
+        tries.append((tried.chart.zones.closed_shoals is not None, tried.needs.limits.offing))
+        if len(tries) < 3:
+            raise NoPathError("No way.", "None.", "None.")
+        return tried
+
+    tries = []
+    needs = Requirements((), Limits(), (), np.inf)
+    context = PlanningContext(voyage((40.4, -73.8), (42.4, -70.7)), BULKER, Sea.calm(), chart,
+                              needs, None, None)  # fmt: skip
+    found = plan_off_land(context, ENDS, 2.0 * NAUTICAL_MILE, run)
+    two = 2.0 * NAUTICAL_MILE
+    assert tries == [(True, two), (False, two), (False, 0.5 * two)]
+    assert not any(note.startswith("Closed:") for note in found.needs.notes)

@@ -366,7 +366,7 @@ class Chart:
     def arrays(self) -> CoastArrays:
         """Land, zones, area and offing as arrays, for `thalweg.kernels.geometry.coast_index`."""
         return CoastArrays(
-            self.coastline.index, self.zones.index, self.area.array(), self.offing_arrays
+            self.coastline.index, self.zones.closed_index, self.area.array(), self.offing_arrays
         )
 
     @cached_property

@@ -1,4 +1,4 @@
-"""Plans at the offing of the ship, and nearer to land where no route exists at it."""
+"""Plans at the offing of the ship, and over shoals or nearer to land where no route exists."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels.codes import DEPTH, REASONS
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.offing_choice import chart_off_land, offing_note
+from thalweg.planning.request.shoal_choice import close_shoals
 from thalweg.planning.request.voyage_endpoints import Endpoint
 
 Planned = TypeVar("Planned")
@@ -24,7 +25,9 @@ def plan_off_land(
     offing: float,
     run: Callable[[PlanningContext], Planned],
 ) -> Planned:
-    """Plan at an offing; where no route exists, at half of it, a quarter, and without.
+    """Plan at an offing with shoals closed; where no route exists, with these open.
+
+    Where none exists either, at half of the offing, a quarter, and without.
 
     Parameters
     ----------
@@ -39,19 +42,28 @@ def plan_off_land(
     if offing <= 0.0 or context.chart.coastline.is_empty:
         return run(context)
     refusal: NoRouteError | None = None
-    for share in _SHARES:
+    for share, closing in ((1.0, True), *((share, False) for share in _SHARES)):
         kept = share * offing
-        tried = replace(context, chart=chart_off_land(context.chart, ends, kept))
+        chart = chart_off_land(context.chart, ends, kept)
+        notes = [*context.needs.notes, offing_note(chart, ends, offing)]
+        if closing:
+            chart, note = close_shoals(chart, ends)
+            if not note:
+                continue
+            notes.append(note)
         limits = replace(context.needs.limits, offing=kept)
-        notes = (*context.needs.notes, offing_note(tried.chart, ends, offing))
-        tried = replace(tried, needs=replace(context.needs, limits=limits, notes=notes))
+        needs = replace(context.needs, limits=limits, notes=tuple(notes))
         try:
-            return run(tried)
+            return run(replace(context, chart=chart, needs=needs))
         except NoRouteError as error:
             nearer = isinstance(error, NoPathError) or REASONS[DEPTH] in error.reasons
             refusal = refusal or error
             if not nearer:
                 break
-            context.report_progress(f"no route {kept / NAUTICAL_MILE:.2g} nm off land")
+            context.report_progress(
+                "no route round the shoals"
+                if closing
+                else f"no route {kept / NAUTICAL_MILE:.2g} nm off land"
+            )
     assert refusal is not None  # the loop returned otherwise
     raise refusal

@@ -27,9 +27,9 @@ from thalweg.core.geodesy import Position, distance, inverse
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 
-#: What a mile against the traffic of a scheme, or in its inshore traffic zone, counts: more than
-#: the detour to the lane.
-AGAINST_FACTOR: Final = 3.0
+#: What a mile against the traffic of a scheme, or in its inshore traffic zone, counts: far more
+#: than the detour to the lane, so that no ocean passage gains by it.
+AGAINST_FACTOR: Final = 10.0
 #: Round the ends of a voyage ships use the inshore traffic zones of ports [m].
 PORT_RADIUS: Final = 12.0 * NAUTICAL_MILE
 INSHORE: Final = "inshore traffic zone"

@@ -4,8 +4,7 @@ A GeoJSON feature has the properties ``kind`` ("no-go", "penalty", "price" or "e
 penalty and price, ``factor``. Where zones of one kind overlap, the largest factor counts. An "eca"
 zone without a factor is an emission control area: the ship file states what fuel costs there;
 with one it is a price zone. A "lane" has a ``direction_deg`` (`thalweg.chart.zones.traffic_lanes`).
-Where there are zones of the kind "anchorage" a ship may wait in these
-only, and never in zones of the kind "no-waiting".
+Where there are "anchorage" zones a ship may wait in these only, and never in "no-waiting" zones.
 """
 
 from __future__ import annotations
@@ -22,6 +21,7 @@ from thalweg.chart import geojson_polygons
 from thalweg.chart.anchorages import waiting_allowed
 from thalweg.chart.coast.coast_cache import load_or_build
 from thalweg.chart.coast.coast_index_builder import build_index, empty_index
+from thalweg.chart.depth.closed_shoals import ClosedShoals
 from thalweg.chart.depth.shoals import Shoals
 from thalweg.chart.zones.emission_control_areas import EcaZone
 from thalweg.chart.zones.leg_fractions import (
@@ -120,6 +120,7 @@ class Zones:
         Where alone a ship may wait (anywhere if there are none), and where it may not.
     lanes : Where ships sail in one direction only.
     shoals : Shoal water, in which a mile counts more besides the penalty zones.
+    closed_shoals : Shoal water that no leg may cross.
     """
 
     no_go: tuple[Any, ...] = ()
@@ -130,6 +131,7 @@ class Zones:
     no_waiting: tuple[Any, ...] = ()
     lanes: tuple[TrafficLane, ...] = ()
     shoals: Shoals | None = None
+    closed_shoals: ClosedShoals | None = None
 
     @classmethod
     def read(cls, source: geojson_polygons.GeoJsonSource) -> Zones:
@@ -178,6 +180,7 @@ class Zones:
             self.no_waiting + other.no_waiting,
             self.lanes + other.lanes,
             self.shoals or other.shoals,
+            self.closed_shoals or other.closed_shoals,
         )
 
     @property
@@ -196,6 +199,19 @@ class Zones:
         if not self.no_go:
             return empty_index()
         return build_index(geojson_polygons.rings_from_polygons(list(self.no_go)), ZONE_INDEX_CELLS)
+
+    @cached_property
+    def closed_shapes(self) -> tuple[Any, ...]:
+        """The no-go zones and the closed shoals as shapely polygons; they may overlap."""
+        return self.no_go + (self.closed_shoals.shapes if self.closed_shoals else ())
+
+    @cached_property
+    def closed_index(self) -> IndexArrays:
+        """The grid of the edges of the no-go zones and the closed shoals."""
+        if self.closed_shoals is None:
+            return self.index
+        rings = geojson_polygons.rings_from_polygons(list(self.closed_shapes))
+        return build_index(rings, ZONE_INDEX_CELLS)
 
     @cached_property
     def eca_index(self) -> IndexArrays:
@@ -331,7 +347,7 @@ class Zones:
                 f"lane {lane.shape.wkb_hex} {lane.direction} {lane.tolerance} {lane.factor}"
                 for lane in self.lanes
             ]
-            + ([self.shoals.text()] if self.shoals is not None else [])
+            + [one.text() for one in (self.shoals, self.closed_shoals) if one is not None]
         )
 
 

@@ -165,8 +165,10 @@ def _draw_and_attach(
 def _open_sea(chart: Chart, grid: GlobeGrid, options: GlobeOptions) -> tuple[Pairs, BoolArray]:
     """Return the grid's legs within limits and area, and which nodes are usable."""
     usable = (grid.lat >= options.south) & (grid.lat <= options.north)
-    no_land = type(chart)(Coastline.none(), chart.area)
+    shoals = type(chart.zones)(closed_shoals=chart.zones.closed_shoals)
+    no_land = type(chart)(Coastline.none(), chart.area, shoals)
     bounded = chart.area.array().tolist() != [-90.0, 90.0, -180.0, 360.0]
+    bounded |= shoals.closed_shoals is not None
     if bounded:
         usable &= no_land.is_navigable(grid.lat, grid.lon)
     pairs = grid.pairs.where(usable[grid.pairs.first] & usable[grid.pairs.second])

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from thalweg.core.time import utc_text
-from thalweg.kernels.codes import OUTSIDE_PERIOD, REASONS
+from thalweg.kernels.codes import NO_GO, OUTSIDE_PERIOD, REASONS
 from thalweg.planning.plan_front import knee
 from thalweg.planning.report.note_order import count_of_dangers, danger_first
 from thalweg.planning.report.route_summary import (
@@ -129,6 +129,8 @@ def limits_text(plan: PlanData) -> str:
     if not met:
         only = "; nothing but land and zones stood in the way" if plan.rejections else ""
         return kept + only
+    if known is not None and known.chart.zones.closed_shoals is not None:
+        met = [f"{reason} or shoal" if reason == REASONS[NO_GO] else reason for reason in met]
     return f"{kept}; other water was refused: {', '.join(met[:3])}"
 
 

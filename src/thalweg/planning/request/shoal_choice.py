@@ -1,19 +1,29 @@
-"""Shoal water of a voyage: whether a mile in it counts more, and from which contour on."""
+"""Shoal water of a voyage: where it is closed, and from which contour on a mile counts more."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
 
 from thalweg.chart import Chart
+from thalweg.chart.coast.snapping import joined_positions
+from thalweg.chart.depth.closed_shoals import (
+    WORLD_BOX,
+    ClosedShoals,
+    DegreeBox,
+    OpenDisc,
+    closing_depth,
+)
 from thalweg.chart.depth.global_depth import NAME
 from thalweg.chart.depth.shoals import Shoals, safety_contour
 from thalweg.chart.passages import Passage
-from thalweg.core.geodesy import Position, densify
+from thalweg.core.geodesy import METRES_PER_DEGREE, Position, densify, distance, wrap_longitude
+from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.request.offing_choice import chosen_offing
 from thalweg.planning.request.requirements import required_under_keel_clearance
@@ -24,6 +34,13 @@ from thalweg.ship import Ship
 
 _STEP: Final = 1.0 * NAUTICAL_MILE
 _NARROW: Final = 3.0 * NAUTICAL_MILE  # half width of passages that the depth layer does not show
+#: Radii [m] of the open water round ends, where dredged channels lead through shoals.
+_RADII: Final = tuple(miles * NAUTICAL_MILE for miles in (8.0, 20.0, 45.0, 90.0))
+_LOOK_BEYOND: Final = 15.0 * NAUTICAL_MILE
+_RIM: Final = 0.96  # of half the side of a box: water that reaches it leads on
+#: Shoals farther round the ends than this [m], or this share of the distance, are left out.
+_REGION, _REGION_SHARE = 600.0 * NAUTICAL_MILE, 0.6
+_POLAR: Final = 85.0  # [deg]
 
 
 def add_shoals(
@@ -98,3 +115,100 @@ def _channels(chart: Chart, passage: Passage) -> list[tuple[Position, ...]]:
         for a, b in zip(starts, ends)
         if b > a
     ]
+
+
+def close_shoals(chart: Chart, ends: Sequence[Endpoint]) -> tuple[Chart, str]:
+    """Return the chart with the water closed that has much less depth than required, and a note.
+
+    Where a chart has shoal water (`add_shoals`). Round the ends as much stays open as joins them
+    to the sea.
+
+    Parameters
+    ----------
+    chart : With its offing.
+
+    Returns
+    -------
+    chart : The chart itself where nothing is closed.
+    note : Empty then.
+    """
+    shoals = chart.zones.shoals
+    depth = 0.0 if shoals is None else closing_depth(shoals.least)
+    if shoals is None or depth <= 0.0:
+        return chart, ""
+    closed = ClosedShoals(depth, shoals.channels, box=_region(ends))
+    radii = [_open_radius(chart, closed, (end.lat, end.lon)) for end in ends]
+    if None in radii:
+        return chart, ""
+    discs: list[OpenDisc] = [
+        (float(end.lat), float(end.lon), radius)
+        for end, radius in zip(ends, radii)
+        if radius is not None
+    ]
+    for canal in chart.canals:
+        for place in canal.ends:
+            if _in_box(place, closed.box):
+                radius = _open_radius(chart, closed, place) or _RADII[1]
+                discs.append((float(place[0]), float(place[1]), radius))
+    closed = replace(closed, discs=tuple(discs))
+    if not closed.shapes:
+        return chart, ""
+    wide = [
+        f"{radius / NAUTICAL_MILE:.0f} nm of {end.name}"
+        for end, radius in zip(ends, radii)
+        if radius is not None and radius > _RADII[0]
+    ]
+    note = (
+        f"Closed: water with less than {depth:.1f} m by the {NAME}, and named shoal areas; not "
+        f"within {' and '.join([*wide, '8 nm of other ends'] if wide else ['8 nm of the ends'])} "
+        "and in narrow passages."
+    )
+    return replace(chart, zones=replace(chart.zones, closed_shoals=closed)), note
+
+
+def _region(ends: Sequence[Endpoint]) -> DegreeBox:
+    """Return a box [deg] with all shoals that a voyage may meet."""
+    lat = np.array([end.lat for end in ends], float)
+    lon = np.degrees(np.unwrap(np.radians([end.lon for end in ends])))
+    far = max(float(distance(a.lat, a.lon, b.lat, b.lon)) for a, b in pairwise(ends))
+    return _box_round(lat, lon, max(_REGION, _REGION_SHARE * far))
+
+
+def _box_round(lat: FloatArray, lon: FloatArray, margin: float) -> DegreeBox:
+    """Return the box [deg] round positions with a margin [m]; the whole world near a pole."""
+    north = margin / METRES_PER_DEGREE
+    south, top = float(lat.min()) - north, float(lat.max()) + north
+    if max(-south, top) > _POLAR:
+        return WORLD_BOX
+    east = north / math.cos(math.radians(max(-south, top, 0.0)))
+    west, east = float(lon.min()) - east, float(lon.max()) + east
+    return (south, top, west, east) if east - west < 360.0 else WORLD_BOX
+
+
+def _in_box(place: Position, box: DegreeBox) -> bool:
+    south, north, west, east = box
+    return south <= place[0] <= north and (place[1] - west) % 360.0 <= east - west
+
+
+def _open_radius(chart: Chart, closed: ClosedShoals, place: Position) -> float | None:
+    """Return the least radius [m] of open water that joins a place to the sea; None without one."""
+    for radius in _RADII:
+        half = radius + _LOOK_BEYOND
+        box = _box_round(np.array([place[0]]), np.array([place[1]]), half)
+        local = replace(closed, discs=((*place, radius),), box=box)
+        if not local.shapes:
+            return radius
+
+        def is_open(lat: FloatArray, lon: FloatArray, local: ClosedShoals = local) -> BoolArray:
+            return np.asarray(chart.is_navigable(lat, lon) & ~local.contains(lat, lon))
+
+        lat, lon = joined_positions(
+            *place, half, is_navigable=is_open, legs_blocked=chart.legs_blocked
+        )
+        away = np.maximum(
+            np.abs(lat - place[0]),
+            np.abs(wrap_longitude(lon - place[1])) * math.cos(math.radians(place[0])),
+        )
+        if (away * METRES_PER_DEGREE > _RIM * half).any():
+            return radius
+    return None

@@ -217,7 +217,9 @@ def _kind(context: PlanningContext, found: TimeCertificate) -> str:
     if found.cells:
         counted = ["land"]
         counted += ["the offing"] if context.chart.offing.distance > 0.0 else []
-        counted += ["no-go zones"] if context.chart.zones.no_go else []
+        zones = context.chart.zones
+        counted += ["no-go zones"] if zones.no_go else []
+        counted += ["closed shoals"] if zones.closed_shoals else []
         counted += ["canals"] if found.mesh is not None and found.mesh.links else []
     text += f" with {', '.join(counted)}" if counted else ""
     if context.chart.zones.has_penalty:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from thalweg.chart.offing import required_offing
+from thalweg.chart.zones.leg_fractions import points_inside
 from thalweg.core.geodesy import METRES_PER_DEGREE, densify
 from thalweg.core.types import BoolArray, FloatArray
 
@@ -23,9 +24,9 @@ _OUTLINE_PARTS: Final = 0.5  # of a cell: outlines of zones are great circles, s
 def closed_cells(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> BoolArray:
     """Return which cells of a mesh are closed all over, whatever the time.
 
-    A cell is closed if it is land or no-go zone at its centre and no shore or outline passes
-    through it, if all of it is nearer to land than the chart requires, or if it is outside the
-    chart's area.
+    A cell is closed if it is land, no-go zone or closed shoal at its centre and no shore or outline
+    passes through it, if all of it is nearer to land than the chart requires, or if it is outside
+    the chart's area.
 
     Parameters
     ----------
@@ -53,8 +54,8 @@ def closed_cells(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> BoolA
         # neither distance changes by more than a metre a metre
         too_near = shore + half < _OFFING_SHARE * (required - half)
         closed |= too_near.reshape(shape)
-    if chart.zones.no_go:
-        inside = np.asarray(chart.crosses_no_go_zone(*centres, *centres)).reshape(shape)
+    if chart.zones.closed_shapes:
+        inside = points_inside(chart.zones.closed_index, *centres).reshape(shape)
         closed |= inside & ~_touched(_zone_outlines(chart, lat[1] - lat[0]), lat, lon)
     result: BoolArray = closed
     return result
@@ -94,8 +95,8 @@ def _outside_area(chart: Chart, lat: FloatArray, lon: FloatArray) -> BoolArray:
 
 
 def _zone_outlines(chart: Chart, spacing: float) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Yield the outlines of no-go zones as close positions [deg] on great circles."""
-    for shape in chart.zones.no_go:
+    """Yield the outlines of closed zones and shoals as close positions [deg] on great circles."""
+    for shape in chart.zones.closed_shapes:
         for ring in (shape.exterior, *shape.interiors):
             lon, lat = np.asarray(ring.coords, float)[:, :2].T
             step = max(_OUTLINE_PARTS * spacing * METRES_PER_DEGREE, 100.0)

@@ -1,0 +1,186 @@
+"""Shoal water that is closed: where the depth layer has metres less than a ship requires.
+
+Between the points of the layer its depth is interpolated, so that a few metres of difference say
+little; much less water than is required is there for certain. Named shoal areas close as a whole.
+Channels of passages and the water round ports stay open, as the layer shows no dredged channels.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
+from itertools import pairwise
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.chart.depth.global_depth import global_depth_codes
+from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
+from thalweg.core.geodesy import Position
+from thalweg.core.types import FloatArray
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.kernels.geometry.shoal_excess import POINTS_OF_DEGREE
+
+#: A position [deg] and the radius [m] of the open water round it.
+OpenDisc: TypeAlias = tuple[float, float, float]
+#: South, north, west and east [deg], east above west.
+DegreeBox: TypeAlias = tuple[float, float, float, float]
+
+WORLD_BOX: Final[DegreeBox] = (-90.0, 90.0, -180.0, 180.0)
+_MARGIN: Final = 2.0  # of the layer: less than required by so much, and by a share, is closed [m]
+_SHARE: Final = 0.2
+_CHANNEL: Final = 4.0 * NAUTICAL_MILE  # on both sides of a channel
+_LEAST_AREA: Final = 1e-4  # smaller shoals of the layer are left out [square degrees]
+_TOLERANCE: Final = 0.005  # of the outlines [deg]
+_DEGREE: Final = 60.0 * NAUTICAL_MILE
+_TURNS: Final = (-360.0, 0.0, 360.0)
+
+
+def closing_depth(required: float) -> float:
+    """Return the depth of the layer below which water is closed [m], in tenths of a metre.
+
+    Parameters
+    ----------
+    required : Depth that a ship requires [m].
+
+    Returns
+    -------
+    float : 2 m less, and at least a fifth less; 0 where that is not above zero.
+    """
+    return round(max(min(required - _MARGIN, (1.0 - _SHARE) * required), 0.0), 1)
+
+
+@dataclass(frozen=True)
+class ClosedShoals:
+    """Shoal water that no leg may cross.
+
+    Attributes
+    ----------
+    depth : Water with less than this by the layer, or in named areas, is closed [m].
+    channels : tuple of tuple of (lat, lon)
+        Lines within 4 nautical miles of which water is open [deg].
+    discs : tuple of (lat, lon, radius)
+        Discs in which water is open [deg, m]; named areas with a centre inside are open.
+    box : South, north, west and east [deg] of the shoals of the layer that count.
+    """
+
+    depth: float
+    channels: tuple[tuple[Position, ...], ...] = field(default=(), repr=False)
+    discs: tuple[OpenDisc, ...] = ()
+    box: DegreeBox = WORLD_BOX
+
+    @cached_property
+    def shapes(self) -> tuple[Any, ...]:
+        """The closed water as shapely polygons of longitude and latitude; they may overlap."""
+        return _closed_shapes(self)
+
+    def contains(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+        """Return which positions [deg] are in closed water."""
+        import shapely
+
+        inside = np.zeros(np.shape(lat), np.bool_)
+        whole = shapely.union_all(self.shapes)
+        shapely.prepare(whole)
+        for turn in _TURNS:
+            inside |= shapely.contains_xy(whole, np.asarray(lon) + turn, np.asarray(lat))
+        return inside
+
+    def text(self) -> str:
+        """Return everything as text, for a fingerprint."""
+        open_water = hashlib.sha256(
+            repr((self.channels, self.discs, self.box)).encode()
+        ).hexdigest()[:16]
+        return f"closed shoals {self.depth} {open_water}"
+
+
+@lru_cache(maxsize=4)
+def _closed_shapes(closed: ClosedShoals) -> tuple[Any, ...]:
+    import shapely
+    import shapely.affinity
+
+    if closed.depth <= 0.0:
+        return ()
+    ends = np.array([disc[:2] for disc in closed.discs]).reshape(-1, 2)
+    named = [
+        area.polygon
+        for area in SHOAL_AREAS
+        if area.depth < closed.depth and not area.contains(*ends.T).any()
+    ]
+    shapes = np.array([*_outlines_of_layer(closed.depth, closed.box), *named], object)
+    open_water = [_disc(*disc) for disc in closed.discs]
+    open_water += [_corridor(line) for line in closed.channels]
+    tree = shapely.STRtree(shapes)
+    for area in open_water:
+        for turn in _TURNS:
+            there = shapely.affinity.translate(area, turn)
+            cut = tree.query(there)
+            shapes[cut] = shapely.difference(shapes[cut], there)
+    parts = shapely.get_parts(shapes)
+    return tuple(parts[shapely.area(parts) > _LEAST_AREA])
+
+
+@lru_cache(maxsize=8)
+def _outlines_of_layer(depth: float, box: DegreeBox) -> tuple[Any, ...]:
+    """Return the water of the layer in a box that is shallower than a depth [m], as polygons."""
+    import shapely
+    from contourpy import contour_generator
+
+    lat, lon, depths = _layer_inside(box)
+    contours = contour_generator(
+        lon, lat, np.ma.masked_invalid(depths), corner_mask=True, fill_type="OuterOffset"
+    )
+    shapes = [
+        shapely.Polygon(points[: ends[1]], [points[a:b] for a, b in pairwise(ends[1:])])
+        for points, ends in zip(*contours.filled(-1.0, depth))
+    ]
+    valid = shapely.make_valid(shapely.simplify(np.array(shapes, object), _TOLERANCE))
+    parts = shapely.get_parts(shapely.get_parts(valid))
+    areas = (shapely.get_type_id(parts) == shapely.GeometryType.POLYGON) & (
+        shapely.area(parts) > _LEAST_AREA
+    )
+    return tuple(parts[areas])
+
+
+def _layer_inside(box: DegreeBox) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return latitudes, longitudes [deg] and depths [m] of the layer in a box, or slightly more.
+
+    Points on land beside water have the mean depth of that water.
+    """
+    from scipy.ndimage import uniform_filter
+
+    code = global_depth_codes()
+    south, north, west, east = (round(edge * POINTS_OF_DEGREE) for edge in box)
+    row = np.arange(max(south - 1, -90 * POINTS_OF_DEGREE), min(north + 1, 90 * POINTS_OF_DEGREE))
+    column = np.arange(west - 1, min(east + 1, west + 360 * POINTS_OF_DEGREE) + 1)
+    part = code[row + 90 * POINTS_OF_DEGREE][:, (column + 180 * POINTS_OF_DEGREE) % code.shape[1]]
+    water = part > 0
+    depth = np.where(water, part - 1.0, 0.0).astype(np.float32)
+    share = uniform_filter(water.astype(np.float32), 3, mode="nearest")
+    mean = uniform_filter(depth, 3, mode="nearest") / np.maximum(share, 0.05)
+    beside = share > 0.05  # a ninth of the points or more are water
+    filled = np.where(water, depth, np.where(beside, mean, np.nan))
+    return row / POINTS_OF_DEGREE, column / POINTS_OF_DEGREE, np.asarray(filled, float)
+
+
+def _disc(lat: float, lon: float, radius: float) -> Any:
+    import shapely
+    import shapely.affinity
+
+    disc = shapely.Point(lon, lat).buffer(radius / _DEGREE, quad_segs=6)
+    return shapely.affinity.scale(disc, 1.0 / max(np.cos(np.radians(lat)), 0.01), 1.0)
+
+
+def _corridor(line: Sequence[Position]) -> Any:
+    import shapely
+    import shapely.affinity
+
+    lat, lon = np.array(line, float).T
+    lon = np.degrees(np.unwrap(np.radians(lon)))
+    stretch = max(float(np.cos(np.radians(lat.mean()))), 0.01)
+    wide = shapely.LineString(np.stack([lon * stretch, lat], axis=-1)).buffer(
+        _CHANNEL / _DEGREE, quad_segs=4
+    )
+    return shapely.affinity.scale(wide, 1.0 / stretch, 1.0, origin=(0.0, 0.0))
