@@ -16,6 +16,10 @@ from thalweg.planning.request.voyage_endpoints import Endpoint
 
 Planned = TypeVar("Planned")
 
+_OPENED: Final = (
+    "Crosses shoal water where it must: no route was found with that closed. Check the depths "
+    "on the chart."
+)
 _SHARES: Final = (1.0, 0.5, 0.25, 0.0)  # of the offing that are tried where no route exists
 
 
@@ -42,6 +46,7 @@ def plan_off_land(
     if offing <= 0.0 or context.chart.coastline.is_empty:
         return run(context)
     refusal: NoRouteError | None = None
+    was_closed = False
     for share, closing in ((1.0, True), *((share, False) for share in _SHARES)):
         kept = share * offing
         chart = chart_off_land(context.chart, ends, kept)
@@ -51,6 +56,9 @@ def plan_off_land(
             if not note:
                 continue
             notes.append(note)
+            was_closed = True
+        elif was_closed:
+            notes.append(_OPENED)
         limits = replace(context.needs.limits, offing=kept)
         needs = replace(context.needs, limits=limits, notes=tuple(notes))
         try:

@@ -109,7 +109,7 @@ def _in_order(
     ordered = sorted(scored, key=lambda item: item.route.time_h)
     if trade_off.context.voyage.objective == "front" or not ordered:
         return ordered
-    best = min(ordered, key=lambda item: item.value)
+    best = min(ordered, key=lambda item: item.value * (1.0 + item.penalty))
     return [best, *(item for item in ordered if item is not best)]
 
 
