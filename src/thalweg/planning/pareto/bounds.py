@@ -8,12 +8,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from thalweg.chart.zones.zone_set import Zones
+from thalweg.chart import Chart
+from thalweg.chart.zones.leg_fractions import outlines_only
 from thalweg.core.geodesy import METRES_PER_DEGREE, distance
 from thalweg.core.pareto_fronts import ROUNDING_TOLERANCE, lower_hull, non_dominated_indices
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.kernels import codes
+from thalweg.kernels.geometry.coast_index import outlines_touched
 from thalweg.planning.pareto.exploration import strongest_current
 from thalweg.planning.pareto.trade_off_context import ExploredAlternative, TradeOffContext
 from thalweg.planning.plan_data import Proof
@@ -150,7 +152,7 @@ def certain_front(trade_off: TradeOffContext, length: float, current: float) -> 
     inside = 0.0
     if prices.inside > prices.outside:
         ends = trade_off.ends[0], trade_off.ends[-1]
-        inside = min(length, sum(_least_to_leave(context.chart.zones, end) for end in ends))
+        inside = min(length, sum(_least_to_leave(context.chart, end) for end in ends))
     parts = [(inside, prices.inside), (length - inside, min(prices.inside, prices.outside))]
     slow = 1.0 / (top + current)
     (time, value), (more_time, more_value) = (
@@ -164,11 +166,16 @@ def certain_front(trade_off: TradeOffContext, length: float, current: float) -> 
     return np.array([seconds[hull] / HOUR, values[hull]])
 
 
-def _least_to_leave(zones: Zones, end: Endpoint) -> float:
-    """Return a length [m] that no way out of the control areas is shorter than; 0 outside them."""
+def _least_to_leave(chart: Chart, end: Endpoint) -> float:
+    """Return a length [m] that no way out of the control areas is shorter than; 0 outside them.
+
+    A ship leaves them where their outline is in water, or through a canal that leads out.
+    """
+    zones = chart.zones
     if not bool(zones.in_eca(end.lat, end.lon)):
         return 0.0
     least = math.inf
+    coast = outlines_only(chart.coastline.index)
     for zone in zones.eca:
         rings = zone.rings
         for first, last in itertools.pairwise(rings.start):
@@ -176,11 +183,21 @@ def _least_to_leave(zones: Zones, end: Endpoint) -> float:
             pieces = np.ceil(np.hypot(np.diff(lat), np.diff(lon)) / _OUTLINE_STEP)
             place = np.concatenate([[0.0], np.cumsum(np.maximum(pieces, 1.0))])
             along = np.arange(place[-1] + 1.0)
-            near = distance(
-                end.lat, end.lon, np.interp(along, place, lat), np.interp(along, place, lon)
-            )
-            least = min(least, float(np.min(near)))
-    return max(least - 0.5 * _OUTLINE_STEP * METRES_PER_DEGREE, 0.0)
+            lat, lon = np.interp(along, place, lat), np.interp(along, place, lon)
+            ends = lat[:-1], lon[:-1], lat[1:], lon[1:]
+            shore = np.empty(len(lat) - 1, np.bool_)
+            outlines_touched(coast, *(np.ascontiguousarray(x) for x in ends), shore)
+            land = np.asarray(chart.coastline.shore_distance(lat[:-1], lon[:-1], cap=1.0)) <= 0.0
+            away = np.asarray(distance(end.lat, end.lon, lat, lon))
+            near = np.minimum(away[:-1], away[1:])[shore | ~land]
+            least = min(least, float(np.min(near, initial=math.inf)))
+    least -= 0.5 * _OUTLINE_STEP * METRES_PER_DEGREE
+    for canal in chart.canals:
+        lat, lon = np.array(canal.ends).T
+        inside = zones.in_eca(lat, lon)
+        if inside.any() and not inside.all():
+            least = min(least, float(np.min(distance(end.lat, end.lon, lat, lon))))
+    return max(least, 0.0)
 
 
 def certified_length(trade_off: TradeOffContext, routes: Sequence[Route]) -> float:
