@@ -1,6 +1,7 @@
 """Routes through files and back, and files that cannot be routes."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from thalweg.route import (
     write_geojson,
     write_gpx,
 )
+from thalweg.route.formats.file_route import file_route
 from thalweg.sea import Sea
 
 WRITERS = {"csv": write_csv, "geojson": write_geojson, "gpx": write_gpx}
@@ -241,3 +243,15 @@ def test_a_column_without_any_value_is_left_out(tmp_path):
     columns = list(zip(*(row.split(",") for row in rows)))
     assert all(any(column) for column in columns) and len(columns) == header.count(",") + 1
     assert header.startswith("name,lat,lon,time,waiting_h") and "cost" not in header
+
+
+def test_greatest_and_least_values_of_legs_are_not_divided_among_their_pieces():
+    """A great circle of 40 degrees becomes many rhumb lines, the second leg one or few."""
+    route = route_along([(45.0, -40.0), (45.0, 0.0), (45.5, 0.0)])
+    extremes = {"land_distance": np.array([7.0, 3.0]) * 1852.0, "pitch": np.radians([2.0, 5.0])}
+    rows = file_route(replace(route, legs={**route.legs, **extremes})).rows
+    assert len(rows) > 8
+    on_first = [row for row in rows[:-1] if row["lon"] < -1e-6]
+    assert {row["land_distance_nm"] for row in on_first} == {7.0}
+    assert {row["pitch_deg"] for row in on_first} == {2.0}
+    assert {row["land_distance_nm"] for row in rows[len(on_first) : -1]} == {3.0}

@@ -106,6 +106,11 @@ _TABLE_COLUMNS: Final = {
         if name != "inshore_percent"
     },
 }
+#: Columns of legs (before ":") that hold the greatest or least value on them, not a sum.
+GREATEST_ON_LEGS: Final = (
+    "weighted_acceleration", "acceleration", "velocity", "displacement", "heave", "pitch", "roll"
+)  # fmt: skip
+LEAST_ON_LEGS: Final = ("land_distance", "contour_distance")
 _LEAST: Final = ("land_distance_nm", "contour_distance_nm")
 _ATTRIBUTES: Final = {
     "time": "time_h",

@@ -18,6 +18,7 @@ from thalweg.route.formats.parsed_track import GEOMETRY, GREAT_CIRCLE, RHUMB_LIN
 from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.formats.sample_places import SamplePlaces, time_integral
 from thalweg.route.formats.waypoint_names import waypoint_names
+from thalweg.route.indicator_columns import GREATEST_ON_LEGS, LEAST_ON_LEGS
 from thalweg.route.route import Route
 from thalweg.route.route_tables import LEG_KINDS, waypoint_rows
 from thalweg.route.track import Track
@@ -142,11 +143,21 @@ def _cut(route: Route, vertices: FileVertices) -> _CutRoute:
     }
     sailed, begun = _spent_shares(route, leaving_place), at - start[leg] > 1e-3
     for name in set(route.legs) - set(_NO_SUMS):
-        values = route.legs[name]
+        values, kind = route.legs[name], name.partition(":")[0]
+        if kind in GREATEST_ON_LEGS or kind in LEAST_ON_LEGS:
+            extreme = np.minimum if kind in LEAST_ON_LEGS else np.maximum
+            legs[name] = _extremes(values, leg[:-1], before[1:], extreme)
+            continue
         share = begun if name.startswith("waiting") else sailed  # a wait is at the start of its leg
         until = np.concatenate([[0.0], np.cumsum(values)])[leg]
         legs[name] = np.diff(until + np.where(share == 0.0, 0.0, values[leg] * share))
     return _CutRoute(cut_track, legs, samples, route.cost_name, route.engine_order)
+
+
+def _extremes(values: FloatArray, first: IntArray, last: IntArray, extreme: np.ufunc) -> FloatArray:
+    """Return the least or greatest values of ranges of legs, both ends included."""
+    ranges = np.stack([first, np.maximum(first, last) + 1], axis=-1).ravel()
+    return np.asarray(extreme.reduceat(np.append(values, values[-1]), ranges)[::2])
 
 
 def _joined_samples(
