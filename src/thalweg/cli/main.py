@@ -57,6 +57,14 @@ _COMMANDS = (
 class Parser(argparse.ArgumentParser):
     """A parser that raises `InputError` for a command line that it cannot read."""
 
+    def parse_args(self, args=None, namespace=None):  # type: ignore[no-untyped-def,override]
+        """Parse arguments; what is left over is an error of the command, not of all commands."""
+        found, left = self.parse_known_args(args, namespace)
+        if left:
+            command = _subcommands(self).get(getattr(found, "command", ""), self)
+            command.error(f"unrecognized arguments: {' '.join(left)}")
+        return found
+
     def error(self, message: str) -> NoReturn:
         """Raise `InputError` instead of ending the process."""
         words = _suggestions(self, message)
@@ -76,6 +84,12 @@ def _suggestions(parser: argparse.ArgumentParser, message: str) -> list[str]:
     unknown = options if "unrecognized" in message else [match[1]] if match else []
     found = [near for word in unknown for near in difflib.get_close_matches(word, known, n=2)]
     return list(dict.fromkeys(found))
+
+
+def _subcommands(parser: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
+    """Return the commands of a parser by name."""
+    tables = (action.choices for action in parser._actions if isinstance(action.choices, dict))
+    return next(tables, {})
 
 
 def _known_words(parser: argparse.ArgumentParser) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,7 @@ from thalweg.ship.condition_variables import (
 )
 from thalweg.ship.conditions import Conditions
 
+_PARTS_OF_LEG = 256  # that are looked at for where a leg first touches land
 _LANE_TOLERANCE = 20.0  # legs may run against a traffic lane so far, at its corners [m]
 _LIMIT_TOLERANCE = 1e-9  # for rounding, on every limit, in its own unit
 
@@ -61,9 +63,12 @@ def limit_violations(
 
 
 def land_violations(
-    world: SailingEnvironment, pieces: TrackPieces, times: FloatArray
+    world: SailingEnvironment,
+    pieces: TrackPieces,
+    times: FloatArray,
+    ends_at: FloatArray,
 ) -> list[Violation]:
-    """Return the legs that touch land or a no-go zone or leave the chart, each at its middle.
+    """Return the legs that touch land or a no-go zone or leave the chart, each where it first does.
 
     Legs along port approaches may touch land. Legs nearer to land than the offing are found apart
     from the test of legs, at their worst place.
@@ -73,7 +78,8 @@ def land_violations(
     chart, track = world.chart, pieces.track
     ends = np.stack([track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:]])
     keeps_off = isinstance(chart, Chart) and chart.offing.distance > 0.0
-    status = np.array((chart.with_offing(0.0) if keeps_off else chart).leg_status(*ends))
+    free: Any = chart.with_offing(0.0) if keeps_off else chart
+    status = np.array(free.leg_status(*ends))
     approach = np.flatnonzero(pieces.canals.approach)
     found = []
     if keeps_off:
@@ -84,12 +90,24 @@ def land_violations(
         closed = chart.crosses_no_go_zone(*ends[:, approach])
         status[approach] = np.where(closed, codes.NO_GO, codes.OK)
     for leg in np.flatnonzero(status != codes.OK):
+        share = _first_closed(free, ends[:, leg])
         first_lat, first_lon, last_lat, last_lon = ends[:, leg]
-        lat, lon = positions_along(first_lat, first_lon, last_lat, last_lon, 0.5)
+        lat, lon = positions_along(first_lat, first_lon, last_lat, last_lon, share)
         reason = REASONS.get(int(status[leg]), REASONS[codes.LAND])
         where = f"{reason}: leg {leg + 1}"
-        found.append(Violation(where, float(times[leg]), float(lat), float(lon)))
+        time = float(times[leg] + share * (ends_at[leg] - times[leg]))
+        found.append(Violation(where, time, float(lat), float(lon)))
     return found
+
+
+def _first_closed(chart: Any, ends: FloatArray) -> float:
+    """Return the share of a leg (lat1, lon1, lat2, lon2) [deg] after which it is first closed."""
+    lat1, lon1, lat2, lon2 = ends
+    shares = np.linspace(0.0, 1.0, _PARTS_OF_LEG + 1)
+    lat, lon = positions_along(lat1, lon1, lat2, lon2, shares)
+    status = np.array(chart.leg_status(lat[:-1], lon[:-1], lat[1:], lon[1:]))
+    closed = np.flatnonzero(status != codes.OK)
+    return float(closed[0] + 0.5) / _PARTS_OF_LEG if len(closed) else 0.5
 
 
 def _offing_violations(

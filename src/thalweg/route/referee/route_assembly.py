@@ -120,7 +120,7 @@ def _check_limits(
     found += waiting_violations(world.chart, track, sailed.leg_times()[1])
     found += canal_violations(world, sailed.pieces, sailed.leg_times()[0])
     found += lane_violations(world, sailed.pieces, sailed.leg_times()[0])
-    found += land_violations(world, sailed.pieces, sailed.leg_times()[0])
+    found += land_violations(world, sailed.pieces, *sailed.leg_times())
     clearance = _finite(depth - world.ship.draught)
     least = _least_by_leg(near.leg, clearance, moments, len(track) - 1)
     for index, _, lying in waits:  # a wait belongs to the leg after it

@@ -35,17 +35,9 @@ export function readable(text) {
 
 export function duration(hours) {
   if (!known(hours)) return "unknown";
-  const minutes = Math.round(hours * 60);
-  if (minutes < 60) return `${minutes} min`;
-  if (minutes < 1440) return `${Math.floor(minutes / 60)} h ${two(minutes % 60)} min`;
-  return `${Math.floor(Math.round(hours) / 24)} d ${two(Math.round(hours) % 24)} h`;
-}
-
-// To the minute, also over a day: for figures whose differences are shown.
-export function exactDuration(hours) {
-  if (!known(hours)) return "unknown";
   const minutes = Math.round(hours * 60), days = Math.floor(minutes / 1440);
-  return days ? `${days} d ${two(Math.floor((minutes % 1440) / 60))} h ${two(minutes % 60)} min` : duration(hours);
+  if (minutes < 60) return `${minutes} min`;
+  return `${days ? `${days} d ` : ""}${Math.floor((minutes % 1440) / 60)} h ${two(minutes % 60)} min`;
 }
 
 export function signedDuration(hours) {

@@ -5,13 +5,13 @@ import { errorBox, fill, h } from "../common/elements.js";
 import { EXAMPLES, keyOf, VARIATIONS } from "./examples.js";
 import { drawCompared, PAINTS } from "./result_drawing.js";
 import { faultWords } from "../common/faults.js";
-import { duration, exactDuration, isCalm, known, number, readable, seconds, signed, time, titleOf } from "../common/format.js";
+import { duration, isCalm, known, number, readable, seconds, signed, time, titleOf } from "../common/format.js";
 
 const MOST = 6;
 // Column, name in the answer, decimals (of time: minutes), text, text of a difference (null: none is shown).
 // Differences are those of the rounded figures, so that they agree with what stands beside them.
 const FIGURES = [
-  ["Time", "time_h", null, exactDuration, (v) => (v ? `${v < 0 ? "−" : "+"}${exactDuration(Math.abs(v))}` : "0 min")],
+  ["Time", "time_h", null, duration, (v) => (v ? `${v < 0 ? "−" : "+"}${duration(Math.abs(v))}` : "0 min")],
   ["Distance", "distance_nm", 1, (v) => `${number(v, 1)} nm`, (v) => signed(v, 1)],
   ["Fuel", "fuel_t", 1, (v) => (known(v) ? `${number(v, 1)} t` : "unknown"), (v) => signed(v, 1)],
   ["Cost", "cost", 0, (v, row) => (known(v) ? `${number(v)} ${row.currency}` : "unknown"), (v) => signed(v, 0)],

@@ -4,7 +4,7 @@ import { fileAddress, get, resultAddress } from "../common/api.js";
 import { fill, h, REASONS, unit } from "../common/elements.js";
 import { faultWords, remedyOf } from "../common/faults.js";
 import { indicatorTable } from "../form/indicators.js";
-import { duration, exactDuration, isCalm, known, number, plainPosition, seconds, signed, signedDuration, time, titleOf } from "../common/format.js";
+import { duration, isCalm, known, number, plainPosition, seconds, signed, signedDuration, time, titleOf } from "../common/format.js";
 import { selection } from "../common/selection.js";
 
 const OBJECTIVES = { time: "least time", distance: "shortest distance", fuel: "least fuel", energy: "least energy", cost: "least cost", comfort: "least motion sickness", co2: "least CO₂", encounters: "fewest encounters", inshore: "least length near land", weighted: "a weighted sum", front: "all trade-offs", alternatives: "routes that differ" };
@@ -124,7 +124,7 @@ export class ResultView {
     const best = plan.objective in OBJECTIVES && plan.objective !== "front" ? OBJECTIVES[plan.objective] : null; // of the first route
     const row = (route, i) => h("li", {}, h("button", {
       type: "button", "aria-pressed": String(i === selection.route), onclick: () => selection.choose(i), onpointerenter: () => selection.hover(i), onpointerleave: () => selection.hover(null),
-    }, h("span.swatch"), h("span", {}, exactDuration(route.time_h), front && front.points[i]?.way !== "open sea" ? h("small.unit", {}, ` ${front.points[i]?.way}`) : null, h("small", {}, `route ${i + 1}${best && !i ? `, ${best}` : ""}`)), h("span", {}, number(route.fuel_t, 1), unit("t")), h("span", {}, known(costOf(route)) ? [number(costOf(route)), unit(route.currency)] : "")));
+    }, h("span.swatch"), h("span", {}, duration(route.time_h), front && front.points[i]?.way !== "open sea" ? h("small.unit", {}, ` ${front.points[i]?.way}`) : null, h("small", {}, `route ${i + 1}${best && !i ? `, ${best}` : ""}`)), h("span", {}, number(route.fuel_t, 1), unit("t")), h("span", {}, known(costOf(route)) ? [number(costOf(route)), unit(route.currency)] : "")));
     return h("div.block.no-print", {}, h("h2", {}, `${plan.routes.length} routes, fastest first`), h("ol.routes", {}, inOrderOfTime(plan).map((i) => row(plan.routes[i], i))));
   }
 
