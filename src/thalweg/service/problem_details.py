@@ -32,6 +32,22 @@ _SHAPES: Final = {
     "missing": "is missing",
     "extra_forbidden": "is not a known entry",
 }
+#: What a value may be, by the kind of fault, with the entries of its context.
+_BOUNDS: Final = {
+    "greater_than": "It is above {gt:g}.",
+    "greater_than_equal": "It is {ge:g} or more.",
+    "less_than": "It is below {lt:g}.",
+    "less_than_equal": "It is {le:g} or less.",
+    "literal_error": "It is {expected}.",
+    "float_parsing": "It is a number.",
+    "float_type": "It is a number.",
+    "int_parsing": "It is a whole number.",
+    "int_type": "It is a whole number.",
+    "int_from_float": "It is a whole number.",
+    "bool_parsing": "It is true or false.",
+    "bool_type": "It is true or false.",
+    "string_type": "It is a text.",
+}
 #: What texts of a form may be, by the last name of their place.
 _FORMS: Final = {
     "seas": "'calm', 'storm', or the id of an uploaded sea (GET /seas lists them)",
@@ -138,6 +154,10 @@ def _shape_error(error: RequestValidationError) -> ServiceError:
         )
     name = ".".join(place) or "The body"
     what = _SHAPES.get(first["type"], f"is not possible: {first['msg']}")
+    possible = "The form of requests is in /openapi.json, with examples."
+    if first["type"] in _BOUNDS:
+        what = f"is {shortened_repr(first['input'])}"
+        possible = _BOUNDS[first["type"]].format(**first.get("ctx") or {})
     if first["type"] == "string_pattern_mismatch":
         kind = next((part for part in reversed(place) if not part.isdigit()), "")
         known = _FORMS.get(kind, f"a text of the pattern {first['ctx']['pattern']}")
@@ -145,8 +165,8 @@ def _shape_error(error: RequestValidationError) -> ServiceError:
     return ServiceError(
         422,
         f"{name} {what}.",
-        "The form of requests is in /openapi.json, with examples.",
-        "Correct the request.",
+        possible,
+        f"Correct {name}." if place else "Correct the request.",
         field=name if place else None,
         faults=len(error.errors()),
     )
