@@ -28,7 +28,12 @@ def test_legs_on_land_are_named():
         depart=0,
     )
     assert [v.reason for v in route.violations] == ["land: leg 2"]
-    assert route.violations[0].lat > 50.0  # the middle of the geodesic bulges poleward
+    # where the leg first meets land: the north coast of Cornwall, long before its middle
+    found = route.violations[0]
+    assert 50.0 < found.lat < 50.8 and -6.0 < found.lon < -4.9
+    leg = route.legs["depart"][1], route.legs["arrive"][1]
+    share = (found.lon + 10.0) / 30.0
+    assert found.time == pytest.approx(leg[0] + share * (leg[1] - leg[0]), abs=3600.0)
     assert not route.feasible
     assert math.isfinite(route.time_h)
 

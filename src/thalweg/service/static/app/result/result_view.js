@@ -108,7 +108,7 @@ export class ResultView {
     const point = plan.front?.points[selection.route];
     const found = plan.front ? point?.gap : plan.gap, gap = found < 1 ? found : null; // at 1 the bound is zero: none
     const quality = this.result.job.summary.quality || "";
-    const said = plan.front ? (known(gap) ? `At most ${number(Math.ceil(1000 * gap / (1 - gap)) / 10, 1)} % from the best possible at its time` : "No bound is known for this route") : quality ? quality[0].toUpperCase() + quality.slice(1) : "No bound is known";
+    const said = plan.front ? (known(gap) ? `At most ${number(Math.ceil(1000 * gap) / 10, 1)} % from the best possible at its time` : "No bound is known for this route") : quality ? quality[0].toUpperCase() + quality.slice(1) : "No bound is known";
     const kind = plan.lower_bound_kind[0].toUpperCase() + plan.lower_bound_kind.slice(1);
     const bar = h("i");
     bar.style.width = `${known(gap) ? Math.max(2, 100 * (1 - gap)) : 0}%`;
