@@ -212,6 +212,7 @@ def test_keyboard_only(visit):
     visit.picture("night")
     page.keyboard.press("v")
     page.locator("#panel h1", has_text="Voyages").wait_for()
+    page.locator("button.job").first.wait_for()
     tab_to(page, "button.job")
     page.keyboard.press("Enter")
     page.wait_for_selector(".proof")

@@ -209,7 +209,7 @@ def _add_passage_options(group: Any) -> None:
         "--ignore-lanes",
         action="store_true",
         help="do not count the approximate traffic separation schemes of the package; default: a "
-        "mile against their traffic counts three",
+        "mile against their traffic counts ten",
     )
     group.add_argument(
         "--open",

@@ -108,7 +108,7 @@ class Voyage(IndicatorRequest, SearchRequest, VoyagePrices, Schedule, Itinerary)
     ignore_lanes : bool
         Whether the approximate traffic separation schemes of the package
         (`thalweg.chart.zones.traffic_schemes`) do not count. By default a mile against their
-        traffic counts three, on the world's coasts without lanes among the zones.
+        traffic counts ten, on the world's coasts without lanes among the zones.
     method : {"default", "exact", "nsga2", "spea2", "mpaes"}
         How a trade-off is searched: the exact front of a network, refined by evolution (default);
         the exact front alone; or an evolutionary method from a few routes, for comparison.

@@ -99,7 +99,8 @@ export class CompareView {
   // The ends, where the name of the job does not say them, and the ship.
   #about(job) {
     const ends = titleOf({ request: job.request });
-    const said = [job.request?.voyage && ends !== titleOf(job) ? ends : "", this.handlers.shipName(job.request?.ship)];
+    const voyage = job.request?.voyage;
+    const said = [voyage && ends !== titleOf(job) ? ends : "", this.handlers.shipName(job.request?.ship), job.summary?.objective ? `by ${job.summary.objective}` : "", voyage?.depart ? `departs ${time(seconds(voyage.depart))}` : ""];
     return said.filter(Boolean).join(" · ");
   }
 
@@ -108,7 +109,7 @@ export class CompareView {
     const entry = (n, facts) => h("div.jobrow", {}, h("label.check", {}, box(n), h("span", {}, this.#nameOf(job, n), h("small", {}, this.#about(job)), h("small", {}, facts))));
     const made = time(seconds(job.created));
     const blind = job.kind === "plan" && job.request.seas[0] !== "calm" && job.summary.objective === "time" && !job.summary.cancelled;
-    return [entry(1, `${duration(job.summary.time_h)} · ${number(job.summary.distance_nm, 0)} nm · ${made}`), blind ? entry(0, "planned without weather, sailed in it") : null];
+    return [entry(1, `${duration(job.summary.time_h)} · ${number(job.summary.distance_nm, 0)} nm · planned ${made}`), blind ? entry(0, "planned without weather, sailed in it") : null];
   }
 
   // The chosen routes in the order of the table; each can become the reference, or be left out.
