@@ -60,7 +60,7 @@ export class HeatMap {
   #keyOf(name) {
     if (!name) return [() => "", () => "all voyages"];
     const found = TIMES.find((row) => row[0] === name);
-    return found ? [(row) => found[2](row.at), found[3]] : [(row) => row[name], (k) => String(k)];
+    return found ? [(row) => found[2](row.at), found[3]] : [(row) => row[name], (k) => (typeof k === "number" ? String(Number(k.toFixed(2))) : String(k))];
   }
 
   draw() {

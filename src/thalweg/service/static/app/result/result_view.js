@@ -114,7 +114,8 @@ export class ResultView {
     bar.style.width = `${known(gap) ? Math.max(2, 100 * (1 - gap)) : 0}%`;
     return h("div.proof", {}, h("b", {}, said), h("div.gauge", { role: "img", "aria-label": said }, bar),
       h("details", {}, h("summary", {}, "How this is known"), h("ul.list", {},
-        known(plan.lower_bound) ? h("li", {}, `No route is better than ${number(plan.lower_bound, 1)} ${plan.objective_unit}. ${kind}.`) : h("li", {}, `${kind}.`),
+        known(plan.lower_bound) ? h("li", {}, `${plan.front ? (plan.objective === "front" ? "No route takes less than" : "No route of any time has less than") : "No route is better than"} ${number(plan.lower_bound, 1)} ${plan.objective_unit}. ${kind}.`) : h("li", {}, `${kind}.`),
+        h("li", {}, "The bound does not count penalty areas, shoals and traffic lanes: where these make the way longer, the best possible is nearer than stated."),
         h("li", {}, "Every figure comes from sailing the route again in small steps."),
         Object.entries(plan.rejections).map(([reason, count]) => h("li", {}, `${number(count)} ${REASONS[reason] || reason} were refused.`)))));
   }
