@@ -125,8 +125,8 @@ def test_a_place_is_shown_as_it_is_understood(client):
         ({"fill": {"waves": ["nearest:25", -1]}}, "fill", "range"),
         ({"variables": {"eastward_wind": "u"}}, "variables", "file"),
         ({"route_files": {"legs": "curve"}}, "route_files.legs", "rhumb"),
-        ({"route_files": {"cross_track_nm": 0}}, "route_files.cross_track_nm", "greater"),
-        ({"route_files": {"max_waypoints": 1}}, "route_files.max_waypoints", "greater"),
+        ({"route_files": {"cross_track_nm": 0}}, "route_files.cross_track_nm", "0.001 or more"),
+        ({"route_files": {"max_waypoints": 1}}, "route_files.max_waypoints", "or more"),
     ],
 )
 def test_an_impossible_request_is_refused_at_its_field(client, change, field, word):
