@@ -71,7 +71,6 @@ class Application {
     if (given.get("plan")) { await this.openJob(given.get("plan"), Number(given.get("route") || 1) - 1, given.has("t") ? Number(given.get("t")) : null); return; }
     if (given.get("routes")) this.compare.address = given.get("routes");
     if (given.get("view")) this.#switch(given.get("view"));
-    else if (!first) { this.result = null; this.#leaveProgress(); this.#switch("plan"); }
     else if (!this.form.start.value) this.#showForm();
   }
 
