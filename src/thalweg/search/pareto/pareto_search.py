@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.types import FloatArray
@@ -375,22 +375,22 @@ def _request(ship_on_network: MultiSettingShipOnNetwork, query: FrontQuery) -> F
             "Each edge has one, as thalweg.network.eca_fractions returns them.",
             "Correct the fractions.",
         )
-    further = np.asarray(0.0 if query.edge_cost is None else query.edge_cost, float)
-    if further.shape not in ((), (network.n_edges,)) or not (further >= 0.0).all():
-        raise InputError(
-            "A further cost of an edge is not a number of zero or more.",
-            f"Each of the {network.n_edges} edges has one.",
-            "Correct the costs.",
-        )
-    penalty = np.asarray(1.0 if query.penalty_factor is None else query.penalty_factor, float)
-    if penalty.shape not in ((), (network.n_edges,)) or not (penalty >= 1.0).all():
-        raise InputError(
-            "A penalty factor of an edge is not a number of one or more.",
-            f"Each of the {network.n_edges} edges has one.",
-            "Correct the factors.",
-        )
+    further = _of_edges(network, query.edge_cost, 0.0, "further cost")
+    penalty = _of_edges(network, query.penalty_factor, 1.0, "penalty factor")
     return FrontRequest(
         int(start), int(goal), float(depart), float(latest), chosen, query.prices,
         query.prices.of_legs(inside, np.asarray(network.edges.price_factor, float)) * penalty,
         bool(query.wait), further,
     )  # fmt: skip
+
+
+def _of_edges(network: Network, given: ArrayLike | None, least: float, what: str) -> FloatArray:
+    """Return a number for each edge, or one for all; the least one where none is given."""
+    values = np.asarray(least if given is None else given, float)
+    if values.shape not in ((), (network.n_edges,)) or not (values >= least).all():
+        raise InputError(
+            f"A {what} of an edge is not a number of {least:g} or more.",
+            f"Each of the {network.n_edges} edges has one.",
+            "Correct the numbers.",
+        )
+    return values

@@ -13,7 +13,7 @@ export class VoyageFiles {
     const button = (text, act) => h("button.quiet.small", { type: "button", onclick: act }, text);
     this.input = h("input.hidden", { type: "file", id: "voyage-file", "aria-label": "Voyage or route file", accept: ".json,.yaml,.yml,.rtz,.rtzp,.gml,.gpx,.geojson,.csv", tabindex: "-1", onchange: () => this.#open() });
     this.element = h("div.block", {}, h("div.exports", {}, button("Save voyage file", () => this.#save()), button("Open …", () => this.input.click()), button("Copy link", () => this.#link()), this.input),
-      h("p.facts", {}, "A voyage file, or a route file whose ends are planned anew."));
+      h("p.facts", {}, "A voyage file, or a route file whose ends are used for a new plan."));
   }
 
   #link() {
