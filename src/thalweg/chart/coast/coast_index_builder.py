@@ -203,7 +203,7 @@ def _set_clearance(index: IndexArrays, pieces: CoastSegments) -> None:
     u, v = np.meshgrid(border, border)
     middle = (np.arange(blocks) + 0.5) * 2.0 * size / side - 1.0
     um, vm = np.meshgrid(middle, middle)
-    tree = cKDTree(pieces.start)
+    tree = cKDTree(pieces.start, compact_nodes=False, balanced_tree=False)  # queries from afar
     lengths = np.linalg.norm(pieces.end - pieces.start, axis=1)
     corners, centres = _directions(u, v), _directions(um, vm)
     reach = np.zeros_like(um)

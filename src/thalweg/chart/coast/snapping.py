@@ -163,7 +163,10 @@ def joined_positions(
     labels = _connected_waters(legs_blocked, lats, lons, free).ravel()
     y, x = lats.ravel(), lons.ravel()
     step = half / HALF_GRID_POINTS
-    near = np.flatnonzero(free.ravel() & (geodesy.distance(lat, lon, y, x) < 3.0 * step))
+    middle = np.zeros(free.shape, bool)
+    middle[(slice(HALF_GRID_POINTS - 3, HALF_GRID_POINTS + 4),) * 2] = True
+    near = np.flatnonzero(free & middle)
+    near = near[geodesy.distance(lat, lon, y[near], x[near]) < 3.0 * step]
     here = np.full(len(near), lat), np.full(len(near), lon)
     near = near[~legs_blocked(*here, y[near], x[near])]
     joined = np.isin(labels, np.unique(labels[near])) & free.ravel()

@@ -8,7 +8,6 @@ Channels of passages and the water round ports stay open, as the layer shows no 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from itertools import pairwise
@@ -17,11 +16,14 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.chart import geojson_polygons
+from thalweg.chart.coast.coast_index_builder import build_index
 from thalweg.chart.depth.global_depth import global_depth_codes
 from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.core.geodesy import Position
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.kernels.geometry.cube_sphere import IndexArrays
 from thalweg.kernels.geometry.shoal_excess import POINTS_OF_DEGREE
 
 #: A position [deg] and the radius [m] of the open water round it.
@@ -94,6 +96,22 @@ class ClosedShoals:
             repr((self.channels, self.discs, self.box)).encode()
         ).hexdigest()[:16]
         return f"closed shoals {self.depth} {open_water}"
+
+
+@lru_cache(maxsize=4)
+def closed_water_index(closed: ClosedShoals, no_go: tuple[Any, ...], cells: int) -> IndexArrays:
+    """Return the grid of the edges of closed shoals and no-go zones.
+
+    The charts of one plan share it: those with land and those without.
+
+    Parameters
+    ----------
+    closed : Closed shoals.
+    no_go : Shapely polygons of the no-go zones.
+    cells : Cells along a side of a face of the index.
+    """
+    rings = geojson_polygons.rings_from_polygons([*no_go, *closed.shapes])
+    return build_index(rings, cells)
 
 
 @lru_cache(maxsize=4)
@@ -173,7 +191,8 @@ def _disc(lat: float, lon: float, radius: float) -> Any:
     return shapely.affinity.scale(disc, 1.0 / max(np.cos(np.radians(lat)), 0.01), 1.0)
 
 
-def _corridor(line: Sequence[Position]) -> Any:
+@lru_cache(maxsize=1024)
+def _corridor(line: tuple[Position, ...]) -> Any:
     import shapely
     import shapely.affinity
 

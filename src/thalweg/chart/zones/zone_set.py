@@ -21,7 +21,7 @@ from thalweg.chart import geojson_polygons
 from thalweg.chart.anchorages import waiting_allowed
 from thalweg.chart.coast.coast_cache import load_or_build
 from thalweg.chart.coast.coast_index_builder import build_index, empty_index
-from thalweg.chart.depth.closed_shoals import ClosedShoals
+from thalweg.chart.depth.closed_shoals import ClosedShoals, closed_water_index
 from thalweg.chart.depth.shoals import Shoals
 from thalweg.chart.zones.emission_control_areas import EcaZone
 from thalweg.chart.zones.leg_fractions import (
@@ -210,8 +210,7 @@ class Zones:
         """The grid of the edges of the no-go zones and the closed shoals."""
         if self.closed_shoals is None:
             return self.index
-        rings = geojson_polygons.rings_from_polygons(list(self.closed_shapes))
-        return build_index(rings, ZONE_INDEX_CELLS)
+        return closed_water_index(self.closed_shoals, self.no_go, ZONE_INDEX_CELLS)
 
     @cached_property
     def eca_index(self) -> IndexArrays:

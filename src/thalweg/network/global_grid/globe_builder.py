@@ -28,7 +28,7 @@ from thalweg.network.global_grid.endpoint_attachment import Attachment, Connecte
 from thalweg.network.global_grid.globe_options import GlobeOptions
 from thalweg.network.global_grid.grid import GlobeGrid, globe_grid
 from thalweg.network.network import Network, NetworkMeta, Stations
-from thalweg.network.shortest_paths import shortest_path_tree
+from thalweg.network.shortest_paths import ShortestPathTree, shortest_path_tree
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -50,9 +50,13 @@ class _UnassembledGlobe:
 
     def distances(self, node: int) -> FloatArray:
         """Return the static distance [m] of every node from one; inf where unreached."""
+        return self.paths_from(node).distance
+
+    def paths_from(self, node: int) -> ShortestPathTree:
+        """Return the shortest paths from a node to all others."""
         every = concatenate_pairs([self.pairs, self.through])
         edges = directed_edges(self.stations.n_nodes, every)
-        return shortest_path_tree(edges.graph, every.length[edges.pair], node).distance
+        return shortest_path_tree(edges.graph, every.length[edges.pair], node)
 
 
 def globe(
@@ -107,6 +111,37 @@ def globe(
         total = to_start + sheet.distances(sheet.start + 1)
         sheet = _sheet_subset(sheet, total <= (1.0 + slack) * length + sheet.grid.spacing)
     return _network(chart, sheet, options)
+
+
+def globe_path(
+    chart: Chart, start: Position, goal: Position
+) -> tuple[list[Position], float] | None:
+    """Return the shortest path over the geodesic grid of ocean passages, without its network.
+
+    Parameters
+    ----------
+    chart : Land, zones and canals.
+    start, goal : Positions [deg] on navigable water.
+
+    Returns
+    -------
+    (list of (lat, lon), float), or None
+        Positions [deg] from start to goal and the length [m]; None where they do not connect.
+
+    Raises
+    ------
+    InputError : If start or goal are not on navigable water, or both are the same.
+    NoRouteError : If an end cannot be joined to the grid.
+    """
+    start, goal = check_endpoints(chart, start, goal)
+    options = _limits_including_ends(GlobeOptions(), start, goal)
+    sheet = _draw_and_attach(chart, options, start, goal)
+    tree = sheet.paths_from(sheet.start)
+    path = tree.path(sheet.start + 1)
+    if not path:
+        return None
+    places = sheet.stations.lat[path].tolist(), sheet.stations.lon[path].tolist()
+    return list(zip(*places)), float(tree.distance[path[-1]])
 
 
 def _default_slack(distance: float) -> float:

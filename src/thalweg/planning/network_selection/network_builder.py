@@ -15,9 +15,9 @@ from thalweg.network import (
     check_network,
     globe,
     lattice,
-    shortest_path,
     with_endpoints,
 )
+from thalweg.network.global_grid.globe_builder import globe_path
 from thalweg.network.layered.sections_round_land import layered_section
 from thalweg.planning.network_selection.model_mesh import model_mesh_network
 from thalweg.planning.request.network_choice import NetworkChoice
@@ -106,14 +106,9 @@ class LatticeBetween:
     def _globe_path(self) -> tuple[list[Position] | None, float]:
         """Return the shortest path over the globe network and its length [m]; None without one."""
         try:
-            network = globe(self._chart, *self._places)
+            return globe_path(self._chart, *self._places) or (None, 0.0)
         except NoRouteError:
             return None, 0.0
-        to, path = shortest_path(network, network.meta.start, network.meta.goal)
-        if not path:
-            return None, 0.0
-        found = list(zip(network.lat[path].tolist(), network.lon[path].tolist()))
-        return found, float(to[network.meta.goal])
 
 
 def _inside_mesh_extent(model: Mesh, ends: tuple[Position, Position]) -> bool:
