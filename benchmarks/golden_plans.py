@@ -54,7 +54,7 @@ FEW = (
     *("lat", "lon", "hours", "waiting_h", "ordered_speed_kn", "speed_through_water_kn"),
     *("speed_over_ground_kn", "fuel_t"),
 )
-ARRAYS = ("waypoints", "lower")  # given as hashes and sums in a brief file
+ARRAYS = ("waypoints",)  # given as hashes and sums in a brief file
 
 
 # -- the six plans ---------------------------------------------------------------------------------
@@ -350,8 +350,6 @@ def numbers_of(data: Any) -> Any:
     found = {key: numbers_of(part) for key, part in data.items() if key not in LEFT_OUT}
     if "rejections" in data:
         found["rejections"] = [list(pair) for pair in sorted(data["rejections"].items())]
-    if "lower" in data:
-        found["lower"] = columns(data["lower"])
     if "networks" in data.get("provenance", {}):
         searched = data["provenance"]["networks"]
         found["networks"] = [{key: one.get(key) for key in FACTS} for one in searched]

@@ -113,7 +113,7 @@ def test_other_renamed_methods():
 
 
 def test_an_earlier_stage_of_a_front_is_read_as_that_of_today():
-    front = ParetoFront("fuel", "t", np.ones(2), ("polish", "exact"), ("", ""), np.ones((2, 1)))
+    front = ParetoFront("fuel", "t", np.ones(2), ("polish", "exact"), ("", ""))
     assert front.stages == ("local search", "exact")
 
 

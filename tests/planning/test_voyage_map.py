@@ -147,7 +147,7 @@ def test_enclosed_water_is_hatched_and_the_sea_is_not(lagoon):
 def test_a_route_beside_that_of_the_plan_is_drawn(lagoon):
     axes = draw_map(lagoon, beside=lagoon.best).axes[0]
     labels = [line.get_label() for line in axes.lines]
-    assert "route that ignores the weather" in labels and "route, times in UTC" in labels
+    assert "shortest route" in labels and "route, times in UTC" in labels  # a calm sea
 
 
 def test_profiles_have_times_in_utc_and_state_that_no_depth_is_known(lagoon):

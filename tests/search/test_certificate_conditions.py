@@ -174,9 +174,10 @@ def test_water_of_functions_may_open_at_any_moment_between_samples(by_steps):
 
 
 @pytest.mark.slow
-def test_a_bar_across_the_whole_way_delays_the_bound_until_it_opens():
+@pytest.mark.parametrize("step", [600.0, 100.0])  # of the second, no window holds all moments
+def test_a_bar_across_the_whole_way_delays_the_bound_until_it_opens(step):
     """No ship passes the bar before it opens: the bound rises over it by the time of waiting."""
-    opens, step = 18_000.0, 600.0
+    opens = 18_000.0
 
     def depth(t, y, x):
         return np.where((abs(x - 20.5) < 0.03) & (t - 1e9 < opens), -5.0, 20.0) + 0 * y

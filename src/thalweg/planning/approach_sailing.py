@@ -196,7 +196,6 @@ def _front_with_approaches(
     return replace(
         front,
         values=np.asarray(front.values) + added[1],
-        lower=np.asarray(front.lower) + more,
         certain=np.asarray(front.certain) + more,
         comparison=comparison,
     )
@@ -289,15 +288,14 @@ def plan_along_approaches(
         objective = priced_objective(voyage, context.ship)
         total = objective.value(route)
         one = np.array([total])
-        lower = np.array([[route.time_h], [total]])
+        exact = np.array([[route.time_h], [total]])
         front = ParetoFront(
             objective.name,
             objective.unit,
             one,
             ("exact",),
             ("approach",),
-            lower,
-            certain=lower,
+            certain=exact,
             objective=objective.objective,
         )
         value = route.time_h if voyage.objective == "front" else total

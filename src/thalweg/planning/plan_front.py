@@ -57,8 +57,6 @@ class ParetoFront:
     ways : tuple of str (n,)
         Label of each route: its canals, or ``"open sea"``, and the sides of land where these
         differ (`thalweg.planning.pareto.route_names.route_labels`).
-    lower : Times [h] and values of the lower front of the network: evidence, as what happens
-        between its nodes is neither searched nor bounded, (2, m).
     comparison : The weather-blind route in the same weather.
     certain : Times [h] and values of a front below every route, to be joined by lines, (2, m).
     objective : Objective, optional
@@ -70,7 +68,6 @@ class ParetoFront:
     values: FloatArray
     stages: tuple[str, ...]
     ways: tuple[str, ...]
-    lower: FloatArray
     comparison: BaselineComparison | None = None
     certain: FloatArray = field(default_factory=lambda: np.empty((2, 0)))
     objective: Objective | None = None
@@ -78,10 +75,6 @@ class ParetoFront:
     def __post_init__(self) -> None:
         stages = tuple(_RENAMED_STAGES.get(stage, stage) for stage in self.stages)
         object.__setattr__(self, "stages", stages)
-
-    def lower_at(self, time_h: float) -> float:
-        """Return the value of the lower front at a time [h]; NaN before its first time."""
-        return lower_at(self.lower, time_h)
 
     def gaps(self, routes: tuple[Route, ...]) -> list[float | None]:
         """Return the gap of each route to the certain front at its time [fraction of its value]."""
@@ -128,9 +121,6 @@ class ParetoFront:
             "unit": self.unit,
             **prices,
             "points": self.rows(routes),
-            "lower": [
-                {"time_h": float(t), self.column: float(v)} for t, v in self.lower.T if t == t
-            ],
             "certain": [{"time_h": float(t), self.column: float(v)} for t, v in self.certain.T],
         }
 
@@ -140,12 +130,6 @@ def certain_at(certain: FloatArray, time_h: float) -> float:
     if not certain.size or math.isnan(time_h):
         return math.nan
     return float(np.interp(time_h, certain[0], certain[1]))
-
-
-def lower_at(lower: FloatArray, time_h: float) -> float:
-    """Return the value of a lower front (2, m) at a time [h]; NaN before its first time."""
-    reached = lower[1][lower[0] <= time_h + 1e-9]
-    return float(reached.min()) if reached.size else math.nan
 
 
 def knee(time: FloatArray, value: FloatArray) -> int:

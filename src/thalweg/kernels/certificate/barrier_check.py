@@ -11,6 +11,7 @@ import numpy as np
 from thalweg.kernels.certificate.cell_conditions import (
     SECTORS,
     cell_speeds,
+    has_limits,
     make_buffers,
     read_cell,
 )
@@ -220,23 +221,13 @@ def _kept_speeds(world, j, i, first, last, found, buffers, kept):
 
 
 @kernel_only
-def _has_limits(world):
-    limits = world.ship.limits
-    return (
-        limits[LIMIT_REQUIRED_DEPTH] > -math.inf
-        or limits[LIMIT_WAVE_HEIGHT] < math.inf
-        or limits[LIMIT_WIND_SPEED] < math.inf
-    )
-
-
-@kernel_only
 def _open_on_barrier(world, j, i, values, window, buffers):
     """Return whether a faster ship may be in a cell at some moment of a barrier's values there.
 
     ``window`` are the times at which a faster ship may be there at all. The centre is then the
     mean of the corners, and the barrier may rise at any rate.
     """
-    if not _has_limits(world):
+    if not has_limits(world):
         return True
     first, last = max(values[0] - 1.0, window[0]), min(values[1], window[1])
     return first <= last and read_cell(world, j, i, first, last, buffers)[1]
@@ -352,7 +343,7 @@ def closed_throughout(world, windows, closed, closing):
         Filled: open cells that a limit may close for a time.
     """
     buffers = make_buffers()
-    limited = _has_limits(world)
+    limited = has_limits(world)
     for j in range(closed.shape[0]):
         for i in range(closed.shape[1]):
             closing[j, i] = False

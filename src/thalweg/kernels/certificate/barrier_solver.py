@@ -11,9 +11,8 @@ import numpy as np
 from thalweg.kernels.certificate.cell_conditions import (
     make_buffers,
     read_cell,
-    sample_node,
-    time_step_of,
 )
+from thalweg.kernels.certificate.mesh_sampling import sample_node, time_step_of
 from thalweg.kernels.codes import (
     CHANNEL_COUNT,
     CURRENT_EAST,

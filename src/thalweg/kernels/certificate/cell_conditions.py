@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from thalweg.kernels.certificate.mesh_sampling import sample_node, time_step_of
 from thalweg.kernels.certificate.speed_ranges import (
     angle_from_bow_range,
     direction_range,
@@ -141,40 +142,6 @@ def make_buffers():
 
 
 @kernel_only
-def time_step_of(times, t):
-    """Return (step, fraction) of a time on an increasing axis, held inside it."""
-    last = times.shape[0] - 2
-    if t <= times[0]:
-        return 0, 0.0
-    if t >= times[last + 1]:
-        return last, 1.0
-    step = np.searchsorted(times, t, side="right") - 1
-    step = min(max(step, 0), last)
-    return step, (t - times[step]) / (times[step + 1] - times[step])
-
-
-@kernel_only
-def sample_node(world, j, i, step, fraction, sample):
-    """Fill ``sample`` by channel at a node of the mesh; NaN where a value is unknown."""
-    raster, m = world.raster, world.refinement
-    row, column = world.first_row + j // m, world.first_column + i // m
-    fy, fx = (j % m) / m, (i % m) / m
-    values, channels = raster.values, raster.channels
-    for k in range(channels.shape[0]):
-        total = 0.0
-        for later in range(2):
-            in_time = fraction if later else 1.0 - fraction
-            if in_time == 0.0:
-                continue
-            for up in range(2):
-                for side in range(2):
-                    weight = in_time * (fy if up else 1.0 - fy) * (fx if side else 1.0 - fx)
-                    if weight != 0.0:
-                        total += weight * values[step + later, row + up, column + side, k]
-        sample[channels[k]] = total
-
-
-@kernel_only
 def _widen(low, high, value):
     return min(low, value), max(high, value)
 
@@ -286,6 +253,33 @@ def _read_window(world, j, i, first, last, buffers):
 
 
 @kernel_only
+def has_limits(world):
+    """Return whether depth, waves or wind may close a cell."""
+    limits = world.ship.limits
+    return (
+        limits[LIMIT_REQUIRED_DEPTH] > -math.inf
+        or limits[LIMIT_WAVE_HEIGHT] < math.inf
+        or limits[LIMIT_WIND_SPEED] < math.inf
+    )
+
+
+@kernel_only
+def _read_samples(world, j, i, first, last, buffers):
+    """Collect the conditions in a cell; where it is closed, up to the samples round the window."""
+    found = _read_window(world, j, i, first, last, buffers)
+    if found[1] or not world.by_steps or world.closed[j, i]:
+        return found
+    # what is closed at two samples of a function is taken to be closed between them, no more
+    times = world.raster.times
+    step, fraction = time_step_of(times, last + world.departures)
+    until = times[step + 1] if fraction > 0.0 else times[step]
+    since = times[time_step_of(times, first)[0]]
+    return _read_window(
+        world, j, i, min(first, since), max(last, until - world.departures), buffers
+    )
+
+
+@kernel_only
 def read_cell(world, j, i, first, last, buffers):
     """Collect the conditions in a cell during a window of time since each departure.
 
@@ -293,7 +287,8 @@ def read_cell(world, j, i, first, last, buffers):
     -------
     instants : int
         Moments that were read; 0 where nothing is known, -1 where they are more than the buffers
-        hold, so that any conditions are taken as possible.
+        hold, so that any conditions are taken as possible. Whether the cell is closed is known
+        then all the same.
     is_open : bool
         False where no ship may be in the cell at any moment of the window.
     field_high : float
@@ -306,17 +301,21 @@ def read_cell(world, j, i, first, last, buffers):
     Fills the ranges of the conditions, the vectors of wind and waves, and the currents at the
     corners in ``buffers``.
     """
-    found = _read_window(world, j, i, first, last, buffers)
-    if found[1] or not world.by_steps or world.closed[j, i]:
+    found = _read_samples(world, j, i, first, last, buffers)
+    if found[0] >= 0 or not has_limits(world):
         return found
-    # what is closed at two samples of a function is taken to be closed between them, no more
+    # a window of too many instants is closed where each of its parts is
     times = world.raster.times
-    step, fraction = time_step_of(times, last + world.departures)
-    until = times[step + 1] if fraction > 0.0 else times[step]
-    since = times[time_step_of(times, first)[0]]
-    return _read_window(
-        world, j, i, min(first, since), max(last, until - world.departures), buffers
-    )
+    since = first
+    while since < last:
+        step = time_step_of(times, since)[0]
+        until = min(last, times[min(step + MAX_INSTANTS - 2, times.shape[0] - 1)])
+        if until <= since:
+            until = last
+        if _read_samples(world, j, i, since, until, buffers)[1]:
+            return found
+        since = until
+    return -1, False, 0.0, 0, 0
 
 
 @kernel_only

@@ -234,7 +234,7 @@ class _Candidates:
         """Return the cheapest track of the front of time and an objective, and that at its knee."""
         own = with_objective(self.trade_off, objective)
         horizon = extend_horizon(own, network)
-        front = network_pareto_front(own, network, horizon.frozen, horizon.latest, lower=False)
+        front = network_pareto_front(own, network, horizon.frozen, horizon.latest)
         points = sorted(front.points, key=lambda point: point.time)
         if not points:
             why = " and ".join(front.refused) or "too late for the period of the data"

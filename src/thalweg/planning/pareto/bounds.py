@@ -1,4 +1,4 @@
-"""Lower bounds of a Pareto front: for open water and absolute."""
+"""The lower bound of a Pareto front by mixtures of speeds over the least length."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.chart.zones.leg_fractions import outlines_only
 from thalweg.core.geodesy import METRES_PER_DEGREE, distance
-from thalweg.core.pareto_fronts import ROUNDING_TOLERANCE, lower_hull, non_dominated_indices
+from thalweg.core.pareto_fronts import lower_hull
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.kernels import codes
@@ -35,44 +35,6 @@ _CURRENT_UNKNOWN = (
 _NOTHING_LEAST = "no bound: the least that the data allow is zero"
 _OUTLINE_STEP = 0.05  # between positions on the outlines of control areas [deg]
 _SECONDS = 2.0  # for the bound of the length, by default
-
-
-def open_water_lower_front(
-    explored: list[ExploredAlternative], criterion_lower_bound: float
-) -> np.ndarray:
-    """Return the lower front of open water over all alternatives: times [h] and values.
-
-    For a route in open water with time T and value C there is a path on the network with at most
-    time T / k and value C / k, where k is the direction factor. So ``C >= k L(T / k)``
-    with the lower front L of the network. The bound is as certain as that factor.
-    """
-    time, value = [np.empty(0)], [np.empty(0)]
-    for one in explored:
-        if one.exact is None:
-            continue
-        k = one.factor
-        time.append(k * one.exact.lower_time / HOUR)
-        value.append(np.maximum(k * one.exact.lower_cost, criterion_lower_bound))
-    times, values = np.concatenate(time), np.concatenate(value)
-    non_dominated = non_dominated_indices(times, values, tolerance=ROUNDING_TOLERANCE)
-    return np.array([times[non_dominated], values[non_dominated]]).reshape(2, -1)
-
-
-def correction_factors(lower: np.ndarray, time_h: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the factors (time, value) that lower the lower front to the routes below it.
-
-    1 where no route is below it. Routes between islands may be shorter than paths on a coarse
-    network by more than the direction factor.
-    """
-    if not lower.size:
-        return np.ones(2)
-    earliest = float(lower[0].min())  # 0 where a setting is slower than the current
-    factors = np.array([min(1.0, float(time_h.min()) / earliest) if earliest > 0.0 else 1.0, 1.0])
-    for time, value in zip(time_h, values):
-        bound = lower[1, factors[0] * lower[0] <= time].min(initial=math.inf)
-        if value < bound < math.inf:
-            factors[1] = min(factors[1], float(value / bound))
-    return factors
 
 
 def derive_proof(
@@ -215,14 +177,3 @@ def certified_length(trade_off: TradeOffContext, routes: Sequence[Route]) -> flo
     shortest = min(feasible, key=lambda route: float(route.legs["length"].sum()))
     found = certified_distance(context, shortest, seconds=seconds)
     return max(geodesic, found.value) if math.isfinite(found.value) else geodesic
-
-
-def correction_notes(share: np.ndarray) -> list[str]:
-    """Return a note about the correction of the lower front, if there was one."""
-    least = float(share.min())
-    if least == 1.0:
-        return []
-    return [
-        f"Refined routes are up to {1.0 - least:.1%} below the lower front of the network; the "
-        "lower front was lowered by that, and is an estimate, not a proof."
-    ]

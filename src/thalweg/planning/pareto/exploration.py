@@ -34,7 +34,6 @@ from thalweg.search import (
     FrontQuery,
     MultiSettingShipOnNetwork,
     NetworkFront,
-    direction_factor,
     pareto_front,
 )
 
@@ -70,7 +69,6 @@ def explore_alternative(
         first,
         exact,
         arrival,
-        _largest_direction_factor(trade_off, alternative, frozen),
     )
 
 
@@ -167,8 +165,6 @@ def network_pareto_front(
     network: Network,
     frozen: FrozenSea,
     latest: float,
-    *,
-    lower: bool = True,
 ) -> NetworkFront:
     """Search the exact front of a network.
 
@@ -176,15 +172,14 @@ def network_pareto_front(
     ------
     SearchInterrupted : If Ctrl-C is pressed before there is a front.
     """
-    share_of_labels = 0.5 if lower else 1.0
 
     def progress(share: float) -> None:
-        if share < share_of_labels and trade_off.interrupt_guard.stopped():
+        if share < 1.0 and trade_off.interrupt_guard.stopped():
             raise SearchInterrupted
 
     ship, query = front_search(trade_off, network, frozen, latest)
     bin_s = (latest - query.depart) / _TIME_BINS
-    return pareto_front(ship, query, bin_s=bin_s, lower=lower, progress=progress)
+    return pareto_front(ship, query, bin_s=bin_s, lower=False, progress=progress)
 
 
 def front_search(
@@ -222,15 +217,6 @@ def front_search(
         wait=context.voyage.wait and not (prices.counts_dose or prices.counts_water),
     )
     return ship, query
-
-
-def _largest_direction_factor(
-    trade_off: TradeOffContext, alternative: RouteAlternative, frozen: FrozenSea
-) -> float:
-    """Return the direction factor for the slowest setting in the strongest current."""
-    slowest = float(np.min(np.asarray(trade_off.context.ship.speeds)[trade_off.settings]))
-    ratio = strongest_current(frozen.stations) / slowest if slowest > 0.0 else 1.0
-    return direction_factor(alternative.network.meta.gap_rad, ratio)
 
 
 def strongest_current(stations: StationFields) -> float:

@@ -83,7 +83,7 @@ def _speed_optimised(trade_off: TradeOffContext, path: AlternativePath) -> list[
     horizon = extend_horizon(trade_off, network)
     if not horizon.first.found or horizon.first.arrive > horizon.latest:
         return []
-    found = network_pareto_front(trade_off, network, horizon.frozen, horizon.latest, lower=False)
+    found = network_pareto_front(trade_off, network, horizon.frozen, horizon.latest)
     name = " and ".join(path.canals) or "open sea"
     return [
         TrackCandidate(

@@ -225,7 +225,6 @@ def _assembled(
             values=np.array([value]),
             stages=("within limits",),
             ways=(way,),
-            lower=front.lower,
             certain=front.certain,
             objective=front.objective,
         )

@@ -21,10 +21,7 @@ from thalweg.planning.pareto.baseline import (
     weather_blind_tracks,
 )
 from thalweg.planning.pareto.bounds import (
-    correction_factors,
-    correction_notes,
     derive_proof,
-    open_water_lower_front,
 )
 from thalweg.planning.pareto.certified_costs import certified_front
 from thalweg.planning.pareto.route_names import route_labels
@@ -63,7 +60,7 @@ def assemble_trade_off_plan(
     explored: list[ExploredAlternative],
     scored: list[RefereedCandidate],
 ) -> Plan:
-    """Assemble the plan of a trade-off: order, lower front, baseline, notes and provenance.
+    """Assemble the plan of a trade-off: order, bound, baseline, notes and provenance.
 
     Raises
     ------
@@ -79,15 +76,12 @@ def assemble_trade_off_plan(
         raise _no_feasible_route_error(trade_off, explored)
     sailed = [item.route for item in constant if item.route not in blind]
     certain = certified_front(trade_off, explored, ordered)
-    front, corrections = _pareto_front(
-        trade_off, explored, ordered, certain.points, (blind, sailed)
-    )
+    front = _pareto_front(trade_off, explored, ordered, certain.points, (blind, sailed))
     stopped = trade_off.interrupt_guard.stopped()
     notes = [
         *(_interruption_notes(explored, front) if stopped else ()),
         *_notes(trade_off, ends, explored, ordered),
         *trade_off.notes,
-        *corrections,
     ]
     return Plan(
         voyage=context.voyage,
@@ -119,16 +113,14 @@ def _pareto_front(
     ordered: list[RefereedCandidate],
     certain: FloatArray,
     references: tuple[list[Route], list[Route]],
-) -> tuple[ParetoFront, list[str]]:
-    """Return the front, and notes about the correction of its lower front."""
+) -> ParetoFront:
+    """Return the front of the candidates in their order."""
     context, objective = trade_off.context, trade_off.objective
     routes = tuple(item.route for item in ordered)
     values = np.array([item.value for item in ordered])
-    lower = open_water_lower_front(explored, float(certain[1].min()))
-    factors = correction_factors(lower, np.array([route.time_h for route in routes]), values)
     networks = {one.alternative.name: one.alternative.network for one in explored}
     shortest = min(networks, key=lambda name: shortest_path_length(networks[name]))
-    front = ParetoFront(
+    return ParetoFront(
         criterion=objective.name,
         unit=objective.unit,
         values=values,
@@ -139,12 +131,10 @@ def _pareto_front(
             networks,
             context.chart,
         ),
-        lower=lower * factors[:, None],
         comparison=compare_with_baseline(context, objective, routes, values, *references),
         certain=certain,
         objective=objective.objective,
     )
-    return front, correction_notes(factors)
 
 
 def _interruption_notes(explored: list[ExploredAlternative], front: ParetoFront) -> list[str]:

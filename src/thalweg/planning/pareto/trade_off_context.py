@@ -114,7 +114,6 @@ class ExploredAlternative:
     first : The fastest path on the network.
     exact : The exact front of the network; None where its search was interrupted.
     isochrones : Earliest arrival at every node [s since 1970]; inf where not reached.
-    factor : Least length of a route in open water over that of the path on the network.
     """
 
     alternative: RouteAlternative
@@ -123,7 +122,6 @@ class ExploredAlternative:
     first: SearchResult
     exact: NetworkFront | None
     isochrones: np.ndarray
-    factor: float
 
 
 @dataclass(frozen=True)

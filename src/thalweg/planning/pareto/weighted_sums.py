@@ -75,7 +75,7 @@ def best_route_on_network(
             fields=horizon.frozen.stations,
             required=own.limits.required_depth,
         )
-    front = network_pareto_front(own, network, horizon.frozen, horizon.latest, lower=False)
+    front = network_pareto_front(own, network, horizon.frozen, horizon.latest)
     point = front.fastest if objective.name == "time" else front.cheapest
     return own.context.evaluate(track_from_front_point(network, point), own.objective.terms)
 

@@ -1,13 +1,15 @@
-"""Plot of a Pareto front, with its lower front and the weather-blind route."""
+"""Plot of a Pareto front, with the bound of all routes and the shortest route."""
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from thalweg.core.file_writing import new_figure, save_figure
+from thalweg.core.time import parse_time
 from thalweg.planning.plan_front import knee
 
 if TYPE_CHECKING:
@@ -41,7 +43,7 @@ def draw_pareto_front(plan: PlanData, path: str | Path | None = None) -> Any:
         raise ValueError(f"a plan with the objective {plan.voyage.objective!r} has no front")
     figure = new_figure(8.4, 5.4)
     axes = figure.add_subplot()
-    _draw_lower_bound(axes, plan)
+    _draw_bound(axes, plan)
     _draw_weather_blind(axes, plan)
     _draw_points(axes, plan)
     axes.set_xlabel("time from departure to arrival [h]")
@@ -78,25 +80,25 @@ def _draw_points(axes: Any, plan: PlanData) -> None:
         axes.annotate(
             text,
             (time[index], front.values[index]),
-            xytext=(7, 7),
+            xytext=(-7, -14) if time[index] > time.mean() else (7, 7),
             textcoords="offset points",
+            ha="right" if time[index] > time.mean() else "left",
             fontsize=7.5,
             color=_INK,
         )
 
 
-def _draw_lower_bound(axes: Any, plan: PlanData) -> None:
+def _draw_bound(axes: Any, plan: PlanData) -> None:
     front = plan.front
     assert front is not None
-    shown = front.lower[:, np.isfinite(front.lower).all(axis=0)]
-    if shown.shape[1] < 2:
+    if front.certain.shape[1] < 2:
         return
-    last = max(route.time_h for route in plan.routes)
-    shown = shown[:, shown[0] <= 1.02 * last]
-    axes.step(*shown, where="post", color="#607d8b", lw=1.2, label="lower front of the network")
-    axes.fill_between(
-        shown[0], shown[1], shown[1].min() * 0.98, step="post", color="#607d8b", alpha=0.12
-    )
+    hours = [route.time_h for route in plan.routes if route.feasible] or [front.certain[0, 0]]
+    first, last = max(float(front.certain[0, 0]), 0.98 * min(hours)), 1.02 * max(hours)
+    times = np.linspace(min(first, last), last, 200)
+    bound = np.interp(times, *front.certain)
+    axes.plot(times, bound, color="#607d8b", lw=1.2, label="no route is below this line")
+    axes.fill_between(times, bound, bound.min() * 0.98, color="#607d8b", alpha=0.12)
 
 
 def _draw_weather_blind(axes: Any, plan: PlanData) -> None:
@@ -104,6 +106,12 @@ def _draw_weather_blind(axes: Any, plan: PlanData) -> None:
     if comparison is None:
         return
     last = 1.15 * max(route.time_h for route in plan.routes)
-    pairs = [(r.time_h, v) for r, v in zip(comparison.routes, comparison.values) if r.time_h < last]
+    latest = parse_time(plan.voyage.arrive_by) if plan.voyage.arrive_by is not None else math.inf
+    pairs = [
+        (route.time_h, value)
+        for route, value in zip(comparison.routes, comparison.values)
+        if route.time_h < last and route.feasible and route.arrive <= latest + 1.0
+    ]
+    label = "shortest route at constant speeds"
     if pairs:
-        axes.plot(*np.array(pairs).T, "x--", color=_INK, ms=6, lw=0.8, label="weather-blind route")
+        axes.plot(*np.array(pairs).T, "x--", color=_INK, ms=6, lw=0.8, label=label)

@@ -80,6 +80,13 @@ def _weather_blind(plan: PlanData) -> Route | None:
     return comparison.routes[0] if comparison is not None and comparison.routes else None
 
 
+def _label_of_reference(plan: PlanData) -> str:
+    samples = plan.best.samples
+    met = [samples[name] for name in (_WAVES, *_WIND, *_CURRENT) if name in samples]
+    weather = any(np.nanmax(np.abs(values), initial=0.0) > 0.0 for values in met)
+    return "route that ignores the weather" if weather else "shortest route"
+
+
 def _map_extent(plan: PlanData, beside: Route | None) -> MapExtent:
     routes = [*plan.routes, *([] if beside is None else [beside])]
     lat = np.concatenate([route.samples["lat"] for route in routes])
@@ -256,7 +263,7 @@ def _draw_routes(
     if beside is not None:
         axes.plot(
             box.line(beside.samples["lon"]), beside.samples["lat"], "--", color=_INK, lw=1.3,
-            zorder=4.5, label="route that ignores the weather",
+            zorder=4.5, label=_label_of_reference(plan),
         )  # fmt: skip
     for route in plan.routes[1:]:
         axes.plot(

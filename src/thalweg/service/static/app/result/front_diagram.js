@@ -11,7 +11,7 @@ export class FrontDiagram {
     const { front } = plan;
     this.column = Object.keys(front.points[0]).find((name) => name === `${front.criterion}_${front.unit.toLowerCase()}`);
     this.points = front.points.map((row, i) => ({ ...row, i, x: row.time_h, y: row[this.column] })).filter((row) => known(row.x) && known(row.y));
-    this.lower = front.lower.map((row) => [row.time_h, row[this.column]]).filter((row) => row.every(known));
+    this.bound = front.certain.map((row) => [row.time_h, row[this.column]]).filter((row) => row.every(known));
     this.base = (plan.comparison || []).map((row) => ({ x: row.time_h, y: row.value, speed: row.speed_kn, feasible: row.feasible })).filter((row) => known(row.x) && known(row.y));
     this.element = h("div.front");
     this.svg = s("svg", { role: "group", "aria-label": `Front of time against ${front.criterion}. Arrow keys move along it.` });
@@ -29,9 +29,9 @@ export class FrontDiagram {
     const { front } = this.plan;
     const left = 64, right = 16, top = 12, bottom = 34;
     const xs = this.points.map((p) => p.x), ys = [...this.points.map((p) => p.y)];
-    const low = this.lower.filter(([x]) => x <= Math.max(...xs) * 1.01).map(([, y]) => y);
     const pad = (a, b) => Math.max(1e-9, b - a) * 0.06;
-    const x0 = Math.min(...xs), x1 = Math.max(...xs), y0 = Math.min(...ys, ...low), y1 = Math.max(...ys);
+    const x0 = Math.min(...xs), x1 = Math.max(...xs), y1 = Math.max(...ys), least = Math.min(...ys);
+    const y0 = Math.min(least, Math.max(this.#boundAt(x1), least - 0.6 * (y1 - least))); // a far bound is cut off
     const [xa, xb, ya, yb] = [x0 - pad(x0, x1), x1 + pad(x0, x1), y0 - pad(y0, y1), y1 + pad(y0, y1)];
     this.px = (x) => left + ((x - xa) / (xb - xa)) * (width - left - right);
     this.py = (y) => height - bottom - ((y - ya) / (yb - ya)) * (height - top - bottom);
@@ -45,10 +45,11 @@ export class FrontDiagram {
     }
     for (const y of ticks(ya, yb, Math.max(2, height / 46))) this.svg.append(s("line", { class: "axis", x1: left, x2: width - right, y1: this.py(y), y2: this.py(y) }), s("text", { x: left - 8, y: this.py(y) + 4, "text-anchor": "end" }, number(y, y1 - y0 < 5 ? 1 : 0)));
     this.svg.append(s("text", { x: left - 8, y: 10, "text-anchor": "end" }, front.unit), s("text", { x: width - right, y: height - 4, "text-anchor": "end" }, "duration of the voyage"));
-    const inside = this.lower.filter(([x]) => x <= xb);
-    if (inside.length > 1) {
-      const step = inside.map(([x, y], k) => `${k ? `H${this.px(Math.max(x, xa))}V` : `M${this.px(Math.max(x, xa))} `}${this.py(Math.min(yb, Math.max(ya, y)))}`).join("") + `H${this.px(xb)}`;
-      this.svg.append(s("path", { class: "below", d: `${step}V${this.py(ya)}H${this.px(Math.max(inside[0][0], xa))}Z` }), s("path", { class: "lower", d: step }));
+    const from = this.bound.length ? Math.max(this.bound[0][0], xa) : xb;
+    if (from < xb) {
+      const times = [from, ...this.bound.map(([x]) => x).filter((x) => x > from && x < xb), xb];
+      const line = times.map((x, k) => `${k ? "L" : "M"}${this.px(x)} ${this.py(Math.min(yb, Math.max(ya, this.#boundAt(x))))}`).join("");
+      this.svg.append(s("path", { class: "below", d: `${line}V${this.py(ya)}H${this.px(from)}Z` }), s("path", { class: "lower", d: line }));
     }
     const order = this.order = this.points.slice().sort((a, b) => a.x - b.x);
     this.svg.append(s("path", { class: "join", d: order.map((p, k) => `${k ? "L" : "M"}${this.px(p.x)} ${this.py(p.y)}`).join("") }));
@@ -69,6 +70,15 @@ export class FrontDiagram {
     });
     this.mark();
     if (focused) this.#focus();
+  }
+
+  // The value that no route of a duration is below; infinite where none is known.
+  #boundAt(x) {
+    const next = this.bound.findIndex(([at]) => at >= x);
+    if (!this.bound.length || (next === 0 && this.bound[0][0] > x)) return Infinity;
+    if (next < 1) return this.bound[next < 0 ? this.bound.length - 1 : 0][1];
+    const [[a, low], [b, high]] = [this.bound[next - 1], this.bound[next]];
+    return low + ((x - a) / (b - a)) * (high - low);
   }
 
   // The chosen and the hovered route are marked.
@@ -92,7 +102,7 @@ export class FrontDiagram {
     fill(this.facts, h("p", {}, h("b", {}, `Route ${p.i + 1} of ${this.points.length}`), pointed ? ", pointed at" : ""), h("p", {}, `${duration(p.x)}, ${number(p.y, p.y < 1000 ? 1 : 0)} ${unitText}`),
       p === fastest ? h("p", {}, "The fastest of all.") : h("p", {}, `${signedDuration(p.x - fastest.x)} and ${signed(p.y - fastest.y, p.y < 1000 ? 1 : 0)} ${unitText} against the fastest.`),
       p.gap < 1 ? h("p", {}, `At its time no route has a ${criterion} more than ${number(Math.ceil(1000 * p.gap) / 10, 1)} % lower.`) : h("p", {}, `How much lower the ${criterion} could be at its time is not known.`),
-      h("p", {}, "Grey: below the lower front of the network. Rings: weather ignored, constant speed."));
+      h("p", {}, "Grey: no route is there. Rings: weather ignored, constant speed."));
   }
 
   #choose(route) {
