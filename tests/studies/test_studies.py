@@ -103,6 +103,9 @@ def test_a_draw_of_one_entry_does_not_depend_on_the_others():
         ({"sample": {"count": 0}}, "whole number"),
         ({"sample": {"speed_kn": {"poisson": [1]}}}, "uniform"),
         ({"compare": ["luck"]}, "comparison"),
+        ({"fill": {"waves": "fetch"}}, "fetch"),
+        ({"fill": 0}, "fill is 0"),
+        ({"axes": {"fill": [{"wave": 0.0}]}}, "wave"),
         ({"axes": {"speed_kn": {"from": 0, "to": 1e9}}}, "At most"),
     ],
 )

@@ -15,12 +15,15 @@ from thalweg.chart import Chart
 from thalweg.core.errors import InputError, ThalwegError
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Plan, Voyage, plan
+from thalweg.planning.request.filled_sea import filled_in_turns
 from thalweg.route import Route, Track, evaluate, read_track
 from thalweg.route.indicator_columns import INDICATORS, indicator_value
 from thalweg.sea import Sea
+from thalweg.sea.fill_policies import FETCH_LIMITED
 from thalweg.ship import Ship
 from thalweg.studies.series_rows import SeriesInputs, series_figures, series_key
 from thalweg.studies.study import StudyRow, canonical_json
+from thalweg.studies.study_axes import fill_policies
 
 #: Largest values over a route: column and sampled variables.
 _EXTREMES = {
@@ -271,7 +274,10 @@ def _ship(key: str, folder: str) -> Ship:
 
 
 def _sea(request: Mapping[str, Any], folder: Path) -> Sea:
-    parts = [request.get(key) for key in ("sea", "map", "fill")]
+    policies = fill_policies(request.get("fill"))
+    by_fetch = ("waves", FETCH_LIMITED) in policies
+    coast = str(request.get("coast", "i")) if by_fetch else None
+    parts = [request.get("sea"), request.get("map"), policies, coast]
     sea = _opened_sea(canonical_json(parts), str(folder))
     member = request.get("member")
     sea = sea if member is None else sea.member(int(member))
@@ -283,7 +289,7 @@ def _opened_sea(key: str, folder: str) -> Sea:
     """Return a sea; each process opens its files once."""
     import json
 
-    given, mapping, fill = json.loads(key)
+    given, mapping, policies, coast = json.loads(key)
     names = given if isinstance(given, list) else [given]
     if not names or not all(isinstance(name, str) for name in names):
         raise InputError(
@@ -293,12 +299,13 @@ def _opened_sea(key: str, folder: str) -> Sea:
         )
     if names == ["calm"]:
         return Sea.calm()
+    chart = None if coast is None else _chart(coast)
     layers = [Sea.storm()] if "storm" in names else []
     files = [Path(folder) / name for name in names if name != "storm"]
     if files:
         layers.insert(0, Sea.open(*files, mapping=mapping))
     sea = layers[0] if len(layers) == 1 else Sea.layered(*layers)
-    return sea if fill is None else sea.filled(**fill)
+    return filled_in_turns(sea, policies, chart)
 
 
 @lru_cache(maxsize=4)

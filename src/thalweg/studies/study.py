@@ -17,7 +17,13 @@ from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.file_reading import read_text_file
 from thalweg.planning.voyage import Voyage
 from thalweg.studies.annual_figures import checked_annual
-from thalweg.studies.study_axes import MOST_ROWS, axis_values, plain_data, sample_draws
+from thalweg.studies.study_axes import (
+    MOST_ROWS,
+    axis_values,
+    fill_policies,
+    plain_data,
+    sample_draws,
+)
 
 #: Entries of a row beside those of a voyage.
 SURROUNDINGS: Final = (
@@ -100,6 +106,11 @@ class Study:
         for name in (self.base.get("detail", DETAILS[0]), *self.axes.get("detail", ())):
             if not isinstance(name, Mapping) and name not in DETAILS:
                 raise unknown_name_error("detail", str(name), DETAILS)
+        fill_policies(self.base.get("fill"))
+        for axis, values in self.axes.items():
+            for value in values:
+                named = isinstance(value, Mapping) and "name" in value
+                fill_policies(value.get("fill") if named else value if axis == "fill" else None)
         if self.size > MOST_ROWS:
             raise InputError(
                 f"The study has {self.size:,} voyages.",
