@@ -199,7 +199,7 @@ class Study:
             )
         for key in data:
             if key not in _ENTRIES:
-                raise unknown_name_error("entry of a study", str(key), _ENTRIES)
+                raise unknown_name_error("entry of a study", str(key), _ENTRIES, field=str(key))
         voyage = plain_data(data.get("voyage", {}))
         if not isinstance(voyage, dict) or (
             not {"start", "goal"} & set(voyage) and "axes" not in data
@@ -284,7 +284,7 @@ def _row(base: Mapping[str, Any], chosen: Mapping[str, Any], compare: Sequence[s
 def _check_entry(name: str) -> None:
     known = (*Voyage.__dataclass_fields__, *SURROUNDINGS)
     if name not in known:
-        raise unknown_name_error("entry of a voyage", name, known)
+        raise unknown_name_error("entry of a voyage", name, known, field=name)
 
 
 def _check_mappings(axes: Any, sample: Any) -> None:

@@ -7,7 +7,8 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from thalweg.core.errors import InputError
+from thalweg.chart.zones.zone_set import Zones
+from thalweg.core.errors import InputError, errors_about
 from thalweg.core.time import parse_time
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.request.european_scope import share_between_places
@@ -189,8 +190,11 @@ class ShipAndSea(BaseModel):
         return [(name, value) for name, values in several.items() for value in values]
 
     def check_sea(self) -> None:
-        """Raise `InputError` for fill values, a sampling or a calm sea that are impossible."""
+        """Raise `InputError` for areas, fill values, a sampling or a calm sea not possible."""
         self._check_calm()
+        if self.areas:
+            with errors_about("areas"):
+                Zones.read(self.areas)
         from thalweg.sea import Sea
         from thalweg.sea.fill_policies import check_fill
 

@@ -43,12 +43,7 @@ def open_world(request: ShipAndSea, files: Mapping[str, str]) -> WorldOfJob:
     files : mapping of str to str
         Paths of the uploaded files by their id; of a ship file by the name of the ship.
     """
-    from thalweg.chart import Chart
-
-    if request.coast == "none":
-        chart = Chart.open_water(-90.0, 90.0, -180.0, 180.0)
-    else:
-        chart = Chart.gshhg(request.coast)
+    chart = open_coast(request.coast)
     for name in request.depths:
         chart = chart.with_depth(files[name])
     if request.areas:
@@ -61,6 +56,15 @@ def open_world(request: ShipAndSea, files: Mapping[str, str]) -> WorldOfJob:
     )
     sea = filled_in_turns(sea, request.fill_policies, chart)
     return WorldOfJob(open_ship_of(request, files), sea.sampled(request.sampling), chart)
+
+
+def open_coast(resolution: str) -> Chart:
+    """Return the chart of a resolution of GSHHG; ``none``: of a world without land."""
+    from thalweg.chart import Chart
+
+    if resolution == "none":
+        return Chart.open_water(-90.0, 90.0, -180.0, 180.0)
+    return Chart.gshhg(resolution)
 
 
 def network_of(request: PlanRequest, files: Mapping[str, str]) -> str | HistoryCorridor:
