@@ -14,10 +14,11 @@ from thalweg.operations.dredging import Project
 from thalweg.planning.compile_kernels import search_is_compiled
 from thalweg.planning.request.ordered_speed import with_exact_speed, with_order
 from thalweg.planning.request.voyage_endpoints import resolve_places
+from thalweg.planning.request.voyage_surroundings import chart_of_entries
 from thalweg.planning.voyage import Voyage
 from thalweg.service.jobs.named_uploads import ESTUARY, named_uploads
 from thalweg.service.jobs.plan_request import EvaluationRequest, PlanRequest, ShipAndSea
-from thalweg.service.jobs.request_objects import open_coast, open_seas, open_ship_of
+from thalweg.service.jobs.request_objects import open_seas, open_ship_of
 from thalweg.service.jobs.sea_facts import sea_facts
 from thalweg.service.problem_details import ServiceError
 from thalweg.service.service_state import ServiceState
@@ -189,8 +190,8 @@ def _check_places(request: PlanRequest, voyage: Voyage) -> None:
     Fine coastlines, and kernels that are not compiled yet, take long: the job checks these.
     """
     if request.coast in _QUICK_COASTS and search_is_compiled():
-        chart = open_coast(request.coast)
-        chart = chart.with_zones(request.areas) if request.areas else chart
+        areas = [request.areas] if request.areas else []
+        chart = chart_of_entries(request.coast, areas=areas)
         resolve_places(voyage.start, voyage.via, voyage.goal, chart)
 
 
