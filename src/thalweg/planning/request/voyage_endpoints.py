@@ -10,7 +10,7 @@ from typing import Final
 from thalweg.chart import Chart
 from thalweg.chart.approaches import PortApproach
 from thalweg.chart.ports import PORTS, Port
-from thalweg.core.errors import InputError
+from thalweg.core.errors import InputError, errors_about
 from thalweg.core.geodesy import Position, distance, format_position, parse_position
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.voyage_parts import Place
@@ -112,7 +112,6 @@ def resolve_port(port: Port, chart: Chart, what: str) -> Endpoint:
             f"The {what} {port.label} cannot be reached from the sea on this chart.",
             f"Reason: {reason}.",
             "Choose another port, or a position at sea.",
-            field=what,
         )
     found = _snap_to_water(port.label, port.lat, port.lon, chart, what, MAX_SNAP_PORT)
     return replace(found, is_port=True)
@@ -162,25 +161,23 @@ def _snap_to_water(
     if found is None:
         raise InputError(
             f"The {what} {name} is not on navigable water.",
-            f"There is none within {MAX_SNAP_PORT / NAUTICAL_MILE:.0f} nm on this chart. {port}",
+            f"There is none within {MAX_SNAP_PORT / NAUTICAL_MILE:.0f} nm on this chart." + port,
             "Give that port by name, or a position at sea."
             if port
             else _swap_hint(lat, lon, chart)
             or "Choose another position, or a chart that covers it.",
-            field=what,
         )
     near_lat, near_lon, moved = found
     raise InputError(
         f"The {what} {name} is on land or in enclosed water.",
         f"The nearest navigable water is {moved / NAUTICAL_MILE:.1f} nm away, at "
-        f"{format_position(near_lat, near_lon)}. {port}",
+        f"{format_position(near_lat, near_lon)}." + port,
         "Give that position, or " + ("that port by name." if port else "a port by name."),
-        field=what,
     )
 
 
 def _nearest_port_text(lat: float, lon: float, chart: Chart) -> str:
-    """Return a sentence on the nearest port and its water, or nothing where none is near."""
+    """Return a sentence on the nearest port, to follow another; empty where none is near."""
     if chart.approaches is None:
         return ""
     near = chart.approaches.nearest(lat, lon, within=MAX_SNAP_PORT)
@@ -188,8 +185,8 @@ def _nearest_port_text(lat: float, lon: float, chart: Chart) -> str:
     if not (near and approach):
         return ""
     return (
-        f"The nearest port is {near[0].label}, {near[1] / NAUTICAL_MILE:.1f} nm away; its approach "
-        f"meets the open sea at {format_position(*approach.sea_end)}."
+        f" The nearest port is {near[0].label}, {near[1] / NAUTICAL_MILE:.1f} nm away; its "
+        f"approach meets the open sea at {format_position(*approach.sea_end)}."
     )
 
 
@@ -226,8 +223,12 @@ def resolve_places(start: Place, via: Sequence[Place], goal: Place, chart: Chart
         longitude of the ends are swapped.
     """
     _check_order_of_degrees(start, goal, chart)
-    places = [("start", start), *((f"via point {k + 1}", place) for k, place in enumerate(via))]
-    ends = [resolve_endpoint(place, chart, what) for what, place in [*places, ("goal", goal)]]
+    places = [("start", "start", start)]
+    places += [(f"via.{k}", f"via point {k + 1}", place) for k, place in enumerate(via)]
+    ends = []
+    for entry, what, place in [*places, ("goal", "goal", goal)]:
+        with errors_about(entry):
+            ends.append(resolve_endpoint(place, chart, what))
     ends = [ends[0], *map(without_approach, ends[1:-1]), ends[-1]]
     for first, second in itertools.pairwise(ends):
         check_distinct(first, second)
