@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from thalweg.studies import Study, study_run
+from thalweg.studies import Study, study_run, summarise_study
 from thalweg.studies.season_plots import draw_heat_map
 from thalweg.studies.season_tables import (
     choices_by_axis,
@@ -138,3 +138,37 @@ def test_short_studies_are_cut_for_all_processes(tmp_path, monkeypatch, workers,
     monkeypatch.setattr(study_run, "_results", noted)
     study_run.run_study(study, tmp_path, workers=workers)
     assert max(lengths) == longest and sum(lengths) == 20
+
+
+def test_percentiles_by_month_are_those_of_the_departures(tmp_path, monkeypatch):
+    """A made year of 730 departures: known quantiles, best month and confidence interval."""
+    pytest.importorskip("pyarrow", reason="the extra 'studies' is not installed")
+    depart = {"from": "2026-01-01", "to": "2026-12-31", "step_h": 12}
+    study = Study.from_dict({"voyage": {"start": "A", "goal": "B"}, "axes": {"depart": depart}})
+    draw = np.random.default_rng(5).gamma(4.0, 1.0, study.size)
+    months = pd.to_datetime([row.labels["depart"] for row in study.rows()]).month.to_numpy()
+    hours = np.where(months == 5, 20.0, 24.0) + draw
+    known = {row.id: value for row, value in zip(study.rows(), hours)}
+
+    def planned(rows, folder):
+        return [
+            {"id": row.id, **row.labels, "time_h": known[row.id], "feasible": True,
+             "refusal": None, "reason": None}
+            for row in rows
+        ]  # fmt: skip
+
+    monkeypatch.setattr(study_run, "run_rows", planned)
+    study_run.run_study(study, tmp_path)
+    summary = summarise_study(tmp_path)
+    table = summary.table.set_index("month")
+    assert list(table.index) == list(range(1, 13))
+    for month in range(1, 13):
+        own = np.sort(hours[months == month])
+        row = table.loc[month]
+        assert row["voyages"] == row["routes"] == len(own)
+        found = row[["time_h_p10", "time_h_p50", "time_h_p90"]].to_numpy(float)
+        assert found == pytest.approx(np.quantile(own, [0.1, 0.5, 0.9]), rel=1e-12)
+        assert row["time_h_p50_low"] in own and row["time_h_p50_high"] in own
+        assert row["time_h_p50_low"] < row["time_h_p50"] < row["time_h_p50_high"]
+    assert summary.best_months["month"].tolist() == [5]
+    assert summary.hours["routes"].sum() == study.size
