@@ -150,6 +150,7 @@ def test_a_missing_month_is_rows_that_say_so(folder):
     assert all(row.get("time_h") is None for row in rows[1:])
 
 
+@pytest.mark.slow
 def test_a_missing_member_is_rows_that_say_so(folder):
     """One member has no data, and the last one does not exist."""
     weather_file(folder / "one.nc")
