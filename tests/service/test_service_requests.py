@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import json
 import math
+import os
 import struct
 from pathlib import Path
 from typing import Any
@@ -408,6 +409,20 @@ def test_coast_cells_are_the_land_of_the_chart(client):
             area += polygon.area
     whole = sum(p.area for p in Chart.gshhg("c").coastline.polygons(-90, 90, -180, 180))
     assert area == pytest.approx(whole, rel=2e-3)
+
+
+def test_drafts_of_cells_that_were_left_long_ago_are_removed(tmp_path, monkeypatch):
+    from thalweg.service.coast_map import cells_folder, remove_old_drafts
+
+    monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
+    folder = cells_folder("c").parent
+    old, new = folder / ".part-old", folder / ".part-new"
+    for draft in (old, new):
+        draft.mkdir()
+        (draft / "0_0.json.gz").write_bytes(b"")
+    os.utime(old, (0, 0))
+    remove_old_drafts()
+    assert [path.name for path in folder.iterdir()] == [".part-new"]
 
 
 def sea_file(folder: Path) -> Path:

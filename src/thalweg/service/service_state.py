@@ -12,6 +12,7 @@ from typing import Annotated, Any, Final
 from fastapi import Depends, Request
 
 from thalweg.core.errors import InputError
+from thalweg.service.coast_map import remove_old_drafts
 from thalweg.service.jobs.job_runner import JobRunner
 from thalweg.service.jobs.job_store import JobStore
 from thalweg.service.jobs.named_uploads import named_uploads
@@ -72,6 +73,7 @@ class ServiceState:
         limits = settings.limits
         self._lock = _folder_lock(settings)
         small = limits.small_upload_bytes
+        remove_old_drafts()
         self.seas = UploadStore(
             settings.subfolder("seas"), "sea", SEA_ENDINGS,
             largest=limits.upload_bytes, total=limits.store_bytes,
