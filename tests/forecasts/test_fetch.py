@@ -506,7 +506,7 @@ def test_the_cache_forgets_the_oldest(tmp_path, client):
     [
         (["nosuch", "--box", "0,1,2,3", "--from", "2026-01-01", "--to", "2026-01-02"], "not known"),
         (["gfs"], "--box and --from and --to not given"),
-        (["gfs", "--box", "0,1,2", "--from", "2026-01-01", "--to", "2026-01-02"], "has 3 values"),
+        (["gfs", "--box", "0,1,2", "--from", "2026-01-01", "--to", "2026-01-02"], "four numbers"),
         (
             ["open-meteo", "--box", "0,1,2,3", "--from", "2026-01-01", "--to", "2026-01-02",
              "--quantities", "ice", "--estimate"],

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapely
 
 from tests.network import prestegardshus_plane as plane
 from tests.network.prestegardshus_paths import INSHORE_MONTHS, MONTHLY_LENGTHS_M, MONTHLY_PATHS
@@ -23,6 +24,7 @@ from thalweg.core.errors import NoPathError
 from thalweg.network import shortest_path
 from thalweg.network.assembly import allowed_legs
 from thalweg.network.layered.layered_builder import segments_on_paths
+from thalweg.network.layered.layered_draft import layered_draft
 from thalweg.network.layered.layered_request import (
     LayeredRequest,
     suggested_shape,
@@ -274,6 +276,49 @@ def test_filtered_and_usable_counts(chart, layers, fan, offset, printed, rule, c
     assert int((by_rule & ~free).sum()) == crossing
     used, keep = segments_on_paths(len(x), first, second, free)
     assert (int(used.sum()), int(keep.sum())) == usable  # no network of three sections has a route
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "km"), [("1LF", 345.77), ("1HF", 344.68)])
+def test_shortest_ways_after_the_exact_test(chart, name, km):
+    """On the coarse networks, with whole segments tested; the geodesic has 341.3 km."""
+    places, layers, fan, offset = NETWORKS[name]
+    x, y, first, second = plane.plane_network(places, layers, fan, offset)
+    lat, lon = plane.positions(x, y)
+    free, _ = allowed_legs(chart, lat, lon, first, second)
+    free &= ((x >= plane.WEST_PX) & (x <= plane.EAST_PX))[second]
+    length = geodesy.distance(lat[first], lon[first], lat[second], lon[second])
+    best = np.full(len(x), np.inf)
+    best[0] = 0.0
+    for a, b, metres in zip(first[free], second[free], length[free]):  # in the order of layers
+        best[b] = min(best[b], best[a] + metres)
+    assert best[-1] / 1000.0 == pytest.approx(km, abs=0.01)
+    straight = geodesy.distance(lat[0], lon[0], lat[-1], lon[-1]) / 1000.0
+    assert straight == pytest.approx(341.3, abs=0.1)
+
+
+@pytest.mark.slow
+def test_segments_of_the_real_coast_agree_with_shapely(chart):
+    """Chapter 3.4.5: no kept segment of S30 H7 crosses land, each refused one does."""
+    near = ((62.5, 67.5), (8.0, 14.5))
+    rings = chart.coastline.read()
+    land = []
+    for a, b in zip(rings.start[:-1], rings.start[1:]):
+        inside = [(v[a:b].max() > low) & (v[a:b].min() < high)
+                  for v, (low, high) in zip((rings.lat, rings.lon), near)]  # fmt: skip
+        if all(inside):
+            ring = shapely.Polygon(np.stack([rings.lon[a:b], rings.lat[a:b]], axis=1))
+            land.append(shapely.make_valid(ring))
+    draft = layered_draft([(63.675, 9.298), (66.5653, 11.6697)], layers=30, fan=7, offset=4450.0)
+    lat, lon, first, second = draft.lat, draft.lon, draft.first, draft.second
+    ends = lat[first], lon[first], lat[second], lon[second]
+    free, _ = allowed_legs(chart, lat, lon, first, second)
+    lines = np.stack([geodesy.positions_along(*ends, share) for share in np.linspace(0, 1, 9)])
+    legs = shapely.linestrings(np.moveaxis(lines[:, ::-1], (0, 1, 2), (1, 2, 0)))
+    crossed = np.zeros(len(legs), bool)
+    crossed[shapely.STRtree(legs).query(land, predicate="intersects")[1]] = True
+    assert (crossed == ~free).mean() > 0.9995  # beside the sagitta of chords, a few metres
+    assert len(legs) == 9655 and (~free).sum() > 1000
 
 
 def _water(chart, lat, lon):

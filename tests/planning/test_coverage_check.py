@@ -5,12 +5,20 @@ import pytest
 
 from thalweg import Chart, InputError, Sea, Ship, Voyage, plan
 from thalweg.core.errors import OutsideAreaError
+from thalweg.planning.report.note_order import danger_first
+from thalweg.planning.report.plan_summary import plan_summary
 from thalweg.planning.request.coverage_check import endpoints_within_coverage
 from thalweg.planning.request.requirements import derive_requirements
 from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.route.formats.waypoint_names import waypoint_names
 
 SHIP = Ship.simple(speed_kn=10.0, draught_m=5.0)
 WATER = Chart.open_water(50.0, 52.5, 1.0, 5.0)
+
+
+def names_of_waypoints(found):
+    ends = found.provenance["from"], found.provenance["to"]
+    return waypoint_names(np.array([0.0, 5e4, 9e4]), *ends)
 
 
 def known_where(condition):
@@ -47,8 +55,13 @@ def test_a_port_moves_to_covered_water_with_a_note():
     found = ask((50.5, 1.5), "Rotterdam", known_where(lambda lat, lon: lon < 4.0))
     end = found.best.track
     assert 3.9 < end.lon[-1] < 4.0 and abs(end.lat[-1] - 51.9) < 0.1
-    assert any("Rotterdam, NL" in note and "moved" in note for note in found.notes)
-    assert found.provenance["to"] == "Rotterdam, NL"
+    first = danger_first(found.notes)[0]
+    assert first.startswith("Does not reach Rotterdam, NL, which is in water without data of east")
+    assert "sea.filled(currents='nearest:" in first and "--fill currents=nearest:" in first
+    assert found.provenance["to"].endswith(" nm from Rotterdam, NL")
+    assert found.provenance["to"].startswith("51 5")
+    assert "nm from Rotterdam, NL" in plan_summary(found)[0]
+    assert not any("Rotterdam" in name for name in names_of_waypoints(found))
 
 
 @pytest.mark.slow
@@ -111,3 +124,19 @@ def test_a_port_is_not_moved_over_land_to_covered_water():
     request = {"voyage": voyage, "ship": SHIP, "sea": sea, "chart": chart, "needs": needs}
     with pytest.raises(OutsideAreaError, match="a port is outside the data"):
         endpoints_within_coverage([port], **request)
+
+
+def test_a_port_near_its_water_keeps_its_name_and_a_far_one_does_not():
+    near = Endpoint("Hull, GB", 53.7, -0.3, 2_000.0, is_port=True)
+    assert near.is_reached and near.true_name == "Hull, GB" and "moved 1.1 nm" in near.note
+    far = Endpoint(
+        "Hull, GB", 53.7, -0.3, 40_000.0, is_port=True, why="in water without data of waves",
+        remedy="To reach it, add data.", way_left_m=60_000.0,
+    )  # fmt: skip
+    assert far.true_name == "53 42.0N 000 18.0W, 22 nm from Hull, GB"
+    assert far.note == (
+        "Does not reach Hull, GB, which is in water without data of waves: the plan has "
+        "53 42.0N 000 18.0W instead, 22 nm away. At least 32 nm by sea are missing in all totals. "
+        "To reach it, add data."
+    )
+    assert danger_first(["Check the depth: 9 m", far.note])[0] == far.note

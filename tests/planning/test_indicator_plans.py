@@ -186,6 +186,21 @@ def test_the_front_of_fuel_and_comfort_is_that_of_all_walks(ship):
     assert found.lower_at(float(found.values[0, 0])) <= found.values[0, 1] * (1 + 1e-9)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("names", [("time", "comfort"), ("time", "fuel"), ("fuel", "comfort")])
+def test_fronts_are_certified_to_one_percent_and_end_at_single_optima(ship, names):
+    """Prestegardshus (2020), ch. 3.6: time against comfort, with the certificate of its network."""
+    found = indicator_front(_voyage(), names, ship=ship, sea=_sea(), chart=Chart.open_water())
+    assert found.gaps.max() < 0.005 and len(found.routes) >= 3
+    for column, name in enumerate(names):
+        a, b, c = found.bounds[column]  # the first searches are of one key figure each
+        assert (a, b)[1 - column] == 0.0 < (a, b)[column]
+        least = (a, b)[column] * found.values[:, column].min()
+        assert c <= least * (1 + 1e-9) and least == pytest.approx(c, rel=5e-3), name
+    first, second = found.values.T
+    assert (np.diff(first) > 0.0).all() and (np.diff(second) < 0.0).all()
+
+
 def test_sums_and_limits_are_for_one_forecast(ship):
     members = Sea.ensemble(_sea(), _sea())
     refused = partial(plan, ship=ship, sea=members, chart=Chart.open_water())

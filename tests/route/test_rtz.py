@@ -12,7 +12,7 @@ from thalweg.chart import Chart
 from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.core.geodesy import distance
 from thalweg.core.rhumb_lines import inverse_rhumb
-from thalweg.core.units import KNOT
+from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.route import RouteFileOptions, Track, evaluate, read_track, write_rtz
 from thalweg.sea import Sea
 
@@ -369,6 +369,51 @@ def test_extensions_of_other_makers_are_kept(tmp_path, version):
     etree = pytest.importorskip("lxml.etree")
     schema = data_file(f"rtz/schema/RTZ Schema version {version.replace('.', '_')}.xsd")
     etree.XMLSchema(etree.parse(str(schema))).assertValid(etree.parse(str(written)))
+
+
+NAMED = """<?xml version="1.0"?><route version="1.2" xmlns="http://www.cirm.org/RTZ/1/2">
+<routeInfo routeName="a" routeAuthor="Second mate" vesselName="A &amp; B" vesselMMSI="244000000"
+ vesselIMO="unknown" vesselVoyage="12 W" validityPeriodStart="2026-03-01T00:00:00Z"/><waypoints>
+<defaultWaypoint><leg portsideXTD="0.5" starboardXTD="0.25"/></defaultWaypoint>
+<waypoint id="1" revision="0" name="Berth"><position lat="50" lon="-5"/></waypoint>
+<waypoint id="2" revision="0" name="WP 2"><position lat="50.1" lon="-5"/>
+ <leg portsideXTD="0.05" starboardXTD="0.06"/></waypoint>
+<waypoint id="3" revision="0" name="Buoy &lt;3&gt;"><position lat="50.2" lon="-5"/></waypoint>
+<waypoint id="4" revision="0"><position lat="51" lon="0"/><leg portsideXTD="99"/></waypoint>
+</waypoints></route>"""
+
+
+@pytest.mark.parametrize("version", ["1.0", "1.1", "1.2"])
+def test_names_limits_and_facts_of_a_file_are_kept(tmp_path, version):
+    (tmp_path / "a.rtz").write_text(NAMED)
+    track, written = read_track(tmp_path / "a.rtz", depart=0), tmp_path / "b.rtz"
+    sailed = evaluate(track, ship=ship(7.0), sea=Sea.calm())
+    write_rtz(sailed, written, RouteFileOptions("A", "B", rtz_version=version))
+    again = read_track(written).extensions
+    assert again.info == track.extensions.info == {
+        "routeAuthor": "Second mate", "vesselName": "A & B", "vesselMMSI": "244000000",
+        "vesselVoyage": "12 W", "validityPeriodStart": "2026-03-01T00:00:00Z",
+    }  # fmt: skip
+    names = {visit[:2]: name for visit, name in again.names.items()}
+    assert names[50.0, -5.0] == "Berth" and names[50.2, -5.0] == "Buoy <3>"
+    sides = {v[0]: np.round(np.array(s) / NAUTICAL_MILE, 3) for v, s in again.corridors.items()}
+    assert sides[50.1].tolist() == [0.05, 0.06] and sides[50.2].tolist() == [0.5, 0.25]
+    assert sides[51.0].tolist() == [0.1, 0.25]  # 99 nm is none that the format allows
+    long_leg = [pair.tolist() for lat, pair in sides.items() if 50.2 < lat < 51.0]
+    assert long_leg and all(pair == [0.1, 0.25] for pair in long_leg)
+    etree = pytest.importorskip("lxml.etree")
+    schema = data_file(f"rtz/schema/RTZ Schema version {version.replace('.', '_')}.xsd")
+    etree.XMLSchema(etree.parse(str(schema))).assertValid(etree.parse(str(written)))
+
+
+def test_fewer_waypoints_have_the_least_limits_of_the_legs_they_stand_for(tmp_path):
+    (tmp_path / "a.rtz").write_text(NAMED)
+    track, written = read_track(tmp_path / "a.rtz", depart=0), tmp_path / "b.rtz"
+    few = RouteFileOptions(max_waypoints=3, legs="great-circle")
+    write_rtz(evaluate(track, ship=ship(7.0), sea=Sea.calm()), written, few)
+    again = read_track(written).extensions
+    limits = {v[0]: np.round(np.array(s) / NAUTICAL_MILE, 3) for v, s in again.corridors.items()}
+    assert list(limits) == [50.2, 51.0] and limits[50.2].tolist() == [0.05, 0.06]
 
 
 def test_extensions_stay_with_waypoints_that_could_be_left_out(tmp_path):

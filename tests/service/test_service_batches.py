@@ -130,9 +130,23 @@ def test_a_study_is_planned_and_summarised(client):
 
 
 def test_a_study_states_what_is_wrong(client):
-    for entries in ({"sea": "/etc/passwd"}, {"ship": "../x.yaml"}, {"track": "route.rtz"}):
+    hidden = {"speed_kn": {"choice": [{"name": "a", "sea": "/etc/passwd"}]}}
+    places = [{"name": "a", "areas": "/etc/passwd"}]
+    for entries in (
+        {"sea": "/etc/passwd"},
+        {"ship": "../x.yaml"},
+        {"track": "route.rtz"},
+        {"depths": ["/etc/passwd"]},
+        {"traffic": ["/etc/passwd"]},
+        {"areas": "/etc/passwd"},
+        {"axes": {"where": places}},
+        {"sample": hidden},
+    ):
         answer = client.post("/api/v1/studies", json={"study": {**STUDY["study"], **entries}})
         assert answer.status_code in (404, 422), answer.text
+    wrong = {**STUDY["study"], "limits": {"wave_height_m": -1}}
+    found = problem(client.post("/api/v1/studies", json={"study": wrong}), 422)
+    assert found["field"] == "limits.wave_height_m" and "above 0" in found["possible"]
     many = {**STUDY["study"], "axes": {"speed_kn": {"from": 1, "to": 30000, "step": 1}}}
     found = problem(client.post("/api/v1/studies", json={"study": many}), 422)
     assert "20,000" in found["possible"] and found["field"] == "axes"

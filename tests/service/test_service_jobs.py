@@ -113,6 +113,7 @@ def test_an_exported_route_is_evaluated_and_compared(client, done):
     assert rows[1]["time_h"] == pytest.approx(rows[0]["time_h"], rel=1e-3)
     assert rows[1]["difference"]["fuel_t"] == pytest.approx(rows[1]["fuel_t"] - rows[0]["fuel_t"])
     assert rows[1]["broken"] == []
+    assert rows[0]["notes"] == rows[1]["notes"] == []
 
 
 def test_a_route_over_land_is_compared_with_the_place_of_the_land(client, done):
@@ -123,20 +124,24 @@ def test_a_route_over_land_is_compared_with_the_place_of_the_land(client, done):
     job = ended(client.get, client.post("/api/v1/evaluate", json=order).json()["id"])
     body = {"routes": [{"job": done["id"]}, {"job": job["id"]}]}
     row = client.post("/api/v1/compare", json=body).json()["routes"][1]
+    (note,) = row["notes"]  # both begin at 47 N 5 W
+    assert note.startswith("It ends") and "same stretch" in note
     assert not row["feasible"] and row["violations"] == len(row["broken"]) >= 1
     land = [one for one in row["broken"] if one["reason"].startswith("land")]
     assert land and all(47.0 < one["lat"] < 49.0 for one in land)
 
 
 def test_a_voyage_without_a_route_fails_with_its_reasons(client):
+    outer = [[-6, 46.5], [-4, 46.5], [-4, 47.2], [-6, 47.2], [-6, 46.5]]
+    inner = [[-5.1, 46.9], [-5.1, 47.1], [-4.9, 47.1], [-4.9, 46.9], [-5.1, 46.9]]
     areas = {
         "type": "Feature",
         "properties": {"kind": "no-go"},
-        "geometry": {
-            "type": "Polygon",
-            "coordinates": [[[-6, 46.9], [-4, 46.9], [-4, 47.1], [-6, 47.1], [-6, 46.9]]],
-        },
+        "geometry": {"type": "Polygon", "coordinates": [outer]},
     }
+    refused = client.post("/api/v1/plans", json={**SHORT, "areas": areas})
+    assert refused.status_code == 422 and refused.json()["field"] == "start"
+    areas["geometry"] = {"type": "Polygon", "coordinates": [outer, inner]}  # around the start
     started = client.post("/api/v1/plans", json={**SHORT, "areas": areas}).json()
     job = ended(client.get, started["id"])
     assert job["state"] == "failed" and not job["result"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import json
 import math
+import os
 import struct
 from pathlib import Path
 from typing import Any
@@ -32,7 +33,7 @@ def test_a_request_without_the_token_is_refused(client):
     assert client.get("/static/app/main.js", headers={"Authorization": ""}).status_code == 401
 
 
-def test_the_first_page_turns_the_token_into_a_strict_cookie(client):
+def test_the_first_page_turns_the_token_into_a_cookie_for_its_own_pages(client):
     plain = {"Authorization": ""}
     assert client.get("/", headers=plain).status_code == 401
     assert 'name="token"' in client.get("/", headers=plain).text  # a field to type it in
@@ -41,7 +42,7 @@ def test_the_first_page_turns_the_token_into_a_strict_cookie(client):
     right = client.get(f"/?token={TOKEN}", headers=plain, follow_redirects=False)
     assert right.status_code == 303 and right.headers["location"] == "/"
     cookie = right.headers["set-cookie"]
-    assert "HttpOnly" in cookie and "SameSite=strict" in cookie
+    assert "HttpOnly" in cookie and "SameSite=lax" in cookie
     client.cookies.clear()
 
 
@@ -99,6 +100,15 @@ def test_a_place_is_shown_as_it_is_understood(client):
         ({"seas": ["../../etc/passwd"]}, "seas.0", "uploaded sea"),
         ({"voyage": {**SHORT["voyage"], "depart": "tomorrow"}}, "depart", "time"),
         ({"voyage": {**SHORT["voyage"], "start": [91, 0]}}, "start", "latitude"),
+        ({"voyage": {**SHORT["voyage"], "goal": "95N 5W"}}, "goal", "latitude"),
+        ({"voyage": {**SHORT["voyage"], "via": ["95, 5"]}}, "via.0", "latitude"),
+        ({"voyage": {**SHORT["voyage"], "goal": [48.0, 2.0]}}, "goal", "navigable water"),
+        ({"voyage": {**SHORT["voyage"], "via": ["48N 2E"]}}, "via.0", "navigable water"),
+        ({"voyage": {**SHORT["voyage"], "speeed_kn": 9}}, "speeed_kn", "speed_kn"),
+        ({"voyage": {**SHORT["voyage"], "wait": "maybe"}}, "wait", "true or false"),
+        ({"voyage": {"start": "47N 5W", "depart": "2026-01-01"}}, "goal", "no goal"),
+        ({"voyage": {"start": "47N 5W", "goal": "48N 5W"}}, "depart", "departure"),
+        ({"areas": {"type": "Point", "coordinates": [0, 0]}}, "areas", "areas only"),
         ({"voyage": {**SHORT["voyage"], "speed_kn": "fast"}}, "speed_kn", "number"),
         ({"voyage": {**SHORT["voyage"], "arrive_by": "1990-01-01"}}, "arrive_by", "after"),
         ({"surprise": 1}, "surprise", "known"),
@@ -194,6 +204,39 @@ def test_a_departure_within_one_of_several_seas_is_taken(client):
                 check_plan_order(request, voyage, client.app.state.service)
         else:
             check_plan_order(request, voyage, client.app.state.service)
+
+
+def test_variables_that_are_named_with_an_upload_are_used(client):
+    import xarray as xr
+
+    axes = {
+        "time": np.array(["2026-01-01", "2026-01-03"], "M8[ns]"),
+        "latitude": [46.0, 48.0],
+        "longitude": [-6.0, -4.0],
+    }
+    parts = {
+        name: xr.DataArray(np.full((2, 2, 2), value), axes, list(axes), attrs={"units": "m s-1"})
+        for name, value in (("eastish", 3.0), ("northish", 4.0))
+    }
+    path = client.app.state.service.settings.folder / "own.nc"
+    xr.Dataset(parts).to_netcdf(path)
+    content = path.read_bytes()
+    send = {"url": "/api/v1/seas", "content": content}
+    refused = problem(client.post(params={"name": "own.nc"}, **send), 422)
+    assert "variables in a request" in refused["remedy"]
+    wrong = {"name": "own.nc", "variables": ["eastward_wind"]}
+    assert problem(client.post(params=wrong, **send), 422)["field"] == "variables"
+    named = {"eastward_wind": "eastish", "northward_wind": "northish"}
+    query = {"name": "own.nc", "variables": [f"{key}={value}" for key, value in named.items()]}
+    sent = client.post(params=query, **send)
+    assert sent.status_code == 201 and sent.json()["frames"] == ["wind"]
+    name = sent.json()["id"]
+    frame = {"variable": "wind", "time": "2026-01-02T00:00Z", "box": "46,48,-6,-4"}
+    data = client.get(f"/api/v1/seas/{name}/frames", params=frame).content
+    assert (np.frombuffer(data, "<i2", offset=32) > 0).all()
+    job = client.post("/api/v1/plans", json={**SHORT, "seas": [name], "fill": {"waves": 0.0}})
+    assert job.json()["request"]["variables"] == named
+    client.delete(f"/api/v1/plans/{job.json()['id']}")
 
 
 @pytest.mark.parametrize(
@@ -366,6 +409,20 @@ def test_coast_cells_are_the_land_of_the_chart(client):
             area += polygon.area
     whole = sum(p.area for p in Chart.gshhg("c").coastline.polygons(-90, 90, -180, 180))
     assert area == pytest.approx(whole, rel=2e-3)
+
+
+def test_drafts_of_cells_that_were_left_long_ago_are_removed(tmp_path, monkeypatch):
+    from thalweg.service.coast_map import cells_folder, remove_old_drafts
+
+    monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
+    folder = cells_folder("c").parent
+    old, new = folder / ".part-old", folder / ".part-new"
+    for draft in (old, new):
+        draft.mkdir()
+        (draft / "0_0.json.gz").write_bytes(b"")
+    os.utime(old, (0, 0))
+    remove_old_drafts()
+    assert [path.name for path in folder.iterdir()] == [".part-new"]
 
 
 def sea_file(folder: Path) -> Path:

@@ -34,3 +34,14 @@ def test_without_networks_to_compare_there_is_no_table():
     assert fidelity_table(rows().drop(columns="network"), ["a", "b"]).empty
     nothing = fidelity_table(rows(), ["fine", "unknown"]).set_index("network")
     assert nothing.loc["unknown", "routes"] == 0 and pd.isna(nothing.loc["unknown", "gap_percent"])
+
+
+def test_steps_and_samplings_are_compared_with_the_finest():
+    steps = rows().assign(resolution_nm=[20, 20, 40, 40, 80])
+    table = fidelity_table(steps, [80, 40, 20], "resolution_nm").set_index("resolution_nm")
+    assert table["gap_percent"].tolist() == pytest.approx([30.0, 100 / 55, 0.0])
+    names = ["nearest:12", "linear", "nearest:2"]
+    weather = rows().assign(sampling=["linear"] * 2 + ["nearest:2"] * 2 + ["nearest:12"])
+    table = fidelity_table(weather, names, "sampling").set_index("sampling")
+    assert table.loc["linear", "gap_percent"] == 0.0
+    assert table.loc["nearest:12", "gap_percent"] == pytest.approx(30.0)

@@ -151,6 +151,20 @@ def test_a_missing_month_is_rows_that_say_so(folder):
 
 
 @pytest.mark.slow
+def test_a_missing_member_is_rows_that_say_so(folder):
+    """One member has no data, and the last one does not exist."""
+    weather_file(folder / "one.nc")
+    weather_file(folder / "two.nc", missing=(1, 2, 3, 4))
+    with xr.open_dataset(folder / "one.nc") as one, xr.open_dataset(folder / "two.nc") as two:
+        xr.concat([one, two], pd.Index([0, 1], name="number")).to_netcdf(folder / "both.nc")
+    axes = {"depart": ["2026-01-05T00:00Z"], "member": [0, 1, 2]}
+    rows = run_rows(study(folder, sea=["both.nc"], axes=axes).rows(), str(folder))
+    assert [row["refusal"] for row in rows] == [None, "OutsideAreaError", "InputError"]
+    assert "perhaps with gaps" in rows[1]["reason"] and "member" in rows[2]["reason"]
+    assert rows[0]["time_h"] > 0.0 and all(row.get("time_h") is None for row in rows[1:])
+
+
+@pytest.mark.slow
 def test_limits_close_departures_in_words(folder):
     library = resources.files("thalweg.ship.library").joinpath("gunnerus-2019.yaml")
     ship = yaml.safe_load(library.read_text("utf-8")) | {

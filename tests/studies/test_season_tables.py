@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from thalweg.studies import Study, study_run
+from thalweg.studies import Study, study_run, summarise_study
 from thalweg.studies.season_plots import draw_heat_map
 from thalweg.studies.season_tables import (
     choices_by_axis,
@@ -65,6 +65,31 @@ def test_heat_map_of_month_and_hour(tmp_path):
     assert month_by_hour(frame[frame["month"] == 1], ["time_h"]).empty
 
 
+def test_random_departures_share_the_rows_of_a_heat_map(tmp_path):
+    """60 draws in two months: a row of one hour would have one or two routes."""
+    draw = np.random.default_rng(1)
+    times = pd.Timestamp("2026-01-01", tz="UTC") + pd.to_timedelta(draw.uniform(0, 59, 60), "D")
+    frame = pd.DataFrame({"depart": times.strftime("%Y-%m-%dT%H:%M:%SZ"), "month": times.month})
+    frame["time_h"] = 10.0 + times.hour
+    table = month_by_hour(frame, ["time_h"])
+    assert set(table["hours"]) == {4} and set(table["hour"]) <= set(range(0, 24, 4))
+    assert table["routes"].sum() == 60 and table["routes"].median() >= 5
+    assert (table["time_h"] >= 10.0 + table["hour"]).all()
+    assert (table["time_h"] < 14.0 + table["hour"]).all()
+    assert draw_heat_map(table, "time_h", tmp_path / "hours.png").stat().st_size > 5_000
+
+
+def test_accuracies_and_single_departures_are_no_choices():
+    rows = pd.DataFrame({"depart": departures(2), "time_h": [9.0, 8.0], "month": 1})
+    rows = pd.concat([rows.assign(sampling="linear"), rows.assign(sampling="nearest:8")])
+    rows = rows.assign(objective="time", way=rows["sampling"]).reset_index(drop=True)
+    usable = rows["time_h"] > 0.0
+    assert choices_by_axis(rows, usable, ["sampling"]).empty
+    assert not choices_by_axis(rows, usable, ["way"]).empty
+    once = rows[rows["depart"] == rows["depart"].iloc[0]]
+    assert choices_by_axis(once, usable[once.index], ["way"]).empty
+
+
 def test_ctrl_c_keeps_the_finished_voyages_of_a_chunk(tmp_path, monkeypatch):
     pytest.importorskip("pyarrow", reason="the extra 'studies' is not installed")
     departs = departures(5)
@@ -79,3 +104,71 @@ def test_ctrl_c_keeps_the_finished_voyages_of_a_chunk(tmp_path, monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         study_run.run_study(study, tmp_path)
     assert len(read_parts(tmp_path)) == 3
+
+
+def test_long_chunks_are_kept_in_parts(tmp_path, monkeypatch):
+    """Each row that takes long is on disk before the next one begins."""
+    pytest.importorskip("pyarrow", reason="the extra 'studies' is not installed")
+    study = Study.from_dict({"voyage": {"start": "A", "goal": "B"}, "axes": {"seed": [1, 2, 3]}})
+    kept = []
+
+    def planned(rows, folder):
+        kept.append(len(read_parts(tmp_path, ["id"])))
+        return [{"id": row.id, "refusal": None, "reason": None} for row in rows]
+
+    monkeypatch.setattr(study_run, "run_rows", planned)
+    monkeypatch.setattr(study_run, "_KEEP_S", 0.0)
+    seen = []
+    study_run.run_study(study, tmp_path, progress=lambda state: seen.append(state.done))
+    assert kept == [0, 1, 2] and seen == [1, 2, 3]
+
+
+@pytest.mark.parametrize("workers, longest", [(0, 20), (2, 3), (8, 1)])
+def test_short_studies_are_cut_for_all_processes(tmp_path, monkeypatch, workers, longest):
+    pytest.importorskip("pyarrow", reason="the extra 'studies' is not installed")
+    study = Study.from_dict(
+        {"voyage": {"start": "A", "goal": "B"}, "axes": {"seed": list(range(20))}}
+    )
+    lengths = []
+
+    def noted(chunks, *_):
+        lengths.extend(len(chunk) for chunk in chunks)
+        return iter(())
+
+    monkeypatch.setattr(study_run, "_results", noted)
+    study_run.run_study(study, tmp_path, workers=workers)
+    assert max(lengths) == longest and sum(lengths) == 20
+
+
+def test_percentiles_by_month_are_those_of_the_departures(tmp_path, monkeypatch):
+    """A made year of 730 departures: known quantiles, best month and confidence interval."""
+    pytest.importorskip("pyarrow", reason="the extra 'studies' is not installed")
+    depart = {"from": "2026-01-01", "to": "2026-12-31", "step_h": 12}
+    study = Study.from_dict({"voyage": {"start": "A", "goal": "B"}, "axes": {"depart": depart}})
+    draw = np.random.default_rng(5).gamma(4.0, 1.0, study.size)
+    months = pd.to_datetime([row.labels["depart"] for row in study.rows()]).month.to_numpy()
+    hours = np.where(months == 5, 20.0, 24.0) + draw
+    known = {row.id: value for row, value in zip(study.rows(), hours)}
+
+    def planned(rows, folder):
+        return [
+            {"id": row.id, **row.labels, "time_h": known[row.id], "feasible": True,
+             "refusal": None, "reason": None}
+            for row in rows
+        ]  # fmt: skip
+
+    monkeypatch.setattr(study_run, "run_rows", planned)
+    study_run.run_study(study, tmp_path)
+    summary = summarise_study(tmp_path)
+    table = summary.table.set_index("month")
+    assert list(table.index) == list(range(1, 13))
+    for month in range(1, 13):
+        own = np.sort(hours[months == month])
+        row = table.loc[month]
+        assert row["voyages"] == row["routes"] == len(own)
+        found = row[["time_h_p10", "time_h_p50", "time_h_p90"]].to_numpy(float)
+        assert found == pytest.approx(np.quantile(own, [0.1, 0.5, 0.9]), rel=1e-12)
+        assert row["time_h_p50_low"] in own and row["time_h_p50_high"] in own
+        assert row["time_h_p50_low"] < row["time_h_p50"] < row["time_h_p50_high"]
+    assert summary.best_months["month"].tolist() == [5]
+    assert summary.hours["routes"].sum() == study.size

@@ -22,7 +22,7 @@ from thalweg.cli.main import main
 from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
 from thalweg.studies import Study, run_study, study_rows, summarise_study
-from thalweg.studies.row_runner import run_row
+from thalweg.studies.row_runner import run_row, ship_of_request
 from thalweg.studies.study_parts import read_parts
 from thalweg.studies.study_summary import median_interval
 
@@ -103,12 +103,53 @@ def test_a_draw_of_one_entry_does_not_depend_on_the_others():
         ({"sample": {"count": 0}}, "whole number"),
         ({"sample": {"speed_kn": {"poisson": [1]}}}, "uniform"),
         ({"compare": ["luck"]}, "comparison"),
+        ({"fill": {"waves": "fetch"}}, "fetch"),
+        ({"fill": 0}, "fill is 0"),
+        ({"axes": {"fill": [{"wave": 0.0}]}}, "wave"),
+        ({"limits": {"wave_height_m": 0}}, "above 0"),
+        ({"limits": {"waves_m": 3}}, "limit named"),
+        ({"charges": {"share_percent": 30}}, "0, 50 or 100"),
+        ({"charges": {"ets_prize": 30}}, "ets_price"),
+        ({"areas": {"type": "Point", "coordinates": [0, 0]}}, "areas only"),
+        ({"axes": {"rules": [{"name": "a", "charges": {"year": 1999}}]}}, "a year from"),
         ({"axes": {"speed_kn": {"from": 0, "to": 1e9}}}, "At most"),
     ],
 )
 def test_wrong_studies(changes, words):
     with pytest.raises(InputError, match=words):
         Study.from_dict({"voyage": {"start": "A", "goal": "B"}} | changes)
+
+
+NO_GO = {
+    "type": "Feature",
+    "properties": {"kind": "no-go"},
+    "geometry": {
+        "type": "Polygon",
+        "coordinates": [[[0.9, -0.1], [1.1, -0.1], [1.1, 0.1], [0.9, 0.1], [0.9, -0.1]]],
+    },
+}
+
+
+def test_a_study_has_the_areas_limits_and_charges_of_a_plan(tmp_path):
+    (tmp_path / "route.csv").write_text("lat,lon\n0,0\n0,2\n")
+    entries = {"ship": "handysize-bulker", "sea": "calm", "coast": "none", "track": "route.csv"}
+    voyage = {"start": [0.0, 0.0], "goal": [0.0, 2.0], "depart": "2026-03-01T00:00Z"}
+    charges = {"share_percent": 100, "ets_price": 80.0}
+    axes = {
+        "rules": [
+            {"name": "none"},
+            {"name": "area", "areas": NO_GO},
+            {"name": "charges", "charges": charges},
+        ]
+    }
+    study = Study.from_dict(
+        {**entries, "voyage": voyage, "limits": {"wave_height_m": 3}, "axes": axes}, tmp_path
+    )
+    free, area, charged = (run_row(row, str(tmp_path)) for row in study.rows())
+    assert free["feasible"] and free["refusal"] is None
+    assert not area["feasible"] and "no-go" in area["first_violation"]
+    assert charged["cost_usd"] > free["cost_usd"] and charged["fuel_t"] == free["fuel_t"]
+    assert ship_of_request(study.rows()[0].request, "").limits.wave_height == 3.0
 
 
 @pytest.mark.slow

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -90,6 +91,12 @@ def run(arguments: argparse.Namespace) -> int:
     source = source_named(arguments.source)
     if isinstance(source, Gfs):
         source = replace(source, server=arguments.server)
+    if not arguments.max_mb > 0.0:
+        raise InputError(
+            f"The largest download is {arguments.max_mb:g} MB.",
+            "It is above 0 MB.",
+            "Correct --max-mb, or leave it out.",
+        )
     request = _request(arguments, usual_quantities(source.name))
     if arguments.estimate:
         arguments.progress(f"asking {source.title} what it has")
@@ -153,17 +160,16 @@ def _request(arguments: argparse.Namespace, usual: tuple[str, ...]) -> ForecastR
             "A forecast is fetched for a box and a period.",
             "See thalweg fetch --help for an example.",
         )
-    sides = arguments.box.split(",")
-    if len(sides) != 4:
+    sides = [to_number(side) for side in arguments.box.split(",")]
+    if len(sides) != 4 or not all(map(math.isfinite, sides)):
         raise InputError(
-            f"The box {arguments.box!r} has {len(sides)} values.",
+            f"The box {arguments.box!r} is not four numbers.",
             "A box is south,north,west,east in degrees.",
             "Give four values, for example --box 40,60,-75,5.",
         )
     given = arguments.quantities
-    south, north, west, east = (to_number(side) for side in sides)
     return ForecastRequest(
-        BoundingBox.checked(south, north, west, east),
+        BoundingBox.checked(*sides),
         arguments.start,
         arguments.end,
         usual if given is None else tuple(w.strip() for w in given.split(",") if w.strip()),

@@ -5,8 +5,7 @@ from __future__ import annotations
 import sys
 
 from thalweg.kernels.compilation.compiled_code_cache import COMPILED_FOLDER
-
-_SEARCH_COMPILED = "warm"  # marker of `thalweg.kernels.compilation.warm_up`
+from thalweg.planning.compile_kernels import search_is_compiled
 
 
 def announce_compilation(*, search: bool = False, quiet: bool = False) -> None:
@@ -17,7 +16,7 @@ def announce_compilation(*, search: bool = False, quiet: bool = False) -> None:
     search : Whether the command needs the search, the largest part of the kernels.
     quiet : Whether to print nothing.
     """
-    if quiet or (COMPILED_FOLDER / _SEARCH_COMPILED).exists():
+    if quiet or search_is_compiled():
         return
     if search or not any(COMPILED_FOLDER.rglob("*.nbc")):
         print(

@@ -91,9 +91,11 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
     sea = _check_ensemble_choice(sea, arguments)
     if policies:
         from thalweg.planning.request.filled_sea import filled_in_turns
+        from thalweg.planning.request.voyage_surroundings import chart_of_entries
 
         by_fetch = ("waves", "fetch_limited") in policies
-        sea = filled_in_turns(sea, policies, _coast_of(arguments) if by_fetch else None)
+        coast = chart_of_entries(getattr(arguments, "coast", "i")) if by_fetch else None
+        sea = filled_in_turns(sea, policies, coast)
     return sea.sampled(getattr(arguments, "sampling", "linear"))
 
 
@@ -160,26 +162,18 @@ def check_chart_files(arguments: argparse.Namespace) -> None:
                 )
 
 
-def _coast_of(arguments: argparse.Namespace) -> Chart:
-    from thalweg.chart import Chart
-
-    coast = getattr(arguments, "coast", "i")
-    if coast == "none":
-        return Chart.open_water(-90.0, 90.0, -180.0, 180.0)
-    return Chart.gshhg(coast)
-
-
 def open_chart(arguments: argparse.Namespace) -> Chart:
     """Return the chart that the options name."""
+    from thalweg.planning.request.voyage_surroundings import chart_of_entries
+
     arguments.progress("reading the chart")
-    chart = _coast_of(arguments)
-    for path in arguments.depth:
-        chart = chart.with_depth(path)
-    for path in arguments.zones:
-        chart = chart.with_zones(path)
-    for path in arguments.traffic:
-        chart = chart.with_traffic(path)
-    return chart.without_eca() if getattr(arguments, "no_eca", False) else chart
+    return chart_of_entries(
+        getattr(arguments, "coast", "i"),
+        depths=arguments.depth,
+        areas=arguments.zones,
+        traffic=arguments.traffic,
+        eca=not getattr(arguments, "no_eca", False),
+    )
 
 
 def open_ship(arguments: argparse.Namespace) -> Ship:

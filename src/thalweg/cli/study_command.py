@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import time
 from typing import TYPE_CHECKING, Any, Final
 
 from thalweg.cli.exit_codes import SUCCESS
@@ -83,21 +84,64 @@ def _ready(arguments: argparse.Namespace) -> int:
 def _words(state: StudyProgress) -> str:
     left = state.seconds_left
     text = f"{state.done} of {state.total} voyages, {state.refused} without a route"
-    return text if left is None else f"{text}, about {left / 60.0:.1f} min left"
+    if left is None or state.done == state.total:
+        return text
+    return (
+        f"{text}, the rest until about {time.strftime('%H:%M', time.localtime(time.time() + left))}"
+    )
 
 
 _SHOWN_VOYAGES: Final = 10
-_LONG_COLUMNS: Final = ("reason", "first_violation")
+#: Figures on the terminal, where they are known and not all zero; the files have all of them.
+_SHOWN_FIGURES: Final = (
+    "time_h", "distance_nm", "fuel_t", "cost_usd", "waiting_h", "sick_percent", "inshore_percent",
+    "saved_time_h", "saved_fuel_t", "saved_sick_percent", "saved",
+)  # fmt: skip
+_SHOWN_SHARES: Final = (
+    "without_route", "waiting_days_mean", "waiting_days_max", "inshore_share",
+)  # fmt: skip
 
 
 def _print_voyages(voyages: Any) -> None:
     """Print the first voyages, one line for each."""
-    shown = voyages.head(_SHOWN_VOYAGES)
-    hidden = [name for name in _LONG_COLUMNS if name in shown]
-    print(shown.drop(columns=hidden).round(2).to_string(index=False, na_rep="-"))
+    figures = [
+        name
+        for name in _SHOWN_FIGURES
+        if name in voyages and voyages[name].fillna(0.0).round(2).any()
+    ]
+    axes = list(voyages.columns[: list(voyages.columns).index("arrive")])
+    broken = "feasible" in voyages and not voyages["feasible"].fillna(True).all()
+    last = [*(["feasible"] if broken else []), *(["refusal"] if "refusal" in voyages else [])]
+    shown = voyages.head(_SHOWN_VOYAGES)[[*axes, "arrive", *figures, *last]]
+    print(shown.round(2).to_string(index=False, na_rep="-"))
     left = len(voyages) - len(shown)
     if left:
         print(f"and {left} more voyages: --out writes all of them to voyages.csv")
+    print()
+
+
+def _print_groups(table: Any) -> None:
+    """Print the median of each figure by group, with its 10 and 90 % quantiles."""
+    import pandas as pd
+
+    if (table["voyages"] == 1).all():
+        return  # each group is a line of the voyages
+    names = list(table.columns)
+    shown = table[names[: names.index("routes") + 1]].copy()
+    for name in _SHOWN_SHARES:
+        if name in table and table[name].fillna(0.0).any():
+            shown[name] = table[name].astype(float).round(2)
+    for name in _SHOWN_FIGURES:
+        parts = [f"{name}_{part}" for part in ("p50", "p10", "p90")]
+        if set(parts) <= set(names) and table[parts].astype(float).fillna(0.0).round(2).any(
+            axis=None
+        ):
+            shown[name] = [
+                "-" if pd.isna(middle) else f"{middle:.2f} ({low:.2f} to {high:.2f})"
+                for middle, low, high in table[parts].astype(float).itertuples(index=False)
+            ]
+    print("Medians (10 to 90 %):")
+    print(shown.to_string(index=False, na_rep="-"))
     print()
 
 
@@ -126,23 +170,27 @@ def _summary(arguments: argparse.Namespace) -> int:
         print(json.dumps(parts, indent=2, allow_nan=False))
         return SUCCESS
     _print_voyages(summary.voyages)
-    hidden = [name for name in map(str, summary.table) if name.endswith(("_low", "_high"))]
-    print(summary.table.drop(columns=hidden).round(2).to_string(index=False, na_rep="-"))
-    if not summary.best.empty:
-        for _, row in summary.best.iterrows():
-            print(f"least median time: month {int(row['month'])}, {row['time_h_p50']:.2f} h")
-    if len(summary.best_months) > 1:
+    _print_groups(summary.table)
+    if "month" in summary.table and summary.table["month"].nunique() > 1:
+        print("Best month by the median of each figure:")
         print(summary.best_months.round(2).to_string(index=False))
+        print()
     if not summary.choices.empty:
+        print(
+            "Share of departures for which a value is the best, and of those whose next one agrees:"
+        )
         print(summary.choices.round(2).to_string(index=False, na_rep="-"))
+        print()
     if not summary.fronts.empty and "method" in summary.fronts:
         ratios = summary.fronts.groupby("method")["hypervolume_ratio"].median()
         for method, ratio in ratios.sort_values(ascending=False).items():
             print(f"median hypervolume ratio of {method}: {ratio:.4f}")
     if not summary.fidelity.empty:
+        print("Accuracy: gap_percent of the objective to the finest:")
         print(summary.fidelity.round(3).to_string(index=False, na_rep="-"))
     if not summary.annual.empty:
         print(summary.annual.round(2).to_string(index=False, na_rep="-"))
     for _, row in summary.refusals.head(5).iterrows():
-        print(f"{row['voyages']} voyages without a route: {row['refusal']}: {row['reason']}")
+        count = f"{row['voyages']} voyages" if row["voyages"] > 1 else "1 voyage"
+        print(f"{count} without a route ({row['refusal']}): {row['reason']}")
     return SUCCESS

@@ -65,6 +65,7 @@ def source_named(source: str | ForecastSource) -> ForecastSource:
             f"The source {source!r} is not known.",
             f"Sources: {', '.join(SOURCES)}.",
             "Give one of them.",
+            field="source",
         )
     return SOURCES[source]
 
@@ -105,12 +106,14 @@ def estimate_forecast(
             f"{chosen.title} has no {' or '.join(missing)}.",
             f"It has {', '.join(chosen.quantities)}.",
             "Request these, or fetch the others from another source into a second file.",
+            field="quantities",
         )
     if request.members and chosen.name != "ecmwf":
         raise InputError(
             f"{chosen.title} has no ensemble here.",
             "ecmwf has one of 50 members.",
             "Leave the members out, or use ecmwf.",
+            field="members",
         )
     return chosen.plan(request, client or DownloadClient(), time.time() if now is None else now)
 
@@ -166,7 +169,7 @@ def fetch_forecast(
             f"The download is about {plan.bytes / 1e6:.0f} MB.",
             f"At most {most_bytes / 1e6:.0f} MB are downloaded.",
             "Choose a smaller box, a shorter period, a larger step or fewer quantities, or allow "
-            "more.",
+            "more (--max-mb).",
         )
     files, size = [], 0
     for number, part in enumerate(plan.parts, start=1):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from thalweg.core.bounding_box import BoundingBox
-from thalweg.core.errors import InputError
+from thalweg.core.errors import InputError, errors_about
 from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import HOUR
 
@@ -56,13 +56,15 @@ class ForecastRequest:
             object.__setattr__(self, "box", BoundingBox.checked(*self.box))
         for name in ("start", "end", "run"):
             if (moment := getattr(self, name)) is not None:
-                object.__setattr__(self, name, parse_time(moment))
+                with errors_about(name):
+                    object.__setattr__(self, name, parse_time(moment))
         if not self.start < self.end <= self.start + _LONGEST:
             raise InputError(
                 f"The period from {format_time(self.start)} to {format_time(self.end)} was "
                 "requested.",
                 "The end is after the start, and within 400 days of it.",
                 "Correct the times.",
+                field="end",
             )
         hours = self.step / HOUR
         if not (1.0 <= hours <= 24.0 and hours == round(hours)):
@@ -70,6 +72,7 @@ class ForecastRequest:
                 f"Fields every {hours:g} h were requested.",
                 "The step is a whole number of hours, 1 to 24.",
                 "Give one of them, for example 3.",
+                field="step_h",
             )
         unknown = [name for name in self.quantities if name not in QUANTITIES]
         if unknown or not self.quantities:
@@ -77,12 +80,14 @@ class ForecastRequest:
                 f"The quantities {', '.join(unknown) or '(none)'} are not known.",
                 f"Quantities: {', '.join(QUANTITIES)}.",
                 "Give one or more of them.",
+                field="quantities",
             )
         if not 0 <= self.members <= 200:
             raise InputError(
                 f"{self.members} members were requested.",
                 "0 (the single forecast) to the number of members of the ensemble.",
                 "Correct the number.",
+                field="members",
             )
 
     def steps(self, run: float, lead_hours: Sequence[int]) -> list[int]:

@@ -13,9 +13,15 @@ import numpy as np
 from thalweg.core.geodesy import inverse
 from thalweg.core.limits import Limits
 from thalweg.kernels import codes
+from thalweg.kernels.compilation.compiled_code_cache import COMPILED_FOLDER
 from thalweg.network import Edges, Graph, Network, NetworkMeta, Samples, Stations
 
 _CELLS = 24  # of the mesh of a certificate, along the geodesic
+
+
+def search_is_compiled() -> bool:
+    """Return whether the kernels of the search have been compiled for this computer."""
+    return (COMPILED_FOLDER / "warm").exists()  # marker of `warm_up`
 
 
 def compile_search() -> None:

@@ -215,13 +215,14 @@ class Voyage(IndicatorRequest, SearchRequest, VoyagePrices, Schedule, Itinerary)
         """
         for key in data:
             if key not in _ENTRIES:
-                raise unknown_name_error("voyage entry", str(key), _ENTRIES)
+                raise unknown_name_error("voyage entry", str(key), _ENTRIES, field=str(key))
         missing = [key for key in ("start", "goal") if key not in data]
         if missing:
             raise InputError(
                 f"The voyage has no {' and no '.join(missing)}.",
                 "A voyage has at least start, goal and a departure.",
                 "Add what is missing.",
+                field=missing[0],
             )
         return cls(**dict(data))
 

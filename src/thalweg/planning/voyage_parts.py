@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from numbers import Integral
 from typing import Any, Literal, TypeAlias
 
+import numpy as np
+
 from thalweg.core.errors import InputError, errors_about, unknown_name_error
 from thalweg.core.geodesy import Position, check_position
 from thalweg.core.given_numbers import shortened_repr, to_number
@@ -64,11 +66,11 @@ class Itinerary:
                 "Put a single place in brackets as well.",
                 field="via",
             )
-        places = [_place(place, f"via point {i + 1}") for i, place in enumerate(self.via)]
+        vias = enumerate(self.via)
+        places = [_place(place, f"via point {i + 1}", f"via.{i}") for i, place in vias]
         forbidden = (self.forbid,) if isinstance(self.forbid, str) else _as_list(self.forbid)
         for entry in ("start", "goal"):
-            with errors_about(entry):
-                object.__setattr__(self, entry, _place(getattr(self, entry), entry))
+            object.__setattr__(self, entry, _place(getattr(self, entry), entry, entry))
         object.__setattr__(self, "via", tuple(places))
         object.__setattr__(self, "forbid", tuple(str(name).casefold() for name in forbidden))
         for entry in ("open", "avoid"):
@@ -106,6 +108,7 @@ class Schedule:
 
     def _check_schedule(self) -> None:
         """Check the times, and turn them into seconds since 1970."""
+        _check_flag("wait", self.wait)
         if self.arrive is not None:
             self._check_arrival()
         elif (self.depart is None) == (self.depart_window is None):
@@ -113,6 +116,7 @@ class Schedule:
                 "A voyage needs a departure: a time or a window, and not both.",
                 "Either depart=... or depart_window=(earliest, latest).",
                 "Give one of them.",
+                field="depart",
             )
         if self.depart_window is not None:
             with errors_about("depart_window"):
@@ -230,13 +234,7 @@ class SearchRequest:
         _check_number("min_ukc_m", self.min_ukc_m, above=-1e-9, below=100.0, unit="m")
         _check_number("offing_nm", self.offing_nm, above=-1e-9, below=50.0, unit="nm")
         for name in ("ignore_shoals", "ignore_lanes"):
-            if not isinstance(getattr(self, name), bool):
-                raise InputError(
-                    f"{name} is {getattr(self, name)!r}.",
-                    "It is true or false.",
-                    "Correct it, or leave it out.",
-                    field=name,
-                )
+            _check_flag(name, getattr(self, name))
         if not isinstance(self.seed, Integral) or self.seed < 0:
             raise InputError(
                 f"The seed is {self.seed!r}.",
@@ -354,24 +352,31 @@ def _as_list(given: Any) -> tuple[Any, ...]:
         return (given,)
 
 
-def _place(place: Any, what: str) -> Place:
+def _place(place: Any, what: str, field: str) -> Place:
+    form = 'A place is (lat, lon) in degrees or text such as "52.0N 4.1E" or a port.'
     if isinstance(place, str):
         if not place.strip():
-            raise InputError(
-                f"The {what} is empty.", "A place is lat, lon or a port.", "Give one of these."
-            )
+            raise InputError(f"The {what} is empty.", form, "Give a place.", field=field)
         return place.strip()
     try:
         lat, lon = place
-        return check_position(lat, lon, what)
+        with errors_about(field):
+            return check_position(lat, lon, what)
     except (TypeError, ValueError) as error:
         if isinstance(error, InputError):
             raise
+        asked = f"The {what} {shortened_repr(place)} is not a place."
+        raise InputError(asked, form, "Give it in one of these forms.", field=field) from None
+
+
+def _check_flag(name: str, value: Any) -> None:
+    if not isinstance(value, (bool, np.bool_)):
         raise InputError(
-            f"The {what} {shortened_repr(place)} is not a place.",
-            'A place is (lat, lon) in degrees or text such as "52.0N 4.1E" or a port.',
-            "Give the place in one of these forms.",
-        ) from None
+            f"{name} is {shortened_repr(value)}.",
+            "It is true or false.",
+            "Correct it, or leave it out.",
+            field=name,
+        )
 
 
 def _check_number(name: str, value: Any, *, above: float, below: float, unit: str) -> None:

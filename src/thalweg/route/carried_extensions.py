@@ -1,4 +1,4 @@
-"""Extensions of other makers in a route file, carried by its track into files written of it."""
+"""What a route file has beside its track, carried by that into the files written of it."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ def visits_of(positions: Iterable[Position]) -> list[Visit]:
 
 @dataclass(frozen=True)
 class CarriedExtensions:
-    """XML texts of extensions, each an element that declares the prefixes it uses.
+    """Names, cross-track limits and facts of a route file, and extensions of other makers.
 
-    Elements of the namespace of RTZ have no prefix: they belong to the version of the file they are
-    written into.
+    An extension is an XML text: an element that declares the prefixes it uses. Elements of the
+    namespace of RTZ have no prefix: they belong to the version of the file they are written into.
 
     Attributes
     ----------
@@ -39,13 +39,20 @@ class CarriedExtensions:
         ``calculated``.
     at : By visit of a waypoint and by element there: ``waypoint``, ``leg``, ``manualElement``,
         ``calculatedElement``.
+    info : Attributes of ``routeInfo``, without the name of the route.
+    names : Names of waypoints that were given by other makers.
+    corridors : Cross-track limits to port and starboard of the leg that ends at a waypoint [m];
+        NaN: none.
     """
 
     general: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     at: Mapping[Visit, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
+    info: Mapping[str, str] = field(default_factory=dict)
+    names: Mapping[Visit, str] = field(default_factory=dict)
+    corridors: Mapping[Visit, tuple[float, float]] = field(default_factory=dict)
 
     def __bool__(self) -> bool:
-        return bool(self.general or self.at)
+        return bool(self.general or self.at or self.info or self.names or self.corridors)
 
     def of(self, element: str) -> tuple[str, ...]:
         """Return the extensions of an element that the file has once."""

@@ -289,3 +289,19 @@ def fill_hint(missing: Sequence[str], known: frozenset[str]) -> str:
     others -= set(_SPEEDS.values())
     text = f"--fill {' '.join(hints)}" if hints else "no value can be filled"
     return f"{text} ({', '.join(sorted(others))} cannot be filled)" if others and hints else text
+
+
+def nearest_fills(unknown: Sequence[str], miles: float = 25.0) -> list[str]:
+    """Return the policies that fill variables from the nearest known values: "wind=nearest:25".
+
+    Parameters
+    ----------
+    unknown : Canonical names.
+    miles : Greatest distance of known values [nm].
+    """
+    lacking = set(unknown)
+    return [
+        f"{policy}={NEAREST}:{miles:g}"
+        for policy, names in FILLABLE_VARIABLES.items()
+        if lacking & set(names)
+    ]

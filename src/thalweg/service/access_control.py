@@ -45,8 +45,9 @@ class AccessControl:
     """ASGI middleware that refuses requests of others.
 
     A request states the token as ``Authorization: Bearer`` or in the cookie that the first page
-    sets. The ``Host`` must be one of the service (against DNS rebinding), and a stated ``Origin``
-    the service itself.
+    sets. Browsers send the cookie with links that are followed from elsewhere (a permalink in a
+    message), and with no other request of another site. The ``Host`` must be one of the service
+    (against DNS rebinding), and a stated ``Origin`` the service itself.
     """
 
     def __init__(self, application: ASGIApp, settings: ServiceSettings) -> None:
@@ -93,7 +94,7 @@ class AccessControl:
         if given and self._is_token(given):
             rest = urlencode(query, doseq=True)
             answer = RedirectResponse("/" + (f"?{rest}" if rest else ""), 303)
-            answer.set_cookie(COOKIE, given, httponly=True, samesite="strict", max_age=90 * 86400)
+            answer.set_cookie(COOKIE, given, httponly=True, samesite="lax", max_age=90 * 86400)
             return answer
         if self._knows_token(headers):
             return None

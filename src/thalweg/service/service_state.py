@@ -5,15 +5,18 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Annotated, Any, Final
 
 from fastapi import Depends, Request
 
 from thalweg.core.errors import InputError
+from thalweg.service.coast_map import remove_old_drafts
 from thalweg.service.jobs.job_runner import JobRunner
 from thalweg.service.jobs.job_store import JobStore
 from thalweg.service.jobs.named_uploads import named_uploads
+from thalweg.service.jobs.plan_request import EMBEDDED_SEAS
 from thalweg.service.service_settings import ServiceSettings
 from thalweg.service.upload_store import UploadStore
 from thalweg.service.worker.worker_client import WorkerClient
@@ -70,6 +73,7 @@ class ServiceState:
         limits = settings.limits
         self._lock = _folder_lock(settings)
         small = limits.small_upload_bytes
+        remove_old_drafts()
         self.seas = UploadStore(
             settings.subfolder("seas"), "sea", SEA_ENDINGS,
             largest=limits.upload_bytes, total=limits.store_bytes,
@@ -112,6 +116,11 @@ class ServiceState:
         ):
             found |= {name: str(store.get(name).path) for name in names}
         return found
+
+    def named_variables(self, seas: Sequence[str]) -> dict[str, str]:
+        """Return the variables that were named when seas were uploaded, by quantity."""
+        stored = [self.seas.get(name) for name in reversed(seas) if name not in EMBEDDED_SEAS]
+        return {key: name for sea in stored for key, name in sea.facts.get("named", {}).items()}
 
     @cached_property
     def library_ships(self) -> tuple[str, ...]:

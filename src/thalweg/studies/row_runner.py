@@ -15,12 +15,16 @@ from thalweg.chart import Chart
 from thalweg.core.errors import InputError, ThalwegError
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Plan, Voyage, plan
+from thalweg.planning.request.filled_sea import filled_in_turns
+from thalweg.planning.request.voyage_surroundings import chart_of_entries, ship_of_entries
 from thalweg.route import Route, Track, evaluate, read_track
 from thalweg.route.indicator_columns import INDICATORS, indicator_value
 from thalweg.sea import Sea
+from thalweg.sea.fill_policies import FETCH_LIMITED
 from thalweg.ship import Ship
 from thalweg.studies.series_rows import SeriesInputs, series_figures, series_key
 from thalweg.studies.study import StudyRow, canonical_json
+from thalweg.studies.study_axes import fill_policies
 
 #: Largest values over a route: column and sampled variables.
 _EXTREMES = {
@@ -107,9 +111,11 @@ def _plain(found: dict[str, Any] | Exception) -> dict[str, Any]:
 
 
 def _inputs(request: Mapping[str, Any], folder: str) -> SeriesInputs:
-    coast = str(request.get("coast", "i"))
     return SeriesInputs(
-        ship_of_request(request, folder), _sea(request, Path(folder)), _chart(coast), folder
+        ship_of_request(request, folder),
+        _sea(request, Path(folder)),
+        _chart_of(request, folder),
+        folder,
     )
 
 
@@ -117,11 +123,12 @@ def _figures(request: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return the key figures of the route of a request."""
     ship = ship_of_request(request, str(folder))
     sea = _sea(request, folder)
-    chart = _chart(str(request.get("coast", "i")))
+    chart = _chart_of(request, str(folder))
     voyage = request["voyage"]
     if "track" in request:
         path = folder / str(request["track"])
-        route = _evaluated(read_track(path), ship, sea, chart, voyage)
+        track = read_track(path, depart=voyage.get("depart"))
+        route = _evaluated(track, ship, sea, chart, voyage)
         return _route_figures(route)
     answer = _planned(voyage, ship, sea, chart, request)
     if answer.cancelled:  # Ctrl-C: the best plan so far is no result of this row
@@ -221,7 +228,7 @@ def _calm_track(key: str, folder: str) -> Track:
 
     voyage, request = json.loads(key)
     ship = ship_of_request(request, folder)
-    chart = _chart(str(request.get("coast", "i")))
+    chart = _chart_of(request, folder)
     answer = _planned({**voyage, "depart": _ANY_DATE}, ship, Sea.calm(), chart, request)
     return answer.best.track
 
@@ -250,28 +257,39 @@ def ship_of_request(request: Mapping[str, Any], folder: str) -> Ship:
         Of a `StudyRow`.
     folder : Files are relative to it.
     """
-    return _ship(canonical_json([request.get("ship"), request.get("load_factor")]), folder)
+    voyage = request.get("voyage") or {}
+    own_share = (request.get("charges") or {}).get("share_percent") is not None
+    ends = None if own_share else [voyage.get(name) for name in ("start", "goal")]
+    entries = [request.get(name) for name in ("ship", "load_factor", "limits", "charges")]
+    return _ship(canonical_json([*entries, ends if request.get("charges") else None]), folder)
 
 
 @lru_cache(maxsize=8)
 def _ship(key: str, folder: str) -> Ship:
     import json
 
-    given, load_factor = json.loads(key)
+    given, load_factor, limits, charges, ends = json.loads(key)
     if given is None:
         raise InputError(
             "The study names no ship.", "ship: is a name, a file or a mapping.", "Add it."
         )
-    if isinstance(given, Mapping):
-        ship = Ship.from_dict(given, source="ship of the study")
-    else:
+    if not isinstance(given, Mapping):
         path = Path(folder) / str(given)
-        ship = Ship.load(path if path.is_file() else str(given))
-    return ship if load_factor is None else ship.with_load_factor(load_factor)
+        given = path if path.is_file() else str(given)
+    return ship_of_entries(
+        given,
+        load_factor=load_factor,
+        limits=limits,
+        charges=charges,
+        ends=tuple(ends or (None, None)),
+    )
 
 
 def _sea(request: Mapping[str, Any], folder: Path) -> Sea:
-    parts = [request.get(key) for key in ("sea", "map", "fill")]
+    policies = fill_policies(request.get("fill"))
+    by_fetch = ("waves", FETCH_LIMITED) in policies
+    coast = str(request.get("coast", "i")) if by_fetch else None
+    parts = [request.get("sea"), request.get("map"), policies, coast]
     sea = _opened_sea(canonical_json(parts), str(folder))
     member = request.get("member")
     sea = sea if member is None else sea.member(int(member))
@@ -283,7 +301,7 @@ def _opened_sea(key: str, folder: str) -> Sea:
     """Return a sea; each process opens its files once."""
     import json
 
-    given, mapping, fill = json.loads(key)
+    given, mapping, policies, coast = json.loads(key)
     names = given if isinstance(given, list) else [given]
     if not names or not all(isinstance(name, str) for name in names):
         raise InputError(
@@ -293,17 +311,38 @@ def _opened_sea(key: str, folder: str) -> Sea:
         )
     if names == ["calm"]:
         return Sea.calm()
+    chart = None if coast is None else _chart_of({"coast": coast}, folder)
     layers = [Sea.storm()] if "storm" in names else []
     files = [Path(folder) / name for name in names if name != "storm"]
     if files:
         layers.insert(0, Sea.open(*files, mapping=mapping))
     sea = layers[0] if len(layers) == 1 else Sea.layered(*layers)
-    return sea if fill is None else sea.filled(**fill)
+    return filled_in_turns(sea, policies, chart)
+
+
+def _chart_of(request: Mapping[str, Any], folder: str) -> Chart:
+    names = ("coast", "depths", "areas", "traffic", "eca")
+    return _chart(
+        canonical_json({name: request[name] for name in names if name in request}), folder
+    )
 
 
 @lru_cache(maxsize=4)
-def _chart(coast: str) -> Chart:
-    return Chart.open_water(-90.0, 90.0, -180.0, 180.0) if coast == "none" else Chart.gshhg(coast)
+def _chart(key: str, folder: str) -> Chart:
+    """Return a chart; each process opens its files once."""
+    import json
+
+    given = json.loads(key)
+    files = {
+        name: [Path(folder) / one if isinstance(one, str) else one for one in _listed(given, name)]
+        for name in ("depths", "areas", "traffic")
+    }
+    return chart_of_entries(str(given.get("coast", "i")), eca=given.get("eca", True), **files)
+
+
+def _listed(given: Mapping[str, Any], name: str) -> list[Any]:
+    value = given.get(name)
+    return value if isinstance(value, list) else [] if value is None else [value]
 
 
 def _known(value: float | None) -> float | None:

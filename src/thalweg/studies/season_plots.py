@@ -31,7 +31,10 @@ def draw_heat_map(table: pd.DataFrame, figure_name: str, path: Path) -> Path:
     cells = np.ma.masked_invalid(grid.to_numpy(float))
     image = axes.imshow(cells, aspect="auto", cmap="cividis")
     axes.set_xticks(range(12), _MONTHS)
-    axes.set_yticks(range(len(grid)), [f"{hour:02d}" for hour in grid.index])
+    together = int(table["hours"].iloc[0])
+    until = "" if together == 1 else "-{:02d}"
+    names = [f"{hour:02d}{until.format(hour + together)}" for hour in grid.index]
+    axes.set_yticks(range(len(grid)), names)
     axes.set_ylabel("hour of departure (UTC)")
     figure.colorbar(image, label=f"median {figure_name}")
     save_figure(figure, path, dpi=120)

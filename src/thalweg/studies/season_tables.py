@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from thalweg.core.units import HOUR
+from thalweg.studies.fidelity_table import FIDELITY_AXES
 
 _DAY: Final = 24.0 * HOUR
 #: A route with at least this share of its length inshore counts as inshore [%].
@@ -17,6 +18,10 @@ _CHOSEN_BY: Final = {
     "time": "time_h", "distance": "distance_nm", "fuel": "fuel_t", "co2": "co2_t",
     "energy": "energy_mwh", "comfort": "comfort",
 }  # fmt: skip
+#: Axes that are no choice of a master.
+_NO_CHOICE: Final = (*FIDELITY_AXES, "coast", "detail", "member", "method", "sea", "seed")
+_MOST_TOGETHER_H: Final = 6  # hours of the day in one row of a heat map of random departures
+_ENOUGH: Final = 5  # routes in the middle cell of such a heat map
 
 
 def departure_windows(frame: pd.DataFrame, usable: pd.Series) -> dict[str, float | None]:
@@ -64,23 +69,24 @@ def choices_by_axis(frame: pd.DataFrame, usable: pd.Series, axes: list[str]) -> 
     usable : pandas.Series of bool
         Rows with a route.
     axes : list of str
-        Axes other than the departure; those with one value, or that change the objective, are
-        left out.
+        Axes other than the departure; those with one value, and those of the accuracy, are left
+        out.
 
     Returns
     -------
     pandas.DataFrame
         ``axis``, ``value``, ``month``, ``departures``, ``chosen`` (share of the departures with any
         route, by the figure of the objective) and ``persistence`` (share of successive departures
-        of the month with the same choice). Empty where departures have no such choice.
+        of the month with the same choice). Empty where departures have no such choice, or for a
+        single departure.
     """
     objective = str(frame.get("objective", pd.Series(dtype=object)).dropna().iloc[:1].squeeze())
     figure = _CHOSEN_BY.get(objective, "time_h")
-    if "depart" not in frame or figure not in frame:
+    if "depart" not in frame or figure not in frame or frame["depart"].nunique() < 2:
         return pd.DataFrame()
     found: list[dict[str, Any]] = []
     good = frame[usable & frame[figure].notna()]
-    for axis in (name for name in axes if good[name].nunique() > 1):
+    for axis in (name for name in axes if good[name].nunique() > 1 and name not in _NO_CHOICE):
         others = [name for name in axes if name != axis]
         rows = good.sort_values([*others, "depart", figure], kind="stable", key=_as_sortable)
         best = rows.drop_duplicates([*others, "depart"])
@@ -120,16 +126,25 @@ def month_by_hour(frame: pd.DataFrame, figures: list[str]) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        ``month``, ``hour``, ``routes`` and the figures; empty with a single month or hour.
+        ``month``, ``hour``, ``hours``, ``routes`` and the figures; empty with a single month or
+        hour. A row is of departures from ``hour`` until ``hours`` later: 1, or, for departures at
+        random times, up to 6 so that most rows have five routes.
     """
     if "month" not in frame or frame.empty:
         return pd.DataFrame()
     hour = pd.to_datetime(frame["depart"], utc=True, format="ISO8601").dt.hour
     if hour.nunique() < 2 or frame["month"].nunique() < 2:
         return pd.DataFrame()
-    groups = frame.assign(hour=hour).groupby(["month", "hour"])
+    together = 1
+    if (_seconds(frame["depart"]) % HOUR != 0.0).any():
+        for together in (1, 2, 3, 4, _MOST_TOGETHER_H):
+            cells = frame.groupby([frame["month"], hour // together]).size()
+            if cells.median() >= _ENOUGH:
+                break
+    groups = frame.assign(hour=hour // together * together).groupby(["month", "hour"])
     table = groups[figures].median()
     table.insert(0, "routes", groups.size())
+    table.insert(0, "hours", together)
     return table.reset_index()
 
 

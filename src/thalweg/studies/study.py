@@ -13,16 +13,24 @@ from typing import Any, Final
 
 import yaml
 
-from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.chart.zones.zone_set import Zones
+from thalweg.core.errors import InputError, errors_about, unknown_name_error
 from thalweg.core.file_reading import read_text_file
+from thalweg.planning.request.voyage_surroundings import check_charges, check_limits
 from thalweg.planning.voyage import Voyage
 from thalweg.studies.annual_figures import checked_annual
-from thalweg.studies.study_axes import MOST_ROWS, axis_values, plain_data, sample_draws
+from thalweg.studies.study_axes import (
+    MOST_ROWS,
+    axis_values,
+    fill_policies,
+    plain_data,
+    sample_draws,
+)
 
 #: Entries of a row beside those of a voyage.
 SURROUNDINGS: Final = (
-    "ship", "load_factor", "sea", "map", "fill", "member", "sampling", "coast", "network",
-    "resolution_nm", "detail", "track",
+    "ship", "load_factor", "limits", "charges", "sea", "map", "fill", "member", "sampling", "coast",
+    "depths", "areas", "traffic", "eca", "network", "resolution_nm", "detail", "track",
 )  # fmt: skip
 _ENTRIES: Final = ("name", "voyage", "axes", "sample", "compare", "annual", *SURROUNDINGS)
 COMPARISONS: Final = ("weather_blind",)
@@ -86,11 +94,14 @@ class Study:
     annual: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        _check_surroundings(self.base)
         for entry in (*self.axes, *(key for key in self.sample if key not in ("count", "seed"))):
             for value in self.axes.get(entry, ()):
                 for key in value if isinstance(value, Mapping) else ():
                     if key != "name":
                         _check_entry(key)
+                if isinstance(value, Mapping):
+                    _check_surroundings(value)
             named = all(isinstance(value, Mapping) for value in self.axes.get(entry, (None,)))
             if not named:
                 _check_entry(entry)
@@ -100,6 +111,11 @@ class Study:
         for name in (self.base.get("detail", DETAILS[0]), *self.axes.get("detail", ())):
             if not isinstance(name, Mapping) and name not in DETAILS:
                 raise unknown_name_error("detail", str(name), DETAILS)
+        fill_policies(self.base.get("fill"))
+        for axis, values in self.axes.items():
+            for value in values:
+                named = isinstance(value, Mapping) and "name" in value
+                fill_policies(value.get("fill") if named else value if axis == "fill" else None)
         if self.size > MOST_ROWS:
             raise InputError(
                 f"The study has {self.size:,} voyages.",
@@ -199,7 +215,7 @@ class Study:
             )
         for key in data:
             if key not in _ENTRIES:
-                raise unknown_name_error("entry of a study", str(key), _ENTRIES)
+                raise unknown_name_error("entry of a study", str(key), _ENTRIES, field=str(key))
         voyage = plain_data(data.get("voyage", {}))
         if not isinstance(voyage, dict) or (
             not {"start", "goal"} & set(voyage) and "axes" not in data
@@ -284,7 +300,18 @@ def _row(base: Mapping[str, Any], chosen: Mapping[str, Any], compare: Sequence[s
 def _check_entry(name: str) -> None:
     known = (*Voyage.__dataclass_fields__, *SURROUNDINGS)
     if name not in known:
-        raise unknown_name_error("entry of a voyage", name, known)
+        raise unknown_name_error("entry of a voyage", name, known, field=name)
+
+
+def _check_surroundings(entries: Mapping[str, Any]) -> None:
+    """Check the limits, charges and areas of a study, as those of a single voyage are checked."""
+    if entries.get("limits") is not None:
+        check_limits(entries["limits"])
+    if entries.get("charges") is not None:
+        check_charges(entries["charges"])
+    if isinstance(entries.get("areas"), Mapping):
+        with errors_about("areas"):
+            Zones.read(entries["areas"])
 
 
 def _check_mappings(axes: Any, sample: Any) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import HOUR
+from thalweg.sea.fill_policies import check_fill
 
 MOST_ROWS: Final = 2_000_000  #: of one study
 
@@ -102,3 +103,36 @@ def plain_data(value: Any) -> Any:
     if value is None or isinstance(value, (str, int, float, bool)):
         return value
     return format_time(parse_time(value))
+
+
+def fill_policies(fill: Any) -> list[tuple[str, Any]]:
+    """Return what unknown values of a sea are taken as, by quantity and priority.
+
+    Parameters
+    ----------
+    fill : mapping or None
+        Of a quantity a value (two numbers: east and north), or several that are tried in turn.
+
+    Returns
+    -------
+    list of tuple
+
+    Raises
+    ------
+    InputError
+        If a quantity or a value is not possible.
+    """
+    if not isinstance(fill, Mapping | None):
+        raise InputError(
+            f"fill is {fill!r}.",
+            "It is a mapping of quantities to values, such as {waves: fetch_limited, wind: 0}.",
+            "Correct it.",
+            field="fill",
+        )
+    found = []
+    for name, given in (fill or {}).items():
+        in_turns = isinstance(given, list) and any(isinstance(one, str | list) for one in given)
+        for value in given if in_turns else [given]:
+            check_fill(str(name), value)
+            found.append((str(name), value))
+    return found

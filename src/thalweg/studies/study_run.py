@@ -26,6 +26,9 @@ from thalweg.studies.study_parts import read_parts, require_parquet, write_part,
 CHUNK = 20  #: rows of a part
 ATTEMPTS = 3  #: of a chunk whose worker dies
 _AHEAD = 3  # chunks per worker that wait in a cluster
+_SHARES = 4  # least number of chunks for each process, so that short studies use all of them
+_CLUSTER = 16  # processes of a cluster that short studies are cut for
+_KEEP_S = 20.0  # rows of this process are written this often
 
 Chunk = list[StudyRow]
 
@@ -83,7 +86,8 @@ def run_study(
         Address of a Dask scheduler, such as ``tcp://host:8786``, whose workers have Thalweg and
         the files of the study.
     chunk : int
-        Rows that are done together, 1 or more; finished chunks survive a stop.
+        Rows that are done together, 1 or more (fewer where there are fewer for each process);
+        finished chunks survive a stop.
     progress : callable, optional
         Called after each chunk.
 
@@ -109,6 +113,9 @@ def run_study(
     rows = list({row.id: row for row in study.rows()}.values())
     known = set(read_parts(folder, ["id"])["id"])
     missing = [row for row in rows if row.id not in known]
+    processes = workers if scheduler is None else _CLUSTER
+    if processes:
+        chunk = min(chunk, -(-len(missing) // (_SHARES * processes)) or 1)
     chunks = study.chunks(missing, chunk)
     begin, refused, done = time.monotonic(), 0, 0
     state = StudyProgress(len(rows) - len(missing), len(rows), 0, 0.0, 0)
@@ -138,18 +145,23 @@ def _results(
 
 
 def _in_this_process(chunks: list[Chunk], folder: str) -> Iterator[list[dict[str, Any]]]:
-    """Yield the results of chunks; after Ctrl-C those of the rows of a chunk that are finished."""
+    """Yield the results of chunks, of long ones in parts; after Ctrl-C those that are finished."""
     for chunk in chunks:
         at_once = all(row.request.get("detail") == "network" for row in chunk)
         done: list[dict[str, Any]] = []
+        begin = time.monotonic()
         try:
             for rows in [chunk] if at_once else [[row] for row in chunk]:
                 done += run_rows(rows, folder)
+                if time.monotonic() - begin >= _KEEP_S:
+                    yield done
+                    done, begin = [], time.monotonic()
         except KeyboardInterrupt:
             if done:
                 yield done
             raise
-        yield done
+        if done:
+            yield done
 
 
 def _in_processes(chunks: list[Chunk], folder: str, workers: int) -> Iterator[list[dict[str, Any]]]:

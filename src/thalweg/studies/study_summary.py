@@ -15,7 +15,7 @@ from thalweg.core.file_writing import make_folder, write_csv_rows
 from thalweg.route.indicator_columns import INDICATORS
 from thalweg.ship import Ship
 from thalweg.studies.annual_figures import annual_figures, share_of_voyage
-from thalweg.studies.fidelity_table import fidelity_table
+from thalweg.studies.fidelity_table import FIDELITY_AXES, fidelity_table
 from thalweg.studies.front_statistics import draw_front_statistics, front_statistics
 from thalweg.studies.row_runner import ship_of_request
 from thalweg.studies.season_plots import draw_heat_map, draw_months
@@ -37,6 +37,7 @@ _SAVINGS: Final = (
 _LEAST_IS_BEST: Final = ("time_h", "fuel_t", "sick_percent")
 QUANTILES: Final = (0.1, 0.5, 0.9)
 _CONFIDENCE: Final = 0.9
+_ALIKE: Final = 200  # characters in which the reasons of refusals that count as one are the same
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,8 @@ class StudySummary:
         with a route, ``inshore_share`` of routes; and of each key figure and indicator ``_p10``,
         ``_p50``, ``_p90`` and the confidence limits of the median ``_p50_low`` and ``_p50_high``.
     refusals : pandas.DataFrame
-        ``refusal``, ``reason`` and ``voyages``, most frequent first.
+        ``refusal``, ``reason`` (of the first of those that begin alike) and ``voyages``, most
+        frequent first.
     best : pandas.DataFrame
         The month with the least median time of each group of the other axes.
     fronts : pandas.DataFrame
@@ -67,7 +69,8 @@ class StudySummary:
     best_months : pandas.DataFrame
         The month with the least median of time, fuel and share of people sick, by the other axes.
     fidelity : pandas.DataFrame
-        Networks against the finest (`fidelity_table`); empty without an axis ``network``.
+        Networks, distances between nodes or samplings against the finest (`fidelity_table`); empty
+        without an axis ``network``, ``resolution_nm`` or ``sampling``.
     """
 
     table: pd.DataFrame
@@ -212,6 +215,7 @@ def summarise_study(folder: str | Path) -> StudySummary:
     table = pd.DataFrame(rows)
     axes = [name for name in study.axes if name in frame]
     ways = [name for name in axes if name not in times]
+    fine = next((name for name in FIDELITY_AXES if len(study.axes.get(name, ())) > 1), "")
     return StudySummary(
         table,
         _refusals(frame, usable),
@@ -222,16 +226,17 @@ def summarise_study(folder: str | Path) -> StudySummary:
         choices_by_axis(frame, usable, ways),
         month_by_hour(frame[usable], figures),
         _best_months(table, by),
-        fidelity_table(frame[usable], study.axes.get("network", ())),
+        fidelity_table(frame[usable], study.axes.get(fine, ()), fine),
     )
 
 
 def _voyages(frame: pd.DataFrame, axes: list[str], figures: list[str]) -> pd.DataFrame:
-    """Return one row per voyage in order of departure and axes, without empty columns."""
+    """Return one row per voyage in order of departure (of an axis) and axes; no empty columns."""
     first = [name for name in axes if name in frame]
     wanted = [*first, "depart", "arrive", *figures, "feasible", "first_violation", "refusal"]
     names = [name for name in dict.fromkeys([*wanted, "reason"]) if name in frame]
-    order = [name for name in dict.fromkeys(["depart", *first]) if name in frame]
+    leading = ["depart"] if "depart" in first or not first else []
+    order = [name for name in dict.fromkeys([*leading, *first]) if name in frame]
     rows = frame.sort_values(order, kind="stable", key=_sortable) if order else frame
     return rows[names].dropna(axis="columns", how="all").reset_index(drop=True)
 
@@ -257,7 +262,7 @@ def _annual(study: Study, usable: pd.DataFrame, by: list[str]) -> pd.DataFrame:
 
 def _quantiles(name: str, values: np.ndarray) -> dict[str, float | None]:
     if not values.size:
-        return {f"{name}_p50": None}
+        return {f"{name}_{part}": None for part in ("p10", "p50", "p90", "p50_low", "p50_high")}
     found = {f"{name}_p{round(100 * q)}": float(np.quantile(values, q)) for q in QUANTILES}
     low, high = median_interval(values)
     return {**found, f"{name}_p50_low": low, f"{name}_p50_high": high}
@@ -289,11 +294,13 @@ def _refusals(frame: pd.DataFrame, usable: pd.Series) -> pd.DataFrame:
     reasons = pd.DataFrame(
         {
             "refusal": lost["refusal"].fillna("limit exceeded"),
-            "reason": lost["reason"].fillna(broken).astype(str).str.slice(0, 200),
+            "reason": lost["reason"].fillna(broken).astype(str),
         }
     )
-    counted = reasons.value_counts().rename("voyages").reset_index()
-    return counted.sort_values("voyages", ascending=False, ignore_index=True)
+    alike = ["refusal", reasons["reason"].str.slice(0, _ALIKE)]
+    counted = reasons.groupby(alike).agg(reason=("reason", "first"), voyages=("reason", "size"))
+    counted = counted.droplevel(1).reset_index()
+    return counted.sort_values("voyages", ascending=False, kind="stable", ignore_index=True)
 
 
 def _best_months(table: pd.DataFrame, by: list[str]) -> pd.DataFrame:

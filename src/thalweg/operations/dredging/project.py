@@ -206,6 +206,7 @@ def _check_keys(data: Mapping[str, Any]) -> None:
             f"Needed: {', '.join(_REQUIRED_KEYS)}.",
             "Add them.",
             missing=missing,
+            field=missing[0],
         )
 
 

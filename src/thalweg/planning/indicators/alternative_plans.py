@@ -243,7 +243,7 @@ def alternative_plans(
         _named(chosen, context.chart),
         tuple(slack),
         tuple(notes),
-        (ends[0].name, ends[-1].name),
+        (ends[0].true_name, ends[-1].true_name),
         any(note.startswith(STOPPED) for note in notes),
     )
 

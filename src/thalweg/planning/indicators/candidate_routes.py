@@ -64,7 +64,8 @@ from thalweg.route import Route, Track
 STOPPED: Final = "Stopped"  #: first word of notes after Ctrl-C
 _OBJECTIVES: Final = ("fuel", "comfort", "encounters", "inshore", "distance")
 _WEIGHTED: Final = ("time", "fuel", "comfort", "encounters")
-_WIDER_OFFING: Final = 4.0 * NAUTICAL_MILE  # of the route that is searched farther off land
+#: Offings of the route farther off land, tried in turn: at least [nm], and times the voyage's own.
+_WIDER_OFFINGS: Final = ((4.0, 2.0), (3.0, 1.5), (2.0, 1.25))
 _DETOUR: Final = 0.35  # ways that are longer by this share of the shortest are left out
 _REACH: Final = 12.0 * NAUTICAL_MILE  # from nodes to the ends of the line of a passage
 _ISLAND_WAYS, _PASSAGE_WAYS = 3, 5
@@ -260,25 +261,25 @@ class _Candidates:
             yield self._at_full_speed(*np.array(path.waypoints, float).T)
 
     def farther_off_land(self, network: Network) -> Iterator[Track]:
-        """Yield the shortest way with a wider offing, as far as the ends allow it."""
+        """Yield the shortest way with the widest offing that joins the ends."""
         chart, ends = self.context.chart, self.trade_off.ends
-        wider = max(_WIDER_OFFING, 2.0 * self.trade_off.limits.offing)
-        off_land = chart_off_land(chart, ends, wider)
-        keep, _ = allowed_legs(
-            off_land, network.lat, network.lon, network.tails(), network.graph.target
+        edges = network.lat, network.lon, network.tails(), network.graph.target
+        fixed, own = np.isfinite(network.edges.fixed_time), self.trade_off.limits.offing
+        for least, times in _WIDER_OFFINGS:
+            wider = max(least * NAUTICAL_MILE, times * own)
+            off_land = chart_off_land(chart, ends, wider)
+            weight = self._open(network, allowed_legs(off_land, *edges)[0] | fixed)
+            tree = shortest_path_tree(network.graph, weight, network.meta.start)
+            path = tree.path(network.meta.goal)
+            if path:
+                yield self._pulled(network, off_land, path)
+                return
+        raise NoRouteError(
+            "the ends cannot be joined farther off land.",
+            "The network has no such path.",
+            "Give a wider offing to plan for it.",
+            reasons={},
         )
-        keep |= np.isfinite(network.edges.fixed_time)
-        weight = self._open(network, keep)
-        tree = shortest_path_tree(network.graph, weight, network.meta.start)
-        path = tree.path(network.meta.goal)
-        if not path:
-            raise NoRouteError(
-                f"the ends cannot be joined {wider / NAUTICAL_MILE:g} nm off land.",
-                "The network has no such path.",
-                "Give a wider offing to plan for it.",
-                reasons={},
-            )
-        yield self._pulled(network, off_land, path)
 
     def round_passages(self, network: Network) -> Iterator[Track]:
         """Yield the shortest way without each passage of the fastest route."""

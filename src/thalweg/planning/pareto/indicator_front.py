@@ -27,7 +27,8 @@ from thalweg.search import FrontPoint, FrontQuery, pareto_front, path_costs
 _MOST_SEARCHES: Final = 24
 _MOST_ROUTES: Final = 12  # of a front that the referee scores
 _CLOSED: Final = 2e-3  # a gap below this share of the value needs no further search
-_TIME_BINS: Final = 300
+#: Time bins of a search: as many as its work allows, since bounds lose up to one bin on each edge.
+_LEAST_BINS, _MOST_BINS, _EDGE_BINS = 300, 6000, 3.6e7
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,7 +185,9 @@ class _WeightedSearches:
         )
         objective = Objective(**dict(zip(self.names, weights.tolist())), currency=self.currency)
         ship, query = self._query(with_objective(self.trade_off, objective))
-        bin_s = (query.latest - query.depart) / _TIME_BINS
+        work = self.network.n_edges * len(self.trade_off.context.ship.speeds)
+        bins = min(max(_EDGE_BINS / work, _LEAST_BINS), _MOST_BINS)
+        bin_s = (query.latest - query.depart) / bins
         front = pareto_front(ship, query, bin_s=bin_s)
         if not front.points:
             raise NoRouteError(

@@ -126,9 +126,9 @@ def provenance(
     table_error = dataclasses.asdict(context.table.error)
     return {
         "thalweg": version("thalweg"),
-        "from": ends[0].name,
-        "to": ends[-1].name,
-        "via": [end.name for end in ends[1:-1]],
+        "from": ends[0].true_name,
+        "to": ends[-1].true_name,
+        "via": [end.true_name for end in ends[1:-1]],
         "ship": {
             "name": context.ship.name,
             "fingerprint": context.ship.fingerprint(),

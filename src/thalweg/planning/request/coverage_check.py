@@ -21,6 +21,7 @@ from thalweg.planning.request.requirements import Requirements
 from thalweg.planning.request.voyage_endpoints import MAX_SNAP_PORT, Endpoint
 from thalweg.planning.voyage import Voyage
 from thalweg.sea import Sea, standard_names
+from thalweg.sea.fill_policies import MAX_NEAREST, nearest_fills
 from thalweg.ship import Ship
 
 _DIRECTIONS = ("sea_surface_wave_to_direction_east", "sea_surface_wave_to_direction_north")
@@ -109,6 +110,14 @@ class _CoverageProbe:
             lacking.append("depth")
         return lacking
 
+    def unknown_at_times(self, lat: FloatArray, lon: FloatArray) -> list[str]:
+        """Return the variables, or "depth", that are not known at a position at all times."""
+        samples = self._sample(self.names, lat, lon)
+        unknown = [name for name in self.names if not np.isfinite(samples[name]).all()]
+        if math.isfinite(self.depth) and not np.isfinite(self._depths(lat, lon)).all():
+            unknown.append("depth")
+        return unknown
+
     def suits(self, lat: FloatArray, lon: FloatArray, *, harbour: bool) -> NDArray[np.bool_]:
         """Return where all is known at some time; for a harbour, at all times and deep enough."""
         good = np.ones(lat.shape, bool)
@@ -159,11 +168,7 @@ def _moved_into_coverage(end: Endpoint, coverage_probe: _CoverageProbe, chart: C
     if end.is_port and not coverage_probe.suits(*here, harbour=True)[0]:
         near = _nearest_suitable_water(end, coverage_probe, chart, harbour=True)
         if near is not None:
-            why = "in water that is too shallow or outside the data"
-            return replace(
-                end, lat=near[0], lon=near[1], moved_distance_m=near[2], why=why, approach=None,
-                given_position=end.origin,
-            )  # fmt: skip
+            return _moved_to(near, end, coverage_probe)
     lacking = coverage_probe.missing(*here)
     if not lacking:
         coverage_probe.check_deep_enough(end)
@@ -178,6 +183,43 @@ def _moved_into_coverage(end: Endpoint, coverage_probe: _CoverageProbe, chart: C
         ),
         "Choose a place inside, or add data that cover this one.",
         lacking=lacking,
+    )
+
+
+def _moved_to(
+    near: tuple[float, float, float], end: Endpoint, coverage_probe: _CoverageProbe
+) -> Endpoint:
+    """Return a port moved to water that suits, with the reason and the remedy."""
+    here = np.array([end.lat]), np.array([end.lon])
+    unknown, approach = coverage_probe.unknown_at_times(*here), end.approach
+    why = f"in water without data of {', '.join(unknown)}" if unknown else "in too shallow water"
+    berth = end.origin if approach is None else approach.berth
+    far = float(distance(*berth, *near[:2]))
+    return replace(
+        end,
+        lat=near[0],
+        lon=near[1],
+        moved_distance_m=far,
+        why=why,
+        remedy=_remedy(unknown, far),
+        approach=None,
+        given_position=berth,
+        way_left_m=near[2] + (0.0 if approach is None else approach.length),
+    )
+
+
+def _remedy(unknown: Sequence[str], far: float) -> str:
+    """Return what a user can do so that a port is reached, a sentence."""
+    if not unknown:
+        return "To reach it, load less or require less clearance under the keel."
+    miles = min(MAX_NEAREST, 10.0 * math.ceil(far / NAUTICAL_MILE / 10.0 + 0.5))
+    fills = nearest_fills(unknown, miles)
+    if not fills:
+        return "To reach it, add data that cover it."
+    in_python = ", ".join(fill.replace("=", "='") + "'" for fill in fills)
+    return (
+        "To reach it, add data that cover it, or fill the unknown values from the nearest known "
+        f"ones: --fill {' '.join(fills)} (in Python sea.filled({in_python}))."
     )
 
 

@@ -29,7 +29,7 @@ def share_between_places(start: object, goal: object) -> tuple[float, str]:
             "A price of allowances or of a euro is given without the share of the voyage.",
             "It is 100 between two ports of the Union, 50 to or from one, else 0; it is found "
             "where both ends of a plan are ports given by name.",
-            "Add the share (--eu-share).",
+            "Add the share (--eu-share, charges.share_percent).",
             field="eu_share",
         )
     first, last = (PORTS.lookup(str(end)) for end in (start, goal))

@@ -46,8 +46,8 @@ def _found_place(place: Place, field: str) -> Position | Port:
     """Return the position or the port of an entry of a voyage."""
     if not isinstance(place, str):
         return round(place[0], 5), round(place[1], 5)
-    position = parse_position(place)
-    if position is not None:
-        return round(position[0], 5), round(position[1], 5)
     with errors_about(field):
-        return PORTS.lookup(place)
+        position = parse_position(place)
+        if position is None:
+            return PORTS.lookup(place)
+    return round(position[0], 5), round(position[1], 5)

@@ -10,8 +10,14 @@ from typing import Final
 from thalweg.chart import Chart
 from thalweg.chart.approaches import PortApproach
 from thalweg.chart.ports import PORTS, Port
-from thalweg.core.errors import InputError
-from thalweg.core.geodesy import Position, distance, format_position, parse_position
+from thalweg.core.errors import InputError, errors_about
+from thalweg.core.geodesy import (
+    Position,
+    distance,
+    format_position,
+    format_position_minutes,
+    parse_position,
+)
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.voyage_parts import Place
 
@@ -24,6 +30,9 @@ NEAR_PORT: Final = 10.0 * NAUTICAL_MILE
 _FAR_FROM_PORTS: Final = 60.0 * NAUTICAL_MILE
 _FAR_SHORTER: Final = 5.0  # times, where one end is swapped and the other is not
 CHECK_POSITION: Final = "Check the position"  #: a note on swapped degrees begins so
+NOT_REACHED: Final = "Does not reach"  #: a note on a port far from the end of the route begins so
+#: A port moved farther than this [m] is not reached: the end of the route has no port's name.
+_REACHED: Final = 2.0 * NAUTICAL_MILE
 
 
 @dataclass(frozen=True)
@@ -39,6 +48,8 @@ class Endpoint:
         Requested position [deg], where it was moved.
     is_port : Whether the end point is a port.
     why : Reason for moving it.
+    remedy : What the user can do to have it reached, a sentence, or empty.
+    way_left_m : Least length of the way between this position and the berth [m]; 0 if unknown.
     approach : The approach from the berth to this position.
     notice : A further note for the user, or empty.
     """
@@ -50,6 +61,8 @@ class Endpoint:
     given_position: tuple[float, float] | None = None
     is_port: bool = False
     why: str = "on charted land"
+    remedy: str = ""
+    way_left_m: float = 0.0
     approach: PortApproach | None = None
     notice: str = ""
 
@@ -61,14 +74,35 @@ class Endpoint:
     @property
     def note(self) -> str:
         """A note for the user where the position was moved, else empty."""
-        moved = ""
+        moved, miles = "", self.moved_distance_m / NAUTICAL_MILE
+        if not self.is_reached:
+            left = max(self.way_left_m, self.moved_distance_m) / NAUTICAL_MILE
+            moved = (
+                f"{NOT_REACHED} {self.name}, which is {self.why}: the plan has "
+                f"{format_position_minutes(self.lat, self.lon)} instead, {miles:.0f} nm away. At "
+                f"least {left:.0f} nm by sea are missing in all totals. {self.remedy}"
+            ).strip()
+            return " ".join(text for text in (moved, self.notice) if text)
         if self.moved_distance_m >= 1.0:
             moved = (
-                f"{self.name} is {self.why}: moved {self.moved_distance_m / NAUTICAL_MILE:.1f} nm "
+                f"{self.name} is {self.why}: moved {miles:.1f} nm "
                 f"to open water at {format_position(self.lat, self.lon)}; the totals begin and end "
                 "there."
             )
         return " ".join(text for text in (self.notice, moved) if text)
+
+    @property
+    def is_reached(self) -> bool:
+        """Whether the position is the place itself or near it."""
+        return self.moved_distance_m <= _REACHED
+
+    @property
+    def true_name(self) -> str:
+        """Name of the position: that of the place if it is reached, else degrees and a distance."""
+        if self.is_reached:
+            return self.name
+        place = format_position_minutes(self.lat, self.lon)
+        return f"{place}, {self.moved_distance_m / NAUTICAL_MILE:.0f} nm from {self.name}"
 
 
 def resolve_endpoint(place: Place, chart: Chart, what: str) -> Endpoint:
@@ -112,7 +146,6 @@ def resolve_port(port: Port, chart: Chart, what: str) -> Endpoint:
             f"The {what} {port.label} cannot be reached from the sea on this chart.",
             f"Reason: {reason}.",
             "Choose another port, or a position at sea.",
-            field=what,
         )
     found = _snap_to_water(port.label, port.lat, port.lon, chart, what, MAX_SNAP_PORT)
     return replace(found, is_port=True)
@@ -162,25 +195,23 @@ def _snap_to_water(
     if found is None:
         raise InputError(
             f"The {what} {name} is not on navigable water.",
-            f"There is none within {MAX_SNAP_PORT / NAUTICAL_MILE:.0f} nm on this chart. {port}",
+            f"There is none within {MAX_SNAP_PORT / NAUTICAL_MILE:.0f} nm on this chart." + port,
             "Give that port by name, or a position at sea."
             if port
             else _swap_hint(lat, lon, chart)
             or "Choose another position, or a chart that covers it.",
-            field=what,
         )
     near_lat, near_lon, moved = found
     raise InputError(
         f"The {what} {name} is on land or in enclosed water.",
         f"The nearest navigable water is {moved / NAUTICAL_MILE:.1f} nm away, at "
-        f"{format_position(near_lat, near_lon)}. {port}",
+        f"{format_position(near_lat, near_lon)}." + port,
         "Give that position, or " + ("that port by name." if port else "a port by name."),
-        field=what,
     )
 
 
 def _nearest_port_text(lat: float, lon: float, chart: Chart) -> str:
-    """Return a sentence on the nearest port and its water, or nothing where none is near."""
+    """Return a sentence on the nearest port, to follow another; empty where none is near."""
     if chart.approaches is None:
         return ""
     near = chart.approaches.nearest(lat, lon, within=MAX_SNAP_PORT)
@@ -188,8 +219,8 @@ def _nearest_port_text(lat: float, lon: float, chart: Chart) -> str:
     if not (near and approach):
         return ""
     return (
-        f"The nearest port is {near[0].label}, {near[1] / NAUTICAL_MILE:.1f} nm away; its approach "
-        f"meets the open sea at {format_position(*approach.sea_end)}."
+        f" The nearest port is {near[0].label}, {near[1] / NAUTICAL_MILE:.1f} nm away; its "
+        f"approach meets the open sea at {format_position(*approach.sea_end)}."
     )
 
 
@@ -226,8 +257,12 @@ def resolve_places(start: Place, via: Sequence[Place], goal: Place, chart: Chart
         longitude of the ends are swapped.
     """
     _check_order_of_degrees(start, goal, chart)
-    places = [("start", start), *((f"via point {k + 1}", place) for k, place in enumerate(via))]
-    ends = [resolve_endpoint(place, chart, what) for what, place in [*places, ("goal", goal)]]
+    places = [("start", "start", start)]
+    places += [(f"via.{k}", f"via point {k + 1}", place) for k, place in enumerate(via)]
+    ends = []
+    for entry, what, place in [*places, ("goal", "goal", goal)]:
+        with errors_about(entry):
+            ends.append(resolve_endpoint(place, chart, what))
     ends = [ends[0], *map(without_approach, ends[1:-1]), ends[-1]]
     for first, second in itertools.pairwise(ends):
         check_distinct(first, second)

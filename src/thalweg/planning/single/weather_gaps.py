@@ -24,7 +24,7 @@ from thalweg.route import Route
 from thalweg.route.referee.limit_checks import is_data_gap
 from thalweg.route.route import Violation
 from thalweg.sea import Sea
-from thalweg.sea.fill_policies import FILLABLE_VARIABLES
+from thalweg.sea.fill_policies import nearest_fills
 from thalweg.sea.standard_names import inseparable_variables
 
 MAX_GAPS: Final = 12  #: gaps that are planned round before finer networks are tried
@@ -99,23 +99,18 @@ def check_times_known(route: Route, start: Endpoint, goal: Endpoint) -> None:
     first = gaps[0]
     names = sorted({_variable(v) for v in gaps if v.time == first.time})
     place = format_position(first.lat, first.lon)
+    fills = nearest_fills(names) or ["currents=nearest:25"]
     raise NoRouteError(
         f"No route from {start.name} to {goal.name} was found in known water: "
         f"{', '.join(names)} {'is' if len(names) == 1 else 'are'} unknown at {place} at "
         f"{format_time(first.time)}.",
         "Cells of the data without values next to land, in ice or in a gap in time are not sailed.",
         "Add data that cover it, or fill the values that are unknown by name, from the nearest "
-        f"known ones within 25 nm: --fill {' '.join(_nearest_fills(names))}.",
+        f"known ones within 25 nm: --fill {' '.join(fills)}.",
         reasons={codes.REASONS[codes.NO_DATA]: len(gaps)},
         nearest=(first.lat, first.lon),
         variables=names,
     )
-
-
-def _nearest_fills(names: Sequence[str]) -> list[str]:
-    """Return the fillings of variables from the nearest known values."""
-    found = [p for p, made in FILLABLE_VARIABLES.items() if set(made) & set(names)]
-    return [f"{policy}=nearest:25" for policy in found or ["currents"]]
 
 
 def _variable(gap: Violation) -> str:

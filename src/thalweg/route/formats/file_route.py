@@ -86,6 +86,9 @@ def _cut_at_waypoints(route: Route, options: RouteFileOptions) -> FileRoute:
     lines = [*np.where(whole, GREAT_CIRCLE, RHUMB_LINE).tolist(), None]
     bearings = np.degrees(np.append(course, course[-1])).tolist()
     digits = {"lat": options.decimals, "lon": options.decimals, **_DECIMALS}
+    visits = _waypoints_at(route, vertices)
+    given = route.track.extensions.names
+    names = [given.get(at, name) if at else name for at, name in zip(visits, names)]
     rows = [
         {
             "name": name,
@@ -95,7 +98,7 @@ def _cut_at_waypoints(route: Route, options: RouteFileOptions) -> FileRoute:
         }
         for name, row, bearing, line in zip(names, rows, bearings, lines)
     ]
-    return FileRoute(rows, vertices.cross_track, _waypoints_at(route, vertices))
+    return FileRoute(rows, vertices.cross_track, visits)
 
 
 def _waypoints_at(route: Route, vertices: FileVertices) -> list[Visit | None]:

@@ -64,7 +64,7 @@ def file_vertices(route: Route, options: RouteFileOptions) -> FileVertices:
     InputError : If the route needs more waypoints than are allowed.
     """
     most, limit = options.max_waypoints, options.limit
-    options, line = _with_room(options), RouteLine.of(route)
+    options, line = _with_room(options), RouteLine.of(route, keep_named=most is None)
     found = _vertices(line, options, limit)
     if most is None or len(found.lat) <= most:
         return found

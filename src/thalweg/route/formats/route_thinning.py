@@ -52,8 +52,13 @@ class RouteLine:
     samples: Mapping[str, FloatArray]
 
     @classmethod
-    def of(cls, route: Route) -> RouteLine:
-        """Return the line of a route."""
+    def of(cls, route: Route, *, keep_named: bool) -> RouteLine:
+        """Return the line of a route.
+
+        Parameters
+        ----------
+        keep_named : Whether to keep all waypoints with names or cross-track limits of a file.
+        """
         track, length, speed = route.track, route.legs["length"], route.legs["ordered_speed"]
         canal = np.asarray(length > 1.0001 * track.lengths + 1.0)
         kind = np.asarray(route.legs.get("leg_kind", 0))
@@ -62,7 +67,12 @@ class RouteLine:
         held[1:-1] |= np.abs(np.diff(speed)) > _SAME_SPEED
         held[:-1] |= canal
         held[1:] |= canal
-        carried = np.array([at in track.extensions.at for at in visits_of(track.positions)])
+        carried = np.zeros(len(held), bool)
+        if track.extensions:
+            visits, given = visits_of(track.positions), track.extensions
+            carried = np.array([at in given.at for at in visits])
+            if keep_named:
+                held |= np.array([at in given.names or at in given.corridors for at in visits])
         held |= carried
         start = np.concatenate([[0.0], np.cumsum(length)])
         approach = np.broadcast_to(kind != 0, canal.shape).copy()

@@ -7,8 +7,7 @@ from xml.etree import ElementTree
 from xml.sax.saxutils import escape
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import Position
-from thalweg.route.carried_extensions import CarriedExtensions, Visit, visits_of
+from thalweg.route.carried_extensions import CarriedExtensions, Visit
 from thalweg.route.formats.rtz_checks import schedule_elements
 from thalweg.route.formats.rtz_writer import MANUFACTURER, ORDER
 from thalweg.route.formats.xml_elements import (
@@ -26,7 +25,7 @@ _RTZ = None  # the default namespace of the file that is written
 def rtz_extensions(
     root: ElementTree.Element,
     waypoints: list[ElementTree.Element],
-    positions: list[Position],
+    visits: list[Visit],
     builder: NamespaceTreeBuilder,
 ) -> CarriedExtensions:
     """Return the extensions of other makers in an RTZ file.
@@ -34,14 +33,14 @@ def rtz_extensions(
     Parameters
     ----------
     root, waypoints : The route, and its waypoints in order.
-    positions : Of the waypoints [deg].
+    visits : Of the waypoints.
     builder : That made the tree.
 
     Raises
     ------
     InputError : If elements of an extension are nested too deep.
     """
-    reader, visits = _ExtensionReader(root, builder), visits_of(positions)
+    reader = _ExtensionReader(root, builder)
     for group in children(root, "waypoints"):
         reader.add("waypoints", group)
         for default in children(group, "defaultWaypoint"):

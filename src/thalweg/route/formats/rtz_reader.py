@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import io
 import math
+import re
 import zipfile
 import zlib
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import replace
+from typing import Any, Final
 from xml.etree import ElementTree
 
 from thalweg.core.errors import InputError
@@ -19,6 +21,7 @@ from thalweg.core.file_reading import too_large
 from thalweg.core.geodesy import Position
 from thalweg.core.given_numbers import to_number
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.route.carried_extensions import Visit, visits_of
 from thalweg.route.formats.parsed_track import (
     ParsedTrack,
     WaypointOrder,
@@ -35,6 +38,21 @@ from thalweg.route.formats.xml_elements import (
     local_name,
     parse_xml,
 )
+
+_TEXT = re.compile(r".+", re.DOTALL)
+_TIME = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]\d\d:\d\d)?")
+_WHOLE, _NUMBER = re.compile(r"\d+"), re.compile(r"\d+(\.\d*)?")
+#: Attributes of ``routeInfo`` in all schemas, and the form of their values.
+_FACTS: Final = {
+    **dict.fromkeys(("routeAuthor", "routeStatus", "vesselName", "vesselVoyage"), _TEXT),
+    **dict.fromkeys(("optimizationMethod", "routeChangesHistory"), _TEXT),
+    **dict.fromkeys(("validityPeriodStart", "validityPeriodStop"), _TIME),
+    **dict.fromkeys(("vesselMMSI", "vesselIMO", "vesselDisplacement", "vesselCargo"), _WHOLE),
+    **dict.fromkeys(("vesselMaxRoll",), _WHOLE),
+    **dict.fromkeys(("vesselGM", "vesselMaxWave", "vesselMaxWind", "vesselSpeedMax"), _NUMBER),
+    **dict.fromkeys(("vesselServiceMin", "vesselServiceMax"), _NUMBER),
+}
+_NUMBERED = re.compile(r"WP \d+")  # names of this package
 
 
 def parse_rtz(data: bytes) -> ParsedTrack:
@@ -70,6 +88,7 @@ def parse_rtz(data: bytes) -> ParsedTrack:
     rhumb = [_is_rhumb(leg, notes) for leg in legs]
     corridors = [_corridor(leg) for leg in legs]
     info = next(children(root, "routeInfo"), None)
+    visits = visits_of(positions)
     return ParsedTrack(
         positions,
         first_time,
@@ -78,7 +97,16 @@ def parse_rtz(data: bytes) -> ParsedTrack:
         list(dict.fromkeys(notes)),
         corridors,
         None if info is None else info.get("routeName"),
-        rtz_extensions(root, waypoints, positions, builder),
+        replace(
+            rtz_extensions(root, waypoints, visits, builder),
+            info={} if info is None else _facts(info),
+            names=_given_names(waypoints, visits),
+            corridors={
+                visit: sides
+                for visit, sides in zip(visits[1:], corridors)
+                if not (math.isnan(sides[0]) and math.isnan(sides[1]))
+            },
+        ),
     )
 
 
@@ -128,6 +156,21 @@ def _is_rhumb(legs: list[ElementTree.Element], notes: list[str]) -> bool:
     if str(kind) not in ("Loxodrome", "Orthodrome"):
         notes.append(f"a leg has the geometry {kind!r}: a rhumb line is used")
     return str(kind) != "Orthodrome"
+
+
+def _facts(info: ElementTree.Element) -> dict[str, str]:
+    """Return the attributes of a route but its name, as far as the schemas allow their values."""
+    return {
+        name: text
+        for name, form in _FACTS.items()
+        if (text := info.get(name, "").strip()) and form.fullmatch(text)
+    }
+
+
+def _given_names(waypoints: list[ElementTree.Element], visits: list[Visit]) -> dict[Visit, str]:
+    """Return the names of waypoints that are not mere numbers of this package."""
+    named = ((visit, waypoint.get("name") or "") for visit, waypoint in zip(visits, waypoints))
+    return {visit: name for visit, name in named if name.strip() and not _NUMBERED.fullmatch(name)}
 
 
 def _leg_attribute(legs: list[ElementTree.Element], name: str) -> str:

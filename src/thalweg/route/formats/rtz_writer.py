@@ -7,8 +7,10 @@ circles are requested.
 from __future__ import annotations
 
 import io
+import math
 import re
 import zipfile
+from bisect import bisect_left, bisect_right
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -17,7 +19,7 @@ import numpy as np
 
 from thalweg.core.file_writing import write_bytes
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.route.carried_extensions import CarriedExtensions, Visit
+from thalweg.route.carried_extensions import CarriedExtensions, Visit, visits_of
 from thalweg.route.formats.file_route import FileRoute, file_route
 from thalweg.route.formats.parsed_track import GEOMETRY, GREAT_CIRCLE, SPEEDS, WAITS
 from thalweg.route.formats.route_file_options import RouteFileOptions
@@ -26,6 +28,7 @@ from thalweg.route.route import Route
 
 #: Beginning of the namespaces of RTZ; the minor version follows.
 RTZ_NAMESPACE = "http://www.cirm.org/RTZ/1/"
+_HISTORY = "routeChangesHistory"  # a text since 1.1
 MANUFACTURER, ORDER = "Thalweg", "order"  #: of the extension that holds waits and ordered speeds
 _LARGEST_XTD = 9.99  # [nm]
 #: An extension as the schemas of 1.1 and 1.2 want it: a maker and a name with a letter or digit.
@@ -74,16 +77,15 @@ def _rtz_bytes(route: Route, name: str, options: RouteFileOptions) -> bytes:
     info = {"routeName": name, "routeAuthor": "Thalweg"}
     if options.start and options.goal:
         info["vesselVoyage"] = f"{options.start} to {options.goal}"
+    info |= {k: v for k, v in carried.info.items() if version != "1.0" or k != _HISTORY}
     side = max(options.cross_track_nm, written.cross_track_m / NAUTICAL_MILE)
-    xtd = decimal(min(side + 0.0005, _LARGEST_XTD) if side > options.cross_track_nm else side, 3)
-    rows = written.rows
+    side = min(side + 0.0005, _LARGEST_XTD) if side > options.cross_track_nm else side
+    rows, sides = written.rows, _cross_track_limits(route, written, decimal(side, 3))
     waypoints = [
         *_default_waypoint(carried, version),
         *(
-            _waypoint(number, row, before, xtd, _extensions_there(carried, visit, version), version)
-            for number, (before, row, visit) in enumerate(
-                zip([{}, *rows], rows, written.visits), start=1
-            )
+            _waypoint(number, row, leg, _extensions_there(carried, visit, version), version)
+            for number, (row, leg, visit) in enumerate(zip(rows, sides, written.visits), start=1)
         ),
         *_extensions(carried.of("waypoints"), version, 2),
     ]
@@ -96,6 +98,41 @@ def _rtz_bytes(route: Route, name: str, options: RouteFileOptions) -> bytes:
     minor = version.rpartition(".")[2]
     about = {"version": version, "xmlns": RTZ_NAMESPACE + minor}
     return xml_file(xml_text("route", about, inside))
+
+
+def _cross_track_limits(route: Route, written: FileRoute, xtd: str) -> list[dict[str, str]]:
+    """Return the attributes of the leg to each waypoint: its line and its cross-track limits.
+
+    A leg that stands for legs of a file that was read has the least of their limits.
+    """
+    rows, limits = written.rows, route.track.extensions.corridors
+    lines = ["", *("Orthodrome" if r.get(GEOMETRY) == GREAT_CIRCLE else "Loxodrome" for r in rows)]
+    sides = {"starboardXTD": xtd, "portsideXTD": xtd}
+    legs = [{**sides, "geometryType": line} for line in lines[: len(rows)]]
+    if not limits:
+        return legs
+    order = {visit: n for n, visit in enumerate(visits_of(route.track.positions))}
+    known = sorted((order[visit], *pair) for visit, pair in limits.items() if visit in order)
+    ends = [end for end, _, _ in known]
+    places = [None if visit is None else order[visit] for visit in written.visits]
+    following, first = _next_places(places), 0
+    for number, before in enumerate(places[:-1], start=1):
+        first = first if before is None else bisect_right(ends, before)
+        within = known[first : bisect_left(ends, following[number]) + 1]
+        for side, name in ((1, "portsideXTD"), (2, "starboardXTD")):
+            stated = [leg[side] for leg in within if not math.isnan(leg[side])]
+            if stated:
+                legs[number][name] = decimal(min(stated) / NAUTICAL_MILE, 3)
+    return legs
+
+
+def _next_places(places: Sequence[int | None]) -> list[int]:
+    """Return the first place that is known at or after each."""
+    found, place = [], 0
+    for known in reversed(places):
+        place = place if known is None else known
+        found.append(place)
+    return found[::-1]
 
 
 def _extensions(texts: Sequence[str], version: str, depth: int) -> list[str]:
@@ -141,8 +178,7 @@ def _default_waypoint(carried: CarriedExtensions, version: str) -> list[str]:
 def _waypoint(
     number: int,
     row: Mapping[str, Any],
-    before: Mapping[str, Any],
-    xtd: str,
+    leg: Mapping[str, str],
     carried: tuple[list[str], list[str]],
     version: str,
 ) -> str:
@@ -151,8 +187,6 @@ def _waypoint(
     inside = [xml_text("position", place, (), 3)]
     of_leg, own = carried
     if number > 1:
-        line = "Orthodrome" if before.get(GEOMETRY) == GREAT_CIRCLE else "Loxodrome"
-        leg = {"starboardXTD": xtd, "portsideXTD": xtd, "geometryType": line}
         inside.append(xml_text("leg", leg, _extensions(of_leg, version, 4), 3))
     else:
         own = of_leg + own

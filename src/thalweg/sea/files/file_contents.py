@@ -106,7 +106,9 @@ def _nothing_recognised_error(
     return NothingRecognised(
         f"{file.source}: no wind, waves, currents, level or depth was recognised in it.",
         f"It holds {reasons}." if reasons else "It holds no numeric field.",
-        "Name the variables with mapping={'eastward_wind': 'name in the file', ...}.",
+        f"Name the variables: {sp.naming_of('eastward_wind', 'NAME_IN_THE_FILE')}."
+        if reasons
+        else "Check that it is the right file, and complete.",
         file=file.source,
     )
 

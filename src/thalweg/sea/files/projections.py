@@ -10,6 +10,7 @@ import numpy as np
 from thalweg.core.errors import DatasetError
 from thalweg.core.geodesy import local_axes
 from thalweg.core.types import FloatArray
+from thalweg.sea.files.variable_aliases import naming_of
 
 
 def projection_of(dataset: Any, array: Any, mapping: Mapping[str, str], source: str) -> Any:
@@ -57,7 +58,7 @@ def projection_of(dataset: Any, array: Any, mapping: Mapping[str, str], source: 
         raise DatasetError(
             f"{source}: its projection is not valid ({error}).",
             "An EPSG code, WKT, PROJ text or CF grid mapping can be read.",
-            "Give it with mapping={'crs': 'EPSG:...'} (on the command line --map crs=EPSG:...).",
+            f"Name it: {naming_of('crs', 'EPSG:...')}.",
             file=source,
         ) from error
     return None
@@ -141,6 +142,6 @@ def no_projection_error(source: str) -> DatasetError:
     return DatasetError(
         f"{source}: positions are in metres of a projection that the file does not name.",
         "Latitude and longitude are needed, or a projection.",
-        "Give it with mapping={'crs': 'EPSG:...'} (on the command line --map crs=EPSG:...).",
+        f"Name it: {naming_of('crs', 'EPSG:...')}.",
         file=source,
     )

@@ -150,15 +150,24 @@ LONG_NAMES: Final[dict[str, str]] = {
 }
 LONG_NAME_SOURCE: Final = "FVCOM and ROMS"
 
+
+def naming_of(quantity: str, variable: str) -> str:
+    """Return how users name the variable that holds a quantity, for messages."""
+    return (
+        f"mapping={{{quantity!r}: {variable!r}}} in Python, --map {quantity}={variable} on the "
+        f"command line, variables in a request to the service"
+    )
+
+
 #: reason why a known variable is not used
 UNUSED_VARIABLES: Final[dict[str, str]] = {
     **dict.fromkeys(
         ("dwave", "meanwavedirection", "dominantdirection"),
         "it is a wave direction of ROMS or SCHISM, but from or to is not stated; if you know it, "
-        "map it: mapping={'sea_surface_wave_from_direction': 'its name'}",
+        f"name it: {naming_of('sea_surface_wave_from_direction', 'ITS_NAME')}",
     ),
     "p107": "MET Norway's local parameter 107 is a wave direction, but from or to is not "
-    "stated; if you know it, map it: mapping={'sea_surface_wave_from_direction': 'p107'}",
+    f"stated; if you know it, name it: {naming_of('sea_surface_wave_from_direction', 'p107')}",
 }
 
 ROLE_DIMENSIONS: Final[dict[str, str]] = {

@@ -221,8 +221,8 @@ def _check_direction_text(role: str, array: Any, source: str) -> None:
         f"{source}: {array.name!r} has the standard_name {array.attrs.get('standard_name')!r}, but "
         f"its long_name is {_long_name(array)!r}.",
         "One states the direction from which, the other the direction towards which.",
-        "Correct the file, or state it: mapping={'..._from_direction' or '..._to_direction': "
-        f"{str(array.name)!r}}}.",
+        "Correct the file, or name the variable as the one that it is (..._from_direction or "
+        f"..._to_direction): {variable_aliases.naming_of(role, str(array.name))}.",
         variable=str(array.name),
         file=source,
     )
@@ -270,7 +270,7 @@ def _best_candidate(
         "The file does not state which one to use: "
         + "; ".join(f"{c.variable}: {_long_name(dataset[c.variable])}" for c in tied)
         + ".",
-        f"Choose one: Sea.open(..., mapping={{{role!r}: {tied[0].variable!r}}}).",
+        f"Choose one: {variable_aliases.naming_of(role, tied[0].variable)}.",
         variable=role,
         candidates=[c.variable for c in tied],
         file=source,

@@ -226,6 +226,8 @@ class ComparedRouteAnswer(AnswerModel):
     feasible: bool
     violations: int
     broken: list[BrokenLimit]
+    ends: list[tuple[float, float]]
+    notes: list[str]
     currency: str | None
     cost: float | None
     time_h: float | None

@@ -12,13 +12,14 @@ from fastapi import APIRouter, Body, Header, Path, Query, Request, Response
 from fastapi.responses import FileResponse, StreamingResponse
 from starlette.concurrency import run_in_threadpool
 
-from thalweg.core.errors import InputError
 from thalweg.core.time import format_time
 from thalweg.service.endpoints.order_checks import (
     check_evaluation_order,
-    check_plan_order,
+    check_files,
     check_project_order,
     check_study_order,
+    checked_plan_order,
+    with_files,
 )
 from thalweg.service.jobs.batch_requests import (
     FORECAST_EXAMPLE,
@@ -30,7 +31,6 @@ from thalweg.service.jobs.batch_requests import (
 )
 from thalweg.service.jobs.job_order import route_file_stem
 from thalweg.service.jobs.job_store import FINAL_STATES, Job
-from thalweg.service.jobs.named_uploads import named_uploads
 from thalweg.service.jobs.plan_request import (
     ALTERNATIVES_EXAMPLE,
     EVALUATION_EXAMPLE,
@@ -92,10 +92,7 @@ def start_plan(
     idempotency_key: str | None = Header(None, max_length=200),
 ) -> dict[str, Any]:
     """Start planning a voyage; the answer comes at once, with the address of the job."""
-    voyage, given = request.checked_voyage(), request.model_dump(mode="json")
-    _check_files(given, state)
-    check_plan_order(request, voyage, state)
-    return _start("plan", given, response, idempotency_key, state)
+    return _start("plan", checked_plan_order(request, state), response, idempotency_key, state)
 
 
 @jobs_router.post("/alternatives", status_code=202)
@@ -106,10 +103,9 @@ def start_alternatives(
     idempotency_key: str | None = Header(None, max_length=200),
 ) -> dict[str, Any]:
     """Start planning routes that differ, each the best in something; a job like that of a plan."""
-    voyage, given = request.checked_voyage(), request.model_dump(mode="json")
-    _check_files(given, state)
-    check_plan_order(request, voyage, state)
-    return _start("alternatives", given, response, idempotency_key, state)
+    return _start(
+        "alternatives", checked_plan_order(request, state), response, idempotency_key, state
+    )
 
 
 @jobs_router.post("/evaluate", status_code=202)
@@ -121,8 +117,7 @@ def start_evaluation(
 ) -> dict[str, Any]:
     """Sail an imported route in given weather; the answer is a job like that of a plan."""
     request.check()
-    given = request.model_dump(mode="json")
-    _check_files(given, state)
+    given = with_files(request, state)
     check_evaluation_order(request, state)
     return _start("evaluation", given, response, idempotency_key, state)
 
@@ -137,7 +132,7 @@ def start_project(
     """Start the simulation of a dredging project; the answer is a job like that of a plan."""
     entries, project = request.checked_project()
     given = {"title": request.title or project.name, "project": entries}
-    _check_files(given, state)
+    check_files(given, state)
     check_project_order(project, entries["sea"], state)
     return _start("project", given, response, idempotency_key, state)
 
@@ -177,7 +172,7 @@ def start_study(
     """
     entries, study = request.checked_study()
     given = {"title": request.title or study.name, "study": entries}
-    _check_files(given, state)
+    check_files(given, state)
     check_study_order(study, state)
     return _start("study", given, response, idempotency_key, state)
 
@@ -213,30 +208,6 @@ def _start(
     state.runner.wake()
     response.headers["Location"] = f"/api/v1/plans/{job.id}"
     return job_dict(job)
-
-
-def _check_files(request: dict[str, Any], state: ServiceState) -> None:
-    """Raise an error at its field for a ship, sea or route that does not exist."""
-    library = state.library_ships
-    for ship in named_uploads(request).ships:
-        if ship in library:
-            continue
-        try:
-            state.ships.get(ship)
-        except ServiceError:
-            raise InputError(
-                f"There is no ship {ship[:100]!r}.",
-                f"Known: {', '.join(library)}, and uploaded ships.",
-                "Choose one of these, or upload a ship file.",
-                field="ship",
-            ) from None
-    try:
-        state.files_of(request)
-    except ServiceError as error:
-        kinds = {"route": "route", "traffic": "traffic", "history network": "history"}
-        missing = (kinds[kind] for kind in kinds if error.asked.startswith(f"There is no {kind} "))
-        error.details["field"] = next(missing, "seas")
-        raise
 
 
 @jobs_router.get("/plans")

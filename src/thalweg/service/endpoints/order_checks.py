@@ -11,26 +11,72 @@ from thalweg.core.errors import InputError, OutsidePeriodError, errors_about
 from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import KNOT
 from thalweg.operations.dredging import Project
+from thalweg.planning.compile_kernels import search_is_compiled
 from thalweg.planning.request.ordered_speed import with_exact_speed, with_order
+from thalweg.planning.request.voyage_endpoints import resolve_places
+from thalweg.planning.request.voyage_surroundings import chart_of_entries
 from thalweg.planning.voyage import Voyage
-from thalweg.service.jobs.named_uploads import ESTUARY
-from thalweg.service.jobs.plan_request import EvaluationRequest, PlanRequest
+from thalweg.service.jobs.named_uploads import ESTUARY, named_uploads
+from thalweg.service.jobs.plan_request import EvaluationRequest, PlanRequest, ShipAndSea
 from thalweg.service.jobs.request_objects import open_seas, open_ship_of
 from thalweg.service.jobs.sea_facts import sea_facts
+from thalweg.service.problem_details import ServiceError
 from thalweg.service.service_state import ServiceState
 from thalweg.studies import Study
 
+_QUICK_COASTS = ("c", "l", "i")  # loaded in a fraction of a second
 _WITHOUT_TIMES = ("sea_floor_depth",)  # begins the names of variables that do not change
 
 
+def checked_plan_order(request: PlanRequest, state: ServiceState) -> dict[str, Any]:
+    """Return the request of a plan as plain data, after all checks that are quick."""
+    voyage = request.checked_voyage()
+    given = with_files(request, state)
+    check_plan_order(request, voyage, state)
+    return given
+
+
+def with_files(request: ShipAndSea, state: ServiceState) -> dict[str, Any]:
+    """Return a request as plain data, with the variables that were named with its seas."""
+    given = request.model_dump(mode="json")
+    check_files(given, state)
+    given["variables"] = state.named_variables(request.seas) | given["variables"]
+    return given
+
+
+def check_files(request: dict[str, Any], state: ServiceState) -> None:
+    """Raise an error at its field for a ship, sea or route that does not exist."""
+    library = state.library_ships
+    for ship in named_uploads(request).ships:
+        if ship in library:
+            continue
+        try:
+            state.ships.get(ship)
+        except ServiceError:
+            raise InputError(
+                f"There is no ship {ship[:100]!r}.",
+                f"Known: {', '.join(library)}, and uploaded ships.",
+                "Choose one of these, or upload a ship file.",
+                field="ship",
+            ) from None
+    try:
+        state.files_of(request)
+    except ServiceError as error:
+        kinds = {"route": "route", "traffic": "traffic", "history network": "history"}
+        missing = (kinds[kind] for kind in kinds if error.asked.startswith(f"There is no {kind} "))
+        error.details["field"] = next(missing, "seas")
+        raise
+
+
 def check_plan_order(request: PlanRequest, voyage: Voyage, state: ServiceState) -> None:
-    """Check that the ship has the speed and the seas the departure of a voyage.
+    """Check that a voyage is at sea, the ship has its speed and the seas its departure.
 
     Raises
     ------
-    InputError : If the ship does not have the speed.
+    InputError : If a place cannot be reached on the chart, or the ship does not have the speed.
     OutsidePeriodError : If no sea has data at the departure.
     """
+    _check_places(request, voyage)
     if voyage.speed_kn is not None:
         with errors_about("speed_kn"):
             with_order(open_ship_of(request, _ship_files(request.ship, state)), voyage)
@@ -136,6 +182,17 @@ def _ship_files(ship: str, state: ServiceState) -> dict[str, str]:
     if ship in state.library_ships:
         return {}
     return {ship: str(state.ships.get(ship).path)}
+
+
+def _check_places(request: PlanRequest, voyage: Voyage) -> None:
+    """Check that the places of a voyage are at sea or near it, as the plan does.
+
+    Fine coastlines, and kernels that are not compiled yet, take long: the job checks these.
+    """
+    if request.coast in _QUICK_COASTS and search_is_compiled():
+        areas = [request.areas] if request.areas else []
+        chart = chart_of_entries(request.coast, areas=areas)
+        resolve_places(voyage.start, voyage.via, voyage.goal, chart)
 
 
 def _check_period(

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import Any, Final
 
 from fastapi import APIRouter, UploadFile
 from pydantic import BaseModel, ConfigDict, Field
 
 from thalweg.core.errors import InputError
+from thalweg.core.geodesy import distance
+from thalweg.core.units import NAUTICAL_MILE
 from thalweg.service.endpoints.job_endpoints import result_file
 from thalweg.service.endpoints.upload_reading import chunks_of, kept_upload
 from thalweg.service.jobs.named_uploads import entries_of
@@ -17,6 +19,7 @@ from thalweg.studies.study_axes import plain_data
 
 routes_router = APIRouter(tags=["routes"])
 _MOST_BROKEN = 1000  # limits of a route that are listed
+_SAME_END_NM: Final = 1.0  # between ends that are taken as the same place
 _FIGURES = (
     "time_h",
     "distance_nm",
@@ -104,7 +107,11 @@ def read_voyage(given: VoyageText) -> dict[str, Any]:
 
 @routes_router.post("/compare")
 def compare(state: State, request: Comparison) -> dict[str, Any]:
-    """Return key figures of routes, and their differences to the first; unknown is null."""
+    """Return key figures of routes, and their differences to the first; unknown is null.
+
+    ``notes`` say where a route begins or ends elsewhere than the first, as a route from the berth
+    of a port and one from the sea off it do: their figures are not of the same stretch.
+    """
     rows = [_row(one, state) for one in request.routes]
     first = rows[0]
     for row in rows:
@@ -114,7 +121,21 @@ def compare(state: State, request: Comparison) -> dict[str, Any]:
         }
         if row["currency"] != first["currency"]:
             row["difference"]["cost"] = None
+        row["notes"] = _other_stretch(row["ends"], first["ends"])
     return {"routes": rows}
+
+
+def _other_stretch(ends: list[list[float]], first: list[list[float]]) -> list[str]:
+    """Return notes on the ends of a route that are not those of the first."""
+    notes = []
+    for verb, here, there in zip(("begins", "ends"), ends, first):
+        apart = float(distance(*here, *there)) / NAUTICAL_MILE
+        if apart > _SAME_END_NM:
+            notes.append(
+                f"It {verb} {apart:.1f} nm from where the first route {verb}: their figures are "
+                "not of the same stretch."
+            )
+    return notes
 
 
 def _row(one: ComparedRoute, state: ServiceState) -> dict[str, Any]:
@@ -135,6 +156,7 @@ def _row(one: ComparedRoute, state: ServiceState) -> dict[str, Any]:
             {name: one[name] for name in ("reason", "lat", "lon")}
             for one in route["violations"][:_MOST_BROKEN]
         ],
+        "ends": [[route["waypoints"][k][name] for name in ("lat", "lon")] for k in (0, -1)],
         "currency": currency,
         "cost": route.get(f"cost_{str(currency).casefold()}"),
         **figures,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gzip
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query, Request, Response
 
@@ -57,16 +57,24 @@ async def add_sea(
     state: State,
     request: Request,
     name: str = Query(max_length=255, examples=["waves.nc"], description="name of the file"),
+    variables: Annotated[
+        list[str],
+        Query(max_length=30, description="QUANTITY=VARIABLE, where names are not recognised"),
+    ] = [],  # noqa: B006 FastAPI copies it
 ) -> dict[str, Any]:
     """Upload a NetCDF or GRIB file as the body of the request.
 
-    It is written to the disk while it arrives, and inspected in a process of its own.
+    It is written to the disk while it arrives, and inspected in a process of its own. Variables
+    that are named with it need not be named in the requests that use it.
     """
+    named = _named_variables(variables)
 
     def facts(path: str) -> dict[str, Any]:
         found, _ = state.file_worker.do(
-            "inspect", seas=["file"], files={"file": path}, in_detail=True
+            "inspect", seas=["file"], files={"file": path}, variables=named, in_detail=True
         )
+        if named:
+            found["named"] = named
         own = f"{Path(path).name}: "  # the name of the file while it arrives
         missing = found["missing_fraction"].items()
         found["missing_fraction"] = {key.removeprefix(own): share for key, share in missing}
@@ -103,10 +111,12 @@ def sea_frame(
     """
     names = sea_ids.split("+")[:20]
     files = {n: str(state.seas.get(n).path) for n in names if n not in EMBEDDED_SEAS}
+    named = state.named_variables(names)
     _, data = state.map_worker.do(
         "frame",
         seas=names,
         files=files,
+        variables=named,
         variable=variable,
         time=parse_time(time),
         box=parsed_box(box),
@@ -114,6 +124,22 @@ def sea_frame(
         ny=ny,
     )
     return packed_frame(data)
+
+
+def _named_variables(given: list[str]) -> dict[str, str]:
+    """Return the variable of each quantity that an upload names."""
+    found = {}
+    for text in given:
+        quantity, equals, variable = (part.strip() for part in text.partition("="))
+        if not (quantity and equals and variable):
+            raise InputError(
+                f"variables is {text[:100]!r}.",
+                "It is QUANTITY=VARIABLE, such as eastward_wind=u, once for each quantity.",
+                "Correct it.",
+                field="variables",
+            )
+        found[quantity] = variable
+    return found
 
 
 def packed_frame(data: bytes) -> Response:

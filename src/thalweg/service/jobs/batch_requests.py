@@ -97,7 +97,8 @@ class StudyOrder(BaseModel):
     title: Annotated[str, Field(max_length=200, description="a name for people")] = ""
     study: dict[str, Any] | str = Field(
         description="entries of a study file, or its text; `sea` holds `calm`, `storm` or ids of "
-        "/seas, `ship` ships of /ships, `track` ids of /routes"
+        "/seas, `depths` ids of /seas, `ship` ships of /ships, `track` ids of /routes, `traffic` "
+        "ids of /traffic; `areas`, `limits`, `charges` and `eca` are those of a plan"
     )
 
     def checked_study(self) -> tuple[dict[str, Any], Study]:
@@ -115,8 +116,8 @@ class StudyOrder(BaseModel):
 
         require_parquet()
         data: dict[str, Any] = plain_data(entries_of(self.study, "study"))
-        refuse_paths(data, ("map",), "study")
         study = Study.from_dict(data)
+        refuse_paths(data, ("map", "areas"), "study")
         if study.size > MOST_VOYAGES:
             raise InputError(
                 f"The study has {study.size:,} voyages.",

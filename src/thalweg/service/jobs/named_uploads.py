@@ -30,8 +30,9 @@ def named_uploads(request: Mapping[str, Any]) -> NamedUploads:
         found = NamedUploads([*_texts(entries.get("ship", "hopper-dredger"))], seas, [], [], [])
     elif "study" in request:
         study = request["study"]
-        ships, seas, tracks = ([*_study_texts(study, key)] for key in ("ship", "sea", "track"))
-        found = NamedUploads(ships, seas, tracks, [], [])
+        keys = "ship", "sea", "depths", "track", "traffic"
+        ships, seas, depths, tracks, traffic = ([*_study_texts(study, key)] for key in keys)
+        found = NamedUploads(ships, [*seas, *depths], tracks, traffic, [])
     elif "source" in request:
         found = NamedUploads([], [], [], [], [])
     else:
@@ -55,17 +56,19 @@ def _texts(value: Any) -> Iterator[str]:
 
 
 def _study_texts(study: Mapping[str, Any], key: str) -> Iterator[str]:
-    """Yield the values of an entry of a study: fixed, on an axis, or drawn."""
+    """Yield the values of an entry of a study: fixed, on an axis, or drawn.
+
+    A value on an axis or in a sample may be a mapping that sets several entries.
+    """
     yield from _texts(study.get(key))
-    for name, values in (study.get("axes") or {}).items():
+    drawn = (study.get("sample") or {}).items()
+    choices = [(name, part.get("choice")) for name, part in drawn if isinstance(part, Mapping)]
+    for name, values in [*(study.get("axes") or {}).items(), *choices]:
         for value in values if isinstance(values, list) else [values]:
             if isinstance(value, Mapping):
                 yield from _texts(value.get(key))
             elif name == key:
                 yield from _texts(value)
-    drawn = (study.get("sample") or {}).get(key)
-    if isinstance(drawn, Mapping):
-        yield from _texts(drawn.get("choice"))
 
 
 def entries_of(given: dict[str, Any] | str, what: str) -> dict[str, Any]:
@@ -88,7 +91,7 @@ def entries_of(given: dict[str, Any] | str, what: str) -> dict[str, Any]:
 def refuse_paths(data: Mapping[str, Any], keys: tuple[str, ...], what: str) -> None:
     """Raise `InputError` for an entry that names a file of the server by its path."""
     for key in keys:
-        if any(True for _ in _texts(data.get(key))):
+        if any(True for _ in _study_texts(data, key)):
             raise InputError(
                 f"{key} of the {what} names a file.",
                 f"Files of the server are not opened; {key} holds its content.",

@@ -7,11 +7,17 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from thalweg.core.errors import InputError
+from thalweg.chart.zones.zone_set import Zones
+from thalweg.core.errors import InputError, errors_about
 from thalweg.core.time import parse_time
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.request.european_scope import share_between_places
 from thalweg.planning.request.itinerary_check import check_itinerary
+from thalweg.planning.request.voyage_surroundings import (
+    CHARGE_YEARS,
+    LARGEST_CHARGE,
+    LARGEST_LIMITS,
+)
 from thalweg.planning.voyage import Voyage
 from thalweg.route.formats.route_file_options import ROUTE_FORMATS, RouteFileOptions
 
@@ -77,11 +83,19 @@ class RequestedLimits(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     wave_height_m: Annotated[
-        float | None, Field(gt=0, le=40, description="significant wave height")
+        float | None,
+        Field(gt=0, le=LARGEST_LIMITS["wave_height_m"], description="significant height"),
     ] = None
-    wind_speed_kn: Annotated[float | None, Field(gt=0, le=200, description="wind at 10 m")] = None
+    wind_speed_kn: Annotated[
+        float | None, Field(gt=0, le=LARGEST_LIMITS["wind_speed_kn"], description="wind at 10 m")
+    ] = None
     motion_sickness_percent: Annotated[
-        float | None, Field(gt=0, le=100, description="people sick after two hours")
+        float | None,
+        Field(
+            gt=0,
+            le=LARGEST_LIMITS["motion_sickness_percent"],
+            description="people sick after two hours",
+        ),
     ] = None
 
 
@@ -95,9 +109,13 @@ class RequestedCharges(BaseModel):
         description="share of the voyage in their scope: 100 between two ports of the Union, 50 to "
         "or from one; left out of a plan: by the countries of its two ports",
     )
-    ets_price: float = Field(0.0, ge=0, le=1e5, description="of an allowance, per tonne of CO2")
-    eur_rate: float = Field(0.0, ge=0, le=1e5, description="of a euro; 0: no FuelEU penalty")
-    year: int = Field(2026, ge=2024, le=2060)
+    ets_price: float = Field(
+        0.0, ge=0, le=LARGEST_CHARGE, description="of an allowance, per tonne of CO2"
+    )
+    eur_rate: float = Field(
+        0.0, ge=0, le=LARGEST_CHARGE, description="of a euro; 0: no FuelEU penalty"
+    )
+    year: int = Field(2026, ge=CHARGE_YEARS[0], le=CHARGE_YEARS[1])
 
 
 class RequestedRouteFiles(BaseModel):
@@ -189,8 +207,11 @@ class ShipAndSea(BaseModel):
         return [(name, value) for name, values in several.items() for value in values]
 
     def check_sea(self) -> None:
-        """Raise `InputError` for fill values, a sampling or a calm sea that are impossible."""
+        """Raise `InputError` for areas, fill values, a sampling or a calm sea not possible."""
         self._check_calm()
+        if self.areas:
+            with errors_about("areas"):
+                Zones.read(self.areas)
         from thalweg.sea import Sea
         from thalweg.sea.fill_policies import check_fill
 

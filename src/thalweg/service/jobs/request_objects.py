@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from thalweg.core.errors import InputError
-from thalweg.core.units import DAY, HOUR, KNOT
-from thalweg.planning.request.european_scope import share_between_places
+from thalweg.core.units import DAY, HOUR
 from thalweg.planning.request.filled_sea import filled_in_turns
+from thalweg.planning.request.voyage_surroundings import chart_of_entries, ship_of_entries
 from thalweg.service.jobs.plan_request import (
     EMBEDDED_SEAS,
     EvaluationRequest,
     PlanRequest,
-    RequestedCharges,
     ShipAndSea,
 )
 
@@ -23,7 +21,6 @@ if TYPE_CHECKING:
     from thalweg.network.history.history_corridor import HistoryCorridor
     from thalweg.sea import Sea
     from thalweg.ship import Ship
-    from thalweg.ship.methods.engine.european_charges import EuropeanCharges
 
 
 @dataclass(frozen=True)
@@ -43,19 +40,13 @@ def open_world(request: ShipAndSea, files: Mapping[str, str]) -> WorldOfJob:
     files : mapping of str to str
         Paths of the uploaded files by their id; of a ship file by the name of the ship.
     """
-    from thalweg.chart import Chart
-
-    if request.coast == "none":
-        chart = Chart.open_water(-90.0, 90.0, -180.0, 180.0)
-    else:
-        chart = Chart.gshhg(request.coast)
-    for name in request.depths:
-        chart = chart.with_depth(files[name])
-    if request.areas:
-        chart = chart.with_zones(request.areas)
-    for name in request.traffic:
-        chart = chart.with_traffic(files[name])
-    chart = chart if request.eca else chart.without_eca()
+    chart = chart_of_entries(
+        request.coast,
+        depths=[files[name] for name in request.depths],
+        areas=[request.areas] if request.areas else [],
+        traffic=[files[name] for name in request.traffic],
+        eca=request.eca,
+    )
     sea = open_seas(
         request.seas, files, average_over_m=request.average_over_m, variables=request.variables
     )
@@ -77,32 +68,14 @@ def network_of(request: PlanRequest, files: Mapping[str, str]) -> str | HistoryC
 
 def open_ship_of(request: ShipAndSea, files: Mapping[str, str]) -> Ship:
     """Return the ship of a request, with its load and limits."""
-    from thalweg.ship import Ship
-
-    name = files.get(request.ship, request.ship)
-    sick = request.limits.motion_sickness_percent
-    ship = Ship.load(name) if sick is None else _with_comfort_limit(name, sick)
-    if request.load_factor is not None:
-        ship = ship.with_load_factor(request.load_factor)
-    if request.charges is not None:
-        ship = ship.with_charges(_charges(request.charges, request))
-    given: dict[str, Any] = {}
-    if request.limits.wave_height_m is not None:
-        given["wave_height"] = request.limits.wave_height_m
-    if request.limits.wind_speed_kn is not None:
-        given["wind_speed"] = request.limits.wind_speed_kn * KNOT
-    return ship.with_limits(replace(ship.limits, **given)) if given else ship
-
-
-def _charges(given: RequestedCharges, request: ShipAndSea) -> EuropeanCharges:
-    from thalweg.ship.methods.engine.european_charges import EuropeanCharges
-
-    prices = given.ets_price, given.eur_rate, given.year
-    if given.share_percent is not None:
-        return EuropeanCharges(given.share_percent / 100.0, *prices)
     voyage = getattr(request, "voyage", {})
-    share, source = share_between_places(voyage.get("start"), voyage.get("goal"))
-    return EuropeanCharges(share, *prices, source)
+    return ship_of_entries(
+        files.get(request.ship, request.ship),
+        load_factor=request.load_factor,
+        limits=request.limits.model_dump(),
+        charges=None if request.charges is None else request.charges.model_dump(),
+        ends=(voyage.get("start"), voyage.get("goal")),
+    )
 
 
 def with_orders_of(ship: Ship, request: EvaluationRequest) -> Ship:
@@ -119,23 +92,6 @@ def with_orders_of(ship: Ship, request: EvaluationRequest) -> Ship:
         return ship
     hold = with_held_speed if request.hold == "speed" else with_held_power
     return hold(ship, request.speed_kn)
-
-
-def _with_comfort_limit(name: str, percent: float) -> Ship:
-    """Return a ship whose file has another limit of motion sickness."""
-    from thalweg.ship import Ship, plugin_names
-    from thalweg.ship.file.ship_file import read_ship
-
-    if name in plugin_names():
-        raise InputError(
-            f"A limit of motion sickness was given for the ship {name!r}.",
-            "It can be given for ships of the library and of files; this one is of a plug-in.",
-            "Leave the limit out, or choose another ship.",
-            field="motion_sickness_percent",
-        )
-    data, source = read_ship(name)
-    limits = {**(data.get("limits") or {}), "max_motion_sickness_percent": percent}
-    return Ship.from_dict({**data, "limits": limits}, source=source)
 
 
 def open_seas(

@@ -30,8 +30,8 @@ def frame(task: Mapping[str, Any]) -> TaskResult:
     Parameters
     ----------
     task : mapping
-        ``seas`` and ``files`` as of a job, ``variable`` (of `FRAME_VARIABLES`), ``time``
-        [s since 1970], ``box`` (south, north, west, east) [deg], ``nx`` and ``ny``.
+        ``seas``, ``files`` and ``variables`` as of a job, ``variable`` (of `FRAME_VARIABLES`),
+        ``time`` [s since 1970], ``box`` (south, north, west, east) [deg], ``nx`` and ``ny``.
 
     Returns
     -------
@@ -43,7 +43,7 @@ def frame(task: Mapping[str, Any]) -> TaskResult:
     """
     names, scale = FRAME_VARIABLES[task["variable"]]
     at = _raster(task)
-    sea = _sea(tuple(task["seas"]), tuple(sorted(task["files"].items())))
+    sea = _sea(*_names_of_sea(task))
     if sea.members:
         sea = sea.member(0)
     known = [name for name in names if name in sea.variables]
@@ -92,11 +92,19 @@ def _as_integers(values: Any, scale: float) -> Any:
     return np.where(np.isfinite(rounded), np.clip(rounded, -32767, 32767), UNKNOWN)
 
 
+_Pairs = tuple[tuple[str, str], ...]
+
+
+def _names_of_sea(task: Mapping[str, Any]) -> tuple[tuple[str, ...], _Pairs, _Pairs]:
+    files, variables = (tuple(sorted(task.get(k, {}).items())) for k in ("files", "variables"))
+    return tuple(task["seas"]), files, variables
+
+
 @lru_cache(maxsize=4)
-def _sea(seas: tuple[str, ...], files: tuple[tuple[str, str], ...]) -> Sea:
+def _sea(seas: tuple[str, ...], files: _Pairs, variables: _Pairs) -> Sea:
     from thalweg.service.jobs.request_objects import open_seas
 
-    return open_seas(list(seas), dict(files))
+    return open_seas(list(seas), dict(files), variables=dict(variables) or None)
 
 
 def inspect(task: Mapping[str, Any]) -> TaskResult:
@@ -105,9 +113,9 @@ def inspect(task: Mapping[str, Any]) -> TaskResult:
     Parameters
     ----------
     task : mapping
-        ``seas`` and ``files``.
+        ``seas``, ``files`` and ``variables``.
     """
-    sea = _sea(tuple(task["seas"]), tuple(sorted(task["files"].items())))
+    sea = _sea(*_names_of_sea(task))
     facts = sea_facts(sea, in_detail=bool(task.get("in_detail")))
     runs = [*filter(None, map(forecast_run, task["files"].values()))]
     if runs:

@@ -173,7 +173,7 @@ export class CompareView {
     const calm = rows.map((row) => isCalm(this.#jobOf(row).request));
     const cell = (row, i) => ([, name, decimals, text, change]) => h("td", {}, h("b", {}, calm[i] && WEATHER.includes(name) ? "calm assumed" : text(row[name], row)), i && change ? h("small", {}, than(row, name, decimals, change)) : null);
     return h("div.table", { tabindex: 0 }, h("table.compare-table", {}, h("caption.hidden", {}, "Routes compared with the reference, the first"), h("thead", {}, h("tr", {}, h("th.text", { scope: "col" }, "Route"), h("th.text", { scope: "col" }, "Leaves, arrives"), FIGURES.map(([name]) => h("th", { scope: "col" }, name)))),
-      h("tbody", {}, rows.map((row, i) => h("tr", { "aria-current": i ? null : "true" }, h("td.text", {}, keyOfRoute(i), h("b", {}, this.chosen[i].title), i ? null : h("small", {}, "reference"), row.feasible ? null : h("small.broken", {}, faultWords(row.broken))), h("td.text", {}, time(seconds(row.depart)), h("small", {}, time(seconds(row.arrive)))), FIGURES.map(cell(row, i)))))));
+      h("tbody", {}, rows.map((row, i) => h("tr", { "aria-current": i ? null : "true" }, h("td.text", {}, keyOfRoute(i), h("b", {}, this.chosen[i].title), i ? null : h("small", {}, "reference"), row.feasible ? null : h("small.broken", {}, faultWords(row.broken)), row.notes.map((note) => h("small", {}, note))), h("td.text", {}, time(seconds(row.depart)), h("small", {}, time(seconds(row.arrive)))), FIGURES.map(cell(row, i)))))));
   }
 
   // Plan the voyages of an example, or find them planned, and compare them.
