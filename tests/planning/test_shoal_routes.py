@@ -64,7 +64,7 @@ def test_with_shoals_ignored_the_legs_to_check_are_named():
     found = plan(request, ship=BULKER, sea=Sea.calm())
     assert found.best.distance_nm < 300.0
     (note,) = (note for note in found.notes if note.startswith("Check the depth"))
-    assert "12.0 m are required" in note and "leg " in note
+    assert "12.0 m are required" in note and ", passed at " in note
     assert request.to_dict()["ignore_shoals"] is True
 
 
