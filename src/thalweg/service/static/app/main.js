@@ -57,12 +57,14 @@ class Application {
     }
     addEventListener("hashchange", () => this.#route());
     await this.#route(true);
+    this.address.keep();
   }
 
   // What was typed before the lists arrived is not replaced.
   async #route(first = false) {
     const given = this.address.read();
     if (!given) return;
+    if (!first && this.address.returnsToForm) { this.result = null; this.#leaveProgress(); this.#switch("plan"); return; }
     if (first && this.form.touched && (given.has("voyage") || given.has("demo"))) return;
     if (given.get("voyage")) {
       try { this.#fillIn(JSON.parse(given.get("voyage"))); } catch { hint("The link holds no voyage."); this.#switch("plan"); }
@@ -113,7 +115,7 @@ class Application {
     if (view === "plan") {
       if (this.progress) this.#showProgress();
       else if (this.result) this.showResult(this.result).catch((problem) => hint(problem.asked));
-      else this.#showForm();
+      else { this.#showForm(); this.address.leave(); }
       return;
     }
     this.chart.clearRoutes();

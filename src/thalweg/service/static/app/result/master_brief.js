@@ -16,9 +16,11 @@ function extreme(profile, column, least = false) {
   return at < 0 ? null : { value: values[at], place: `${utc(profile.time[at])}, ${position(profile.lat[at], profile.lon[at])}` };
 }
 
-function limitsOf({ limits = {}, voyage = {} }) {
-  const rows = [["waves", limits.wave_height_m, "m"], ["wind", limits.wind_speed_kn, "kn"], ["under-keel clearance at least", voyage.min_ukc_m, "m"], ["distance from land at least", voyage.offing_nm, "nm"]];
-  return rows.filter(([, value]) => known(value)).map(([name, value, unit]) => `${name} ${number(value, 1)} ${unit}`).join("; ") || "as the ship file states";
+// Those of the request, else those of the ship file.
+function limitsOf({ limits, voyage }, sheet) {
+  const { wave_height_m: waves, wind_speed_m_s: wind } = sheet?.limits || {};
+  const rows = [["waves", limits?.wave_height_m ?? waves, "m"], ["wind", limits?.wind_speed_kn ?? (known(wind) ? (wind * 3600) / 1852 : null), "kn"], ["under-keel clearance at least", voyage?.min_ukc_m, "m"], ["distance from land at least", voyage?.offing_nm, "nm"]];
+  return rows.filter(([, value]) => known(value)).map(([name, value, unit]) => `${name} ${number(value, 1)} ${unit}`).join("; ") || "none are stated";
 }
 
 function weatherRows(result, profile, seas, run) {
@@ -56,7 +58,7 @@ export function masterBrief(result, chosen, profile, { shipName, seas, run }) {
     h("div.brief-columns", {},
       list([["Ship", h("b", {}, shipName)], ["Draught", `${measure(sheet?.draught_m, 1, "m")}${known(request.load_factor) ? `, load ${number(100 * request.load_factor)} %` : ""}`], ["Departure", h("b", {}, utc(seconds(route.depart)))], ["Arrival", h("b", {}, utc(seconds(route.arrive)))], ["Time", `${duration(route.time_h)}${route.waiting_h > 0 ? `, of it ${duration(route.waiting_h)} waiting` : ""}`]]),
       list([["Distance", h("b", {}, measure(route.distance_nm, 1, "nm"))], ["Speed", `${known(route.time_h) ? `${number(route.distance_nm / route.time_h, 1)} kn mean over ground` : "unknown"}${range ? `; ${range} kn ordered` : ""}`], ["Fuel", `${measure(route.fuel_t, 1, "t")}${eca}`], ["Cost", measure(costOf(route), 0, route.currency)], ["CO₂", measure(route.co2_t, 0, "t")]])),
-    list([...weatherRows(result, profile, seas, run), ["Least under-keel clearance", clearance(route, profile)], ["Limits", limitsOf(request)]]));
+    list([...weatherRows(result, profile, seas, run), ["Least under-keel clearance", clearance(route, profile)], ["Limits", limitsOf(request, sheet)]]));
   return [head, h("section.brief-page", { "aria-label": "Waypoints and warnings" }, waypointTable(route, isCalm(request)), notesOf(plan, route, job),
     h("p.brief-sign", {}, h("span", {}, "Checked by"), h("span", {}, "Master"), h("span", {}, "Date")),
     h("p.brief-foot", {}, `Printed ${utc(Date.now() / 1000)} by Thalweg, plan ${job.number}. All times are UTC. Check the route against official charts, notices to mariners and the rules of the company before use: it is not for navigation.`))];
@@ -67,9 +69,9 @@ function waypointTable(route, calm) {
   const leg = (i) => (waypoints[i + 1] ? number(waypoints[i + 1].distance_nm - waypoints[i].distance_nm, 1) : "");
   const value = (v, decimals) => (known(v) ? number(v, decimals) : "–");
   const last = waypoints.length - 1;
-  const remark = (w) => [{ approach: "approach of the port", canal: "canal" }[w.leg_kind], w.waiting_h > 0 ? `waits ${duration(w.waiting_h)}` : ""].filter(Boolean).join(", ");
+  const remark = (w) => [{ approach: "approach", canal: "canal" }[w.leg_kind], w.waiting_h > 0 ? `waits ${duration(w.waiting_h)}` : ""].filter(Boolean).join(", ");
   const columns = [["No.", (w, i) => String(i + 1)], ["Position", (w) => position(w.lat, w.lon), true], ["ETA, UTC", (w) => time(seconds(w.time)), true], ["Course", (w, i) => (i === last ? "" : bearing(w.course_deg))], ["Leg nm", (w, i) => leg(i)], ["Sum nm", (w) => number(w.distance_nm, 1)], ["Order kn", (w, i) => (i === last ? "" : value(w.ordered_speed_kn, 1))], ["Ground kn", (w, i) => (i === last ? "" : value(w.speed_over_ground_kn, 1))],
-    ...(calm ? [] : [["Waves m", (w) => value(w.wave_height_m, 1)], ["Wind kn", (w) => (known(w.wind_speed_kn) ? `${number(w.wind_speed_kn)}${known(w.wind_from_deg) ? ` from ${bearing(w.wind_from_deg)}` : ""}` : "–")]]),
+    ...(calm ? [] : [["Waves m", (w) => value(w.wave_height_m, 1)], ["Wind kn, from", (w) => (known(w.wind_speed_kn) ? `${number(w.wind_speed_kn)}${known(w.wind_from_deg) ? `, ${bearing(w.wind_from_deg)}` : ""}` : "–")]]),
     ...(there("ukc_m") ? [["UKC m", (w, i) => (i === last ? "" : value(w.ukc_m, 1))]] : []), ...(waypoints.some((w) => remark(w)) ? [["Remarks", (w, i) => (i === last ? "" : remark(w)), true]] : [])];
   return h("div", {}, h("h2", {}, "Waypoints"), h("p", {}, "Course, leg, speeds, clearance and remarks are those of the leg that begins at the waypoint. The order is the speed that the engine gives in calm water; along approaches of ports the speed over ground is fixed."),
     h("table", {}, h("thead", {}, h("tr", {}, columns.map(([name, , left]) => h(left ? "th.text" : "th", { scope: "col" }, name)))), h("tbody", {}, waypoints.map((w, i) => h("tr", {}, columns.map(([, text, left]) => h(left ? "td.text" : "td", {}, text(w, i))))))));
