@@ -57,7 +57,9 @@ def depth_notes(chart: Chart, route: Route, ship: Ship, clearance: float) -> lis
     in_approach = canal_legs(route.track, chart, ship).approach[leg]
     shallow = (depth < required) & ~in_approach & _judged(chart, route, lat, lon)
     if shallow.any():
-        notes.append(_shallow_legs(route, depth, np.flatnonzero(shallow), (lat, lon, leg), required))
+        notes.append(
+            _shallow_legs(route, depth, np.flatnonzero(shallow), (lat, lon, leg), required)
+        )
     return notes
 
 

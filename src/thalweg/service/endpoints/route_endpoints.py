@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import pairwise
 from typing import Any, Final
 
 from fastapi import APIRouter, UploadFile
@@ -195,7 +196,7 @@ def _route(one: ComparedRoute, kind: str, state: ServiceState) -> dict[str, Any]
 def _in_approaches(route: dict[str, Any]) -> dict[str, float]:
     """Return the length and time of a route in the approaches of ports."""
     rows = route.get("waypoints", ())
-    legs = [(a, b) for a, b in zip(rows, rows[1:]) if a.get("leg_kind") == "approach"]
+    legs = [(a, b) for a, b in pairwise(rows) if a.get("leg_kind") == "approach"]
     timed = [(a["time"], b["time"]) for a, b in legs if a["time"] and b["time"]]
     return {
         "approach_nm": sum(b["distance_nm"] - a["distance_nm"] for a, b in legs),
