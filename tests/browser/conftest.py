@@ -19,7 +19,7 @@ PICTURES = os.environ.get("THALWEG_SCREENSHOTS")
 #: The script axe.min.js of axe-core 4.14.1.
 AXE = Path(__file__).parent / "axe" / "axe.min.js.gz"
 #: Time in which something appears on a loaded machine [ms]; ``expect`` of playwright has 5 s.
-LONG_MS = 600_000
+LONG_MS = 240_000
 playwright_api.expect.set_options(timeout=LONG_MS)
 PALETTES = ("day", "dusk", "night")
 
@@ -97,6 +97,7 @@ class Visit:
         page.wait_for_selector("#ship option", state="attached")
         page.locator(".field.start input").fill(start)
         page.locator(".field.goal input").fill(goal)
+        page.get_by_label("Storm of 1998").check()
         page.locator("#depart").fill("1998-08-31T12:00")
 
     def plan(self) -> None:

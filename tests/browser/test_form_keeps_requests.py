@@ -146,6 +146,7 @@ def test_the_ends_of_a_route_file_are_filled_in(visit, planned, tmp_path):
     route.write_bytes(visit.service.http.get(f"/api/v1/plans/{planned}/routes/1.rtz").content)
     page.locator("#voyage-file").set_input_files(str(route))
     page.locator(".field.goal .understood", has_text="Position").wait_for()
+    page.get_by_label("Storm of 1998").check()
     request = page.evaluate("window.thalweg.form.request()")
     voyage = request["voyage"]
     assert (voyage["start"], voyage["goal"]) == ("47.0000N 20.0000W", "47.2000N 19.5000W")

@@ -136,6 +136,30 @@ def test_a_job_that_answers_late_is_not_shown_over_another_view(visit, planned):
     assert page.locator(".tab[aria-current]").get_attribute("data-view") == "studies"
 
 
+def test_back_and_forward_go_through_the_views(visit, planned):
+    page = visit.open()
+    visit.fill_short()
+    page.locator('.tab[data-view="voyages"]').click()
+    page.locator(".jobrow button.job", has_text="A short voyage").first.click()
+    page.wait_for_selector(".proof")
+    page.locator("#tab-profile").wait_for()
+    page.locator('.tab[data-view="compare"]').click()
+    title = page.locator("#panel h1")
+    playwright_api.expect(title).to_have_text("Compare routes")
+    page.evaluate("history.back()")
+    page.wait_for_selector(".proof")
+    playwright_api.expect(page.locator('.tab[data-view="plan"]')).to_have_attribute(
+        "aria-current", "page"
+    )
+    page.evaluate("history.back()")
+    playwright_api.expect(title).to_have_text("Voyages")
+    page.evaluate("history.back()")
+    playwright_api.expect(title).to_have_text("Plan a voyage")
+    assert page.locator(".field.start input").input_value() == "47.0N 20.0W"
+    page.evaluate("history.forward()")
+    playwright_api.expect(title).to_have_text("Voyages")
+
+
 def test_what_is_typed_before_the_lists_arrive_stays(visit):
     page = visit.page
     held = Held(page, "**/api/v1/ships")

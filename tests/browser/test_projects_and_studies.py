@@ -81,7 +81,7 @@ def test_a_study_fills_a_heat_map(visit):
     page.locator("#s-to").fill("1998-08-30 00:00")
     page.locator("#s-step").fill("24")
     page.locator("#s-speeds").fill("10, 12")
-    page.get_by_text("4 voyages; an ocean voyage").wait_for()
+    page.get_by_text(re.compile("^4 voyages: about ")).wait_for()
     visit.picture("study_form")
     page.get_by_role("button", name="Plan the study").click()
     page.locator(".heat td button").first.wait_for()

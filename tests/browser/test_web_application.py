@@ -25,6 +25,8 @@ def test_a_voyage_is_planned_by_clicking_on_the_chart(visit):
     page.wait_for_selector("#chart[data-idle]")
     page.wait_for_selector("#ship option", state="attached")
     visit.picture("form")
+    assert not page.get_by_label("Storm of 1998").is_checked()
+    page.get_by_label("Storm of 1998").check()
     time = page.locator("#time")
     time.focus()
     page.keyboard.press("End")
@@ -191,6 +193,8 @@ def test_keyboard_only(visit):
     page.keyboard.type("47.0N 20.0W")
     tab_to(page, ".field.goal input")
     page.keyboard.type("47.6N 18.0W")
+    tab_to(page, "[data-field=seas] input[value=storm]")
+    page.keyboard.press("Space")
     tab_to(page, "#depart")
     page.keyboard.press("ControlOrMeta+a")
     page.keyboard.type("1998-08-31 12:00")
@@ -401,6 +405,42 @@ def test_a_tablet_shows_form_and_result_without_sideways_scrolling(visit, planne
         assert page.evaluate(wide) == 0
         assert page.locator("#chart").bounding_box()["width"] >= 380
         visit.picture(f"tablet_{width}")
+
+
+def test_the_brief_for_the_master_has_what_a_master_keeps(visit, planned):
+    page = visit.open(f"#plan={planned}")
+    page.wait_for_selector(".proof")
+    page.locator("#tab-profile").wait_for()
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    page.emulate_media(media="print")
+    visit.picture("brief")
+    text = " ".join(part.inner_text() for part in page.locator(".brief-page").all())
+    text = re.sub(r"\s+", " ", text)
+    for words in (
+        "Handysize bulker",
+        "Draught 9.5 m",
+        "Departure 31 Aug 1998 12:00 UTC",
+        "Highest waves ",
+        "Storm of 1998",
+        "1 47°00.0′N 020°00.0′W 31 Aug 12:00",
+        "Not for navigation",
+    ):
+        assert words in text, words
+    assert not page.locator("#panel").is_visible() and page.locator("#chart").is_visible()
+    page.emulate_media(media="screen")
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    assert page.locator(".brief-page").count() == 0 and page.locator("#panel").is_visible()
+
+
+def test_calm_water_departs_today_and_the_storm_in_its_own_year(visit):
+    page = visit.open()
+    page.wait_for_selector("#ship option", state="attached")
+    depart = page.locator("#depart")
+    assert depart.input_value() == ""
+    page.get_by_label("Storm of 1998").check()
+    playwright_api.expect(depart).to_have_value("1998-08-24 06:00")
+    page.get_by_label("Calm sea").check()
+    assert abs(datetime.now(UTC).year - int(depart.input_value()[:4])) <= 1
 
 
 @pytest.mark.parametrize("view", ["plan", "compare", "projects", "studies", "voyages"])

@@ -40,10 +40,26 @@ def ship():
     return Ship.load("handysize-bulker")
 
 
+class Shown:
+    """A progress callback that keeps the routes found so far."""
+
+    def __init__(self):
+        self.routes = []
+
+    def __call__(self, text):
+        pass
+
+    def show_route(self, route):
+        self.routes.append(route)
+
+
+SHOWN = Shown()
+
+
 @functools.cache
 def planned(start="Amsterdam", goal="Rotterdam", **options):
     voyage = Voyage(start=start, goal=goal, depart=DEPART, **options)
-    return thalweg.plan(voyage, ship=ship(), sea=Sea.calm(), chart=chart())
+    return thalweg.plan(voyage, ship=ship(), sea=Sea.calm(), chart=chart(), progress=SHOWN)
 
 
 def approach_of(name):
@@ -55,6 +71,18 @@ def test_the_chart_of_the_plots_keeps_its_offing_and_its_approaches():
     kept = planned().plot_context.chart
     assert kept.offing.distance == pytest.approx(2.0 * NAUTICAL_MILE)
     assert kept.approaches is PORT_APPROACHES
+
+
+@pytest.mark.slow
+def test_routes_found_so_far_go_from_berth_to_berth():
+    best = planned().best
+
+    def ends(route):
+        track = route.track
+        return [round(float(x), 6) for x in (*track.lat[[0, -1]], *track.lon[[0, -1]])]
+
+    shown = [route for route in SHOWN.routes if ends(route) == ends(best)]
+    assert min(route.time_h for route in shown) == pytest.approx(best.time_h, rel=0.02)
 
 
 @pytest.mark.slow

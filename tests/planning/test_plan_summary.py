@@ -130,6 +130,10 @@ def test_only_with_known_depth_all_limits_are_called_kept(answer):
     legs["under_keel_clearance"] = np.full(len(legs["length"]), np.nan)
     unknown = replace(answer, routes=(replace(answer.best, legs=legs),), rejections={})
     assert limits_text(unknown) == "kept: land, zones; depth under the keel NOT checked"
+    warned = replace(unknown, notes=("Check the depth: 9.5 m are required",))
+    assert limits_text(warned).endswith(
+        "keel TO BE CHECKED: the depth layer has too little, see the note"
+    )
 
 
 def test_limits_that_closed_other_water(answer):

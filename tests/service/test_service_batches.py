@@ -144,6 +144,9 @@ def test_a_study_states_what_is_wrong(client):
     ):
         answer = client.post("/api/v1/studies", json={"study": {**STUDY["study"], **entries}})
         assert answer.status_code in (404, 422), answer.text
+    for entry, value in (("sea", 3), ("sea", [["calm"]]), ("compare", True), ("compare", [[]])):
+        answer = client.post("/api/v1/studies", json={"study": {**STUDY["study"], entry: value}})
+        assert problem(answer, 422)["field"] == entry
     wrong = {**STUDY["study"], "limits": {"wave_height_m": -1}}
     found = problem(client.post("/api/v1/studies", json={"study": wrong}), 422)
     assert found["field"] == "limits.wave_height_m" and "above 0" in found["possible"]

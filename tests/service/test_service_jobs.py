@@ -114,6 +114,7 @@ def test_an_exported_route_is_evaluated_and_compared(client, done):
     assert rows[1]["difference"]["fuel_t"] == pytest.approx(rows[1]["fuel_t"] - rows[0]["fuel_t"])
     assert rows[1]["broken"] == []
     assert rows[0]["notes"] == rows[1]["notes"] == []
+    assert [(row["approach_nm"], row["approach_h"]) for row in rows] == [(0.0, 0.0)] * 2
 
 
 def test_a_route_over_land_is_compared_with_the_place_of_the_land(client, done):

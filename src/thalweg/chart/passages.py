@@ -229,7 +229,7 @@ def _passage_of_row(row: dict[str, str]) -> Passage:
     return Passage(
         row["name"],
         row["use"],
-        _read_line(row["line"]),
+        read_line(row["line"]),
         half_width=number("half_width_nm", math.nan) * NAUTICAL_MILE,
         controlling_depth=number("controlling_depth_m", math.nan),
         max_draught=number("max_draught_m", math.inf),
@@ -240,11 +240,12 @@ def _passage_of_row(row: dict[str, str]) -> Passage:
         pilotage=row["pilotage"],
         note=row["note"],
         source=row["source"],
-        closing_line=_read_line(row["closing_line"] or ""),
+        closing_line=read_line(row["closing_line"] or ""),
     )
 
 
-def _read_line(text: str) -> tuple[Position, ...]:
+def read_line(text: str) -> tuple[Position, ...]:
+    """Return positions [deg] of a text such as ``51.2,-57.2 51.6,-56.6``."""
     points = [point.split(",") for point in text.split()]
     return tuple((float(lat), float(lon)) for lat, lon in points)
 

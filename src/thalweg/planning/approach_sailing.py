@@ -11,7 +11,7 @@ import numpy as np
 
 from thalweg.chart.approaches import PortApproach, line_between, line_length
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.geodesy import Position
+from thalweg.core.geodesy import Position, distance
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
 from thalweg.planning.plan import Plan
@@ -91,6 +91,7 @@ class ApproachSailing:
             voyage=self.voyage_at_sea(context.voyage),
             chart=replace(context.chart, approaches=None),
             approach_times=(self._duration(self.outward), self._duration(self.inward)),
+            with_approaches=SailedApproaches(self, context).joined_at_sea_ends,
         )
 
     def with_approaches(self, plan: Plan, voyage: Voyage, context: PlanningContext) -> Plan:
@@ -165,9 +166,24 @@ class SailedApproaches:
         self._sailing = sailing
         self._sail = cache(partial(sailing.sail, context=context))
 
+    def joined_at_sea_ends(self, route: Route) -> Route:
+        """Return a route, or a stretch of it, with the approaches that begin where it ends."""
+        first, last = ((float(route.track.lat[k]), float(route.track.lon[k])) for k in (0, -1))
+        outward, inward = self._sailing.outward, self._sailing.inward
+        return self._joined(
+            route,
+            outward if outward and float(distance(*outward.sea_end, *first)) < 1.0 else None,
+            inward if inward and float(distance(*inward.sea_end, *last)) < 1.0 else None,
+        )
+
     def joined(self, route: Route) -> Route:
         """Return a route with the approaches at its ends."""
-        outward, inward = self._sailing.outward, self._sailing.inward
+        return self._joined(route, self._sailing.outward, self._sailing.inward)
+
+    def _joined(
+        self, route: Route, outward: PortApproach | None, inward: PortApproach | None
+    ) -> Route:
+        """Return a route with approaches at its ends; None adds none."""
         parts = [route]
         if outward is not None and outward.length > 1.0:
             depart = route.depart - outward.length / self._sailing.speed

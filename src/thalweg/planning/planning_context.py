@@ -61,6 +61,7 @@ class PlanningContext:
     report_progress : Called with a short text at each stage; see `show_route`, `show_front`.
     proof_seconds : Time for the certificate of a lower bound [s]; None for that of the search.
     approach_times : In the approaches before and after the voyage at sea [s].
+    with_approaches : Returns a route at sea with the approaches of its ports, to be shown.
     """
 
     voyage: Voyage
@@ -73,11 +74,12 @@ class PlanningContext:
     report_progress: Callable[[str], None] = field(default=lambda text: None)
     proof_seconds: float | None = None
     approach_times: tuple[float, float] = (0.0, 0.0)
+    with_approaches: Callable[[Route], Route] = field(default=lambda route: route)
 
     def show_route(self, route: Route) -> None:
         """Give a route that was found so far to a progress callback with ``show_route``."""
         if isinstance(self.report_progress, RouteProgress) and route.feasible:
-            self.report_progress.show_route(route)
+            self.report_progress.show_route(self.with_approaches(route))
 
     def show_front(self, points: Sequence[tuple[float, float]], unit: str) -> None:
         """Give the front so far to a progress callback with ``show_front``.

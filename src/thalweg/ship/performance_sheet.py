@@ -29,6 +29,7 @@ from thalweg.ship.performance_sheet_weather import (
     weather_beyond_limits,
     weather_without_model,
 )
+from thalweg.ship.schema.unusual_numbers import unusual_numbers
 from thalweg.ship.ship import Ship
 from thalweg.ship.ship_assumptions import load_factor_without_effect
 
@@ -103,6 +104,7 @@ def performance_sheet(
         ],
         "conditions": rows,
         "warnings": [
+            *unusual_numbers(ship.file),
             *left_out,
             *weather_without_model(ship, weather or {}),
             *weather_beyond_limits(ship, weather or {}),
@@ -311,16 +313,20 @@ def _missing_results(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]
     if ship.is_resistance_based and not known("brake_power_kw"):
         return missing  # it is the water or the weather that leaves no number
     if not known("brake_power_kw"):
-        missing.append("power: models.calm_water with a hull, table.power_kw, or the cubic law")
+        missing.append(
+            "power: add engine.reference_power_kw with engine.reference_speed_kn, a column "
+            "power_kw to table, or a resistance method as models.calm_water"
+        )
     if not known("fuel_kg_per_h"):
-        keys = "engine.type with fuel.type, engine.sfoc_g_per_kwh, or table.fuel_t_per_day"
-        missing.append(f"fuel: {keys}" if known("brake_power_kw") else "fuel: power, or a table")
+        keys = "add engine.type with fuel.type, engine.sfoc_g_per_kwh, or table.fuel_t_per_day"
+        table = "add what power needs, or table.fuel_t_per_day"
+        missing.append(f"fuel: {keys if known('brake_power_kw') else table}")
     elif not known("co2_kg_per_h"):
-        missing.append("CO2: fuel.type or fuel.carbon_factor")
+        missing.append("CO2: add fuel.type or fuel.carbon_factor")
     elif not known("cii"):
-        missing.append("CII: hull.deadweight_t, or hull.gross_tonnage for some types of ship")
+        missing.append("CII: add hull.deadweight_t, or hull.gross_tonnage for some types of ship")
     elif all(row["cii"] is None or row["cii"]["rating_2026"] is None for row in rows):
-        missing.append("rating of the CII: hull.type as the regulation has it")
+        missing.append("rating of the CII: add hull.type as the regulation has it")
     return missing
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from thalweg.ship.hull.estimate import method_assumptions
+from thalweg.ship.schema.unusual_numbers import unusual_numbers
 from thalweg.ship.ship import Ship
 
 _KEYS_OF_THE_EMPTY_SHIP = (
@@ -14,7 +15,7 @@ _KEYS_OF_THE_EMPTY_SHIP = (
 
 
 def stated_assumptions(ship: Ship) -> list[str]:
-    """Return what results of a ship must state: assumed methods, a load factor without effect.
+    """Return what results of a ship must state: unusual numbers, assumed methods and others.
 
     Returns
     -------
@@ -24,7 +25,8 @@ def stated_assumptions(ship: Ship) -> list[str]:
     charges = ship.fuel_terms.charges
     found = charges is not None and charges.share_source != "given"
     european = [f"Charges of the European Union: {charges.share_source}."] if found else []  # type: ignore[union-attr]
-    return [*method_assumptions(ship.estimated), *idle, *european]
+    unusual = unusual_numbers(ship.file)
+    return [*unusual, *method_assumptions(ship.estimated), *idle, *european]
 
 
 def load_factor_without_effect(ship: Ship) -> list[str]:

@@ -16,6 +16,7 @@ import yaml
 from thalweg.chart.zones.zone_set import Zones
 from thalweg.core.errors import InputError, errors_about, unknown_name_error
 from thalweg.core.file_reading import read_text_file
+from thalweg.core.given_numbers import shortened_repr
 from thalweg.planning.request.voyage_surroundings import check_charges, check_limits
 from thalweg.planning.voyage import Voyage
 from thalweg.studies.annual_figures import checked_annual
@@ -107,7 +108,7 @@ class Study:
                 _check_entry(entry)
         for name in self.compare:
             if name not in COMPARISONS:
-                raise unknown_name_error("comparison", name, COMPARISONS)
+                raise unknown_name_error("comparison", name, COMPARISONS, field="compare")
         for name in (self.base.get("detail", DETAILS[0]), *self.axes.get("detail", ())):
             if not isinstance(name, Mapping) and name not in DETAILS:
                 raise unknown_name_error("detail", str(name), DETAILS)
@@ -233,13 +234,13 @@ class Study:
         axes = data.get("axes") or {}
         sample = data.get("sample") or {}
         _check_mappings(axes, sample)
-        compare = data.get("compare") or ()
+        compare = _compared(data.get("compare") or ())
         return cls(
             str(data.get("name", "study")),
             base,
             {str(name): axis_values(str(name), values) for name, values in axes.items()},
             plain_data(sample),
-            (compare,) if isinstance(compare, str) else tuple(compare),
+            compare,
             folder,
             checked_annual(data["annual"]) if "annual" in data else {},
         )
@@ -312,6 +313,19 @@ def _check_surroundings(entries: Mapping[str, Any]) -> None:
     if isinstance(entries.get("areas"), Mapping):
         with errors_about("areas"):
             Zones.read(entries["areas"])
+
+
+def _compared(given: Any) -> tuple[str, ...]:
+    """Return the names of comparisons, from one or a list."""
+    names = [given] if isinstance(given, str) else given
+    if not isinstance(names, (list, tuple)) or not all(isinstance(name, str) for name in names):
+        raise InputError(
+            f"compare is {shortened_repr(given)}.",
+            f"It is one of {', '.join(COMPARISONS)}, or a list of them.",
+            "Correct it, or leave it out.",
+            field="compare",
+        )
+    return tuple(names)
 
 
 def _check_mappings(axes: Any, sample: Any) -> None:

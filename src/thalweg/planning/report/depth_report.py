@@ -12,7 +12,7 @@ from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.core.geodesy import densify, distance, format_position_minutes
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.planning.report.land_report import passages_used
+from thalweg.planning.report.land_report import passages_used, time_of_passing
 from thalweg.route import Route
 from thalweg.route.canal_legs import canal_legs
 from thalweg.ship import Ship
@@ -57,7 +57,9 @@ def depth_notes(chart: Chart, route: Route, ship: Ship, clearance: float) -> lis
     in_approach = canal_legs(route.track, chart, ship).approach[leg]
     shallow = (depth < required) & ~in_approach & _judged(chart, route, lat, lon)
     if shallow.any():
-        notes.append(_shallow_legs(depth, np.flatnonzero(shallow), (lat, lon, leg), required))
+        notes.append(
+            _shallow_legs(route, depth, np.flatnonzero(shallow), (lat, lon, leg), required)
+        )
     return notes
 
 
@@ -77,6 +79,7 @@ def _judged(chart: Chart, route: Route, lat: FloatArray, lon: FloatArray) -> np.
 
 
 def _shallow_legs(
+    route: Route,
     depth: FloatArray,
     shallow: np.ndarray,
     line: tuple[FloatArray, FloatArray, np.ndarray],
@@ -89,7 +92,8 @@ def _shallow_legs(
         points = shallow[leg[shallow] == number]
         worst = points[np.argmin(depth[points])]
         place = format_position_minutes(float(lat[worst]), float(lon[worst]))
-        found.append((float(depth[worst]), f"leg {number + 1}: {depth[worst]:.0f} m near {place}"))
+        time = time_of_passing(route, int(number), float(lat[worst]), float(lon[worst]))
+        found.append((float(depth[worst]), f"{depth[worst]:.0f} m near {place}{time}"))
     named = [text for _, text in sorted(found)[:_MOST_LEGS]]
     more = f", and {len(found) - _MOST_LEGS} more legs" if len(found) > _MOST_LEGS else ""
     return (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import numpy as np
@@ -10,6 +11,7 @@ from thalweg.chart import Chart
 from thalweg.chart.passage_crossings import passages_crossed
 from thalweg.chart.passages import Passage, split_avoided
 from thalweg.core.geodesy import densify, distance, format_position
+from thalweg.core.time import format_time
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.offing_choice import size_restriction
@@ -35,8 +37,8 @@ def land_notes(context: PlanningContext, route: Route) -> list[str]:
     if nearest is not None and nearest.distance < _NEAR:
         place = format_position(nearest.lat, nearest.lon)
         notes.append(
-            f"{NEAREST_LAND}: {nearest.distance / NAUTICAL_MILE:.1f} nm off, from {place} "
-            f"(leg {nearest.leg + 1})."
+            f"{NEAREST_LAND}: {nearest.distance / NAUTICAL_MILE:.1f} nm off, from {place}"
+            f"{time_of_passing(route, nearest.leg, nearest.lat, nearest.lon)}."
         )
     for passage in passages_used(context.chart, route):
         facts = [
@@ -48,6 +50,22 @@ def land_notes(context: PlanningContext, route: Route) -> list[str]:
         ]
         notes.append(f"Passes {passage.name} ({'; '.join(facts)}).")
     return notes + closed_passage_notes(context, route)
+
+
+def time_of_passing(route: Route, leg: int, lat: float, lon: float) -> str:
+    """Return words on when a route passes a position [deg] on one of its legs, from 0.
+
+    The number of the leg would not do: approaches and other stretches are put before it later.
+
+    Returns
+    -------
+    str : Empty where the time is not known.
+    """
+    track, legs = route.track, route.legs
+    sailed = float(distance(track.lat[leg], track.lon[leg], lat, lon))
+    share = min(1.0, sailed / max(float(legs["length"][leg]), 1.0))
+    time = float(legs["depart"][leg] + share * (legs["arrive"][leg] - legs["depart"][leg]))
+    return f", passed at {format_time(60.0 * round(time / 60.0))}" if math.isfinite(time) else ""
 
 
 def closed_passage_notes(context: PlanningContext, route: Route) -> list[str]:

@@ -6,23 +6,23 @@ from collections.abc import Iterable, Sequence
 from typing import Final
 
 from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
+from thalweg.planning.report.ice_report import REACHES_ICE
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, LANE_DETOUR
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
 from thalweg.planning.request.voyage_endpoints import CHECK_POSITION, NOT_REACHED
 from thalweg.route.referee.route_assembly import OUT_OF_RANGE
 
 LIMIT_EXCEEDED: Final = "The referee finds a limit exceeded"  #: a note on a limit begins so
-ICE_NOT_MODELLED: Final = "The route reaches"  #: a note on ice begins so
 #: First words of notes that no summary may leave out, the most dangerous first.
 _FIRST: Final = (
     NOT_REACHED,
     LIMIT_EXCEEDED,
+    REACHES_ICE,
     CHECK_POSITION,
     CHECK_DEPTH,
     CROSSES_SHOAL,
     AGAINST_TRAFFIC,
     NO_OFFING_ROUTE,
-    ICE_NOT_MODELLED,
     INSHORE_USED,
     LANE_DETOUR,
     OUT_OF_RANGE,

@@ -6,17 +6,14 @@ import dataclasses
 import math
 from typing import Any
 
-import numpy as np
-
 from thalweg.chart import Chart
-from thalweg.core.geodesy import format_position
 from thalweg.core.time import format_time
 from thalweg.network import Network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.depth_report import depth_notes
+from thalweg.planning.report.ice_report import ice_warnings
 from thalweg.planning.report.land_report import land_notes
 from thalweg.planning.report.lane_report import lane_notes
-from thalweg.planning.report.note_order import ICE_NOT_MODELLED
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
 from thalweg.route.referee.route_assembly import OUT_OF_RANGE
@@ -24,8 +21,6 @@ from thalweg.sea import Sea
 from thalweg.sea.inspection import data_gaps
 from thalweg.ship import Ship
 
-#: Latitude [deg] beyond which a warning about ice is given.
-_ICE_WARNING_LATITUDE = 72.0
 #: Years between which a departure needs no warning: the reanalysis ERA5 begins in 1940.
 _FIRST_YEAR, _LAST_YEAR = "1940", "2100"
 
@@ -42,7 +37,8 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     -------
     list of str : One sentence for each warning.
     """
-    notes = year_warnings(route) + land_notes(context, route) + ice_warnings(route)
+    notes = year_warnings(route) + land_notes(context, route)
+    notes += ice_warnings(route, context.sea)
     notes += data_gap_warnings(context.sea, route)
     notes += [text for text in route.assumptions if text.startswith(OUT_OF_RANGE)]
     notes += lane_notes(context, route)
@@ -62,7 +58,7 @@ def given_route_warnings(
     chart, sea, ship : With which it was evaluated.
     min_ukc : Required under the keel [m]; None: by the ship file.
     """
-    notes = year_warnings(route) + ice_warnings(route) + data_gap_warnings(sea, route)
+    notes = year_warnings(route) + ice_warnings(route, sea) + data_gap_warnings(sea, route)
     if route.min_ukc_m is not None:
         return notes
     clearance = ship.min_under_keel_clearance if min_ukc is None else min_ukc
@@ -86,19 +82,6 @@ def data_gap_warnings(sea: Sea, route: Route) -> list[str]:
         "in the gap that need its data are not sailed."
         for gap in data_gaps(sea.layers)
         if gap.before > route.depart and gap.after < route.arrive
-    ]
-
-
-def ice_warnings(route: Route) -> list[str]:
-    """Return a warning where ice is likely."""
-    lat = route.samples["lat"]
-    worst = int(np.argmax(np.abs(lat)))
-    if abs(float(lat[worst])) < _ICE_WARNING_LATITUDE:
-        return []
-    place = format_position(float(lat[worst]), float(route.samples["lon"][worst]))
-    return [
-        f"{ICE_NOT_MODELLED} {place}, and sea ice is not modelled: give a via point or a no-go "
-        "zone if that water is closed."
     ]
 
 

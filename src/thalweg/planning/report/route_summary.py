@@ -239,7 +239,8 @@ def kept_text(route: Route, ship: Ship | None, notes: Sequence[str]) -> str:
         named = (("waves", ship.limits.wave_height), ("wind", ship.limits.wind_speed))
         checked += [what for what, limit in named if math.isfinite(limit)]
     shallow = any(note.startswith(CHECK_DEPTH) for note in notes)
-    depth = "TOO SHALLOW by the depth layer, see the note" if shallow else "NOT checked"
+    depth = "TO BE CHECKED: the depth layer has too little, see the note"
+    depth = depth if shallow else "NOT checked"
     return f"kept: {', '.join(checked)}; depth under the keel {depth}"
 
 

@@ -237,6 +237,8 @@ class ComparedRouteAnswer(AnswerModel):
     energy_mwh: float | None
     waiting_h: float | None
     min_ukc_m: float | None
+    approach_nm: float
+    approach_h: float
     highest_waves_m: float | None
     strongest_wind_kn: float | None
     difference: dict[str, float | None]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 from fastapi import APIRouter, Path, Query, Response
@@ -15,6 +16,19 @@ from thalweg.service.service_state import State
 
 chart_router = APIRouter(tags=["chart"])
 Level = Literal["c", "l", "i"]
+#: Where the map names each emission control area: open water in its middle (lon, lat) [deg].
+_LABELS: Final[Mapping[str, tuple[float, float]]] = {
+    "baltic-sea": (19.2, 56.2),
+    "north-sea": (3.2, 56.4),
+    "north-america-pacific": (-129.5, 44.0),
+    "north-america-atlantic": (-71.0, 37.5),
+    "north-america-hawaii": (-158.5, 23.6),
+    "us-caribbean": (-65.8, 19.2),
+    "mediterranean": (18.3, 34.6),
+    "canadian-arctic": (-75.0, 72.5),
+    "norwegian-sea": (3.0, 67.0),
+    "north-east-atlantic": (-20.0, 58.0),
+}
 _FOREVER = {"Cache-Control": "private, max-age=31536000, immutable"}
 
 
@@ -78,7 +92,8 @@ def _features() -> dict[str, Any]:
             np.round(np.column_stack([zone.rings.lon[a:b], zone.rings.lat[a:b]]), 3).tolist()
             for a, b in zip(zone.rings.start[:-1], zone.rings.start[1:])
         ]
-        areas.append({"name": zone.name, "title": titles.get(zone.name, zone.name), "rings": rings})
+        title, label = titles.get(zone.name, zone.name), _LABELS.get(zone.name)
+        areas.append({"name": zone.name, "title": title, "rings": rings, "label": label})
     canals = [
         {
             "name": canal.name,

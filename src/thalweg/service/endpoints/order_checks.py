@@ -8,6 +8,7 @@ from functools import cache
 from typing import Any
 
 from thalweg.core.errors import InputError, OutsidePeriodError, errors_about
+from thalweg.core.given_numbers import shortened_repr
 from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import KNOT
 from thalweg.operations.dredging import Project
@@ -130,7 +131,7 @@ def check_study_order(study: Study, state: ServiceState) -> None:
         sea, depart = row.request.get("sea"), row.request["voyage"].get("depart")
         if sea is None or depart is None or row.request.get("fill"):
             return
-        seas = (sea,) if isinstance(sea, str) else tuple(sea)
+        seas = _sea_names(sea)
         if (seas, depart) in tried:
             continue
         tried.add((seas, depart))
@@ -142,6 +143,19 @@ def check_study_order(study: Study, state: ServiceState) -> None:
             return
     if first is not None:
         raise first
+
+
+def _sea_names(given: Any) -> tuple[str, ...]:
+    """Return the names of the sea of a row: one, or a list by priority."""
+    names = given if isinstance(given, list) else [given]
+    if not names or not all(isinstance(name, str) for name in names):
+        raise InputError(
+            f"The sea of a voyage of the study is {shortened_repr(given)}.",
+            "It is calm, storm, the id of an uploaded sea, or a list of them by priority.",
+            "Correct it: Thalweg never assumes calm weather.",
+            field="sea",
+        )
+    return tuple(names)
 
 
 def _check_speeds(study: Study, state: ServiceState) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import pairwise
 from typing import Any, Final
 
 from fastapi import APIRouter, UploadFile
@@ -10,7 +11,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import distance
-from thalweg.core.units import NAUTICAL_MILE
+from thalweg.core.time import parse_time
+from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.service.endpoints.job_endpoints import result_file
 from thalweg.service.endpoints.upload_reading import chunks_of, kept_upload
 from thalweg.service.jobs.named_uploads import entries_of
@@ -111,6 +113,7 @@ def compare(state: State, request: Comparison) -> dict[str, Any]:
 
     ``notes`` say where a route begins or ends elsewhere than the first, as a route from the berth
     of a port and one from the sea off it do: their figures are not of the same stretch.
+    ``approach_nm`` and ``approach_h`` are the part of a route in the approaches of ports.
     """
     rows = [_row(one, state) for one in request.routes]
     first = rows[0]
@@ -160,6 +163,7 @@ def _row(one: ComparedRoute, state: ServiceState) -> dict[str, Any]:
         "currency": currency,
         "cost": route.get(f"cost_{str(currency).casefold()}"),
         **figures,
+        **_in_approaches(route),
         **worst,
     }
 
@@ -187,6 +191,17 @@ def _route(one: ComparedRoute, kind: str, state: ServiceState) -> dict[str, Any]
         )
     chosen: dict[str, Any] = routes[one.number - 1]
     return chosen
+
+
+def _in_approaches(route: dict[str, Any]) -> dict[str, float]:
+    """Return the length and time of a route in the approaches of ports."""
+    rows = route.get("waypoints", ())
+    legs = [(a, b) for a, b in pairwise(rows) if a.get("leg_kind") == "approach"]
+    timed = [(a["time"], b["time"]) for a, b in legs if a["time"] and b["time"]]
+    return {
+        "approach_nm": sum(b["distance_nm"] - a["distance_nm"] for a, b in legs),
+        "approach_h": sum(parse_time(b) - parse_time(a) for a, b in timed) / HOUR,
+    }
 
 
 def _worst(one: ComparedRoute, state: ServiceState) -> dict[str, float | None]:

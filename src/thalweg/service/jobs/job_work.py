@@ -87,7 +87,7 @@ def _keep_shown(
         routes=(route,),
         proof=Proof(math.nan, "no bound: the job was stopped before", route.time_h),
         rejections={},
-        notes=("The job was stopped: this is the route found until then, without approaches.",),
+        notes=("The job was stopped: this is the best route found until then.",),
         provenance={"from": str(voyage.start), "to": str(voyage.goal)},
         cancelled=True,
     )

@@ -24,6 +24,7 @@ from thalweg.ship.model_protocol import DraughtModel, EstimatingModel, ShipModel
 from thalweg.ship.models.function_model import model_of_function
 from thalweg.ship.models.speed_power_laws import SPEED_POWER_LAWS
 from thalweg.ship.schema.ship_schema import ShipFile, empty_ship_file
+from thalweg.ship.schema.unusual_numbers import check_possible_numbers
 from thalweg.ship.ship_limits import ShipLimits
 
 
@@ -55,6 +56,7 @@ def ship_parts(data: Mapping[str, Any], source: str) -> ShipParts:
     InputError : For unknown or missing keys, numbers out of range and impossible hulls.
     """
     file = ShipFile.of(data, source)
+    check_possible_numbers(file)
     hull = complete_hull(file.hull.plain())
     loading = build_loading(file, hull)
     model = build_model(file, hull, loading)

@@ -1,19 +1,46 @@
 // The address of a state: #demo, #plan=ID&route=2&t=SECONDS, #voyage=REQUEST, #view=compare
+// Each plan and each view has its entry in the history of the browser; the form is the place without a name.
 
 import { hint } from "./common/elements.js";
+
+const NAMES = ["plan", "view", "voyage", "demo", "routes"];
+
+function placeOf(hash) {
+  const given = new URLSearchParams(hash.slice(1));
+  return given.get("plan") || given.get("view") || "";
+}
 
 export class Address {
   written = "";
 
-  // The parts of the address; null where the page wrote it itself.
+  // The parts of the address; null where the page wrote it itself, or where it is a place in the page.
   read() {
-    return location.hash === this.written ? null : new URLSearchParams(location.hash.slice(1));
+    if (location.hash === this.written) return null;
+    const given = new URLSearchParams(location.hash.slice(1));
+    if (location.hash && !NAMES.some((name) => given.has(name))) return null;
+    this.written = location.hash;
+    return given;
+  }
+
+  // Whether the browser went back or forward to the form.
+  get returnsToForm() {
+    return Boolean(history.state?.written) && !placeOf(location.hash);
+  }
+
+  // The entry with which the page was opened is one of its own from now on.
+  keep() {
+    history.replaceState({ written: true }, "");
+  }
+
+  leave() {
+    if (placeOf(location.hash)) this.write("");
   }
 
   write(text) {
     clearTimeout(this.timer);
     this.written = text ? `#${text}` : "";
-    history.replaceState(null, "", this.written || location.pathname);
+    const same = placeOf(this.written) === placeOf(location.hash);
+    history[same ? "replaceState" : "pushState"]({ written: true }, "", this.written || location.pathname);
   }
 
   // After a pause, so that a moving time does not write at every step.

@@ -2,7 +2,7 @@
 
 import { get, hasEnded } from "./common/api.js";
 import { announce, errorBox, fill, h, hint } from "./common/elements.js";
-import { isCalm, known, titleOf } from "./common/format.js";
+import { isCalm, known, seconds, titleOf } from "./common/format.js";
 import { selection } from "./common/selection.js";
 import { typedTime } from "./common/typed_time.js";
 import { Address } from "./address.js";
@@ -14,6 +14,7 @@ import { DEMO, PlanForm } from "./form/plan_form.js";
 import { listenToKeys, nextPalette, showKeys } from "./keyboard.js";
 import { CompareView } from "./result/compare_view.js";
 import { Drawer, placeAt, timeNear } from "./result/diagrams.js";
+import { masterBrief } from "./result/master_brief.js";
 import { ProgressView } from "./result/progress_view.js";
 import { drawResult } from "./result/result_drawing.js";
 import { inOrderOfTime, loadResult, profileOf, ResultView } from "./result/result_view.js";
@@ -56,12 +57,14 @@ class Application {
     }
     addEventListener("hashchange", () => this.#route());
     await this.#route(true);
+    this.address.keep();
   }
 
   // What was typed before the lists arrived is not replaced.
   async #route(first = false) {
     const given = this.address.read();
     if (!given) return;
+    if (!first && this.address.returnsToForm) { this.result = null; this.#leaveProgress(); this.#switch("plan"); return; }
     if (first && this.form.touched && (given.has("voyage") || given.has("demo"))) return;
     if (given.get("voyage")) {
       try { this.#fillIn(JSON.parse(given.get("voyage"))); } catch { hint("The link holds no voyage."); this.#switch("plan"); }
@@ -112,7 +115,7 @@ class Application {
     if (view === "plan") {
       if (this.progress) this.#showProgress();
       else if (this.result) this.showResult(this.result).catch((problem) => hint(problem.asked));
-      else this.#showForm();
+      else { this.#showForm(); this.address.leave(); }
       return;
     }
     this.chart.clearRoutes();
@@ -282,7 +285,7 @@ class Application {
       compare: () => { this.compare.add(result.job.id, selection.route + 1, `${titleOf(result.job)}${result.plan.routes.length > 1 ? `, route ${selection.route + 1}` : ""}`); this.#switch("compare"); },
       link: () => this.address.copy(this.#place),
       shipName: this.compare.handlers.shipName,
-      print: () => { this.drawer.open("legs"); print(); },
+      print: () => print(),
     });
     if (!panel.contains(result.view.body)) fill(panel, result.view.element); // else the focus would be lost
     this.chart.closeMenu();
@@ -295,7 +298,7 @@ class Application {
     result.profile = profile;
     this.#draw();
     const { seas } = result.job.request, { weather } = this.chart;
-    const kinds = (this.form.sea.list || []).filter((sea) => seas.includes(sea.id)).flatMap((sea) => sea.frames || []);
+    const kinds = (this.form.sea.list || []).filter((sea) => seas.includes(sea.id) && sea.id !== "calm").flatMap((sea) => sea.frames || []);
     weather.set({ seas, time: selection.time, kind: kinds.includes(weather.kind) ? weather.kind : "" });
     this.chart.showLegend();
     result.view.show(profile);
@@ -304,6 +307,18 @@ class Application {
     this.#time();
     this.layers.show(kinds);
     this.#permalink();
+  }
+
+  // On paper a result is the brief for the master, with the chart in it.
+  #brief(profile) {
+    document.querySelectorAll(".brief-page").forEach((part) => part.remove());
+    document.documentElement.classList.toggle("brief", Boolean(profile));
+    if (!profile) return;
+    const { request } = this.result.job, { sea } = this.form, rows = (sea.list || []).filter((one) => request.seas.includes(one.id));
+    const runs = rows.map((one) => one.run).filter(Boolean).map(seconds);
+    const [head, rest] = masterBrief(this.result, selection.route, profile, { shipName: this.compare.handlers.shipName(request.ship), seas: rows.map((one) => one.name.split(":")[0]), run: runs.length ? Math.min(...runs) : null });
+    document.querySelector("main").before(head);
+    document.querySelector("main").after(rest);
   }
 
   #draw() {
@@ -353,8 +368,8 @@ class Application {
 
   #listen() {
     const { chart, form } = this;
-    addEventListener("beforeprint", () => { const { profile } = this.result || {}; chart.forPaper(true, profile && profile.lon.map((lon, i) => [lon, profile.lat[i]])); });
-    addEventListener("afterprint", () => chart.forPaper(false));
+    addEventListener("beforeprint", () => { const profile = this.view === "plan" && this.result?.profile; this.#brief(profile || null); chart.forPaper(true, profile && profile.lon.map((lon, i) => [lon, profile.lat[i]])); });
+    addEventListener("afterprint", () => { this.#brief(null); chart.forPaper(false); });
     chart.weather.onState = (state) => chart.showLegend(state);
     document.querySelectorAll(".tab").forEach((tab) => tab.addEventListener("click", () => this.#switch(tab.dataset.view)));
     document.getElementById("palette").addEventListener("click", nextPalette);

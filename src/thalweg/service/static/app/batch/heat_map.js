@@ -20,12 +20,14 @@ const TIMES = [
   ["depart:hour", "Hour of the day", (t) => t.getUTCHours() * 60 + t.getUTCMinutes(), (k) => `${two(Math.floor(k / 60))}:${two(k % 60)}`], ["depart:each", "Departure", (t) => t.getTime(), (k) => time(k / 1000)],
 ];
 const NAMES = { depart: "Departure", speed_kn: "Speed [kn]", ship: "Ship", load_factor: "Load", objective: "Objective", sea: "Sea", member: "Member" };
-const quantile = (sorted, q) => { const at = q * (sorted.length - 1), i = Math.floor(at); return sorted[i] + (at - i) * ((sorted[i + 1] ?? sorted[i]) - sorted[i]); };
+export const quantile = (sorted, q) => { const at = q * (sorted.length - 1), i = Math.floor(at); return sorted[i] + (at - i) * ((sorted[i + 1] ?? sorted[i]) - sorted[i]); };
 
 export class HeatMap {
-  constructor(axes, onCell) {
+  // drawn: names of the axes whose values are drawn at random; they are grouped in classes
+  constructor(axes, drawn, onCell) {
     this.rows = [];
     this.axes = axes;
+    this.drawn = new Set(drawn);
     this.onCell = onCell;
     this.figure = "time_h";
     this.controls = h("div.map-controls");
@@ -42,14 +44,28 @@ export class HeatMap {
 
   #keys() {
     const fixed = this.axes.filter((name) => name !== "depart" && new Set(this.rows.map((row) => row[name])).size > 1).map((name) => [name, NAMES[name] || name[0].toUpperCase() + name.slice(1)]);
-    const times = this.rows.some((row) => row.at) ? TIMES.filter(([, , key], i) => { const n = new Set(this.rows.map((row) => row.at && key(row.at))).size; return n > 1 && n <= (i === 4 ? 60 : 370); }).map(([name, text]) => [name, text]) : [];
+    const times = this.rows.some((row) => row.at) ? this.#times.filter(([, , key], i) => { const n = new Set(this.rows.map((row) => row.at && key(row.at))).size; return n > 1 && n <= (i === 4 ? 60 : 370) && !(this.drawn.has("depart") && i === 4); }).map(([name, text]) => [name, text]) : [];
     return [...times, ...fixed];
+  }
+
+  // Departures that are drawn have no hours in common: they are grouped by quarters of the day.
+  get #times() {
+    return this.drawn.has("depart") ? TIMES.map((row) => (row[0] === "depart:hour" ? [row[0], row[1], (t) => Math.floor(t.getUTCHours() / 6) * 6, (k) => `${two(k)} to ${two(k + 6)} h`] : row)) : TIMES;
+  }
+
+  // The width of the classes of an axis of numbers that are drawn; 0 where its values stand for themselves.
+  #classOf(name) {
+    if (!this.drawn.has(name)) return 0;
+    const values = this.rows.map((row) => row[name]).filter(known), range = Math.max(...values) - Math.min(...values);
+    if (new Set(values).size <= 12 || !(range > 0)) return 0;
+    const rough = range / 6, ten = 10 ** Math.floor(Math.log10(rough));
+    return ten * [1, 2, 5, 10].find((one) => one * ten >= rough);
   }
 
   #choose() {
     const keys = this.#keys().map(([name]) => name), other = keys.filter((name) => !name.startsWith("depart:"));
     if (!keys.includes(this.across) || (!this.byHand && this.auto !== keys.join())) {
-      const count = (name) => { const [, , key] = TIMES.find((row) => row[0] === name); return new Set(this.rows.map((row) => key(row.at))).size; };
+      const count = (name) => { const [, , key] = this.#times.find((row) => row[0] === name); return new Set(this.rows.map((row) => key(row.at))).size; };
       this.across = keys.includes("depart:month") && count("depart:month") > 2 ? "depart:month" : keys.find((name) => name === "depart:day") || keys[0] || null;
       this.down = other.find((name) => name !== this.across) || ["depart:year", "depart:hour", "depart:day"].find((name) => keys.includes(name) && name !== this.across) || null;
       this.auto = keys.join();
@@ -59,7 +75,8 @@ export class HeatMap {
 
   #keyOf(name) {
     if (!name) return [() => "", () => "all voyages"];
-    const found = TIMES.find((row) => row[0] === name);
+    const found = this.#times.find((row) => row[0] === name), step = this.#classOf(name);
+    if (step) return [(row) => Math.floor(row[name] / step + 1e-9) * step, (k) => `${number(k, decimalsOf(step))} to ${number(k + step, decimalsOf(step))}`];
     return found ? [(row) => found[2](row.at), found[3]] : [(row) => row[name], (k) => (typeof k === "number" ? String(Number(k.toFixed(2))) : String(k))];
   }
 
@@ -83,7 +100,7 @@ export class HeatMap {
     const found = new Map([...cells].map(([key, rows]) => [key, facts(rows)]));
     const all = [...found.values()].map((one) => one.shown).filter(known);
     const low = Math.min(...all), high = Math.max(...all), [, title, text] = FIGURES.find(([name]) => name === this.figure);
-    const dim = Number(colour("weather-dim"));
+    const dim = Number(colour("heat-dim"));
     const compact = (v) => (this.figure.endsWith("_h") ? number(v, Math.abs(v) < 100 ? 1 : 0) : this.figure === "lost" ? number(100 * v) : this.figure === "max_wind_speed_ms" ? number(v * 3600 / 1852) : number(v, Math.abs(v) < 100 ? 1 : 0));
     fill(this.controls, select("heat-figure", "Median of", there.map(([name, label]) => [name, label]), this.figure, (v) => { this.figure = v; }), select("heat-across", "across", keys, this.across, (v) => { this.across = v; }), select("heat-down", "down", [[null, "all together"], ...keys.filter(([name]) => name !== this.across)], this.down, (v) => { this.down = v; }), h("span.ramp", {}, all.length ? text(low) : "", h("i", { style: `background: linear-gradient(90deg, ${RAMP.map((c) => shade(c, dim).css).join(",")})` }), all.length ? text(high) : ""));
     const unitOf = { time_h: "hours", waiting_h: "hours", saved_time_h: "hours", fuel_t: "t", saved_fuel_t: "t", co2_t: "t", lost: "%", max_significant_wave_height_m: "m", max_wind_speed_ms: "kn", cost: "" }[this.figure];
@@ -99,6 +116,8 @@ export class HeatMap {
     fill(this.holder, h("table", {}, h("caption.hidden", {}, `Median of ${title.toLowerCase()}${unitOf ? ` in ${unitOf}` : ""}, ${label(this.across)} across, ${label(this.down)} down`), h("thead", {}, h("tr", {}, h("th.text", { scope: "col" }, `${title}${unitOf ? ` [${unitOf}]` : ""}`), columns.map((column) => h("th", { scope: "col" }, acrossText(column))))), h("tbody", {}, lines.map((line) => h("tr", {}, h("th.text", { scope: "row" }, downText(line)), columns.map((column) => cell(line, column)))))));
   }
 }
+
+const decimalsOf = (step) => Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
 
 function shade(hex, dim) {
   const rgb = [1, 3, 5].map((i) => Math.round(parseInt(hex.slice(i, i + 2), 16) * dim));

@@ -5,10 +5,10 @@ import { announce, errorBox, fill, h, unit } from "../common/elements.js";
 import { duration, inputTime, known, number, seconds, time } from "../common/format.js";
 import { jobFoot } from "../result/progress_view.js";
 import { BatchView } from "./batch_view.js";
-import { HeatMap } from "./heat_map.js";
+import { HeatMap, quantile } from "./heat_map.js";
 import { typedTime } from "../common/typed_time.js";
 
-const SECONDS_EACH = 6; // of an ocean voyage, about
+const SECONDS_EACH = 10; // of an ocean voyage on a usual computer, about
 const TAKEN = ["fill", "load_factor", "sampling", "coast", "network", "resolution_nm"]; // of the request, beside its voyage
 const NOT_TAKEN = { limits: "limits of weather", areas: "areas", depths: "depth files", charges: "charges", eca: "control areas left out", traffic: "traffic", history: "the history network", average_over_m: "the depth of currents", route_files: "route files", proof_s: "the time for the proof" };
 const WORDS = { path: "/studies", earlier: "Earlier studies", stopped: "The study was stopped before a voyage was planned." };
@@ -59,6 +59,7 @@ export class StudyView extends BatchView {
     const before = [...this.ships.querySelectorAll("input:checked")].map((box) => box.value);
     const chosen = before.length ? before : [plans.ship.value];
     fill(this.ships, (plans.ship.list || []).map((ship) => h("label.check", {}, h("input", { type: "checkbox", value: ship.id, checked: chosen.includes(ship.id) }), h("span", {}, ship.name))));
+    await this.#measure();
     this.#count();
     this.#listReady();
     await this.listEarlier(({ summary, created }) => (summary ? `${number(summary.voyages)} voyages · ${time(seconds(created))}` : time(seconds(created))));
@@ -68,7 +69,7 @@ export class StudyView extends BatchView {
   async #listReady() {
     if (this.ready.childElementCount) return;
     const studies = await get("/studies/ready").catch(() => []);
-    fill(this.ready, studies.length ? h("details", {}, h("summary", {}, "Ready studies", h("span.set", {}, String(studies.length))), h("div.inside", {}, studies.map(({ about, voyages, request }) => h("button.job", { type: "button", onclick: () => this.order(request) }, h("b", {}, request.title), h("span", {}, about), h("span", {}, `${number(voyages)} voyages`))))) : null);
+    fill(this.ready, studies.length ? h("details", {}, h("summary", {}, "Ready studies", h("span.set", {}, String(studies.length))), h("div.inside", {}, studies.map(({ about, voyages, request }) => h("button.job", { type: "button", onclick: () => this.order(request) }, h("b", {}, request.title), h("span", {}, about), h("span", {}, `${number(voyages)} voyages, about ${this.#takes(voyages)}`))))) : null);
   }
 
   get #axes() {
@@ -77,11 +78,23 @@ export class StudyView extends BatchView {
     return { ships, speeds, from: typedTime(this.from), to: typedTime(this.to), step: Number(this.step.value.replace(",", ".")) };
   }
 
+  #takes(voyages) {
+    return duration((voyages * (this.measured || SECONDS_EACH)) / 3600);
+  }
+
+  // Seconds for each voyage of the studies of before; null where there are none.
+  async #measure() {
+    const { jobs } = await get("/plans?kind=study&size=20").catch(() => ({ jobs: [] }));
+    const each = jobs.filter((job) => job.summary?.voyages > 0 && job.summary.seconds > 0).map(({ summary }) => summary.seconds / summary.voyages).sort((a, b) => a - b);
+    this.measured = each.length ? quantile(each, 0.5) : null;
+  }
+
   #count() {
     const { ships, speeds, from, to, step } = this.#axes;
     const departures = from !== null && to !== null && step > 0 && to >= from ? Math.floor((to - from) / (step * 3600) + 1e-9) + 1 : 0;
     this.size = departures * Math.max(1, speeds.length) * Math.max(1, ships.length);
-    this.counted.textContent = this.size ? `${number(this.size)} voyage${this.size === 1 ? "" : "s"}; an ocean voyage takes a few seconds: about ${duration((this.size * SECONDS_EACH) / 3600)}.` : "";
+    const ends = this.plans.start.value && this.plans.goal.value;
+    this.counted.textContent = !this.size ? "" : `${number(this.size)} voyage${this.size === 1 ? "" : "s"}${ends ? `: about ${this.#takes(this.size)}${this.measured ? ", as studies on this computer took before" : "; a short voyage takes less"}` : "; the voyage has no ends yet"}.`;
   }
 
   async submit() {
@@ -112,7 +125,7 @@ export class StudyView extends BatchView {
 
   shown(job) {
     const drawn = Object.keys(job.request.study.sample || {}).filter((name) => !["count", "seed"].includes(name));
-    this.map = new HeatMap([...Object.keys(job.request.study.axes || {}), ...drawn], (name, cell) => this.#cell(name, cell));
+    this.map = new HeatMap([...Object.keys(job.request.study.axes || {}), ...drawn], drawn, (name, cell) => this.#cell(name, cell));
     this.handlers.sheet(this.map.element, true);
     this.cellBox = h("div.block", {}, h("p.facts", {}, "Choose a cell to see its voyages."));
     this.handlers.ends(job.request.study.voyage);
@@ -139,7 +152,7 @@ export class StudyView extends BatchView {
     this.map.add(result.rows.map((row) => Object.fromEntries(result.columns.map((name, i) => [name, row[i]]))));
     const { summary } = job, best = result.best[0];
     const usable = this.map.rows.filter((row) => !row.refusal && row.feasible !== false && known(row.time_h));
-    const times = usable.map((row) => row.time_h).sort((a, b) => a - b), at = (q) => times[Math.round(q * (times.length - 1))];
+    const times = usable.map((row) => row.time_h).sort((a, b) => a - b), at = (q) => quantile(times, q);
     const fastest = usable.reduce((a, b) => (a && a.time_h <= b.time_h ? a : b), null);
     const card = (name, value, more) => h("div.card", {}, h("dt", {}, name), h("dd", {}, value, more ? h("small", {}, more) : null));
     const months = ["January", "February", "March", "April", "May", "June", "July", "August", "September", "October", "November", "December"];

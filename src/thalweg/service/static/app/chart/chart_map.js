@@ -4,7 +4,7 @@ import { Map as OlMap, View, Overlay, Graticule, ScaleLine, Zoom, Draw, Modify, 
 import { get } from "../common/api.js";
 import { CoastLayers } from "./coast_layer.js";
 import { ParticleLayer } from "./particle_layer.js";
-import { bandColours, KINDS, WeatherLayer } from "./weather_layer.js";
+import { KINDS, legendColours, WeatherLayer } from "./weather_layer.js";
 import { RouteLayers, speedColours, layer, stroke, FONT, Feature, Point, Polygon, LineString, Style, Fill, Stroke, Circle, Text, fromLonLat } from "./route_layers.js";
 import { colour, fill, h } from "../common/elements.js";
 import { known, number, position, time } from "../common/format.js";
@@ -27,7 +27,7 @@ export class Chart extends EventTarget {
     this.depths.set({ seas: ["chart"], time: 0 });
     this.routes = new RouteLayers();
     this.content = { control_areas: [], canals: [] }; // as the service describes them
-    this.eca = layer(13, { visible: false });
+    this.eca = layer(8, { visible: false }); // under the land: their lines over it mean nothing
     this.canals = layer(14);
     this.ports = layer(15, { declutter: true, minZoom: 2.5, updateWhileInteracting: false, renderBuffer: 300 });
     this.areas = layer(18);
@@ -75,9 +75,13 @@ export class Chart extends EventTarget {
     for (const area of chart.control_areas) {
       for (const ring of area.rings) {
         const feature = new Feature(new Polygon([ring.map((p) => fromLonLat(p))]));
-        feature.setStyle(() => new Style({ stroke: new Stroke({ color: colour("eca"), width: 1.4 }), fill: new Fill({ color: colour("eca") + "12" }), text: new Text({ text: area.title, font: FONT, placement: "line", textBaseline: "bottom", fill: new Fill({ color: colour("eca") }), stroke: new Stroke({ color: colour("sea"), width: 3 }) }) }));
+        feature.setStyle(() => new Style({ stroke: new Stroke({ color: colour("eca"), width: 1.4 }), fill: new Fill({ color: colour("eca") + "12" }) }));
         this.eca.getSource().addFeature(feature);
       }
+      if (!area.label) continue;
+      const name = new Feature(new Point(fromLonLat(area.label)));
+      name.setStyle(() => new Style({ text: new Text({ text: area.title, font: FONT, fill: new Fill({ color: colour("eca") }), stroke: new Stroke({ color: colour("sea"), width: 3 }) }) }));
+      this.eca.getSource().addFeature(name);
     }
     for (const canal of chart.canals) {
       const feature = new Feature(new LineString(canal.path.map((p) => fromLonLat(p))));
@@ -171,12 +175,12 @@ export class Chart extends EventTarget {
   forPaper(begins, points) {
     const root = document.documentElement;
     if (begins) this.before = { place: this.place, palette: root.dataset.palette };
+    root.classList.toggle("paper", begins);
     root.dataset.palette = begins ? "day" : this.before.palette;
     this.paint();
     this.map.updateSize();
     if (begins && points) this.fit(points);
     if (!begins) this.place = this.before.place;
-    for (const one of document.querySelectorAll("#panel .list ~ details, #panel .proof details")) one.open = begins;
     this.map.renderSync();
   }
 
@@ -231,13 +235,13 @@ export class Chart extends EventTarget {
   }
 
   #depthLegend() {
-    return h("section", {}, h("b", {}, "Depth, every 6 nm"), bar(bandColours("depth").map((c) => `rgb(${c.join(",")})`)), h("div.ends", {}, h("span", {}, "0"), h("span", {}, "100"), h("span", {}, "200 m")));
+    return h("section", {}, h("b", {}, "Depth, every 6 nm"), bar(legendColours("depth")), h("div.ends", {}, h("span", {}, "0"), h("span", {}, "100"), h("span", {}, "200 m")));
   }
 
   #weatherLegend(kind, state) {
     const { title, unit, top } = KINDS[kind];
     const words = { "no data": "no data at this time", failed: "cannot be read" }[state];
-    return h("section", { "aria-busy": String(state === "loading") }, h("b", {}, title), words ? ` · ${words}` : null, bar(bandColours(kind).map((c) => `rgb(${c.join(",")})`)),
+    return h("section", { "aria-busy": String(state === "loading") }, h("b", {}, title), words ? ` · ${words}` : null, bar(legendColours(kind)),
       h("div.ends", {}, h("span", {}, "0"), h("span", {}, `${top / 2}`), h("span", {}, `${top} ${unit}`.trim())), h("div.none", {}, h("i", {}), "no data"), this.run ? h("div.run", {}, this.run) : null);
   }
 

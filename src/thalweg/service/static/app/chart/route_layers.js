@@ -6,13 +6,14 @@ import { time as timeText, unwrapped } from "../common/format.js";
 
 const FONT = '12px system-ui, "DejaVu Sans", sans-serif';
 
-// Slow to fast, evenly spaced in lightness.
+// Slow to fast, evenly spaced in lightness; on dark charts the slow ones are lighter.
 const SPEED_COLOURS = ["#2b1d6b", "#4b2a93", "#7a2f9c", "#a83a93", "#cf4f7f", "#ea6f66", "#f79a56", "#f9c86b"];
+const DARK_SPEED_COLOURS = ["#7a6be0", "#8d6fd2", "#a170c4", "#b872b2", "#cf749c", "#e68184", "#f79a62", "#f9c86b"];
 
 // The colours of speeds in the palette of the page.
 export function speedColours() {
   const dim = Number(colour("speed-dim"));
-  return SPEED_COLOURS.map((hex) => `rgb(${[1, 3, 5].map((i) => Math.round(dim * parseInt(hex.slice(i, i + 2), 16))).join(",")})`);
+  return (Number(colour("dark")) ? DARK_SPEED_COLOURS : SPEED_COLOURS).map((hex) => `rgb(${[1, 3, 5].map((i) => Math.round(dim * parseInt(hex.slice(i, i + 2), 16))).join(",")})`);
 }
 
 export function line(points) {

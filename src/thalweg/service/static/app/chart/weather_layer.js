@@ -9,16 +9,20 @@ const KNOT = 1852 / 3600;
 const NX = 160, NY = 112, UNKNOWN = -32768, COLUMN = 3; // pixels of the screen for each computed one
 const MOST_FRAMES = 48;
 
-// Bands from calm to rough; never yellow, which is the land.
+// Bands from calm to rough; never yellow, which is the land. In dark palettes the rough sea is the bright one.
 export const KINDS = {
   waves: { title: "Significant wave height", unit: "m", step: 0.5, top: 10, marks: "arrows",
-    stops: [[0, "#dbeef7"], [0.2, "#9fcbe8"], [0.4, "#639fd8"], [0.6, "#5266bd"], [0.8, "#5d3b96"], [1, "#4a1064"]] },
+    stops: [[0, "#dbeef7"], [0.2, "#9fcbe8"], [0.4, "#639fd8"], [0.6, "#5266bd"], [0.8, "#5d3b96"], [1, "#4a1064"]],
+    dark: [[0, "#22384a"], [0.2, "#2c5878"], [0.4, "#3b7fb0"], [0.6, "#6f8fd6"], [0.8, "#a98ae0"], [1, "#e0a0e8"]] },
   wind: { title: "Wind at 10 m", unit: "kn", step: 5, top: 60, marks: "barbs",
-    stops: [[0, "#e6f1f4"], [0.25, "#a8d0d6"], [0.5, "#5fa3b8"], [0.75, "#4a6aa0"], [1, "#56307a"]] },
+    stops: [[0, "#e6f1f4"], [0.25, "#a8d0d6"], [0.5, "#5fa3b8"], [0.75, "#4a6aa0"], [1, "#56307a"]],
+    dark: [[0, "#24383f"], [0.25, "#2f6a72"], [0.5, "#4b9aac"], [0.75, "#86a8dc"], [1, "#d3a6ec"]] },
   current: { title: "Current", unit: "kn", step: 0.25, top: 4, marks: "arrows",
-    stops: [[0, "#e4f1ee"], [0.3, "#97cfc3"], [0.6, "#4f9eaa"], [1, "#27508a"]] },
-  ice: { title: "Sea ice", unit: "", step: 0.1, top: 1, marks: "", stops: [[0, "#d9ecf5"], [1, "#ffffff"]] },
-  depth: { title: "Depth", unit: "m", step: 10, top: 200, marks: "", stops: [[0, "#5aa9d6"], [0.1, "#8fc7e6"], [0.25, "#b7dcef"], [1, "#d9ecf5"]] },
+    stops: [[0, "#e4f1ee"], [0.3, "#97cfc3"], [0.6, "#4f9eaa"], [1, "#27508a"]],
+    dark: [[0, "#23393a"], [0.3, "#2f7468"], [0.6, "#57b3ab"], [1, "#9fe0e0"]] },
+  ice: { title: "Sea ice", unit: "", step: 0.1, top: 1, marks: "", stops: [[0, "#d9ecf5"], [1, "#ffffff"]], dark: [[0, "#30495a"], [1, "#dfe9ee"]] },
+  depth: { title: "Depth", unit: "m", step: 10, top: 200, marks: "", stops: [[0, "#5aa9d6"], [0.1, "#8fc7e6"], [0.25, "#b7dcef"], [1, "#d9ecf5"]],
+    dark: [[0, "#5d9cc0"], [0.1, "#427c9f"], [0.25, "#34617d"], [1, "#26445a"]] },
 };
 
 const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
@@ -33,9 +37,15 @@ function colourAt(stops, share) {
 }
 
 export function bandColours(kind) {
-  const { step, top, stops } = KINDS[kind];
-  const count = Math.round(top / step), dim = Number(colour("weather-dim"));
-  return Array.from({ length: count + 1 }, (_, i) => colourAt(stops, i / count).map((value) => Math.round(value * dim)));
+  const { step, top, stops, dark } = KINDS[kind];
+  const count = Math.round(top / step), dim = Number(colour("weather-dim")), shown = Number(colour("dark")) ? dark : stops;
+  return Array.from({ length: count + 1 }, (_, i) => colourAt(shown, i / count).map((value) => Math.round(value * dim)));
+}
+
+// The same as they appear on the sea of the chart, for its legend.
+export function legendColours(kind) {
+  const sea = rgb(colour("sea")), share = Number(colour("weather-alpha"));
+  return bandColours(kind).map((band) => `rgb(${band.map((value, i) => Math.round(share * value + (1 - share) * sea[i])).join(",")})`);
 }
 
 class Frame {

@@ -1,6 +1,6 @@
 // Small helpers to build the page: h("p.note", {id: "x"}, "text", child).
 
-import { number, readable } from "./format.js";
+import { duration, number, readable } from "./format.js";
 
 // What legs were refused for, after their number.
 export const REASONS = {
@@ -32,6 +32,9 @@ export function fill(element, ...children) {
 }
 
 export const unit = (text) => h("span.unit", {}, ` ${text}`);
+
+// A duration with its units in a lighter tone.
+export const durationParts = (hours) => duration(hours).split(" ").map((word, i, all) => (i % 2 ? h("span.unit", {}, ` ${word}${i < all.length - 1 ? " " : ""}`) : word));
 
 export function announce(text) {
   document.getElementById("announcer").textContent = text;

@@ -105,7 +105,7 @@ export class AreaFields {
     this.element.classList.remove("wrong");
     const button = (text, act) => h("button.quiet.small", { type: "button", onclick: act }, text);
     fill(this.element,
-      this.list.length || this.kept.length ? null : h("p.facts", {}, "Closed areas (no-go), and areas where each mile counts more (penalty). Drag a corner to move it."),
+      this.list.length || this.kept.length ? null : h("p.facts", {}, "Closed areas (no-go), and areas where each mile counts more (penalty). Drag a corner to move it. A route may touch the edge of a closed area: draw it with the distance that the ship keeps."),
       this.list.map((area, i) => this.#row(area, i)),
       this.kept.length ? h("p.facts", {}, `${this.kept.length} more of the voyage file, in several parts or with holes. `, h("button.link", { type: "button", onclick: () => { this.kept = []; this.#put(this.list); } }, "Remove them")) : null,
       this.drawing ? h("div.field", {}, h("p.facts", { role: "status" }, "An area is being drawn: click its corners."), h("div.row.tools", {}, button("Finish the area", () => this.#finish()), button("Leave it out", () => this.chart.endDrawing(false)))) : h("div.field", {}, h("div.row.tools", {}, button("Draw no-go", () => this.#drawn("no-go")), button("Draw penalty", () => this.#drawn("penalty")), this.#before.length ? button("Undo", () => this.#put(this.#before.pop())) : null),

@@ -48,7 +48,7 @@ export class PlanForm extends EventTarget {
     this.viaBox = h("div");
     const problemAt = (name) => (problem) => (problem ? this.#fail(name, problem) : this.#clearField(name));
     this.ship = new ShipChoice(problemAt("ship"));
-    this.sea = new SeaChoice({ ends: () => this.ends, departs: () => typedTime(this.depart), changed: () => this.#seaChanged(), problemAt: problemAt("seas") });
+    this.sea = new SeaChoice({ ends: () => this.ends, departs: () => typedTime(this.depart), changed: (byHand) => this.#seaChanged(byHand), problemAt: problemAt("seas") });
     this.areas = new AreaFields(this.chart, () => this.#summaries());
     this.depart = h("input", { type: "text", id: "depart", autocomplete: "off", placeholder: "2026-01-31 12:00" });
     this.latest = h("input", { type: "text", id: "latest", autocomplete: "off", placeholder: "2026-01-31 12:00" });
@@ -74,7 +74,7 @@ export class PlanForm extends EventTarget {
     const { fields } = this;
     const body = h("div.scroll", {},
       h("h1", {}, "Plan a voyage"),
-      h("p.lead", {}, "Type the ends or click them on the chart."),
+      h("p.lead", {}, "Type the ends or click them on the chart, or ", h("button.link", { type: "button", onclick: () => this.set(DEMO) }, "fill in an example"), "."),
       h("div.block", {}, h("div.itinerary", {}, this.start.element, this.viaBox, this.goal.element), h("div.row", {}, h("span"), this.undoMove, swap, addVia)),
       h("div.block", {},
         this.ship.element),
@@ -196,10 +196,11 @@ export class PlanForm extends EventTarget {
     this.dispatchEvent(new Event("places"));
   }
 
-  #seaChanged() {
-    const { period } = this.sea;
+  #seaChanged(byHand = false) {
+    const { period } = this.sea, calm = this.sea.chosen[0] === "calm";
     this.departFacts.textContent = period ? `Data from ${time(period[0])} to ${time(period[1], true)}` : "";
-    if (period && [this.proposed, ""].includes(this.depart.value)) this.depart.value = this.proposed = inputTime(period[0]); // until another is typed
+    const proposal = period ? period[0] : calm && byHand ? Math.ceil(Date.now() / 3.6e6) * 3600 : null;
+    if (proposal !== null && [this.proposed, ""].includes(this.depart.value)) this.depart.value = this.proposed = inputTime(proposal); // until another is typed
     this.dispatchEvent(new Event("seas"));
   }
 
@@ -263,7 +264,7 @@ export class PlanForm extends EventTarget {
   request() {
     if (!this.start.value) return this.#missing("start", "The voyage has no start.", "Type a port or a position, or click it on the chart.");
     if (!this.goal.value) return this.#missing("goal", "The voyage has no destination.", "Type a port or a position, or click it on the chart.");
-    if (!this.sea.chosen.length) return this.#missing("seas", "No sea is chosen; calm weather is never assumed.", "Choose the storm of 1998, a calm sea, or a file.");
+    if (!this.sea.chosen.length) return this.#missing("seas", "No sea is chosen; calm weather is never assumed.", "Choose a file, a forecast, a calm sea, or the storm of 1998 as an example.");
     if (!this.depart.value && !this.fields.inputs.arrive.value) return this.#missing("depart", "The voyage has no departure.", "Give a date and a time in UTC.");
     if (this.areas.drawing) return this.#missing("areas", "An area is still being drawn.", "Finish it, or leave it out.");
     for (const [name, input] of [["depart", this.depart], ["depart_window", this.latest]]) {
@@ -340,6 +341,7 @@ export class PlanForm extends EventTarget {
   // Fill the form with a request.
   set(request) {
     const { voyage } = request;
+    this.proposed = null;
     this.fresh = true; // the chart has not shown its ends
     fill(this.problem);
     this.element.querySelectorAll(".wrong[data-field]").forEach((field) => this.#clearField(field.dataset.field));

@@ -11,11 +11,12 @@ export class SeaChoice {
   reading = null; // resolves when the files that were chosen last are read: whether all are seas
 
   /**
-   * @param {{ends: () => object[], departs: () => number|null, changed: () => void, problemAt: (problem: object|null) => void}} handlers
+   * @param {{ends: () => object[], departs: () => number|null, changed: (byHand?: boolean) => void, problemAt: (problem: object|null) => void}} handlers
    */
   constructor(handlers) {
     this.handlers = handlers;
     this.box = h("div");
+    this.facts = h("p.facts", {}, "Choose one or more: weather is never assumed.");
     this.file = h("input.hidden", { type: "file", id: "sea-file", "aria-label": "Sea files", accept: ".nc,.nc4,.grb,.grb2,.grib,.grib2", multiple: true, tabindex: "-1", onchange: () => { this.reading = this.#upload([...this.file.files]); } });
     this.drop = h("div.drop", {
       ondragover: (event) => { event.preventDefault(); this.drop.classList.add("over"); },
@@ -23,7 +24,7 @@ export class SeaChoice {
       ondrop: (event) => { event.preventDefault(); this.drop.classList.remove("over"); this.reading = this.#upload([...event.dataTransfer.files]); },
     }, "Drop a GRIB or NetCDF file here, or ", h("button.link", { type: "button", onclick: () => this.file.click() }, "choose a file"), ".");
     this.fetch = new ForecastFetch(handlers.ends, handlers.departs, () => this.chosen, (seas, before) => this.#fetched(seas, before));
-    this.element = h("fieldset.block", { "data-field": "seas" }, h("legend", {}, "Sea"), this.box, this.drop, this.file, this.fetch.element, h("div.slot"));
+    this.element = h("fieldset.block", { "data-field": "seas" }, h("legend", {}, "Sea"), this.facts, this.box, this.drop, this.file, this.fetch.element, h("div.slot"));
   }
 
   get chosen() {
@@ -48,11 +49,11 @@ export class SeaChoice {
   }
 
   get frameKinds() {
-    return [...new Set(this.#rows.flatMap((sea) => sea.frames || []))];
+    return [...new Set(this.#rows.filter((sea) => sea.id !== "calm").flatMap((sea) => sea.frames || []))]; // of calm water there is nothing to see
   }
 
   show(list = this.list, chosen = null) {
-    const before = chosen || (this.list ? this.chosen : ["storm"]);
+    const before = chosen || (this.list ? this.chosen : []);
     this.order = before;
     this.list = list;
     const order = list.slice().sort((a, b) => Boolean(a.embedded) - Boolean(b.embedded) || (a.id === "calm") - (b.id === "calm"));
@@ -65,15 +66,16 @@ export class SeaChoice {
 
   #facts(sea) {
     if (sea.id === "calm") return "no wind, waves and currents anywhere";
+    const example = sea.id === "storm" ? "an example · " : "";
     const period = sea.start ? `${time(seconds(sea.start))} to ${time(seconds(sea.end), true)}` : "at all times";
-    return `${(sea.frames || []).join(", ") || "no field to draw"} · ${period}${sea.members ? ` · ${sea.members} members` : ""}`;
+    return `${example}${(sea.frames || []).join(", ") || "no field to draw"} · ${period}${sea.members ? ` · ${sea.members} members` : ""}`;
   }
 
   // Calm water is never mixed with data.
   #choose(input) {
     if (input.checked) for (const other of this.box.querySelectorAll("input")) if (other !== input && (input.value === "calm" || other.value === "calm")) other.checked = false;
     this.handlers.problemAt(null);
-    this.handlers.changed();
+    this.handlers.changed(true);
   }
 
   async #upload(files) {

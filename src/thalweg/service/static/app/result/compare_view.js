@@ -151,13 +151,22 @@ export class CompareView {
     }
     try {
       const { routes } = await post("/compare", { routes: this.chosen.map(({ job, number: n }) => ({ job, number: n })) });
-      const points = await this.#points();
+      const [points] = await Promise.all([this.#points(), this.#readNotes()]);
       if (ask !== this.asked) return;
       this.drawn = points.map((line, i) => ({ name: this.chosen[i].title, points: line }));
       this.#draw(points, this.#table(routes), routes.flatMap((row) => row.broken));
     } catch (problem) {
       if (ask === this.asked) fill(this.problem, errorBox(problem));
     }
+  }
+
+  // What the reader of a route file says of it, such as that speeds of its schedule are not used.
+  async #readNotes() {
+    this.fileNotes ||= new Map();
+    await Promise.all(this.chosen.map(async ({ job: id }) => {
+      const job = this.#jobOf({ job: id });
+      if (job.kind === "evaluation" && !this.fileNotes.has(id)) this.fileNotes.set(id, (await get(`/routes/${job.request.route}`).catch(() => ({}))).notes || []);
+    }));
   }
 
   async #points() {
@@ -171,9 +180,12 @@ export class CompareView {
     const [first] = rows;
     const than = (row, name, decimals, text) => (known(row.difference[name]) && known(row[name]) && known(first[name]) ? text(rounded(row[name], decimals) - rounded(first[name], decimals)) : null);
     const calm = rows.map((row) => isCalm(this.#jobOf(row).request));
-    const cell = (row, i) => ([, name, decimals, text, change]) => h("td", {}, h("b", {}, calm[i] && WEATHER.includes(name) ? "calm assumed" : text(row[name], row)), i && change ? h("small", {}, than(row, name, decimals, change)) : null);
+    const apart = new Set(rows.map((row) => row.approach_nm > 0.05)).size > 1; // some have approaches of ports
+    const atSea = (row, name) => (apart && name === "distance_nm" ? `at sea ${number(row.distance_nm - row.approach_nm, 1)} nm` : apart && name === "time_h" ? `at sea ${duration(row.time_h - row.approach_h)}` : null);
+    const facts = (row) => [apart ? `${row.approach_nm > 0.05 ? `with ${number(row.approach_nm, 1)} nm in` : "without"} approaches of ports` : null, `${number(row.distance_nm / row.time_h, 1)} kn mean over ground`, ...row.notes, ...(this.fileNotes?.get(row.job) || [])].filter(Boolean).map((text) => h("small", {}, readable(text)));
+    const cell = (row, i) => ([, name, decimals, text, change]) => h("td", {}, h("b", {}, calm[i] && WEATHER.includes(name) ? "calm assumed" : text(row[name], row)), i && change ? h("small", {}, than(row, name, decimals, change)) : null, atSea(row, name) ? h("small", {}, atSea(row, name)) : null);
     return h("div.table", { tabindex: 0 }, h("table.compare-table", {}, h("caption.hidden", {}, "Routes compared with the reference, the first"), h("thead", {}, h("tr", {}, h("th.text", { scope: "col" }, "Route"), h("th.text", { scope: "col" }, "Leaves, arrives"), FIGURES.map(([name]) => h("th", { scope: "col" }, name)))),
-      h("tbody", {}, rows.map((row, i) => h("tr", { "aria-current": i ? null : "true" }, h("td.text", {}, keyOfRoute(i), h("b", {}, this.chosen[i].title), i ? null : h("small", {}, "reference"), row.feasible ? null : h("small.broken", {}, faultWords(row.broken)), row.notes.map((note) => h("small", {}, note))), h("td.text", {}, time(seconds(row.depart)), h("small", {}, time(seconds(row.arrive)))), FIGURES.map(cell(row, i)))))));
+      h("tbody", {}, rows.map((row, i) => h("tr", { "aria-current": i ? null : "true" }, h("td.text", {}, keyOfRoute(i), h("b", {}, this.chosen[i].title), i ? null : h("small", {}, "reference"), facts(row), row.feasible ? null : h("small.broken", {}, faultWords(row.broken))), h("td.text", {}, time(seconds(row.depart)), h("small", {}, time(seconds(row.arrive)))), FIGURES.map(cell(row, i)))))));
   }
 
   // Plan the voyages of an example, or find them planned, and compare them.

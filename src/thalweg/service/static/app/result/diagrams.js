@@ -158,10 +158,15 @@ export class Drawer {
 
   // Profile
 
+  // Of a calm sea that was assumed there is no weather to draw.
+  get #series() {
+    return SERIES.filter(([name]) => this.result.profile[name] && !(this.result.calm && WEATHER.includes(name)));
+  }
+
   #showProfile() {
     const { profile } = this.result;
     if (!profile) { fill(this.sheet, h("p.empty", {}, "The profile is loading …")); return; }
-    const there = SERIES.filter(([name]) => profile[name]);
+    const there = this.#series;
     if (!there.some(([name]) => this.shown.has(name))) this.shown.add(there[0]?.[0]);
     this.holder = h("div.plot", { role: "img", "aria-label": "Profile of the route along time; the values at the chosen time stand beside it, and all legs in the table." });
     this.chips = there.map(([name, text, unitText, , paint]) => {
@@ -182,7 +187,7 @@ export class Drawer {
     const { profile } = this.result;
     this.plot?.destroy();
     fill(this.holder);
-    const there = SERIES.filter(([name]) => profile[name] && this.shown.has(name));
+    const there = this.#series.filter(([name]) => this.shown.has(name));
     const scales = [...new Set(there.map((row) => row[3]))];
     const axis = { stroke: colour("ink-2"), grid: { stroke: colour("ground-3"), width: 1 }, ticks: { stroke: colour("line"), width: 1, size: 4 }, font: '11px system-ui, "DejaVu Sans", sans-serif' };
     const units = { speed: "kn", waves: "m", power: "kW", fuel: "t/d", depth: "m", motion: "m/s²" };
@@ -208,9 +213,8 @@ export class Drawer {
     for (const chip of this.chips || []) {
       const row = SERIES.find(([name]) => name === chip.name);
       const value = this.result.profile[chip.name]?.[i];
-      const calm = this.result.calm && WEATHER.includes(chip.name);
-      chip.value.textContent = calm ? "calm assumed" : known(value) ? number(value, row[5]) : "not known here";
-      chip.unitOf.hidden = calm || !known(value);
+      chip.value.textContent = known(value) ? number(value, row[5]) : "not known here";
+      chip.unitOf.hidden = !known(value);
     }
   }
 
@@ -238,7 +242,7 @@ export class Drawer {
 
   #showLegs() {
     const rows = this.result.waypoints;
-    const cells = [["Time", "UTC", (w) => time(seconds(w.time)), true], ["Position", "", (w) => position(w.lat, w.lon), true], ["Course", "", (w) => bearing(w.course_deg)], ["Order", "kn", (w) => figure(w.ordered_speed_kn, 1)], ["Over ground", "kn", (w) => figure(w.speed_over_ground_kn, 1)], ["Distance", "nm", (w) => number(w.distance_nm, 1)], ["Wait", "", (w) => (w.waiting_h > 0 ? duration(w.waiting_h) : "")], ["Waves", "m", (w) => figure(w.wave_height_m, 1)], ["Wind", "kn from", (w) => (known(w.wind_speed_kn) ? `${number(w.wind_speed_kn)}${known(w.wind_from_deg) ? ` ${bearing(w.wind_from_deg)}` : ""}` : "–")], ["UKC", "m", (w) => figure(w.ukc_m, 1)], ["Fuel", "t", (w) => number(w.fuel_t, 1)]]
+    const cells = [["Time", "UTC", (w) => time(seconds(w.time)), true], ["Position", "", (w) => position(w.lat, w.lon), true], ["Course", "", (w) => bearing(w.course_deg)], ["Order", "kn", (w) => figure(w.ordered_speed_kn, 1)], ["Over ground", "kn", (w) => figure(w.speed_over_ground_kn, 1)], ["Distance", "nm", (w) => number(w.distance_nm, 1)], ["Wait", "", (w) => (w.waiting_h > 0 ? duration(w.waiting_h) : "")], ["Waves", "m", (w) => (this.result.calm ? "calm" : figure(w.wave_height_m, 1))], ["Wind", "kn from", (w) => (known(w.wind_speed_kn) ? `${number(w.wind_speed_kn)}${known(w.wind_from_deg) ? ` ${bearing(w.wind_from_deg)}` : ""}` : "–")], ["UKC", "m", (w) => figure(w.ukc_m, 1)], ["Fuel", "t", (w) => number(w.fuel_t, 1)]]
       .filter(([name]) => name !== "Wait" || rows.some((w) => w.waiting_h > 0)).filter(([name]) => name !== "UKC" || rows.some((w) => known(w.ukc_m)));
     this.rows = rows.map((w, i) => h("tr", { onclick: () => selection.at(seconds(w.time)), "data-time": seconds(w.time) }, h("td", {}, String(i + 1)), cells.map(([, , text, left]) => h(left ? "td.text" : "td", {}, text(w)))));
     fill(this.sheet, h("div.table", { tabindex: 0 }, h("table", {}, h("caption.hidden", {}, "Waypoints of the chosen route, times in UTC"), h("thead", {}, h("tr", {}, h("th", {}, "#"), cells.map(([name, unitText, , left]) => h(left ? "th.text" : "th", { scope: "col" }, name, unitText ? h("span.unit", {}, ` ${unitText}`) : null)))), h("tbody", {}, this.rows))));

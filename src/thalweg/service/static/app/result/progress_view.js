@@ -1,9 +1,9 @@
 // The progress of a job: what is done now, the best route so far, and stopping it.
 
 import { follow, remove } from "../common/api.js";
-import { announce, errorBox, fill, h, unit } from "../common/elements.js";
+import { announce, durationParts, errorBox, fill, h, unit } from "../common/elements.js";
 import { LiveFront } from "./live_front.js";
-import { duration, known, number, readable, titleOf } from "../common/format.js";
+import { known, number, readable, titleOf } from "../common/format.js";
 
 // The buttons under a job that runs.
 export function jobFoot(job, words, { state, problem, leave }) {
@@ -59,7 +59,7 @@ export class ProgressView {
 
   #route({ route, final }) {
     fill(this.best, h("h2.block", {}, final ? "Route found" : ["time", "distance"].includes(this.job.request.voyage?.objective || "time") ? "Best route so far" : "First route: the fastest"), h("dl.cards", {},
-      h("div.card", {}, h("dt", {}, "Time"), h("dd", {}, duration(route.time_h))),
+      h("div.card", {}, h("dt", {}, "Time"), h("dd", {}, durationParts(route.time_h))),
       h("div.card", {}, h("dt", {}, "Distance"), h("dd", {}, number(route.distance_nm, 1), unit("nm"))),
       h("div.card", {}, h("dt", {}, "Fuel"), h("dd", {}, known(route.fuel_t) ? [number(route.fuel_t, 1), unit("t")] : "unknown")),
       h("div.card", {}, h("dt", {}, "Cost"), h("dd", {}, known(route.cost) ? [number(route.cost), unit(route.currency)] : "unknown"))));

@@ -1,13 +1,13 @@
 // The result of a plan or an evaluation: key figures, proof, warnings, exports.
 
 import { fileAddress, get, resultAddress } from "../common/api.js";
-import { fill, h, REASONS, unit } from "../common/elements.js";
+import { durationParts, fill, h, REASONS, unit } from "../common/elements.js";
 import { faultWords, remedyOf } from "../common/faults.js";
 import { indicatorTable } from "../form/indicators.js";
-import { duration, isCalm, known, number, plainPosition, seconds, signed, signedDuration, time, titleOf } from "../common/format.js";
+import { duration, isCalm, known, number, plainPosition, readable, seconds, signed, signedDuration, time, titleOf } from "../common/format.js";
 import { selection } from "../common/selection.js";
 
-const OBJECTIVES = { time: "least time", distance: "shortest distance", fuel: "least fuel", energy: "least energy", cost: "least cost", comfort: "least motion sickness", co2: "least CO₂", encounters: "fewest encounters", inshore: "least length near land", weighted: "a weighted sum", front: "all trade-offs", alternatives: "routes that differ" };
+export const OBJECTIVES = { time: "least time", distance: "shortest distance", fuel: "least fuel", energy: "least energy", cost: "least cost", comfort: "least motion sickness", co2: "least CO₂", encounters: "fewest encounters", inshore: "least length near land", weighted: "a weighted sum", front: "all trade-offs", alternatives: "routes that differ" };
 export async function loadResult(job) {
   const raw = await get(`/plans/${job.id}/result`);
   const evaluated = () => ({ routes: [raw], notes: raw.assumptions || [], rejections: {}, voyage: null, provenance: {} });
@@ -15,7 +15,8 @@ export async function loadResult(job) {
   const optional = (part) => get(`/plans/${job.id}/${part}.json`).catch(() => null);
   const parts = job.summary.parts || [];
   const [isochrones, beside, spaceTime] = await Promise.all(["isochrones", "beside", "space_time"].map((part) => (parts.includes(part) ? optional(part) : null)));
-  return { job, plan, isochrones, beside, spaceTime, front: plan.front || null, profiles: new Map() };
+  const sheet = job.request.ship ? await get(`/ships/${encodeURIComponent(job.request.ship)}`).catch(() => null) : null;
+  return { job, plan, sheet, isochrones, beside, spaceTime, front: plan.front || null, profiles: new Map() };
 }
 
 export async function profileOf(result, number_) {
@@ -23,7 +24,7 @@ export async function profileOf(result, number_) {
   return result.profiles.get(number_);
 }
 
-function costOf(route) {
+export function costOf(route) {
   return route[`cost_${(route.currency || "usd").toLowerCase()}`];
 }
 
@@ -54,7 +55,7 @@ export class ResultView {
       h("p.lead", {}, `${plan.voyage ? OBJECTIVES[plan.objective] : "given route"} · ${this.handlers.shipName(job.request.ship)}`),
       h("p.lead", {}, to ? `${from} to ${to}, leaves ` : "Leaves ", h("b", {}, time(seconds(route.depart), true)), " UTC"),
       plan.cancelled ? h("p.note", {}, "Stopped: this is the best found so far.") : null,
-      this.#faults(route, job.kind === "evaluation"),
+      this.#faults(route),
       this.#cards(route, profile, beside),
       plan.voyage && !plan.alternatives ? this.#proof(plan) : null,
       plan.alternatives ? this.#alternatives(plan) : plan.routes.length > 1 ? this.#routes(plan) : null,
@@ -65,10 +66,10 @@ export class ResultView {
     if (inList) this.body.querySelector(".routes [aria-pressed=true]").focus({ preventScroll: true });
   }
 
-  // Legs of a file are sailed in pieces, so numbers of legs are not those of the file.
-  #faults(route, fromFile) {
+  // Without numbers of legs: those of the referee are not those of the table.
+  #faults(route) {
     if (route.feasible) return null;
-    const row = (one) => h("li", {}, `${fromFile ? one.reason.replace(/: leg \d+$/, "") : one.reason} at ${plainPosition(one.lat, one.lon)}${one.time ? `, ${time(seconds(one.time))}` : ""}${known(one.value) && known(one.limit) ? `: ${number(one.value, 1)}, limit ${number(one.limit, 1)}` : ""}`);
+    const row = (one) => h("li", {}, `${one.reason.replace(/: leg \d+$/, "")} at ${plainPosition(one.lat, one.lon)}${one.time ? `, ${time(seconds(one.time))}` : ""}${known(one.value) && known(one.limit) ? `: ${number(one.value, 1)}, limit ${number(one.limit, 1)}` : ""}`);
     const { violations } = route, shown = violations.slice(0, 6), rest = violations.slice(6);
     return h("div.error", { role: "alert" }, h("b", {}, `This route ${faultWords(violations)}.`), h("ul.list", {}, shown.map(row)),
       rest.length ? h("details", {}, h("summary", {}, `${number(rest.length)} more`), h("ul.list", {}, rest.map(row))) : null,
@@ -85,7 +86,7 @@ export class ResultView {
     if (!known(route.min_ukc_m)) assumed.classList.add("wide");
     const complete = beside && beside.feasible !== undefined && known(beside.time_h);
     return h("dl.cards", {},
-      card("Time", duration(route.time_h), null, complete ? than(route.time_h, beside.time_h, signedDuration) : null),
+      card("Time", durationParts(route.time_h), null, complete ? than(route.time_h, beside.time_h, signedDuration) : null),
       card("Arrival, UTC", time(seconds(route.arrive)), null, known(route.waiting_h) && route.waiting_h > 0 ? `waits ${duration(route.waiting_h)}` : null),
       card("Fuel", number(route.fuel_t, 1), "t", complete ? than(route.fuel_t, beside.fuel_t, (d) => `${signed(d)} t`) : null),
       card("Cost", number(cost), route.currency, complete ? than(cost, other, (d) => `${signed(d, 0)}`) : null),
@@ -126,7 +127,7 @@ export class ResultView {
     const row = (route, i) => h("li", {}, h("button", {
       type: "button", "aria-pressed": String(i === selection.route), onclick: () => selection.choose(i), onpointerenter: () => selection.hover(i), onpointerleave: () => selection.hover(null),
     }, h("span.swatch"), h("span", {}, duration(route.time_h), front && front.points[i]?.way !== "open sea" ? h("small.unit", {}, ` ${front.points[i]?.way}`) : null, h("small", {}, `route ${i + 1}${best && !i ? `, ${best}` : ""}`)), h("span", {}, number(route.fuel_t, 1), unit("t")), h("span", {}, known(costOf(route)) ? [number(costOf(route)), unit(route.currency)] : "")));
-    return h("div.block.no-print", {}, h("h2", {}, `${plan.routes.length} routes, fastest first`), h("ol.routes", {}, inOrderOfTime(plan).map((i) => row(plan.routes[i], i))));
+    return h("div.block.no-print", {}, h("h2", {}, best ? `${plan.routes.length} routes, that of ${best} first` : `${plan.routes.length} routes, fastest first`), h("ol.routes", {}, plan.routes.map(row)));
   }
 
   // Routes that differ: what each is best in, and how it differs from the fastest.
@@ -149,7 +150,7 @@ export class ResultView {
   #notes(plan, route) {
     const notes = [...new Set([...plan.notes, ...(route.assumptions || [])])];
     if (!notes.length) return null;
-    return h("div.block.plain", {}, h("h2", {}, "What was assumed, and warnings"), h("ul.list", {}, notes.slice(0, 3).map((text) => h("li", {}, text))), notes.length > 3 ? h("details", {}, h("summary", {}, `${notes.length - 3} more`), h("ul.list", {}, notes.slice(3).map((text) => h("li", {}, text)))) : null);
+    return h("div.block.plain", {}, h("h2", {}, "What was assumed, and warnings"), h("ul.list", {}, notes.slice(0, 3).map((text) => h("li", {}, readable(text)))), notes.length > 3 ? h("details", {}, h("summary", {}, `${notes.length - 3} more`), h("ul.list", {}, notes.slice(3).map((text) => h("li", {}, readable(text))))) : null);
   }
 
   #exports(job, route) {

@@ -1,0 +1,73 @@
+"""Sea areas with the months in which ice is usual.
+
+The table is ``data/ice_areas.csv``, one row an area: name, first and last month, outline, source.
+Months and outlines are typical, from the general knowledge of pilots; winters differ. Routes are
+not planned by them: a plan states that a route reaches such water. Ice in the data is better.
+"""
+
+from __future__ import annotations
+
+import calendar
+import csv
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import resources
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.chart.passages import read_line
+from thalweg.core.geodesy import Position
+
+
+@dataclass(frozen=True)
+class IceArea:
+    """A sea area and its usual months of ice.
+
+    Parameters
+    ----------
+    first, last : int
+        First and last month with ice, 1 to 12; the last is before the first where the season
+        contains a new year.
+    outline : tuple of (lat, lon)
+        Corners [deg]; edges are straight in degrees.
+    """
+
+    name: str
+    first: int
+    last: int
+    outline: tuple[Position, ...]
+    source: str = ""
+
+    @cached_property
+    def months(self) -> tuple[int, ...]:
+        """The months with ice, 1 to 12."""
+        count = (self.last - self.first) % 12 + 1
+        return tuple((self.first - 1 + k) % 12 + 1 for k in range(count))
+
+    @property
+    def season(self) -> str:
+        """The months as text: "from December to May"."""
+        if len(self.months) == 12:
+            return "in all months"
+        return f"from {calendar.month_name[self.first]} to {calendar.month_name[self.last]}"
+
+    def contains(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.bool_]:
+        """Return which positions [deg] lie inside."""
+        import shapely
+
+        polygon = shapely.Polygon([(x, y) for y, x in self.outline])
+        return np.asarray(shapely.contains_xy(polygon, np.asarray(lon), np.asarray(lat)))
+
+
+def _read_ice_areas() -> tuple[IceArea, ...]:
+    text = resources.files("thalweg.chart").joinpath("data/ice_areas.csv").read_text("utf-8")
+    areas = []
+    for row in csv.DictReader(text.splitlines()):
+        first, last = (int(month) for month in row["months"].split("-"))
+        areas.append(IceArea(row["name"], first, last, read_line(row["outline"]), row["source"]))
+    return tuple(areas)
+
+
+ICE_AREAS: Final = _read_ice_areas()  #: the areas of `thalweg/chart/data/ice_areas.csv`

@@ -1,0 +1,167 @@
+"""Numbers of a ship file that do not fit each other: impossible ones, and unusual ones.
+
+The ranges are those of displacement ships in service, from tugs to tankers; they find units that
+were mixed up (feet, tonnes, kilograms) and slips of a decimal.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from thalweg.core.errors import InputError
+from thalweg.core.units import DAY, HOUR, KNOT, TONNE
+from thalweg.ship.schema.ship_schema import ShipFile
+
+_GRAVITY: Final = 9.81  # [m/s2]
+_LONGEST: Final = 460.0  #: [m]; no longer ship was ever in service
+_LENGTH_TO_BREADTH: Final = (2.5, 12.0)
+_BREADTH_TO_DRAUGHT: Final = (1.2, 8.0)
+_BLOCK: Final = (0.3, 0.95)
+_FROUDE: Final = (0.05, 0.5)  #: of the highest speed
+_SPECIFIC: Final = (120.0, 400.0)  #: [g/kWh]
+_FUEL_TO_POWER: Final = (0.75, 1.35)  #: of fuel a day to power times specific consumption
+_ADMIRALTY: Final = (40.0, 2000.0)  #: displacement [t]^(2/3) speed [kn]^3 / power [kW]
+_LEAST_SPECIFIC: Final = 60.0  #: [g/kWh]; no fuel with carbon holds as much energy
+_DEEPEST: Final = 1.5  #: draught as a share of the breadth
+_COMMON_SPECIFIC: Final = 190.0  #: [g/kWh] where a power is estimated from fuel
+_SEA_WATER: Final = 1.025  # [t/m3]
+
+
+def check_possible_numbers(file: ShipFile) -> None:
+    """Raise `InputError` for a draught or specific consumption that no ship has.
+
+    Parameters
+    ----------
+    file : Contents of a ship file.
+    """
+    breadth, draught = file.hull.breadth_m, file.hull.draught_m
+    if breadth is not None and draught is not None and draught > _DEEPEST * breadth:
+        raise InputError(
+            f"The draught of {draught:g} m is {draught / breadth:.1f} times the breadth of "
+            f"{breadth:g} m.",
+            f"Breadths are usually {_words(_BREADTH_TO_DRAUGHT)} times the draught.",
+            "Correct hull.draught_m or hull.breadth_m.",
+            key="hull.draught_m",
+        )
+    engine = file.engine
+    curve = [("sfoc_curve_g_per_kwh", value) for value in engine.sfoc_curve_g_per_kwh]
+    for key, value in [("sfoc_g_per_kwh", engine.sfoc_g_per_kwh), *curve]:
+        if value is not None and value < _LEAST_SPECIFIC:
+            raise InputError(
+                f"The specific fuel consumption engine.{key} is {value:g} g/kWh.",
+                f"Engines of ships use {_words(_SPECIFIC)} g/kWh; 0.185 kg/kWh is 185.",
+                f"Correct engine.{key}.",
+                key=f"engine.{key}",
+            )
+
+
+def unusual_numbers(file: ShipFile) -> list[str]:
+    """Return warnings about numbers of a ship file outside what is usual, a sentence each.
+
+    Parameters
+    ----------
+    file : Contents of a ship file.
+
+    Returns
+    -------
+    list of str : Each names both numbers and the usual range; empty for most ships.
+    """
+    return [*_of_hull(file), *_of_speed(file), *_of_fuel(file)]
+
+
+def _of_hull(file: ShipFile) -> list[str]:
+    hull = file.hull
+    length = hull.length_between_perpendiculars_m or hull.length_m
+    breadth, draught = hull.breadth_m, hull.draught_m
+    notes = []
+    if length and length > _LONGEST:
+        notes.append(
+            f"Unusual ship: a length of {length:g} m; no ship was longer than {_LONGEST:g} m "
+            "(are these feet?)."
+        )
+    if length and breadth:
+        notes += _outside(
+            length / breadth, _LENGTH_TO_BREADTH,
+            f"a length of {length:g} m is {{value:.3g}} times the breadth of {breadth:g} m",
+        )  # fmt: skip
+    if breadth and draught:
+        notes += _outside(
+            breadth / draught, _BREADTH_TO_DRAUGHT,
+            f"a breadth of {breadth:g} m is {{value:.3g}} times the draught of {draught:g} m",
+        )  # fmt: skip
+    volume, block = _volume(file), hull.block_coefficient
+    if block is not None:
+        notes += _outside(block, _BLOCK, "hull.block_coefficient is {value:.3g}")
+    elif volume and length and breadth and draught:
+        notes += _outside(
+            volume / (length * breadth * draught), _BLOCK,
+            f"a displacement of {volume:.4g} m3 on {length:g} x {breadth:g} x {draught:g} m is a "
+            "block coefficient of {value:.3g}",
+        )  # fmt: skip
+    return notes
+
+
+def _of_speed(file: ShipFile) -> list[str]:
+    """Return a warning about the highest speed for the length."""
+    table = file.table.speed_kn if file.table is not None else None
+    speeds = [*(file.speeds_kn or ()), *(table or ())]
+    speeds += [file.engine.reference_speed_kn] if file.engine.reference_speed_kn else []
+    length = file.hull.length_m
+    if not speeds or not length:
+        return []
+    froude = max(speeds) * KNOT / math.sqrt(_GRAVITY * length)
+    words = f"{max(speeds):g} kn on a length of {length:g} m is a Froude number of {{value:.2g}}"
+    return _outside(froude, _FROUDE, words)
+
+
+def _of_fuel(file: ShipFile) -> list[str]:
+    """Return warnings about fuel and power for each other and for the size of the ship."""
+    engine, daily = file.engine, file.fuel.reference_t_per_day
+    power, speed, given = (
+        engine.reference_power_kw, engine.reference_speed_kn, engine.sfoc_g_per_kwh,
+    )  # fmt: skip
+    notes = []
+    if given is not None:
+        notes += _outside(given, _SPECIFIC, "engine.sfoc_g_per_kwh is {value:g} g/kWh")
+    if daily and power:
+        specific = daily * TONNE * 1000.0 / (power * DAY / HOUR)
+        words = f"{daily:g} t of fuel a day at {power:g} kW are {{value:.0f}} g/kWh"
+        if given is None:
+            notes += _outside(specific, _SPECIFIC, words)
+        elif not _FUEL_TO_POWER[0] < specific / given < _FUEL_TO_POWER[1]:
+            notes.append(
+                f"Unusual ship: {words.format(value=specific)}, and engine.sfoc_g_per_kwh is "
+                f"{given:g}; the fuel a day counts. Correct one of the three."
+            )
+    volume = _volume(file)
+    if daily and not power:
+        power = daily * TONNE * 1000.0 / (_COMMON_SPECIFIC * DAY / HOUR)
+    if volume and power and speed:
+        words = f"{power:.4g} kW for {_SEA_WATER * volume:.4g} t at {speed:g} kn is an Admiralty "
+        notes += _outside(
+            (_SEA_WATER * volume) ** (2.0 / 3.0) * speed**3 / power, _ADMIRALTY,
+            words + "coefficient of {value:.3g}",
+        )  # fmt: skip
+    return notes
+
+
+def _volume(file: ShipFile) -> float | None:
+    """Return the displaced volume [m3], given or from the block coefficient; None if unknown."""
+    hull = file.hull
+    if hull.displacement_m3 or hull.displacement_t:
+        return hull.displacement_m3 or (hull.displacement_t or 0.0) / _SEA_WATER
+    length = hull.length_between_perpendiculars_m or hull.length_m
+    sides = (length, hull.breadth_m, hull.draught_m, hull.block_coefficient)
+    return None if any(side is None for side in sides) else math.prod(s or 0.0 for s in sides)
+
+
+def _outside(value: float, usual: tuple[float, float], words: str) -> list[str]:
+    """Return a warning if a value is outside the usual range, else nothing."""
+    if usual[0] <= value <= usual[1]:
+        return []
+    return [f"Unusual ship: {words.format(value=value)}; {_words(usual)} is usual. Check both."]
+
+
+def _words(usual: tuple[float, float]) -> str:
+    return f"{usual[0]:g} to {usual[1]:g}"

@@ -1,0 +1,89 @@
+"""Notes on ice: by the months of sea areas, or by the data."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from thalweg import Sea
+from thalweg.chart.ice_areas import ICE_AREAS
+from thalweg.chart.passages import PASSAGES
+from thalweg.core.time import parse_time
+from thalweg.planning.report.ice_report import ice_warnings
+from thalweg.planning.report.note_order import count_of_dangers
+
+LULEA_TO_SEA = ([65.3, 64.0, 62.0, 59.0], [22.6, 22.0, 19.5, 20.0])
+
+
+def route(lat, lon, day):
+    depart = parse_time(day)
+    time = depart + 3600.0 * np.arange(len(lat))
+    samples = {"lat": np.array(lat), "lon": np.array(lon), "time": time}
+    return SimpleNamespace(samples=samples, depart=depart)
+
+
+def test_a_route_through_the_gulf_of_bothnia_in_winter_names_water_and_months():
+    first, second = ice_warnings(route(*LULEA_TO_SEA, "2026-02-01"), Sea.calm())
+    assert first.startswith("The route reaches the Bothnian Bay in February, from 65 18.0N")
+    assert "from December to May" in first and "read the ice charts" in first
+    assert second.startswith("The route reaches the Bothnian Sea in February")
+    assert count_of_dangers([first, second]) == 2
+    assert ice_warnings(route(*LULEA_TO_SEA, "2026-07-01"), Sea.calm()) == []
+    (only,) = ice_warnings(route(*LULEA_TO_SEA, "2026-12-10"), Sea.calm())
+    assert "Bothnian Bay" in only
+
+
+def test_ice_of_the_data_counts_where_it_is_known():
+    winter = route(*LULEA_TO_SEA, "2026-02-01")
+    open_water = Sea.from_functions({"sea_ice_area_fraction": lambda t, lat, lon: 0.0 * lat})
+    assert ice_warnings(winter, open_water) == []
+    north = Sea.from_functions(
+        {"sea_ice_area_fraction": lambda t, lat, lon: np.where(lat > 63.5, 0.7, np.nan)}
+    )
+    by_data, by_season = ice_warnings(winter, north)
+    assert by_data.startswith("The route reaches ice that covers 70 % of the water by the data")
+    assert "Bothnian Sea" in by_season
+
+
+def test_high_latitudes_are_noted_in_all_months():
+    (note,) = ice_warnings(route([71.0, 75.0], [20.0, 20.0], "2026-08-01"), Sea.calm())
+    assert note.startswith("The route reaches 75 00.0N 020 00.0E, and sea ice is not modelled")
+
+
+@pytest.mark.parametrize(
+    ("name", "lat", "lon", "month"),
+    [
+        ("Gulf of Finland", 60.0, 25.0, 2),
+        ("Gulf of Riga", 57.7, 23.5, 2),
+        ("St Lawrence River", 48.8, -68.0, 1),
+        ("Gulf of St Lawrence", 48.0, -61.5, 3),
+        ("Hudson Bay and Strait", 60.0, -85.0, 6),
+        ("White Sea", 65.2, 38.0, 4),
+        ("Tatar Strait", 50.0, 141.0, 2),
+        ("Bohai", 39.0, 119.5, 1),
+        ("Kara Sea", 73.0, 70.0, 11),
+        ("south-eastern Barents Sea", 69.5, 52.0, 3),
+        ("East Greenland", 70.5, -20.5, 5),
+        ("Sea of Azov", 46.0, 36.5, 1),
+    ],
+)
+def test_places_with_ice(name, lat, lon, month):
+    found = [area for area in ICE_AREAS if area.contains(lat, lon) and month in area.months]
+    assert [area.name for area in found] == [name]
+
+
+@pytest.mark.parametrize(
+    ("lat", "lon"),
+    [(55.0, 18.0), (59.0, 20.5), (57.7, 11.0), (70.5, 31.0), (43.0, 135.0), (44.0, -66.5),
+     (38.0, 123.5), (47.0, -45.0), (64.0, -53.5), (54.0, -170.0), (44.0, 35.0), (66.5, -25.0)],
+)  # fmt: skip
+def test_places_without_usual_ice(lat, lon):
+    assert not any(area.contains(lat, lon) for area in ICE_AREAS)
+
+
+def test_passages_with_ice_are_inside_areas():
+    for name in ("Belle Isle", "Hudson Strait", "La Perouse (Soya)", "Kara Gate", "Vilkitsky",
+                 "Sannikov", "Dmitry Laptev", "Long"):  # fmt: skip
+        (passage,) = [one for one in PASSAGES if one.name == name]
+        assert any(np.any(area.contains(*passage.positions)) for area in ICE_AREAS), name
+        assert "ice" not in passage.note

@@ -1,0 +1,90 @@
+"""Numbers of ship files that are impossible or unusual."""
+
+import pytest
+
+from thalweg import InputError, Ship
+from thalweg.ship import library_names
+from thalweg.ship.schema.ship_schema import ShipFile
+from thalweg.ship.schema.unusual_numbers import check_possible_numbers, unusual_numbers
+from thalweg.ship.ship_assumptions import stated_assumptions
+
+HULL = {
+    "length_between_perpendiculars_m": 142.5,
+    "breadth_m": 23.0,
+    "draught_m": 5.8,
+    "block_coefficient": 0.62,
+}
+
+
+def ship_file(**sections):
+    data = {
+        "name": "ro-ro",
+        "hull": HULL,
+        "speeds_kn": [14, 18],
+        "fuel": {"reference_t_per_day": 32},
+        "engine": {"reference_speed_kn": 18},
+    }
+    for name, section in sections.items():
+        changed = {**data[name], **section} if isinstance(section, dict) else section
+        data[name] = (
+            {k: v for k, v in changed.items() if v is not None}
+            if isinstance(changed, dict)
+            else changed
+        )
+    return ShipFile.of(data)
+
+
+@pytest.mark.parametrize("name", library_names())
+def test_no_ship_of_the_library_is_unusual(name):
+    assert unusual_numbers(Ship.load(name).file) == []
+
+
+def test_an_ordinary_ship_is_not_unusual():
+    assert unusual_numbers(ship_file()) == []
+
+
+@pytest.mark.parametrize(
+    ("sections", "text"),
+    [
+        ({"hull": {"draught_m": 23.5}}, "breadth of 23 m is 0.979 times the draught of 23.5 m"),
+        ({"hull": {"breadth_m": 75.0}}, "142.5 m is 1.9 times the breadth of 75 m; 2.5 to 12"),
+        ({"hull": {"length_between_perpendiculars_m": 467.0}}, "no ship was longer than 460 m"),
+        (
+            {"hull": {"block_coefficient": None, "displacement_m3": 2000.0}},
+            "a block coefficient of 0.105; 0.3 to 0.95",
+        ),
+        ({"speeds_kn": [60]}, "60 kn on a length of 142.5 m is a Froude number of 0.83"),
+        (
+            {"engine": {"reference_power_kw": 50_000}},
+            "32 t of fuel a day at 50000 kW are 27 g/kWh; 120 to 400",
+        ),
+        (
+            {"engine": {"reference_power_kw": 9000, "sfoc_g_per_kwh": 240}},
+            "9000 kW are 148 g/kWh, and engine.sfoc_g_per_kwh is 240; the fuel a day counts",
+        ),
+        ({"engine": {"sfoc_g_per_kwh": 900}}, "engine.sfoc_g_per_kwh is 900 g/kWh; 120 to 400"),
+        ({"fuel": {"reference_t_per_day": 0.3}}, "is an Admiralty coefficient of"),
+    ],
+)
+def test_unusual_numbers_are_named_with_the_usual_range(sections, text):
+    notes = unusual_numbers(ship_file(**sections))
+    assert any(text in note for note in notes), notes
+
+
+@pytest.mark.parametrize(
+    ("sections", "key"),
+    [
+        ({"hull": {"draught_m": 36.0, "breadth_m": 23.0}}, "hull.draught_m"),
+        ({"engine": {"sfoc_g_per_kwh": 0.185}}, "engine.sfoc_g_per_kwh"),
+    ],
+)
+def test_impossible_numbers_are_refused(sections, key):
+    with pytest.raises(InputError) as caught:
+        check_possible_numbers(ship_file(**sections))
+    assert caught.value.key == key if hasattr(caught.value, "key") else key in str(caught.value)
+
+
+def test_results_state_unusual_numbers():
+    plain = ship_file(hull={"draught_m": 20.0}).plain()
+    ship = Ship.from_dict({**plain, "models": {"speed_loss": "kwon_2008"}})
+    assert any(note.startswith("Unusual ship: a breadth") for note in stated_assumptions(ship))
