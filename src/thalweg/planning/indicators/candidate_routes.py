@@ -60,6 +60,7 @@ from thalweg.planning.report.lane_report import lane_detour_notes, routes_within
 from thalweg.planning.request.offing_choice import chart_off_land, chosen_offing
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route, Track
+from thalweg.ship.comfort.onboard_motions import required_motions
 
 STOPPED: Final = "Stopped"  #: first word of notes after Ctrl-C
 _OBJECTIVES: Final = ("fuel", "comfort", "encounters", "inshore", "distance")
@@ -214,6 +215,8 @@ class _Candidates:
     def of_least(self, network: Network, name: str) -> Iterator[Track]:
         """Yield the route of least value of a key figure, and the knee of its front with time."""
         if not np.isfinite(key_figure(self.best["time"], name)):
+            if name == "comfort":
+                required_motions(self.context.ship)  # a note, where she has no places
             return
         tracks = self._front(network, Objective.of(name, currency=self.currency))
         self.best[name] = self._scored(tracks[0])
