@@ -45,7 +45,7 @@ from thalweg.planning.network_selection.route_alternatives import RouteAlternati
 from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.pareto.exploration import fastest_in_known_water, network_pareto_front
 from thalweg.planning.pareto.front_points import track_from_front_point
-from thalweg.planning.pareto.search_horizon import extend_horizon
+from thalweg.planning.pareto.search_horizon import SearchHorizon, extend_horizon
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
 from thalweg.planning.pareto.trade_off_planner import with_trade_off
 from thalweg.planning.pareto.weighted_sums import (
@@ -69,8 +69,7 @@ _WEIGHTED: Final = ("time", "fuel", "comfort", "encounters")
 _WIDER_OFFINGS: Final = ((4.0, 2.0), (3.0, 1.5), (2.0, 1.25))
 _DETOUR: Final = 0.35  # ways that are longer by this share of the shortest are left out
 _REACH: Final = 12.0 * NAUTICAL_MILE  # from nodes to the ends of the line of a passage
-_ISLAND_WAYS, _PASSAGE_WAYS = 3, 5
-_ROUNDS: Final = 3  # of string pulling
+_ISLAND_WAYS, _PASSAGE_WAYS, _ROUNDS = 3, 5, 3  # rounds of string pulling
 
 
 def berth_to_berth_candidates(
@@ -173,6 +172,7 @@ class _Candidates:
         self.routes: list[Route] = []
         self.notes: list[str] = []
         self.best: dict[str, Route] = {}
+        self.horizon: SearchHorizon | None = None  # of the first key figure, for all of them
 
     @property
     def stopped(self) -> bool:
@@ -237,7 +237,7 @@ class _Candidates:
     def _front(self, network: Network, objective: Objective) -> list[Track]:
         """Return the cheapest track of the front of time and an objective, and that at its knee."""
         own = with_objective(self.trade_off, objective)
-        horizon = extend_horizon(own, network)
+        self.horizon = horizon = self.horizon or extend_horizon(own, network)
         front = network_pareto_front(own, network, horizon.frozen, horizon.latest, lower=False)
         points = sorted(front.points, key=lambda point: point.time)
         if not points:
