@@ -54,6 +54,8 @@ from thalweg.planning.request.voyage_endpoints import (
     resolve_places,
 )
 from thalweg.planning.request.voyage_objective import with_voyage_prices
+from thalweg.planning.request.way_choice import with_chosen_ways
+from thalweg.planning.seaways import Seaways
 from thalweg.planning.single.certified_bound import certified_total
 from thalweg.planning.single.stretch import plan_stretch
 from thalweg.planning.single.stretch_result import StretchResult
@@ -279,6 +281,7 @@ def voyage_context(
     ends = resolve_places(voyage.start, voyage.via, voyage.goal, chart)
     chart, notes = exclude_closed_canals(chart, voyage, ship, ends)
     chart = restrict_passages(chart, voyage, ship, chosen_offing(voyage, ship))
+    ends = with_chosen_ways(ends, lambda: Seaways.of_ship_chart(chart))
     chart, shoal_notes = add_shoals(chart, voyage, ship, sea, ends)
     notes += shoal_notes
     chart = add_traffic_schemes(chart, voyage, ship, ends)
