@@ -8,6 +8,7 @@ parts of the same inland sea. They are for planning and are not surveyed.
 from __future__ import annotations
 
 import csv
+import math
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -26,12 +27,14 @@ class ApproachBranch:
         From inner waters to sea [deg]; one position where the ship leaves the approach there.
     source : Of the line.
     canal : Name of the canal that begins there, or empty.
+    max_draught : Of ships that use it [m]; inf without a limit.
     """
 
     name: str
     line: tuple[Position, ...]
     source: str
     canal: str = ""
+    max_draught: float = math.inf
 
 
 @cache
@@ -45,6 +48,7 @@ def approach_branches() -> tuple[ApproachBranch, ...]:
             tuple((float(lat), float(lon)) for lat, lon in
                   (pair.split(",") for pair in row["line"].split())),
             row["source"],
+            max_draught=float(row["max_draught_m"] or "inf"),
         )
         for row in rows
     )  # fmt: skip

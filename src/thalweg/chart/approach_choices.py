@@ -16,8 +16,10 @@ from thalweg.chart.approaches import LONGEST_JOINT, PortApproach, dense_line, li
 from thalweg.chart.canals import Canal
 from thalweg.core.geodesy import distance
 from thalweg.core.types import FloatArray
+from thalweg.core.units import NAUTICAL_MILE
 
 _FAR_IN_LATITUDE = 4.0  # branches farther from the berth than this are not tested [deg]
+_CANAL_REACH = 2.0 * NAUTICAL_MILE  # between an approach and the end of a canal in open water
 _LEAST_LEFT_OUT = 1_000.0  # of the main line by leaving it, or the way is not one of its own [m]
 
 
@@ -58,10 +60,11 @@ def _by_branch(
     """Return the way that leaves an approach for a branch, the shortest one; None if not near."""
     places = np.array(branch.line, float)
     apart = np.asarray(distance(along[:, None, 0], along[:, None, 1], *places.T[:, None, :]))
-    if apart.min() > LONGEST_JOINT:
+    reach = _CANAL_REACH if branch.canal else LONGEST_JOINT
+    if apart.min() > reach:
         return None
     left = np.append(np.cumsum(distance(*places[:-1].T, *places[1:].T)[::-1])[::-1], 0.0)
-    total = np.where(apart <= LONGEST_JOINT, along[:, None, 2] + apart + left, np.inf)
+    total = np.where(apart <= reach, along[:, None, 2] + apart + left, np.inf)
     at, first = (int(k) for k in np.unravel_index(np.argmin(total), total.shape))
     if len(branch.line) == 1:  # off the place itself
         at = int(np.argmin(apart[:, 0]))
@@ -72,4 +75,7 @@ def _by_branch(
     way = f"to the {branch.name}" if branch.canal else f"by {branch.name}"
     source = approach.source if branch.canal else f"{approach.source}; {branch.source}"
     line = tuple(a for k, a in enumerate((*kept, *more)) if k == 0 or a != (*kept, *more)[k - 1])
-    return replace(approach, line=line, way=way, canal=branch.canal, source=source)
+    return replace(
+        approach, line=line, way=way, source=source, canal=branch.canal,
+        way_draught=branch.max_draught,
+    )

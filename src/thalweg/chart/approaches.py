@@ -13,6 +13,7 @@ from __future__ import annotations
 import csv
 import gzip
 import itertools
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import resources
@@ -53,6 +54,7 @@ class PortApproach:
     max_draught, max_length : Of ships, in the World Port Index [m]; NaN where unknown.
     way : By which channel or to which canal, where it is not the main way ("by Fedjeosen").
     canal : Name of the canal that the line leads to, or empty.
+    way_draught : Largest draught of ships that use this way [m]; inf without a limit.
     """
 
     port: Port
@@ -64,6 +66,7 @@ class PortApproach:
     max_length: float = float("nan")
     way: str = ""
     canal: str = ""
+    way_draught: float = math.inf
 
     @property
     def label(self) -> str:

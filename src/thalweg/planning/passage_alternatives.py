@@ -66,13 +66,14 @@ class _Question:
     ends: tuple[Endpoint, ...]
     offing: float
     speed: float
+    draught: float
 
     def alternative(self, closed: tuple[str, ...]) -> PassageAlternative:
         """Return the shortest way with more canals and passages closed."""
         seas = self.seas
         for name in closed:
             seas = seas.without(name)
-        ends = with_chosen_ways(self.ends, lambda: seas)
+        ends = with_chosen_ways(self.ends, lambda: seas, draught=self.draught)
         parts = [seas.path(a, b, offing=self.offing) for a, b in itertools.pairwise(ends)]
         path = [parts[0][0], *(place for part in parts for place in part[1:])]
         at_sea, titles = path_length_and_canals(seas.chart, path)
@@ -164,4 +165,5 @@ def _question(plan: PlanData) -> _Question | None:
         tuple(resolve_places(plan.voyage.start, plan.voyage.via, plan.voyage.goal, chart)),
         chart.offing.distance,
         max(speed, 0.1 * KNOT),
+        float(context.ship.draught),
     )

@@ -281,7 +281,8 @@ def voyage_context(
     ends = resolve_places(voyage.start, voyage.via, voyage.goal, chart)
     chart, notes = exclude_closed_canals(chart, voyage, ship, ends)
     chart = restrict_passages(chart, voyage, ship, chosen_offing(voyage, ship))
-    ends = with_chosen_ways(ends, lambda: Seaways.of_ship_chart(chart))
+    seas = partial(Seaways.of_ship_chart, chart)
+    ends = with_chosen_ways(ends, seas, draught=float(ship.draught))
     chart, shoal_notes = add_shoals(chart, voyage, ship, sea, ends)
     notes += shoal_notes
     chart = add_traffic_schemes(chart, voyage, ship, ends)

@@ -183,7 +183,7 @@ def sea_distance(
     seas = Seaways.of_chart(chart, closed, opened=open)
     if draught_m is not None:
         seas = _seas_for_draught(seas, draught_m, ends)
-    ends = with_chosen_ways(ends, lambda: seas)
+    ends = with_chosen_ways(ends, lambda: seas, draught=draught_m or 0.0)
     notes = tuple(end.note for end in ends if end.note)
     first, last = ends[0].approach, ends[-1].approach
     if len(ends) == 2 and first and last:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from thalweg.chart.approaches import line_between, line_length
@@ -18,19 +18,22 @@ from thalweg.planning.seaways import Seaways, path_length_and_canals
 _LEAST_GAIN: Final = 0.5 * NAUTICAL_MILE  # of another way than the approach of the table
 
 
-def with_chosen_ways(ends: Sequence[Endpoint], seas: Callable[[], Seaways]) -> list[Endpoint]:
+def with_chosen_ways(
+    ends: Sequence[Endpoint], seas: Callable[[], Seaways], *, draught: float = 0.0
+) -> list[Endpoint]:
     """Return the ends of a voyage with the ways from their berths that make it shortest.
 
     Parameters
     ----------
     ends : With via points between them.
     seas : Called only where there is a choice: the seaways that the voyage may use.
+    draught : Of the ship [m]: ways that are too shallow are left out.
 
     Returns
     -------
     list of Endpoint : A way to a canal is chosen only where the voyage passes that canal.
     """
-    found = list(ends)
+    found = [_without_shallow_ways(end, draught) for end in ends]
     if not (found[0].other_ways or found[-1].other_ways):
         return found
     if len(found) == 2:
@@ -53,6 +56,11 @@ def _best_pair(start: Endpoint, goal: Endpoint, seas: Seaways) -> list[Endpoint]
         if length < least:
             best, least = pair, length
     return [best.start, best.goal]
+
+
+def _without_shallow_ways(end: Endpoint, draught: float) -> Endpoint:
+    deep = tuple(way for way in end.other_ways if way.way_draught >= draught)
+    return replace(end, other_ways=deep) if deep != end.other_ways else end
 
 
 def _by_way(end: Endpoint) -> list[Endpoint]:
