@@ -70,6 +70,8 @@ def _by_branch(
         at = int(np.argmin(apart[:, 0]))
         if along[-1, 2] - along[at, 2] < _LEAST_LEFT_OUT:
             return None
+    if _is_main(approach, branch, float(total[at, first])):
+        return None
     kept = line_part(approach.line, float(along[at, 2]))
     more = branch.line[first:] if len(branch.line) > 1 else ()
     way = f"to the {branch.name}" if branch.canal else f"by {branch.name}"
@@ -79,3 +81,9 @@ def _by_branch(
         approach, line=line, way=way, source=source, canal=branch.canal,
         way_draught=branch.max_draught,
     )
+
+
+def _is_main(approach: PortApproach, branch: ApproachBranch, length: float) -> bool:
+    """Return whether a way of a length [m] by a branch is no other than the approach itself."""
+    same_end = float(distance(*approach.sea_end, *branch.line[-1])) < _LEAST_LEFT_OUT
+    return same_end and length > approach.length - _LEAST_LEFT_OUT
