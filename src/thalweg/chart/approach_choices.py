@@ -78,7 +78,11 @@ def _by_branch(
     source = approach.source if branch.canal else f"{approach.source}; {branch.source}"
     line = tuple(a for k, a in enumerate((*kept, *more)) if k == 0 or a != (*kept, *more)[k - 1])
     return replace(
-        approach, line=line, way=way, source=source, canal=branch.canal,
+        approach,
+        line=line,
+        way=way,
+        source=source,
+        canal=branch.canal,
         way_draught=branch.max_draught,
     )
 

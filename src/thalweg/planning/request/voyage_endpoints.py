@@ -341,7 +341,9 @@ def without_approach(end: Endpoint) -> Endpoint:
         f"The ship passes {end.name} at {format_position(end.lat, end.lon)} and does not enter it: "
         "give each leg of a voyage with calls as a voyage of its own."
     )
-    return replace(end, approach=None, other_ways=(), notice=" ".join(t for t in (end.notice, notice) if t))
+    return replace(
+        end, approach=None, other_ways=(), notice=" ".join(t for t in (end.notice, notice) if t)
+    )
 
 
 def check_distinct(start: Endpoint, goal: Endpoint) -> None:
