@@ -10,8 +10,8 @@ from thalweg import Chart, Sea, Ship, Voyage
 from thalweg.chart.approaches import PORT_APPROACHES
 from thalweg.chart.ports import PORTS
 from thalweg.core.units import KNOT, NAUTICAL_MILE
+from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.request.voyage_endpoints import resolve_places
-from thalweg.planning.request.way_choice import with_chosen_ways
 from thalweg.planning.sea_distance import sea_distance
 from thalweg.planning.seaways import Seaways, world_chart
 
@@ -20,8 +20,8 @@ TABLES = [
     ("Hamburg", "Kiel", 95, 0.09),  # Hamburg to Brunsbüttel 37, canal 53, Holtenau to Kiel 3
     ("Hamburg", "Gdansk", 427, 0.02),
     ("Bremerhaven", "Gothenburg", 365, 0.05),
-    ("Kobe", "Busan", 366, 0.03),
-    ("Osaka", "Busan", 372, 0.03),
+    ("Kobe", "Busan", 366, 0.05),
+    ("Osaka", "Busan", 372, 0.05),
     ("Bergen", "Trondheim", 338, 0.05),
     ("Antwerp, BE", "Rotterdam", 119, 0.07),
     ("Baltimore", "Norfolk", 172, 0.04),

@@ -13,12 +13,12 @@ from thalweg.chart.approaches import MAX_APPROACH_SPEED
 from thalweg.chart.passage_crossings import CAPES, names_passed
 from thalweg.core.errors import NoRouteError
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
+from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.plan_data import PlanData
 from thalweg.planning.request.voyage_endpoints import (
     Endpoint,
     resolve_places,
 )
-from thalweg.planning.request.way_choice import with_chosen_ways
 from thalweg.planning.seaways import Seaways, path_length_and_canals
 
 #: Ways longer than this multiple of the shortest are left out, and those hardly longer.

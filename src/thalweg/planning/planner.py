@@ -21,6 +21,7 @@ from thalweg.planning.approach_sailing import (
     plan_along_approaches,
     shared_line,
 )
+from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import PlotContext, Proof, in_objective_unit
@@ -54,7 +55,6 @@ from thalweg.planning.request.voyage_endpoints import (
     resolve_places,
 )
 from thalweg.planning.request.voyage_objective import with_voyage_prices
-from thalweg.planning.request.way_choice import with_chosen_ways
 from thalweg.planning.seaways import Seaways
 from thalweg.planning.single.certified_bound import certified_total
 from thalweg.planning.single.stretch import plan_stretch

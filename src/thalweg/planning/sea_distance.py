@@ -19,11 +19,11 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, densify, distance
 from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
+from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.request.voyage_endpoints import (
     Endpoint,
     resolve_places,
 )
-from thalweg.planning.request.way_choice import with_chosen_ways
 from thalweg.planning.seaways import Seaways, path_length_and_canals, world_chart
 from thalweg.planning.voyage_parts import Place
 
