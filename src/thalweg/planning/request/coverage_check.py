@@ -202,7 +202,8 @@ def _moved_to(
         moved_distance_m=far,
         why=why,
         remedy=_remedy(unknown, far),
-        approach=None, other_ways=(),
+        approach=None,
+        other_ways=(),
         given_position=berth,
         way_left_m=near[2] + (0.0 if approach is None else approach.length),
     )
