@@ -388,7 +388,7 @@ def is_kept(charts: Charts, row: dict[str, str]) -> bool:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--only", default="")
+    parser.add_argument("--only", default="", help="ports; with --keep the others stay as they are")
     parser.add_argument(
         "--world-port-index", type=Path, help="for the limits of draught and length"
     )
@@ -398,22 +398,26 @@ def main() -> None:
     fine, usual = Chart.gshhg("h"), Chart.gshhg("i")
     charts = Charts(fine, usual, open_sea(usual), fairways())
     hands = by_hand()
-    ports = PORTS.all
-    if args.only:
-        wanted = set(args.only.split(","))
-        ports = tuple(p for p in ports if {p.locode, p.label} & wanted)
+    wanted = set(filter(None, args.only.split(",")))
     limits = ship_limits(args.world_port_index) if args.world_port_index else {}
     kept = read_table(args.keep) if args.keep else {}
+    ports = tuple(p for p in PORTS.all if kept or not wanted or {p.locode, p.label} & wanted)
     rows, begin = [], time.time()
     for number, port in enumerate(ports):
         key = port.locode, port.name, port.country_code
         hand = hands.get(port.locode) if port.locode else hands.get(port.label)
         old = kept.get(key)
+        if wanted and not {port.locode, port.label} & wanted:
+            rows += [old] if old else []
+            continue
         row = old if old and not hand and is_kept(charts, old) else None
         row = row or approach_row(charts, port, hand)
         if row["quality"] == "none" and not hand:
             row["source"] = _GREAT_LAKES if _on_great_lakes(port) else _NO_WATER
-        row["max_draught_m"], row["max_length_m"] = limits.get(key, ("", ""))
+        if limits or not old:
+            row["max_draught_m"], row["max_length_m"] = limits.get(key, ("", ""))
+        else:
+            row |= {name: old[name] for name in ("max_draught_m", "max_length_m")}
         rows.append(row)
         if number % 100 == 0:
             print(number, f"{time.time() - begin:.0f} s", flush=True)

@@ -280,6 +280,14 @@ def test_alternatives_differ_and_each_is_best_in_something(ship, chart, tmp_path
         alternative_plans(_voyage(), **given, most=1)
 
 
+@pytest.mark.slow
+def test_alternatives_say_why_there_is_no_route_of_least_motion_sickness(chart):
+    plain = Ship.from_dict({key: value for key, value in DATA.items() if key != "places"})
+    found = alternative_plans(_voyage(), ship=plain, sea=_sea(), chart=chart)
+    assert any("she has no named places" in note for note in found.notes)
+    assert all("sickness" not in one for choice in found.choices for one in choice.best_in)
+
+
 def test_champions_and_differences_in_words():
     fast = {"time": 10.0, "fuel": 3.0, "sick_percent": 30.0, "distance": 100.0, "encounters": 1.0}
     calm = {"time": 10.5, "fuel": 3.0, "sick_percent": 12.0, "distance": 108.0,

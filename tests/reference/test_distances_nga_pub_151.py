@@ -65,14 +65,18 @@ PUBLISHED = [
     ("New York", "Colombo", 8604),
     ("Istanbul", "Trieste", 1162),
     ("Valparaiso, CL", "Yokohama", 9280),
-    ("Shanghai", "Kobe", 789),
+    ("Shanghai", "Kobe", 789),  # by the Osumi Strait; by Kanmon and the Inland Sea 752 nm here
 ]
+ROUND_KYUSHU = (*SMALL_CANALS, "Kanmon")
 
 
 @pytest.fixture(scope="module")
 def errors():
     """Excess of our distances over the published ones [%]."""
-    ours = [sea_distance(start, goal).nm for start, goal, _ in PUBLISHED]
+    ours = [
+        sea_distance(start, goal, avoid=ROUND_KYUSHU if goal == "Kobe" else SMALL_CANALS).nm
+        for start, goal, _ in PUBLISHED
+    ]
     return 100.0 * (np.array(ours) / np.array([nm for *_, nm in PUBLISHED]) - 1.0)
 
 
@@ -88,7 +92,7 @@ def test_median_and_spread(errors):
 def test_largest_error_and_its_cause(errors):
     """Recife to Bridgetown and Vladivostok to Yokohama are quoted longer than 2 nm off land.
 
-    Shanghai to Kobe is 2.04 % longer here.
+    Shanghai to Kobe is 1.8 % longer here.
     """
     assert np.abs(errors).max() < 3.0
     worst = {PUBLISHED[k][:2] for k in np.flatnonzero(np.abs(errors) > 2.1)}

@@ -3,6 +3,11 @@
 Four prints cannot be repeated from his tables: R of seconds by nodes is 0.91 (0.83 is R2), the
 adjusted R2 of Table A.4 is 0.756 (0.699 in print), the line of 3HF is 6.43 N + 15.3 (15.1), and the
 distances have R2 0.305 only with the length that August copies from its neighbour.
+
+The routes, hours and speeds of sections 4.2 and 4.3 are data here, not results: they follow from
+ERA5 of 2019, which is not part of the tests, from waves turned by pi once too often, and from a
+clock in whole even hours. What they show is tested on made weather (greedy choice and exact search
+in `tests.search.test_exact_on_layered_networks`, months in `tests.studies`).
 """
 
 import numpy as np

@@ -13,6 +13,7 @@ from __future__ import annotations
 import csv
 import gzip
 import itertools
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import resources
@@ -21,6 +22,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.chart.approach_branches import approach_branches
 from thalweg.chart.ports import PORTS, Port
 from thalweg.core.geodesy import METRES_PER_DEGREE, Position, distance
 from thalweg.core.types import FloatArray
@@ -34,7 +36,7 @@ _LENGTH_TOLERANCE: Final = 0.02  # of a leg that follows a line, relative
 #: Two lines are joined where they are this close [m] ...
 _SAME_WATER: Final = 0.15 * NAUTICAL_MILE
 #: ... or this close with only water between them.
-_LONGEST_JOINT: Final = 1.0 * NAUTICAL_MILE
+LONGEST_JOINT: Final = 1.0 * NAUTICAL_MILE
 _JOINT_SPACING: Final = 0.1 * NAUTICAL_MILE
 
 
@@ -50,6 +52,9 @@ class PortApproach:
         Least distance from the charted part of the line to land [m]; NaN if none is charted.
     quality : "computed", "by hand" or "checked" (by hand and compared with a source).
     max_draught, max_length : Of ships, in the World Port Index [m]; NaN where unknown.
+    way : By which channel or to which canal, where it is not the main way ("by Fedjeosen").
+    canal : Name of the canal that the line leads to, or empty.
+    way_draught : Largest draught of ships that use this way [m]; inf without a limit.
     """
 
     port: Port
@@ -59,6 +64,14 @@ class PortApproach:
     source: str
     max_draught: float = float("nan")
     max_length: float = float("nan")
+    way: str = ""
+    canal: str = ""
+    way_draught: float = math.inf
+
+    @property
+    def label(self) -> str:
+        """Name and country of the port, and its way if it is not the main one."""
+        return f"{self.port.label} {self.way}".rstrip()
 
     @property
     def berth(self) -> Position:
@@ -144,7 +157,7 @@ class PortApproaches:
             if here and there:
                 length = float(distance(lat[leg], lon[leg], lat[leg + 1], lon[leg + 1]))
                 slack = 2.0 * ON_LINE + _LENGTH_TOLERANCE * length
-                found[leg] = length <= _LONGEST_JOINT or any(
+                found[leg] = length <= LONGEST_JOINT or any(
                     abs(abs(there[line] - along) - length) <= slack
                     for line, along in here.items()
                     if line in there
@@ -171,6 +184,7 @@ class PortApproaches:
     def _segments(self) -> tuple[FloatArray, ...]:
         """Ends [deg] of all segments, distance of the first along its line [m], and its line."""
         lines = [approach.line for approach in self.all]
+        lines += [branch.line for branch in approach_branches()]
         if not lines:
             return tuple(np.empty((6, 0)))
         count = np.array([len(line) for line in lines])
@@ -243,12 +257,14 @@ def line_between(
     -------
     tuple of (lat, lon), or None : None where the two approaches do not meet before the open sea.
     """
-    first, second = _dense(start.line), _dense(goal.line)
+    if _far_apart(start.line, goal.line):
+        return None
+    first, second = dense_line(start.line), dense_line(goal.line)
     north = first[:, None, 0] - second[None, :, 0]
     east = _wrapped(first[:, None, 1] - second[None, :, 1]) * np.cos(np.radians(first[:, :1]))
     apart = np.hypot(north, east) * METRES_PER_DEGREE
     total = first[:, None, 2] + apart + second[None, :, 2]
-    close = np.argwhere(apart <= _LONGEST_JOINT)
+    close = np.argwhere(apart <= LONGEST_JOINT)
     close = close[np.argsort(total[close[:, 0], close[:, 1]], kind="stable")]
     far = apart[close[:, 0], close[:, 1]] > _SAME_WATER
     joint = np.concatenate([first[close[:, 0], :2], second[close[:, 1], :2]], axis=1)
@@ -258,11 +274,18 @@ def line_between(
     if not len(free):
         return None
     i, j = (int(k) for k in close[free[0]])
-    line = [*_part_of(start.line, first[i, 2]), *_part_of(goal.line, second[j, 2])[::-1]]
+    line = [*line_part(start.line, first[i, 2]), *line_part(goal.line, second[j, 2])[::-1]]
     return tuple(a for k, a in enumerate(line) if k == 0 or _metres(a, line[k - 1]) > 1.0)
 
 
-def _part_of(line: tuple[Position, ...], along: float) -> list[Position]:
+def _far_apart(first: tuple[Position, ...], second: tuple[Position, ...]) -> bool:
+    """Return whether the latitudes of two lines are farther apart than any joint."""
+    a, b = ([place[0] for place in line] for line in (first, second))
+    gap = max(min(a) - max(b), min(b) - max(a))
+    return gap * METRES_PER_DEGREE > 1.01 * LONGEST_JOINT
+
+
+def line_part(line: tuple[Position, ...], along: float) -> list[Position]:
     """Return the vertices of a line up to a distance [m] from its start, and the place there."""
     part, sailed = [line[0]], 0.0
     for a, b in itertools.pairwise(line):
@@ -277,7 +300,7 @@ def _part_of(line: tuple[Position, ...], along: float) -> list[Position]:
     return part
 
 
-def _dense(line: tuple[Position, ...]) -> FloatArray:
+def dense_line(line: tuple[Position, ...]) -> FloatArray:
     """Return rows (lat, lon [deg], distance from the first [m]) at most `_JOINT_SPACING` apart."""
     rows, sailed = [(*line[0], 0.0)], 0.0
     for a, b in itertools.pairwise(line):

@@ -135,7 +135,8 @@ class ApproachSailing:
                 continue
             found.append(
                 f"+{approach.length / NAUTICAL_MILE:.1f} nm {to} {approach.port.label} along its "
-                f"approach ({self._duration(approach) / HOUR:.1f} h at "
+                f"approach {approach.way}".rstrip()
+                + f" ({self._duration(approach) / HOUR:.1f} h at "
                 f"{self.speed / KNOT:.1f} kn, line {approach.quality}): counted in all totals; "
                 "weather, tide and depth are not considered there."
             )

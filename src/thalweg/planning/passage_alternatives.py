@@ -13,12 +13,12 @@ from thalweg.chart.approaches import MAX_APPROACH_SPEED
 from thalweg.chart.passage_crossings import CAPES, names_passed
 from thalweg.core.errors import NoRouteError
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
+from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.plan_data import PlanData
 from thalweg.planning.request.voyage_endpoints import (
     Endpoint,
     resolve_places,
 )
-from thalweg.planning.sea_distance import world_chart
 from thalweg.planning.seaways import Seaways, path_length_and_canals
 
 #: Ways longer than this multiple of the shortest are left out, and those hardly longer.
@@ -66,18 +66,20 @@ class _Question:
     ends: tuple[Endpoint, ...]
     offing: float
     speed: float
+    draught: float
 
     def alternative(self, closed: tuple[str, ...]) -> PassageAlternative:
         """Return the shortest way with more canals and passages closed."""
         seas = self.seas
         for name in closed:
             seas = seas.without(name)
-        parts = [seas.path(a, b, offing=self.offing) for a, b in itertools.pairwise(self.ends)]
+        ends = with_chosen_ways(self.ends, lambda: seas, draught=self.draught)
+        parts = [seas.path(a, b, offing=self.offing) for a, b in itertools.pairwise(ends)]
         path = [parts[0][0], *(place for part in parts for place in part[1:])]
         at_sea, titles = path_length_and_canals(seas.chart, path)
         canals = [canal for canal in seas.chart.canals if canal.title in titles]
         in_canals = sum(canal.length for canal in canals)
-        near = sum(end.approach.length for end in self.ends if end.approach is not None)
+        near = sum(end.approach.length for end in ends if end.approach is not None)
         time = (at_sea - in_canals) / self.speed + sum(canal.transit_time for canal in canals)
         time += near / min(self.speed, MAX_APPROACH_SPEED)
         names = names_passed(seas.chart.coastline, seas.chart.passages, *np.array(path).T)
@@ -159,18 +161,9 @@ def _question(plan: PlanData) -> _Question | None:
     time = float(np.sum(duration[at_sea])) - plan.best.waiting_h * HOUR
     speed = sailed / time if sailed > 0.0 and time > 0.0 else MAX_APPROACH_SPEED
     return _Question(
-        _seas_of_ship(chart),
+        Seaways.of_ship_chart(chart),
         tuple(resolve_places(plan.voyage.start, plan.voyage.via, plan.voyage.goal, chart)),
         chart.offing.distance,
         max(speed, 0.1 * KNOT),
+        float(context.ship.draught),
     )
-
-
-def _seas_of_ship(chart: Any) -> Seaways:
-    """Return the seaways of the world without what the chart of a plan closes."""
-    world = Seaways.of_chart(world_chart(), ())
-    canals = {canal.name for canal in chart.canals}
-    shut = tuple(canal.name for canal in world.chart.canals if canal.name not in canals)
-    open_here = {passage.name for passage in world.chart.passages}
-    closed = tuple(p.name for p in chart.closed_passages if p.name in open_here)
-    return Seaways(world.chart, shut, closed)

@@ -21,6 +21,7 @@ from thalweg.planning.approach_sailing import (
     plan_along_approaches,
     shared_line,
 )
+from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import PlotContext, Proof, in_objective_unit
@@ -54,6 +55,7 @@ from thalweg.planning.request.voyage_endpoints import (
     resolve_places,
 )
 from thalweg.planning.request.voyage_objective import with_voyage_prices
+from thalweg.planning.seaways import Seaways
 from thalweg.planning.single.certified_bound import certified_total
 from thalweg.planning.single.stretch import plan_stretch
 from thalweg.planning.single.stretch_result import StretchResult
@@ -279,6 +281,8 @@ def voyage_context(
     ends = resolve_places(voyage.start, voyage.via, voyage.goal, chart)
     chart, notes = exclude_closed_canals(chart, voyage, ship, ends)
     chart = restrict_passages(chart, voyage, ship, chosen_offing(voyage, ship))
+    seas = partial(Seaways.of_ship_chart, chart)
+    ends = with_chosen_ways(ends, seas, draught=float(ship.draught))
     chart, shoal_notes = add_shoals(chart, voyage, ship, sea, ends)
     notes += shoal_notes
     chart = add_traffic_schemes(chart, voyage, ship, ends)

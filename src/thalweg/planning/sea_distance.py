@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
@@ -20,11 +19,12 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, densify, distance
 from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
+from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.request.voyage_endpoints import (
     Endpoint,
     resolve_places,
 )
-from thalweg.planning.seaways import Seaways, path_length_and_canals
+from thalweg.planning.seaways import Seaways, path_length_and_canals, world_chart
 from thalweg.planning.voyage_parts import Place
 
 #: Canals too small for most ships, which are not used by default.
@@ -180,11 +180,12 @@ def sea_distance(
     check_offing(offing_nm)
     closed = (avoid,) if isinstance(avoid, str) else tuple(avoid)
     ends = resolve_places(start, via, goal, chart)
-    notes = tuple(end.note for end in ends if end.note)
-    first, last = ends[0].approach, ends[-1].approach
     seas = Seaways.of_chart(chart, closed, opened=open)
     if draught_m is not None:
         seas = _seas_for_draught(seas, draught_m, ends)
+    ends = with_chosen_ways(ends, lambda: seas, draught=draught_m or 0.0)
+    notes = tuple(end.note for end in ends if end.note)
+    first, last = ends[0].approach, ends[-1].approach
     if len(ends) == 2 and first and last:
         line = line_between(first, last, legs_blocked=chart.legs_blocked)
         if line is not None:
@@ -196,7 +197,7 @@ def sea_distance(
     path = [parts[0][0], *(place for part in parts for place in part[1:])]
     length, canals = path_length_and_canals(chart, path)
     notes += _shoal_notes(seas, path)
-    approaches = tuple((a.port.label, a.length) for a in (first, last) if a is not None)
+    approaches = tuple((a.label, a.length) for a in (first, last) if a is not None)
     line = (
         *(first.line[:-1] if first else ()),
         *path,
@@ -244,9 +245,3 @@ def _shoal_notes(seas: Seaways, path: Sequence[Position]) -> tuple[str, ...]:
         f"{miles:.0f} nm of the way have less water than the draught, by the {NAME}: this graph of "
         "all seas is coarse near shoals, and a plan may find a longer way round.",
     )
-
-
-@lru_cache(maxsize=1)
-def world_chart() -> Chart:
-    """Return the chart of the world's coasts, once for all questions of a process."""
-    return Chart.gshhg("i")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -73,11 +74,43 @@ class Seaways:
         open_names = {passage.name for passage in chart.passages}
         return cls(chart, shut, tuple(p.name for p in passages if p.name in open_names))
 
+    @classmethod
+    def of_ship_chart(cls, chart: Chart) -> Seaways:
+        """Return the seaways of the world without what the chart of a plan closes."""
+        world = cls.of_chart(world_chart(), ())
+        canals = {canal.name for canal in chart.canals}
+        shut = tuple(canal.name for canal in world.chart.canals if canal.name not in canals)
+        open_here = {passage.name for passage in world.chart.passages}
+        closed = tuple(p.name for p in chart.closed_passages if p.name in open_here)
+        return cls(world.chart, shut, closed)
+
     def without(self, name: str) -> Seaways:
         """Return the seaways with one more canal or passage closed, by its name."""
         if name in {canal.name for canal in self.chart.canals}:
             return replace(self, canals=(*self.canals, name))
         return replace(self, passages=(*self.passages, name))
+
+    @property
+    def _open_chart(self) -> Chart:
+        return self.chart.without_passages(*self.passages) if self.passages else self.chart
+
+    def graph_path(self, start: Endpoint, goal: Endpoint) -> list[Position]:
+        """Return the waypoints of the shortest way over the graph, without string pulling.
+
+        Raises
+        ------
+        NoRouteError : If there is no way.
+        """
+        chart = self._open_chart
+        closed = [k for k, canal in enumerate(chart.canals) if canal.name in self.canals]
+        return sea_graph(self.chart).path(
+            chart,
+            (start.lat, start.lon),
+            (goal.lat, goal.lon),
+            closed=closed,
+            passages=find_passages(self.passages),
+            shoals=self.shoals,
+        )
 
     def path(self, start: Endpoint, goal: Endpoint, *, offing: float) -> list[Position]:
         """Return the waypoints of the shortest way between two end points.
@@ -94,12 +127,8 @@ class Seaways:
         ends = (start.lat, start.lon), (goal.lat, goal.lon)
         if float(distance(*ends[0], *ends[1])) < 1.0:
             return [ends[0]]
-        chart = self.chart.without_passages(*self.passages) if self.passages else self.chart
-        closed = [k for k, canal in enumerate(chart.canals) if canal.name in self.canals]
-        graph = sea_graph(self.chart)
-        path = graph.path(
-            chart, *ends, closed=closed, passages=find_passages(self.passages), shoals=self.shoals
-        )
+        chart = self._open_chart
+        path = self.graph_path(start, goal)
         if outside_ice(*ends):
             chart = chart.within(*ICE_LATITUDES, -180.0, 180.0)
         discs = [disc_at(chart.coastline, end) for end in ends]
@@ -122,6 +151,12 @@ class Seaways:
 
         lat, lon = string_pull_path(chart, *part.T, leg_cost=cost, rounds=_ROUNDS)
         return _places(lat, lon)
+
+
+@lru_cache(maxsize=1)
+def world_chart() -> Chart:
+    """Return the chart of the world's coasts, once for all questions of a process."""
+    return Chart.gshhg("i")
 
 
 def _pulled(chart: Chart, off_land: Chart, path: FloatArray) -> list[Position]:

@@ -45,7 +45,7 @@ from thalweg.planning.network_selection.route_alternatives import RouteAlternati
 from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.pareto.exploration import fastest_in_known_water, network_pareto_front
 from thalweg.planning.pareto.front_points import track_from_front_point
-from thalweg.planning.pareto.search_horizon import extend_horizon
+from thalweg.planning.pareto.search_horizon import SearchHorizon, extend_horizon
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
 from thalweg.planning.pareto.trade_off_planner import with_trade_off
 from thalweg.planning.pareto.weighted_sums import (
@@ -60,6 +60,7 @@ from thalweg.planning.report.lane_report import lane_detour_notes, routes_within
 from thalweg.planning.request.offing_choice import chart_off_land, chosen_offing
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route, Track
+from thalweg.ship.comfort.onboard_motions import required_motions
 
 STOPPED: Final = "Stopped"  #: first word of notes after Ctrl-C
 _OBJECTIVES: Final = ("fuel", "comfort", "encounters", "inshore", "distance")
@@ -68,8 +69,7 @@ _WEIGHTED: Final = ("time", "fuel", "comfort", "encounters")
 _WIDER_OFFINGS: Final = ((4.0, 2.0), (3.0, 1.5), (2.0, 1.25))
 _DETOUR: Final = 0.35  # ways that are longer by this share of the shortest are left out
 _REACH: Final = 12.0 * NAUTICAL_MILE  # from nodes to the ends of the line of a passage
-_ISLAND_WAYS, _PASSAGE_WAYS = 3, 5
-_ROUNDS: Final = 3  # of string pulling
+_ISLAND_WAYS, _PASSAGE_WAYS, _ROUNDS = 3, 5, 3  # rounds of string pulling
 
 
 def berth_to_berth_candidates(
@@ -172,6 +172,7 @@ class _Candidates:
         self.routes: list[Route] = []
         self.notes: list[str] = []
         self.best: dict[str, Route] = {}
+        self.horizon: SearchHorizon | None = None  # of the first key figure, for all of them
 
     @property
     def stopped(self) -> bool:
@@ -214,6 +215,8 @@ class _Candidates:
     def of_least(self, network: Network, name: str) -> Iterator[Track]:
         """Yield the route of least value of a key figure, and the knee of its front with time."""
         if not np.isfinite(key_figure(self.best["time"], name)):
+            if name == "comfort":
+                required_motions(self.context.ship)  # a note, where she has no places
             return
         tracks = self._front(network, Objective.of(name, currency=self.currency))
         self.best[name] = self._scored(tracks[0])
@@ -234,8 +237,13 @@ class _Candidates:
     def _front(self, network: Network, objective: Objective) -> list[Track]:
         """Return the cheapest track of the front of time and an objective, and that at its knee."""
         own = with_objective(self.trade_off, objective)
+<<<<<<< HEAD
         horizon = extend_horizon(own, network)
         front = network_pareto_front(own, network, horizon.frozen, horizon.latest)
+=======
+        self.horizon = horizon = self.horizon or extend_horizon(own, network)
+        front = network_pareto_front(own, network, horizon.frozen, horizon.latest, lower=False)
+>>>>>>> main
         points = sorted(front.points, key=lambda point: point.time)
         if not points:
             why = " and ".join(front.refused) or "too late for the period of the data"

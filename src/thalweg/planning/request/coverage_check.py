@@ -203,6 +203,7 @@ def _moved_to(
         why=why,
         remedy=_remedy(unknown, far),
         approach=None,
+        other_ways=(),
         given_position=berth,
         way_left_m=near[2] + (0.0 if approach is None else approach.length),
     )

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from thalweg.chart import Chart
+from thalweg.chart.approach_choices import approach_choices
 from thalweg.chart.approaches import PortApproach
 from thalweg.chart.ports import PORTS, Port
 from thalweg.core.errors import InputError, errors_about
@@ -51,6 +52,7 @@ class Endpoint:
     remedy : What the user can do to have it reached, a sentence, or empty.
     way_left_m : Least length of the way between this position and the berth [m]; 0 if unknown.
     approach : The approach from the berth to this position.
+    other_ways : Other ways from the berth, by branches of the approach and to canals.
     notice : A further note for the user, or empty.
     """
 
@@ -65,6 +67,18 @@ class Endpoint:
     way_left_m: float = 0.0
     approach: PortApproach | None = None
     notice: str = ""
+    other_ways: tuple[PortApproach, ...] = ()
+
+    @property
+    def ways(self) -> tuple[PortApproach, ...]:
+        """The approach and the other ways; none where the port has no approach."""
+        return (self.approach, *self.other_ways) if self.approach is not None else ()
+
+    def by(self, way: PortApproach) -> Endpoint:
+        """Return the end point by another way from its berth."""
+        lat, lon = way.sea_end
+        others = tuple(other for other in self.ways if other is not way)
+        return replace(self, lat=lat, lon=lon, approach=way, other_ways=others)
 
     @property
     def origin(self) -> tuple[float, float]:
@@ -137,9 +151,12 @@ def resolve_port(port: Port, chart: Chart, what: str) -> Endpoint:
     ------
     InputError : If the port cannot be reached on the chart.
     """
-    approach = _usable_approach(port, chart)
-    if approach is not None:
-        return Endpoint(port.label, *approach.sea_end, 0.0, is_port=True, approach=approach)
+    ways = _usable_ways(port, chart)
+    if ways:
+        first, others = ways[0], tuple(ways[1:])
+        return Endpoint(
+            port.label, *first.sea_end, 0.0, is_port=True, approach=first, other_ways=others
+        )
     reason = "" if chart.approaches is None else chart.approaches.reason(port)
     if reason:
         raise InputError(
@@ -151,14 +168,19 @@ def resolve_port(port: Port, chart: Chart, what: str) -> Endpoint:
     return replace(found, is_port=True)
 
 
-def _usable_approach(port: Port, chart: Chart) -> PortApproach | None:
-    """Return the approach of a port if its sea end is water of the chart and no zone closes it."""
+def _usable_ways(port: Port, chart: Chart) -> list[PortApproach]:
+    """Return the ways from a port whose sea ends are water of the chart and that no zone closes."""
     approach = None if chart.approaches is None else chart.approaches.of(port)
-    if approach is None or not bool(chart.is_navigable(*approach.sea_end)):
-        return None
-    (lat, lon) = zip(*approach.line)
-    closed = chart.crosses_no_go_zone(lat[:-1], lon[:-1], lat[1:], lon[1:])
-    return None if closed.any() else approach
+    if approach is None:
+        return []
+    return [way for way in approach_choices(approach, chart.canals) if _is_usable(way, chart)]
+
+
+def _is_usable(way: PortApproach, chart: Chart) -> bool:
+    if not bool(chart.is_navigable(*way.sea_end)):
+        return False
+    (lat, lon) = zip(*way.line)
+    return not chart.crosses_no_go_zone(lat[:-1], lon[:-1], lat[1:], lon[1:]).any()
 
 
 def _resolve_position(lat: float, lon: float, chart: Chart, what: str) -> Endpoint:
@@ -319,12 +341,15 @@ def without_approach(end: Endpoint) -> Endpoint:
         f"The ship passes {end.name} at {format_position(end.lat, end.lon)} and does not enter it: "
         "give each leg of a voyage with calls as a voyage of its own."
     )
-    return replace(end, approach=None, notice=" ".join(t for t in (end.notice, notice) if t))
+    return replace(
+        end, approach=None, other_ways=(), notice=" ".join(t for t in (end.notice, notice) if t)
+    )
 
 
 def check_distinct(start: Endpoint, goal: Endpoint) -> None:
     """Raise `InputError` if two end points are the same place."""
-    same_port = start.approach is not None and start.approach == goal.approach
+    ways = start.approach, goal.approach
+    same_port = ways[0] is not None and ways[1] is not None and ways[0].port == ways[1].port
     apart = float(distance(start.lat, start.lon, goal.lat, goal.lon))
     if same_port or (apart < 1.0 and not (start.approach and goal.approach)):
         raise InputError(

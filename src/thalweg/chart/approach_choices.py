@@ -1,0 +1,93 @@
+"""The ways between a berth and the sea: the approach, its branches, and where canals meet it.
+
+A branch (`thalweg.chart.approach_branches`) is open to every port whose approach comes within
+`LONGEST_JOINT` of it. The ends of canals are branches as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from thalweg.chart.approach_branches import ApproachBranch, approach_branches
+from thalweg.chart.approaches import LONGEST_JOINT, PortApproach, dense_line, line_part
+from thalweg.chart.canals import Canal
+from thalweg.core.geodesy import distance
+from thalweg.core.types import FloatArray
+from thalweg.core.units import NAUTICAL_MILE
+
+_FAR_IN_LATITUDE = 4.0  # branches farther from the berth than this are not tested [deg]
+_CANAL_REACH = 2.0 * NAUTICAL_MILE  # between an approach and the end of a canal in open water
+_LEAST_LEFT_OUT = 1_000.0  # of the main line by leaving it, or the way is not one of its own [m]
+
+
+def approach_choices(
+    approach: PortApproach, canals: Sequence[Canal] = ()
+) -> tuple[PortApproach, ...]:
+    """Return the ways between a berth and the waters that its approach leads to.
+
+    Parameters
+    ----------
+    approach : Of the table.
+    canals : Of the chart; a way ends where the approach passes the end of one.
+
+    Returns
+    -------
+    tuple of PortApproach : The approach itself, then those by branches, with `PortApproach.way`.
+    """
+    ends = (
+        ApproachBranch(canal.title, (end,), approach.source, canal.name)
+        for canal in canals
+        for end in canal.ends
+    )
+    near = [
+        branch
+        for branch in (*approach_branches(), *ends)
+        if abs(branch.line[0][0] - approach.berth[0]) < _FAR_IN_LATITUDE
+    ]
+    if not near:
+        return (approach,)
+    along = dense_line(approach.line)
+    others = (_by_branch(approach, along, branch) for branch in near)
+    return (approach, *(other for other in others if other is not None))
+
+
+def _by_branch(
+    approach: PortApproach, along: FloatArray, branch: ApproachBranch
+) -> PortApproach | None:
+    """Return the way that leaves an approach for a branch, the shortest one; None if not near."""
+    places = np.array(branch.line, float)
+    apart = np.asarray(distance(along[:, None, 0], along[:, None, 1], *places.T[:, None, :]))
+    reach = _CANAL_REACH if branch.canal else LONGEST_JOINT
+    if apart.min() > reach:
+        return None
+    left = np.append(np.cumsum(distance(*places[:-1].T, *places[1:].T)[::-1])[::-1], 0.0)
+    total = np.where(apart <= reach, along[:, None, 2] + apart + left, np.inf)
+    at, first = (int(k) for k in np.unravel_index(np.argmin(total), total.shape))
+    if len(branch.line) == 1:  # off the place itself
+        at = int(np.argmin(apart[:, 0]))
+        if along[-1, 2] - along[at, 2] < _LEAST_LEFT_OUT:
+            return None
+    if _is_main(approach, branch, float(total[at, first])):
+        return None
+    kept = line_part(approach.line, float(along[at, 2]))
+    more = branch.line[first:] if len(branch.line) > 1 else ()
+    way = f"to the {branch.name}" if branch.canal else f"by {branch.name}"
+    source = approach.source if branch.canal else f"{approach.source}; {branch.source}"
+    line = tuple(a for k, a in enumerate((*kept, *more)) if k == 0 or a != (*kept, *more)[k - 1])
+    return replace(
+        approach,
+        line=line,
+        way=way,
+        source=source,
+        canal=branch.canal,
+        way_draught=branch.max_draught,
+    )
+
+
+def _is_main(approach: PortApproach, branch: ApproachBranch, length: float) -> bool:
+    """Return whether a way of a length [m] by a branch is no other than the approach itself."""
+    same_end = float(distance(*approach.sea_end, *branch.line[-1])) < _LEAST_LEFT_OUT
+    return same_end and length > approach.length - _LEAST_LEFT_OUT

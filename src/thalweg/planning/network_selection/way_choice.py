@@ -1,0 +1,111 @@
+"""Which way a voyage takes between each berth and the sea: the one of the least total distance."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+from thalweg.chart.approaches import line_between, line_length
+from thalweg.core.errors import NoRouteError
+from thalweg.core.geodesy import distance
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.seaways import Seaways, path_length_and_canals
+
+_LEAST_GAIN: Final = 0.5 * NAUTICAL_MILE  # of another way than the approach of the table
+
+
+def with_chosen_ways(
+    ends: Sequence[Endpoint], seas: Callable[[], Seaways], *, draught: float = 0.0
+) -> list[Endpoint]:
+    """Return the ends of a voyage with the ways from their berths that make it shortest.
+
+    Parameters
+    ----------
+    ends : With via points between them.
+    seas : Called only where there is a choice: the seaways that the voyage may use.
+    draught : Of the ship [m]: ways that are too shallow are left out.
+
+    Returns
+    -------
+    list of Endpoint : A way to a canal is chosen only where the voyage passes that canal.
+    """
+    found = [_without_shallow_ways(end, draught) for end in ends]
+    if not (found[0].other_ways or found[-1].other_ways):
+        return found
+    if len(found) == 2:
+        return _best_pair(found[0], found[1], seas())
+    if found[0].other_ways:
+        found[0] = _best_pair(found[0], found[1], seas())[0]
+    if found[-1].other_ways:
+        found[-1] = _best_pair(found[-2], found[-1], seas())[1]
+    return found
+
+
+def _best_pair(start: Endpoint, goal: Endpoint, seas: Seaways) -> list[Endpoint]:
+    """Return two ends by the ways that make the distance between them least."""
+    pairs = [_Pair.of(a, b, seas) for a in _by_way(start) for b in _by_way(goal)]
+    best, least = pairs[0], math.inf
+    for number, pair in sorted(enumerate(pairs), key=lambda item: item[1].bound):
+        if pair.bound >= least:
+            break
+        length = pair.length(seas) + (_LEAST_GAIN if number else 0.0)
+        if length < least:
+            best, least = pair, length
+    return [best.start, best.goal]
+
+
+def _without_shallow_ways(end: Endpoint, draught: float) -> Endpoint:
+    deep = tuple(way for way in end.other_ways if way.way_draught >= draught)
+    return replace(end, other_ways=deep) if deep != end.other_ways else end
+
+
+def _by_way(end: Endpoint) -> list[Endpoint]:
+    return [end, *(end.by(way) for way in end.other_ways)]
+
+
+@dataclass(frozen=True)
+class _Pair:
+    """Two ends by one way each, and a bound of the distance between them [m].
+
+    ``shared`` is the length along their lines where these meet, else NaN.
+    """
+
+    start: Endpoint
+    goal: Endpoint
+    bound: float
+    shared: float
+
+    @classmethod
+    def of(cls, start: Endpoint, goal: Endpoint, seas: Seaways) -> _Pair:
+        a, b = start.approach, goal.approach
+        if a is not None and b is not None:
+            line = line_between(a, b, legs_blocked=seas.chart.legs_blocked)
+            if line is not None:
+                return cls(start, goal, line_length(line), line_length(line))
+        apart = float(distance(start.lat, start.lon, goal.lat, goal.lon))
+        return cls(start, goal, _of_lines(start, goal) + apart, math.nan)
+
+    def length(self, seas: Seaways) -> float:
+        """Return the distance [m]; inf where there is no way through the canals of the lines."""
+        if not math.isnan(self.shared):
+            return self.shared
+        with contextlib.suppress(NoRouteError):
+            path = seas.graph_path(self.start, self.goal)
+            at_sea, passed = path_length_and_canals(seas.chart, path)
+            wanted = {
+                canal.title
+                for canal in seas.chart.canals
+                for end in (self.start, self.goal)
+                if end.approach is not None and end.approach.canal == canal.name
+            }
+            if wanted <= set(passed):
+                return _of_lines(self.start, self.goal) + at_sea
+        return math.inf
+
+
+def _of_lines(*ends: Endpoint) -> float:
+    return sum(end.approach.length for end in ends if end.approach is not None)

@@ -1,0 +1,121 @@
+"""Voyages leave the approaches of their ports where the way onwards begins."""
+
+import functools
+
+import numpy as np
+import pytest
+
+import thalweg
+from thalweg import Chart, Sea, Ship, Voyage
+from thalweg.chart.approaches import PORT_APPROACHES
+from thalweg.chart.ports import PORTS
+from thalweg.core.units import KNOT, NAUTICAL_MILE
+from thalweg.planning.network_selection.way_choice import with_chosen_ways
+from thalweg.planning.request.voyage_endpoints import resolve_places
+from thalweg.planning.sea_distance import sea_distance
+from thalweg.planning.seaways import Seaways, world_chart
+
+#: Miles as tables quote them, and the tolerance; by the line that the ship takes.
+TABLES = [
+    ("Hamburg", "Kiel", 95, 0.09),  # Hamburg to Brunsbüttel 37, canal 53, Holtenau to Kiel 3
+    ("Hamburg", "Gdansk", 427, 0.02),
+    ("Bremerhaven", "Gothenburg", 365, 0.05),
+    ("Kobe", "Busan", 366, 0.05),
+    ("Osaka", "Busan", 372, 0.05),
+    ("Bergen", "Trondheim", 338, 0.05),
+    ("Antwerp, BE", "Rotterdam", 119, 0.07),
+    ("Baltimore", "Norfolk", 172, 0.04),
+    ("Buenos Aires", "Montevideo", 123, 0.05),
+    ("Stockholm", "Helsinki", 236, 0.03),
+    # along one river or bay
+    ("Hamburg", "Brunsbuttel Canal Terminals", 37, 0.07),
+    ("Houston", "Galveston", 45, 0.05),
+    ("Montreal", "Quebec", 139, 0.05),
+    ("Baltimore", "Philadelphia", 97, 0.05),
+    ("Buenos Aires", "La Plata", 35, 0.05),
+]
+
+
+@functools.cache
+def chart():
+    return Chart.gshhg("i")
+
+
+@functools.cache
+def ship():
+    return Ship.load("handysize-bulker")
+
+
+@functools.cache
+def planned(start, goal, **options):
+    voyage = Voyage(start=start, goal=goal, depart="2024-01-01T00:00Z", **options)
+    return thalweg.plan(voyage, ship=ship(), sea=Sea.calm(), chart=chart(), proof=0.0)
+
+
+@functools.cache
+def seas(*avoided):
+    return Seaways.of_chart(world_chart(), avoided)
+
+
+def chosen(start, goal, *avoided, draught=0.0):
+    ends = resolve_places(start, (), goal, chart())
+    ends = with_chosen_ways(ends, lambda: seas(*avoided), draught=draught)
+    return [end.approach.way for end in ends]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("start", "goal", "miles", "tolerance"), TABLES)
+def test_distances_of_river_ports_and_inland_seas(start, goal, miles, tolerance):
+    assert sea_distance(start, goal).nm == pytest.approx(miles, rel=tolerance)
+
+
+@pytest.mark.slow
+def test_the_way_follows_the_canals_that_are_open():
+    assert chosen("Hamburg", "Kiel") == ["to the Kiel Canal", "to the Kiel Canal"]
+    assert chosen("Hamburg", "Kiel", "kiel") == ["", ""]
+    assert chosen("Hamburg", "New York") == ["", ""]
+    assert sea_distance("Hamburg", "Kiel", avoid=["kiel"]).nm > 400.0
+    there, back = sea_distance("Hamburg", "Kiel"), sea_distance("Kiel", "Hamburg")
+    assert there.nm == pytest.approx(back.nm, rel=0.005)
+
+
+@pytest.mark.slow
+def test_the_way_follows_the_goal_and_the_draught():
+    assert chosen("Bergen", "Trondheim") == ["by Fedjeosen", ""]
+    assert chosen("Bergen", "Rotterdam") == ["", ""]
+    assert chosen("Antwerp, BE", "Rotterdam", draught=7.0) == ["by Oostgat", ""]
+    assert chosen("Antwerp, BE", "Rotterdam", draught=9.5) == ["", ""]
+
+
+@pytest.mark.slow
+def test_via_points_choose_the_ways_of_their_own_side():
+    ends = resolve_places("Bergen", [(62.5, 4.5)], "Bergen", chart())
+    ends = with_chosen_ways(ends, seas)
+    assert [end.approach and end.approach.way for end in ends] == [
+        "by Fedjeosen", None, "by Fedjeosen",
+    ]  # fmt: skip
+
+
+def test_without_a_choice_no_seaways_are_asked_for():
+    ends = resolve_places("Santos", (), "Durban", chart())
+    assert with_chosen_ways(ends, pytest.fail) == ends
+
+
+@pytest.mark.slow
+def test_a_plan_leaves_the_elbe_for_the_canal():
+    plan = planned("Hamburg", "Kiel")
+    route = plan.best
+    kind = np.asarray(route.legs["leg_kind"])
+    assert route.feasible
+    assert route.distance_nm == pytest.approx(102.0, abs=2.0)
+    assert (kind == 1).sum() == 1
+    assert route.track.lon.min() > 9.0  # never west of Brunsbüttel
+    lines = [PORT_APPROACHES.of(PORTS.lookup(name)) for name in ("Hamburg", "Kiel")]
+    assert route.track.positions[0] == pytest.approx(lines[0].berth)
+    assert route.track.positions[-1] == pytest.approx(lines[1].berth)
+    near = kind == 2
+    time = route.legs["arrive"] - route.legs["depart"]
+    assert route.legs["length"][near].sum() / NAUTICAL_MILE == pytest.approx(46.5, abs=1.5)
+    assert time[near].sum() == pytest.approx(route.legs["length"][near].sum() / (10.0 * KNOT))
+    assert plan.lower_bound <= plan.objective_value
+    assert "out of Hamburg, DE along its approach to the Kiel Canal" in " ".join(plan.notes)
