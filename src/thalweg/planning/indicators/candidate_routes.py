@@ -45,7 +45,7 @@ from thalweg.planning.network_selection.route_alternatives import RouteAlternati
 from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.pareto.exploration import fastest_in_known_water, network_pareto_front
 from thalweg.planning.pareto.front_points import track_from_front_point
-from thalweg.planning.pareto.search_horizon import SearchHorizon, extend_horizon
+from thalweg.planning.pareto.search_horizon import extend_horizon
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
 from thalweg.planning.pareto.trade_off_planner import with_trade_off
 from thalweg.planning.pareto.weighted_sums import (
@@ -172,7 +172,6 @@ class _Candidates:
         self.routes: list[Route] = []
         self.notes: list[str] = []
         self.best: dict[str, Route] = {}
-        self.horizon: SearchHorizon | None = None  # of the first key figure, for all of them
 
     @property
     def stopped(self) -> bool:
@@ -237,13 +236,8 @@ class _Candidates:
     def _front(self, network: Network, objective: Objective) -> list[Track]:
         """Return the cheapest track of the front of time and an objective, and that at its knee."""
         own = with_objective(self.trade_off, objective)
-<<<<<<< HEAD
         horizon = extend_horizon(own, network)
         front = network_pareto_front(own, network, horizon.frozen, horizon.latest)
-=======
-        self.horizon = horizon = self.horizon or extend_horizon(own, network)
-        front = network_pareto_front(own, network, horizon.frozen, horizon.latest, lower=False)
->>>>>>> main
         points = sorted(front.points, key=lambda point: point.time)
         if not points:
             why = " and ".join(front.refused) or "too late for the period of the data"
