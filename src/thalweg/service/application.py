@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import os
+import threading
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -37,7 +38,7 @@ with an id; `GET /api/v1/plans/{id}/events` streams the progress, `GET /api/v1/p
 returns `plan.json`. Every request states the token: `Authorization: Bearer TOKEN`. Errors are
 problem details (RFC 9457) with `asked`, `possible`, `remedy` and `field`. Not for navigation."""
 
-
+_SECONDS_BEFORE_PLACES: Final = 4.0  # the page is drawn first
 #: Requests at work at the same time: many may wait for a worker while others are answered.
 _THREADS: Final = 200
 
@@ -124,9 +125,13 @@ def create_application(settings: ServiceSettings) -> FastAPI:
         state.changes.attach()
         current_default_thread_limiter().total_tokens = _THREADS
         state.runner.start()
+        places = threading.Timer(_SECONDS_BEFORE_PLACES, state.load_places)
+        places.daemon = True
+        places.start()
         try:
             yield
         finally:
+            places.cancel()
             state.close()
 
     application = FastAPI(

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Final
 
 from fastapi import Depends, Request
 
-from thalweg.core.errors import InputError
+from thalweg.core.errors import InputError, ThalwegError
 from thalweg.service.coast_map import remove_old_drafts
 from thalweg.service.jobs.job_runner import JobRunner
 from thalweg.service.jobs.job_store import JobStore
@@ -100,6 +100,7 @@ class ServiceState:
         self.map_worker = WorkerClient(limits.worker_seconds)
         self.file_worker = WorkerClient(limits.worker_seconds)
         self.download_worker = WorkerClient(limits.worker_seconds)
+        self.place_worker = WorkerClient(limits.worker_seconds)
 
     def files_of(self, request: dict[str, Any]) -> dict[str, str]:
         """Return the paths of the uploaded files that a request names, by their ids."""
@@ -129,12 +130,18 @@ class ServiceState:
 
         return (*library_names(), *plugin_names())
 
+    def load_places(self) -> None:
+        """Load the coast that the places of requests are checked on, before it is needed."""
+        with contextlib.suppress(ThalwegError):
+            self.place_worker.do("check_places")
+
     def close(self) -> None:
         """End all processes and close the files."""
         self.runner.stop()
         self.map_worker.close()
         self.file_worker.close()
         self.download_worker.close()
+        self.place_worker.close()
         self.store.close()
         if self._lock is not None:
             os.close(self._lock)

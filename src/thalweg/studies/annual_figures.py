@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import pandas as pd
 
 from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError
@@ -21,6 +20,9 @@ from thalweg.ship.methods.engine.european_charges import (
     voyage_share_between,
 )
 from thalweg.ship.performance_sheet import carbon_intensity_of
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 _ENTRIES: Final = {
     "port_h": (0.0, 8760.0),
@@ -122,6 +124,8 @@ def annual_figures(
             "cii_rating": rating and rating["rating"],
         }
         found.append(row | european_charges_of_year(group, trips, ship, annual))
+    import pandas as pd
+
     return pd.DataFrame(found)
 
 

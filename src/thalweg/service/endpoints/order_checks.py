@@ -12,10 +12,7 @@ from thalweg.core.given_numbers import shortened_repr
 from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import KNOT
 from thalweg.operations.dredging import Project
-from thalweg.planning.compile_kernels import search_is_compiled
 from thalweg.planning.request.ordered_speed import with_exact_speed, with_order
-from thalweg.planning.request.voyage_endpoints import resolve_places
-from thalweg.planning.request.voyage_surroundings import chart_of_entries
 from thalweg.planning.voyage import Voyage
 from thalweg.service.jobs.named_uploads import ESTUARY, named_uploads
 from thalweg.service.jobs.plan_request import EvaluationRequest, PlanRequest, ShipAndSea
@@ -25,7 +22,6 @@ from thalweg.service.problem_details import ServiceError
 from thalweg.service.service_state import ServiceState
 from thalweg.studies import Study
 
-_QUICK_COASTS = ("c", "l", "i")  # loaded in a fraction of a second
 _WITHOUT_TIMES = ("sea_floor_depth",)  # begins the names of variables that do not change
 
 
@@ -77,7 +73,7 @@ def check_plan_order(request: PlanRequest, voyage: Voyage, state: ServiceState) 
     InputError : If a place cannot be reached on the chart, or the ship does not have the speed.
     OutsidePeriodError : If no sea has data at the departure.
     """
-    _check_places(request, voyage)
+    state.place_worker.do("check_places", request=request.model_dump(mode="json"))
     if voyage.speed_kn is not None:
         with errors_about("speed_kn"):
             with_order(open_ship_of(request, _ship_files(request.ship, state)), voyage)
@@ -196,17 +192,6 @@ def _ship_files(ship: str, state: ServiceState) -> dict[str, str]:
     if ship in state.library_ships:
         return {}
     return {ship: str(state.ships.get(ship).path)}
-
-
-def _check_places(request: PlanRequest, voyage: Voyage) -> None:
-    """Check that the places of a voyage are at sea or near it, as the plan does.
-
-    Fine coastlines, and kernels that are not compiled yet, take long: the job checks these.
-    """
-    if request.coast in _QUICK_COASTS and search_is_compiled():
-        areas = [request.areas] if request.areas else []
-        chart = chart_of_entries(request.coast, areas=areas)
-        resolve_places(voyage.start, voyage.via, voyage.goal, chart)
 
 
 def _check_period(

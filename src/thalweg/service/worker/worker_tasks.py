@@ -1,4 +1,4 @@
-"""The tasks of the worker process: frames, coast cells, inspections, imports, ship sheets."""
+"""The tasks of the worker process: frames, coast cells, inspections, imports, sheets, places."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 TaskResult = tuple[dict[str, Any], bytes]
 FRAME_HEADER: Final = struct.Struct("<4sHHHHf4f")  #: magic, nx, ny, fields, 0, scale, box
+_QUICK_COASTS: Final = ("c", "l", "i")  # loaded in a fraction of a second
 UNKNOWN: Final = -32768  #: an unknown value in a frame
 
 
@@ -252,6 +253,35 @@ def forecast_size(task: Mapping[str, Any]) -> TaskResult:
     }, b""
 
 
+def check_places(task: Mapping[str, Any]) -> TaskResult:
+    """Check that the places of a voyage are at sea or near it, as the plan does.
+
+    Fine coastlines, and kernels that are not compiled yet, take long: the job checks these.
+
+    Parameters
+    ----------
+    task : mapping
+        ``request``, a `PlanRequest` as plain data; without it only the coast is loaded.
+    """
+    from thalweg.planning.compile_kernels import search_is_compiled
+    from thalweg.planning.request.voyage_endpoints import resolve_places
+    from thalweg.planning.request.voyage_surroundings import chart_of_entries
+    from thalweg.service.jobs.plan_request import PlanRequest
+
+    if not search_is_compiled():
+        return {}, b""
+    if "request" not in task:
+        resolve_places((47.0, -20.0), (), (47.3, -19.5), chart_of_entries("i"))
+        return {}, b""
+    request = PlanRequest.model_validate(task["request"])
+    if request.coast in _QUICK_COASTS:
+        voyage = request.checked_voyage()
+        areas = [request.areas] if request.areas else []
+        chart = chart_of_entries(request.coast, areas=areas)
+        resolve_places(voyage.start, voyage.via, voyage.goal, chart)
+    return {}, b""
+
+
 TASKS: Final[Mapping[str, Callable[[Mapping[str, Any]], TaskResult]]] = {
     "frame": frame,
     "chart_depth": chart_depth,
@@ -262,4 +292,5 @@ TASKS: Final[Mapping[str, Callable[[Mapping[str, Any]], TaskResult]]] = {
     "ship_sheet": ship_sheet,
     "coast_cells": coast_cells,
     "forecast_size": forecast_size,
+    "check_places": check_places,
 }
