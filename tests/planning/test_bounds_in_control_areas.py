@@ -40,10 +40,18 @@ def planned(zone):
 
 
 @pytest.mark.parametrize(
-    ("zone", "inside"), [(area(-3.0, 4.5), LENGTH), (area(-0.8, 0.6), 0.3 * LENGTH)]
+    ("zone", "inside"),
+    [
+        (area(-3.0, 4.5), LENGTH),
+        ({"type": "FeatureCollection", "features": [area(-3.0, 0.3), area(0.3, 4.5)]}, LENGTH),
+        (area(-0.8, 0.6), 0.3 * LENGTH),
+    ],
 )
 def test_the_bound_is_the_cost_at_the_prices_along_the_way(zone, inside):
-    """The first ring is out of reach; the second is left after 0.6 degrees, or 0.8 westwards."""
+    """The first ring is out of reach, also where two areas make it up, which adjoin at sea.
+
+    The last is left after 0.6 degrees, or 0.8 westwards.
+    """
     found = planned(zone)
     rate = 24.0 / 86400.0 * (8.0 / 12.0) ** 3 / (8.0 * KNOT)  # [t/m] at the cheapest speed
     cost = 500.0 * rate * (LENGTH + 0.6 * inside)

@@ -10,9 +10,10 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.chart.zones.leg_fractions import outlines_only
+from thalweg.chart.zones.zone_set import Zones
 from thalweg.core.geodesy import METRES_PER_DEGREE, distance
 from thalweg.core.pareto_fronts import lower_hull
-from thalweg.core.types import FloatArray
+from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import HOUR
 from thalweg.kernels import codes
 from thalweg.kernels.geometry.coast_index import outlines_touched
@@ -34,6 +35,7 @@ _CURRENT_UNKNOWN = (
 )
 _NOTHING_LEAST = "no bound: the least that the data allow is zero"
 _OUTLINE_STEP = 0.05  # between positions on the outlines of control areas [deg]
+_BESIDE_OUTLINE = 1e-4  # [deg]
 _SECONDS = 2.0  # for the bound of the length, by default
 
 
@@ -131,7 +133,8 @@ def certain_front(trade_off: TradeOffContext, length: float, current: float) -> 
 def _least_to_leave(chart: Chart, end: Endpoint) -> float:
     """Return a length [m] that no way out of the control areas is shorter than; 0 outside them.
 
-    A ship leaves them where their outline is in water, or through a canal that leads out.
+    A ship leaves them where an outline is in water and no other area is beyond it, or through a
+    canal that leads out.
     """
     zones = chart.zones
     if not bool(zones.in_eca(end.lat, end.lon)):
@@ -151,7 +154,8 @@ def _least_to_leave(chart: Chart, end: Endpoint) -> float:
             outlines_touched(coast, *(np.ascontiguousarray(x) for x in ends), shore)
             land = np.asarray(chart.coastline.shore_distance(lat[:-1], lon[:-1], cap=1.0)) <= 0.0
             away = np.asarray(distance(end.lat, end.lon, lat, lon))
-            near = np.minimum(away[:-1], away[1:])[shore | ~land]
+            leads_out = (shore | ~land) & ~_between_areas(zones, *ends)
+            near = np.minimum(away[:-1], away[1:])[leads_out]
             least = min(least, float(np.min(near, initial=math.inf)))
     least -= 0.5 * _OUTLINE_STEP * METRES_PER_DEGREE
     for canal in chart.canals:
@@ -160,6 +164,17 @@ def _least_to_leave(chart: Chart, end: Endpoint) -> float:
         if inside.any() and not inside.all():
             least = min(least, float(np.min(distance(end.lat, end.lon, lat, lon))))
     return max(least, 0.0)
+
+
+def _between_areas(zones: Zones, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray,
+                   lon2: FloatArray) -> BoolArray:  # fmt: skip
+    """Return on which pieces of outlines [deg] there are control areas on both sides."""
+    both = np.ones(len(lat1), np.bool_)
+    for share in (0.0, 0.5, 1.0):
+        lat, lon = lat1 + share * (lat2 - lat1), lon1 + share * (lon2 - lon1)
+        for north, east in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)):
+            both &= zones.in_eca(lat + _BESIDE_OUTLINE * north, lon + _BESIDE_OUTLINE * east)
+    return both
 
 
 def certified_length(trade_off: TradeOffContext, routes: Sequence[Route]) -> float:
