@@ -125,6 +125,22 @@ def test_a_former_name_does_not_outvote_a_port_of_that_name():
         PORTS.lookup("San Pedro")
 
 
+@pytest.mark.parametrize(
+    ("text", "locode"),
+    [
+        ("Aberdeen", "GBABD"),  # medium against small
+        ("Port Stanley", "FKPSY"),  # not the one on Lake Erie
+        ("Port Stanley, CA", "CAPST"),
+        ("Hamilton", "BMBDA"),  # the larger one on Lake Ontario cannot be reached
+        ("Hamilton, Canada", "CAHAM"),
+        ("Windsor", "CAWDR"),
+        ("Windsor, Lake Erie", "CAWND"),
+    ],
+)
+def test_ports_that_are_reached_from_the_sea_and_larger_ones_come_first(text, locode):
+    assert PORTS.lookup(text).locode == locode
+
+
 def test_a_country_is_not_a_port():
     with pytest.raises(InputError, match="it is a country") as caught:
         PORTS.lookup("Panama")

@@ -24,8 +24,10 @@ from thalweg.core.units import NAUTICAL_MILE
 #: Points for the harbour size of the World Port Index ("" is unknown). Each linked country adds
 #: one point.
 SIZE_POINTS: Final = {"large": 40, "medium": 12, "small": 4, "very small": 1, "": 1}
-#: A port is clearly larger than another if it has this many times its points.
+#: A port is clearly larger than another if it has this many times its points,
 CLEARLY_LARGER: Final = 4.0
+#: or this many times those of a port without liner connections (medium against small).
+CLEARLY_LARGER_HARBOUR: Final = 3.0
 #: Ports of one name and country within this distance [m] are parts of one port.
 SAME_PORT: Final = 15.0 * NAUTICAL_MILE
 #: Most ports that a message lists.
@@ -100,6 +102,13 @@ class Ports:
         return [(_port_from_row(r), r.get("alternate_names", "")) for t in tables for r in t]
 
     @cached_property
+    def _not_reached(self) -> frozenset[Port]:
+        """The ports that cannot be reached from the sea: they have no approach in the table."""
+        rows = _packed_table("port_approaches.csv.gz")
+        keys = {(r["unlocode"], r["name"], r["country_code"]) for r in rows if not r["line"]}
+        return frozenset(p for p in self.all if (p.locode, p.name, p.country_code) in keys)
+
+    @cached_property
     def _by_locode(self) -> dict[str, Port]:
         return {port.locode: port for port in self.all if port.locode}
 
@@ -136,7 +145,8 @@ class Ports:
         Names are "Rotterdam", "Rotterdam, NL", "Rotterdam, Netherlands" or, with a region of the
         World Port Index, "Sydney, Cape Breton Island". Case and accents do not matter, but a
         UN/LOCODE in small letters that is also a name is taken as a name. Of several ports of one
-        name the answer is the one that is clearly larger than all others (by `CLEARLY_LARGER`).
+        name the answer is the one that is clearly larger than all others (by `CLEARLY_LARGER`);
+        without a country or region, ports that can be reached from the sea come before all others.
         A former or local name of the World Port Index counts only where no port has it as its own
         name; if it belongs to a clearly larger port, the name is ambiguous.
 
@@ -165,6 +175,8 @@ class Ports:
     def _named(self, text: str) -> dict[Port, bool]:
         """Return the ports of a name, with or without its country or region."""
         found = self._with_name(text)
+        if len(found) > 1:
+            found = {p: own for p, own in found.items() if p not in self._not_reached} or found
         if not found and "," in text:
             name, _, place = text.rpartition(",")
             named = self._with_name(name)
@@ -226,12 +238,18 @@ def _clearly_largest(named: Mapping[Port, bool], text: str) -> Port:
     ]
     leader = (own or former)[0]
     points = leader.importance
-    rivals = [port for port in own or former if port.importance * CLEARLY_LARGER > points]
+    rivals = [port for port in own or former if _lead_needed(port) > points]
     if own:
         rivals += [port for port in former if port.importance > CLEARLY_LARGER * points]
     if rivals != [leader]:
         raise _ambiguous(text, _by_importance([*own, *former]))
     return leader
+
+
+def _lead_needed(port: Port) -> float:
+    """Return the points from which on another port is clearly larger."""
+    times = CLEARLY_LARGER if port.country_links else CLEARLY_LARGER_HARBOUR
+    return port.importance * times
 
 
 def _ambiguous(text: str, found: Sequence[Port]) -> InputError:
