@@ -250,5 +250,5 @@ def test_ready_studies_are_requests_that_start(client):
     assert {"season", "speeds", "step-length"} <= {one["name"] for one in found}
     one = next(one for one in found if one["name"] == "network-fidelity")
     answer = client.post("/api/v1/studies", json=one["request"])
-    assert answer.status_code == 202 and one["voyages"] == 5
+    assert answer.status_code == 202 and one["voyages"] == 6
     client.delete(f"/api/v1/plans/{answer.json()['id']}")

@@ -12,7 +12,7 @@ from thalweg.core.errors import NoRouteError
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT
-from thalweg.network import shortest_path
+from thalweg.network import EdgeWeights, shortest_path
 from thalweg.planning.pareto.baseline import (
     compare_with_baseline,
     constant_speed_tracks,
@@ -155,7 +155,9 @@ def _weather_blind_routes(
     if trade_off.interrupt_guard.stopped():
         return []
     network = min((one.alternative.network for one in explored), key=shortest_path_length)
-    _, path = shortest_path(network, network.meta.start, network.meta.goal)
+    weight = EdgeWeights.penalised(network, trade_off.context.chart).weight
+    ends = network.meta.start, network.meta.goal
+    _, path = shortest_path(network, *ends, weight=weight, per_metre=1.0)
     trade_off.context.report_progress("evaluating the weather-blind route")
     tracks = weather_blind_tracks(
         trade_off.context, network.lat[path], network.lon[path], trade_off.settings

@@ -36,6 +36,17 @@ export function inOrderOfTime(plan) {
 
 const worst = (profile, column) => { const values = (profile?.[column] || []).filter(known); return values.length ? Math.max(...values) : null; };
 
+// The prices of a cost, and what it leaves out.
+function pricesText(prices) {
+  const fuel = prices?.fuel_per_t?.value, dear = prices?.fuel_in_eca_per_t?.value;
+  if (!known(fuel)) return "";
+  const parts = [`fuel ${number(fuel)}${known(dear) && dear !== fuel ? `, ${number(dear)} in control areas` : ""}`];
+  const hour = prices.time_per_day?.value;
+  parts.push(hour > 0 ? `time ${number(hour)} a day` : "no price of time");
+  if (prices.european_charges?.not_counted?.length) parts.push("no EU charges");
+  return parts.join("; ");
+}
+
 export class ResultView {
   constructor(result, handlers) {
     this.result = result;
@@ -89,7 +100,7 @@ export class ResultView {
       card("Time", durationParts(route.time_h), null, complete ? than(route.time_h, beside.time_h, signedDuration) : null),
       card("Arrival, UTC", time(seconds(route.arrive)), null, known(route.waiting_h) && route.waiting_h > 0 ? `waits ${duration(route.waiting_h)}` : null),
       card("Fuel", number(route.fuel_t, 1), "t", complete ? than(route.fuel_t, beside.fuel_t, (d) => `${signed(d)} t`) : null),
-      card("Cost", number(cost), route.currency, complete ? than(cost, other, (d) => `${signed(d, 0)}`) : null),
+      card("Cost", number(cost), route.currency, [complete ? than(cost, other, (d) => `${signed(d, 0)}`) : null, known(cost) ? h("span.prices", {}, pricesText(route.prices)) : null]),
       card("Distance", number(route.distance_nm, 1), "nm", known(route.time_h) ? `mean ${number(route.distance_nm / route.time_h, 1)} kn` : null),
       card("CO₂", number(route.co2_t, 0), "t"),
       calm ? assumed : card("Highest waves", number(waves, 1), "m", known(besideWaves) && known(waves) ? `weather ignored: ${number(besideWaves, 1)} m` : known(waves) ? null : "no waves in the data"),
@@ -160,6 +171,6 @@ export class ResultView {
       job.kind === "plan" ? h("a.quiet.small", { href: resultAddress(job.id), download: "plan.json" }, "plan.json") : job.kind === "alternatives" ? h("a.quiet.small", { href: resultAddress(job.id), download: "alternatives.json" }, "alternatives.json") : null,
       h("button.quiet.small", { type: "button", onclick: this.handlers.print }, "Print a brief"),
       h("button.quiet.small", { type: "button", onclick: this.handlers.link }, "Copy link")),
-    h("p.facts", {}, `Route ${number_}. Great circles of the table of legs are written into route files as short rhumb lines, so these have more waypoints. Check the route against official charts and notices before use.`));
+    h("p.facts", {}, `Route ${number_}. Route files have waypoints of their own: great circles as short rhumb lines, and none where the course does not change. Their numbers are not those of the table of legs. Check the route against official charts and notices before use.`));
   }
 }
