@@ -11,6 +11,7 @@ from xarray.backends import BackendArray
 from xarray.core import indexing
 
 from tests.sea.small_datasets import EAST, HS, NORTH, T0, affine, axis, clock, mesh, regular, value
+from thalweg.core.errors import DatasetError
 from thalweg.kernels import codes
 from thalweg.sea import Sea
 from thalweg.sea.grids.triangle_grid import TriangleGrid
@@ -90,6 +91,25 @@ def test_a_regional_grid_over_the_dateline() -> None:
     assert value(sea, HS, T0, 11.0, 179.5) == pytest.approx(0.5 * (field[1] + field[2]))
     assert value(sea, HS, T0, 11.0, -179.5) == pytest.approx(0.5 * (field[2] + field[3]))
     assert np.isnan(value(sea, HS, T0, 11.0, 177.9))
+
+
+@pytest.mark.parametrize("step", [1, -1])
+def test_a_box_over_greenwich_with_its_east_first(tmp_path, step) -> None:
+    """0 to 3 and then 355 to 359 degrees, as a box cut from a file of 0 to 360 degrees holds."""
+    lon = [0.0, 1.0, 2.0, 3.0, 355.0, 356.0, 357.0, 358.0, 359.0][::step]
+    dataset = regular(lon=lon, field=lambda t, y, x: 5.0 + (x + 180.0) % 360.0 / 100.0 + 0 * t + y)
+    dataset.to_netcdf(tmp_path / "box.nc")
+    sea = Sea.open(tmp_path / "box.nc")
+    (box,) = sea.coverage()
+    assert (box.west % 360.0, box.east % 360.0) == (355.0, 3.0)
+    for x in (-5.0, -4.5, -0.5, 0.0, 2.5, 3.0):
+        assert value(sea, HS, T0, 11.0, x) == pytest.approx(5.0 + (x + 180.0) / 100.0 + 11.0)
+    assert np.isnan(value(sea, HS, T0, 11.0, 3.5))
+
+
+def test_two_boxes_that_do_not_meet_are_not_one_grid() -> None:
+    with pytest.raises(DatasetError, match="neither increases nor decreases"):
+        Sea.open(regular(lon=[0.0, 1.0, 2.0, 300.0, 301.0, 302.0]))
 
 
 def test_nan_corner_with_weight_makes_nan_and_without_weight_does_not() -> None:

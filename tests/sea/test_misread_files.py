@@ -12,6 +12,7 @@ from tests.sea.small_datasets import EAST, HS, NORTH, T0, regular, value
 from thalweg.core.errors import DatasetError
 from thalweg.core.time import parse_time
 from thalweg.sea import Sea
+from thalweg.sea.doubtful_values import doubts_of_files
 from thalweg.ship.methods.seakeeping.wave_spectra import jonswap
 
 LEVEL, DEPTH = "sea_surface_height_above_geopotential_datum", "sea_floor_depth_below_geoid"
@@ -310,3 +311,23 @@ def test_times_beyond_2262_are_read() -> None:
     data = regular()
     data["time"] = ("time", [0.0, 1.0, 2.0], {"units": "hours since 2300-01-01"})
     assert Sea.open(data).coverage()[0].start == parse_time("2300-01-01T00:00Z")
+
+
+def test_directions_that_look_like_radians_and_waves_of_centimetres_raise_a_doubt() -> None:
+    lat, lon = np.arange(50.0, 57.0), np.arange(0.0, 7.0)
+    fields = {"mwd": {"units": "degrees", "long_name": "mean wave direction from"}}
+    degrees = regular(lat, lon, fields=fields, field=lambda t, y, x: 60.0 * x + 0.0 * (t + y))
+    radians = regular(lat, lon, fields=fields, field=lambda t, y, x: 1.01 * x + 0.0 * (t + y))
+    north = regular(lat, lon, fields=fields, field=same(0.0))
+    assert not Sea.open(degrees).describe().warnings
+    assert not Sea.open(north).describe().warnings
+    (warning,) = Sea.open(radians).describe().warnings
+    assert "look like radians" in warning
+    (warning,) = Sea.open(regular(lat, lon, field=same(0.025))).describe().as_dict()["warnings"]
+    assert "higher than 0.025 m" in warning
+    assert not Sea.open(regular(lat, lon, field=same(0.0))).describe().warnings
+    y, x = (a.ravel() for a in np.meshgrid(lat, lon))
+    layers = Sea.open(radians).layers
+    assert len(doubts_of_files(layers, np.array([T0, T0 + 3600.0, T0 + 7200.0]), y, x)) == 1
+    assert not doubts_of_files(layers, np.array([T0]), y, x)  # too few values
+    assert not doubts_of_files(Sea.storm().layers, np.array([T0]), y, x)  # no file

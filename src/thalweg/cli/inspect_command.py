@@ -82,6 +82,8 @@ def _print_inspection(inspection: dict[str, Any]) -> None:
             print(f"    {variable}{values}{share}")
     for gap in inspection["gaps"]:
         print(f"Gap: no data from {gap['after']} to {gap['before']}")
+    for warning in inspection["warnings"]:
+        print(f"Warning: {warning}")
     for row in inspection["ignored"]:
         print(f"Ignored {row['variable']}: {row['reason']}")
 

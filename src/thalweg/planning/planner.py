@@ -38,7 +38,11 @@ from thalweg.planning.request.chart_restrictions import (
     exclude_closed_canals,
     exclude_ice_latitudes,
 )
-from thalweg.planning.request.coverage_check import check_argument_types, endpoints_within_coverage
+from thalweg.planning.request.coverage_check import (
+    check_argument_types,
+    doubts_of_voyage,
+    endpoints_within_coverage,
+)
 from thalweg.planning.request.early_checks import check_request
 from thalweg.planning.request.lane_choice import add_traffic_schemes
 from thalweg.planning.request.network_choice import (
@@ -296,7 +300,9 @@ def voyage_context(
         ship=ship,
         sea=sea,
         chart=chart,
-        needs=replace(needs, notes=(*notes, *more, *needs.notes)),
+        needs=replace(
+            needs, notes=(*notes, *more, *doubts_of_voyage(voyage, sea, ends, needs), *needs.notes)
+        ),
         tables=ShipTables(performance_table_of(ship), ordered_setting(ship, voyage.speed_kn)),
         choice=choice,
     )

@@ -7,9 +7,11 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thalweg.core.time import format_time
 from thalweg.sea.coverage import Coverage
+from thalweg.sea.doubtful_values import doubts_of_values
 from thalweg.sea.ensemble_layer import member_count, select_member
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.grids.source_variables import GridWindow
@@ -17,6 +19,7 @@ from thalweg.sea.layer import Layer
 from thalweg.sea.recognition_record import RecognisedVariable
 
 SAMPLED_TIMES = 8  #: times at which the fraction of missing values is measured
+_MOST_VALUES = 20_000  # of each variable and time that are judged for a warning
 
 
 @dataclass(frozen=True)
@@ -49,6 +52,7 @@ class Inspection:
     ranges : mapping of str to (float, float)
         Least and greatest value [SI] at these times, by source and variable.
     gaps : Gaps in time axes; values are not interpolated across them.
+    warnings : Possible values that look like those of another unit.
     members : Size of the ensemble, of which the first member is reported; 0 for a single sea.
     """
 
@@ -58,6 +62,7 @@ class Inspection:
     missing: dict[str, float]
     ranges: dict[str, tuple[float, float]]
     gaps: tuple[DataGap, ...]
+    warnings: tuple[str, ...] = ()
     members: int = 0
 
     def as_dict(self) -> dict[str, Any]:
@@ -69,6 +74,7 @@ class Inspection:
             "missing_fraction": dict(self.missing),
             "ranges": {name: list(pair) for name, pair in self.ranges.items()},
             "gaps": [asdict(g) for g in self.gaps],
+            "warnings": list(self.warnings),
             "members": self.members,
         }
         for row in plain["coverage"]:
@@ -97,8 +103,11 @@ def inspect_layers(layers: Sequence[Layer]) -> Inspection:
     gridded = [layer for layer in single if isinstance(layer, GridLayer)]
     missing: dict[str, float] = {}
     ranges: dict[str, tuple[float, float]] = {}
+    warnings: list[str] = []
     for layer in gridded:
-        for name, (share, low, high) in _value_ranges(layer).items():
+        found, some = _value_ranges(layer)
+        warnings += [f"{layer.source}: {text}" for text in doubts_of_values(some)]
+        for name, (share, low, high) in found.items():
             missing[f"{layer.source}: {name}"] = share
             if low <= high:
                 ranges[f"{layer.source}: {name}"] = (low, high)
@@ -110,6 +119,7 @@ def inspect_layers(layers: Sequence[Layer]) -> Inspection:
         missing,
         ranges,
         data_gaps(single),
+        tuple(warnings),
         members,
     )
 
@@ -129,12 +139,15 @@ def data_gaps(layers: Sequence[Layer]) -> tuple[DataGap, ...]:
     )
 
 
-def _value_ranges(layer: GridLayer) -> dict[str, tuple[float, float, float]]:
-    """Return the fraction of grid points without a value, and the range, by variable."""
+def _value_ranges(
+    layer: GridLayer,
+) -> tuple[dict[str, tuple[float, float, float]], dict[str, NDArray[Any]]]:
+    """Return the fraction of grid points without a value and the range, and some values."""
     rows, columns = layer.grid.shape
     count = max(1, layer.axis.times.size)
     levels = np.unique(np.linspace(0, count - 1, SAMPLED_TIMES).round().astype(int))
     ranges: dict[str, list[tuple[float, float, float]]] = {}
+    some: dict[str, list[NDArray[Any]]] = {}
     for level in levels:
         window = GridWindow(int(level), int(level) + 1, 0, rows, 0, columns)
         for quantity in layer.quantities:
@@ -142,8 +155,11 @@ def _value_ranges(layer: GridLayer) -> dict[str, tuple[float, float, float]]:
                 low, high = np.nanmin(values, initial=np.inf), np.nanmax(values, initial=-np.inf)
                 share = float(np.isnan(values).mean())
                 ranges.setdefault(name, []).append((share, float(low), float(high)))
-    return {
+                stride = 1 + values.size // _MOST_VALUES
+                some.setdefault(name, []).append(values.reshape(-1)[::stride].copy())
+    found = {
         name: (float(np.mean(shares)), min(lows), max(highs))
         for name, values in ranges.items()
         for shares, lows, highs in [tuple(zip(*values))]
     }
+    return found, {name: np.concatenate(parts) for name, parts in some.items()}

@@ -12,7 +12,12 @@ from numpy.typing import NDArray
 from thalweg.chart import Chart
 from thalweg.chart.coast.snapping import joined_positions
 from thalweg.core.errors import InputError, NoRouteError, OutsideAreaError
-from thalweg.core.geodesy import distance, format_position, wrap_longitude
+from thalweg.core.geodesy import (
+    distance,
+    format_position,
+    unwrap_longitude,
+    wrap_longitude,
+)
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, NAUTICAL_MILE
@@ -21,6 +26,7 @@ from thalweg.planning.request.requirements import Requirements
 from thalweg.planning.request.voyage_endpoints import MAX_SNAP_PORT, Endpoint
 from thalweg.planning.voyage import Voyage
 from thalweg.sea import Sea, standard_names
+from thalweg.sea.doubtful_values import doubts_of_files
 from thalweg.sea.fill_policies import MAX_NEAREST, nearest_fills
 from thalweg.ship import Ship
 
@@ -28,6 +34,9 @@ _DIRECTIONS = ("sea_surface_wave_to_direction_east", "sea_surface_wave_to_direct
 #: Period that is checked where the data have no end [s].
 _MAX_PERIOD = 20 * 24 * HOUR
 _SAMPLE_TIMES = 24
+#: First part of a voyage in which wave data are judged for a warning [s].
+_DOUBT_PERIOD = 3 * 24 * HOUR
+_DOUBT_ROWS = 9  # rows and columns of positions judged
 _NEARBY = 10_000.0  # half the side of the first grid of water [m]
 _BLOCK = 1_000  # positions that are sampled together
 
@@ -74,6 +83,29 @@ def endpoints_within_coverage(
     """
     coverage_probe = _CoverageProbe(voyage=voyage, ship=ship, sea=sea, chart=chart, needs=needs)
     return [_moved_into_coverage(end, coverage_probe, chart) for end in ends]
+
+
+def doubts_of_voyage(
+    voyage: Voyage, sea: Sea, ends: Sequence[Endpoint], needs: Requirements
+) -> tuple[str, ...]:
+    """Return warnings of wave data between the ends of a voyage that look like another unit's.
+
+    Parameters
+    ----------
+    voyage, sea, ends : The request, its sea and its end points.
+    needs : Required variables; there is no warning of data that are not needed.
+    """
+    wanted = {standard_names.CHANNEL_VARIABLES[channel] for channel in needs.channels}
+    if not wanted.intersection((standard_names.WAVE_HEIGHT, *_DIRECTIONS)):
+        return ()
+    first = voyage.earliest_departure
+    lat = np.array([end.lat for end in ends])
+    lon = unwrap_longitude([end.lon for end in ends])
+    rows = np.linspace(max(lat.min() - 1.0, -90.0), min(lat.max() + 1.0, 90.0), _DOUBT_ROWS)
+    columns = np.linspace(lon.min() - 1.0, lon.max() + 1.0, _DOUBT_ROWS)
+    y, x = np.meshgrid(rows, columns)
+    times = np.linspace(first, min(needs.data_end, first + _DOUBT_PERIOD), 4)
+    return doubts_of_files(sea.layers, times, y.ravel(), wrap_longitude(x.ravel()))
 
 
 class _CoverageProbe:

@@ -139,8 +139,8 @@ def _placed_variable(
     array = vertical_levels.pick_surface(dataset, array, keep, chosen.role, source)
     has_time = time_dim in array.dims
     array = array.transpose(*([time_dim] if has_time else []), *deep, *place.dims)
-    if place.flipped:
-        array = array.isel({place.dims[1]: slice(None, None, -1)})
+    if place.order is not None:
+        array = array.isel({place.dims[1]: place.order})
     times = NO_TIMES if clock is None else time_coordinates.read_times(clock, source)
     if clock is not None and not has_time and clock.dims[0] != "one_time":
         times = NO_TIMES

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import DatasetError
-from thalweg.core.types import FloatArray
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.sea.files import coordinates as co
 from thalweg.sea.files import projections
 from thalweg.sea.files.ugrid import MeshLayout
@@ -30,7 +30,7 @@ class GridPlacement:
     dims : Dimensions of position, rows first.
     angle : Angle [rad] from true east to the direction of increasing column number (rows, columns);
         None if that is east.
-    flipped : Whether columns must be reversed on reading.
+    order : Columns of the file from west to east; None if they are stored in this order.
     mesh : For meshes, how values belong to grid points.
     """
 
@@ -38,7 +38,7 @@ class GridPlacement:
     grid: Grid
     dims: tuple[str, ...]
     angle: FloatArray | None = None
-    flipped: bool = False
+    order: slice | IntArray | None = None
     mesh: MeshLayout | None = None
 
 
@@ -91,18 +91,34 @@ def _coordinate_rank(array: Any, order: tuple[str, ...]) -> tuple[int, int]:
 
 def _rectilinear_grid(lat: Any, lon: Any, source: str) -> GridPlacement:
     y = _read_axis(lat, source, "latitude")
-    x = np.unwrap(_read_axis(lon, source, "longitude"), period=360.0)
+    stored = _read_axis(lon, source, "longitude")
+    x = np.unwrap(stored, period=360.0)
     co.check_no_radians(y, x, source)
     if np.abs(y).max() > 90.0 + 1e-6:
         raise _axis_fault(source, str(lat.name), f"reaches {y[np.argmax(np.abs(y))]:g} degrees")
-    flipped = x.size > 1 and x[1] < x[0]
-    x = x[::-1] if flipped else x
+    order = _west_to_east(stored, x)
+    x = x if order is None else x[order]
     for axis, name in ((np.sort(y) if _is_decreasing(y) else y, lat.name), (x, lon.name)):
         if (np.diff(axis) <= 0.0).any():
             raise _axis_fault(source, str(name), "neither increases nor decreases throughout")
     grid = RectilinearGrid(np.ascontiguousarray(y), np.ascontiguousarray(x))
     dims = (str(lat.dims[0]), str(lon.dims[0]))
-    return GridPlacement((*dims, str(lat.name), str(lon.name)), grid, dims, flipped=bool(flipped))
+    return GridPlacement((*dims, str(lat.name), str(lon.name)), grid, dims, order=order)
+
+
+def _west_to_east(stored: FloatArray, unwrapped: FloatArray) -> slice | IntArray | None:
+    """Return the order of columns from west to east; None if they need no other order.
+
+    A box over Greenwich cut from a file of 0 to 360 degrees may hold 0 to 12 and then 350 to 359.5:
+    it is sorted if its two parts meet.
+    """
+    if _is_decreasing(unwrapped):
+        return slice(None, None, -1)
+    order = np.argsort(unwrapped, kind="stable")
+    steps = np.diff(unwrapped[order])
+    is_monotonic = bool((np.diff(stored) > 0.0).all()) or _is_decreasing(stored)
+    is_cut = is_monotonic and bool((np.diff(unwrapped) < 0.0).any())
+    return order if is_cut and steps.max() < 2.0 * np.median(steps) else None
 
 
 def _is_decreasing(axis: FloatArray) -> bool:
