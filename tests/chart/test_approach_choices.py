@@ -97,6 +97,22 @@ def test_legs_along_branches_are_recognised():
         assert PORT_APPROACHES.legs(lat, lon).all()
 
 
+@pytest.mark.parametrize(
+    ("name", "by", "position", "miles"),
+    [
+        ("Surabaya", "by the Surabaya West Access Channel", (-7.068, 112.658), 15.1),
+        ("Fukuyama", "by Bisan Seto from Fukuyama", (34.310, 133.643), 21.6),
+        ("Matsuyama", "by Aki Nada from Matsuyama", (33.903, 132.614), 15.5),
+        ("Hiroshima", "by Aki Nada from Hiroshima Bay", (34.034, 132.560), 41.8),
+    ],
+)
+def test_second_ways_pass_their_waters(name, by, position, miles):
+    found = way(name, by)
+    line = dense_line(found.line)
+    assert distance(*position, line[:, 0], line[:, 1]).min() < 0.6 * NAUTICAL_MILE
+    assert found.length / NAUTICAL_MILE == pytest.approx(miles, abs=1.5)
+
+
 def test_no_way_leads_through_the_naruto_strait():
     naruto = 34.237, 134.652
     for name in ("Himeji", "Takamatsu", "Mizushima"):

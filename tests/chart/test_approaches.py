@@ -79,6 +79,7 @@ GATES = [
     ("New Orleans", 29.15, -89.25, 0.7),  # Head of Passes
     ("New Orleans", 28.93, -89.40, 0.7),  # Southwest Pass
     ("Baton Rouge", 29.95, -90.06, 0.7),  # New Orleans
+    ("Convent, US", 28.93, -89.40, 0.7),  # Southwest Pass
     ("Houston", 29.68, -94.985, 0.5),  # Morgans Point
     ("Houston", 29.36, -94.76, 1.5),  # Bolivar Roads
     ("Beaumont", 29.70, -93.85, 1.0),  # Sabine Pass
@@ -202,7 +203,8 @@ def test_ports_of_one_river_share_its_line():
         ("Rotterdam", "Hook of Holland", 14.0),  # km 1000 to km 1030 of the Rhine: 16.5 nm
         ("Antwerp, BE", "Vlissingen", 38.0),
         ("London", "Tilbury", 22.0),
-        ("New Orleans", "Baton Rouge", 81.0),
+        ("New Orleans", "Baton Rouge", 117.0),  # miles 95 to 230 of the Mississippi
+        ("New Orleans", "Convent, US", 56.5),  # miles 95 to 160
         ("Montreal", "Trois Rivieres", 66.0),
     ]
     for first, second, miles in pairs:

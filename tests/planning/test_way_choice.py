@@ -33,6 +33,8 @@ TABLES = [
     ("Montreal", "Quebec", 139, 0.05),
     ("Baltimore", "Philadelphia", 97, 0.05),
     ("Buenos Aires", "La Plata", 35, 0.05),
+    # by second entrances
+    ("Jakarta", "Surabaya", 385, 0.03),  # by the western channel, not round Madura
 ]
 
 
