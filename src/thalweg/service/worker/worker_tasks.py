@@ -17,6 +17,7 @@ from thalweg.core.types import FloatArray
 from thalweg.service.jobs.sea_facts import FRAME_VARIABLES, forecast_run, sea_facts
 
 if TYPE_CHECKING:
+    from thalweg.chart import Chart
     from thalweg.sea import Sea
 
 TaskResult = tuple[dict[str, Any], bytes]
@@ -265,21 +266,26 @@ def check_places(task: Mapping[str, Any]) -> TaskResult:
     """
     from thalweg.planning.compile_kernels import search_is_compiled
     from thalweg.planning.request.voyage_endpoints import resolve_places
-    from thalweg.planning.request.voyage_surroundings import chart_of_entries
     from thalweg.service.jobs.plan_request import PlanRequest
 
     if not search_is_compiled():
         return {}, b""
     if "request" not in task:
-        resolve_places((47.0, -20.0), (), (47.3, -19.5), chart_of_entries("i"))
+        resolve_places("Rotterdam", (), (47.3, -19.5), _coast("i"))
         return {}, b""
     request = PlanRequest.model_validate(task["request"])
     if request.coast in _QUICK_COASTS:
-        voyage = request.checked_voyage()
-        areas = [request.areas] if request.areas else []
-        chart = chart_of_entries(request.coast, areas=areas)
+        voyage, chart = request.checked_voyage(), _coast(request.coast)
+        chart = chart.with_zones(request.areas) if request.areas else chart
         resolve_places(voyage.start, voyage.via, voyage.goal, chart)
     return {}, b""
+
+
+@lru_cache(maxsize=3)
+def _coast(name: str) -> Chart:
+    from thalweg.planning.request.voyage_surroundings import chart_of_entries
+
+    return chart_of_entries(name)
 
 
 TASKS: Final[Mapping[str, Callable[[Mapping[str, Any]], TaskResult]]] = {
