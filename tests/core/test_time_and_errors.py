@@ -57,6 +57,12 @@ def test_times_go_out_as_they_came_in():
     assert format_time(float("nan")) == "unknown"
 
 
+def test_of_many_names_the_nearest_are_listed_first():
+    names = [*(f"aa{k:02d}" for k in range(30)), "zone_water"]
+    text = str(unknown_name_error("entry", "zone_of_water", names))
+    assert "Known: zone_water, aa00" in text and " and 11 more." in text
+
+
 def test_near_matches_ignore_case():
     assert close_matches("roterdam", ["Rotterdam", "Antwerpen"]) == ["Rotterdam"]
     assert "Did you mean 'Rotterdam'" in str(unknown_name_error("port", "roterdam", ["Rotterdam"]))

@@ -57,6 +57,7 @@ def test_a_port_moves_to_covered_water_with_a_note():
     assert 3.9 < end.lon[-1] < 4.0 and abs(end.lat[-1] - 51.9) < 0.1
     first = danger_first(found.notes)[0]
     assert first.startswith("Does not reach Rotterdam, NL, which is in water without data of east")
+    assert '"fill": {"currents": "nearest:' in first
     assert "sea.filled(currents='nearest:" in first and "--fill currents=nearest:" in first
     assert found.provenance["to"].endswith(" nm from Rotterdam, NL")
     assert found.provenance["to"].startswith("51 5")

@@ -140,6 +140,13 @@ def close_matches(word: str, known: Iterable[str], count: int = 3) -> list[str]:
     return [by_lower[name] for name in found]
 
 
+_MOST_NAMES = 20  # that an error lists, the nearest in spelling first if there are more
+
+
+def _likeness(word: str, name: str) -> float:
+    return difflib.SequenceMatcher(None, word.casefold(), name.casefold()).ratio()
+
+
 def unknown_name_error(
     kind: str, word: str, known: Iterable[str], *, field: str | None = None
 ) -> InputError:
@@ -158,7 +165,11 @@ def unknown_name_error(
     """
     names = sorted(known)
     near = close_matches(word, names)
-    listed = ", ".join(names[:20]) + (", ..." if len(names) > 20 else "")
+    if len(names) > _MOST_NAMES:
+        names.sort(key=lambda name: -_likeness(word, name))
+    listed = ", ".join(names[:_MOST_NAMES])
+    if len(names) > _MOST_NAMES:
+        listed += f" and {len(names) - _MOST_NAMES} more"
     remedy = f"Did you mean {' or '.join(repr(n) for n in near)}?" if near else "Check the name."
     place = {} if field is None else {"field": field}
     return InputError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -252,7 +253,8 @@ def _remedy(unknown: Sequence[str], far: float) -> str:
     in_python = ", ".join(fill.replace("=", "='") + "'" for fill in fills)
     return (
         "To reach it, add data that cover it, or fill the unknown values from the nearest known "
-        f"ones: --fill {' '.join(fills)} (in Python sea.filled({in_python}))."
+        f"ones: --fill {' '.join(fills)} (in Python sea.filled({in_python}), in requests of the "
+        f'service "fill": {json.dumps(dict(fill.split("=") for fill in fills))}).'
     )
 
 

@@ -186,13 +186,13 @@ def check_departure_in_data(voyage: Voyage, sea: Sea, channels: Iterable[int]) -
     needed = {standard_names.CHANNEL_VARIABLES[channel] for channel in channels}
     first, last = _covered_period(sea, needed)
     if not first <= voyage.earliest_departure < last or voyage.latest_departure >= last:
-        requested = (
-            voyage.latest_departure
-            if voyage.latest_departure >= last
-            else voyage.earliest_departure
+        earliest, latest = (
+            format_time(time) for time in (voyage.earliest_departure, voyage.latest_departure)
         )
         raise OutsidePeriodError(
-            f"Departure {format_time(requested)} is outside the data.",
+            f"Departure {earliest} is outside the data."
+            if voyage.depart_window is None
+            else f"The window of departures {earliest} to {latest} reaches outside the data.",
             f"The data run from {format_time(first)} to {format_time(last)}.",
             "Choose a departure in that period, or add data.",
             field="depart",

@@ -228,7 +228,8 @@ def _range_notes(
     model = world.ship.model
     loss = model.loss if isinstance(model, SpeedLossModel) else None
     notes = [] if loss is None else loss.notes(loaded)
-    return [f"{OUT_OF_RANGE}: {note}; speeds there are not predictions." for note in notes]
+    why = "the formula was not made for this; speeds there are not predictions."
+    return [f"{OUT_OF_RANGE}: {note}: {why}" for note in notes]
 
 
 def _least_by_leg(leg: IntArray, values: FloatArray, time: FloatArray, count: int) -> FloatArray:
