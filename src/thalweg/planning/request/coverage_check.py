@@ -251,10 +251,11 @@ def _remedy(unknown: Sequence[str], far: float) -> str:
     if not fills:
         return "To reach it, add data that cover it."
     in_python = ", ".join(fill.replace("=", "='") + "'" for fill in fills)
+    in_request = json.dumps(dict(fill.split("=") for fill in fills), allow_nan=False)
     return (
         "To reach it, add data that cover it, or fill the unknown values from the nearest known "
         f"ones: --fill {' '.join(fills)} (in Python sea.filled({in_python}), in requests of the "
-        f'service "fill": {json.dumps(dict(fill.split("=") for fill in fills))}).'
+        f'service "fill": {in_request}).'
     )
 
 
