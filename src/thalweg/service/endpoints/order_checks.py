@@ -73,7 +73,8 @@ def check_plan_order(request: PlanRequest, voyage: Voyage, state: ServiceState) 
     InputError : If a place cannot be reached on the chart, or the ship does not have the speed.
     OutsidePeriodError : If no sea has data at the departure.
     """
-    state.place_worker.do("check_places", request=request.model_dump(mode="json"))
+    places = request.model_dump(mode="json", include={"voyage", "coast", "areas"})
+    state.place_worker.do("check_places", **places)
     if voyage.speed_kn is not None:
         with errors_about("speed_kn"):
             with_order(open_ship_of(request, _ship_files(request.ship, state)), voyage)

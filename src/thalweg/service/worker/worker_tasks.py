@@ -262,21 +262,20 @@ def check_places(task: Mapping[str, Any]) -> TaskResult:
     Parameters
     ----------
     task : mapping
-        ``request``, a `PlanRequest` as plain data; without it only the coast is loaded.
+        ``voyage``, ``coast`` and ``areas`` as of a request; without them only the coast is loaded.
     """
     from thalweg.planning.compile_kernels import search_is_compiled
     from thalweg.planning.request.voyage_endpoints import resolve_places
-    from thalweg.service.jobs.plan_request import PlanRequest
+    from thalweg.planning.voyage import Voyage
 
     if not search_is_compiled():
         return {}, b""
-    if "request" not in task:
+    if "voyage" not in task:
         resolve_places("Rotterdam", (), (47.3, -19.5), _coast("i"))
         return {}, b""
-    request = PlanRequest.model_validate(task["request"])
-    if request.coast in _QUICK_COASTS:
-        voyage, chart = request.checked_voyage(), _coast(request.coast)
-        chart = chart.with_zones(request.areas) if request.areas else chart
+    if task["coast"] in _QUICK_COASTS:
+        voyage, chart = Voyage.from_dict(task["voyage"]), _coast(task["coast"])
+        chart = chart.with_zones(task["areas"]) if task["areas"] else chart
         resolve_places(voyage.start, voyage.via, voyage.goal, chart)
     return {}, b""
 
