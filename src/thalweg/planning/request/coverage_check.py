@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,7 +20,7 @@ from thalweg.core.geodesy import (
     wrap_longitude,
 )
 from thalweg.core.time import format_time
-from thalweg.core.types import FloatArray
+from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.kernels import codes
 from thalweg.planning.request.requirements import Requirements
@@ -137,19 +137,21 @@ class _CoverageProbe:
 
     def missing(self, lat: FloatArray, lon: FloatArray) -> list[str]:
         """Return the variables that are not known at a position at any time."""
-        samples = self._sample(self.names, lat, lon)
-        lacking = [name for name in self.names if not np.isfinite(samples[name]).any()]
-        if math.isfinite(self.depth) and not np.isfinite(self._depths(lat, lon)).any():
-            lacking.append("depth")
-        return lacking
+        return self._lacking(lat, lon, np.any)
 
     def unknown_at_times(self, lat: FloatArray, lon: FloatArray) -> list[str]:
         """Return the variables, or "depth", that are not known at a position at all times."""
+        return self._lacking(lat, lon, np.all)
+
+    def _lacking(
+        self, lat: FloatArray, lon: FloatArray, often: Callable[[BoolArray], np.bool_]
+    ) -> list[str]:
+        """Return the variables, or "depth", that are not known as often as required."""
         samples = self._sample(self.names, lat, lon)
-        unknown = [name for name in self.names if not np.isfinite(samples[name]).all()]
-        if math.isfinite(self.depth) and not np.isfinite(self._depths(lat, lon)).all():
-            unknown.append("depth")
-        return unknown
+        lacking = [name for name in self.names if not often(np.isfinite(samples[name]))]
+        if math.isfinite(self.depth) and not often(np.isfinite(self._depths(lat, lon))):
+            lacking.append("depth")
+        return lacking
 
     def suits(self, lat: FloatArray, lon: FloatArray, *, harbour: bool) -> NDArray[np.bool_]:
         """Return where all is known at some time; for a harbour, at all times and deep enough."""

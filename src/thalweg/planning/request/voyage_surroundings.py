@@ -109,9 +109,7 @@ def check_limits(given: Any) -> None:
     InputError
         With the entry in ``details["field"]``.
     """
-    for name, value in _entries(given, "limits").items():
-        if name not in LARGEST_LIMITS:
-            raise unknown_name_error("limit", name, LARGEST_LIMITS, field="limits")
+    for name, value in _entries(given, "limit", LARGEST_LIMITS).items():
         largest = LARGEST_LIMITS[name]
         if value is not None and not 0.0 < to_number(value) <= largest:
             raise _wrong_entry(f"limits.{name}", value, f"a number above 0, at most {largest:g}")
@@ -125,10 +123,8 @@ def check_charges(given: Any) -> None:
     InputError
         With the entry in ``details["field"]``.
     """
-    for name, value in _entries(given, "charges").items():
+    for name, value in _entries(given, "charge", _CHARGES).items():
         field = f"charges.{name}"
-        if name not in _CHARGES:
-            raise unknown_name_error("charge", name, _CHARGES, field="charges")
         if name == "share_percent":
             if value is not None and value not in SHARES_PERCENT:
                 raise _wrong_entry(field, value, "0, 50 or 100")
@@ -140,9 +136,13 @@ def check_charges(given: Any) -> None:
             raise _wrong_entry(field, value, f"a number from 0 to {LARGEST_CHARGE:,.0f}")
 
 
-def _entries(given: Any, field: str) -> Mapping[str, Any]:
+def _entries(given: Any, what: str, known: Iterable[str]) -> Mapping[str, Any]:
+    """Return entries of known names."""
     if not isinstance(given, Mapping):
-        raise _wrong_entry(field, given, "a mapping of names to numbers")
+        raise _wrong_entry(f"{what}s", given, "a mapping of names to numbers")
+    for name in given:
+        if str(name) not in known:
+            raise unknown_name_error(what, str(name), known, field=f"{what}s")
     return {str(name): value for name, value in given.items()}
 
 
