@@ -1,6 +1,7 @@
 """Key performance indicators of routes: motions, land, depth."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -138,6 +139,16 @@ def test_length_inshore_and_least_distance_from_land(ship):
     )
     assert found["shallow_h"] is None  # no depth in the data
     assert _route(ship, _sea()).indicators["land_distance_nm"] == 12.0  # or more
+
+
+def test_canals_and_approaches_do_not_count_for_the_least_distance_from_land():
+    """Kinds of legs: 0 at sea, 1 canal, 2 approach."""
+    legs = {"land_distance": np.array([0.0, 3.0, 5.0, 0.1]) * 1852.0}
+    kinds = np.array([2.0, 0.0, 0.0, 1.0])
+    route = SimpleNamespace(legs={**legs, "leg_kind": kinds})
+    assert indicator_value(route, "land_distance_nm") == pytest.approx(3.0)
+    river = SimpleNamespace(legs={**legs, "leg_kind": np.full(4, 2.0)})
+    assert indicator_value(river, "land_distance_nm") == 0.0
 
 
 def test_time_in_water_less_than_twice_as_deep_as_the_draught(ship):

@@ -138,6 +138,6 @@ def test_tables_and_plots_are_written(tmp_path):
         voyages=pd.DataFrame({"time_h": [1.0]}),
     )
     names = {path.name for path in summary.write(tmp_path)}
-    tables = {f"{name}.csv" for name in ("summary", "voyages", "refusals", "fronts", "annual")}
+    tables = {f"{name}.csv" for name in ("summary", "voyages", "fronts", "annual")}
     assert names == tables | {"fronts.png"}
     assert len((tmp_path / "fronts.csv").read_text().splitlines()) == 4

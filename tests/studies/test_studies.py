@@ -168,7 +168,7 @@ def test_a_made_year_gives_its_best_month(folder, tmp_path):
     assert (rows["saved_time_h"] >= -0.01).all()
     files = summary.write(tmp_path / "tables")
     assert {path.name for path in files} == {
-        "summary.csv", "refusals.csv", "months.png", "voyages.csv", "best_months.csv",
+        "summary.csv", "months.png", "voyages.csv", "best_months.csv",
         "hours.csv", "hours.png",
     }  # fmt: skip
     assert summary.voyages["depart"].tolist() == sorted(rows["depart"])

@@ -171,7 +171,7 @@ def _summary(arguments: argparse.Namespace) -> int:
         return SUCCESS
     _print_voyages(summary.voyages)
     _print_groups(summary.table)
-    if "month" in summary.table and summary.table["month"].nunique() > 1:
+    if not summary.best_months.empty:
         print("Best month by the median of each figure:")
         print(summary.best_months.round(2).to_string(index=False))
         print()
@@ -189,6 +189,9 @@ def _summary(arguments: argparse.Namespace) -> int:
         print("Accuracy: gap_percent of the objective to the finest:")
         print(summary.fidelity.round(3).to_string(index=False, na_rep="-"))
     if not summary.annual.empty:
+        print(
+            "In a year (cii in grams of CO2 per tonne and nautical mile, cost in the prices given):"
+        )
         print(summary.annual.round(2).to_string(index=False, na_rep="-"))
     for _, row in summary.refusals.head(5).iterrows():
         count = f"{row['voyages']} voyages" if row["voyages"] > 1 else "1 voyage"

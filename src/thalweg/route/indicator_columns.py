@@ -67,7 +67,7 @@ INDICATOR_WORDS: Final[dict[str, str]] = {
     "uncomfortable_percent": "time above 0.05 g",
     "inshore_nm": "length within 3 nm of land",
     "inshore_percent": "share within 3 nm of land",
-    "land_distance_nm": "least distance from land",
+    "land_distance_nm": "least distance from land at sea",
     "inshore_h": "time within 3 nm of land",
     "contour_distance_nm": "least distance from shoals",
     "near_ground_h": "time within 1 nm of the ground",
@@ -236,9 +236,15 @@ def _water_indicator(route: RefereedRoute, name: str) -> float:
         return math.nan
     values = route.legs[column]
     if name in _LEAST:
-        return float(np.min(values)) / unit
+        return float(np.min(_at_sea(route, values))) / unit
     whole = float(route.legs["length"].sum()) if name == "inshore_percent" else 1.0
     return _total(values) / (unit * whole)
+
+
+def _at_sea(route: RefereedRoute, values: FloatArray) -> FloatArray:
+    """Return the values of the legs outside canals and approaches; of all legs without such."""
+    at_sea = np.asarray(route.legs.get("leg_kind", np.zeros(len(values)))) == 0
+    return values[at_sea] if at_sea.any() else values
 
 
 def _chosen(kind: str, at: str | None, known: Mapping[str, Any]) -> str | None:

@@ -85,10 +85,11 @@ class StudySummary:
     fidelity: pd.DataFrame = field(default_factory=pd.DataFrame)
 
     def write(self, folder: str | Path) -> list[Path]:
-        """Write ``summary.csv``, ``voyages.csv``, ``refusals.csv``, and what else there is.
+        """Write ``summary.csv``, ``voyages.csv``, and the tables and plots that are not empty.
 
-        ``months.png``, ``hours.csv`` and ``hours.png`` (heat map of the median time) with months,
-        ``choices.csv``, ``fronts.csv`` and ``fronts.png`` with fronts, ``annual.csv``.
+        ``refusals.csv``, ``best_months.csv`` and ``months.png`` with several months, ``hours.csv``
+        and ``hours.png`` (heat map of the median time), ``choices.csv``, ``fidelity.csv``,
+        ``fronts.csv`` and ``fronts.png`` with fronts, ``annual.csv``.
 
         Parameters
         ----------
@@ -106,13 +107,17 @@ class StudySummary:
             "hours": self.hours, "best_months": self.best_months, "fidelity": self.fidelity,
         }  # fmt: skip
         for name, frame in tables.items():
-            if frame.empty and name not in ("summary", "voyages", "refusals"):
-                continue
             path = folder / f"{name}.csv"
+            if frame.empty and name not in ("summary", "voyages"):
+                path.unlink(missing_ok=True)  # of an earlier summary
+                continue
             rows = frame.astype(object).where(frame.notna(), None).to_numpy().tolist()
             write_csv_rows(path, [list(frame.columns), *rows])
             files.append(path)
-        if "month" in self.table and self.table["routes"].sum():
+        if (
+            "month" in self.table
+            and self.table.loc[self.table["routes"] > 0, "month"].nunique() > 1
+        ):
             files.append(draw_months(self.table, folder / "months.png"))
         if not self.hours.empty and "time_h" in self.hours:
             files.append(draw_heat_map(self.hours, "time_h", folder / "hours.png"))
@@ -305,7 +310,7 @@ def _refusals(frame: pd.DataFrame, usable: pd.Series) -> pd.DataFrame:
 
 def _best_months(table: pd.DataFrame, by: list[str]) -> pd.DataFrame:
     """Return the month with the least median of each of `_LEAST_IS_BEST`, by the other axes."""
-    if "month" not in table:
+    if "month" not in table or table["month"].nunique() < 2:
         return pd.DataFrame()
     others, found = [name for name in by if name != "month"], []
     for figure in (name for name in _LEAST_IS_BEST if f"{name}_p50" in table):

@@ -45,7 +45,7 @@ from thalweg.planning.network_selection.route_alternatives import RouteAlternati
 from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.pareto.exploration import fastest_in_known_water, network_pareto_front
 from thalweg.planning.pareto.front_points import track_from_front_point
-from thalweg.planning.pareto.search_horizon import extend_horizon
+from thalweg.planning.pareto.search_horizon import FastestPaths, extend_horizon
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
 from thalweg.planning.pareto.trade_off_planner import with_trade_off
 from thalweg.planning.pareto.weighted_sums import (
@@ -172,6 +172,7 @@ class _Candidates:
         self.routes: list[Route] = []
         self.notes: list[str] = []
         self.best: dict[str, Route] = {}
+        self.paths = FastestPaths()  # of the first network
 
     @property
     def stopped(self) -> bool:
@@ -236,7 +237,7 @@ class _Candidates:
     def _front(self, network: Network, objective: Objective) -> list[Track]:
         """Return the cheapest track of the front of time and an objective, and that at its knee."""
         own = with_objective(self.trade_off, objective)
-        horizon = extend_horizon(own, network)
+        horizon = extend_horizon(own, network, self.paths)
         front = network_pareto_front(own, network, horizon.frozen, horizon.latest)
         points = sorted(front.points, key=lambda point: point.time)
         if not points:

@@ -16,7 +16,7 @@ from thalweg.core.types import FloatArray
 from thalweg.network import Network
 from thalweg.planning.pareto.exploration import front_search
 from thalweg.planning.pareto.front_points import track_from_front_point
-from thalweg.planning.pareto.search_horizon import SearchHorizon, extend_horizon
+from thalweg.planning.pareto.search_horizon import FastestPaths, SearchHorizon, extend_horizon
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
 from thalweg.planning.pareto.weighted_sums import key_figure, with_objective
 from thalweg.planning.single.no_route_diagnosis import no_route_error
@@ -157,7 +157,8 @@ class _WeightedSearches:
 
     def _horizon(self) -> SearchHorizon:
         """Return the longer of the periods of the two key figures."""
-        found = [extend_horizon(own, self.network) for own in self.single]
+        paths = FastestPaths()
+        found = [extend_horizon(own, self.network, paths) for own in self.single]
         horizon = max(found, key=lambda one: one.latest)
         if not horizon.first.found:
             ends = self.trade_off.ends

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 
 import numpy as np
 
@@ -46,7 +46,51 @@ class SearchHorizon:
     latest: float
 
 
-def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizon:
+class FastestPaths:
+    """The fastest paths of one network at its settings, each searched as seldom as possible.
+
+    A path that was found holds in every longer period, and one that was not found by a time is not
+    found by an earlier one. Prices do not matter: several objectives can share the paths.
+    """
+
+    def __init__(self) -> None:
+        self._searched: dict[int, tuple[float, SearchResult]] = {}
+
+    def path(
+        self,
+        trade_off: TradeOffContext,
+        network: Network,
+        sea: FrozenSea,
+        until: float,
+        setting: int,
+    ) -> SearchResult:
+        """Return the fastest path at a setting in a sea that is frozen until a time [s]."""
+        known, result = self._searched.get(setting, (-math.inf, None))
+        if result is not None and (result.arrive <= until if result.found else until <= known):
+            return result
+        found = fastest_path(trade_off, network, sea, setting)
+        if result is None or not result.found:  # one that arrives later stays known
+            self._searched[setting] = until, found
+        return found
+
+    def arrival(
+        self,
+        trade_off: TradeOffContext,
+        network: Network,
+        sea: FrozenSea,
+        until: float,
+        setting: int,
+    ) -> float:
+        """Return the arrival of that path [s]; infinite where it is later than the period."""
+        _, result = self._searched.get(setting, (-math.inf, None))
+        if result is not None and result.found and result.arrive > until:
+            return math.inf
+        return self.path(trade_off, network, sea, until, setting).arrive
+
+
+def extend_horizon(
+    trade_off: TradeOffContext, network: Network, paths: FastestPaths | None = None
+) -> SearchHorizon:
     """Freeze the sea over a network for the period of its front, and search the fastest path.
 
     Without a latest arrival the period ends when the slowest ship of interest has arrived. It is
@@ -57,6 +101,7 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
     ----------
     trade_off : The plan and its prices.
     network : With start and goal.
+    paths : Of this network and these limits, found for other prices.
 
     Returns
     -------
@@ -78,6 +123,7 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
     final = min(context.data_end, depart + _MAX_TIME_RATIO * still + _TWO_TIDES)
     latest = min(context.latest_arrival, context.data_end) if has_deadline else min(slow, final)
     horizon: SearchHorizon | None = None
+    paths = paths or FastestPaths()
     while True:
         until = latest if has_deadline else min(latest + _HORIZON_MARGIN * (latest - depart), final)
         until = max(until, min(slow, final))
@@ -88,10 +134,11 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
                 raise
             return horizon  # the longest period that fits into memory
         warm_up.wait_until_compiled()
-        path_at = cache(partial(fastest_path, trade_off, network, frozen))
+        path_at = partial(paths.path, trade_off, network, frozen, until)
         first, setting = fastest_at_highest_feasible_setting(trade_off, path_at)
         horizon = SearchHorizon(frozen, first, setting, latest)
-        need = first.arrive if has_deadline else _latest_useful_arrival(trade_off, path_at, until)
+        arrival = partial(paths.arrival, trade_off, network, frozen, until)
+        need = first.arrive if has_deadline else _latest_useful_arrival(trade_off, arrival, until)
         if need <= until or until >= final:
             return horizon
         slow = depart + _HORIZON_GROWTH * (until - depart) if math.isinf(need) else need
@@ -99,7 +146,7 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
 
 
 def _latest_useful_arrival(
-    trade_off: TradeOffContext, path_at: Callable[[int], SearchResult], until: float
+    trade_off: TradeOffContext, arrival: Callable[[int], float], until: float
 ) -> float:
     """Return the end of the front's period: with a margin, when the cheapest setting arrives.
 
@@ -107,12 +154,12 @@ def _latest_useful_arrival(
 
     Parameters
     ----------
-    path_at : The fastest path at a setting.
+    arrival : The earliest at a setting [s].
     """
     depart = trade_off.context.voyage.earliest_departure
 
     def duration(setting: int) -> float:
-        return path_at(setting).arrive - depart
+        return arrival(setting) - depart
 
     late = _TIME_MARGIN * duration(most_economical_setting(trade_off))
     if depart + late <= until:

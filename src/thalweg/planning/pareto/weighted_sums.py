@@ -13,7 +13,7 @@ from thalweg.core.objective import KEY_FIGURES, Objective
 from thalweg.network import Network
 from thalweg.planning.pareto.exploration import network_pareto_front
 from thalweg.planning.pareto.front_points import track_from_front_point
-from thalweg.planning.pareto.search_horizon import extend_horizon
+from thalweg.planning.pareto.search_horizon import FastestPaths, extend_horizon
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
 from thalweg.planning.request.voyage_objective import PricedObjective
 from thalweg.planning.single.no_route_diagnosis import no_route_error
@@ -54,9 +54,16 @@ def with_objective(trade_off: TradeOffContext, objective: Objective) -> TradeOff
 
 
 def best_route_on_network(
-    trade_off: TradeOffContext, network: Network, objective: Objective
+    trade_off: TradeOffContext,
+    network: Network,
+    objective: Objective,
+    paths: FastestPaths | None = None,
 ) -> Route:
     """Return the best route of a network for an objective, scored by the referee.
+
+    Parameters
+    ----------
+    paths : Of this network and these limits, found for other objectives.
 
     Raises
     ------
@@ -64,7 +71,7 @@ def best_route_on_network(
         If there is no route within the limits.
     """
     own = with_objective(trade_off, objective)
-    horizon = extend_horizon(own, network)
+    horizon = extend_horizon(own, network, paths)
     if not horizon.first.found:
         raise no_route_error(
             network,
@@ -92,11 +99,11 @@ def key_figure_ranges(
     """
     counted = {name: weight for name, weight in weights.items() if weight > 0.0}
     currency = trade_off.objective.terms.currency or "USD"
-    routes = []
+    routes, paths = [], FastestPaths()
     for name in counted:
         trade_off.context.report_progress(f"searching the route of least {name}")
         routes.append(
-            best_route_on_network(trade_off, network, Objective.of(name, currency=currency))
+            best_route_on_network(trade_off, network, Objective.of(name, currency=currency), paths)
         )
     found = {}
     for name, weight in counted.items():
