@@ -113,7 +113,9 @@ def _print_voyages(voyages: Any) -> None:
     broken = "feasible" in voyages and not voyages["feasible"].fillna(True).all()
     last = [*(["feasible"] if broken else []), *(["refusal"] if "refusal" in voyages else [])]
     shown = voyages.head(_SHOWN_VOYAGES)[[*axes, "arrive", *figures, *last]]
-    print(shown.round(2).to_string(index=False, na_rep="-"))
+    numbers = shown.select_dtypes("number").columns
+    shown[numbers] = shown[numbers].round(2) + 0.0  # no -0.00
+    print(shown.to_string(index=False, na_rep="-"))
     left = len(voyages) - len(shown)
     if left:
         print(f"and {left} more voyages: --out writes all of them to voyages.csv")
@@ -137,7 +139,7 @@ def _print_groups(table: Any) -> None:
             axis=None
         ):
             shown[name] = [
-                "-" if pd.isna(middle) else f"{middle:.2f} ({low:.2f} to {high:.2f})"
+                "-" if pd.isna(middle) else f"{middle:z.2f} ({low:z.2f} to {high:z.2f})"
                 for middle, low, high in table[parts].astype(float).itertuples(index=False)
             ]
     print("Medians (10 to 90 %):")
