@@ -1,18 +1,25 @@
 """The bound of a front counts the dear fuel that a ship burns until it leaves a control area."""
 
+import numpy as np
 import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.geodesy import distance
+from thalweg.core.limits import Limits
+from thalweg.planning.pareto.bounds import corners_of_lengths
 from thalweg.planning.plan_front import certain_at
+from thalweg.search.certificate.barrier_domain import PassageToBound
+from thalweg.search.certificate.barrier_mesh import ShipInBarrier
+from thalweg.search.certificate.time_certificate import certify_priced_length
+from thalweg.ship import PerformanceTable, TableError, TablePart
 
 START, GOAL = (0.0, 0.0), (0.0, 2.0)
 LENGTH = float(distance(*START, *GOAL))
 KNOT = 1852.0 / 3600.0
 
 
-def area(west, east):
-    ring = [[west, -2.0], [east, -2.0], [east, 2.0], [west, 2.0], [west, -2.0]]
+def area(west, east, south=-2.0, north=2.0):
+    ring = [[west, south], [east, south], [east, north], [west, north], [west, south]]
     return {
         "type": "Feature",
         "properties": {"kind": "eca", "name": "made area"},
@@ -62,10 +69,41 @@ def test_the_bound_is_the_cost_at_the_prices_along_the_way(zone, inside):
         assert certain_at(found.front.certain, time_h) <= value * (1 + 1e-9)
 
 
-def test_the_goal_outside_and_a_short_way_out_lower_the_bound():
-    """5 km out of the area at the start: no dear fuel is certain beyond that."""
-    found = planned(area(-0.045, 1.7))
+@pytest.mark.parametrize(
+    ("zone", "most"),
+    [
+        (area(-3.0, 1.7, north=0.045), 1.08),  # on, outside the area
+        (area(-0.045, 1.7), 1.52),  # west, for nothing: the area is to be crossed all the same
+    ],
+)
+def test_with_a_short_way_out_the_bound_lies_between_the_cheap_way_and_the_plan(zone, most):
+    """The area is left after 5 km; its fuel costs 1.6 times as much, on 0.85 of the way."""
+    found = planned(zone)
     rate = 24.0 / 86400.0 * (8.0 / 12.0) ** 3 / (8.0 * KNOT)
     least = 500.0 * rate * LENGTH
-    assert least <= found.lower_bound <= least + 500.0 * rate * 0.6 * 5_010.0
-    assert found.lower_bound < found.objective_value
+    assert 0.999 * least <= found.lower_bound <= found.objective_value <= most * least
+
+
+@pytest.mark.parametrize(
+    ("zone", "truth"),
+    [
+        (area(0.5, 1.5), 2.5),  # through the area, a degree long
+        (area(0.5, 1.5, -0.1, 0.1), 1.0 + 2.0 * np.hypot(0.5, 0.1)),  # round it
+    ],
+)
+def test_the_priced_length_counts_dearer_metres_and_the_way_round_them(zone, truth):
+    table = PerformanceTable(
+        (TablePart((), (), np.ones(1, np.float32)),), np.ones(1), "", TableError(0.0, 0.0, 0.0)
+    )
+    ship = ShipInBarrier(table.kernel_arrays(), 0, Limits().array, 1.0)
+    chart = Chart.open_water(-0.5, 0.5, -0.5, 2.5).with_zones(zone)
+    known = truth * 0.5 * LENGTH
+    passage = PassageToBound(Sea.calm(), chart, ship, (), START, GOAL, depart=0.0, known=known)
+    found = certify_priced_length(passage, 1.5, seconds=30.0, target=0.02)
+    assert 0.98 * known <= found.value <= known
+
+
+def test_corners_of_lengths_are_those_of_the_lines():
+    """10 inside at least, 100 in all, and 150 where a metre inside counts two."""
+    corners = corners_of_lengths(10.0, [(1.0, 100.0), (2.0, 150.0), (3.0, float("nan"))])
+    assert corners == [(10.0, 140.0), (50.0, 100.0), (100.0, 100.0)]

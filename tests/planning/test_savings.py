@@ -1,9 +1,12 @@
 """Savings over weather-blind routes: references keep the limits, and the saving has two parts."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.planning.pareto.baseline import undercut_note
 
 START, GOAL = (0.0, 0.0), (0.0, 2.0)
 CHART = Chart.open_water(-1.0, 1.0, -0.5, 2.5)
@@ -72,3 +75,18 @@ def test_a_saving_is_that_of_the_route_and_that_of_the_speeds():
 def test_in_calm_water_neither_part_saves():
     for row in front(Sea.calm()).front.comparison.rows:
         assert row["saved_by_route"] == pytest.approx(0.0, abs=1e-6 * row["value"])
+
+
+def test_a_cheaper_route_for_comparison_is_explained():
+    """At 12 h it costs 99 where the front costs 110, and at 9 h the front has no route."""
+    front = [SimpleNamespace(time_h=10.0), SimpleNamespace(time_h=14.0)]
+    blind = [
+        SimpleNamespace(time_h=12.0, feasible=True),
+        SimpleNamespace(time_h=9.0, feasible=True),
+    ]
+    values = np.array([120.0, 100.0])
+    note = undercut_note(front, values, blind, np.array([99.0, 50.0]))
+    assert note is not None and "up to 10 % better" in note and "traffic lanes" in note
+    assert undercut_note(front, values, blind, np.array([110.0, 50.0])) is None
+    blind[0].feasible = False
+    assert undercut_note(front, values, blind, np.array([99.0, 50.0])) is None

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 
 _MAX_SPEEDS = 6
+_LEAST_UNDERCUT = 5e-4  # share of the value that is noted
 _MAX_ROUTES = 5  #: routes of a front that are sailed at constant speeds
 
 
@@ -94,6 +95,35 @@ def no_reference_note(blind: Sequence[Route]) -> str | None:
     reasons = Counter(route.violations[0].reason for route in blind if route.violations)
     reason = reasons.most_common(1)[0][0] if reasons else "a limit"
     return f"No weather-blind route is feasible: {reason}. Savings over it are not stated."
+
+
+def undercut_note(
+    front: Sequence[Route], values: FloatArray, blind: Sequence[Route], counts: FloatArray
+) -> str | None:
+    """Return a note where a feasible route for comparison has a lower value than a front.
+
+    Parameters
+    ----------
+    values, counts : Of the routes of the front, and of the weather-blind ones.
+    """
+    order = np.argsort([route.time_h for route in front])
+    time = np.array([front[i].time_h for i in order])
+    least = np.minimum.accumulate(np.asarray(values)[order])
+    most = max(
+        (
+            1.0 - count / float(np.interp(route.time_h, time, least))
+            for route, count in zip(blind, counts)
+            if route.feasible and route.time_h >= time[0] and count > 0.0
+        ),
+        default=0.0,
+    )
+    if most < _LEAST_UNDERCUT:
+        return None
+    return (
+        f"The shortest route, for comparison, is up to {100.0 * most:.2g} % better than the "
+        "routes of the plan: it keeps less clear of traffic lanes, shoals or penalty areas, where "
+        "a mile counts more."
+    )
 
 
 def compare_with_baseline(

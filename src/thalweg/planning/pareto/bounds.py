@@ -8,21 +8,21 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from thalweg.chart import Chart
-from thalweg.chart.zones.leg_fractions import outlines_only
-from thalweg.chart.zones.zone_set import Zones
-from thalweg.core.geodesy import METRES_PER_DEGREE, distance
+from thalweg.chart.zones.area_exits import MARGIN_OF_EXITS, area_exits
+from thalweg.core.geodesy import distance
 from thalweg.core.pareto_fronts import lower_hull
-from thalweg.core.types import BoolArray, FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.kernels import codes
-from thalweg.kernels.geometry.coast_index import outlines_touched
 from thalweg.planning.pareto.exploration import strongest_current
 from thalweg.planning.pareto.trade_off_context import ExploredAlternative, TradeOffContext
 from thalweg.planning.plan_data import Proof
 from thalweg.planning.plan_front import certain_at
-from thalweg.planning.request.voyage_endpoints import Endpoint
-from thalweg.planning.single.certified_bound import certified_distance, strongest_current_in_data
+from thalweg.planning.single.certified_bound import (
+    certified_distance,
+    certified_priced_length,
+    strongest_current_in_data,
+)
 from thalweg.route import Route
 from thalweg.search import table_bounds
 
@@ -34,9 +34,10 @@ _CURRENT_UNKNOWN = (
     "no bound: the strongest current of the water that the ship can reach was not found"
 )
 _NOTHING_LEAST = "no bound: the least that the data allow is zero"
-_OUTLINE_STEP = 0.05  # between positions on the outlines of control areas [deg]
-_BESIDE_OUTLINE = 1e-4  # [deg]
 _SECONDS = 2.0  # for the bound of the length, by default
+_RATIOS = 2  # of the prices inside and outside control areas, for which lengths are bounded
+_LARGEST_RATIO = 10.0
+_NO_PRICE = 1e-9
 
 
 def derive_proof(
@@ -90,12 +91,15 @@ def strongest_current_of_plan(
     return max(found[0], at_stations), _KIND + (f", in {found[1]}" if found[1] else "")
 
 
-def certain_front(trade_off: TradeOffContext, length: float, current: float) -> FloatArray:
+def certain_front(
+    trade_off: TradeOffContext, lengths: Sequence[tuple[float, float]], current: float
+) -> FloatArray:
     """Return a lower front that holds for every route: hours and values (2, m), to join by lines.
 
     Parameters
     ----------
-    length : No route is shorter [m].
+    lengths : Each route is no shorter than one of these pairs, inside the control areas and in all
+        (see `certified_lengths`) [m].
     current : No current is stronger [m/s]; inf where none is known to be the strongest.
 
     Notes
@@ -104,7 +108,7 @@ def certain_front(trade_off: TradeOffContext, length: float, current: float) -> 
     and the strongest current, for no less than ``rate / v``, with the least rate of consumption
     and the least price. A route that mixes settings has time and value above a mean of these
     points: not below their lower convex hull. At the ends the price is that of control areas, as
-    far as it takes to leave them.
+    far as it takes to leave them, and a way out that is near is paid for by a longer route.
     """
     context, prices = trade_off.context, trade_off.objective.prices
     rates = np.maximum(table_bounds(trade_off.consumption.kernel_arrays(), np.fmin), 0.0)
@@ -113,68 +117,125 @@ def certain_front(trade_off: TradeOffContext, length: float, current: float) -> 
     zone_factor = 1.0
     if prices.dues > 0.0:  # a route off the network may sail in the cheapest zone throughout
         zone_factor = min([1.0, *(float(factor) for _, factor in context.chart.zones.price)])
-    inside = 0.0
-    if prices.inside > prices.outside:
-        ends = trade_off.ends[0], trade_off.ends[-1]
-        inside = min(length, sum(_least_to_leave(context.chart, end) for end in ends))
-    parts = [(inside, prices.inside), (length - inside, min(prices.inside, prices.outside))]
     slow = 1.0 / (top + current)
-    (time, value), (more_time, more_value) = (
-        (part * slow, part * slow * (zone_factor * price * rates + prices.time))
-        for part, price in parts
-    )
-    seconds = np.add.outer(time, more_time).ravel()
-    values = np.add.outer(value, more_value).ravel()
-    hull = lower_hull(seconds, values)
-    hull = hull[: int(np.argmin(values[hull])) + 1]
-    return np.array([seconds[hull] / HOUR, values[hull]])
+    seconds, values = np.empty(0), np.empty(0)
+    for inside, whole in lengths:
+        parts = [(inside, prices.inside), (whole - inside, min(prices.inside, prices.outside))]
+        (time, value), (more_time, more_value) = (
+            (part * slow, part * slow * (zone_factor * price * rates + prices.time))
+            for part, price in parts
+        )
+        seconds = np.append(seconds, np.add.outer(time, more_time))
+        values = np.append(values, np.add.outer(value, more_value))
+        hull = lower_hull(seconds, values)
+        seconds, values = seconds[hull], values[hull]
+    last = int(np.argmin(values)) + 1
+    return np.array([seconds[:last] / HOUR, values[:last]])
 
 
-def _least_to_leave(chart: Chart, end: Endpoint) -> float:
-    """Return a length [m] that no way out of the control areas is shorter than; 0 outside them.
+def certified_lengths(
+    trade_off: TradeOffContext, routes: Sequence[Route]
+) -> list[tuple[float, float]]:
+    """Return pairs of lengths [m], inside the control areas and in all, for `certain_front`.
 
-    A ship leaves them where an outline is in water and no other area is beyond it, or through a
-    canal that leads out.
+    Each route costs no less than a mixture of the pairs, at any speeds.
+
+    Parameters
+    ----------
+    routes : Of the front.
+
+    Notes
+    -----
+    With D metres inside the areas and C outside, every route has ``D + C >= L`` for the least
+    length, ``D >= N`` for the least way out of areas at the ends, and ``q D + C >= W`` for the
+    least length ``W`` when a metre inside counts ``q``. The pairs are the corners of what these
+    leave of the plane of D and C, for some q. So that ``W`` need not be found on a mesh alone, it
+    is bounded by the geodesics to the exits of the areas and on from there, too.
     """
-    zones = chart.zones
-    if not bool(zones.in_eca(end.lat, end.lon)):
-        return 0.0
-    least = math.inf
-    coast = outlines_only(chart.coastline.index)
-    for zone in zones.eca:
-        rings = zone.rings
-        for first, last in itertools.pairwise(rings.start):
-            lat, lon = rings.lat[first:last], rings.lon[first:last]
-            pieces = np.ceil(np.hypot(np.diff(lat), np.diff(lon)) / _OUTLINE_STEP)
-            place = np.concatenate([[0.0], np.cumsum(np.maximum(pieces, 1.0))])
-            along = np.arange(place[-1] + 1.0)
-            lat, lon = np.interp(along, place, lat), np.interp(along, place, lon)
-            ends = lat[:-1], lon[:-1], lat[1:], lon[1:]
-            shore = np.empty(len(lat) - 1, np.bool_)
-            outlines_touched(coast, *(np.ascontiguousarray(x) for x in ends), shore)
-            land = np.asarray(chart.coastline.shore_distance(lat[:-1], lon[:-1], cap=1.0)) <= 0.0
-            away = np.asarray(distance(end.lat, end.lon, lat, lon))
-            leads_out = (shore | ~land) & ~_between_areas(zones, *ends)
-            near = np.minimum(away[:-1], away[1:])[leads_out]
-            least = min(least, float(np.min(near, initial=math.inf)))
-    least -= 0.5 * _OUTLINE_STEP * METRES_PER_DEGREE
-    for canal in chart.canals:
-        lat, lon = np.array(canal.ends).T
-        inside = zones.in_eca(lat, lon)
-        if inside.any() and not inside.all():
-            least = min(least, float(np.min(distance(end.lat, end.lon, lat, lon))))
-    return max(least, 0.0)
+    context, prices = trade_off.context, trade_off.objective.prices
+    length, shortest = certified_length(trade_off, routes), _shortest(routes)
+    if not prices.inside > prices.outside or not context.chart.zones.eca:
+        return [(0.0, length)]
+    inside, lines = _lines_by_exits(trade_off)
+    inside = min(length, inside)
+    lines.append((1.0, length))
+    if inside < length and len(trade_off.ends) == 2 and shortest is not None:
+        most = min(prices.inside / max(prices.outside, _NO_PRICE), _LARGEST_RATIO)
+        for ratio in most ** (np.arange(1, _RATIOS + 1) / _RATIOS):
+            if trade_off.interrupt_guard.stopped():
+                break
+            found = certified_priced_length(
+                context, shortest, price=float(ratio), seconds=_seconds(trade_off)
+            )
+            lines.append((ratio, found.value))
+    return corners_of_lengths(inside, lines)
 
 
-def _between_areas(zones: Zones, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray,
-                   lon2: FloatArray) -> BoolArray:  # fmt: skip
-    """Return on which pieces of outlines [deg] there are control areas on both sides."""
-    both = np.ones(len(lat1), np.bool_)
-    for share in (0.0, 0.5, 1.0):
-        lat, lon = lat1 + share * (lat2 - lat1), lon1 + share * (lon2 - lon1)
-        for north, east in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)):
-            both &= zones.in_eca(lat + _BESIDE_OUTLINE * north, lon + _BESIDE_OUTLINE * east)
-    return both
+def _lines_by_exits(trade_off: TradeOffContext) -> tuple[float, list[tuple[float, float]]]:
+    """Return the least length inside [m], and lines for `corners_of_lengths`, by geodesics.
+
+    A route from a control area to water outside all of them leaves it for good or for a while at
+    an exit: it sails as far as there inside, and as far as from there to the goal besides.
+    """
+    chart, ends = trade_off.context.chart, (trade_off.ends[0], trade_off.ends[-1])
+    inside = [bool(chart.zones.in_eca(end.lat, end.lon)) for end in ends]
+    if not any(inside):
+        return 0.0, []
+    exits = area_exits(chart.zones, chart.coastline, chart.canals)
+    far = [np.asarray(distance(end.lat, end.lon, *exits)) - MARGIN_OF_EXITS for end in ends]
+    far = [np.maximum(one, 0.0) for one in far]
+    dear = [
+        float(np.min(one, initial=math.inf)) if counts else 0.0
+        for one, counts in zip(far, inside, strict=True)
+    ]
+    if all(inside) or not far[0].size:
+        return sum(dear), []
+    least, whole = (far[0] if inside[0] else far[1]), far[0] + far[1]
+    hull = lower_hull(least, whole)
+    hull = hull[: int(np.argmin(whole[hull])) + 1]
+    lines = []
+    for a, b in itertools.pairwise(hull):
+        slope = float((whole[a] - whole[b]) / (least[b] - least[a]))
+        lines.append((1.0 + slope, float(whole[a] + slope * least[a])))
+    return sum(dear), lines
+
+
+def corners_of_lengths(
+    inside: float, lines: Sequence[tuple[float, float]]
+) -> list[tuple[float, float]]:
+    """Return the corners of the lengths that are possible: inside the control areas and in all.
+
+    Parameters
+    ----------
+    inside : No route has less inside [m].
+    lines : Ratios q, the first 1, and what ``q`` times the length inside plus the length outside is
+        no less than [m]; those that are not finite are left out.
+
+    Returns
+    -------
+    list of tuple : With growing length inside [m].
+    """
+    kept = [(ratio, least) for ratio, least in lines if math.isfinite(least)]
+    crossings = [(b - a) / (q - p) for (p, a), (q, b) in itertools.combinations(kept, 2) if q != p]
+    places = {inside, *(place for place in crossings if place > inside)}
+    places |= {max(inside, least / ratio) for ratio, least in kept}
+    x = np.array(sorted(places))
+    y = np.max([least - ratio * x for ratio, least in kept], axis=0, initial=0.0)
+    hull = lower_hull(x, y)
+    hull = hull[: int(np.argmin(y[hull])) + 1]
+    return [(float(x[k]), float(x[k] + y[k])) for k in hull]
+
+
+def _shortest(routes: Sequence[Route]) -> Route | None:
+    """Return the shortest feasible route; None where there is none."""
+    feasible = [route for route in routes if route.feasible]
+    return min(feasible, key=lambda route: float(route.legs["length"].sum()), default=None)
+
+
+def _seconds(trade_off: TradeOffContext) -> float:
+    """Return the time for a bound of lengths [s]."""
+    seconds = trade_off.context.proof_seconds
+    return _SECONDS if seconds is None else seconds
 
 
 def certified_length(trade_off: TradeOffContext, routes: Sequence[Route]) -> float:
@@ -185,10 +246,8 @@ def certified_length(trade_off: TradeOffContext, routes: Sequence[Route]) -> flo
     """
     context, ends = trade_off.context, trade_off.ends
     geodesic = sum(float(distance(a.lat, a.lon, b.lat, b.lon)) for a, b in itertools.pairwise(ends))
-    feasible = [route for route in routes if route.feasible]
-    seconds = context.proof_seconds if context.proof_seconds is not None else _SECONDS
-    if len(ends) > 2 or not feasible or trade_off.interrupt_guard.stopped():
+    shortest = _shortest(routes)
+    if len(ends) > 2 or shortest is None or trade_off.interrupt_guard.stopped():
         return geodesic
-    shortest = min(feasible, key=lambda route: float(route.legs["length"].sum()))
-    found = certified_distance(context, shortest, seconds=seconds)
+    found = certified_distance(context, shortest, seconds=_seconds(trade_off))
     return max(geodesic, found.value) if math.isfinite(found.value) else geodesic

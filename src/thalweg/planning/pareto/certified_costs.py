@@ -15,7 +15,7 @@ from thalweg.core.units import HOUR
 from thalweg.kernels.certificate.cost_conditions import PricedShip
 from thalweg.planning.pareto.bounds import (
     certain_front,
-    certified_length,
+    certified_lengths,
     strongest_current_of_plan,
 )
 from thalweg.planning.pareto.trade_off_context import (
@@ -71,7 +71,7 @@ def certified_front(
     context, routes = trade_off.context, [item.route for item in ordered]
     allowed = (context.latest_arrival - context.voyage.earliest_departure) / HOUR
     current, kind = strongest_current_of_plan(trade_off, explored, routes)
-    points = certain_front(trade_off, certified_length(trade_off, routes), current)
+    points = certain_front(trade_off, certified_lengths(trade_off, routes), current)
     if trade_off.interrupt_guard.stopped() or not context.proof_seconds:
         return CertifiedFront(points, kind, allowed)
     lines, until, sampling = certified_lines(trade_off, ordered, seconds=context.proof_seconds)

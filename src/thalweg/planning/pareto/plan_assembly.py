@@ -18,6 +18,7 @@ from thalweg.planning.pareto.baseline import (
     constant_speed_tracks,
     evaluate_weather_blind,
     no_reference_note,
+    undercut_note,
     weather_blind_tracks,
 )
 from thalweg.planning.pareto.bounds import (
@@ -51,6 +52,7 @@ from thalweg.planning.single.weather_gaps import check_times_known
 from thalweg.route import Route
 
 #: Routes that end within this time of the end of the data are taken as limited by it [s].
+_SAME_PLACE = 5  # decimals of positions [deg] at which tracks are the same
 _DATA_END_MARGIN = 3.0 * HOUR
 
 
@@ -83,6 +85,10 @@ def assemble_trade_off_plan(
         *_notes(trade_off, ends, explored, ordered),
         *trade_off.notes,
     ]
+    if front.comparison is not None:
+        routes, compared = [item.route for item in ordered], front.comparison
+        note = undercut_note(routes, front.values, compared.routes, compared.values)
+        notes += [note] if note else []
     return Plan(
         voyage=context.voyage,
         routes=tuple(item.route for item in ordered),
@@ -176,8 +182,13 @@ def _constant_speed_candidates(
 ) -> list[RefereedCandidate]:
     """Return the shortest route, and routes of the front, at constant speeds within the limits."""
     context, objective = trade_off.context, trade_off.objective
-    feasible = [item for item in scored if item.route.feasible]
-    feasible.sort(key=lambda item: item.route.time_h)
+    ordered = sorted(scored, key=lambda item: item.route.time_h)
+    places = {
+        tuple(np.round([item.route.track.lat, item.route.track.lon], _SAME_PLACE).ravel()): item
+        for item in ordered
+        if item.route.feasible
+    }
+    feasible = list(places.values())
     found = [(route, "") for route in blind]
     if feasible and len(trade_off.settings) > 1 and not trade_off.interrupt_guard.stopped():
         context.report_progress("evaluating constant speeds")

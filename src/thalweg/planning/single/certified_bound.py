@@ -20,7 +20,11 @@ from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBo
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier
 from thalweg.search.certificate.departure_certificate import certify_departures
 from thalweg.search.certificate.raster_path import fast_path_on_raster
-from thalweg.search.certificate.time_certificate import TimeCertificate, certify_time
+from thalweg.search.certificate.time_certificate import (
+    TimeCertificate,
+    certify_priced_length,
+    certify_time,
+)
 from thalweg.ship import PerformanceTable, TableError, TablePart
 
 _BARRIER_KIND = (
@@ -38,7 +42,6 @@ _CELLS_FOR_CURRENT = 100  # where the data are no finer
 _CELLS_OF_PATH = 800  # of functions, along the longer side
 #: Cells of functions in the spacing of a network that is coarser than usual, and how many at least.
 _CELLS_OF_SPACING, _FEWEST_CELLS_OF_PATH = 10, 100
-_CANAL = "no bound: a canal may shorten the way"
 _CONTRADICTED = (
     "no bound: in {sampling} the route of the plan would not be possible in its time, so that a "
     "bound for that sea says nothing"
@@ -117,13 +120,32 @@ def certified_distance(context: PlanningContext, route: Route, *, seconds: float
 
     Returns
     -------
-    LowerBound : NaN where a canal may shorten the way.
+    LowerBound : With the lengths of canals on the way.
     """
-    passage = _still_water(context, route)
-    if passage.canal_speed(1.0) > 0.0:
-        return no_bound(_CANAL)
-    found = certify_time(passage, seconds=seconds)
-    return LowerBound(found.value, "")
+    return LowerBound(certify_time(_still_water(context, route), seconds=seconds).value, "")
+
+
+def certified_priced_length(
+    context: PlanningContext, route: Route, *, price: float, seconds: float
+) -> LowerBound:
+    """Return a lower bound of the length [m], with dearer metres inside the control areas.
+
+    Parameters
+    ----------
+    route : A feasible route.
+    price : What a metre inside the control areas counts, 1 or more; others count 1.
+    seconds : Time that the search for the bound may take [s].
+
+    Returns
+    -------
+    LowerBound : NaN near a pole and across half of the globe.
+    """
+    lat, lon = route.track.lat, route.track.lon
+    inside = context.chart.zones.eca_fraction(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    known = float((route.legs["length"] * (1.0 + (price - 1.0) * np.asarray(inside))).sum())
+    passage = replace(_still_water(context, route), known=known)
+    found = certify_priced_length(passage, price, seconds=seconds)
+    return no_bound("") if found is None else LowerBound(found.value, "")
 
 
 def certified_total(

@@ -14,9 +14,11 @@ from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH, SPEED_FIELD
 from thalweg.kernels.leg.raster_sampling import RasterArrays
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier
 from thalweg.search.certificate.barrier_raster import RasterRequest, freeze_barrier_raster
+from thalweg.search.certificate.closed_water import cells_inside
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.chart.zones.zone_set import Zones
     from thalweg.sea import Sea
 
 _MARGIN: Final = 1.02
@@ -176,6 +178,20 @@ class BarrierDomain:
         if later == 0.0:
             return self
         return replace(self, raster=self.raster._replace(times=self.raster.times - later))
+
+    def slower_inside(self, zones: Zones, factor: float) -> BarrierDomain:
+        """Return the domain with speeds times a factor, 1 or less, inside the control areas.
+
+        Cells of the raster that are not inside all over keep their speed all over.
+        """
+        _, rows, columns, _ = self.raster.values.shape
+        lat0, dlat, lon0, dlon = self.raster.corner
+        lat, lon = lat0 + dlat * np.arange(rows), lon0 + dlon * np.arange(columns)
+        inside = np.pad(cells_inside(zones, lat, lon), 1, constant_values=True)
+        nodes = inside[1:, 1:] & inside[1:, :-1] & inside[:-1, 1:] & inside[:-1, :-1]
+        values, channel = self.raster.values.copy(), self.raster.channel_index[SPEED_FIELD]
+        values[..., channel] *= np.where(nodes, factor, 1.0)
+        return replace(self, raster=self.raster._replace(values=values))
 
 
 def _greatest(raster: RasterArrays, channel: int) -> float:

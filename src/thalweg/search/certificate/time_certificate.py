@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 import time as clock
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.kernels.leg.table_lookup import axes_needed
@@ -97,9 +99,57 @@ def certify_time(
         best = best if finer is None else free_space_time(passage, finer)
     if seconds <= 0.0:
         return best
-    search = BarrierSearch(passage, domain, first_cells(passage, seconds))
-    enough = (1.0 - target) * passage.known
     left = seconds - (clock.perf_counter() - began)
+    return _raised_by_barriers(
+        best, BarrierSearch(passage, domain, first_cells(passage, seconds)), left, target
+    )
+
+
+def certify_priced_length(
+    passage: PassageToBound, price: float, *, seconds: float, target: float = 0.005
+) -> TimeCertificate | None:
+    """Bound the length of every route from below, with dearer metres inside the control areas.
+
+    Parameters
+    ----------
+    passage : Of a ship of 1 m/s in still water; its ``known`` is the priced length of a route [m].
+    price : What a metre inside the control areas of the chart counts, 1 or more; others count 1.
+    seconds, target : As for `certify_time`.
+
+    Returns
+    -------
+    TimeCertificate or None : None near a pole and across half of the globe.
+
+    Notes
+    -----
+    The priced length is the time of a ship that is slower inside the areas by that price.
+    """
+    began = clock.perf_counter()
+    ship = replace(passage.ship, speed_field=_one_metre_a_second)
+    passage = replace(passage, ship=ship)
+    domain = BarrierDomain.around(passage, _cells(passage, seconds))
+    if domain is None:
+        return None
+    best = free_space_time(passage, domain)
+    if passage.chart is not None:
+        domain = domain.slower_inside(passage.chart.zones, 1.0 / price)
+    left = seconds - (clock.perf_counter() - began)
+    cells = first_cells(passage, seconds)
+    return _raised_by_barriers(best, BarrierSearch(passage, domain, cells), left, target)
+
+
+def _one_metre_a_second(
+    _sampled: Mapping[str, ArrayLike], _time: ArrayLike, lat: ArrayLike, _lon: ArrayLike
+) -> FloatArray:
+    return np.ones(np.shape(lat))
+
+
+def _raised_by_barriers(
+    best: TimeCertificate, search: BarrierSearch, seconds: float, target: float
+) -> TimeCertificate:
+    """Return the best bound of meshes that are finer and finer, for some time [s]."""
+    passage, began, left = search.passage, clock.perf_counter(), seconds
+    enough = (1.0 - target) * passage.known
     while best.value < enough and search.expected_seconds <= left:
         found = search.refine()
         if found is not None and found.reached > (1.0 + _CONTRADICTION) * passage.known:
