@@ -174,6 +174,10 @@ class PortApproaches:
             here = there
         return found
 
+    def is_on_line(self, lat: float, lon: float) -> bool:
+        """Return whether a position [deg] is within `ON_LINE` of the line of any approach."""
+        return bool(self._lines_at(lat, lon))
+
     def _lines_at(self, lat: float, lon: float) -> dict[int, float]:
         """Return the lines on which a position lies, and how far along each [m]."""
         near = self._segments_by_cell.get(_cell(lat, lon))

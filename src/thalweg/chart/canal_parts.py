@@ -14,8 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.approaches import (
+    LONGEST_JOINT,
     ON_LINE,
     PortApproach,
+    PortApproaches,
     dense_line,
     line_length,
     line_part,
@@ -126,13 +128,39 @@ def part_number_of_legs(
     return number
 
 
-def is_joint_to_canal(canals: Sequence[Canal], a: Position, b: Position) -> bool:
-    """Return whether a leg between positions [deg] may join an approach to a canal's inner line."""
-    if float(distance(*a, *b)) > LONGEST_CANAL_JOINT + 2.0 * ON_LINE:
-        return False
-    return any(
-        place_along_line(canal.inner_line, place) is not None for canal in canals for place in (a, b)
-    )
+def joints_to_canals(
+    canals: Sequence[Canal], approaches: PortApproaches, number: NDArray[np.int64], line: FloatArray
+) -> set[int]:
+    """Return the legs that join approaches to the inner lines of canals.
+
+    Parameters
+    ----------
+    canals : Of the chart.
+    approaches : Of the chart.
+    number : By `part_number_of_legs`, (n - 1,).
+    line : Waypoints (lat, lon) [deg], (n, 2).
+    """
+    found: set[int] = set()
+    for leg in np.flatnonzero(number >= 0).tolist():
+        canal = canals[number[leg]]
+        for step in (-1, 1):
+            sailed, chain, at = 0.0, [], leg + max(step, 0)
+            if place_along_line(canal.inner_line, _place(line, at)) is None:
+                continue
+            while 0 <= at + step < len(line) and number[at + min(step, 0)] < 0:
+                here, at = at, at + step
+                chain.append(min(here, at))
+                sailed += float(distance(*line[here], *line[at]))
+                if sailed > LONGEST_CANAL_JOINT + LONGEST_JOINT:
+                    break
+                if approaches.is_on_line(*_place(line, at)):
+                    found.update(chain)
+                    break
+    return found
+
+
+def _place(line: FloatArray, at: int) -> Position:
+    return float(line[at, 0]), float(line[at, 1])
 
 
 def _is_inside(canal: Canal, here: float, there: float) -> bool:
@@ -141,9 +169,12 @@ def _is_inside(canal: Canal, here: float, there: float) -> bool:
     first = float(distance(*canal.path[0], *canal.path[1]))
     last = canal.length - float(distance(*canal.path[-2], *canal.path[-1]))
     low, high = min(here, there), max(here, there)
-    return low >= first - margin and high <= last + margin or (
-        low <= margin and high <= first + margin
-    ) or (high >= canal.length - margin and low >= last - margin)
+    return (
+        low >= first - margin
+        and high <= last + margin
+        or (low <= margin and high <= first + margin)
+        or (high >= canal.length - margin and low >= last - margin)
+    )
 
 
 def passages_of_parts(number: NDArray[np.int64]) -> NDArray[np.bool_]:

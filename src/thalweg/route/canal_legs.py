@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from thalweg.chart.approaches import MAX_APPROACH_SPEED
 from thalweg.chart.canal_parts import (
     canal_part,
-    is_joint_to_canal,
+    joints_to_canals,
     part_number_of_legs,
     passages_of_parts,
 )
@@ -157,11 +157,10 @@ def _with_approach_legs(legs: CanalLegs, track: Track, chart: Chart, ship: Ship)
     """Return the legs with those along approaches added."""
     assert chart.approaches is not None  # by the caller
     along = chart.approaches.legs(track.lat, track.lon)
-    part = [isinstance(canal, CanalPart) for canal in legs.canals] + [False]
-    beside = np.flatnonzero(np.asarray(part)[legs.number])
-    for leg in {int(k) + step for k in beside for step in (-1, 1)}:  # joints to canals
-        if 0 <= leg < len(along) and legs.number[leg] < 0:
-            along[leg] |= is_joint_to_canal(chart.canals, *track.positions[leg : leg + 2])
+    part = part_number_of_legs(chart.canals, track.lat, track.lon)
+    if (part >= 0).any():
+        line = np.stack([track.lat, track.lon], axis=1)
+        along[list(joints_to_canals(chart.canals, chart.approaches, part, line))] = True
     found = np.flatnonzero(along & (legs.number < 0))
     if not len(found):
         return legs
@@ -194,9 +193,7 @@ def _part_of_canal(canal: Canal, start: Position, goal: Position, *, pays: bool)
     return CanalPart(**{field.name: getattr(part, field.name) for field in fields(Canal)})
 
 
-def _with_more_legs(
-    legs: CanalLegs, found: NDArray[np.int64], more: Sequence[Canal]
-) -> CanalLegs:
+def _with_more_legs(legs: CanalLegs, found: NDArray[np.int64], more: Sequence[Canal]) -> CanalLegs:
     number = legs.number.copy()
     number[found] = len(legs.canals) + np.arange(len(found))
     return CanalLegs(number, (*legs.canals, *more), legs.backward)

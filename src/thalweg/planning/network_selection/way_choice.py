@@ -48,9 +48,7 @@ def with_chosen_ways(
 def _best_pair(start: Endpoint, goal: Endpoint, seas: Seaways) -> list[Endpoint]:
     """Return two ends by the ways that make the distance between them least."""
     open_canals = {c.name for c in seas.chart.canals} - set(seas.canals)
-    ways = [
-        [way for way in _by_way(end) if _is_open(way, open_canals)] for end in (start, goal)
-    ]
+    ways = [[way for way in _by_way(end) if _is_open(way, open_canals)] for end in (start, goal)]
     pairs = [_Pair.of(a, b, seas) for a in ways[0] for b in ways[1]]
     best, least = pairs[0], math.inf
     for number, pair in sorted(enumerate(pairs), key=lambda item: item[1].bound):
