@@ -170,8 +170,7 @@ def _is_inside(canal: Canal, here: float, there: float) -> bool:
     last = canal.length - float(distance(*canal.path[-2], *canal.path[-1]))
     low, high = min(here, there), max(here, there)
     return (
-        low >= first - margin
-        and high <= last + margin
+        (low >= first - margin and high <= last + margin)
         or (low <= margin and high <= first + margin)
         or (high >= canal.length - margin and low >= last - margin)
     )

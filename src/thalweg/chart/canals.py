@@ -1,11 +1,12 @@
 """Ship canals: connections through land that a coastline does not show.
 
 A canal is one leg between two positions in open water off its entrances, with its own length, time
-and fee. Ports on its banks enter it on the way (`thalweg.chart.canal_parts`). The figures in ``data/canals.json`` are published ones, for planning, collected on
-2026-11-21; each canal names its sources. The dues of Suez, Panama and Kiel depend on the tonnage,
-beam and type of the ship (`thalweg.chart.canal_tariff`); elsewhere, and for ships of unknown size,
-the fee is the mean that ships paid. Rebates, towage and waiting are not counted. For a ship whose
-dues are known, give the chart other canals with `dataclasses.replace`.
+and fee. Ports on its banks enter it on the way (`thalweg.chart.canal_parts`). The figures in
+``data/canals.json`` are published ones, for planning, collected on 2026-11-21; each canal names its
+sources. The dues of Suez, Panama and Kiel depend on the tonnage, beam and type of the ship
+(`thalweg.chart.canal_tariff`); elsewhere, and for ships of unknown size, the fee is the mean that
+ships paid. Rebates, towage and waiting are not counted. For a ship whose dues are known, give the
+chart other canals with `dataclasses.replace`.
 """
 
 from __future__ import annotations

@@ -206,7 +206,7 @@ def sea_distance(
         *(last.line[-2::-1] if last else ()),
     )
     total = length + sum(miles for _, miles in approaches)
-    if first and first.through or last and last.through:
+    if (first and first.through) or (last and last.through):
         canals = _canals_entered(chart, line)
     straits = names_passed(chart.coastline, chart.passages, *np.array(line, float).T)
     return SeaDistance(ends[0].name, ends[-1].name, total, canals, straits, approaches, line, notes)
