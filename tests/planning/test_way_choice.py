@@ -8,6 +8,7 @@ import pytest
 import thalweg
 from thalweg import Chart, Sea, Ship, Voyage
 from thalweg.chart.approaches import PORT_APPROACHES
+from thalweg.chart.canals import KIEL, SUEZ, canals_with_dues
 from thalweg.chart.ports import PORTS
 from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
@@ -17,7 +18,10 @@ from thalweg.planning.seaways import Seaways, world_chart
 
 #: Miles as tables quote them, and the tolerance; by the line that the ship takes.
 TABLES = [
-    ("Hamburg", "Kiel", 95, 0.09),  # Hamburg to Brunsbüttel 37, canal 53, Holtenau to Kiel 3
+    ("Hamburg", "Kiel", 95, 0.03),  # Hamburg to Brunsbüttel 37, canal 53, Holtenau to Kiel 3
+    ("Port Said", "Suez", 88, 0.05),
+    ("Rendsburg", "Hamburg", 72, 0.03),
+    ("Balboa", "Cristobal", 44, 0.21),  # the line through Gatun Lake has eight legs
     ("Hamburg", "Gdansk", 427, 0.02),
     ("Bremerhaven", "Gothenburg", 365, 0.05),
     ("Kobe", "Busan", 366, 0.05),
@@ -73,7 +77,8 @@ def test_distances_of_river_ports_and_inland_seas(start, goal, miles, tolerance)
 
 @pytest.mark.slow
 def test_the_way_follows_the_canals_that_are_open():
-    assert chosen("Hamburg", "Kiel") == ["to the Kiel Canal", "to the Kiel Canal"]
+    assert chosen("Hamburg", "Kiel") == ["to the Kiel Canal", "through the Kiel Canal"]
+    assert chosen("Hamburg", "Gdansk") == ["to the Kiel Canal", ""]
     assert chosen("Hamburg", "Kiel", "kiel") == ["", ""]
     assert chosen("Hamburg", "New York") == ["", ""]
     assert sea_distance("Hamburg", "Kiel", avoid=["kiel"]).nm > 400.0
@@ -107,17 +112,33 @@ def test_without_a_choice_no_seaways_are_asked_for():
 def test_a_plan_leaves_the_elbe_for_the_canal():
     plan = planned("Hamburg", "Kiel")
     route = plan.best
-    kind = np.asarray(route.legs["leg_kind"])
     assert route.feasible
-    assert route.distance_nm == pytest.approx(102.0, abs=2.0)
-    assert (kind == 1).sum() == 1
+    assert route.distance_nm == pytest.approx(sea_distance("Hamburg", "Kiel").nm, rel=1e-4)
+    assert (np.asarray(route.legs["leg_kind"]) == 2).all()
     assert route.track.lon.min() > 9.0  # never west of Brunsbüttel
     lines = [PORT_APPROACHES.of(PORTS.lookup(name)) for name in ("Hamburg", "Kiel")]
     assert route.track.positions[0] == pytest.approx(lines[0].berth)
     assert route.track.positions[-1] == pytest.approx(lines[1].berth)
-    near = kind == 2
-    time = route.legs["arrive"] - route.legs["depart"]
-    assert route.legs["length"][near].sum() / NAUTICAL_MILE == pytest.approx(46.5, abs=1.5)
-    assert time[near].sum() == pytest.approx(route.legs["length"][near].sum() / (10.0 * KNOT))
+    length, time = route.legs["length"], route.legs["arrive"] - route.legs["depart"]
+    slow = time > 1.05 * length / (10.0 * KNOT)  # in the canal, at its speed
+    assert length[slow].sum() / NAUTICAL_MILE == pytest.approx(48.6, abs=0.5)
+    assert time[slow].sum() / length[slow].sum() == pytest.approx(KIEL.transit_time / KIEL.length)
+    assert time[~slow].sum() == pytest.approx(length[~slow].sum() / (10.0 * KNOT))
     assert plan.lower_bound <= plan.objective_value
-    assert "out of Hamburg, DE along its approach to the Kiel Canal" in " ".join(plan.notes)
+    again = thalweg.evaluate(route.track, ship=ship(), sea=Sea.calm(), chart=chart())
+    assert again.feasible
+    assert again.arrive == pytest.approx(route.arrive, abs=1.0)
+
+
+@pytest.mark.slow
+def test_a_port_on_a_canal_pays_its_dues_once():
+    plan = planned("Port Said", "Suez", objective="cost")
+    route = plan.best
+    dues = canals_with_dues((SUEZ,), ship().file.hull)[0].fee
+    assert route.feasible
+    assert "by Suez Canal" in str(plan)
+    assert route.cost == pytest.approx(dues + 300.0 * route.fuel_t, rel=0.01)
+    assert np.sum(route.legs["length"]) / NAUTICAL_MILE == pytest.approx(84.8, abs=0.5)
+    closed = sea_distance("Port Said", "Suez", avoid=["suez"])
+    assert closed.nm > 10_000.0
+    assert closed.canals == ()

@@ -1,7 +1,8 @@
 """The ways between a berth and the sea: the approach, its branches, and where canals meet it.
 
 A branch (`thalweg.chart.approach_branches`) is open to every port whose approach comes within
-`LONGEST_JOINT` of it. The ends of canals are branches as well.
+`LONGEST_JOINT` of it. The ends of canals are branches as well. A port on a canal has ways through
+it (`thalweg.chart.canal_parts`).
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import numpy as np
 
 from thalweg.chart.approach_branches import ApproachBranch, approach_branches
 from thalweg.chart.approaches import LONGEST_JOINT, PortApproach, dense_line, line_part
+from thalweg.chart.canal_parts import ways_through_canals
 from thalweg.chart.canals import Canal
 from thalweg.core.geodesy import distance
 from thalweg.core.types import FloatArray
@@ -42,16 +44,17 @@ def approach_choices(
         for canal in canals
         for end in canal.ends
     )
+    through = ways_through_canals(approach, canals)
     near = [
         branch
         for branch in (*approach_branches(), *ends)
         if abs(branch.line[0][0] - approach.berth[0]) < _FAR_IN_LATITUDE
     ]
     if not near:
-        return (approach,)
+        return (approach, *through)
     along = dense_line(approach.line)
     others = (_by_branch(approach, along, branch) for branch in near)
-    return (approach, *(other for other in others if other is not None))
+    return (approach, *(other for other in others if other is not None), *through)
 
 
 def _by_branch(

@@ -55,6 +55,8 @@ class PortApproach:
     way : By which channel or to which canal, where it is not the main way ("by Fedjeosen").
     canal : Name of the canal that the line leads to, or empty.
     way_draught : Largest draught of ships that use this way [m]; inf without a limit.
+    through : Name of the canal that the line leads through, or empty.
+    through_length, through_time : Of the part in that canal [m, s].
     """
 
     port: Port
@@ -67,6 +69,9 @@ class PortApproach:
     way: str = ""
     canal: str = ""
     way_draught: float = math.inf
+    through: str = ""
+    through_length: float = 0.0
+    through_time: float = 0.0
 
     @property
     def label(self) -> str:
@@ -87,6 +92,10 @@ class PortApproach:
     def length(self) -> float:
         """Length of the line [m]."""
         return line_length(self.line)
+
+    def duration(self, speed: float) -> float:
+        """Return the time along the line [s] at a speed [m/s], in a canal at that of the canal."""
+        return (self.length - self.through_length) / speed + self.through_time
 
 
 def line_length(line: tuple[Position, ...]) -> float:
@@ -164,6 +173,10 @@ class PortApproaches:
                 )
             here = there
         return found
+
+    def is_on_line(self, lat: float, lon: float) -> bool:
+        """Return whether a position [deg] is within `ON_LINE` of the line of any approach."""
+        return bool(self._lines_at(lat, lon))
 
     def _lines_at(self, lat: float, lon: float) -> dict[int, float]:
         """Return the lines on which a position lies, and how far along each [m]."""
@@ -298,6 +311,22 @@ def line_part(line: tuple[Position, ...], along: float) -> list[Position]:
         part.append(b)
         sailed += length
     return part
+
+
+def place_along_line(line: tuple[Position, ...], place: Position) -> float | None:
+    """Return how far along a line a position lies [m]; None if it is not within `ON_LINE` of it."""
+    sailed, best, nearest = 0.0, None, ON_LINE
+    for a, b in itertools.pairwise(line):
+        length = _metres(a, b)
+        scale = math.cos(math.radians(a[0]))
+        bx, by = float(_wrapped(np.array(b[1] - a[1]))) * scale, b[0] - a[0]
+        px, py = float(_wrapped(np.array(place[1] - a[1]))) * scale, place[0] - a[0]
+        share = min(max((px * bx + py * by) / max(bx**2 + by**2, 1e-18), 0.0), 1.0)
+        apart = math.hypot(px - share * bx, py - share * by) * METRES_PER_DEGREE
+        if apart <= nearest:
+            best, nearest = sailed + share * length, apart
+        sailed += length
+    return best
 
 
 def dense_line(line: tuple[Position, ...]) -> FloatArray:

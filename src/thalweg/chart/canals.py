@@ -1,11 +1,12 @@
 """Ship canals: connections through land that a coastline does not show.
 
 A canal is one leg between two positions in open water off its entrances, with its own length, time
-and fee. The figures in ``data/canals.json`` are published ones, for planning, collected on
-2026-11-21; each canal names its sources. The dues of Suez, Panama and Kiel depend on the tonnage,
-beam and type of the ship (`thalweg.chart.canal_tariff`); elsewhere, and for ships of unknown size,
-the fee is the mean that ships paid. Rebates, towage and waiting are not counted. For a ship whose
-dues are known, give the chart other canals with `dataclasses.replace`.
+and fee. Ports on its banks enter it on the way (`thalweg.chart.canal_parts`). The figures in
+``data/canals.json`` are published ones, for planning, collected on 2026-11-21; each canal names its
+sources. The dues of Suez, Panama and Kiel depend on the tonnage, beam and type of the ship
+(`thalweg.chart.canal_tariff`); elsewhere, and for ships of unknown size, the fee is the mean that
+ships paid. Rebates, towage and waiting are not counted. For a ship whose dues are known, give the
+chart other canals with `dataclasses.replace`.
 """
 
 from __future__ import annotations
@@ -104,6 +105,11 @@ class Canal:
         """Length of the path [m]."""
         lat, lon = np.array(self.path, float).T
         return float(np.sum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
+
+    @property
+    def inner_line(self) -> tuple[Position, ...]:
+        """The path from gate to gate (lat, lon) [deg]: without its first and last leg at sea."""
+        return self.path[1:-1] if len(self.path) > 3 else self.path
 
     def transit_restriction(
         self,

@@ -149,7 +149,7 @@ class ApproachSailing:
 
     def _duration(self, approach: PortApproach | None) -> float:
         """Return the time of an approach [s]."""
-        return 0.0 if approach is None else approach.length / self.speed
+        return 0.0 if approach is None else approach.duration(self.speed)
 
     def sail(self, line: Sequence[Position], depart: float, context: PlanningContext) -> Route:
         """Return the line of an approach as sailed; departure in s since 1970."""
@@ -187,7 +187,7 @@ class SailedApproaches:
         """Return a route with approaches at its ends; None adds none."""
         parts = [route]
         if outward is not None and outward.length > 1.0:
-            depart = route.depart - outward.length / self._sailing.speed
+            depart = route.depart - outward.duration(self._sailing.speed)
             parts.insert(0, self._sail(tuple(outward.line), depart))
         if inward is not None and inward.length > 1.0 and math.isfinite(route.arrive):
             parts.append(self._sail(tuple(inward.line[::-1]), route.arrive))

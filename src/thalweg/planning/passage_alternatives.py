@@ -79,9 +79,12 @@ class _Question:
         at_sea, titles = path_length_and_canals(seas.chart, path)
         canals = [canal for canal in seas.chart.canals if canal.title in titles]
         in_canals = sum(canal.length for canal in canals)
-        near = sum(end.approach.length for end in ends if end.approach is not None)
+        lines = [end.approach for end in (ends[0], ends[-1]) if end.approach is not None]
+        near = sum(line.length for line in lines)
         time = (at_sea - in_canals) / self.speed + sum(canal.transit_time for canal in canals)
-        time += near / min(self.speed, MAX_APPROACH_SPEED)
+        time += sum(line.duration(min(self.speed, MAX_APPROACH_SPEED)) for line in lines)
+        entered = {line.through for line in lines}
+        canals += [canal for canal in seas.chart.canals if canal.name in entered]
         names = names_passed(seas.chart.coastline, seas.chart.passages, *np.array(path).T)
         return PassageAlternative(
             closed,

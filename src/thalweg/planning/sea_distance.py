@@ -11,6 +11,7 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.chart.approaches import MAX_APPROACH_SPEED, line_between, line_length
+from thalweg.chart.canal_parts import part_number_of_legs, passages_of_parts
 from thalweg.chart.depth.global_depth import NAME
 from thalweg.chart.depth.shoals import EXCESS
 from thalweg.chart.offing import check_offing
@@ -191,7 +192,8 @@ def sea_distance(
         if line is not None:
             length = line_length(line)
             along = ((f"{first.port.label} to {last.port.label}", length),)
-            return SeaDistance(ends[0].name, ends[-1].name, length, (), (), along, line, notes)
+            titles = _canals_entered(chart, line)
+            return SeaDistance(ends[0].name, ends[-1].name, length, titles, (), along, line, notes)
     offing = offing_nm * NAUTICAL_MILE
     parts = [seas.path(a, b, offing=offing) for a, b in itertools.pairwise(ends)]
     path = [parts[0][0], *(place for part in parts for place in part[1:])]
@@ -204,8 +206,19 @@ def sea_distance(
         *(last.line[-2::-1] if last else ()),
     )
     total = length + sum(miles for _, miles in approaches)
+    if (first and first.through) or (last and last.through):
+        canals = _canals_entered(chart, line)
     straits = names_passed(chart.coastline, chart.passages, *np.array(line, float).T)
     return SeaDistance(ends[0].name, ends[-1].name, total, canals, straits, approaches, line, notes)
+
+
+def _canals_entered(chart: Chart, line: Sequence[Position]) -> tuple[str, ...]:
+    """Return the titles of the canals of a whole way, with those that are entered on the way."""
+    lat, lon = np.array(line, float).T
+    part = part_number_of_legs(chart.canals, lat, lon)
+    whole = np.asarray(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:]))
+    number = np.where(passages_of_parts(part), part, whole)
+    return tuple(chart.canals[k].title for k in number[number >= 0].tolist())
 
 
 def _seas_for_draught(seas: Seaways, draught: float, ends: Sequence[Endpoint]) -> Seaways:

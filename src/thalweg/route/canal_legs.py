@@ -4,13 +4,20 @@ from __future__ import annotations
 
 import contextlib
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.approaches import MAX_APPROACH_SPEED
+from thalweg.chart.canal_parts import (
+    canal_part,
+    joints_to_canals,
+    part_number_of_legs,
+    passages_of_parts,
+)
 from thalweg.chart.canals import Canal, canals_with_dues
 from thalweg.core.errors import ThalwegError
 from thalweg.core.geodesy import Position, direct, inverse
@@ -30,6 +37,11 @@ _WAVE_PERIOD = 9.0  # of no waves [s]
 @dataclass(frozen=True)
 class ApproachLeg(Canal):
     """A leg along the approach of a port: sailed like a canal, without dues and limits."""
+
+
+@dataclass(frozen=True)
+class CanalPart(ApproachLeg):
+    """A leg along a part of a canal: sailed like an approach, with its time, dues and limits."""
 
 
 @dataclass(frozen=True)
@@ -136,6 +148,7 @@ def canal_legs(track: Track, chart: Chart | None, ship: Ship | None = None) -> C
         canals = chart.canals if ship is None else canals_with_dues(chart.canals, ship.file.hull)
         legs = _through_canals(track, chart, canals)
     if ship is not None and getattr(chart, "approaches", None) is not None:
+        legs = _with_canal_parts(legs, track)
         legs = _with_approach_legs(legs, track, chart, ship)  # type: ignore[arg-type]
     return legs
 
@@ -143,7 +156,12 @@ def canal_legs(track: Track, chart: Chart | None, ship: Ship | None = None) -> C
 def _with_approach_legs(legs: CanalLegs, track: Track, chart: Chart, ship: Ship) -> CanalLegs:
     """Return the legs with those along approaches added."""
     assert chart.approaches is not None  # by the caller
-    found = np.flatnonzero(chart.approaches.legs(track.lat, track.lon) & (legs.number < 0))
+    along = chart.approaches.legs(track.lat, track.lon)
+    part = part_number_of_legs(chart.canals, track.lat, track.lon)
+    if (part >= 0).any():
+        line = np.stack([track.lat, track.lon], axis=1)
+        along[list(joints_to_canals(chart.canals, chart.approaches, part, line))] = True
+    found = np.flatnonzero(along & (legs.number < 0))
     if not len(found):
         return legs
     more = [
@@ -154,6 +172,28 @@ def _with_approach_legs(legs: CanalLegs, track: Track, chart: Chart, ship: Ship)
         )
         for k in found
     ]
+    return _with_more_legs(legs, found, more)
+
+
+def _with_canal_parts(legs: CanalLegs, track: Track) -> CanalLegs:
+    """Return the legs with those along parts of canals, by ships that enter them on the way."""
+    part = part_number_of_legs(legs.canals, track.lat, track.lon)
+    part[legs.number >= 0] = -1
+    pays = passages_of_parts(part)
+    found = np.flatnonzero(part >= 0)
+    more = [
+        _part_of_canal(legs.canals[part[k]], *track.positions[k : k + 2], pays=bool(pays[k]))
+        for k in found.tolist()
+    ]
+    return _with_more_legs(legs, found, more)
+
+
+def _part_of_canal(canal: Canal, start: Position, goal: Position, *, pays: bool) -> CanalPart:
+    part = canal_part(canal, start, goal, pays=pays)
+    return CanalPart(**{field.name: getattr(part, field.name) for field in fields(Canal)})
+
+
+def _with_more_legs(legs: CanalLegs, found: NDArray[np.int64], more: Sequence[Canal]) -> CanalLegs:
     number = legs.number.copy()
     number[found] = len(legs.canals) + np.arange(len(found))
     return CanalLegs(number, (*legs.canals, *more), legs.backward)

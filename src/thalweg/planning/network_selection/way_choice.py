@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -47,7 +47,9 @@ def with_chosen_ways(
 
 def _best_pair(start: Endpoint, goal: Endpoint, seas: Seaways) -> list[Endpoint]:
     """Return two ends by the ways that make the distance between them least."""
-    pairs = [_Pair.of(a, b, seas) for a in _by_way(start) for b in _by_way(goal)]
+    open_canals = {c.name for c in seas.chart.canals} - set(seas.canals)
+    ways = [[way for way in _by_way(end) if _is_open(way, open_canals)] for end in (start, goal)]
+    pairs = [_Pair.of(a, b, seas) for a in ways[0] for b in ways[1]]
     best, least = pairs[0], math.inf
     for number, pair in sorted(enumerate(pairs), key=lambda item: item[1].bound):
         if pair.bound >= least:
@@ -65,6 +67,11 @@ def _without_shallow_ways(end: Endpoint, draught: float) -> Endpoint:
 
 def _by_way(end: Endpoint) -> list[Endpoint]:
     return [end, *(end.by(way) for way in end.other_ways)]
+
+
+def _is_open(end: Endpoint, canals: Collection[str]) -> bool:
+    """Return whether the canal that a way leads through, if any, is open."""
+    return end.approach is None or not end.approach.through or end.approach.through in canals
 
 
 @dataclass(frozen=True)
