@@ -58,7 +58,7 @@ def test_least_fuel_is_the_slowest_speed_on_the_geodesic():
 
 
 @pytest.mark.slow
-def test_with_a_deadline_two_neighbouring_speeds_are_mixed():
+def test_with_a_deadline_two_neighbouring_speeds_are_mixed(whole_front):
     # at 9 kn on the mean, time is shared between 8 and 10 kn so that the distance is covered
     hours = LENGTH / (9.0 * KNOT) / HOUR
     arrive = 1767225600.0 + hours * HOUR
