@@ -75,7 +75,7 @@ def brief_proofs() -> Iterator[None]:
 
 @pytest.fixture(scope="session", autouse=True)
 def brief_fronts() -> Iterator[Any]:
-    """Refine and evaluate fewer routes of a front; what is asserted of a front holds for all."""
+    """Refine and evaluate fewer routes of a front; the value is how many a user's front has."""
     from thalweg.planning.pareto import trade_off_context
     from thalweg.planning.pareto.trade_off_context import FrontDetail
 
