@@ -8,6 +8,7 @@ import signal
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -70,6 +71,38 @@ def brief_proofs() -> Iterator[None]:
         patch.setattr(certified_bound, "_CELLS_OF_PATH", 250)
         patch.setattr(time_certificate, "_CELLS_OF_GEODESIC", 120)
         yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def brief_fronts() -> Iterator[Any]:
+    """Refine and evaluate fewer routes of a front; the value is how many a user's front has."""
+    from thalweg.planning.pareto import trade_off_context
+    from thalweg.planning.pareto.trade_off_context import FrontDetail
+
+    with pytest.MonkeyPatch.context() as patch:
+        whole = trade_off_context.WHOLE_FRONT
+        brief = FrontDetail(16, 6, 40, 16, 12, 6, 12, 24)
+        patch.setattr(trade_off_context, "WHOLE_FRONT", brief)
+        yield whole
+
+
+@pytest.fixture(scope="module")
+def whole_fronts(brief_fronts: Any) -> Iterator[None]:
+    """Refine and evaluate as many routes of a front as for users, in a module of tests."""
+    from thalweg.planning.pareto import trade_off_context
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(trade_off_context, "WHOLE_FRONT", brief_fronts)
+        yield
+
+
+@pytest.fixture
+def coarse_networks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Space the nodes of default networks two and a half times as far apart."""
+    from thalweg.network.regional_lattice import lattice_builder
+
+    usual = lattice_builder.default_spacing
+    monkeypatch.setattr(lattice_builder, "default_spacing", lambda length: usual(2.5 * length))
 
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import json
 import os
 import shutil
 from collections.abc import Iterator
@@ -99,6 +100,18 @@ class Visit:
         page.locator(".field.goal input").fill(goal)
         page.get_by_label("Storm of 1998").check()
         page.locator("#depart").fill("1998-08-31T12:00")
+
+    def plan_coarsely(self, spacing_nm: float) -> None:
+        """Let the form plan on networks of a spacing [nm], with a brief proof."""
+
+        def coarser(route: Any) -> None:
+            if route.request.method != "POST":
+                return route.continue_()
+            request = json.loads(route.request.post_data)
+            request |= {"resolution_nm": spacing_nm, "proof_s": 0.2}
+            return route.continue_(post_data=json.dumps(request))
+
+        self.page.route("**/api/v1/plans", coarser)
 
     def plan(self) -> None:
         """Press the button and wait for the result."""

@@ -22,6 +22,7 @@ def job_of(page) -> str:
 
 def test_a_voyage_is_planned_by_clicking_on_the_chart(visit):
     page = visit.open()
+    visit.plan_coarsely(10.0)
     page.wait_for_selector("#chart[data-idle]")
     page.wait_for_selector("#ship option", state="attached")
     visit.picture("form")
@@ -181,6 +182,7 @@ def tab_to(page, selector: str, most: int = 120) -> None:
 
 def test_keyboard_only(visit):
     page = visit.open()
+    visit.plan_coarsely(5.0)
     page.wait_for_selector("#ship option", state="attached")
     tab_to(page, ".field.start input")
     page.keyboard.type("halif")
@@ -224,6 +226,7 @@ def test_keyboard_only(visit):
 
 def test_an_area_is_drawn_and_the_route_avoids_it(visit):
     page = visit.open()
+    visit.plan_coarsely(5.0)
     visit.fill_short("47.0N 19.5W", "47.0N 17.5W")
     page.get_by_text("Areas to avoid").click()
     page.get_by_role("button", name="Draw no-go").click()
@@ -273,6 +276,7 @@ def test_progress_cancel_and_a_point_of_the_front(visit):
 
 def test_choosing_a_route_of_a_front_changes_cards_and_profile(visit):
     page = visit.open()
+    visit.plan_coarsely(5.0)
     visit.fill_short("47.0N 20.0W", "47.0N 19.0W")
     page.locator("#objective").select_option("front")
     visit.plan()

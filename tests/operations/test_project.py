@@ -552,17 +552,15 @@ def test_no_sea_is_never_assumed():
 @pytest.mark.slow
 def test_command_line(tmp_path, capsys):
     path = tmp_path / "small.yaml"
-    path.write_text(yaml.safe_dump(example(volume_m3=4000, days=2)))
+    path.write_text(yaml.safe_dump(example(volume_m3=4000, days=2, name="Area [/2] at $5_$")))
     assert main(["project", str(path), "--out", str(tmp_path / "out")]) == 0
     told = capsys.readouterr().out
     assert "production [1000 m3/week]" in told and "least clearance [m]" in told
+    assert "Area [/2] at $5_$" in told
     assert (tmp_path / "out" / "cycles.csv").exists()
     assert main(["project", str(path), "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
     assert data["runs"]["optimised"]["totals"]["cycles"] >= 1
-    path.write_text(yaml.safe_dump(example(volume_m3=4000, days=2, name="Area [/2] at $5_$")))
-    assert main(["project", str(path), "--out", str(tmp_path / "odd")]) == 0
-    assert "Area [/2] at $5_$" in capsys.readouterr().out
     path.write_text(yaml.safe_dump(example(volume_m3=-1)))
     assert main(["project", str(path)]) == 2
     assert "volume_m3 is -1" in capsys.readouterr().err
@@ -572,7 +570,7 @@ def test_command_line(tmp_path, capsys):
 
 @pytest.mark.slow
 def test_the_example_for_some_days_on_the_full_network():
-    data = yaml.safe_load(example_file().read_text()) | {"volume_m3": 60_000, "days": 8}
+    data = yaml.safe_load(example_file().read_text()) | {"volume_m3": 24_000, "days": 4}
     project = Project.from_dict(data)
     ship, sea, chart = open_project_inputs(project)
     result = run_project(project, ship=ship, sea=sea, chart=chart)

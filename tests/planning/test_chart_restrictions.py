@@ -116,4 +116,4 @@ def test_a_missing_route_without_canals_is_reported():
         start=(33.0, 30.0), goal=(27.5, 34.5), depart="2026-01-01T00:00Z", forbid=["all"]
     )
     with pytest.raises(NoRouteError):
-        plan(voyage, ship=SHIP, sea=Sea.calm(), chart=chart)
+        plan(voyage, ship=SHIP, sea=Sea.calm(), chart=chart, resolution=30_000.0)

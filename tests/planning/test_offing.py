@@ -16,6 +16,8 @@ from thalweg.network.global_grid.grid import GridResolution, globe_grid
 from thalweg.planning.report.land_report import saved_length
 from thalweg.planning.request.offing_choice import default_offing, restrict_passages
 
+pytestmark = pytest.mark.usefixtures("coarse_networks")
+
 NM = 1852.0
 DEPART = "2026-01-01T00:00Z"
 BASINS = {

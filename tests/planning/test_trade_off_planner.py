@@ -12,6 +12,7 @@ from thalweg.core.geodesy import distance
 from thalweg.core.time import parse_time
 from thalweg.network import fixed_route
 from thalweg.planning.ensemble_plan import MAX_EVALUATED_ROUTES, _routes_to_evaluate
+from thalweg.planning.pareto import trade_off_context
 
 START, GOAL = (0.0, 0.0), (0.0, 2.0)
 CHART = Chart.open_water(-1.0, 1.0, -0.5, 2.5)
@@ -58,7 +59,8 @@ def test_least_fuel_is_the_slowest_speed_on_the_geodesic():
 
 
 @pytest.mark.slow
-def test_with_a_deadline_two_neighbouring_speeds_are_mixed():
+def test_with_a_deadline_two_neighbouring_speeds_are_mixed(brief_fronts, monkeypatch):
+    monkeypatch.setattr(trade_off_context, "WHOLE_FRONT", brief_fronts)  # as for users
     # at 9 kn on the mean, time is shared between 8 and 10 kn so that the distance is covered
     hours = LENGTH / (9.0 * KNOT) / HOUR
     arrive = 1767225600.0 + hours * HOUR

@@ -191,7 +191,7 @@ def test_cost_refinement_finds_the_speeds_or_better(fastest, chart, way, days):
 
 
 @pytest.fixture(scope="module")
-def planned(chart):
+def planned(chart, whole_fronts):
     voyage = Voyage(offing_nm=0.0,
         start=START, goal=GOAL, depart="2026-01-01T00:00Z", objective="front",
         fuel_price_usd=300.0, eca_price_factor=1.5593,
