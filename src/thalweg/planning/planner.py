@@ -27,6 +27,7 @@ from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import PlotContext, Proof, in_objective_unit
 from thalweg.planning.planning_context import PlanningContext, ShipTables, performance_table_of
 from thalweg.planning.report.lane_report import lane_detour_notes
+from thalweg.planning.report.zone_report import margin_notes
 from thalweg.planning.report.provenance import (
     finite_or_none,
     network_summary,
@@ -290,6 +291,7 @@ def voyage_context(
     chart, shoal_notes = add_shoals(chart, voyage, ship, sea, ends)
     notes += shoal_notes
     chart = add_traffic_schemes(chart, voyage, ship, ends)
+    notes += margin_notes(chart)
     chart, more = add_emission_control_areas(exclude_ice_latitudes(chart, ends), voyage, ship)
     needs = derive_requirements(voyage, ship=ship, sea=sea, chart=chart)
     ends = endpoints_within_coverage(

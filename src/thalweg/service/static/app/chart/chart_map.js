@@ -97,7 +97,7 @@ export class Chart extends EventTarget {
         return styles[i] ||= new Style({
           zIndex: port.importance,
           image: new Circle({ radius: 2.2, fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 1 }), declutterMode: "obstacle" }),
-          text: new Text({ text: port.name, font: '11px system-ui, "DejaVu Sans", sans-serif', offsetX: 6, textAlign: "left", fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 2.5 }) }),
+          text: new Text({ text: port.display_name, font: '11px system-ui, "DejaVu Sans", sans-serif', offsetX: 6, textAlign: "left", fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 2.5 }) }),
         });
       });
       this.ports.getSource().addFeature(feature);

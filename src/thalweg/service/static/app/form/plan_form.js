@@ -188,7 +188,7 @@ export class PlanForm extends EventTarget {
   }
 
   get ends() {
-    return [this.start, ...this.vias, this.goal].filter((field) => field.place).map((field) => ({ role: field.role, lat: field.place.lat, lon: field.place.lon, label: field.place.kind === "port" ? field.place.name : "" }));
+    return [this.start, ...this.vias, this.goal].filter((field) => field.place).map((field) => ({ role: field.role, lat: field.place.lat, lon: field.place.lon, label: field.place.kind === "port" ? field.place.display_name : "" }));
   }
 
   #placesChanged() {
@@ -306,7 +306,7 @@ export class PlanForm extends EventTarget {
   }
 
   defaultTitle() {
-    const name = (field) => (field.place?.kind === "port" ? field.place.name : field.value);
+    const name = (field) => (field.place?.kind === "port" ? field.place.display_name : field.value);
     return `${name(this.start)} to ${name(this.goal)}`;
   }
 

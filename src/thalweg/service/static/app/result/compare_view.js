@@ -5,7 +5,7 @@ import { errorBox, fill, h } from "../common/elements.js";
 import { EXAMPLES, keyOf, VARIATIONS } from "./examples.js";
 import { drawCompared, PAINTS } from "./result_drawing.js";
 import { faultWords } from "../common/faults.js";
-import { duration, isCalm, known, number, readable, seconds, signed, time, titleOf } from "../common/format.js";
+import { difference, duration, isCalm, known, number, readable, seconds, signed, time, titleOf } from "../common/format.js";
 
 const MOST = 6;
 // Column, name in the answer, decimals (of time: minutes), text, text of a difference (null: none is shown).
@@ -20,7 +20,6 @@ const FIGURES = [
   ["Wind up to", "strongest_wind_kn", 0, (v) => (known(v) ? `${number(v)} kn` : "unknown"), null],
 ];
 const WEATHER = ["highest_waves_m", "strongest_wind_kn"];
-const rounded = (value, decimals) => (decimals === null ? Math.round(value * 60) / 60 : Number(value.toFixed(decimals)));
 
 export class CompareView {
   drawn = []; // what the chart shows: {name, points}
@@ -178,7 +177,7 @@ export class CompareView {
 
   #table(rows) {
     const [first] = rows;
-    const than = (row, name, decimals, text) => (known(row.difference[name]) && known(row[name]) && known(first[name]) ? text(rounded(row[name], decimals) - rounded(first[name], decimals)) : null);
+    const than = (row, name, decimals, text) => (known(row.difference[name]) && known(row[name]) && known(first[name]) ? text(difference(row[name], first[name], decimals)) : null);
     const calm = rows.map((row) => isCalm(this.#jobOf(row).request));
     const apart = new Set(rows.map((row) => row.approach_nm > 0.05)).size > 1; // some have approaches of ports
     const atSea = (row, name) => (apart && name === "distance_nm" ? `at sea ${number(row.distance_nm - row.approach_nm, 1)} nm` : apart && name === "time_h" ? `at sea ${duration(row.time_h - row.approach_h)}` : null);
