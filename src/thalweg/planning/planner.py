@@ -27,13 +27,13 @@ from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import PlotContext, Proof, in_objective_unit
 from thalweg.planning.planning_context import PlanningContext, ShipTables, performance_table_of
 from thalweg.planning.report.lane_report import lane_detour_notes
-from thalweg.planning.report.zone_report import margin_notes
 from thalweg.planning.report.provenance import (
     finite_or_none,
     network_summary,
     provenance,
     route_warnings,
 )
+from thalweg.planning.report.zone_report import margin_notes
 from thalweg.planning.request.chart_restrictions import (
     add_emission_control_areas,
     exclude_closed_canals,

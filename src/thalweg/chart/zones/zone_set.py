@@ -10,7 +10,7 @@ Where there are "anchorage" zones a ship may wait in these only, and never in "n
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
