@@ -46,4 +46,4 @@ def margin_notes(chart: Chart) -> list[str]:
     words = " and ".join(f"{width:g}" for width in widths)
     count = len(chart.zones.margins)
     areas = "1 closed area" if count == 1 else f"{count} closed areas"
-    return [f"Keeps {words} nm clear of {areas}, as their property keep_clear_nm says."]
+    return [f"Keeps {words} nm clear of {areas}."]
