@@ -232,7 +232,8 @@ export class PlanForm extends EventTarget {
     const place = { start: this.start, goal: this.goal }[name] || (name?.startsWith("via.") ? this.vias[Number(name.slice(4))] : null);
     if (place) { place.fail(problem); place.element.scrollIntoView({ block: "center" }); place.input.focus(); return; }
     const field = this.element.querySelector(`[data-field="${name}"]`);
-    const slot = field?.querySelector(":scope > .slot");
+    const slot = field?.querySelector(":scope > .slot"), label = field?.querySelector("label, legend")?.firstChild?.textContent?.trim();
+    if (slot && label && problem.field?.includes(".")) for (const part of ["asked", "possible", "remedy"]) problem[part] = problem[part]?.replaceAll(problem.field, label); // not the words of programs
     const parts = [errorBox(problem), remedyButtons(problem, this, (shown) => this.#remedied(shown))];
     if (!slot) { fill(this.problem, ...parts.filter(Boolean)); this.problem.scrollIntoView({ block: "center" }); return; }
     field.closest("details")?.setAttribute("open", "");
