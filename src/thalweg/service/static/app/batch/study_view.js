@@ -68,7 +68,7 @@ export class StudyView extends BatchView {
 
   async #listReady() {
     if (this.ready.childElementCount) return;
-    fill(this.ready, h("p.facts", {}, "Ready studies are on their way …"));
+    fill(this.ready, h("p.facts", {}, "Examples are on their way …"));
     const studies = await get("/studies/ready").catch(() => []);
     fill(this.ready, studies.length ? h("details", {}, h("summary", {}, "Ready studies", h("span.set", {}, String(studies.length))), h("div.inside", {}, studies.map(({ about, voyages, request }) => h("button.job", { type: "button", onclick: () => this.order(request) }, h("b", {}, request.title), h("span", {}, about), h("span", {}, `${number(voyages)} voyages, about ${this.#takes(voyages)}`))))) : null);
   }
