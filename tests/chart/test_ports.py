@@ -1,6 +1,8 @@
 """Ports by name and UN/LOCODE."""
 
+import csv
 import re
+from importlib import resources
 
 import numpy as np
 import pytest
@@ -210,3 +212,16 @@ def test_names_are_compared_without_accents_and_words_for_port():
 )
 def test_countries_have_codes_and_names(text, code):
     assert country_code_of(text) == code
+
+
+def test_ports_have_the_names_that_people_write_and_are_found_by_them():
+    table = resources.files("thalweg.chart").joinpath("data/port_display_names.csv")
+    rows = list(csv.DictReader(table.read_text(encoding="utf-8").splitlines()))
+    for row in rows:
+        port = PORTS.lookup(row["unlocode"])
+        assert port.display_name == row["name"] != port.name
+        assert (
+            PORTS.lookup(port.label) == PORTS.lookup(port.name + f", {port.country_code}") == port
+        )
+    assert PORTS.lookup("ESBIO").label == "Bilbao, ES"
+    assert PORTS.lookup("NLRTM").display_name == PORTS.lookup("NLRTM").name

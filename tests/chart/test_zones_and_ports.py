@@ -31,6 +31,27 @@ def test_a_no_go_zone_blocks_legs_and_positions():
     assert OPEN.is_navigable(1.5, 1.5)
 
 
+@pytest.mark.parametrize("lat", [0.0, 55.0])
+def test_a_margin_keeps_routes_clear_of_a_no_go_zone(lat):
+    north, miles = lat + 1.0, 1.0 / 60.0  # a mile of latitude [deg]; across, the cosine counts
+    chart = OPEN.with_zones(zone(1, lat, 2, north, kind="no-go", keep_clear_nm=6))
+    across = miles / np.cos(np.radians(lat + 0.5))
+    assert not chart.is_navigable(north + 5.8 * miles, 1.5)
+    assert chart.is_navigable(north + 6.5 * miles, 1.5)
+    assert not chart.is_navigable(lat + 0.5, 2.0 + 5.8 * across)
+    assert chart.is_navigable(lat + 0.5, 2.0 + 6.5 * across)
+    corner = np.array([4.1, 4.8])  # along both axes: 5.8 and 6.8 nm from the corner
+    beside = corner * miles / np.cos(np.radians(north))
+    assert chart.is_navigable(north + corner * miles, 2.0 + beside).tolist() == [False, True]
+    assert chart.zones.margins == pytest.approx([6 * 1852.0])
+
+
+def test_a_margin_of_another_zone_or_size_is_refused():
+    for properties in ({"kind": "no-go", "keep_clear_nm": -1}, {"kind": "eca", "keep_clear_nm": 1}):
+        with pytest.raises(InputError, match="keep_clear_nm"):
+            OPEN.with_zones(zone(1, 1, 2, 2, **properties))
+
+
 def test_land_is_reported_before_a_zone(world):
     chart = world.with_zones(zone(0, 40, 10, 60, kind="no go zone"))
     assert chart.leg_status(47.0, 2.0, 47.0, 3.0) == LAND

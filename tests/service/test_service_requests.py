@@ -148,6 +148,26 @@ def test_an_impossible_request_is_refused_at_its_field(client, change, field, wo
     assert word in found["detail"]
 
 
+def test_all_faults_of_a_request_are_stated_at_once(client):
+    voyage = {"start": "Rotterdamm", "goal": "47.2N 19.5W", "objective": "times", "speed": 9}
+    given = {"ship": "nosuch", "seas": ["stormy"], "foo": 1, "voyage": voyage, "coast": "z"}
+    found = problem(client.post("/api/v1/plans", json=given), 422)
+    assert {one["field"] for one in found["errors"]} == {
+        "ship", "seas.0", "foo", "coast", "voyage.start", "voyage.objective", "voyage.speed",
+        "voyage.depart",
+    }  # fmt: skip
+    assert all(one["asked"] and one["remedy"] for one in found["errors"])
+    assert found["asked"] in [one["asked"] for one in found["errors"]]
+    (unknown,) = [one for one in found["errors"] if one["field"] == "foo"]
+    assert "proof_s" in unknown["possible"]
+
+
+def test_the_faults_of_an_evaluation_are_stated_at_once(client):
+    given = {"route": "0123456789abcdef", "ship": "nosuch", "seas": ["calm"], "depart": "soon"}
+    found = problem(client.post("/api/v1/evaluate", json=given), 422)
+    assert [one["field"] for one in found["errors"]] == ["depart", "ship", "route"]
+
+
 @pytest.mark.parametrize(
     ("change", "field"),
     [

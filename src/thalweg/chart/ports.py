@@ -62,9 +62,14 @@ class Port:
         return self.label + (f" ({self.locode})" if self.locode else "")
 
     @property
+    def display_name(self) -> str:
+        """The name that people write, such as Bilbao for 'Puerto De Bilbao'."""
+        return _display_names().get(self.locode, self.name)
+
+    @property
     def label(self) -> str:
-        """Name and country: 'Sydney, AU'."""
-        return f"{self.name}, {self.country_code}"
+        """Display name and country: 'Sydney, AU'."""
+        return f"{self.display_name}, {self.country_code}"
 
     @property
     def importance(self) -> int:
@@ -299,6 +304,12 @@ def _packed_table(name: str) -> list[dict[str, str]]:
 def _table(name: str) -> list[dict[str, str]]:
     text = resources.files("thalweg.chart").joinpath(f"data/{name}").read_text(encoding="utf-8")
     return list(csv.DictReader(text.splitlines()))
+
+
+@cache
+def _display_names() -> dict[str, str]:
+    """Return the names that people write, by UN/LOCODE, where the table has another."""
+    return {row["unlocode"]: row["name"] for row in _table("port_display_names.csv")}
 
 
 def _port_from_row(row: dict[str, str]) -> Port:

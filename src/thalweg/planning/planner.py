@@ -33,6 +33,7 @@ from thalweg.planning.report.provenance import (
     provenance,
     route_warnings,
 )
+from thalweg.planning.report.zone_report import margin_notes
 from thalweg.planning.request.chart_restrictions import (
     add_emission_control_areas,
     exclude_closed_canals,
@@ -290,6 +291,7 @@ def voyage_context(
     chart, shoal_notes = add_shoals(chart, voyage, ship, sea, ends)
     notes += shoal_notes
     chart = add_traffic_schemes(chart, voyage, ship, ends)
+    notes += margin_notes(chart)
     chart, more = add_emission_control_areas(exclude_ice_latitudes(chart, ends), voyage, ship)
     needs = derive_requirements(voyage, ship=ship, sea=sea, chart=chart)
     ends = endpoints_within_coverage(

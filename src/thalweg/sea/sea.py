@@ -206,7 +206,7 @@ class Sea:
             Its ``assumptions`` state that it is calm.
         """
         layer = constant_layer(CALM_VALUES, "calm")
-        return cls((layer,), ("no wind, waves and currents anywhere",))
+        return cls((layer,), ("A calm sea is assumed: no wind, waves and currents anywhere.",))
 
     @classmethod
     def storm(

@@ -29,6 +29,20 @@ _PROBLEM: Final[dict[str, Any]] = {
             "type": ["string", "null"],
             "description": "entry of the request that is wrong",
         },
+        "errors": {
+            "type": "array",
+            "description": "every fault of the request that can be found at once; its field is a "
+            "path in the body, such as voyage.speed_kn",
+            "items": {
+                "type": "object",
+                "properties": {
+                    "field": {"type": ["string", "null"]},
+                    "asked": _TEXT,
+                    "possible": _TEXT,
+                    "remedy": _TEXT,
+                },
+            },
+        },
         "details": {"type": "object"},
         "reasons": {"type": "object", "description": "why there is no route, by count"},
         "nearest": {"description": "how far a route comes, where there is none"},

@@ -25,6 +25,7 @@ from thalweg.service.api_description import describe_answers
 from thalweg.service.endpoints.catalogue_endpoints import catalogue
 from thalweg.service.endpoints.chart_endpoints import chart_router
 from thalweg.service.endpoints.chart_file_endpoints import chart_files_router
+from thalweg.service.endpoints.fault_list import faults_of_request
 from thalweg.service.endpoints.job_endpoints import jobs_router
 from thalweg.service.endpoints.route_endpoints import routes_router
 from thalweg.service.endpoints.sea_endpoints import seas_router
@@ -143,7 +144,7 @@ def create_application(settings: ServiceSettings) -> FastAPI:
         redoc_url=None,
     )
     application.state.service = state
-    add_problem_handlers(application)
+    add_problem_handlers(application, faults_of_request)
     for router in (
         catalogue,
         chart_router,

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
 from fastapi import FastAPI, Request
+from fastapi.concurrency import run_in_threadpool
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
+from pydantic import BaseModel
 from starlette.exceptions import HTTPException
 
 from thalweg.core.errors import CoverageError, InputError, NoRouteError, ThalwegError
@@ -27,6 +29,7 @@ _TITLES: Final = {
     429: "Too many jobs",
     507: "Storage full",
 }
+_PARTS: Final = ("asked", "possible", "remedy")
 #: What a number or text in a request must be, by the kind of fault that pydantic states.
 _SHAPES: Final = {
     "missing": "is missing",
@@ -111,25 +114,46 @@ def problem_of(error: ThalwegError, status: int = 422) -> dict[str, Any]:
     return problem
 
 
-def problem_response(error: ThalwegError, headers: Mapping[str, str] | None = None) -> JSONResponse:
-    """Return an error as a response."""
+def problem_response(
+    error: ThalwegError,
+    headers: Mapping[str, str] | None = None,
+    faults: Sequence[ThalwegError] = (),
+) -> JSONResponse:
+    """Return an error as a response, with all faults that are known of the request."""
     problem = problem_of(error, 422)
+    if problem["status"] in (404, 422) and problem["field"]:
+        problem["errors"] = [
+            {"field": one.details.get("field")} | {key: getattr(one, key) for key in _PARTS}
+            for one in faults or [error]
+        ]
     return JSONResponse(
         problem, problem["status"], media_type=MEDIA_TYPE, headers=dict(headers or {})
     )
 
 
-def add_problem_handlers(application: FastAPI) -> None:
-    """Make an application answer every error with problem details."""
+def add_problem_handlers(
+    application: FastAPI, faults_of: Callable[[Request, Any], list[ThalwegError]]
+) -> None:
+    """Make an application answer every error with problem details.
+
+    Parameters
+    ----------
+    faults_of : Finds all faults of a request with a body; empty for kinds it does not know.
+    """
 
     @application.exception_handler(ThalwegError)
-    def _of_library(request: Request, error: ThalwegError) -> JSONResponse:
-        retry = {"Retry-After": "10"} if getattr(error, "status", 0) == 429 else None
-        return problem_response(error, headers=retry)
+    async def _of_library(request: Request, error: ThalwegError) -> JSONResponse:
+        if getattr(error, "status", 0) == 429:
+            return problem_response(error, headers={"Retry-After": "10"})
+        faults: list[ThalwegError] = []
+        if error.details.get("field") and request.method == "POST":
+            faults = await run_in_threadpool(faults_of, request, await _body_of(request))
+        return problem_response(error, faults=faults)
 
     @application.exception_handler(RequestValidationError)
     def _of_shape(request: Request, error: RequestValidationError) -> JSONResponse:
-        return problem_response(_shape_error(error))
+        faults = faults_of(request, error.body)
+        return problem_response(_shape_error(error), faults=faults or shape_faults(error.errors()))
 
     @application.exception_handler(HTTPException)
     def _of_path(request: Request, error: HTTPException) -> JSONResponse:
@@ -140,9 +164,35 @@ def add_problem_handlers(application: FastAPI) -> None:
         return problem_response(ServiceError(error.status_code, asked, "", remedy))
 
 
+async def _body_of(request: Request) -> Any:
+    """Return the body of a request as plain data; None where it is not JSON or was not kept."""
+    if not request.headers.get("content-type", "").startswith("application/json"):
+        return None
+    try:
+        return await request.json()
+    except (ValueError, RuntimeError):
+        return None
+
+
+def shape_faults(faults: Sequence[Any], model: type[BaseModel] | None = None) -> list[ServiceError]:
+    """Return all faults of a request that has not the form of its schema.
+
+    Parameters
+    ----------
+    faults : As pydantic states them.
+    model : Schema of the request, to name the entries that it knows.
+    """
+    return [_fault_of_shape(one, model) for one in faults]
+
+
 def _shape_error(error: RequestValidationError) -> ServiceError:
     """Return the first fault of a request that has not the form of its schema."""
-    first = error.errors()[0]
+    found = _fault_of_shape(error.errors()[0])
+    found.details["faults"] = len(error.errors())
+    return found
+
+
+def _fault_of_shape(first: Any, model: type[BaseModel] | None = None) -> ServiceError:
     place = [str(part) for part in first["loc"] if part not in ("body", "query", "path", "header")]
     if first["type"] == "json_invalid":
         why = (first.get("ctx") or {}).get("error", first["msg"])
@@ -155,6 +205,8 @@ def _shape_error(error: RequestValidationError) -> ServiceError:
     name = ".".join(place) or "The body"
     what = _SHAPES.get(first["type"], f"is not possible: {first['msg']}")
     possible = "The form of requests is in /openapi.json, with examples."
+    if first["type"] == "extra_forbidden" and model is not None and len(place) == 1:
+        possible = f"A request has the entries {', '.join(sorted(model.model_fields))}."
     if first["type"] in _BOUNDS:
         what = f"is {shortened_repr(first['input'])}"
         possible = _BOUNDS[first["type"]].format(**first.get("ctx") or {})
@@ -168,5 +220,4 @@ def _shape_error(error: RequestValidationError) -> ServiceError:
         possible,
         f"Correct {name}." if place else "Correct the request.",
         field=name if place else None,
-        faults=len(error.errors()),
     )

@@ -3,13 +3,14 @@
 A GeoJSON feature has the properties ``kind`` ("no-go", "penalty", "price" or "eca") and, for
 penalty and price, ``factor``. Where zones of one kind overlap, the largest factor counts. An "eca"
 zone without a factor is an emission control area: the ship file states what fuel costs there;
-with one it is a price zone. A "lane" has a ``direction_deg`` (`thalweg.chart.zones.traffic_lanes`).
+with one it is a price zone. A "no-go" zone may have ``keep_clear_nm``, the distance by which routes
+keep clear of it. A "lane" has a ``direction_deg`` (`thalweg.chart.zones.traffic_lanes`).
 Where there are "anchorage" zones a ship may wait in these only, and never in "no-waiting" zones.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
@@ -32,30 +33,18 @@ from thalweg.chart.zones.leg_fractions import (
     straight_pieces,
 )
 from thalweg.chart.zones.traffic_lanes import LaneGroup, TrafficLane
+from thalweg.chart.zones.zone_properties import (
+    with_margin,
+    zone_factor,
+    zone_kind,
+    zone_margin,
+)
 from thalweg.core.cache_folder import cache_folder
-from thalweg.core.errors import InputError
-from thalweg.core.given_numbers import shortened_repr, to_number
 from thalweg.core.types import FloatArray
 from thalweg.kernels.geometry.coast_index import outlines_touched
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
 
 ZONE_INDEX_CELLS: Final = 128  # cells along a face of the index of no-go zones
-ZONE_KINDS: Final = {
-    "nogo": "no-go",
-    "forbidden": "no-go",
-    "avoid": "no-go",
-    "exclusion": "no-go",
-    "penalty": "penalty",
-    "price": "price",
-    "eca": "eca",
-    "emissioncontrol": "eca",
-    "seca": "eca",
-    "lane": "lane",
-    "trafficlane": "lane",
-    "anchorage": "anchorage",
-    "nowaiting": "no-waiting",
-    "noanchoring": "no-waiting",
-}
 KINDS_WITHOUT_FACTOR: Final = ("no-go", "anchorage", "no-waiting")  # kinds without a factor
 
 
@@ -121,6 +110,7 @@ class Zones:
     lanes : Where ships sail in one direction only.
     shoals : Shoal water, in which a mile counts more besides the penalty zones.
     closed_shoals : Shoal water that no leg may cross.
+    margins : By how much no-go zones were widened [m], one for each feature that asks for it.
     """
 
     no_go: tuple[Any, ...] = ()
@@ -132,6 +122,7 @@ class Zones:
     lanes: tuple[TrafficLane, ...] = ()
     shoals: Shoals | None = None
     closed_shoals: ClosedShoals | None = None
+    margins: tuple[float, ...] = ()
 
     @classmethod
     def read(cls, source: geojson_polygons.GeoJsonSource) -> Zones:
@@ -147,8 +138,10 @@ class Zones:
         }
         eca: list[EcaZone] = []
         lanes: list[TrafficLane] = []
+        margins: list[float] = []
         for geometry, properties in geojson_polygons.read_features(source, "zones"):
-            kind = _zone_kind(properties)
+            kind = zone_kind(properties)
+            margin = zone_margin(kind, properties)
             shapes = geojson_polygons.parse_polygons(geometry, "zones", repair=False)
             if kind == "eca":
                 eca.append(
@@ -161,13 +154,15 @@ class Zones:
             if kind == "lane":
                 lanes += [TrafficLane.of_feature(shape, properties) for shape in shapes]
                 continue
-            factor = 1.0 if kind in KINDS_WITHOUT_FACTOR else _zone_factor(kind, properties)
-            found[kind] += [(shape, factor) for shape in shapes]
+            factor = 1.0 if kind in KINDS_WITHOUT_FACTOR else zone_factor(kind, properties)
+            found[kind] += [(shape, factor) for shape in with_margin(shapes, margin)]
+            margins += [margin] if margin else []
         no_go, anchorages, barred = (
             tuple(shape for shape, _ in found[kind]) for kind in KINDS_WITHOUT_FACTOR
         )
         factors = _without_overlaps(found["penalty"]), _without_overlaps(found["price"])
-        return cls(no_go, *factors, tuple(eca), anchorages, barred, tuple(lanes))
+        rest = anchorages, barred, tuple(lanes)
+        return cls(no_go, *factors, tuple(eca), *rest, margins=tuple(margins))
 
     def joined(self, other: Zones) -> Zones:
         """Return these zones and another chart's."""
@@ -181,6 +176,7 @@ class Zones:
             self.lanes + other.lanes,
             self.shoals or other.shoals,
             self.closed_shoals or other.closed_shoals,
+            self.margins + other.margins,
         )
 
     @property
@@ -348,40 +344,6 @@ class Zones:
             ]
             + [one.text() for one in (self.shoals, self.closed_shoals) if one is not None]
         )
-
-
-def _zone_kind(properties: Mapping[str, Any]) -> str:
-    written = str(properties.get("kind") or properties.get("type") or "")
-    plain = "".join(c for c in written.casefold() if c.isalnum())
-    for ending in ("zone", "area", "factor"):
-        plain = plain.removesuffix(ending)
-    if plain == "eca" and {"factor", "eca_factor", "price_factor"} & properties.keys():
-        return "price"
-    if plain not in ZONE_KINDS:
-        named = f" {str(properties['name'])[:60]!r}" if properties.get("name") else ""
-        raise InputError(
-            f"A zone{named} has " + (f"the kind {written!r}." if written else "no kind."),
-            "Kinds are 'no-go', 'penalty', 'price', 'eca', 'lane', 'anchorage' and 'no-waiting'.",
-            "Give every feature the property kind.",
-            value=written,
-        )
-    return ZONE_KINDS[plain]
-
-
-def _zone_factor(kind: str, properties: Mapping[str, Any]) -> float:
-    written = properties.get("factor", properties.get(f"{kind}_factor"))
-    if written is None and kind == "price":
-        written = properties.get("eca_factor")
-    factor = to_number(written)
-    least = "at least 1" if kind == "penalty" else "above 0"
-    if not (np.isfinite(factor) and factor > 0.0 and (kind == "price" or factor >= 1.0)):
-        raise InputError(
-            f"A {kind} zone has the factor {shortened_repr(written)}.",
-            f"The factor of a {kind} zone is a number {least}.",
-            "Give the feature such a property factor.",
-            value=written,
-        )
-    return factor
 
 
 def _without_overlaps(zones: list[tuple[Any, float]]) -> tuple[tuple[Any, float], ...]:

@@ -47,6 +47,7 @@ from thalweg.planning.report.provenance import (
     provenance,
     route_warnings,
 )
+from thalweg.planning.report.zone_report import control_area_notes
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.single.weather_gaps import check_times_known
 from thalweg.route import Route
@@ -268,6 +269,7 @@ def _notes(
     notes = [end.note for end in ends if end.note] + list(context.needs.notes)
     notes += [f"{LIMIT_EXCEEDED}: {v}." for v in best.violations[:5]]
     notes += route_warnings(context, best)
+    notes += control_area_notes(context.chart, [item.route for item in ordered])
     notes += lane_detour_notes(context.chart, [explored[0].alternative.network])
     slowest = max(item.route.arrive for item in ordered)
     bounded = context.voyage.arrive_by is None and math.isfinite(context.data_end)

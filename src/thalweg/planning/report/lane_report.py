@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -20,6 +20,7 @@ from thalweg.route import Route
 AGAINST_TRAFFIC: Final = "Runs against the traffic"  #: a note on such miles begins so
 INSHORE_USED: Final = "Uses the inshore traffic zone"  #: a note on such miles begins so
 LANE_DETOUR: Final = "Keeping out of"  #: a note on a detour by lanes and inshore zones begins so
+_KEPT_OUT: Final = {False: "opposite lane", True: "inshore traffic zone"}
 _LEAST: Final = 2.0 * NAUTICAL_MILE  # shorter stretches in a scheme are crossings
 _LONG_DETOUR: Final = 5.0 * NAUTICAL_MILE  # detours are stated from this length ...
 _LARGE_DETOUR: Final = 0.03  # ... or this share of the shortest way
@@ -84,7 +85,7 @@ def lane_detour_notes(chart: Chart, networks: Sequence[Network]) -> list[str]:
     if not _has_schemes(chart):
         return []
     kept = free = 0.0
-    names: dict[str, float] = {}
+    names: dict[str, list[str]] = {}
     for network in networks:
         edges, length = network.edges, network.edges.length
         penalty = np.asarray(edges.penalty_factor, float)
@@ -99,17 +100,26 @@ def lane_detour_notes(chart: Chart, networks: Sequence[Network]) -> list[str]:
         for inshore in (False, True):
             for name, metres in _metres(chart, _legs(*places[1]), inshore=inshore).items():
                 if metres > _LEAST:
-                    what = "the inshore traffic zone of" if inshore else "the opposite lane of"
-                    names[f"{what} {name}"] = metres
+                    names.setdefault(_KEPT_OUT[inshore], []).append(name)
     longer = kept - free
     if not names or (longer < _LONG_DETOUR and longer < _LARGE_DETOUR * free):
         return []
     return [
-        f"{LANE_DETOUR} {' and '.join(names)} makes the shortest way about "
-        f"{longer / NAUTICAL_MILE:.0f} nm ({100.0 * longer / free:.0f} %) longer: ignore_lanes "
-        "(--ignore-lanes) plans without the schemes. An inshore traffic zone is open to ships "
-        "under 20 m and to voyages from or to a place inside it (Rule 10 (d))."
+        f"{LANE_DETOUR} {_listed(names)} makes the shortest way about "
+        f"{longer / NAUTICAL_MILE:.0f} nm ({100.0 * longer / free:.0f} %) longer. A plan need not "
+        "keep to the direction of the schemes (ignore_lanes). An inshore traffic zone is open to "
+        "ships under 20 m and to voyages from or to a place inside it (Rule 10 (d))."
     ]
+
+
+def _listed(names: Mapping[str, Sequence[str]]) -> str:
+    """Return what is kept out of, such as "the opposite lanes of A and B, and of the ... of C"."""
+    parts = []
+    for what, places in names.items():
+        known = list(dict.fromkeys(places))
+        several = ", ".join(known[:-1]) + " and " if len(known) > 1 else ""
+        parts.append(f"the {what}{'s' if several else ''} of {several}{known[-1]}")
+    return " and ".join(parts)
 
 
 def routes_within_lanes(chart: Chart, routes: list[Route]) -> tuple[list[Route], list[str]]:

@@ -100,6 +100,4 @@ def add_emission_control_areas(chart: Chart, voyage: Voyage, ship: Ship) -> tupl
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ThalwegWarning)
         chart = chart.with_eca()
-    names = ", ".join(zone.name for zone in chart.zones.eca)
-    notes = [f"Emission control areas taken into account: {names}."]
-    return chart, notes + [str(warning.message) for warning in caught]
+    return chart, [str(warning.message) for warning in caught]

@@ -16,6 +16,7 @@ from thalweg.route.evaluators.time_evaluator import raster_arrays
 from thalweg.sea.frozen_fields import GridFields
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.grids.rectilinear_grid import RectilinearGrid
+from thalweg.sea.models.function_layer import FormulaLayer
 
 if TYPE_CHECKING:
     from thalweg.sea import Sea
@@ -111,7 +112,7 @@ def _arrays(fields: GridFields, origin: float) -> RasterArrays:
 
 def _is_uniform(layer: object) -> bool:
     """Return whether a layer has the same values everywhere."""
-    return bool(getattr(layer, "is_uniform", False))
+    return isinstance(layer, FormulaLayer) and "values" in layer.facts
 
 
 def _data_lines(sea: Sea) -> tuple[float, float, float] | None:

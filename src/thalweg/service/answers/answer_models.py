@@ -61,6 +61,7 @@ class PortAnswer(AnswerModel):
     """A port."""
 
     name: str
+    display_name: str
     label: str
     country: str
     locode: str | None

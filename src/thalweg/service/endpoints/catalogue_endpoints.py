@@ -119,17 +119,20 @@ def _matching(text: str) -> list[Port]:
         else:
             continue
         ranked.append((rank, -port.importance, port.name, port))
-    return [row[3] for row in sorted(ranked, key=lambda row: row[:3])]
+    return list(dict.fromkeys(row[3] for row in sorted(ranked, key=lambda row: row[:3])))
 
 
 @cache
 def _searched_names() -> list[tuple[Port, str]]:
-    return [(port, normalised_port_name(port.name)) for port in PORTS.all]
+    named = [(port, normalised_port_name(port.name)) for port in PORTS.all]
+    shown = [(port, normalised_port_name(port.display_name)) for port in PORTS.all]
+    return list(dict.fromkeys(named + shown))
 
 
 def _port(port: Port) -> dict[str, Any]:
     return {
         "name": port.name,
+        "display_name": port.display_name,
         "label": port.label,
         "country": port.country_code,
         "locode": port.locode,

@@ -14,12 +14,11 @@ from starlette.concurrency import run_in_threadpool
 
 from thalweg.core.time import format_time
 from thalweg.service.endpoints.order_checks import (
-    check_evaluation_order,
+    check_evaluation,
     check_files,
+    check_plan,
     check_project_order,
     check_study_order,
-    checked_plan_order,
-    with_files,
 )
 from thalweg.service.jobs.batch_requests import (
     FORECAST_EXAMPLE,
@@ -92,7 +91,7 @@ def start_plan(
     idempotency_key: str | None = Header(None, max_length=200),
 ) -> dict[str, Any]:
     """Start planning a voyage; the answer comes at once, with the address of the job."""
-    return _start("plan", checked_plan_order(request, state), response, idempotency_key, state)
+    return _start("plan", check_plan(request, state), response, idempotency_key, state)
 
 
 @jobs_router.post("/alternatives", status_code=202)
@@ -103,9 +102,7 @@ def start_alternatives(
     idempotency_key: str | None = Header(None, max_length=200),
 ) -> dict[str, Any]:
     """Start planning routes that differ, each the best in something; a job like that of a plan."""
-    return _start(
-        "alternatives", checked_plan_order(request, state), response, idempotency_key, state
-    )
+    return _start("alternatives", check_plan(request, state), response, idempotency_key, state)
 
 
 @jobs_router.post("/evaluate", status_code=202)
@@ -116,10 +113,7 @@ def start_evaluation(
     idempotency_key: str | None = Header(None, max_length=200),
 ) -> dict[str, Any]:
     """Sail an imported route in given weather; the answer is a job like that of a plan."""
-    request.check()
-    given = with_files(request, state)
-    check_evaluation_order(request, state)
-    return _start("evaluation", given, response, idempotency_key, state)
+    return _start("evaluation", check_evaluation(request, state), response, idempotency_key, state)
 
 
 @jobs_router.post("/projects", status_code=202)

@@ -25,11 +25,19 @@ from thalweg.studies import Study
 _WITHOUT_TIMES = ("sea_floor_depth",)  # begins the names of variables that do not change
 
 
-def checked_plan_order(request: PlanRequest, state: ServiceState) -> dict[str, Any]:
+def check_plan(request: PlanRequest, state: ServiceState) -> dict[str, Any]:
     """Return the request of a plan as plain data, after all checks that are quick."""
     voyage = request.checked_voyage()
     given = with_files(request, state)
     check_plan_order(request, voyage, state)
+    return given
+
+
+def check_evaluation(request: EvaluationRequest, state: ServiceState) -> dict[str, Any]:
+    """Return the request of an evaluation as plain data, after all checks that are quick."""
+    request.check()
+    given = with_files(request, state)
+    check_evaluation_order(request, state)
     return given
 
 

@@ -178,7 +178,9 @@ class ShipAndSea(BaseModel):
     )
     depths: list[FileId] = Field(default_factory=list, max_length=10, description="ids of /seas")
     areas: dict[str, Any] | None = Field(
-        None, description="GeoJSON areas with the property `kind`: no-go, penalty, price, eca"
+        None,
+        description="GeoJSON areas with the property `kind`: no-go, penalty, price, eca; a no-go "
+        "area may have `keep_clear_nm`, the distance by which routes keep clear of it",
     )
     traffic: list[UploadId] = Field(
         default_factory=list, max_length=10, description="ids of /traffic, for expected encounters"

@@ -119,10 +119,10 @@ def _write_study(
             "best": _records(summary.best, "records"),
         },
     )
-    write_text(order.path / "voyages.csv", order.without_paths(frame.to_csv(index=False)))
     for path in summary.write(order.path):
         if path.suffix == ".csv":
             write_text(path, order.without_paths(path.read_text("utf-8")))
+    write_text(order.path / "voyages.csv", order.without_paths(frame.to_csv(index=False)))
     refused = int(frame["refusal"].notna().sum())
     return {
         "title": study.name,

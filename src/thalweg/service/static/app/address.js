@@ -22,6 +22,10 @@ export class Address {
     return given;
   }
 
+  get namesPlan() {
+    return new URLSearchParams(location.hash.slice(1)).has("plan");
+  }
+
   // Whether the browser went back or forward to the form.
   get returnsToForm() {
     return Boolean(history.state?.written) && !placeOf(location.hash);

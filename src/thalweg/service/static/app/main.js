@@ -17,7 +17,7 @@ import { Drawer, placeAt, timeNear } from "./result/diagrams.js";
 import { masterBrief } from "./result/master_brief.js";
 import { ProgressView } from "./result/progress_view.js";
 import { drawResult } from "./result/result_drawing.js";
-import { inOrderOfTime, loadResult, profileOf, ResultView } from "./result/result_view.js";
+import { loadResult, profileOf, ResultView } from "./result/result_view.js";
 import { VoyageList } from "./result/voyage_list.js";
 
 const panel = document.getElementById("panel");
@@ -47,8 +47,10 @@ class Application {
     this.#begin();
   }
 
+  // A plan that the address names is not preceded by an empty form.
   async #begin() {
-    this.#showForm();
+    if (this.address.namesPlan) fill(panel, h("div.scroll", {}, h("h1", {}, "Opening the plan …"), h("p.lead", { role: "status" }, "Its ship and its sea are read first.")));
+    else this.#showForm();
     try {
       await this.form.load();
     } catch (problem) {
@@ -398,7 +400,7 @@ class Application {
   }
 
   #keys() {
-    const step = (by) => { if (this.result) { const order = inOrderOfTime(this.result.plan); selection.choose(order[Math.max(0, Math.min(order.length - 1, order.indexOf(selection.route) + by))]); } };
+    const step = (by) => { if (this.result) { selection.choose(Math.max(0, Math.min(this.result.plan.routes.length - 1, selection.route + by))); } };
     const view = (name) => () => document.querySelector(`.tab[data-view="${name}"]`).click();
     listenToKeys({
       Escape: () => { this.chart.closeMenu(); this.layers.open(false); },

@@ -44,6 +44,7 @@ export class StudyView extends BatchView {
 
   async show() {
     this.begin();
+    this.#listReady();
     const { plans } = this, { period } = plans.sea, ends = plans.start.value && plans.goal.value;
     if (!this.from.value && period) {
       const begin = Math.ceil((typedTime(plans.depart) ?? period[0]) / 43200) * 43200;
@@ -61,13 +62,13 @@ export class StudyView extends BatchView {
     fill(this.ships, (plans.ship.list || []).map((ship) => h("label.check", {}, h("input", { type: "checkbox", value: ship.id, checked: chosen.includes(ship.id) }), h("span", {}, ship.name))));
     await this.#measure();
     this.#count();
-    this.#listReady();
     await this.listEarlier(({ summary, created }) => (summary ? `${number(summary.voyages)} voyages · ${time(seconds(created))}` : time(seconds(created))));
     return this.element;
   }
 
   async #listReady() {
     if (this.ready.childElementCount) return;
+    fill(this.ready, h("p.facts", {}, "Examples are on their way …"));
     const studies = await get("/studies/ready").catch(() => []);
     fill(this.ready, studies.length ? h("details", {}, h("summary", {}, "Ready studies", h("span.set", {}, String(studies.length))), h("div.inside", {}, studies.map(({ about, voyages, request }) => h("button.job", { type: "button", onclick: () => this.order(request) }, h("b", {}, request.title), h("span", {}, about), h("span", {}, `${number(voyages)} voyages, about ${this.#takes(voyages)}`))))) : null);
   }
@@ -150,15 +151,17 @@ export class StudyView extends BatchView {
     this.map.axes = result.axes;
     this.map.rows = [];
     this.map.add(result.rows.map((row) => Object.fromEntries(result.columns.map((name, i) => [name, row[i]]))));
-    const { summary } = job, best = result.best[0];
+    const { summary } = job;
     const usable = this.map.rows.filter((row) => !row.refusal && row.feasible !== false && known(row.time_h));
     const times = usable.map((row) => row.time_h).sort((a, b) => a - b), at = (q) => quantile(times, q);
+    const best = bestMonth(usable);
     const fastest = usable.reduce((a, b) => (a && a.time_h <= b.time_h ? a : b), null);
     const card = (name, value, more) => h("div.card", {}, h("dt", {}, name), h("dd", {}, value, more ? h("small", {}, more) : null));
     const months = ["January", "February", "March", "April", "May", "June", "July", "August", "September", "October", "November", "December"];
+    const wide = (cards) => { const there = cards.filter(Boolean); if (there.length % 2) there.at(-1).classList.add("wide"); return there; };
     this.handlers.panel([h("div.scroll", {}, h("h1", {}, job.title), h("p.lead", {}, this.#facts(summary)),
       summary.cancelled ? h("p.note", {}, `Stopped: ${number(summary.voyages)} of ${number(summary.total)} voyages were planned.`) : null,
-      h("dl.cards", {}, card("Median time", times.length ? duration(at(0.5)) : "unknown", times.length > 2 ? `80 % within ${duration(at(0.1))} to ${duration(at(0.9))}` : null), card("Without a route", number(this.map.rows.length - usable.length), this.map.rows.length ? `${number((100 * (this.map.rows.length - usable.length)) / this.map.rows.length)} % of the voyages` : null), fastest?.depart ? card("Fastest", duration(fastest.time_h), `leaves ${time(seconds(fastest.depart))}`) : null, best?.month && new Set(this.map.rows.map((row) => row.at?.getUTCMonth())).size > 1 ? card("Best month", months[best.month - 1], `median ${duration(best.time_h_p50)}`) : null),
+      h("dl.cards", {}, wide([card("Median time", times.length ? duration(at(0.5)) : "unknown", times.length > 2 ? `80 % within ${duration(at(0.1))} to ${duration(at(0.9))}` : null), card("Without a route", number(this.map.rows.length - usable.length), this.map.rows.length ? `${number((100 * (this.map.rows.length - usable.length)) / this.map.rows.length)} % of the voyages` : null), fastest?.depart ? card("Fastest", duration(fastest.time_h), `leaves ${time(seconds(fastest.depart))}`) : null, best ? card("Best month", months[best.month], `median ${duration(best.median)} of ${best.of} months`) : null])),
       this.cellBox,
       result.refusals.length ? h("div.block", {}, h("h2", {}, "Why there is no route"), h("ul.list", {}, result.refusals.slice(0, 6).map((row) => h("li", {}, `${number(row.voyages)} voyages: ${row.reason}`)))) : null,
       h("div.block", {}, h("h2", {}, "Files"), h("div.exports", {}, h("a.quiet.small", { href: tableAddress(job.id, "voyages"), download: "" }, "Voyages as CSV"), h("a.quiet.small", { href: tableAddress(job.id, "summary"), download: "" }, "Summary as CSV"), h("a.quiet.small", { href: resultAddress(job.id), download: "study.json" }, "study.json")))),
@@ -168,8 +171,9 @@ export class StudyView extends BatchView {
 
   #facts(summary) {
     const departs = this.map.rows.map((row) => row.at?.getTime()).filter(known);
-    const ships = [...new Set(this.map.rows.map((row) => row.ship).filter(Boolean))];
-    return [`${number(summary.voyages)} voyages`, ships.length ? ships.join(", ") : [this.job.request.study.ship].flat()[0]?.name || this.job.request.study.ship, departs.length ? `${time(Math.min(...departs) / 1000)} to ${time(Math.max(...departs) / 1000, true)}` : null].filter((part) => typeof part === "string").join(" · ");
+    const named = (id) => this.plans.ship.list?.find((ship) => ship.id === id)?.name || id;
+    const ships = [...new Set(this.map.rows.map((row) => row.ship).filter(Boolean))].map(named);
+    return [`${number(summary.voyages)} voyages`, ships.length ? ships.join(", ") : [this.job.request.study.ship].flat()[0]?.name || named(this.job.request.study.ship), departs.length ? `${time(Math.min(...departs) / 1000)} to ${time(Math.max(...departs) / 1000, true)}` : null].filter((part) => typeof part === "string").join(" · ");
   }
 
   #cell(name, cell) {
@@ -184,4 +188,12 @@ export class StudyView extends BatchView {
     for (const name of this.map.axes) if (name in row && !["ship", "sea", "load_factor", "member"].includes(name) && typeof row[name] !== "object") voyage[name] = row[name];
     this.handlers.voyage({ title: title || "", ship: row.ship || study.ship, seas: [study.sea].flat(), fill: study.fill, voyage });
   }
+}
+
+// The month (from 0) with the least median time of all voyages; null where no month differs by a minute.
+function bestMonth(rows) {
+  const months = new Map();
+  for (const row of rows) if (row.at) months.set(row.at.getUTCMonth(), [...(months.get(row.at.getUTCMonth()) || []), row.time_h]);
+  const medians = [...months].map(([month, times]) => ({ month, median: quantile(times.sort((a, b) => a - b), 0.5), of: months.size })).sort((a, b) => a.median - b.median);
+  return medians.length > 1 && medians.at(-1).median - medians[0].median > 1 / 60 ? medians[0] : null;
 }

@@ -97,7 +97,7 @@ export class Chart extends EventTarget {
         return styles[i] ||= new Style({
           zIndex: port.importance,
           image: new Circle({ radius: 2.2, fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 1 }), declutterMode: "obstacle" }),
-          text: new Text({ text: port.name, font: '11px system-ui, "DejaVu Sans", sans-serif', offsetX: 6, textAlign: "left", fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 2.5 }) }),
+          text: new Text({ text: port.display_name, font: '11px system-ui, "DejaVu Sans", sans-serif', offsetX: 6, textAlign: "left", fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 2.5 }) }),
         });
       });
       this.ports.getSource().addFeature(feature);
@@ -257,12 +257,14 @@ export class Chart extends EventTarget {
     const interaction = new Draw({ source: new (this.areas.getSource().constructor)(), type: "Polygon" });
     this.map.addInteraction(interaction);
     this.drawing = interaction;
+    const calm = (still) => { this.map.getInteractions().forEach((one) => { if ("delta_" in one && !("condition_" in one)) one.setActive(!still); }); this.modify?.setActive(!still && Boolean(this.onAreaChange)); }; // the double click that ends it is no zoom, and no corner of another is dragged
+    calm(true);
     return new Promise((resolve) => {
       let corners = null;
       const end = (ring) => {
         this.map.removeInteraction(interaction);
         document.removeEventListener("keydown", escape, true);
-        setTimeout(() => { if (this.drawing === interaction) this.drawing = null; }, 300); // the double click that ends it is no click
+        setTimeout(() => { if (this.drawing !== interaction) return; this.drawing = null; calm(false); }, 300); // the double click that ends it is no click
         interaction.ended = () => true;
         resolve(ring);
       };

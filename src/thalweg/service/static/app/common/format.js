@@ -40,6 +40,12 @@ export function duration(hours) {
   return `${days ? `${days} d ` : ""}${Math.floor((minutes % 1440) / 60)} h ${two(minutes % 60)} min`;
 }
 
+// The difference of two figures as they are shown: of hours to the minute (decimals null), else rounded.
+export function difference(a, b, decimals = null) {
+  const rounded = (value) => (decimals === null ? Math.round(value * 60) / 60 : Number(value.toFixed(decimals)));
+  return known(a) && known(b) ? rounded(a) - rounded(b) : null;
+}
+
 export function signedDuration(hours) {
   if (!known(hours)) return "";
   if (Math.round(hours * 60) === 0) return "0 min";

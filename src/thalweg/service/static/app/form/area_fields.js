@@ -90,11 +90,18 @@ export class AreaFields {
     else this.#show();
   }
 
+  #typedMargin(i, text) {
+    const margin = Number(text.replace(",", "."));
+    if (!(margin >= 0 && margin <= 100)) { this.#show(); return; }
+    this.#change(this.list.map((area, k) => (k === i ? { ...area, properties: { ...area.properties, keep_clear_nm: margin || undefined } } : area)));
+  }
+
   #row(area, i) {
     const slot = h("div.slot");
     const corners = area.ring.slice(0, -1).map(([lon, lat]) => `${lat}, ${lon}`).join("\n");
     return h("div.field", {},
-      h("div.row", {}, h("b", {}, `${i + 1}. ${area.kind[0].toUpperCase()}${area.kind.slice(1)}`),
+      h("div.row", {}, h("b", { style: "white-space: nowrap" }, `${i + 1}. ${area.kind[0].toUpperCase()}${area.kind.slice(1)}`),
+        area.kind !== "no-go" ? null : h("label.inline", {}, "keep clear by", h("input.short", { type: "text", inputmode: "decimal", value: String(area.properties?.keep_clear_nm ?? 0), "aria-label": `Distance kept from area ${i + 1}`, onchange: (event) => this.#typedMargin(i, event.target.value) }), "nm"),
         area.factor === null ? null : h("label.inline", {}, "each mile counts", h("input.short", { type: "text", inputmode: "decimal", value: String(area.factor), "aria-label": `Factor of area ${i + 1}`, onchange: (event) => this.#typedFactor(i, event.target.value) }), "×"),
         h("button.quiet.small", { type: "button", "aria-label": `Remove area ${i + 1}`, onclick: () => this.#change(this.list.filter((one) => one !== area)) }, "Remove")),
       h("label.hidden", { for: `area-${i}` }, `Corners of area ${i + 1}: latitude, longitude`),
@@ -105,7 +112,7 @@ export class AreaFields {
     this.element.classList.remove("wrong");
     const button = (text, act) => h("button.quiet.small", { type: "button", onclick: act }, text);
     fill(this.element,
-      this.list.length || this.kept.length ? null : h("p.facts", {}, "Closed areas (no-go), and areas where each mile counts more (penalty). Drag a corner to move it. A route may touch the edge of a closed area: draw it with the distance that the ship keeps."),
+      this.list.length || this.kept.length ? null : h("p.facts", {}, "Closed areas (no-go), and areas where each mile counts more (penalty). Drag a corner to move it. A route may touch the edge of a closed area, unless it keeps clear of it by a distance."),
       this.list.map((area, i) => this.#row(area, i)),
       this.kept.length ? h("p.facts", {}, `${this.kept.length} more of the voyage file, in several parts or with holes. `, h("button.link", { type: "button", onclick: () => { this.kept = []; this.#put(this.list); } }, "Remove them")) : null,
       this.drawing ? h("div.field", {}, h("p.facts", { role: "status" }, "An area is being drawn: click its corners."), h("div.row.tools", {}, button("Finish the area", () => this.#finish()), button("Leave it out", () => this.chart.endDrawing(false)))) : h("div.field", {}, h("div.row.tools", {}, button("Draw no-go", () => this.#drawn("no-go")), button("Draw penalty", () => this.#drawn("penalty")), this.#before.length ? button("Undo", () => this.#put(this.#before.pop())) : null),

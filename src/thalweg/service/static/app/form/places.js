@@ -129,7 +129,7 @@ export class PlaceField {
 export async function endsOf({ start, goal }) {
   const end = async (given, role) => {
     if (Array.isArray(given)) return { role, lat: given[0], lon: given[1], label: "" };
-    const { kind, name, lat, lon } = await get(`/places?text=${encodeURIComponent(given)}`);
+    const { kind, display_name: name, lat, lon } = await get(`/places?text=${encodeURIComponent(given)}`);
     return { role, lat, lon, label: kind === "port" ? name : "" };
   };
   return Promise.all([end(start, "start"), end(goal, "goal")]);

@@ -188,7 +188,7 @@ export class PlanForm extends EventTarget {
   }
 
   get ends() {
-    return [this.start, ...this.vias, this.goal].filter((field) => field.place).map((field) => ({ role: field.role, lat: field.place.lat, lon: field.place.lon, label: field.place.kind === "port" ? field.place.name : "" }));
+    return [this.start, ...this.vias, this.goal].filter((field) => field.place).map((field) => ({ role: field.role, lat: field.place.lat, lon: field.place.lon, label: field.place.kind === "port" ? field.place.display_name : "" }));
   }
 
   #placesChanged() {
@@ -232,7 +232,8 @@ export class PlanForm extends EventTarget {
     const place = { start: this.start, goal: this.goal }[name] || (name?.startsWith("via.") ? this.vias[Number(name.slice(4))] : null);
     if (place) { place.fail(problem); place.element.scrollIntoView({ block: "center" }); place.input.focus(); return; }
     const field = this.element.querySelector(`[data-field="${name}"]`);
-    const slot = field?.querySelector(":scope > .slot");
+    const slot = field?.querySelector(":scope > .slot"), label = field?.querySelector("label, legend")?.firstChild?.textContent?.trim();
+    if (slot && label && problem.field?.includes(".")) for (const part of ["asked", "possible", "remedy"]) problem[part] = problem[part]?.replaceAll(problem.field, label); // not the words of programs
     const parts = [errorBox(problem), remedyButtons(problem, this, (shown) => this.#remedied(shown))];
     if (!slot) { fill(this.problem, ...parts.filter(Boolean)); this.problem.scrollIntoView({ block: "center" }); return; }
     field.closest("details")?.setAttribute("open", "");
@@ -306,7 +307,7 @@ export class PlanForm extends EventTarget {
   }
 
   defaultTitle() {
-    const name = (field) => (field.place?.kind === "port" ? field.place.name : field.value);
+    const name = (field) => (field.place?.kind === "port" ? field.place.display_name : field.value);
     return `${name(this.start)} to ${name(this.goal)}`;
   }
 

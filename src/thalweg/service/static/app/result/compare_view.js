@@ -5,7 +5,7 @@ import { errorBox, fill, h } from "../common/elements.js";
 import { EXAMPLES, keyOf, VARIATIONS } from "./examples.js";
 import { drawCompared, PAINTS } from "./result_drawing.js";
 import { faultWords } from "../common/faults.js";
-import { duration, isCalm, known, number, readable, seconds, signed, time, titleOf } from "../common/format.js";
+import { difference, duration, isCalm, known, number, readable, seconds, signed, time, titleOf } from "../common/format.js";
 
 const MOST = 6;
 // Column, name in the answer, decimals (of time: minutes), text, text of a difference (null: none is shown).
@@ -20,7 +20,6 @@ const FIGURES = [
   ["Wind up to", "strongest_wind_kn", 0, (v) => (known(v) ? `${number(v)} kn` : "unknown"), null],
 ];
 const WEATHER = ["highest_waves_m", "strongest_wind_kn"];
-const rounded = (value, decimals) => (decimals === null ? Math.round(value * 60) / 60 : Number(value.toFixed(decimals)));
 
 export class CompareView {
   drawn = []; // what the chart shows: {name, points}
@@ -36,10 +35,11 @@ export class CompareView {
     this.picked = h("ol.picked");
     this.counted = h("span.set");
     this.problem = h("div");
+    this.speed = h("input", { type: "text", inputmode: "decimal", id: "own-speed", autocomplete: "off" });
     this.file = h("input.hidden", { type: "file", id: "route-file", "aria-label": "Route file", accept: ".rtz,.rtzp,.gml,.gpx,.geojson,.json,.csv", tabindex: "-1", onchange: () => this.#score() });
-    this.element = [h("div.scroll", {}, h("h1", {}, "Compare routes"), h("p.lead", {}, "Choose two to six. The differences are those to the reference."), this.problem, h("div.block", {}, h("h2.with-count", {}, "Chosen", this.counted), this.picked), h("div.block", {}, h("h2", {}, "Routes to choose from"), this.list), h("div.block", {}, h("h2", {}, "Examples"), EXAMPLES.map((example) => h("button.job.example", { type: "button", onclick: () => this.#example(example) }, h("b", {}, example.name), h("span", {}, example.facts)))), h("div.block", {}, h("h2", {}, "Vary the reference"), h("p.facts", {}, "Its voyage is planned again with one change, and the results are added."), h("div.exports", {},
+    this.element = [h("div.scroll", {}, h("h1", {}, "Compare routes"), h("p.lead", {}, "Choose two to six. The differences are those to the reference. A plan stands here with its first route; its others come by the Compare button beside them."), this.problem, h("div.block", {}, h("h2.with-count", {}, "Chosen", this.counted), this.picked), h("div.block", {}, h("h2", {}, "Routes to choose from"), this.list), h("div.block", {}, h("h2", {}, "Examples"), EXAMPLES.map((example) => h("button.job.example", { type: "button", onclick: () => this.#example(example) }, h("b", {}, example.name), h("span", {}, example.facts)))), h("div.block", {}, h("h2", {}, "Vary the reference"), h("p.facts", {}, "Its voyage is planned again with one change, and the results are added."), h("div.exports", {},
       VARIATIONS.map(([text, plans]) => h("button.quiet.small", { type: "button", onclick: () => this.#study(plans) }, text))),
-    h("div.block", {}, h("h2", {}, "A route of your own"), h("p.facts", {}, "An RTZ, S-421, GPX, GeoJSON or CSV file is sailed in the weather and by the ship of the reference."), h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Score a route file …"), this.file)))];
+    h("div.block", {}, h("h2", {}, "A route of your own"), h("p.facts", {}, "An RTZ, S-421, GPX, GeoJSON or CSV file is sailed in the weather and by the ship of the reference, from the time in the file; its speeds and arrival are not used."), h("div.field", {}, h("label.label", { for: "own-speed" }, "Speed"), h("div.with-unit", {}, this.speed, h("span.unit", {}, "kn")), h("p.facts", {}, "Empty: the highest of the ship.")), h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Score a route file …"), this.file)))];
   }
 
   add(job, number_, title) {
@@ -178,14 +178,15 @@ export class CompareView {
 
   #table(rows) {
     const [first] = rows;
-    const than = (row, name, decimals, text) => (known(row.difference[name]) && known(row[name]) && known(first[name]) ? text(rounded(row[name], decimals) - rounded(first[name], decimals)) : null);
+    const than = (row, name, decimals, text) => (known(row.difference[name]) && known(row[name]) && known(first[name]) ? text(difference(row[name], first[name], decimals)) : null);
     const calm = rows.map((row) => isCalm(this.#jobOf(row).request));
+    const figures = FIGURES.filter(([, name]) => rows.some((row, i) => known(row[name]) && !(calm[i] && WEATHER.includes(name)))); // without columns that say nothing
     const apart = new Set(rows.map((row) => row.approach_nm > 0.05)).size > 1; // some have approaches of ports
     const atSea = (row, name) => (apart && name === "distance_nm" ? `at sea ${number(row.distance_nm - row.approach_nm, 1)} nm` : apart && name === "time_h" ? `at sea ${duration(row.time_h - row.approach_h)}` : null);
     const facts = (row) => [apart ? `${row.approach_nm > 0.05 ? `with ${number(row.approach_nm, 1)} nm in` : "without"} approaches of ports` : null, `${number(row.distance_nm / row.time_h, 1)} kn mean over ground`, ...row.notes, ...(this.fileNotes?.get(row.job) || [])].filter(Boolean).map((text) => h("small", {}, readable(text)));
     const cell = (row, i) => ([, name, decimals, text, change]) => h("td", {}, h("b", {}, calm[i] && WEATHER.includes(name) ? "calm assumed" : text(row[name], row)), i && change ? h("small", {}, than(row, name, decimals, change)) : null, atSea(row, name) ? h("small", {}, atSea(row, name)) : null);
-    return h("div.table", { tabindex: 0 }, h("table.compare-table", {}, h("caption.hidden", {}, "Routes compared with the reference, the first"), h("thead", {}, h("tr", {}, h("th.text", { scope: "col" }, "Route"), h("th.text", { scope: "col" }, "Leaves, arrives"), FIGURES.map(([name]) => h("th", { scope: "col" }, name)))),
-      h("tbody", {}, rows.map((row, i) => h("tr", { "aria-current": i ? null : "true" }, h("td.text", {}, keyOfRoute(i), h("b", {}, this.chosen[i].title), i ? null : h("small", {}, "reference"), facts(row), row.feasible ? null : h("small.broken", {}, faultWords(row.broken))), h("td.text", {}, time(seconds(row.depart)), h("small", {}, time(seconds(row.arrive)))), FIGURES.map(cell(row, i)))))));
+    return h("div.table", { tabindex: 0 }, h("table.compare-table", {}, h("caption.hidden", {}, "Routes compared with the reference, the first"), h("thead", {}, h("tr", {}, h("th.text", { scope: "col" }, "Route"), h("th.text", { scope: "col" }, "Leaves, arrives"), figures.map(([name]) => h("th", { scope: "col" }, name)))),
+      h("tbody", {}, rows.map((row, i) => h("tr", { "aria-current": i ? null : "true" }, h("td.text", {}, keyOfRoute(i), h("b", {}, this.chosen[i].title), i ? null : h("small", {}, "reference"), facts(row), row.feasible ? null : h("small.broken", {}, faultWords(row.broken))), h("td.text", {}, time(seconds(row.depart)), h("small", {}, time(seconds(row.arrive)))), figures.map(cell(row, i)))))));
   }
 
   // Plan the voyages of an example, or find them planned, and compare them.
@@ -249,11 +250,14 @@ export class CompareView {
     const first = this.jobs.find((job) => job.id === this.chosen[0]?.job);
     if (!file) return;
     if (!first) { fill(this.problem, errorBox({ asked: "No route is chosen.", remedy: "Choose the route whose ship and weather are used." })); return; }
+    const speed = Number(this.speed.value.replace(",", "."));
+    if (!(speed >= 0)) { fill(this.problem, errorBox({ asked: `The speed ${this.speed.value} is not a number.`, remedy: "Give knots, or leave it empty." })); return; }
     fill(this.problem);
     try {
       const route = await uploadForm("/routes", file);
       const { ship, seas, fill: filled, limits, areas, coast, load_factor, depths, traffic, eca, charges, sampling, average_over_m } = first.request;
       const request = { title: file.name, route: route.id, ship, seas, fill: filled, limits, areas, coast, load_factor, depths, traffic, eca, charges, sampling, average_over_m };
+      if (speed) request.speed_kn = speed;
       if (!route.depart) request.depart = first.summary.depart;
       await this.#planAll([["/evaluate", request]], (jobs) => jobs.forEach((job) => this.add(job.id, 1, file.name)));
     } catch (problem) {

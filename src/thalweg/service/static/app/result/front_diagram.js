@@ -1,7 +1,7 @@
 // The Pareto front of time against fuel or cost: hover, drag or arrow keys choose a route.
 
 import { fill, h } from "../common/elements.js";
-import { duration, known, number, signed, signedDuration } from "../common/format.js";
+import { difference, duration, known, number, signed, signedDuration } from "../common/format.js";
 import { selection } from "../common/selection.js";
 import { svg as s, ticks } from "../common/svg_parts.js";
 
@@ -99,8 +99,9 @@ export class FrontDiagram {
     const p = pointed || this.points.find((one) => one.i === selection.route) || this.points[0];
     const fastest = this.points.reduce((a, b) => (b.x < a.x ? b : a));
     const { unit: unitText, criterion } = this.plan.front;
-    fill(this.facts, h("p", {}, h("b", {}, `Route ${p.i + 1} of ${this.points.length}`), pointed ? ", pointed at" : ""), h("p", {}, `${duration(p.x)}, ${number(p.y, p.y < 1000 ? 1 : 0)} ${unitText}`),
-      p === fastest ? h("p", {}, "The fastest of all.") : h("p", {}, `${signedDuration(p.x - fastest.x)} and ${signed(p.y - fastest.y, p.y < 1000 ? 1 : 0)} ${unitText} against the fastest.`),
+    const decimals = p.y < 1000 ? 1 : 0;
+    fill(this.facts, h("p", {}, h("b", {}, `Route ${p.i + 1} of ${this.points.length}`), pointed ? ", pointed at" : ""), h("p", {}, `${duration(p.x)}, ${number(p.y, decimals)} ${unitText}`),
+      p === fastest ? h("p", {}, "The fastest of all.") : h("p", {}, `${signedDuration(difference(p.x, fastest.x))} and ${signed(difference(p.y, fastest.y, decimals), decimals)} ${unitText} against the fastest.`),
       p.gap < 1 ? h("p", {}, `At its time no route has a ${criterion} more than ${number(Math.ceil(1000 * p.gap) / 10, 1)} % lower.`) : h("p", {}, `How much lower the ${criterion} could be at its time is not known.`),
       h("p", {}, "Grey: no route is there. Rings: weather ignored, constant speed."));
   }

@@ -28,12 +28,6 @@ export function costOf(route) {
   return route[`cost_${(route.currency || "usd").toLowerCase()}`];
 }
 
-// The numbers of the routes from 0, in the order of the list.
-export function inOrderOfTime(plan) {
-  const numbers = plan.routes.map((_, i) => i), { routes } = plan;
-  return plan.alternatives ? numbers : numbers.sort((a, b) => routes[a].time_h - routes[b].time_h);
-}
-
 const worst = (profile, column) => { const values = (profile?.[column] || []).filter(known); return values.length ? Math.max(...values) : null; };
 
 // The prices of a cost, and what it leaves out.
