@@ -43,6 +43,18 @@ def test_merged_blocks_last_and_are_not_late_if_they_must_not(seed):
     assert set(merged) <= set(setting)
 
 
+def test_cheapest_speeds_without_a_least_time_are_the_cheapest_of_each_piece():
+    """Blocks of one piece exist also beside pieces that some speeds cannot sail."""
+    draw = np.random.default_rng(5)
+    for _ in range(20):
+        time = draw.uniform(0.5, 1.5, (6, 1)) / np.array([1.0, 1.3, 1.7])
+        cost = draw.uniform(0.5, 1.5, (6, 3))
+        time[draw.integers(6), 2] = np.inf
+        found = cheapest_blocks(time, cost, 0.0, np.inf)
+        cheapest = np.where(np.isfinite(time), cost, np.inf).min(axis=1).sum()
+        assert cost[np.arange(6), found].sum() == pytest.approx(cheapest, rel=1e-12)
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_cheapest_blocks_against_all_choices(seed):
     """Within 15 % of the cheapest where few pieces leave few choices, and exact without haste."""

@@ -109,14 +109,11 @@ def undercut_note(
     order = np.argsort([route.time_h for route in front])
     time = np.array([front[i].time_h for i in order])
     least = np.minimum.accumulate(np.asarray(values)[order])
-    most = max(
-        (
-            1.0 - count / float(np.interp(route.time_h, time, least))
-            for route, count in zip(blind, counts)
-            if route.feasible and route.time_h >= time[0] and count > 0.0
-        ),
-        default=0.0,
-    )
+    most = 0.0
+    for route, count in zip(blind, counts):
+        planned = float(np.interp(route.time_h, time, least))
+        if route.feasible and route.time_h >= time[0] and count > 0.0 and planned > 0.0:
+            most = max(most, 1.0 - count / planned)
     if most < _LEAST_UNDERCUT:
         return None
     return (

@@ -58,68 +58,74 @@ def block_durations(setting: IntArray, time: FloatArray) -> FloatArray:
 
 
 class _Blocks(NamedTuple):
-    """All blocks that a choice may consist of, by the piece at which they end.
+    """The times and costs of blocks, from the start of the track to the ends of its pieces.
 
-    Each has the shape (pieces + 1, settings, blocks); the first piece of a block is its
-    predecessor in the dynamic programme, and blocks that do not exist cost infinitely much.
+    Each has the shape (pieces + 1, settings). Pieces that cannot be sailed add nothing to the
+    sums and are counted in ``closed``; ``newest`` is the last piece at which a block that ends
+    there may begin, and -1 where the track before is shorter than the least time.
     """
 
-    first: IntArray
     time: FloatArray
     cost: FloatArray
+    closed: IntArray
+    newest: IntArray
 
 
 def _blocks(time: FloatArray, cost: FloatArray, least: float) -> _Blocks:
-    """Return the blocks of at least the least time; longer ones are two of these."""
+    """Return the sums of which the blocks of at least the least time are differences."""
     sailable = np.isfinite(time) & np.isfinite(cost)
-    count, settings = time.shape
-    zeros = np.zeros((1, settings))
+    zeros = np.zeros((1, time.shape[1]))
     until = np.vstack([zeros, np.cumsum(np.where(sailable, time, 0.0), axis=0)])
     spent = np.vstack([zeros, np.cumsum(np.where(sailable, cost, 0.0), axis=0)])
-    closed = np.vstack([zeros, np.cumsum(~sailable, axis=0)])
-    longest = 2.0 * least + float(np.where(sailable, time, 0.0).max())
-    low = np.stack(
-        [np.searchsorted(u, u - longest) for u in until.T], axis=1
-    )  # first pieces of the longest blocks
-    high = np.stack(
-        [np.searchsorted(u, u - least * _ROUNDING, side="right") for u in until.T], axis=1
-    )
-    width = int(np.maximum(high - low, 1).max())
-    first = low[:, :, None] + np.arange(width)
-    exists = first < high[:, :, None]
-    first = np.minimum(first, count)
-    column = np.arange(settings)[None, :, None]
-    exists &= closed[:, :, None] == closed[first, column]
-    block_time = until[:, :, None] - until[first, column]
-    block_cost = np.where(exists, spent[:, :, None] - spent[first, column], np.inf)
-    return _Blocks(first, block_time, block_cost)
+    closed = np.vstack([zeros, np.cumsum(~sailable, axis=0)]).astype(np.int64)
+    latest = [np.searchsorted(u, u - least * _ROUNDING, side="right") - 1 for u in until.T]
+    # a block has a piece at least, also where the least time is zero
+    newest = np.minimum(np.stack(latest, axis=1), np.arange(len(until))[:, None] - 1)
+    return _Blocks(until, spent, closed, newest)
 
 
 def _blocks_by_price(
     time: FloatArray, cost: FloatArray, least: float, prices: FloatArray
 ) -> IntArray | None:
-    """Return the settings (prices, pieces) of least cost plus price times time; None if none."""
+    """Return the settings (prices, pieces) of least cost plus price times time; None if none.
+
+    The value of a block is a difference of two sums, so that the best first piece of all blocks
+    of one setting is a running minimum: the work grows with pieces times settings.
+    """
     blocks = _blocks(time, cost, least)
-    count = len(time)
-    width = blocks.first.shape[2]
-    best = np.full((count + 1, len(prices)), np.inf)
-    best[0] = 0.0
+    count, settings = time.shape
+    column = np.arange(settings)
+    begun = np.full((count + 1, settings, len(prices)), np.inf)  # least value before a block
+    first = np.zeros((count + 1, settings, len(prices)), np.int64)  # piece at which it begins
     chosen = np.zeros((count + 1, len(prices)), np.int64)
-    for end in range(1, count + 1):
-        value = blocks.cost[end].reshape(-1, 1) + blocks.time[end].reshape(-1, 1) * prices
-        value += best[blocks.first[end].ravel()]
-        chosen[end] = np.argmin(value, axis=0)
-        best[end] = np.min(value, axis=0)
-    if not np.isfinite(best[-1]).all():
+    since = np.zeros((count + 1, len(prices)), np.int64)
+    best = np.zeros(len(prices))
+    for end in range(count + 1):
+        sums = blocks.cost[end][:, None] + blocks.time[end][:, None] * prices
+        if end:
+            newest = blocks.newest[end]
+            exists = (newest >= 0) & (blocks.closed[end] == blocks.closed[newest, column])
+            value = np.where(exists[:, None], sums + begun[newest, column], np.inf)
+            chosen[end] = np.argmin(value, axis=0)
+            row = np.arange(len(prices))
+            best = value[chosen[end], row]
+            since[end] = first[newest[chosen[end]], chosen[end], row]
+        here = best - sums
+        begun[end], first[end] = here, end
+        if end:
+            open_here = blocks.closed[end] == blocks.closed[end - 1]
+            earlier = open_here[:, None] & (begun[end - 1] <= here)
+            begun[end] = np.where(earlier, begun[end - 1], here)
+            first[end] = np.where(earlier, first[end - 1], end)
+    if not np.isfinite(best).all():
         return None
     found = np.zeros((len(prices), count), np.int64)
-    for row in range(len(prices)):
+    for price in range(len(prices)):
         end = count
         while end > 0:
-            setting, place = divmod(int(chosen[end, row]), width)
-            first = int(blocks.first[end, setting, place])
-            found[row, first:end] = setting
-            end = first
+            start = int(since[end, price])
+            found[price, start:end] = chosen[end, price]
+            end = start
     return found
 
 
@@ -146,11 +152,17 @@ def _best_pair(
     rows = np.arange(len(time))
     best, least_cost = fast, float(cost[rows, fast].sum())
     for before, after in ((fast, slow), (slow, fast)):
-        for change in range(1, len(time)):
+        taken = _sums_of_change(time[rows, before], time[rows, after])
+        spent = _sums_of_change(cost[rows, before], cost[rows, after])
+        cheaper = np.flatnonzero((spent < least_cost) & (taken <= available))
+        for change in cheaper[np.argsort(spent[cheaper], kind="stable")] + 1:
             setting = np.concatenate([before[:change], after[change:]])
-            taken, spent = time[rows, setting], float(cost[rows, setting].sum())
-            if spent >= least_cost or not taken.sum() <= available:
-                continue
-            if block_durations(setting, taken).min() >= least * _ROUNDING:
-                best, least_cost = setting, spent
+            if block_durations(setting, time[rows, setting]).min() >= least * _ROUNDING:
+                best, least_cost = setting, float(spent[change - 1])
+                break
     return np.asarray(best)
+
+
+def _sums_of_change(before: FloatArray, after: FloatArray) -> FloatArray:
+    """Return the sums of the first values of one array and the last of another, by the change."""
+    return np.asarray(np.cumsum(before)[:-1] + np.cumsum(after[::-1])[-2::-1])
