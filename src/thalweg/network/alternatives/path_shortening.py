@@ -33,7 +33,6 @@ _STEP_LENGTHS: Final = tuple(NAUTICAL_MILE * s for s in (24.0, 12.0, 6.0, 3.0, 1
 _MAX_SWEEPS: Final = 6
 _MOVE_DIRECTIONS: Final = np.radians(np.arange(0.0, 360.0, 45.0))
 _MIN_GAIN: Final = 1e-5  # the iteration stops at a smaller relative gain
-_GAIN_OF_WAYPOINT: Final = 1e-8  # share of the whole cost that every waypoint must save
 
 
 @dataclass(frozen=True)
@@ -120,7 +119,6 @@ def total_cost(line: PolylineCoordinates, leg_cost: LegCost | None = None) -> fl
 def _string_pulled(
     rules: _LegRules, line: PolylineCoordinates, move: bool, rounds: int
 ) -> PolylineCoordinates:
-    given = line
     line = _drop_waypoints(rules, line)
     before = total_cost(line, rules.cost)
     for _ in range(rounds):
@@ -132,8 +130,6 @@ def _string_pulled(
     if move and rounds:
         line = _drop_waypoints(rules, _move_waypoints(rules, line))
         line = _drop_waypoints(rules, _cut_corners(rules, line))
-    if total_cost(line, rules.cost) > total_cost(given, rules.cost):
-        return _drop_waypoints(rules, given, gain=0.0)
     return line
 
 
@@ -147,24 +143,18 @@ def leg_lengths(
     return measured_pairs(lat, lon, ends[:count], ends[count:]).length
 
 
-def _drop_waypoints(
-    rules: _LegRules, line: PolylineCoordinates, gain: float = _GAIN_OF_WAYPOINT
-) -> PolylineCoordinates:
-    """Return the cheapest path through a subset of the waypoints, in their order.
-
-    Without a least gain of each waypoint, a path round a curved outline would keep thousands.
-    """
+def _drop_waypoints(rules: _LegRules, line: PolylineCoordinates) -> PolylineCoordinates:
+    """Return the cheapest path through a subset of the waypoints, in their order."""
     while True:
-        keep = _cheapest_subset(rules, line, gain)
+        keep = _cheapest_subset(rules, line)
         count = len(line[0])
         line = line[0][keep], line[1][keep]
         if len(keep) == count or count <= _MAX_SKIPPED_WAYPOINTS:
             return line
 
 
-def _cheapest_subset(rules: _LegRules, line: PolylineCoordinates, gain: float) -> IntArray:
+def _cheapest_subset(rules: _LegRules, line: PolylineCoordinates) -> IntArray:
     lat, lon = line
-    whole = total_cost(line, rules.cost)
     count = len(lat)
     first, second = np.triu_indices(count, 1)
     near = second - first <= _MAX_SKIPPED_WAYPOINTS
@@ -184,7 +174,6 @@ def _cheapest_subset(rules: _LegRules, line: PolylineCoordinates, gain: float) -
     price[used] = rules.cost(lat[legs[0]], lon[legs[0]], lat[legs[1]], lon[legs[1]])
     rows = np.searchsorted(first, np.arange(count + 1))
     price *= 1.0 + 1e-12  # of equal paths, prefer fewer waypoints
-    price += gain * whole if np.isfinite(whole) else 0.0
 
     def steps(here: int, _: int) -> tuple[IntArray, FloatArray]:
         row = slice(rows[here], rows[here + 1])
