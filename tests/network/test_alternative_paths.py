@@ -131,6 +131,20 @@ def test_pulling_never_costs_more_and_never_touches_land(seed):
     assert total_cost(again) <= way.length * (1 + 1e-12)
 
 
+def test_waypoints_round_a_curved_outline_must_save_a_share_of_the_path():
+    edges = np.linspace(-0.3, 0.3, 61)
+    height = 0.2 - np.maximum(np.abs(edges[:-1]), np.abs(edges[1:])) ** 2
+    chart = land_chart(*((0.0, h, a, b) for h, a, b in zip(height, edges[:-1], edges[1:])))
+    lat = np.concatenate([[0.0], np.repeat(height, 2) + 1e-5, [0.0]])
+    lon = np.concatenate([[-1.0], np.column_stack([edges[:-1], edges[1:]]).ravel(), [1.0]])
+    every = string_pull_path(chart, lat, lon)
+    few = string_pull_path(chart, lat, lon, least_gain=1e-5)
+    assert len(few[0]) < 0.7 * len(every[0])
+    assert not chart.legs_blocked(few[0][:-1], few[1][:-1], few[0][1:], few[1][1:]).any()
+    saved = 1e-5 * (len(every[0]) - len(few[0]))
+    assert total_cost(every) < total_cost(few) <= total_cost(every) * (1.0 + saved)
+
+
 def test_pulling_with_a_cost_avoids_expensive_areas():
     chart = Chart.open_water(-5.0, 5.0, -5.0, 5.0)
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 
+_LEAST_GAIN_OF_WAYPOINT = 1e-8  # share of the cost of a path that each waypoint must save
 _BORDER_TOLERANCE = 25.0  # accuracy at which edges are split at borders of control areas [m]
 
 
@@ -191,7 +192,14 @@ def shortened_path(
 ) -> AlternativePath:  # fmt: skip
     """Return a path of nodes after string pulling; ``ratio`` as in `AlternativePath`."""
     lat, lon = network.lat[path], network.lon[path]
-    lat, lon = string_pull_path(chart, lat, lon, leg_cost=edge_weights.leg_cost, sides=sides)
+    lat, lon = string_pull_path(
+        chart,
+        lat,
+        lon,
+        leg_cost=edge_weights.leg_cost,
+        sides=sides,
+        least_gain=_LEAST_GAIN_OF_WAYPOINT,
+    )
     weight = checked_edge_weights(network, edge_weights)
     length, cost = total_cost((lat, lon)), total_cost((lat, lon), edge_weights.leg_cost)
     names: list[str] = []

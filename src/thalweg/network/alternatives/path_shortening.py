@@ -65,6 +65,7 @@ def string_pull_path(
     leg_cost: LegCost | None = None,
     sides: PassingSides | None = None,
     rounds: int = 12,
+    least_gain: float = 0.0,
 ) -> PolylineCoordinates:
     """Return a path after string pulling: waypoints removed and corners cut by allowed legs.
 
@@ -77,6 +78,8 @@ def string_pull_path(
     sides : Meridian crossings of legs, so that islands stay on the same side (see
         `thalweg.network.alternatives.homotopy`).
     rounds : Largest number of passes that cut corners; with 0, waypoints are only removed.
+    least_gain : Share of the whole cost that each waypoint must save, or it is removed at the end
+        (0 to 1). Round a curved outline the cheapest path has a waypoint at each of its points.
 
     Returns
     -------
@@ -95,9 +98,12 @@ def string_pull_path(
         k = np.flatnonzero(canal >= 0)
         if len(k):
             parts = np.split(np.arange(len(line[0])), k + 1)
-            drawn = [_string_pulled(rules, (line[0][p], line[1][p]), move, rounds) for p in parts]
+            drawn = [
+                _string_pulled(rules, (line[0][p], line[1][p]), move, rounds, least_gain)
+                for p in parts
+            ]
             return np.concatenate([d[0] for d in drawn]), np.concatenate([d[1] for d in drawn])
-    return _string_pulled(rules, line, move, rounds)
+    return _string_pulled(rules, line, move, rounds, least_gain)
 
 
 def total_cost(line: PolylineCoordinates, leg_cost: LegCost | None = None) -> float:
@@ -117,8 +123,9 @@ def total_cost(line: PolylineCoordinates, leg_cost: LegCost | None = None) -> fl
 
 
 def _string_pulled(
-    rules: _LegRules, line: PolylineCoordinates, move: bool, rounds: int
+    rules: _LegRules, line: PolylineCoordinates, move: bool, rounds: int, least_gain: float
 ) -> PolylineCoordinates:
+    given = total_cost(line, rules.cost)
     line = _drop_waypoints(rules, line)
     before = total_cost(line, rules.cost)
     for _ in range(rounds):
@@ -130,6 +137,10 @@ def _string_pulled(
     if move and rounds:
         line = _drop_waypoints(rules, _move_waypoints(rules, line))
         line = _drop_waypoints(rules, _cut_corners(rules, line))
+    if least_gain and np.isfinite(given):
+        fewer = _drop_waypoints(rules, line, least_gain * given)
+        if total_cost(fewer, rules.cost) <= given:
+            return fewer
     return line
 
 
@@ -143,17 +154,22 @@ def leg_lengths(
     return measured_pairs(lat, lon, ends[:count], ends[count:]).length
 
 
-def _drop_waypoints(rules: _LegRules, line: PolylineCoordinates) -> PolylineCoordinates:
-    """Return the cheapest path through a subset of the waypoints, in their order."""
+def _drop_waypoints(
+    rules: _LegRules, line: PolylineCoordinates, least_gain: float = 0.0
+) -> PolylineCoordinates:
+    """Return the cheapest path through a subset of the waypoints, in their order.
+
+    Each waypoint that stays saves at least ``least_gain``, in units of cost.
+    """
     while True:
-        keep = _cheapest_subset(rules, line)
+        keep = _cheapest_subset(rules, line, least_gain)
         count = len(line[0])
         line = line[0][keep], line[1][keep]
         if len(keep) == count or count <= _MAX_SKIPPED_WAYPOINTS:
             return line
 
 
-def _cheapest_subset(rules: _LegRules, line: PolylineCoordinates) -> IntArray:
+def _cheapest_subset(rules: _LegRules, line: PolylineCoordinates, least_gain: float) -> IntArray:
     lat, lon = line
     count = len(lat)
     first, second = np.triu_indices(count, 1)
@@ -174,6 +190,7 @@ def _cheapest_subset(rules: _LegRules, line: PolylineCoordinates) -> IntArray:
     price[used] = rules.cost(lat[legs[0]], lon[legs[0]], lat[legs[1]], lon[legs[1]])
     rows = np.searchsorted(first, np.arange(count + 1))
     price *= 1.0 + 1e-12  # of equal paths, prefer fewer waypoints
+    price += least_gain
 
     def steps(here: int, _: int) -> tuple[IntArray, FloatArray]:
         row = slice(rows[here], rows[here + 1])
