@@ -135,8 +135,10 @@ def test_waypoints_round_a_curved_outline_must_save_a_share_of_the_path():
     edges = np.linspace(-0.3, 0.3, 61)
     height = 0.2 - np.maximum(np.abs(edges[:-1]), np.abs(edges[1:])) ** 2
     chart = land_chart(*((0.0, h, a, b) for h, a, b in zip(height, edges[:-1], edges[1:])))
-    lat = np.concatenate([[0.0], np.repeat(height, 2) + 1e-5, [0.0]])
-    lon = np.concatenate([[-1.0], np.column_stack([edges[:-1], edges[1:]]).ravel(), [1.0]])
+    near, mid = height + 1e-5, 0.5 * (edges[:-1] + edges[1:])
+    north = np.column_stack([near, height + 2e-3, near]).ravel()
+    lat = np.concatenate([[0.0], north, [0.0]])
+    lon = np.concatenate([[-1.0], np.column_stack([edges[:-1], mid, edges[1:]]).ravel(), [1.0]])
     every = string_pull_path(chart, lat, lon)
     few = string_pull_path(chart, lat, lon, least_gain=1e-5)
     assert len(few[0]) < 0.7 * len(every[0])

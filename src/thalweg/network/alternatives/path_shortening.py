@@ -78,8 +78,8 @@ def string_pull_path(
     sides : Meridian crossings of legs, so that islands stay on the same side (see
         `thalweg.network.alternatives.homotopy`).
     rounds : Largest number of passes that cut corners; with 0, waypoints are only removed.
-    least_gain : Share of the whole cost that each waypoint must save, or it is removed at the end
-        (0 to 1). Round a curved outline the cheapest path has a waypoint at each of its points.
+    least_gain : Share of the whole cost that each waypoint must save, or it is removed (0 to 1).
+        Round a curved outline, the cheapest path has a waypoint at each of its points.
 
     Returns
     -------
@@ -126,22 +126,21 @@ def _string_pulled(
     rules: _LegRules, line: PolylineCoordinates, move: bool, rounds: int, least_gain: float
 ) -> PolylineCoordinates:
     given = total_cost(line, rules.cost)
-    line = _drop_waypoints(rules, line)
-    before = total_cost(line, rules.cost)
+    gain = least_gain * given if np.isfinite(given) else 0.0
+    drawn = _drop_waypoints(rules, line, gain)
+    before = total_cost(drawn, rules.cost)
     for _ in range(rounds):
-        line = _drop_waypoints(rules, _cut_corners(rules, line))
-        now = total_cost(line, rules.cost)
+        drawn = _drop_waypoints(rules, _cut_corners(rules, drawn), gain)
+        now = total_cost(drawn, rules.cost)
         if before - now <= _MIN_GAIN * before:
             break
         before = now
     if move and rounds:
-        line = _drop_waypoints(rules, _move_waypoints(rules, line))
-        line = _drop_waypoints(rules, _cut_corners(rules, line))
-    if least_gain and np.isfinite(given):
-        fewer = _drop_waypoints(rules, line, least_gain * given)
-        if total_cost(fewer, rules.cost) <= given:
-            return fewer
-    return line
+        drawn = _drop_waypoints(rules, _move_waypoints(rules, drawn), gain)
+        drawn = _drop_waypoints(rules, _cut_corners(rules, drawn), gain)
+    if gain and total_cost(drawn, rules.cost) > given:
+        return _string_pulled(rules, line, move, rounds, 0.0)
+    return drawn
 
 
 def leg_lengths(
