@@ -22,6 +22,10 @@ TRAFFIC = {
 SHIP = Path(thalweg.ship.__file__).parent / "library" / "gunnerus.yaml"
 #: What a script of the page does between an answer and the end of drawing it.
 DRAWN = "() => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 0)))"
+#: The second element is clicked as soon as the first is in the panel.
+AT_ONCE = """([shown, clicked]) => new MutationObserver((_, watch) => {
+  if (document.querySelector(shown)) { watch.disconnect(); document.querySelector(clicked).click(); }
+}).observe(document.getElementById("panel"), { childList: true, subtree: true })"""
 
 
 @pytest.fixture(scope="module")
@@ -140,10 +144,8 @@ def test_back_and_forward_go_through_the_views(visit, planned):
     page = visit.open()
     visit.fill_short()
     page.locator('.tab[data-view="voyages"]').click()
+    page.evaluate(AT_ONCE, [".proof", '.tab[data-view="compare"]'])
     page.locator(".jobrow button.job", has_text="A short voyage").first.click()
-    page.wait_for_selector(".proof")
-    page.locator("#tab-profile").wait_for()
-    page.locator('.tab[data-view="compare"]').click()
     title = page.locator("#panel h1")
     playwright_api.expect(title).to_have_text("Compare routes")
     page.evaluate("history.back()")

@@ -47,9 +47,11 @@ export class Address {
     history[same ? "replaceState" : "pushState"]({ written: true }, "", this.written || location.pathname);
   }
 
-  // After a pause, so that a moving time does not write at every step.
+  // After a pause, so that a moving time does not write at every step; another place has its entry at once.
   writeSoon(textOf) {
     clearTimeout(this.timer);
+    const now = textOf();
+    if (now && placeOf(`#${now}`) !== placeOf(location.hash)) { this.write(now); return; }
     this.timer = setTimeout(() => { const text = textOf(); if (text) this.write(text); }, 250);
   }
 
