@@ -162,6 +162,21 @@ def test_back_and_forward_go_through_the_views(visit, planned):
     playwright_api.expect(title).to_have_text("Voyages")
 
 
+def test_a_list_that_arrives_during_back_does_not_take_its_place(visit, planned):
+    page = visit.open(f"#plan={planned}")
+    page.locator("#tab-profile").wait_for()
+    page.evaluate("""() => {
+      const ask = window.fetch;
+      const late = new Promise((done) => addEventListener("popstate", done, { once: true }));
+      window.fetch = (url, ...rest) => String(url).includes("/plans?size=60")
+        ? late.then(() => ({ ok: true, json: async () => ({ jobs: [] }) })) : ask(url, ...rest);
+    }""")
+    page.locator('.tab[data-view="compare"]').click()
+    page.evaluate("history.back()")
+    page.wait_for_selector(".proof")
+    assert f"plan={planned}" in page.url
+
+
 def test_what_is_typed_before_the_lists_arrive_stays(visit):
     page = visit.page
     held = Held(page, "**/api/v1/ships")

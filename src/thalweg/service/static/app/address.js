@@ -47,12 +47,21 @@ export class Address {
     history[same ? "replaceState" : "pushState"]({ written: true }, "", this.written || location.pathname);
   }
 
-  // After a pause, so that a moving time does not write at every step; another place has its entry at once.
-  writeSoon(textOf) {
+  // What changed within a place; nothing where the browser has gone to another one.
+  update(text) {
+    if (placeOf(`#${text}`) === placeOf(location.hash)) this.write(text);
+  }
+
+  // A result has its entry as soon as it is shown.
+  show(text) {
+    if (placeOf(`#${text}`) === placeOf(location.hash)) this.updateSoon(() => text);
+    else this.write(text);
+  }
+
+  // After a pause, so that a moving time does not write at every step.
+  updateSoon(textOf) {
     clearTimeout(this.timer);
-    const now = textOf();
-    if (now && placeOf(`#${now}`) !== placeOf(location.hash)) { this.write(now); return; }
-    this.timer = setTimeout(() => { const text = textOf(); if (text) this.write(text); }, 250);
+    this.timer = setTimeout(() => { const text = textOf(); if (text) this.update(text); }, 250);
   }
 
   async copy(text) {

@@ -36,7 +36,7 @@ class Application {
     this.form = new PlanForm(this.chart);
     const sheet = (element, tall) => this.#sheet(element, tall), write = (address) => this.address.write(address);
     const shipName = (id) => this.form.ship.list.find((ship) => ship.id === id)?.name || id;
-    this.compare = new CompareView(this.chart, { shipName, sheet, write, hidden: () => this.view !== "compare" });
+    this.compare = new CompareView(this.chart, { shipName, sheet, update: (address) => this.address.update(address), hidden: () => this.view !== "compare" });
     this.batch = new BatchViews(this.chart, this.form, {
       view: () => this.view, open: (view) => this.#switch(view), sheet, write,
       plan: () => { this.result = null; this.#switch("plan"); }, fillIn: (request) => this.#fillIn(request),
@@ -308,7 +308,7 @@ class Application {
     if (fit) { this.chart.map.updateSize(); this.chart.fit(profile.lon.map((lon, i) => [lon, profile.lat[i]])); }
     this.#time();
     this.layers.show(kinds);
-    this.#permalink();
+    this.address.show(this.#place);
   }
 
   // On paper a result is the brief for the master, with the chart in it.
@@ -356,10 +356,6 @@ class Application {
     return `plan=${this.result.job.id}&route=${selection.route + 1}&t=${Math.round(selection.time)}`;
   }
 
-  #permalink() {
-    this.address.writeSoon(() => (this.view === "plan" && this.result ? this.#place : null));
-  }
-
   // Compare and voyages
 
   #showVoyages() {
@@ -387,7 +383,7 @@ class Application {
     chart.addEventListener("click", (event) => this.#clicked(event.detail));
     selection.addEventListener("route", () => { if (this.result) this.showResult(this.result).catch((problem) => hint(problem.asked)); });
     selection.addEventListener("hover", () => { if (this.result) this.chart.routes.showOthers(this.result.plan.routes.map((route) => route.waypoints.map((w) => [w.lon, w.lat])), selection.route, selection.hovered); });
-    selection.addEventListener("time", () => { this.#time(); this.#permalink(); });
+    selection.addEventListener("time", () => { this.#time(); this.address.updateSoon(() => (this.view === "plan" && this.result ? this.#place : null)); });
   }
 
   #clicked(place) {

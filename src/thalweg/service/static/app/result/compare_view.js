@@ -27,7 +27,7 @@ export class CompareView {
 
   /**
    * @param {Chart} chart
-   * @param {{shipName: (id: string) => string, sheet: (element: Element) => void, write: (address: string) => void, hidden: () => boolean}} handlers
+   * @param {{shipName: (id: string) => string, sheet: (element: Element) => void, update: (address: string) => void, hidden: () => boolean}} handlers
    */
   constructor(chart, handlers) {
     Object.assign(this, { chart, handlers });
@@ -140,7 +140,7 @@ export class CompareView {
   async #compare() {
     const ask = (this.asked = Symbol("ask")); // the answer to an earlier choice is not shown
     this.#showChosen();
-    if (!this.handlers.hidden()) this.handlers.write(`view=compare${this.chosen.length ? `&routes=${this.address}` : ""}`);
+    if (!this.handlers.hidden()) this.handlers.update(`view=compare${this.chosen.length ? `&routes=${this.address}` : ""}`);
     if (this.chosen.length < 2) {
       this.drawn = [];
       this.#draw([], h("p.empty", {}, h("b", {}, this.chosen.length ? "Choose one more route" : "Choose routes to compare"), "Their figures and differences stand here, and all of them on the chart."));
