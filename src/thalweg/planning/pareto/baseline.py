@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 _MAX_SPEEDS = 6
 _LEAST_UNDERCUT = 5e-4  # share of the value that is noted
-_MAX_ROUTES = 5  #: routes of a front that are sailed at constant speeds
 
 
 def weather_blind_tracks(
@@ -66,20 +65,21 @@ def evaluate_weather_blind(
 
 
 def constant_speed_tracks(
-    tracks: Sequence[Track], settings: NDArray[np.int64]
+    tracks: Sequence[Track], settings: NDArray[np.int64], most: int
 ) -> list[tuple[int, Track]]:
     """Return tracks chosen with the weather, each at up to six constant settings without waits.
 
     Parameters
     ----------
-    tracks : In order of time; up to five of them are taken, the first and the last included.
+    tracks : In order of time.
     settings : Speed settings to choose from, ascending.
+    most : Greatest number of tracks that are taken, the first and the last included.
 
     Returns
     -------
     list of (int, Track) : With the number of the track given.
     """
-    selected = np.unique(np.linspace(0, len(tracks) - 1, min(_MAX_ROUTES, len(tracks))).round())
+    selected = np.unique(np.linspace(0, len(tracks) - 1, min(most, len(tracks))).round())
     chosen = settings[np.unique(np.linspace(0, len(settings) - 1, _MAX_SPEEDS).round().astype(int))]
     return [
         (k, tracks[k].replaced(wait=None, setting=np.full(len(tracks[k]) - 1, s), speed=None))

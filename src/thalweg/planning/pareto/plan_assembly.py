@@ -193,7 +193,9 @@ def _constant_speed_candidates(
     found = [(route, "") for route in blind]
     if feasible and len(trade_off.settings) > 1 and not trade_off.interrupt_guard.stopped():
         context.report_progress("evaluating constant speeds")
-        tracks = constant_speed_tracks([item.route.track for item in feasible], trade_off.settings)
+        tracks = constant_speed_tracks(
+            [item.route.track for item in feasible], trade_off.settings, trade_off.detail.constant
+        )
         found += [
             (context.evaluate(track), feasible[way].candidate.alternative) for way, track in tracks
         ]

@@ -36,6 +36,7 @@ class FrontDetail:
         which refinement starts.
     size, time_prices, exploration, generations : Of `thalweg.evolution.refine_front`.
     least, most : Number of routes that the referee evaluates.
+    constant : Greatest number of routes that are evaluated at constant speeds as well.
     """
 
     seeds: int
@@ -46,11 +47,12 @@ class FrontDetail:
     generations: int
     least: int
     most: int
+    constant: int
 
 
-WHOLE_FRONT = FrontDetail(48, 16, 140, 48, 60, 26, 40, 100)
+WHOLE_FRONT = FrontDetail(48, 16, 140, 48, 60, 26, 40, 100, 5)
 #: For the best route by one objective, with a few faster ones for comparison.
-BEST_ROUTE = FrontDetail(12, 6, 24, 6, 0, 0, 12, 12)
+BEST_ROUTE = FrontDetail(12, 6, 24, 6, 0, 0, 12, 12, 2)
 _ONE_BEST: Final = ("fuel", "energy", "cost", "co2")
 
 

@@ -109,27 +109,43 @@ def _touched(
 ) -> BoolArray:
     """Return the cells that lines (lat, lon) [deg] pass through."""
     cells = np.zeros((lat.size - 1, lon.size - 1), bool)
-    steps = lat[1] - lat[0], lon[1] - lon[0]
-    for line_lat, line_lon in lines:
-        for turn in (-360.0, 0.0, 360.0):
-            y = (np.asarray(line_lat) - lat[0]) / steps[0]
-            x = (np.asarray(line_lon) + turn - lon[0]) / steps[1]
-            if x.max() >= -1.0 and x.min() <= cells.shape[1] + 1.0:
-                _mark_line(cells, y, x)
+    given = [(np.asarray(a, float), np.asarray(b, float)) for a, b in lines]
+    if not given:
+        return cells
+    all_y = (np.concatenate([a for a, _ in given]) - lat[0]) / (lat[1] - lat[0])
+    all_lon = np.concatenate([b for _, b in given])
+    last = np.cumsum([a.size for a, _ in given]) - 1
+    within = np.ones(all_y.size, bool)  # pieces begin at all points but the last of each line
+    within[last] = False
+    first = np.flatnonzero(within)
+    y = np.stack([all_y[first], all_y[first + 1]])
+    for turn in (-360.0, 0.0, 360.0):
+        all_x = (all_lon + turn - lon[0]) / (lon[1] - lon[0])
+        x = np.stack([all_x[first], all_x[first + 1]])
+        near = np.ones(first.size, bool)
+        for places, count in ((y, cells.shape[0]), (x, cells.shape[1])):
+            near &= (places.max(axis=0) >= -1.0) & (places.min(axis=0) <= count + 1.0)
+        if near.any():
+            _mark_pieces(cells, y[:, near], x[:, near])
     return cells
 
 
-def _mark_line(cells: BoolArray, y: FloatArray, x: FloatArray) -> None:
-    """Mark the cells that the boxes round short pieces of a line touch."""
-    length = np.maximum(np.abs(np.diff(y)), np.abs(np.diff(x)))
+def _mark_pieces(cells: BoolArray, y: FloatArray, x: FloatArray) -> None:
+    """Mark the cells that the boxes round short parts of straight pieces touch.
+
+    Parameters
+    ----------
+    y, x : Rows and columns of the first and last points of the pieces, (2, pieces).
+    """
+    length = np.maximum(np.abs(y[1] - y[0]), np.abs(x[1] - x[0]))
     parts = np.maximum(np.ceil(2.0 * np.minimum(length, 1e5)).astype(np.int64), 1)
     piece = np.repeat(np.arange(length.size), parts)
     first = np.concatenate([[0], np.cumsum(parts)[:-1]])
     share = (np.arange(piece.size) - first[piece]) / parts[piece]
-    y0 = y[piece] + share * (y[piece + 1] - y[piece])
-    x0 = x[piece] + share * (x[piece + 1] - x[piece])
-    y1 = y0 + (y[piece + 1] - y[piece]) / parts[piece]
-    x1 = x0 + (x[piece + 1] - x[piece]) / parts[piece]
+    step_y, step_x = (y[1] - y[0]) / parts, (x[1] - x[0]) / parts
+    y0 = y[0, piece] + share * (y[1] - y[0])[piece]
+    x0 = x[0, piece] + share * (x[1] - x[0])[piece]
+    y1, x1 = y0 + step_y[piece], x0 + step_x[piece]
     margin = 0.02  # the outlines are great circles, drawn here as straight lines
     for row in (np.minimum(y0, y1) - margin, np.maximum(y0, y1) + margin):
         for column in (np.minimum(x0, x1) - margin, np.maximum(x0, x1) + margin):
