@@ -24,7 +24,9 @@ SHIP = Path(thalweg.ship.__file__).parent / "library" / "gunnerus.yaml"
 DRAWN = "() => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 0)))"
 #: The second element is clicked as soon as the first is in the panel.
 AT_ONCE = """([shown, clicked]) => new MutationObserver((_, watch) => {
-  if (document.querySelector(shown)) { watch.disconnect(); document.querySelector(clicked).click(); }
+  if (!document.querySelector(shown)) return;
+  watch.disconnect();
+  document.querySelector(clicked).click();
 }).observe(document.getElementById("panel"), { childList: true, subtree: true })"""
 
 
