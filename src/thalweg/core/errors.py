@@ -147,6 +147,22 @@ def _likeness(word: str, name: str) -> float:
     return difflib.SequenceMatcher(None, word.casefold(), name.casefold()).ratio()
 
 
+def nearest_names(word: str, known: Iterable[str], most: int = _MOST_NAMES) -> str:
+    """Return known names as a text: all of them, or the nearest in spelling if there are more.
+
+    Parameters
+    ----------
+    word : The unknown name.
+    known : All known names.
+    most : Greatest number of names that are listed.
+    """
+    names = sorted(known)
+    if len(names) <= most:
+        return ", ".join(names)
+    nearest = sorted(names, key=lambda name: -_likeness(word, name))[:most]
+    return f"{', '.join(nearest)} and {len(names) - most} more"
+
+
 def unknown_name_error(
     kind: str, word: str, known: Iterable[str], *, field: str | None = None
 ) -> InputError:
@@ -165,11 +181,7 @@ def unknown_name_error(
     """
     names = sorted(known)
     near = close_matches(word, names)
-    if len(names) > _MOST_NAMES:
-        names.sort(key=lambda name: -_likeness(word, name))
-    listed = ", ".join(names[:_MOST_NAMES])
-    if len(names) > _MOST_NAMES:
-        listed += f" and {len(names) - _MOST_NAMES} more"
+    listed = nearest_names(word, names)
     remedy = f"Did you mean {' or '.join(repr(n) for n in near)}?" if near else "Check the name."
     place = {} if field is None else {"field": field}
     return InputError(

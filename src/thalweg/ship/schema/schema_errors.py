@@ -10,9 +10,10 @@ from annotated_types import Ge, Gt, Le
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from thalweg.core.errors import InputError, close_matches, unknown_name_error
+from thalweg.core.errors import InputError, close_matches, nearest_names, unknown_name_error
 
 _UNKNOWN_KEY = ("extra_forbidden", "invalid_key")
+_MOST_KEYS = 12  # that an error lists
 _OUT_OF_RANGE = ("greater_than", "greater_than_equal", "less_than_equal")
 
 
@@ -63,7 +64,7 @@ def _unknown_key_error(
     remedy = f"Did you mean {' or '.join(repr(n) for n in near)}?" if near else "Leave it out."
     return InputError(
         f"{_abbreviated(name)} is not a key of {place}.",
-        f"Keys are: {', '.join(known)}.",
+        f"Keys are: {nearest_names(str(name)[:80], known, _MOST_KEYS)}.",
         remedy,
         key=str(name)[:80],
         near=near,
