@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.core.geodesy import distance
+from thalweg.core.units import HOUR, KNOT
+from thalweg.planning.plots.passage_times import stage_passage_times
 
 WATER = Chart.open_water(50.0, 52.0, 1.0, 4.0)
 SHIP = Ship.simple(speed_kn=8.0, draught_m=5.0)
@@ -15,6 +18,37 @@ SEA = Sea.from_functions(
 )
 
 
+class ShownRoutes:
+    """A progress callback that keeps the routes found so far."""
+
+    def __init__(self):
+        self.routes = []
+
+    def __call__(self, text):
+        pass
+
+    def show_route(self, route):
+        self.routes.append(route)
+
+
+@pytest.mark.slow
+def test_isochrones_of_a_stage_end_when_the_route_is_at_its_via_point():
+    via = (51.0, 3.0)
+    voyage = Voyage(start=(51.0, 1.5), goal=(51.5, 1.5), via=[via], depart="2026-01-01")
+    found = plan(voyage, ship=SHIP, sea=Sea.calm(), chart=WATER, resolution=6000.0)
+    at_via = float(distance(51.0, 1.5, *via)) / (8.0 * KNOT) / HOUR
+    place = np.array([51.0]), np.array([2.0])  # both stages pass within reach of it
+    there, back = stage_passage_times(found.plot_context, *place, np.asarray)
+    hours = (np.concatenate([there, back]) - found.best.depart) / HOUR
+    rest = float(distance(*via, 51.0, 2.0)) / (8.0 * KNOT) / HOUR
+    first = float(distance(51.0, 1.5, 51.0, 2.0)) / (8.0 * KNOT) / HOUR
+    assert hours == pytest.approx([first, at_via + rest], rel=0.02)
+    before, after = stage_passage_times(
+        found.plot_context, np.array([51.0, 51.0]), np.array([3.1, 3.1]), np.asarray
+    )
+    assert np.isnan(before).all() and np.isfinite(after).all()  # the first ends at the via point
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("objective", ["time", "distance"])
 def test_two_via_points(objective):
@@ -23,8 +57,14 @@ def test_two_via_points(objective):
     voyage = Voyage(
         start=(51.0, 1.5), goal=(51.0, 3.5), via=via, depart="2026-01-01", objective=objective
     )
-    found = plan(voyage, ship=SHIP, sea=SEA, chart=WATER, resolution=6000.0)
+    shown = ShownRoutes()
+    found = plan(voyage, ship=SHIP, sea=SEA, chart=WATER, resolution=6000.0, progress=shown)
     best = found.best
+    starts = [(route.track.lat[0], route.track.lon[0]) for route in shown.routes]
+    assert len(starts) > 3 and set(starts) == {(51.0, 1.5)}
+    goals = [(float(route.track.lat[-1]), float(route.track.lon[-1])) for route in shown.routes]
+    assert list(dict.fromkeys(goals)) == [*via, (51.0, 3.5)]
+    assert shown.routes[-1].time_h == pytest.approx(best.time_h, rel=1e-3)
     assert best.feasible and found.lower_bound <= found.objective_value * (1 + 1e-9)
     for lat, lon in via:
         away = np.hypot(best.track.lat - lat, best.track.lon - lon)

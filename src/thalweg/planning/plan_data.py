@@ -50,6 +50,9 @@ class PlotContext:
         Nodes of the networks [deg].
     arrival : ndarray (n,)
         Earliest arrival at the nodes [s since 1970]; inf where not reached.
+    stages : tuple of (int, float)
+        Of each stage of a voyage with via points: how many of the nodes are its own, and when the
+        route reaches its end [s since 1970]; empty without via points.
     """
 
     lat: np.ndarray
@@ -58,6 +61,7 @@ class PlotContext:
     chart: Any
     sea: Any
     ship: Any
+    stages: tuple[tuple[int, float], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -65,8 +65,8 @@ from thalweg.planning.single.certified_bound import certified_total
 from thalweg.planning.single.stretch import plan_stretch
 from thalweg.planning.single.stretch_result import StretchResult
 from thalweg.planning.voyage import Voyage
+from thalweg.route import Route, with_wind_speed
 from thalweg.route import join as join_routes
-from thalweg.route import with_wind_speed
 from thalweg.sea import Sea
 from thalweg.search import LowerBound
 from thalweg.ship import Ship
@@ -316,11 +316,22 @@ def _plan_stretches(context: PlanningContext, ends: list[Endpoint]) -> list[Stre
     stretches: list[StretchResult] = []
     places = [(end.lat, end.lon) for end in ends]
     for number, (start, goal) in enumerate(itertools.pairwise(ends)):
-        choice = context.choice.of_section(places, number)
-        stretch = plan_stretch(replace(context, choice=choice), start, goal, window)
+        one = replace(
+            context,
+            choice=context.choice.of_section(places, number),
+            with_approaches=_shown_after(context, [stretch.route for stretch in stretches]),
+        )
+        stretch = plan_stretch(one, start, goal, window)
         stretches.append(stretch)
         window = (stretch.route.arrive, stretch.route.arrive)
     return stretches
+
+
+def _shown_after(context: PlanningContext, before: list[Route]) -> Callable[[Route], Route]:
+    """Return what joins a route to those before it, with the approaches of ports, to be shown."""
+    if not before:
+        return context.with_approaches
+    return lambda route: context.with_approaches(join_routes([*before, route]))
 
 
 def _assemble_plan(
@@ -370,6 +381,7 @@ def _speed_kn(context: PlanningContext) -> float | None:
 
 def _plot_context(context: PlanningContext, stretches: list[StretchResult]) -> PlotContext:
     nodes = [stretch.network.n_nodes for stretch in stretches]
+    ends = tuple((n, p.route.arrive) for p, n in zip(stretches, nodes))
     return PlotContext(
         lat=np.concatenate([p.network.stations.lat[:n] for p, n in zip(stretches, nodes)]),
         lon=np.concatenate([p.network.stations.lon[:n] for p, n in zip(stretches, nodes)]),
@@ -377,4 +389,5 @@ def _plot_context(context: PlanningContext, stretches: list[StretchResult]) -> P
         chart=context.chart,
         sea=context.sea,
         ship=context.ship,
+        stages=ends if len(ends) > 1 else (),
     )

@@ -22,6 +22,7 @@ from thalweg.planning.plots.map_overlays import (
     place_labels,
     storm_track,
 )
+from thalweg.planning.plots.passage_times import stage_passage_times
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData, PlotContext
@@ -107,7 +108,8 @@ def _map_extent(plan: PlanData, beside: Route | None) -> MapExtent:
 
 def _draw_sea(figure: Any, axes: Any, plan: PlanData, context: PlotContext, box: MapExtent) -> None:
     lat, lon = box.grid(240, 180)
-    reached = _passage_times(plan, context, box, lat, lon)
+    stages = stage_passage_times(context, lat, lon, box.unwrapped)
+    reached = np.fmin.reduce([np.full(lat.shape, np.nan), *stages])
     moment = np.where(np.isfinite(reached), reached, plan.best.depart)
     on_water = _water_mask(context, moment, lat, wrap_longitude(lon))
     shown = _shading_field(context, moment, lat, lon)
@@ -120,7 +122,8 @@ def _draw_sea(figure: Any, axes: Any, plan: PlanData, context: PlotContext, box:
     enclosed = draw_enclosed_water(axes, context, box, on_water, (lat, lon))
     on_water &= ~enclosed
     _draw_arrows(axes, context, moment, lat, lon)
-    _draw_isochrones(axes, plan, reached, (lat, lon), on_water)
+    for times in stages:
+        _draw_isochrones(axes, plan, times, (lat, lon), on_water)
 
 
 def _water_mask(
@@ -133,24 +136,6 @@ def _water_mask(
         return wet
     hole = np.isnan(depth) if context.sea.mesh() is not None else False
     return np.asarray(wet & ~hole & ~(depth <= 0.0))
-
-
-def _passage_times(
-    plan: PlanData, context: PlotContext, box: MapExtent, lat: np.ndarray, lon: np.ndarray
-) -> np.ndarray:
-    """Return the earliest arrival at each point; NaN where not reached."""
-    from scipy.interpolate import LinearNDInterpolator
-
-    node_lon = box.unwrapped(context.lon)
-    use = np.isfinite(context.arrival)
-    use &= (context.lat > box.south - 2) & (context.lat < box.north + 2)
-    use &= (node_lon > box.west - 4) & (node_lon < box.east + 4)
-    index = np.flatnonzero(use)
-    if len(index) < 4 or np.ptp(context.lat[index]) == 0 or np.ptp(node_lon[index]) == 0:
-        return np.full(lat.shape, np.nan)
-    index = index[:: max(1, len(index) // 30_000)]
-    points = np.column_stack([node_lon[index], context.lat[index]])
-    return np.asarray(LinearNDInterpolator(points, context.arrival[index])(lon, lat))
 
 
 def _shading_field(
@@ -227,6 +212,7 @@ def _draw_isochrones(
     step = float(steps[np.argmin(np.abs(steps - plan.best.time_h / 9))])
     top = float(np.nanmax(hours))
     levels = np.arange(step, min(top, 1.6 * plan.best.time_h), step)
+    levels = levels[levels > float(np.nanmin(hours))]
     if len(levels) < 2:
         return
     lines = axes.contour(lon, lat, hours, levels=levels, colors=_INK, linewidths=0.5, alpha=0.6)
