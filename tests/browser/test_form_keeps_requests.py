@@ -144,6 +144,7 @@ def test_the_ends_of_a_route_file_are_filled_in(visit, planned, tmp_path):
     page.wait_for_selector("#ship option", state="attached")
     route = tmp_path / "master.rtz"
     route.write_bytes(visit.service.http.get(f"/api/v1/plans/{planned}/routes/1.rtz").content)
+    page.evaluate("window.thalweg.form.addVia('45.0N 40.0W')")
     page.locator("#voyage-file").set_input_files(str(route))
     page.locator(".field.goal .understood", has_text="Position").wait_for()
     page.get_by_label("Storm of 1998").check()
@@ -151,3 +152,23 @@ def test_the_ends_of_a_route_file_are_filled_in(visit, planned, tmp_path):
     voyage = request["voyage"]
     assert (voyage["start"], voyage["goal"]) == ("47.0000N 20.0000W", "47.2000N 19.5000W")
     assert voyage["depart"] == "1998-08-31T12:00Z"
+    assert "via" not in voyage  # of the voyage before
+
+
+def test_the_chart_goes_to_places_that_are_typed(visit):
+    page = visit.open()
+    page.wait_for_selector("#ship option", state="attached")
+    seen = """([lon, lat]) => { const [w, s, e, n] = window.thalweg.chart.view;
+      const turns = [-360, 0, 360].some((turn) => lon + turn > w && lon + turn < e);
+      return turns && lat > s && lat < n; }"""
+    inside = f"(places) => places.every({seen})"
+    page.evaluate("window.thalweg.chart.fit([[0, 40], [10, 50]])")
+    start, goal = page.locator(".field.start input"), page.locator(".field.goal input")
+    start.fill("35.0N 140.5E")
+    start.press("Enter")
+    page.wait_for_function(inside, arg=[[140.5, 35.0]])
+    goal.fill("37.5N 123.0W")
+    goal.press("Enter")
+    page.wait_for_function(inside, arg=[[140.5, 35.0], [-123.0, 37.5]])
+    west, _, east, _ = page.evaluate("window.thalweg.chart.view")
+    assert east - west < 220  # over the Pacific, not round the globe

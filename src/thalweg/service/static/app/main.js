@@ -162,7 +162,7 @@ class Application {
 
   #placesOnChart() {
     if (this.view === "plan" && !this.result) this.chart.routes.showEnds(this.form.ends, true);
-    if (this.form.fresh && this.form.start.place && this.form.goal.place) { // a voyage that was filled in is shown whole, once
+    if (this.form.fresh && this.form.placesKnown) { // what was filled in or typed is shown, once
       this.form.fresh = false;
       if (this.view === "plan" && !this.progress && !this.result) this.chart.fitOutside(this.form.ends);
     }

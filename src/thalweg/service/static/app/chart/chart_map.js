@@ -7,7 +7,7 @@ import { ParticleLayer } from "./particle_layer.js";
 import { KINDS, legendColours, WeatherLayer } from "./weather_layer.js";
 import { RouteLayers, speedColours, layer, stroke, FONT, Feature, Point, Polygon, LineString, Style, Fill, Stroke, Circle, Text, fromLonLat } from "./route_layers.js";
 import { colour, fill, h } from "../common/elements.js";
-import { known, number, position, time } from "../common/format.js";
+import { known, number, position, time, unwrapped } from "../common/format.js";
 
 export class Chart extends EventTarget {
   constructor(element) {
@@ -161,14 +161,17 @@ export class Chart extends EventTarget {
 
   fit(points) {
     if (!points.length) return;
-    const box = extents.boundingExtent(points.map((p) => fromLonLat(p)));
+    const lons = unwrapped(points.map((p) => p[0]));
+    const box = extents.boundingExtent(points.map((p, i) => fromLonLat([lons[i], p[1]])));
     this.map.getView().fit(extents.buffer(box, Math.max(2e4, 0.06 * Math.max(extents.getWidth(box), extents.getHeight(box)))), { padding: [28, 40, 28, 40], maxZoom: 11, duration: 0 });
   }
 
-  // The chart moves only where one of two or more places [{lon, lat}] is outside of it.
+  // The chart moves only where a place [{lon, lat}] is outside of it: to all of them, or to the only one.
   fitOutside(places) {
-    const [w, s, e, n] = this.view;
-    if (places.length > 1 && !places.every(({ lon, lat }) => lat > s && lat < n && lon > w && lon < e)) this.fit(places.map(({ lon, lat }) => [lon, lat]));
+    const [w, s, e, n] = this.view, east = (lon) => w + ((((lon - w) % 360) + 360) % 360);
+    if (places.every(({ lon, lat }) => lat > s && lat < n && east(lon) < e)) return;
+    if (places.length > 1) this.fit(places.map(({ lon, lat }) => [lon, lat]));
+    else this.map.getView().setCenter(fromLonLat([places[0].lon, places[0].lat]));
   }
 
   // On paper the chart has another size: it shows the whole route, then what it showed before.

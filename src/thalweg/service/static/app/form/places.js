@@ -60,7 +60,7 @@ export class PlaceField {
     if (!text) { this.place = null; this.said.textContent = ""; this.onChange(); return; }
     try {
       const place = await get(`/places?text=${encodeURIComponent(text)}`);
-      if (text === this.value) this.#understood(place);
+      if (text === this.value) this.#understood(place, true);
     } catch (problem) {
       if (text !== this.value) return;
       this.place = null;
@@ -70,12 +70,12 @@ export class PlaceField {
     }
   }
 
-  #understood(place) {
+  #understood(place, typed = false) {
     if (this.failed !== this.value) this.clear();
     this.place = place;
     this.asked = this.value;
     this.said.textContent = place.kind === "port" ? `${place.label}${place.locode ? ` (${place.locode})` : ""} · ${plainPosition(place.lat, place.lon)}` : "Position";
-    this.onChange();
+    this.onChange(typed);
   }
 
   #typed() {
@@ -105,7 +105,9 @@ export class PlaceField {
 
   #take(i) {
     const port = this.ports[i];
-    this.set(port.locode || port.label, { kind: "port", ...port });
+    this.input.value = port.locode || port.label;
+    this.#close();
+    this.#understood({ kind: "port", ...port }, true);
   }
 
   #key(event) {

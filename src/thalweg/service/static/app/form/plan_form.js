@@ -31,8 +31,8 @@ export class PlanForm extends EventTarget {
   constructor(chart) {
     super();
     this.chart = chart;
-    this.start = new PlaceField("start", "From", () => this.#placesChanged());
-    this.goal = new PlaceField("goal", "To", () => this.#placesChanged());
+    this.start = new PlaceField("start", "From", (typed) => this.#placesChanged(typed));
+    this.goal = new PlaceField("goal", "To", (typed) => this.#placesChanged(typed));
     this.element = h("form", { novalidate: true, class: "form", onsubmit: (event) => { event.preventDefault(); this.submit(); } });
     this.#build();
   }
@@ -159,13 +159,20 @@ export class PlanForm extends EventTarget {
   // Places
 
   addVia(text = "", position = null) {
-    const field = new PlaceField("via", `Via ${this.vias.length + 1}`, () => this.#placesChanged());
+    const field = new PlaceField("via", `Via ${this.vias.length + 1}`, (typed) => this.#placesChanged(typed));
     field.tools.append(h("button.quiet", { type: "button", "aria-label": "Remove this via point", onclick: () => { this.vias = this.vias.filter((one) => one !== field); this.#showVias(); } }, "✕"));
     this.vias.push(field);
     this.#showVias();
     if (position) field.setPosition(...position);
     else if (text) field.set(text);
     else field.input.focus();
+  }
+
+  removeVias() {
+    this.vias = [];
+    this.moves = [];
+    this.undoMove.hidden = true;
+    this.#showVias();
   }
 
   #showVias() {
@@ -187,12 +194,18 @@ export class PlanForm extends EventTarget {
     this.goal.set(a, pa);
   }
 
+  // Whether each place that is given was understood.
+  get placesKnown() {
+    return this.ends.length > 0 && [this.start, ...this.vias, this.goal].every((field) => !field.value || (field.place && field.asked === field.value));
+  }
+
   get ends() {
     return [this.start, ...this.vias, this.goal].filter((field) => field.place).map((field) => ({ role: field.role, lat: field.place.lat, lon: field.place.lon, label: field.place.kind === "port" ? field.place.display_name : "" }));
   }
 
-  #placesChanged() {
+  #placesChanged(typed = false) {
     if (!this.goal) return;
+    this.fresh ||= typed; // the chart goes to it
     this.dispatchEvent(new Event("places"));
   }
 
@@ -349,9 +362,8 @@ export class PlanForm extends EventTarget {
     const text = (place) => (Array.isArray(place) ? `${place[0]}, ${place[1]}` : place || "");
     this.start.set(text(voyage.start));
     this.goal.set(text(voyage.goal));
-    this.vias = [];
+    this.removeVias();
     (voyage.via || []).forEach((place) => this.addVia(text(place)));
-    this.#showVias();
     this.objective.value = request.most ? "alternatives" : voyage.objective || "time";
     this.#objectiveChosen();
     this.weights.set(voyage.weights);
@@ -367,8 +379,6 @@ export class PlanForm extends EventTarget {
     this.fills.forEach(([name, select]) => showChoice(select, [request.fill?.[name] ?? ""].flat().join(", then ")));
     this.title.value = request.title && request.title !== this.defaultTitle() ? request.title : "";
     this.areas.set(request.areas);
-    this.moves = [];
-    this.undoMove.hidden = true;
     this.wanted = request; // by the lists that have not arrived
     if (this.ship.list.length) this.ship.show(this.ship.list, request.ship);
     if (this.sea.list) this.sea.show(this.sea.list, request.seas);

@@ -49,6 +49,7 @@ export class VoyageFiles {
   async #route(file) {
     const { form } = this, { waypoints, depart } = await uploadForm("/routes", file);
     form.fresh = true;
+    form.removeVias(); // those of another voyage
     form.start.setPosition(...waypoints[0]);
     form.goal.setPosition(...waypoints.at(-1));
     if (depart) form.depart.value = inputTime(seconds(depart));
