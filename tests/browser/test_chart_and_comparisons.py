@@ -7,7 +7,8 @@ import re
 import numpy as np
 import pytest
 
-from tests.browser.conftest import Visit, playwright_api
+from tests.browser.conftest import SHORT_REQUEST, Visit, playwright_api
+from tests.service.conftest import ended
 
 pytestmark = pytest.mark.slow
 LEVELS = """window.thalweg.chart.coast.levels.map(({ name, land }) =>
@@ -74,6 +75,29 @@ def test_a_comparison_has_a_reference_and_its_address_restores_it(visit, planned
     page.get_by_role("button", name="Leave out A short voyage", exact=True).click()
     page.get_by_text("Choose one more route").wait_for()
     visit.check_accessibility()
+
+
+def test_any_route_of_a_front_is_compared(visit):
+    voyage = {**SHORT_REQUEST["voyage"], "objective": "front"}
+    request = {**SHORT_REQUEST, "title": "A front", "voyage": voyage, "resolution_nm": 4.0}
+    http = visit.service.http
+    job = http.post("/api/v1/plans", json=request).raise_for_status().json()
+    done = ended(http.get, job["id"])
+    assert done["state"] == "done" and done["summary"]["routes"] > 2
+    page = visit.open("#view=compare")
+    others = page.locator(".pick details.others").first
+    others.locator("summary").click()
+    boxes = others.locator("input[type=checkbox]")
+    boxes.first.wait_for()
+    assert boxes.count() == done["summary"]["routes"] - 1
+    boxes.nth(0).check()
+    boxes.nth(1).check()
+    page.wait_for_url(re.compile(f"routes={job['id']}.2,{job['id']}.3$"))
+    rows = page.locator(".compare-table tbody tr")
+    rows.nth(1).wait_for()
+    names = [rows.nth(i).locator("td b").first.inner_text() for i in (0, 1)]
+    assert names == ["A front, route 2", "A front, route 3"]
+    visit.picture("compare_front")
 
 
 def test_the_age_of_a_forecast_is_stated(visit, tmp_path):

@@ -104,6 +104,24 @@ def test_an_arrival_before_a_window_allows_it() -> None:
     assert "shortest passage of the window" in caught.value.possible
 
 
+def test_a_refusal_names_all_departures_of_a_window() -> None:
+    def waves(time, lat, lon):
+        return 3.0 + 0.0 * lat
+
+    ship = Ship.simple(speed_kn=10.0, draught_m=6.5, max_wave_height_m=2.0)
+    ends = {"start": (51.71, 3.45), "goal": (51.77, 3.70), "offing_nm": 0.0}
+    given = {
+        "ship": ship, "chart": Chart.open_water(*AREA), "resolution": COARSE,
+        "sea": Sea.from_functions({"sea_surface_wave_significant_height": waves}),
+    }  # fmt: skip
+    with pytest.raises(NoRouteError) as caught:
+        plan(Voyage(**ends, depart_window=(LOW, LOW + 7200.0)), **given)
+    when = "departing at any time from 2026-01-01T03:00:00Z to 2026-01-01T05:00:00Z."
+    assert caught.value.asked.endswith(f"keeps the limits, {when}")
+    with pytest.raises(NoRouteError, match=r"keeps the limits, departing 2026-01-01T03:00:00Z\."):
+        plan(Voyage(**ends, depart=LOW), **given)
+
+
 @pytest.mark.slow
 def test_the_best_departure_of_a_window_goes_straight_over_the_bar() -> None:
     # at the first moment of the tide the referee still finds the limit exceeded at the bar's edge

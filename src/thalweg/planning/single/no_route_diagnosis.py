@@ -26,6 +26,7 @@ def no_route_error(
     *,
     depart: float,
     last: float,
+    latest: float | None = None,
     fields: StationFields | None = None,
     required: float = -math.inf,
 ) -> NoRouteError:
@@ -36,6 +37,7 @@ def no_route_error(
     result : Result of the failed search.
     depart : Earliest departure [s since 1970].
     last : End of the data [s since 1970]; may be infinite.
+    latest : Latest departure of a window [s since 1970]; all departures in it were searched.
     fields : The sea that was searched; with it and ``required`` the error states where the water is
         too shallow at any tide, the greatest depth there and its time.
     required : Required water depth [m].
@@ -72,9 +74,11 @@ def no_route_error(
         reached += _unknown_beyond(network, result.nearest_node, fields)
     ended = ended and bool(reasons.get(codes.REASONS[codes.OUTSIDE_PERIOD]))
     within = f"arrives before the data end at {format_time(last)}" if ended else "keeps the limits"
+    when = f"departing {format_time(depart)}"
+    if latest is not None and latest > depart:
+        when = f"departing at any time from {format_time(depart)} to {format_time(latest)}"
     return NoRouteError(
-        f"No route from {ends[0].name} to {ends[1].name} {within}, departing "
-        f"{format_time(depart)}.",
+        f"No route from {ends[0].name} to {ends[1].name} {within}, {when}.",
         reached,
         _advice(reasons, ended),
         reasons=reasons,

@@ -254,6 +254,7 @@ def _search(
             network, result, ends,
             depart=context.voyage.earliest_departure - context.approach_times[0],
             last=context.data_end if end >= context.data_end else math.inf,
+            latest=context.voyage.latest_departure - context.approach_times[0],
             fields=frozen.stations, required=limits.required_depth,
         )  # fmt: skip
     return frozen, result

@@ -37,7 +37,7 @@ export class CompareView {
     this.problem = h("div");
     this.speed = h("input", { type: "text", inputmode: "decimal", id: "own-speed", autocomplete: "off" });
     this.file = h("input.hidden", { type: "file", id: "route-file", "aria-label": "Route file", accept: ".rtz,.rtzp,.gml,.gpx,.geojson,.json,.csv", tabindex: "-1", onchange: () => this.#score() });
-    this.element = [h("div.scroll", {}, h("h1", {}, "Compare routes"), h("p.lead", {}, "Choose two to six. The differences are those to the reference. A plan stands here with its first route; its others come by the Compare button beside them."), this.problem, h("div.block", {}, h("h2.with-count", {}, "Chosen", this.counted), this.picked), h("div.block", {}, h("h2", {}, "Routes to choose from"), this.list), h("div.block", {}, h("h2", {}, "Examples"), EXAMPLES.map((example) => h("button.job.example", { type: "button", onclick: () => this.#example(example) }, h("b", {}, example.name), h("span", {}, example.facts)))), h("div.block", {}, h("h2", {}, "Vary the reference"), h("p.facts", {}, "Its voyage is planned again with one change, and the results are added."), h("div.exports", {},
+    this.element = [h("div.scroll", {}, h("h1", {}, "Compare routes"), h("p.lead", {}, "Choose two to six. The differences are those to the reference. A plan stands here with its first route; its others are below it."), this.problem, h("div.block", {}, h("h2.with-count", {}, "Chosen", this.counted), this.picked), h("div.block", {}, h("h2", {}, "Routes to choose from"), this.list), h("div.block", {}, h("h2", {}, "Examples"), EXAMPLES.map((example) => h("button.job.example", { type: "button", onclick: () => this.#example(example) }, h("b", {}, example.name), h("span", {}, example.facts)))), h("div.block", {}, h("h2", {}, "Vary the reference"), h("p.facts", {}, "Its voyage is planned again with one change, and the results are added."), h("div.exports", {},
       VARIATIONS.map(([text, plans]) => h("button.quiet.small", { type: "button", onclick: () => this.#study(plans) }, text))),
     h("div.block", {}, h("h2", {}, "A route of your own"), h("p.facts", {}, "An RTZ, S-421, GPX, GeoJSON or CSV file is sailed in the weather and by the ship of the reference, from the time in the file; its speeds and arrival are not used."), h("div.field", {}, h("label.label", { for: "own-speed" }, "Speed"), h("div.with-unit", {}, this.speed, h("span.unit", {}, "kn")), h("p.facts", {}, "Empty: the highest of the ship.")), h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Score a route file …"), this.file)))];
   }
@@ -109,7 +109,15 @@ export class CompareView {
     const entry = (n, facts) => h("div.jobrow", {}, h("label.check", {}, box(n), h("span", {}, this.#nameOf(job, n), h("small", {}, this.#about(job)), h("small", {}, facts))));
     const made = time(seconds(job.created));
     const blind = job.kind === "plan" && job.request.seas[0] !== "calm" && job.summary.objective === "time" && !job.summary.cancelled;
-    return [entry(1, `${duration(job.summary.time_h)} · ${number(job.summary.distance_nm, 0)} nm · planned ${made}`), blind ? entry(0, "planned without weather, sailed in it") : null];
+    const facts = (one) => `${duration(one.time_h)} · ${number(one.distance_nm, 0)} nm`;
+    const more = job.summary.routes - 1, others = h("div");
+    const load = async (event) => {
+      if (!event.target.open || others.children.length) return;
+      const { routes } = await get(`/plans/${job.id}/result`);
+      fill(others, routes.slice(1).map((route, i) => entry(i + 2, `${facts(route)} · ${known(route.fuel_t) ? `${number(route.fuel_t, 1)} t` : "fuel unknown"}`)));
+    };
+    return [entry(1, `${facts(job.summary)} · planned ${made}`), blind ? entry(0, "planned without weather, sailed in it") : null,
+      job.kind === "plan" && more > 0 ? h("details.others", { ontoggle: (event) => load(event).catch((problem) => fill(others, errorBox(problem))) }, h("summary", {}, `${more} other route${more > 1 ? "s" : ""}`), others) : null];
   }
 
   // The chosen routes in the order of the table; each can become the reference, or be left out.
