@@ -377,9 +377,10 @@ INK = """() => {
 def test_wind_moves_as_particles_but_not_where_less_motion_is_wanted(visit, browser, service):
     page = visit.open("#demo")
     page.locator("#layers-button").click()
-    page.get_by_label("Wind at 10 m").check()
-    assert page.evaluate(INK) == 0  # barbs
+    page.get_by_label("Significant wave height").check()
+    assert page.evaluate(INK) == 0
     page.get_by_label("moving particles").check()
+    assert page.get_by_label("Wind at 10 m").is_checked()  # waves do not move as particles
     before = visit.until(INK, lambda ink: ink > 0)
     visit.until(INK, lambda ink: ink not in (0, before))
     visit.picture("particles")

@@ -9,6 +9,7 @@ const LIFE = 90; // frames
 const FRAME_MS = 40;
 const STILL = 24; // frames drawn at once where the particles rest
 const PIXELS = { wind: 0.16, current: 2.2 }; // a frame, for each m/s
+export const MOVING = Object.keys(PIXELS);
 const LONGEST = 9; // pixels of one step
 
 export const lessMotion = matchMedia("(prefers-reduced-motion: reduce)");

@@ -4,6 +4,7 @@ import { VectorLayer, VectorSource, Feature, LineString, Point, Polygon, Style, 
 import { colour } from "../common/elements.js";
 import { time as timeText, unwrapped } from "../common/format.js";
 
+const NEAR_END = 0.07; // of the voyage
 const FONT = '12px system-ui, "DejaVu Sans", sans-serif';
 
 // Slow to fast, evenly spaced in lightness; on dark charts the slow ones are lighter.
@@ -127,14 +128,16 @@ export class RouteLayers {
     });
     if (!profile) return;
     const hours = (profile.time.at(-1) - profile.time[0]) / 3600;
+    const clear = NEAR_END * 3600 * hours; // the name of the port stands there
     const every = (hours > 240 ? 48 : hours > 72 ? 24 : hours > 24 ? 12 : hours > 8 ? 3 : hours > 3 ? 1 : 0.5) * 3600;
     const turns = unwrapped(profile.lon);
     for (let t = Math.ceil(profile.time[0] / every) * every; t < profile.time.at(-1); t += every) {
       const i = profile.time.findIndex((value) => value >= t);
       const feature = new Feature(new Point(fromLonLat([turns[i], profile.lat[i]])));
+      const named = Math.min(t - profile.time[0], profile.time.at(-1) - t) > clear;
       feature.setStyle(() => new Style({
         image: new Circle({ radius: 4, fill: new Fill({ color: colour("route") }), stroke: new Stroke({ color: colour("casing"), width: 1.5 }), declutterMode: "none" }),
-        text: new Text({ text: t % 86400 && every < 43200 && t >= profile.time[0] + every ? timeText(t).split(" ")[2] : timeText(t), font: FONT, offsetY: -13, fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 3.5 }) }),
+        text: named ? new Text({ text: t % 86400 && every < 43200 && t >= profile.time[0] + every ? timeText(t).split(" ")[2] : timeText(t), font: FONT, offsetY: -13, fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 3.5 }) }) : undefined,
       }));
       source.addFeature(feature);
     }

@@ -106,7 +106,7 @@ export class CompareView {
 
   #row(job) {
     const box = (n) => h("input", { type: "checkbox", value: `${job.id}.${n}`, checked: this.chosen.some((one) => one.job === job.id && one.number === n), onchange: (event) => this.#toggle(event.target, job, n) });
-    const entry = (n, facts) => h("div.jobrow", {}, h("label.check", {}, box(n), h("span", {}, this.#nameOf(job, n), h("small", {}, this.#about(job)), h("small", {}, facts))));
+    const entry = (n, facts) => h("div.jobrow", {}, h("label.check", {}, box(n), h("span", {}, this.#nameOf(job, n), n < 2 ? h("small", {}, this.#about(job)) : null, h("small", {}, facts))));
     const made = time(seconds(job.created));
     const blind = job.kind === "plan" && job.request.seas[0] !== "calm" && job.summary.objective === "time" && !job.summary.cancelled;
     const facts = (one) => `${duration(one.time_h)} · ${number(one.distance_nm, 0)} nm`;
