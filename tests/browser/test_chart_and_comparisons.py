@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -98,6 +100,33 @@ def test_any_route_of_a_front_is_compared(visit):
     names = [rows.nth(i).locator("td b").first.inner_text() for i in (0, 1)]
     assert names == ["A front, route 2", "A front, route 3"]
     visit.picture("compare_front")
+
+
+def test_an_example_that_is_asked_for_later_takes_the_place_of_the_one_before(visit, planned):
+    page = visit.page
+    job = visit.service.http.get(f"/api/v1/plans/{planned}").json()
+    titles: list[str] = []
+    held: list[Any] = []
+
+    def answer(route: Any) -> None:
+        if route.request.method != "POST":
+            return route.continue_()
+        titles.append(json.loads(route.request.post_data)["title"])
+        if len(titles) == 1:
+            held.append(route)
+            return None
+        return route.fulfill(json=job)
+
+    page.route("**/api/v1/plans", answer)
+    visit.open("#view=compare")
+    page.get_by_role("button", name="Suez, or round the Cape").click()
+    page.get_by_role("button", name="One voyage, four speeds").click()
+    page.wait_for_url(re.compile("routes="))
+    with page.expect_response(re.compile(f"/plans/{planned}$")):
+        held[0].fulfill(json=job)
+    page.wait_for_timeout(300)
+    assert titles == ["By Suez", "10 kn", "11 kn", "12 kn", "13 kn"]
+    assert page.locator(".picked li").count() == 4
 
 
 def test_the_age_of_a_forecast_is_stated(visit, tmp_path):

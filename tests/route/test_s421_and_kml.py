@@ -8,6 +8,7 @@ import pytest
 
 from tests.route.planar import ship
 from thalweg.core.errors import InputError
+from thalweg.core.time import parse_time
 from thalweg.route import (
     RouteFileOptions,
     Track,
@@ -128,6 +129,70 @@ def test_kml_has_the_line_and_the_waypoints(tmp_path, voyage):
     points = [p.findtext(f"{KML}Point/{KML}coordinates") for p in places[1:]]
     assert points[-1] == "-0.5,50.3"
     assert places[1].findtext(f"{KML}TimeStamp/{KML}when") == DEPART
+
+
+def test_kml_comes_back_with_waits_ordered_speeds_and_lines(tmp_path, voyage):
+    write_rtz(voyage, tmp_path / "a.rtz")
+    write_kml(voyage, tmp_path / "a.kml")
+    expected, read = read_track(tmp_path / "a.rtz"), read_track(tmp_path / "a.kml")
+    for name in ("lat", "lon", "wait", "speed"):
+        np.testing.assert_allclose(getattr(read, name), getattr(expected, name), atol=1e-6)
+    assert read.depart == pytest.approx(expected.depart, abs=0.01)
+    assert read.wait.sum() == pytest.approx(600.0 + 4834.5, abs=0.01)
+
+
+LINE = "<LineString><coordinates>\n 4,52,0 3.9,52.1\t0.1,50.2,12.5 </coordinates></LineString>"
+SECOND = "<LineString><coordinates>0.1,50.2 -0.5,50.3</coordinates></LineString>"
+POINT = "<Placemark><Point><coordinates>{},0</coordinates></Point></Placemark>"
+GX = 'xmlns:gx="http://www.google.com/kml/ext/2.2"'
+WHEN = "<when>2026-03-01T06:00:00Z</when><when>2026-03-01T09:00:00Z</when>"
+COORDS = "<gx:coord>4 52 0</gx:coord><gx:coord>3.9 52.1 0</gx:coord>"
+
+
+@pytest.mark.parametrize(
+    ("content", "places", "timed"),
+    [
+        (f"<Placemark>{LINE}</Placemark>", [(52, 4), (52.1, 3.9), (50.2, 0.1)], False),
+        (
+            f"<Placemark><MultiGeometry>{LINE}{SECOND}</MultiGeometry></Placemark>",
+            [(52, 4), (52.1, 3.9), (50.2, 0.1), (50.3, -0.5)],
+            False,
+        ),
+        (f"<Placemark {GX}><gx:Track>{WHEN}{COORDS}</gx:Track></Placemark>",
+         [(52, 4), (52.1, 3.9)], True),
+        (POINT.format("4,52") + POINT.format("3.9,52.1"), [(52, 4), (52.1, 3.9)], False),
+        # a harbour beside the line is no waypoint
+        (f"{POINT.format('9,54')}<Placemark>{LINE}</Placemark>",
+         [(52, 4), (52.1, 3.9), (50.2, 0.1)], False),
+    ],
+)  # fmt: skip
+@pytest.mark.filterwarnings("ignore:a.kml. its lines are joined")
+def test_kml_of_others_is_read(tmp_path, content, places, timed):
+    path = tmp_path / "a.kml"
+    path.write_text(f"<kml><Document><Folder>{content}</Folder></Document></kml>")
+    read = read_track(path, depart=None if timed else DEPART)
+    assert list(zip(read.lat.tolist(), read.lon.tolist())) == places
+    assert read.depart == parse_time(DEPART)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("<kml/>", "holds no route"),
+        ("<kml><Document>", "KML cannot be read"),
+        (f"<kml>{POINT.format('4,52')}</kml>", "holds no route"),
+        (f"<kml>{POINT.format('4')}{POINT.format('x,52')}</kml>", "'x', not a number"),
+        (f"<kml>{POINT.format('4,52')}{POINT.format('4,95')}</kml>", "latitude"),
+        ("<kml><Placemark><LineString><coordinates>4 52</coordinates></LineString></Placemark>"
+         "</kml>", "Waypoint 1 of the KML has 1 value"),
+        ('<!DOCTYPE a [<!ENTITY x "y">]><kml>&x;</kml>', "declares entities"),
+    ],
+)  # fmt: skip
+def test_faults_of_kml_are_named(tmp_path, text, message):
+    path = tmp_path / "a.kml"
+    path.write_text(text)
+    with pytest.raises(InputError, match=message):
+        read_track(path, depart=DEPART)
 
 
 def test_formats_are_chosen_by_their_endings(tmp_path, voyage):

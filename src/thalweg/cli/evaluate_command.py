@@ -22,7 +22,7 @@ def add_command(commands: Any) -> None:
         epilog="Example: thalweg evaluate route.gpx --ship handysize-bulker --sea forecast.nc",
     )
     parser.add_argument(
-        "route", metavar="ROUTE", help="route file: RTZ, S-421, GPX, GeoJSON or CSV"
+        "route", metavar="ROUTE", help="route file: RTZ, S-421, GPX, GeoJSON, KML or CSV"
     )
     options.add_ship_and_chart_options(parser, default_ukc="0")
     options.add_verbose_option(parser)

@@ -25,7 +25,17 @@ SEA_ENDINGS: Final = (".nc", ".nc4", ".cdf", ".grb", ".grb2", ".grib", ".grib1",
 SHIP_ENDINGS: Final = (".yaml", ".yml", ".json")
 TRAFFIC_ENDINGS: Final = (".geojson", ".json", ".nc", ".nc4")
 HISTORY_ENDINGS: Final = (".json",)
-ROUTE_ENDINGS: Final = (".rtz", ".rtzp", ".gml", ".gpx", ".geojson", ".json", ".csv", ".txt")
+ROUTE_ENDINGS: Final = (
+    ".rtz",
+    ".rtzp",
+    ".gml",
+    ".gpx",
+    ".geojson",
+    ".json",
+    ".kml",
+    ".csv",
+    ".txt",
+)
 
 
 class JobChanges:

@@ -1,4 +1,4 @@
-"""Route files: reading and writing RTZ, S-421, GPX 1.1, GeoJSON (RFC 7946) and CSV; writing KML.
+"""Route files: reading and writing RTZ, S-421, GPX 1.1, GeoJSON (RFC 7946), KML and CSV.
 
 Files hold few waypoints, joined by rhumb lines within a cross-track limit of the route
 (`RouteFileOptions`).
@@ -16,7 +16,7 @@ from thalweg.core.time import TimeLike
 from thalweg.route.formats.csv_format import parse_csv, write_csv
 from thalweg.route.formats.geojson_format import parse_geojson, write_geojson
 from thalweg.route.formats.gpx_format import parse_gpx, write_gpx
-from thalweg.route.formats.kml_writer import write_kml
+from thalweg.route.formats.kml_format import parse_kml, write_kml
 from thalweg.route.formats.leg_corridors import corridor_notes
 from thalweg.route.formats.parsed_track import ParsedTrack, track_of
 from thalweg.route.formats.route_file_options import (
@@ -56,6 +56,7 @@ _PARSERS: dict[str, Callable[[str], ParsedTrack]] = {
     ".geojson": parse_geojson,
     ".json": parse_geojson,
     ".gpx": parse_gpx,
+    ".kml": parse_kml,
 }
 _BYTE_PARSERS: dict[str, Callable[[bytes], ParsedTrack]] = {
     ".rtz": parse_rtz,
@@ -107,9 +108,9 @@ def read_track(path: str | Path, *, depart: TimeLike | None = None) -> Track:
     path : str or Path
         ``.csv`` or ``.txt`` (columns lat and lon, perhaps time, waiting_h, ordered_speed_kn),
         ``.geojson`` or ``.json`` (LineString, MultiLineString or Points), ``.gpx`` (one route or
-        track), ``.rtz`` and ``.rtzp`` (RTZ 1.0 to 1.2), ``.gml`` (S-421, experimental). Legs of
-        RTZ and S-421 are rhumb lines unless marked as orthodromes; those of the other formats are
-        geodesics.
+        track), ``.kml`` (placemarks with times, a line or a track), ``.rtz`` and ``.rtzp`` (RTZ 1.0
+        to 1.2), ``.gml`` (S-421, experimental). Legs of RTZ and S-421 are rhumb lines unless marked
+        as orthodromes; those of the other formats are geodesics unless marked as rhumb lines.
     depart : Departure; by default the first time in the file.
 
     Returns
@@ -149,7 +150,7 @@ def route_file_contents(path: Path) -> ParsedTrack:
     if ending not in (*_PARSERS, *_BYTE_PARSERS):
         raise InputError(
             f"Routes are not read from files like {path.name!r}.",
-            f"Known endings: {', '.join((*_PARSERS, *_BYTE_PARSERS))}; KML is written only.",
+            f"Known endings: {', '.join((*_PARSERS, *_BYTE_PARSERS))}.",
             "Convert the file, or give it the right ending.",
             file=str(path),
         )
@@ -167,7 +168,7 @@ def _bytes_of(path: Path) -> bytes:
         raise InputError(
             f"The route file {str(path)!r} cannot be read: "
             f"{getattr(error, 'strerror', None) or error}.",
-            "A route file is RTZ, GPX, GeoJSON or CSV.",
+            "A route file is RTZ, S-421, GPX, GeoJSON, KML or CSV.",
             "Check the path.",
             file=str(path),
         ) from None

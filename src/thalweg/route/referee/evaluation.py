@@ -63,7 +63,7 @@ def evaluate(
     Parameters
     ----------
     route : Track, Route, path, or iterable of (lat, lon)
-        Legs are geodesics of WGS 84. Files are CSV, GeoJSON or GPX.
+        Legs are geodesics of WGS 84. Files are those of `thalweg.route.read_track`.
     ship : Ship
     sea : Sea
     chart : Chart, optional

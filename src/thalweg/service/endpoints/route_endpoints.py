@@ -64,9 +64,10 @@ class Comparison(BaseModel):
 
 @routes_router.post("/routes", status_code=201)
 async def add_route(state: State, file: UploadFile) -> dict[str, Any]:
-    """Upload a route as RTZ, RTZP, S-421, GPX, GeoJSON or CSV; returns its waypoints [lat, lon].
+    """Upload a route as RTZ, RTZP, S-421, GPX, GeoJSON, KML or CSV.
 
-    ``notes`` names what the file has otherwise than its format, and how it was read.
+    Returns its waypoints [lat, lon]. ``notes`` names what the file has otherwise than its format,
+    and how it was read.
     """
 
     def facts(path: str) -> dict[str, Any]:

@@ -4,14 +4,14 @@ import { post, uploadForm } from "../common/api.js";
 import { announce, errorBox, fill, h, hint } from "../common/elements.js";
 import { inputTime, seconds } from "../common/format.js";
 
-const ROUTE = /\.(rtz|rtzp|gml|gpx|geojson|csv)$/i;
+const ROUTE = /\.(rtz|rtzp|gml|gpx|geojson|kml|csv)$/i;
 
 export class VoyageFiles {
   /** @param {PlanForm} form */
   constructor(form) {
     this.form = form;
     const button = (text, act) => h("button.quiet.small", { type: "button", onclick: act }, text);
-    this.input = h("input.hidden", { type: "file", id: "voyage-file", "aria-label": "Voyage or route file", accept: ".json,.yaml,.yml,.rtz,.rtzp,.gml,.gpx,.geojson,.csv", tabindex: "-1", onchange: () => this.#open() });
+    this.input = h("input.hidden", { type: "file", id: "voyage-file", "aria-label": "Voyage or route file", accept: ".json,.yaml,.yml,.rtz,.rtzp,.gml,.gpx,.geojson,.kml,.csv", tabindex: "-1", onchange: () => this.#open() });
     this.element = h("div.block", {}, h("div.exports", {}, button("Save voyage file", () => this.#save()), button("Open …", () => this.input.click()), button("Copy link", () => this.#link()), this.input),
       h("p.facts", {}, "A voyage file, or a route file whose ends are used for a new plan."));
   }

@@ -36,10 +36,10 @@ export class CompareView {
     this.counted = h("span.set");
     this.problem = h("div");
     this.speed = h("input", { type: "text", inputmode: "decimal", id: "own-speed", autocomplete: "off" });
-    this.file = h("input.hidden", { type: "file", id: "route-file", "aria-label": "Route file", accept: ".rtz,.rtzp,.gml,.gpx,.geojson,.json,.csv", tabindex: "-1", onchange: () => this.#score() });
+    this.file = h("input.hidden", { type: "file", id: "route-file", "aria-label": "Route file", accept: ".rtz,.rtzp,.gml,.gpx,.geojson,.json,.kml,.csv", tabindex: "-1", onchange: () => this.#score() });
     this.element = [h("div.scroll", {}, h("h1", {}, "Compare routes"), h("p.lead", {}, "Choose two to six. The differences are those to the reference. A plan stands here with its first route; its others are below it."), this.problem, h("div.block", {}, h("h2.with-count", {}, "Chosen", this.counted), this.picked), h("div.block", {}, h("h2", {}, "Routes to choose from"), this.list), h("div.block", {}, h("h2", {}, "Examples"), EXAMPLES.map((example) => h("button.job.example", { type: "button", onclick: () => this.#example(example) }, h("b", {}, example.name), h("span", {}, example.facts)))), h("div.block", {}, h("h2", {}, "Vary the reference"), h("p.facts", {}, "Its voyage is planned again with one change, and the results are added."), h("div.exports", {},
       VARIATIONS.map(([text, plans]) => h("button.quiet.small", { type: "button", onclick: () => this.#study(plans) }, text))),
-    h("div.block", {}, h("h2", {}, "A route of your own"), h("p.facts", {}, "An RTZ, S-421, GPX, GeoJSON or CSV file is sailed in the weather and by the ship of the reference, from the time in the file; its speeds and arrival are not used."), h("div.field", {}, h("label.label", { for: "own-speed" }, "Speed"), h("div.with-unit", {}, this.speed, h("span.unit", {}, "kn")), h("p.facts", {}, "Empty: the highest of the ship.")), h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Score a route file …"), this.file)))];
+    h("div.block", {}, h("h2", {}, "A route of your own"), h("p.facts", {}, "An RTZ, S-421, GPX, GeoJSON, KML or CSV file is sailed in the weather and by the ship of the reference, from the time in the file; its speeds and arrival are not used."), h("div.field", {}, h("label.label", { for: "own-speed" }, "Speed"), h("div.with-unit", {}, this.speed, h("span.unit", {}, "kn")), h("p.facts", {}, "Empty: the highest of the ship.")), h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Score a route file …"), this.file)))];
   }
 
   add(job, number_, title) {
@@ -207,25 +207,22 @@ export class CompareView {
     });
   }
 
-  // Plan one after the other, then compare; a second click waits for the first to end.
+  // Plan one after the other, then compare. What is asked for later takes their place: the plan that runs goes on, the others are not begun.
   async #planAll(orders, then) {
-    if (this.busy) return;
-    this.busy = true;
-    const jobs = [], problems = [];
+    const ask = (this.planning = Symbol("ask")), jobs = [], problems = [];
     fill(this.problem);
     try {
       for (const [i, order] of orders.entries()) {
         const place = orders.length > 1 ? `${i + 1} of ${orders.length} · ` : "";
         await this.#run(await post(...order), place, (job) => { if (job.result) jobs.push(job); else if (job.problem) problems.push(job.problem); });
+        if (ask !== this.planning) return;
       }
       await then(jobs);
       await this.show();
     } catch (problem) {
       problems.push(problem);
-    } finally {
-      this.busy = false;
     }
-    fill(this.problem, problems.map(errorBox));
+    if (ask === this.planning) fill(this.problem, problems.map(errorBox));
   }
 
   #run(job, place, done) {
@@ -233,7 +230,7 @@ export class CompareView {
       const said = h("p.note", { role: "status" }, `${place}${job.title} …`);
       fill(this.problem, said);
       follow(job.id, {
-        stage: (data) => { said.textContent = `${place}${job.title}: ${readable(data.text)} …`; },
+        stage: (data) => { if (said.isConnected) said.textContent = `${place}${job.title}: ${readable(data.text)} …`; },
         state: async (data) => {
           if (!hasEnded(data.state)) return;
           try { done(await get(`/plans/${job.id}`)); resolve(); } catch (problem) { reject(problem); }
