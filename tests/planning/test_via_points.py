@@ -6,7 +6,7 @@ import pytest
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.geodesy import distance
 from thalweg.core.units import HOUR, KNOT
-from thalweg.planning.plots.passage_times import stage_passage_times
+from thalweg.planning.plots.stage_passages import stage_passage_times
 
 WATER = Chart.open_water(50.0, 52.0, 1.0, 4.0)
 SHIP = Ship.simple(speed_kn=8.0, draught_m=5.0)

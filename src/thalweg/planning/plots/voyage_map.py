@@ -22,7 +22,7 @@ from thalweg.planning.plots.map_overlays import (
     place_labels,
     storm_track,
 )
-from thalweg.planning.plots.passage_times import stage_passage_times
+from thalweg.planning.plots.stage_passages import stage_passage_times
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData, PlotContext

@@ -11,7 +11,7 @@ import numpy as np
 from thalweg.core.geodesy import wrap_longitude
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
-from thalweg.planning.plots.passage_times import stage_passage_times
+from thalweg.planning.plots.stage_passages import stage_passage_times
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData
