@@ -406,6 +406,34 @@ def test_names_limits_and_facts_of_a_file_are_kept(tmp_path, version):
     etree.XMLSchema(etree.parse(str(schema))).assertValid(etree.parse(str(written)))
 
 
+DETAILED = """<?xml version="1.0"?><route version="1.2" xmlns="http://www.cirm.org/RTZ/1/2">
+<routeInfo routeName="a"/><waypoints>
+<defaultWaypoint radius="0.6"><leg speedMax="14" safetyContour="20"/></defaultWaypoint>
+<waypoint id="1" revision="0"><position lat="50" lon="-5"/></waypoint>
+<waypoint id="2" revision="0" radius="7.5"><position lat="50.1" lon="-5.1"/>
+ <leg speedMax="6.5" draughtForward="twelve" legNote1="VTS &lt;12&gt;"/></waypoint>
+<waypoint id="3" revision="0"><position lat="51" lon="0"/><leg legReport="noon"
+ geometryType="Orthodrome"/></waypoint></waypoints></route>"""
+
+
+@pytest.mark.parametrize("version", ["1.0", "1.1", "1.2"])
+def test_turn_radii_limits_and_texts_of_legs_are_kept(tmp_path, version):
+    (tmp_path / "a.rtz").write_text(DETAILED)
+    track, written = read_track(tmp_path / "a.rtz", depart=0), tmp_path / "b.rtz"
+    sailed = evaluate(track, ship=ship(7.0), sea=Sea.calm())
+    write_rtz(sailed, written, RouteFileOptions("A", "B", rtz_version=version))
+    first, second, *pieces, last = read_track(written).extensions.details.values()
+    assert first == {"radius": "0.6"}
+    wide = {"radius": "7.5"} if version == "1.0" else {}  # at most 5 nm in the later schemas
+    assert second == wide | {"speedMax": "6.5", "safetyContour": "20", "legNote1": "VTS <12>"}
+    of_leg = {"speedMax": "14", "safetyContour": "20"}
+    assert pieces and all(piece == of_leg for piece in pieces)  # of the great circle
+    assert last == of_leg | {"radius": "0.6", "legReport": "noon"}
+    etree = pytest.importorskip("lxml.etree")
+    schema = data_file(f"rtz/schema/RTZ Schema version {version.replace('.', '_')}.xsd")
+    etree.XMLSchema(etree.parse(str(schema))).assertValid(etree.parse(str(written)))
+
+
 def test_fewer_waypoints_have_the_least_limits_of_the_legs_they_stand_for(tmp_path):
     (tmp_path / "a.rtz").write_text(NAMED)
     track, written = read_track(tmp_path / "a.rtz", depart=0), tmp_path / "b.rtz"

@@ -5,12 +5,20 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from thalweg.core.geodesy import Position
 
 #: Latitude and longitude [deg] of a waypoint, and how often the route was there before.
 Visit: TypeAlias = tuple[float, float, int]
+
+
+#: Attributes of a leg of RTZ: limits and draughts, and texts for the bridge.
+LEG_NUMBERS: Final = (
+    "safetyContour", "safetyDepth", "speedMin", "speedMax", "draughtForward", "draughtAft",
+    "staticUKC", "dynamicUKC", "masthead",
+)  # fmt: skip
+LEG_TEXTS: Final = ("legReport", "legInfo", "legNote1", "legNote2")
 
 
 def visits_of(positions: Iterable[Position]) -> list[Visit]:
@@ -43,6 +51,8 @@ class CarriedExtensions:
     names : Names of waypoints that were given by other makers.
     corridors : Cross-track limits to port and starboard of the leg that ends at a waypoint [m];
         NaN: none.
+    details : Further attributes of RTZ, as texts by name, of a waypoint (``radius``) and of the
+        leg that ends there (`LEG_NUMBERS`, `LEG_TEXTS`).
     """
 
     general: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -50,9 +60,11 @@ class CarriedExtensions:
     info: Mapping[str, str] = field(default_factory=dict)
     names: Mapping[Visit, str] = field(default_factory=dict)
     corridors: Mapping[Visit, tuple[float, float]] = field(default_factory=dict)
+    details: Mapping[Visit, Mapping[str, str]] = field(default_factory=dict)
 
     def __bool__(self) -> bool:
-        return bool(self.general or self.at or self.info or self.names or self.corridors)
+        held = self.general, self.at, self.info, self.names, self.corridors, self.details
+        return any(held)
 
     def of(self, element: str) -> tuple[str, ...]:
         """Return the extensions of an element that the file has once."""

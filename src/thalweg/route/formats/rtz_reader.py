@@ -21,7 +21,7 @@ from thalweg.core.file_reading import too_large
 from thalweg.core.geodesy import Position
 from thalweg.core.given_numbers import to_number
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.route.carried_extensions import Visit, visits_of
+from thalweg.route.carried_extensions import LEG_NUMBERS, LEG_TEXTS, Visit, visits_of
 from thalweg.route.formats.parsed_track import (
     ParsedTrack,
     WaypointOrder,
@@ -106,6 +106,7 @@ def parse_rtz(data: bytes) -> ParsedTrack:
                 for visit, sides in zip(visits[1:], corridors)
                 if not (math.isnan(sides[0]) and math.isnan(sides[1]))
             },
+            details=_details(root, waypoints, visits, legs),
         ),
     )
 
@@ -171,6 +172,35 @@ def _given_names(waypoints: list[ElementTree.Element], visits: list[Visit]) -> d
     """Return the names of waypoints that are not mere numbers of this package."""
     named = ((visit, waypoint.get("name") or "") for visit, waypoint in zip(visits, waypoints))
     return {visit: name for visit, name in named if name.strip() and not _NUMBERED.fullmatch(name)}
+
+
+def _details(
+    root: ElementTree.Element,
+    waypoints: list[ElementTree.Element],
+    visits: list[Visit],
+    legs: list[list[ElementTree.Element]],
+) -> dict[Visit, dict[str, str]]:
+    """Return the turn radius of each waypoint, and limits and texts of the leg that ends there.
+
+    Parameters
+    ----------
+    legs : Of all waypoints but the first, the own legs and the default ones.
+    """
+    usual = [
+        default
+        for group in children(root, "waypoints")
+        for default in children(group, "defaultWaypoint")
+    ]
+    found: dict[Visit, dict[str, str]] = {}
+    for visit, waypoint, own in zip(visits, waypoints, [[], *legs]):
+        values = {"radius": _leg_attribute([waypoint, *usual], "radius").strip()}
+        values |= {name: _leg_attribute(own, name).strip() for name in (*LEG_NUMBERS, *LEG_TEXTS)}
+        found[visit] = {
+            name: text
+            for name, text in values.items()
+            if text and (name in LEG_TEXTS or _NUMBER.fullmatch(text))
+        }
+    return found if any(found.values()) else {}
 
 
 def _leg_attribute(legs: list[ElementTree.Element], name: str) -> str:

@@ -19,7 +19,13 @@ import numpy as np
 
 from thalweg.core.file_writing import write_bytes
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.route.carried_extensions import CarriedExtensions, Visit, visits_of
+from thalweg.route.carried_extensions import (
+    LEG_NUMBERS,
+    LEG_TEXTS,
+    CarriedExtensions,
+    Visit,
+    visits_of,
+)
 from thalweg.route.formats.file_route import FileRoute, file_route
 from thalweg.route.formats.parsed_track import GEOMETRY, GREAT_CIRCLE, SPEEDS, WAITS
 from thalweg.route.formats.route_file_options import RouteFileOptions
@@ -31,6 +37,7 @@ RTZ_NAMESPACE = "http://www.cirm.org/RTZ/1/"
 _HISTORY = "routeChangesHistory"  # a text since 1.1
 MANUFACTURER, ORDER = "Thalweg", "order"  #: of the extension that holds waits and ordered speeds
 _LARGEST_XTD = 9.99  # [nm]
+_LARGEST_RADIUS = 5.0, 9.999  # [nm], since 1.1 and in 1.0
 #: An extension as the schemas of 1.1 and 1.2 want it: a maker and a name with a letter or digit.
 _NAMED = re.compile(
     r'<extension(?=[ ])(?=[^>]*\smanufacturer="[^"]*[0-9a-zA-Z])(?=[^>]*\sname="[^"]*[0-9a-zA-Z])'
@@ -80,12 +87,20 @@ def _rtz_bytes(route: Route, name: str, options: RouteFileOptions) -> bytes:
     info |= {k: v for k, v in carried.info.items() if version != "1.0" or k != _HISTORY}
     side = max(options.cross_track_nm, written.cross_track_m / NAUTICAL_MILE)
     side = min(side + 0.0005, _LARGEST_XTD) if side > options.cross_track_nm else side
-    rows, sides = written.rows, _cross_track_limits(route, written, decimal(side, 3))
+    legs = _leg_attributes(route, written, decimal(side, 3))
     waypoints = [
         *_default_waypoint(carried, version),
         *(
-            _waypoint(number, row, leg, _extensions_there(carried, visit, version), version)
-            for number, (row, leg, visit) in enumerate(zip(rows, sides, written.visits), start=1)
+            _waypoint(number, row | _radius(carried, visit, version), leg, held, version)
+            for number, (row, leg, visit, held) in enumerate(
+                zip(
+                    written.rows,
+                    legs,
+                    written.visits,
+                    [_extensions_there(carried, visit, version) for visit in written.visits],
+                ),
+                start=1,
+            )
         ),
         *_extensions(carried.of("waypoints"), version, 2),
     ]
@@ -100,16 +115,18 @@ def _rtz_bytes(route: Route, name: str, options: RouteFileOptions) -> bytes:
     return xml_file(xml_text("route", about, inside))
 
 
-def _cross_track_limits(route: Route, written: FileRoute, xtd: str) -> list[dict[str, str]]:
-    """Return the attributes of the leg to each waypoint: its line and its cross-track limits.
+def _leg_attributes(route: Route, written: FileRoute, xtd: str) -> list[dict[str, str]]:
+    """Return the attributes of the leg to each waypoint: its line, its limits, texts of a file.
 
-    A leg that stands for legs of a file that was read has the least of their limits.
+    A leg that stands for legs of a file that was read has the least of their cross-track limits,
+    and the other limits in which they agree. Texts stand where the leg of that file ends.
     """
     rows, limits = written.rows, route.track.extensions.corridors
     lines = ["", *("Orthodrome" if r.get(GEOMETRY) == GREAT_CIRCLE else "Loxodrome" for r in rows)]
     sides = {"starboardXTD": xtd, "portsideXTD": xtd}
     legs = [{**sides, "geometryType": line} for line in lines[: len(rows)]]
-    if not limits:
+    details = route.track.extensions.details
+    if not limits and not details:
         return legs
     order = {visit: n for n, visit in enumerate(visits_of(route.track.positions))}
     known = sorted((order[visit], *pair) for visit, pair in limits.items() if visit in order)
@@ -123,7 +140,43 @@ def _cross_track_limits(route: Route, written: FileRoute, xtd: str) -> list[dict
             stated = [leg[side] for leg in within if not math.isnan(leg[side])]
             if stated:
                 legs[number][name] = decimal(min(stated) / NAUTICAL_MILE, 3)
+    return _with_details(legs, details, order, places) if details else legs
+
+
+def _with_details(
+    legs: list[dict[str, str]],
+    details: Mapping[Visit, Mapping[str, str]],
+    order: Mapping[Visit, int],
+    places: Sequence[int | None],
+) -> list[dict[str, str]]:
+    """Return the attributes of legs with the limits and texts of the legs of a file.
+
+    Parameters
+    ----------
+    order : Places of the visits of the track.
+    places : Of the waypoints that are written; None for those between.
+    """
+    known = sorted((order[visit], found) for visit, found in details.items() if visit in order)
+    ends = [end for end, _ in known]
+    following, before = _next_places(places), 0
+    for number, leg in enumerate(legs[1:], start=1):
+        before = before if places[number - 1] is None else places[number - 1] or 0
+        last = bisect_left(ends, following[number]) + 1
+        within = [found for _, found in known[bisect_right(ends, before) : last]]
+        for name in LEG_NUMBERS if within else ():
+            values = {found.get(name) for found in within}
+            if len(values) == 1 and None not in values:
+                leg[name] = values.pop()  # type: ignore[assignment]
+        if within and places[number] is not None and places[number] == known[last - 1][0]:
+            leg |= {name: within[-1][name] for name in LEG_TEXTS if name in within[-1]}
     return legs
+
+
+def _radius(carried: CarriedExtensions, visit: Visit | None, version: str) -> dict[str, str]:
+    """Return the turn radius of a waypoint [nm], as the schema of a version allows it."""
+    text = "" if visit is None else carried.details.get(visit, {}).get("radius", "")
+    largest = _LARGEST_RADIUS[version == "1.0"]
+    return {"radius": text} if text and float(text) <= largest else {}
 
 
 def _next_places(places: Sequence[int | None]) -> list[int]:
@@ -183,6 +236,8 @@ def _waypoint(
     version: str,
 ) -> str:
     names = {"id": str(number), "revision": "0", "name": str(row["name"])}
+    if "radius" in row:
+        names["radius"] = str(row["radius"])
     place = {name: decimal(row[name], 6) for name in ("lat", "lon")}
     inside = [xml_text("position", place, (), 3)]
     of_leg, own = carried
