@@ -82,6 +82,19 @@ def test_rows_are_all_combinations_with_identities_that_stay():
     assert [row.id for row in again] == [row.id for row in rows]
 
 
+def test_the_exact_method_is_run_once_over_seeds():
+    axes = {"method": ["exact", "nsga2"], "seed": [4, 5, 6], "load_factor": [0.5, 1.0]}
+    study = Study("methods", {"voyage": {"objective": "front"}}, axes)
+    done = [tuple(row.labels[name] for name in axes) for row in study.rows()]
+    assert study.size == len(done) == len(set(done)) == 2 * (1 + 3)
+    assert [labels for labels in done if labels[0] == "exact"] == [
+        ("exact", 4, 0.5), ("exact", 4, 1.0)
+    ]  # fmt: skip
+    sampled = {"count": 3, "seed": 1, "load_factor": {"uniform": [0.2, 1.0]}}
+    draws = Study("methods", {"voyage": {}}, {"seed": [1, 2], "method": ["exact"]}, sampled)
+    assert draws.size == len(draws.rows()) == 3
+
+
 def test_a_draw_of_one_entry_does_not_depend_on_the_others():
     sample = {"count": 50, "seed": 3, "speed_kn": {"normal": [12.0, 0.5]}}
     data = {"voyage": {"start": "A", "goal": "B"}, "sample": sample}

@@ -6,7 +6,7 @@ import hashlib
 import itertools
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -36,6 +36,7 @@ SURROUNDINGS: Final = (
 _ENTRIES: Final = ("name", "voyage", "axes", "sample", "compare", "annual", *SURROUNDINGS)
 COMPARISONS: Final = ("weather_blind",)
 DETAILS: Final = ("refined", "network")  #: of routes: as `plan` gives them, or on the network alone
+_WITHOUT_SEED: Final = "exact"  # the method that does not depend on the seed
 _DISTRIBUTIONS: Final = {"uniform": 2, "normal": 2, "choice": None}
 
 
@@ -60,6 +61,8 @@ class StudyRow:
 @dataclass(frozen=True)
 class Study:
     """Many voyages: one request, varied over axes and samples.
+
+    The method ``exact`` does not depend on the seed: over an axis of seeds it is run once.
 
     Parameters
     ----------
@@ -127,7 +130,12 @@ class Study:
     @property
     def size(self) -> int:
         """Number of rows."""
-        return math.prod(len(values) for values in self.axes.values()) * self._draws
+        whole = math.prod(len(values) for values in self.axes.values()) * self._draws
+        methods, seeds = self.axes.get("method", ()), self.axes.get("seed", ())
+        if not methods or not seeds:
+            return whole
+        repeated = list(methods).count(_WITHOUT_SEED) * (len(seeds) - 1)
+        return whole - whole // (len(methods) * len(seeds)) * repeated
 
     @property
     def _draws(self) -> int:
@@ -142,10 +150,19 @@ class Study:
         """
         draws = sample_draws(self.sample)
         return [
-            _row(self.base, dict(zip(self.axes, values)) | draw, self.compare)
-            for values in itertools.product(*self.axes.values())
+            _row(self.base, values | draw, self.compare)
+            for values in self._combinations()
             for draw in draws
         ]
+
+    def _combinations(self) -> Iterator[dict[str, Any]]:
+        """Yield the values of the axes in all combinations, without repeated exact searches."""
+        seeds = self.axes.get("seed", ())
+        for values in itertools.product(*self.axes.values()):
+            found = dict(zip(self.axes, values))
+            repeated = found.get("method") == _WITHOUT_SEED and "seed" in found
+            if not (repeated and found["seed"] != seeds[0]):
+                yield found
 
     def chunks(self, rows: Sequence[StudyRow], length: int) -> list[list[StudyRow]]:
         """Return rows in chunks that share ship, sea and places, in order of departure.
