@@ -209,7 +209,7 @@ def certified(world: World, sea: Sea, chart: Chart | None, known: float) -> list
     domain = BarrierDomain.around(passage, 1)
     assert domain is not None and domain.sampling == "", domain
     cells = passage.length / domain.cell_height
-    searches = [BarrierSearch(passage, domain, math.floor(n * cells)) for n in (2, 3, 5)]
+    searches = [BarrierSearch(passage, domain, math.floor(n * cells), 3e-4) for n in (2, 3, 5)]
     found = [searches[k].refine() for k in (0, 0, 1, 1, 2)]
     for number, one in zip(DIVISIONS, found):
         assert one is None or one.mesh is None or one.mesh.world.refinement == number

@@ -45,7 +45,7 @@ def bound(
 
 def on_meshes(passage: PassageToBound, cells: int = 120, meshes: int = 1) -> TimeCertificate:
     """Return the best bound of a number of meshes, whatever time they take."""
-    search = BarrierSearch(passage, BarrierDomain.around(passage, cells), cells)
+    search = BarrierSearch(passage, BarrierDomain.around(passage, cells), cells, 3e-4)
     found = [one for one in (search.refine() for _ in range(meshes)) if one is not None]
     return max(found, key=lambda one: one.value)
 

@@ -127,7 +127,7 @@ def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
     f = np.ones(shape) if task.factor is None else task.factor.copy()
     rings = _no_ring_times(shape)
     found = BarrierExcess(np.empty(cells), np.empty(cells))
-    kept = _no_speeds(mesh)
+    kept = no_kept_speeds(mesh)
     before, closing = -math.inf, 0
 
     def solve(values: FloatArray) -> FloatArray:
@@ -201,7 +201,7 @@ def _no_ring_times(shape: tuple[int, int]) -> RingTimes:
     return RingTimes(np.zeros((*shape, COURSES), np.float32), np.full(shape, math.nan))
 
 
-def _no_speeds(mesh: BarrierMesh) -> KeptSpeeds:
+def no_kept_speeds(mesh: BarrierMesh) -> KeptSpeeds:
     """Return room for the speeds in the cells of a mesh, for ships that weather slows down."""
     cells = mesh.shape[0] - 1, mesh.shape[1] - 1
     world = mesh.world

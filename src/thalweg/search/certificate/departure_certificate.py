@@ -9,12 +9,14 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
+from thalweg.search.certificate.check_timing import seconds_a_cell
 from thalweg.search.certificate.time_certificate import (
     BarrierSearch,
     TimeCertificate,
     certify_time,
     first_cells,
     free_space_time,
+    least_rate,
 )
 
 _SHORTEST_PIECE: Final = 0.01  # of the known time: pieces of the window are not divided further
@@ -43,14 +45,17 @@ def certify_departures(
     if passage.departures <= 0.0:
         return certify_time(passage, seconds=seconds, target=target)
     began = clock.perf_counter()
-    cells = first_cells(passage, seconds)
-    domain = BarrierDomain.around(passage, cells)
+    rate = least_rate(passage)
+    domain = BarrierDomain.around(passage, first_cells(seconds, rate))
     if domain is None:
         return certify_time(passage, seconds=0.0)
     free = free_space_time(passage, domain)
+    if seconds > 0.0:
+        rate = seconds_a_cell(passage, domain)
+    cells = first_cells(seconds, rate)
     enough = (1.0 - target) * passage.known
     order = itertools.count()
-    pieces = [(free.value, next(order), _Piece.of(passage, domain, cells, free))]
+    pieces = [(free.value, next(order), _Piece.of(passage, domain, (cells, rate), free))]
     while seconds > 0.0 and pieces[0][0] < enough:
         piece = pieces[0][2]
         left = seconds - (clock.perf_counter() - began)
@@ -68,19 +73,28 @@ def certify_departures(
 
 @dataclass(eq=False)
 class _Piece:
-    """A part of the window with the search for its barrier."""
+    """A part of the window with the search for its barrier.
+
+    Attributes
+    ----------
+    detail : Cells and rate of the search.
+    """
 
     passage: PassageToBound
     domain: BarrierDomain
-    cells: int
+    detail: tuple[int, float]
     search: BarrierSearch
     best: TimeCertificate
 
     @classmethod
     def of(
-        cls, passage: PassageToBound, domain: BarrierDomain, cells: int, best: TimeCertificate
+        cls,
+        passage: PassageToBound,
+        domain: BarrierDomain,
+        detail: tuple[int, float],
+        best: TimeCertificate,
     ) -> _Piece:
-        return cls(passage, domain, cells, BarrierSearch(passage, domain, cells), best)
+        return cls(passage, domain, detail, BarrierSearch(passage, domain, *detail), best)
 
     @property
     def is_divisible(self) -> bool:
@@ -96,8 +110,8 @@ class _Piece:
         late = replace(self.passage, depart=middle)
         later = self.domain.from_departure(middle - first)
         return [
-            _Piece.of(early, self.domain, self.cells, self.best),
-            _Piece.of(late, later, self.cells, self.best),
+            _Piece.of(early, self.domain, self.detail, self.best),
+            _Piece.of(late, later, self.detail, self.best),
         ]
 
     def improve(self) -> None:

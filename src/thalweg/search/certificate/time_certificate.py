@@ -22,6 +22,7 @@ from thalweg.search.certificate.arrival_barrier import (
 )
 from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
 from thalweg.search.certificate.barrier_mesh import BarrierMesh, build_mesh, slope_direction
+from thalweg.search.certificate.check_timing import LEAST_SECONDS_A_CELL, seconds_a_cell
 from thalweg.search.search_problem import ROUNDING_FACTOR
 
 _FIRST_CELLS: Final = 60  # cells of the first mesh along the geodesic
@@ -37,12 +38,11 @@ _CONTRADICTION: Final = 2e-3  # a barrier above the known time by more than this
 _FINE_CELLS: Final = 800, 240
 _SECONDS_OF_FINE_CELLS: Final = 20.0
 _MOST_NODES: Final = 4_000_000  # of a mesh
+_MUCH_SLOWER: Final = 2.0  # a check than for most ships: the raster of functions is coarser
 _FIRST_ROUNDS: Final = 3, 6  # rounds on the first mesh, backwards and forwards
 #: Rounds backwards and forwards on finer meshes, which begin with the factors of a coarser one.
 _LATER_ROUNDS: Final = 2, 5
 _GROWTH: Final = 3.5  # of the time from one mesh to the next
-#: Seconds that a first mesh takes for each of its cells, without and with tables of weather.
-_SECONDS_A_CELL: Final = 3e-5, 3e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,10 +89,14 @@ def certify_time(
     TimeCertificate
         The largest bound found; that of the geodesic near a pole and across half of the globe.
     """
-    began = clock.perf_counter()
-    domain = BarrierDomain.around(passage, _cells(passage, seconds))
+    began, rate = clock.perf_counter(), least_rate(passage)
+    domain = BarrierDomain.around(passage, _cells(passage, seconds, rate))
     if domain is None:
         return free_space_time(passage, BarrierDomain.of_globe(passage, _CELLS_OF_GEODESIC))
+    if seconds > 0.0:
+        rate = seconds_a_cell(passage, domain)
+    if rate > _MUCH_SLOWER * least_rate(passage):
+        domain = BarrierDomain.around(passage, _cells(passage, seconds, rate)) or domain
     best = free_space_time(passage, domain)
     if domain.sampling:
         finer = BarrierDomain.around(passage, _CELLS_OF_GEODESIC, fastest=domain.fastest)
@@ -100,9 +104,8 @@ def certify_time(
     if seconds <= 0.0:
         return best
     left = seconds - (clock.perf_counter() - began)
-    return _raised_by_barriers(
-        best, BarrierSearch(passage, domain, first_cells(passage, seconds)), left, target
-    )
+    search = BarrierSearch(passage, domain, first_cells(seconds, rate), rate)
+    return _raised_by_barriers(best, search, left, target)
 
 
 def certify_priced_length(
@@ -127,15 +130,16 @@ def certify_priced_length(
     began = clock.perf_counter()
     ship = replace(passage.ship, speed_field=_one_metre_a_second)
     passage = replace(passage, ship=ship)
-    domain = BarrierDomain.around(passage, _cells(passage, seconds))
+    rate = least_rate(passage)
+    domain = BarrierDomain.around(passage, _cells(passage, seconds, rate))
     if domain is None:
         return None
     best = free_space_time(passage, domain)
     if passage.chart is not None:
         domain = domain.slower_inside(passage.chart.zones, 1.0 / price)
     left = seconds - (clock.perf_counter() - began)
-    cells = first_cells(passage, seconds)
-    return _raised_by_barriers(best, BarrierSearch(passage, domain, cells), left, target)
+    search = BarrierSearch(passage, domain, first_cells(seconds, rate), rate)
+    return _raised_by_barriers(best, search, left, target)
 
 
 def _one_metre_a_second(
@@ -173,12 +177,14 @@ class BarrierSearch:
     Attributes
     ----------
     cells : Cells of the first mesh along the geodesic, at least.
+    rate : Time that the first mesh takes for each of its cells [s] (`seconds_a_cell`).
     expected_seconds : Estimate of the time that the next mesh takes; infinite when there is none.
     """
 
     passage: PassageToBound
     domain: BarrierDomain
     cells: int
+    rate: float
     expected_seconds: float = field(init=False)
     _refinement: int = field(init=False)
     _level: _Level | None = field(init=False, default=None)
@@ -187,8 +193,7 @@ class BarrierSearch:
         wanted = self.cells * self.domain.cell_height / self.passage.length
         self._refinement = max(1, math.ceil(wanted))
         _, rows, columns, _ = self.domain.raster.values.shape
-        rate = _SECONDS_A_CELL[axes_needed(self.passage.ship.table) != 0]
-        self.expected_seconds = rate * rows * columns * self._refinement**2
+        self.expected_seconds = self.rate * rows * columns * self._refinement**2
 
     def refine(self) -> TimeCertificate | None:
         """Return the bound of the next mesh; None where no barrier passed the check."""
@@ -303,16 +308,23 @@ def _halved_cells(values: FloatArray) -> FloatArray:
     return np.repeat(np.repeat(values, 2, axis=0), 2, axis=1)
 
 
-def first_cells(passage: PassageToBound, seconds: float) -> int:
+def least_rate(passage: PassageToBound) -> float:
+    """Return the least time that a first mesh takes for each of its cells [s]."""
+    return LEAST_SECONDS_A_CELL[axes_needed(passage.ship.table) != 0]
+
+
+def first_cells(seconds: float, rate: float) -> int:
     """Return the number of cells of a first mesh along the geodesic for a time to spend [s]."""
-    rate = _SECONDS_A_CELL[axes_needed(passage.ship.table) != 0]
     affordable = math.sqrt(max(seconds, 0.0) / 3.0 / rate)
     return int(min(max(affordable, _FEWEST_CELLS), _FIRST_CELLS))
 
 
-def _cells(passage: PassageToBound, seconds: float) -> int:
+def _cells(passage: PassageToBound, seconds: float, rate: float) -> int:
     """Return the number of cells of the raster where the data are given by functions."""
-    first = max(first_cells(passage, seconds), _FEWEST_SAMPLES)
+    first = first_cells(seconds, rate)
+    if rate > _MUCH_SLOWER * least_rate(passage):
+        return first
+    first = max(first, _FEWEST_SAMPLES)
     finest = _FINE_CELLS[axes_needed(passage.ship.table) != 0]
     share = min(max(seconds / _SECONDS_OF_FINE_CELLS, 0.0), 1.0)
     return round(first + share * max(finest - first, 0))
