@@ -13,6 +13,7 @@ from thalweg.core.geodesy import direct, distance
 from thalweg.core.limits import Limits
 from thalweg.kernels import codes
 from thalweg.sea import Sea
+from thalweg.search.certificate import time_certificate
 from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier, metres_per_degree
 from thalweg.search.certificate.time_certificate import BarrierSearch, TimeCertificate
@@ -162,6 +163,27 @@ def test_a_limit_of_waves_closes_water_to_the_bound_as_to_the_ship():
     ]
     closed, free = (on_meshes(one) for one in passages)
     assert free.value <= straight < 1.1 * straight < closed.value
+
+
+@pytest.mark.parametrize(("rate", "most"), [(1e-4, 260), (1e-3, 100), (0.1, 0)])
+def test_the_first_mesh_fits_into_the_time_for_it(monkeypatch, rate, most):
+    sizes = []
+
+    def refine(search):
+        sizes.append(max(search.domain.raster.values.shape[1:3]))
+        search.expected_seconds = math.inf
+
+    monkeypatch.setattr(time_certificate, "seconds_a_cell", lambda passage, domain: rate)
+    monkeypatch.setattr(BarrierSearch, "refine", refine)
+    ship = Ship.load("handysize-bulker").tabulate()
+    top = float(ship.largest(0))
+    limits = ShipInBarrier(ship.kernel_arrays(), 0, Limits().array, top)
+    channels = (codes.WIND_EAST, codes.WIND_NORTH, codes.WAVE_HEIGHT_CHANNEL)
+    best = float(distance(*START, *GOAL)) / top
+    calm = PassageToBound(Sea.calm(), None, limits, channels, START, GOAL, 1e9, 1.01 * best)
+    found = time_certificate.certify_time(calm, seconds=20.0)
+    assert (0 < sizes[0] <= most) if most else not sizes
+    assert 0.99 * best < found.value <= best
 
 
 @pytest.mark.slow

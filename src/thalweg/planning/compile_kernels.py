@@ -47,7 +47,7 @@ def compile_certificate() -> None:
     from thalweg.sea import Sea
     from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
     from thalweg.search.certificate.barrier_mesh import ShipInBarrier
-    from thalweg.search.certificate.check_timing import LEAST_SECONDS_A_CELL
+    from thalweg.search.certificate.check_timing import USUAL_SECONDS_A_CELL
     from thalweg.search.certificate.time_certificate import BarrierSearch
     from thalweg.ship import Ship
 
@@ -60,7 +60,7 @@ def compile_certificate() -> None:
     passage = PassageToBound(Sea.calm(), None, ship, waves, (0.0, 0.0), (0.0, 1.0), 0.0, known)
     domain = BarrierDomain.around(passage, _CELLS)
     assert domain is not None  # the passage is short
-    BarrierSearch(passage, domain, _CELLS, LEAST_SECONDS_A_CELL[1]).refine()
+    BarrierSearch(passage, domain, _CELLS, USUAL_SECONDS_A_CELL[1]).refine()
 
 
 def _search_and_smooth() -> None:

@@ -41,6 +41,7 @@ from thalweg.kernels.leg.point_speed import ShipArrays
 from thalweg.kernels.leg.raster_sampling import RasterArrays
 
 SECTORS = 48  # of headings
+_ROUNDING = 1e-6  # by which ranges of conditions are widened, so that they are kept more often
 MAX_INSTANTS = 128  # of one window; longer windows are treated as unlimited
 ANGLES = (1 << AXIS_WIND_ANGLE) | (1 << AXIS_WAVE_ANGLE)
 _WIND = (1 << AXIS_WIND_SPEED) | (1 << AXIS_WIND_ANGLE)
@@ -112,6 +113,8 @@ class CellBuffers(NamedTuple):
     place : float64[4 * AXES]
     speed : float64[SECTORS]
         Greatest speed for headings in each sector [m/s].
+    asked, answer : float64[SECTORS, 2, AXES], float64[SECTORS]
+        Ranges for which the greatest speed was found last by sector, and that speed [m/s].
     """
 
     sample: np.ndarray
@@ -123,6 +126,8 @@ class CellBuffers(NamedTuple):
     high: np.ndarray
     place: np.ndarray
     speed: np.ndarray
+    asked: np.ndarray
+    answer: np.ndarray
 
 
 @jit
@@ -137,6 +142,8 @@ def make_buffers():
         np.zeros(AXIS_COUNT),
         np.zeros(AXIS_COUNT),
         np.zeros(4 * AXIS_COUNT),
+        np.zeros(SECTORS),
+        np.full((SECTORS, 2, AXIS_COUNT), np.nan),
         np.zeros(SECTORS),
     )
 
@@ -352,10 +359,40 @@ def fill_angles(directions, heading, half, buffers):
 
 
 @kernel_only
+def _edge_is_near(edge, value, outwards):
+    """Return whether the edge of a wider range is at a value, or beyond it by rounding only."""
+    beyond = outwards * (edge - value)
+    return edge == value or 0.0 <= beyond <= 2.0 * _ROUNDING * (1.0 + abs(value))
+
+
+@kernel_only
+def _speed_over_ranges(world, sector, buffers):
+    """Return the greatest speed over the ranges in the buffers, or a little wider ones [m/s].
+
+    The last one is kept: in a calm or uniform sea it is that of all cells.
+    """
+    low, high = buffers.low, buffers.high
+    asked_low, asked_high = buffers.asked[sector, 0], buffers.asked[sector, 1]
+    same = True
+    for k in range(AXIS_COUNT):
+        same = same and _edge_is_near(asked_low[k], low[k], -1.0)
+        same = same and _edge_is_near(asked_high[k], high[k], 1.0)
+    if not same:
+        table, setting, _, _ = world.ship
+        for k in range(AXIS_COUNT):
+            asked_low[k] = low[k] - _ROUNDING * (1.0 + abs(low[k]))
+            asked_high[k] = high[k] + _ROUNDING * (1.0 + abs(high[k]))
+        buffers.answer[sector] = greatest_speed(
+            table, setting, asked_low, asked_high, world.top_speed, buffers.place
+        )
+    return buffers.answer[sector]
+
+
+@kernel_only
 def cell_speeds(world, instants, field_high, winds, waves, buffers):
     """Fill the greatest speed by sector of heading; return (greatest, same for all headings)."""
     index = world.raster.channel_index
-    table, setting, _, needs = world.ship
+    needs = world.ship[3]
     if index[SPEED_FIELD] >= 0:
         top = field_high if instants > 0 else world.top_speed
         buffers.speed[:] = max(top, 0.0)
@@ -363,10 +400,9 @@ def cell_speeds(world, instants, field_high, winds, waves, buffers):
     if instants < 0:
         buffers.speed[:] = world.top_speed
         return world.top_speed, True
-    low, high = buffers.low, buffers.high
     directions = fill_ranges(winds, waves, buffers)
     if not needs & ANGLES:
-        top = greatest_speed(table, setting, low, high, world.top_speed, buffers.place)
+        top = _speed_over_ranges(world, 0, buffers)
         buffers.speed[:] = top
         return top, True
     half = math.pi / SECTORS
@@ -374,7 +410,6 @@ def cell_speeds(world, instants, field_high, winds, waves, buffers):
     for sector in range(SECTORS):
         heading = 2.0 * half * sector
         fill_angles(directions, heading, half, buffers)
-        speed = greatest_speed(table, setting, low, high, world.top_speed, buffers.place)
-        buffers.speed[sector] = speed
-        top = max(top, speed)
+        buffers.speed[sector] = _speed_over_ranges(world, sector, buffers)
+        top = max(top, buffers.speed[sector])
     return top, False

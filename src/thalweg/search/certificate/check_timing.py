@@ -14,9 +14,9 @@ from thalweg.search.certificate.arrival_barrier import no_kept_speeds
 from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
 from thalweg.search.certificate.barrier_mesh import build_mesh
 
-#: Seconds that a first mesh takes for each of its cells, at least, without and with tables of
-#: weather.
-LEAST_SECONDS_A_CELL: Final = 3e-5, 3e-4
+#: Seconds that a first mesh takes for each of its cells, without and with tables of weather, for
+#: most ships and seas.
+USUAL_SECONDS_A_CELL: Final = 3e-5, 3e-4
 _SAMPLE: Final = 48  # cells that are timed
 _FIRST: Final = 6  # cells before them, while the compiled code is loaded
 _MOST_CELLS: Final = 400_000  # of a mesh on which cells are timed
@@ -33,13 +33,13 @@ def seconds_a_cell(passage: PassageToBound, domain: BarrierDomain) -> float:
 
     Returns
     -------
-    float : No less than `LEAST_SECONDS_A_CELL`.
+    float : No less than without tables of weather.
     """
     weather = axes_needed(passage.ship.table) != 0
-    least = LEAST_SECONDS_A_CELL[weather]
+    usual = USUAL_SECONDS_A_CELL[weather]
     _, rows, columns, _ = domain.raster.values.shape
     if not weather or domain.ship.speed_field is not None or rows * columns > _MOST_CELLS:
-        return least
+        return usual
     mesh = build_mesh(
         domain.raster, 1, domain.ship, None,
         departures=passage.departures, by_steps=bool(domain.sampling),
@@ -48,7 +48,7 @@ def seconds_a_cell(passage: PassageToBound, domain: BarrierDomain) -> float:
     to_goal = mesh.least_times(*passage.goal, domain.fastest)
     band = np.flatnonzero(from_start + to_goal < passage.known)
     if band.size < 2 * _SAMPLE:
-        return least
+        return usual
     windows = TimeWindows(from_start, np.maximum(passage.known - to_goal, from_start))
     chosen = band[:: band.size // _SAMPLE]
     used = 0.0
@@ -60,4 +60,4 @@ def seconds_a_cell(passage: PassageToBound, domain: BarrierDomain) -> float:
         began = clock.perf_counter()
         check_barrier(mesh.world, level, candidate, windows, False, False, found, kept)
         used = clock.perf_counter() - began
-    return max(least, _CHECKS * used / chosen.size)
+    return max(USUAL_SECONDS_A_CELL[0], _CHECKS * used / chosen.size)

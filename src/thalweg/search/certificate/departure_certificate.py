@@ -16,7 +16,7 @@ from thalweg.search.certificate.time_certificate import (
     certify_time,
     first_cells,
     free_space_time,
-    least_rate,
+    usual_rate,
 )
 
 _SHORTEST_PIECE: Final = 0.01  # of the known time: pieces of the window are not divided further
@@ -45,7 +45,7 @@ def certify_departures(
     if passage.departures <= 0.0:
         return certify_time(passage, seconds=seconds, target=target)
     began = clock.perf_counter()
-    rate = least_rate(passage)
+    rate = usual_rate(passage)
     domain = BarrierDomain.around(passage, first_cells(seconds, rate))
     if domain is None:
         return certify_time(passage, seconds=0.0)

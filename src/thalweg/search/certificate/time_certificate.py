@@ -22,7 +22,7 @@ from thalweg.search.certificate.arrival_barrier import (
 )
 from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
 from thalweg.search.certificate.barrier_mesh import BarrierMesh, build_mesh, slope_direction
-from thalweg.search.certificate.check_timing import LEAST_SECONDS_A_CELL, seconds_a_cell
+from thalweg.search.certificate.check_timing import USUAL_SECONDS_A_CELL, seconds_a_cell
 from thalweg.search.search_problem import ROUNDING_FACTOR
 
 _FIRST_CELLS: Final = 60  # cells of the first mesh along the geodesic
@@ -89,13 +89,13 @@ def certify_time(
     TimeCertificate
         The largest bound found; that of the geodesic near a pole and across half of the globe.
     """
-    began, rate = clock.perf_counter(), least_rate(passage)
+    began, rate = clock.perf_counter(), usual_rate(passage)
     domain = BarrierDomain.around(passage, _cells(passage, seconds, rate))
     if domain is None:
         return free_space_time(passage, BarrierDomain.of_globe(passage, _CELLS_OF_GEODESIC))
     if seconds > 0.0:
         rate = seconds_a_cell(passage, domain)
-    if rate > _MUCH_SLOWER * least_rate(passage):
+    if rate > _MUCH_SLOWER * usual_rate(passage):
         domain = BarrierDomain.around(passage, _cells(passage, seconds, rate)) or domain
     best = free_space_time(passage, domain)
     if domain.sampling:
@@ -130,7 +130,7 @@ def certify_priced_length(
     began = clock.perf_counter()
     ship = replace(passage.ship, speed_field=_one_metre_a_second)
     passage = replace(passage, ship=ship)
-    rate = least_rate(passage)
+    rate = usual_rate(passage)
     domain = BarrierDomain.around(passage, _cells(passage, seconds, rate))
     if domain is None:
         return None
@@ -308,9 +308,9 @@ def _halved_cells(values: FloatArray) -> FloatArray:
     return np.repeat(np.repeat(values, 2, axis=0), 2, axis=1)
 
 
-def least_rate(passage: PassageToBound) -> float:
-    """Return the least time that a first mesh takes for each of its cells [s]."""
-    return LEAST_SECONDS_A_CELL[axes_needed(passage.ship.table) != 0]
+def usual_rate(passage: PassageToBound) -> float:
+    """Return the time that a first mesh takes for each of its cells, for most ships [s]."""
+    return USUAL_SECONDS_A_CELL[axes_needed(passage.ship.table) != 0]
 
 
 def first_cells(seconds: float, rate: float) -> int:
@@ -322,7 +322,7 @@ def first_cells(seconds: float, rate: float) -> int:
 def _cells(passage: PassageToBound, seconds: float, rate: float) -> int:
     """Return the number of cells of the raster where the data are given by functions."""
     first = first_cells(seconds, rate)
-    if rate > _MUCH_SLOWER * least_rate(passage):
+    if rate > _MUCH_SLOWER * usual_rate(passage):
         return first
     first = max(first, _FEWEST_SAMPLES)
     finest = _FINE_CELLS[axes_needed(passage.ship.table) != 0]
