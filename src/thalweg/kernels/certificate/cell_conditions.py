@@ -9,7 +9,7 @@ from thalweg.kernels.certificate.mesh_sampling import sample_node, time_step_of
 from thalweg.kernels.certificate.speed_ranges import (
     angle_from_bow_range,
     direction_range,
-    greatest_speed,
+    kept_speed,
 )
 from thalweg.kernels.codes import (
     AXIS_COUNT,
@@ -41,7 +41,6 @@ from thalweg.kernels.leg.point_speed import ShipArrays
 from thalweg.kernels.leg.raster_sampling import RasterArrays
 
 SECTORS = 48  # of headings
-_ROUNDING = 1e-6  # by which ranges of conditions are widened, so that they are kept more often
 MAX_INSTANTS = 128  # of one window; longer windows are treated as unlimited
 ANGLES = (1 << AXIS_WIND_ANGLE) | (1 << AXIS_WAVE_ANGLE)
 _WIND = (1 << AXIS_WIND_SPEED) | (1 << AXIS_WIND_ANGLE)
@@ -359,40 +358,10 @@ def fill_angles(directions, heading, half, buffers):
 
 
 @kernel_only
-def _edge_is_near(edge, value, outwards):
-    """Return whether the edge of a wider range is at a value, or beyond it by rounding only."""
-    beyond = outwards * (edge - value)
-    return edge == value or 0.0 <= beyond <= 2.0 * _ROUNDING * (1.0 + abs(value))
-
-
-@kernel_only
-def _speed_over_ranges(world, sector, buffers):
-    """Return the greatest speed over the ranges in the buffers, or a little wider ones [m/s].
-
-    The last one is kept: in a calm or uniform sea it is that of all cells.
-    """
-    low, high = buffers.low, buffers.high
-    asked_low, asked_high = buffers.asked[sector, 0], buffers.asked[sector, 1]
-    same = True
-    for k in range(AXIS_COUNT):
-        same = same and _edge_is_near(asked_low[k], low[k], -1.0)
-        same = same and _edge_is_near(asked_high[k], high[k], 1.0)
-    if not same:
-        table, setting, _, _ = world.ship
-        for k in range(AXIS_COUNT):
-            asked_low[k] = low[k] - _ROUNDING * (1.0 + abs(low[k]))
-            asked_high[k] = high[k] + _ROUNDING * (1.0 + abs(high[k]))
-        buffers.answer[sector] = greatest_speed(
-            table, setting, asked_low, asked_high, world.top_speed, buffers.place
-        )
-    return buffers.answer[sector]
-
-
-@kernel_only
 def cell_speeds(world, instants, field_high, winds, waves, buffers):
     """Fill the greatest speed by sector of heading; return (greatest, same for all headings)."""
     index = world.raster.channel_index
-    needs = world.ship[3]
+    table, setting, _, needs = world.ship
     if index[SPEED_FIELD] >= 0:
         top = field_high if instants > 0 else world.top_speed
         buffers.speed[:] = max(top, 0.0)
@@ -402,7 +371,7 @@ def cell_speeds(world, instants, field_high, winds, waves, buffers):
         return world.top_speed, True
     directions = fill_ranges(winds, waves, buffers)
     if not needs & ANGLES:
-        top = _speed_over_ranges(world, 0, buffers)
+        top = kept_speed(table, setting, world.top_speed, 0, buffers)
         buffers.speed[:] = top
         return top, True
     half = math.pi / SECTORS
@@ -410,6 +379,6 @@ def cell_speeds(world, instants, field_high, winds, waves, buffers):
     for sector in range(SECTORS):
         heading = 2.0 * half * sector
         fill_angles(directions, heading, half, buffers)
-        buffers.speed[sector] = _speed_over_ranges(world, sector, buffers)
+        buffers.speed[sector] = kept_speed(table, setting, world.top_speed, sector, buffers)
         top = max(top, buffers.speed[sector])
     return top, False

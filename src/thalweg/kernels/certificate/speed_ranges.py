@@ -10,6 +10,8 @@ from thalweg.kernels.leg.table_lookup import (
     OUTPUT_CURVE,
 )
 
+_ROUNDING = 1e-6  # by which ranges of conditions are widened, so that they are kept more often
+
 
 @kernel_only
 def direction_range(vectors, count):
@@ -264,6 +266,42 @@ def greatest_speed(table, setting, low, high, top_speed, place):
     if table.finish == OUTPUT_CURVE:
         greatest = _range_of_curve(table, setting, least, greatest)[1]
     return min(max(greatest, 0.0), top_speed)
+
+
+@kernel_only
+def _edge_is_near(edge, value, outwards):
+    """Return whether the edge of a wider range is at a value, or beyond it by rounding only."""
+    beyond = outwards * (edge - value)
+    return edge == value or 0.0 <= beyond <= 2.0 * _ROUNDING * (1.0 + abs(value))
+
+
+@kernel_only
+def kept_speed(table, setting, top_speed, sector, buffers):
+    """Return the greatest speed over the ranges in buffers, or a little wider ones [m/s].
+
+    The last one of a sector is kept: in a calm or uniform sea it is that of all cells.
+
+    Parameters
+    ----------
+    table, setting, top_speed : As of `greatest_speed`.
+    sector : int
+    buffers : CellBuffers
+        Their ``low`` and ``high`` are the ranges.
+    """
+    low, high = buffers.low, buffers.high
+    asked_low, asked_high = buffers.asked[sector, 0], buffers.asked[sector, 1]
+    same = True
+    for k in range(AXIS_COUNT):
+        same = same and _edge_is_near(asked_low[k], low[k], -1.0)
+        same = same and _edge_is_near(asked_high[k], high[k], 1.0)
+    if not same:
+        for k in range(AXIS_COUNT):
+            asked_low[k] = low[k] - _ROUNDING * (1.0 + abs(low[k]))
+            asked_high[k] = high[k] + _ROUNDING * (1.0 + abs(high[k]))
+        buffers.answer[sector] = greatest_speed(
+            table, setting, asked_low, asked_high, top_speed, buffers.place
+        )
+    return buffers.answer[sector]
 
 
 @kernel_only
