@@ -36,7 +36,7 @@ from thalweg.planning.pareto.trade_off_context import (
     scored_candidate,
 )
 from thalweg.planning.plan import Plan
-from thalweg.planning.plan_data import PlotContext
+from thalweg.planning.plan_data import PlotContext, Proof
 from thalweg.planning.plan_front import ParetoFront
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.lane_report import lane_detour_notes
@@ -47,6 +47,7 @@ from thalweg.planning.report.provenance import (
     provenance,
     route_warnings,
 )
+from thalweg.planning.report.route_summary import canals_passed
 from thalweg.planning.report.zone_report import control_area_notes
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.single.weather_gaps import check_times_known
@@ -90,10 +91,12 @@ def assemble_trade_off_plan(
         routes, compared = [item.route for item in ordered], front.comparison
         note = undercut_note(routes, front.values, compared.routes, compared.values)
         notes += [note] if note else []
+    proof = derive_proof(trade_off, explored, certain.points, certain.kind, until=certain.until)
+    notes += _dues_notes(trade_off, ordered[0], proof)
     return Plan(
         voyage=context.voyage,
         routes=tuple(item.route for item in ordered),
-        proof=derive_proof(trade_off, explored, certain.points, certain.kind, until=certain.until),
+        proof=proof,
         rejections=_rejections(explored),
         notes=tuple(dict.fromkeys(notes)),
         provenance=provenance(context, ends, _network_summaries(explored), _speeds_kn(trade_off)),
@@ -280,6 +283,22 @@ def _notes(
             f"The data end at {format_time(context.data_end)}: slower routes were not considered."
         )
     return notes
+
+
+def _dues_notes(trade_off: TradeOffContext, best: RefereedCandidate, proof: Proof) -> list[str]:
+    """Return a note where canal dues, which the bound leaves out, are part of the cost."""
+    canals = canals_passed(best.route, trade_off.context.chart)
+    dues = trade_off.objective.prices.dues * sum(canal.fee for canal in canals)
+    rest = best.value - dues
+    if not dues > 0.0 or not 0.0 < proof.certain <= rest:
+        return []
+    if trade_off.context.voyage.objective == "front":
+        return [f"The bound of the cost leaves the canal dues out ({dues:,.0f} USD)."]
+    share = math.ceil(1000.0 * (1.0 - proof.certain / rest)) / 10.0
+    return [
+        f"The bound of the cost leaves the canal dues out ({dues:,.0f} USD): without them the plan "
+        f"is at most {share:.1f} % from the best possible at sea."
+    ]
 
 
 def _no_feasible_route_error(
