@@ -66,6 +66,33 @@ def test_the_kiel_canal_is_taken_unless_forbidden():
     )
 
 
+@pytest.mark.slow
+def test_the_bound_of_a_cost_counts_the_dues_of_a_canal_or_the_way_round_it():
+    ship = Ship.from_dict(
+        {
+            "name": "x", "hull": {"draught_m": 5.0}, "speeds_kn": [8.0, 12.0],
+            "fuel": {"reference_t_per_day": 24.0, "price_per_t": 500.0},
+            "engine": {"reference_speed_kn": 12.0}, "models": {"calm_water": "cubic"},
+        }
+    )  # fmt: skip
+    start = (54.0, 5.0)  # from where the way round Skagen is not much longer
+    voyage = {"start": start, "goal": GDANSK, "depart": "2026-01-01T00:00Z", "objective": "cost"}
+    given = {"ship": ship, "sea": Sea.calm(), "chart": CHART, "resolution": 20_000.0}
+    answer = plan(Voyage(**voyage, method="exact"), **given, proof=3.0)
+    other = plan(Voyage(**voyage, method="exact", forbid=["kiel"]), **given, proof=0.0)
+    assert "with the dues of canals, or the way round them" in answer.proof.kind
+    assert "dues" not in other.proof.kind
+    both = sorted((answer.best.cost, other.best.cost))
+    assert 0.75 * both[0] < answer.lower_bound <= both[0]
+    # where no way round is known they are left out, and a note states that
+    left_out = plan(Voyage(**{**voyage, "start": ELBE}, method="exact"), **given, proof=0.5)
+    (note,) = (text for text in left_out.notes if "leaves the canal dues out (" in text)
+    dues = float(note.split("(")[1].split(" USD")[0].replace(",", ""))
+    rest = 1.0 - left_out.lower_bound / (left_out.best.cost - dues)
+    assert f"at most {100.0 * rest:.1f} %" in note or f"{100.0 * rest + 0.05:.1f} %" in note
+    assert rest < left_out.gap
+
+
 def test_a_deep_ship_does_not_pass_a_shallow_canal():
     ends = [Endpoint("a", *ELBE, 0.0), Endpoint("b", *GDANSK, 0.0)]
     voyage = Voyage(start=ELBE, goal=GDANSK, depart="2026-01-01T00:00Z")

@@ -5,9 +5,12 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thalweg.chart.canal_parts import part_number_of_legs
 from thalweg.chart.zones.area_exits import MARGIN_OF_EXITS, area_exits
 from thalweg.core.geodesy import distance
 from thalweg.core.pareto_fronts import lower_hull
@@ -18,6 +21,7 @@ from thalweg.planning.pareto.exploration import strongest_current
 from thalweg.planning.pareto.trade_off_context import ExploredAlternative, TradeOffContext
 from thalweg.planning.plan_data import Proof
 from thalweg.planning.plan_front import certain_at
+from thalweg.planning.report.route_summary import canals_passed
 from thalweg.planning.single.certified_bound import (
     certified_distance,
     certified_priced_length,
@@ -25,6 +29,10 @@ from thalweg.planning.single.certified_bound import (
 )
 from thalweg.route import Route
 from thalweg.search import table_bounds
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.chart.canals import Canal
 
 _KIND = (
     "certificate: the least length of a route round land at mixtures of the speeds, with the "
@@ -131,6 +139,77 @@ def certain_front(
         seconds, values = seconds[hull], values[hull]
     last = int(np.argmin(values)) + 1
     return np.array([seconds[:last] / HOUR, values[:last]])
+
+
+def front_with_dues(
+    trade_off: TradeOffContext,
+    routes: Sequence[Route],
+    lengths: Sequence[tuple[float, float]],
+    current: float,
+) -> FloatArray | None:
+    """Return a lower front that counts canal dues, or the length of the way round the canals.
+
+    Parameters
+    ----------
+    routes : Known routes; the bound needs one without dues.
+    lengths, current : As of `certain_front`.
+
+    Returns
+    -------
+    float64 array (2, m), or None
+        As of `certain_front`; None where no dues count, with via points, and without a route.
+
+    Notes
+    -----
+    Every route keeps clear of all canals with dues, and is no shorter than the way round land
+    without them, or it touches one of them, pays its dues, and is no shorter than the geodesics to
+    an end of it and on, less twice its length. A canal that the approach of a port is a part of is
+    taken as free: its dues belong to the approach.
+    """
+    context, prices = trade_off.context, trade_off.objective.prices
+    paying = [canal for canal in context.chart.canals if canal.fee > 0.0]
+    if not prices.dues > 0.0 or not paying or len(trade_off.ends) > 2 or not lengths:
+        return None
+    elsewhere = _paid_in_approaches(trade_off)
+    fees = [0.0 if canal.name in elsewhere else canal.fee for canal in paying]
+    free = [route for route in routes if not _passes_one_of(route, paying, context.chart)]
+    shortest = _shortest(free)
+    if shortest is None or trade_off.interrupt_guard.stopped():
+        return None
+    start, goal = trade_off.ends
+    inside, whole = (min(pair[k] for pair in lengths) for k in (0, 1))
+    closed = context.chart.without_canals(*(canal.name for canal in paying))
+    found = certified_distance(
+        replace(context, chart=closed), shortest, seconds=_seconds(trade_off)
+    )
+    if not found.value > whole:
+        return None
+    fronts = [certain_front(trade_off, [(inside, found.value)], current)]
+    for canal, fee in zip(paying, fees, strict=True):
+        way = min(
+            float(distance(start.lat, start.lon, *end) + distance(*end, goal.lat, goal.lon))
+            for end in canal.ends
+        )
+        least = max(whole, way - 2.0 * canal.length)
+        front = certain_front(trade_off, [(inside, least)], current)
+        fronts.append(front + np.array([[0.0], [prices.dues * fee]]))
+    hours, values = np.concatenate(fronts, axis=1)
+    hull = lower_hull(hours, values)
+    hull = hull[: int(np.argmin(values[hull])) + 1]
+    return np.array([hours[hull], values[hull]])
+
+
+def _paid_in_approaches(trade_off: TradeOffContext) -> set[str]:
+    """Return the names of the canals of which the approach of a port is a part."""
+    canals = trade_off.context.chart.canals
+    lines = [end.approach.line for end in trade_off.ends if end.approach is not None]
+    numbers = [part_number_of_legs(canals, *np.array(line, float).T) for line in lines]
+    return {canals[k].name for number in numbers for k in number[number >= 0].tolist()}
+
+
+def _passes_one_of(route: Route, canals: Sequence[Canal], chart: Chart) -> bool:
+    passed = {canal.name for canal in canals_passed(route, chart)}
+    return not passed.isdisjoint(canal.name for canal in canals)
 
 
 def certified_lengths(

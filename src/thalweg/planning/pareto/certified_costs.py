@@ -16,6 +16,7 @@ from thalweg.kernels.certificate.cost_conditions import PricedShip
 from thalweg.planning.pareto.bounds import (
     certain_front,
     certified_lengths,
+    front_with_dues,
     strongest_current_of_plan,
 )
 from thalweg.planning.pareto.trade_off_context import (
@@ -33,6 +34,7 @@ _KIND = (
     "certificate: checked in every cell of a mesh that no course and speed costs less than the "
     "bound counts there, for routes of at most {until:.1f} h between the sea ends of approaches"
 )
+WITH_DUES = "with the dues of canals, or the way round them"
 _MOST_PRICES = 8
 _LEAST_GAIN = 1e-5  # share of the greatest value, below which the lines add nothing
 _AFTER = 1e-9  # share of a time, to its next point
@@ -71,7 +73,12 @@ def certified_front(
     context, routes = trade_off.context, [item.route for item in ordered]
     allowed = (context.latest_arrival - context.voyage.earliest_departure) / HOUR
     current, kind = strongest_current_of_plan(trade_off, explored, routes)
-    points = certain_front(trade_off, certified_lengths(trade_off, routes), current)
+    lengths = certified_lengths(trade_off, routes)
+    points = certain_front(trade_off, lengths, current)
+    known = [*routes, *(one.fastest for one in explored)]
+    with_dues = front_with_dues(trade_off, known, lengths, current)
+    if with_dues is not None and with_dues[1, -1] > points[1, -1]:
+        points, kind = with_dues, f"{kind}; {WITH_DUES}"
     if trade_off.interrupt_guard.stopped() or not context.proof_seconds:
         return CertifiedFront(points, kind, allowed)
     lines, until, sampling = certified_lines(trade_off, ordered, seconds=context.proof_seconds)

@@ -24,7 +24,7 @@ from thalweg.planning.pareto.baseline import (
 from thalweg.planning.pareto.bounds import (
     derive_proof,
 )
-from thalweg.planning.pareto.certified_costs import certified_front
+from thalweg.planning.pareto.certified_costs import WITH_DUES, certified_front
 from thalweg.planning.pareto.route_names import route_labels
 from thalweg.planning.pareto.search_horizon import shortest_path_length
 from thalweg.planning.pareto.trade_off_context import (
@@ -290,7 +290,7 @@ def _dues_notes(trade_off: TradeOffContext, best: RefereedCandidate, proof: Proo
     canals = canals_passed(best.route, trade_off.context.chart)
     dues = trade_off.objective.prices.dues * sum(canal.fee for canal in canals)
     rest = best.value - dues
-    if not dues > 0.0 or not 0.0 < proof.certain <= rest:
+    if not dues > 0.0 or not 0.0 < proof.certain <= rest or WITH_DUES in proof.kind:
         return []
     if trade_off.context.voyage.objective == "front":
         return [f"The bound of the cost leaves the canal dues out ({dues:,.0f} USD)."]
