@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from datetime import UTC, datetime
 from pathlib import Path
@@ -248,6 +249,13 @@ def test_an_area_is_drawn_and_the_route_avoids_it(visit):
     page.locator("[data-field=areas] .error", has_text="still being drawn").wait_for()
     page.get_by_role("button", name="Leave it out").click()
     assert not page.locator("#hint").is_visible()
+    page.get_by_label("Distance kept from area 1").fill("10")
+    page.get_by_label("Distance kept from area 1").press("Tab")
+    bands = """() => { const [area] = window.thalweg.chart.areas.getSource().getFeatures();
+      return area.getStyleFunction()(area, 1000).map((style) => style.getStroke().getWidth()); }"""
+    band, line = page.evaluate(bands)  # in pixels of 1 km at the equator
+    assert band == pytest.approx(2 * 18.52 / math.cos(math.radians(47.1)), rel=1e-3)
+    assert line == 1.8
     visit.picture("area")
     visit.plan()
     base = f"/api/v1/plans/{job_of(page)}"

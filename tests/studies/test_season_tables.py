@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.image import imread
 
 from thalweg.studies import Study, study_run, summarise_study
 from thalweg.studies.season_plots import draw_heat_map
@@ -76,7 +77,11 @@ def test_random_departures_share_the_rows_of_a_heat_map(tmp_path):
     assert table["routes"].sum() == 60 and table["routes"].median() >= 5
     assert (table["time_h"] >= 10.0 + table["hour"]).all()
     assert (table["time_h"] < 14.0 + table["hour"]).all()
-    assert draw_heat_map(table, "time_h", tmp_path / "hours.png").stat().st_size > 5_000
+    two = imread(draw_heat_map(table, "time_h", tmp_path / "hours.png"))
+    january = table[table["month"] == 1]
+    year = pd.concat([january.assign(month=month) for month in range(1, 13)])
+    whole = imread(draw_heat_map(year, "time_h", tmp_path / "year.png"))
+    assert (two.shape[1], whole.shape[1]) == (540, 960)  # months without departures have no column
 
 
 def test_accuracies_and_single_departures_are_no_choices():

@@ -292,6 +292,12 @@ def test_the_interval_of_a_median_covers():
 
 
 @pytest.mark.slow
+def test_the_name_of_a_ready_study_is_no_file(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["study", "run", "weights", "--out", "o"]) == 2
+    assert "thalweg study ready weights > weights.yaml" in capsys.readouterr().err
+
+
 def test_the_command_line(folder, tmp_path, capsys):
     path = folder / "small.yaml"
     study = base(folder, axes={"depart": ["2026-03-01T00:00Z", "2026-06-02T00:00Z"]})

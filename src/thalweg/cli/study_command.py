@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 import json
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from thalweg.cli.exit_codes import SUCCESS
 from thalweg.cli.progress import ProgressMessages
+from thalweg.core.errors import InputError
 
 if TYPE_CHECKING:
     from thalweg.studies import StudyProgress
@@ -49,6 +51,7 @@ def add_command(commands: Any) -> None:
 def _run(arguments: argparse.Namespace) -> int:
     from thalweg.studies import load_study, run_study
 
+    _refuse_ready_name(arguments.study)
     study = load_study(arguments.study)
     if arguments.count:
         print(f"{study.size} voyages")
@@ -67,6 +70,19 @@ def _run(arguments: argparse.Namespace) -> int:
         f"{state.new} were planned now, {state.refused} of them without a route"
     )
     return SUCCESS
+
+
+def _refuse_ready_name(given: str) -> None:
+    """Raise an error for the name of a ready study, which is no file yet."""
+    from thalweg.studies import ready_studies
+
+    if not Path(given).exists() and given in ready_studies():
+        raise InputError(
+            f"{given!r} is a ready study, and no file of this name exists.",
+            "Studies are run from files.",
+            f"thalweg study ready {given} > {given}.yaml writes it; then run {given}.yaml.",
+            value=given,
+        )
 
 
 def _ready(arguments: argparse.Namespace) -> int:

@@ -15,7 +15,7 @@ _MONTHS: Final = tuple(calendar.month_abbr)[1:]
 
 
 def draw_heat_map(table: pd.DataFrame, figure_name: str, path: Path) -> Path:
-    """Draw the medians of a figure by month and hour of departure.
+    """Draw the medians of a figure by month and hour of departure; months without any are left out.
 
     Parameters
     ----------
@@ -25,12 +25,13 @@ def draw_heat_map(table: pd.DataFrame, figure_name: str, path: Path) -> Path:
     from matplotlib.figure import Figure
 
     grid = table.pivot(index="hour", columns="month", values=figure_name)
-    grid = grid.reindex(columns=range(1, 13))
-    figure = Figure(figsize=(8.0, 0.8 + 0.45 * max(len(grid), 4)), layout="constrained")
+    width = max(4.5, 2.0 + 0.5 * grid.shape[1])
+    figure = Figure(figsize=(width, 0.8 + 0.45 * max(len(grid), 4)), layout="constrained")
     axes = figure.subplots()
     cells = np.ma.masked_invalid(grid.to_numpy(float))
     image = axes.imshow(cells, aspect="auto", cmap="cividis")
-    axes.set_xticks(range(12), _MONTHS)
+    months = grid.columns.to_numpy(int)
+    axes.set_xticks(range(len(months)), [_MONTHS[month - 1] for month in months])
     together = int(table["hours"].iloc[0])
     until = "" if together == 1 else "-{:02d}"
     names = [f"{hour:02d}{until.format(hour + together)}" for hour in grid.index]
