@@ -251,11 +251,10 @@ def test_an_area_is_drawn_and_the_route_avoids_it(visit):
     assert not page.locator("#hint").is_visible()
     page.get_by_label("Distance kept from area 1").fill("10")
     page.get_by_label("Distance kept from area 1").press("Tab")
-    bands = """() => { const [area] = window.thalweg.chart.areas.getSource().getFeatures();
-      return area.getStyleFunction()(area, 1000).map((style) => style.getStroke().getWidth()); }"""
-    band, line = page.evaluate(bands)  # in pixels of 1 km at the equator
-    assert band == pytest.approx(2 * 18.52 / math.cos(math.radians(47.1)), rel=1e-3)
-    assert line == 1.8
+    width = """async () => { const band = await import("/static/app/chart/area_margin.js");
+      const [area] = window.thalweg.form.areas.list; return band.marginPixels(area, 1000); }"""
+    expected = 18.52 / math.cos(math.radians(47.1))  # 1 km at the equator in a pixel
+    assert page.evaluate(width) == pytest.approx(expected, rel=1e-3)
     visit.picture("area")
     visit.plan()
     base = f"/api/v1/plans/{job_of(page)}"

@@ -68,8 +68,8 @@ def check(server: ServerProcess, jobs: dict[str, dict[str, Any]]) -> int:
             while found["state"] in ("queued", "running"):
                 time.sleep(0.3)
                 found = server.http.get(f"/api/v1/plans/{job}").json()
-            if found["state"] == "failed" and found["attempt"] >= 3:
-                print(f"{job}: given up after three kills", flush=True)
+            if found["state"] == "failed" and found["attempt"] >= 5:
+                print(f"{job}: given up after five kills", flush=True)
                 continue
             result = server.http.get(f"/api/v1/plans/{job}/result").json()
             results.setdefault(request["title"], set()).add(json.dumps(result, sort_keys=True))

@@ -39,7 +39,7 @@ class ServiceLimits:
 
     workers: int = max(1, (os.cpu_count() or 2) // 2)
     queue: int = 100
-    attempts: int = 3
+    attempts: int = 5
     job_seconds: float = 3600.0
     job_bytes: int = field(default_factory=lambda: machine_memory() // 2)
     upload_bytes: int = 2 * 2**30

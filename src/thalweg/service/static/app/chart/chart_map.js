@@ -2,6 +2,7 @@
 
 import { Map as OlMap, View, Overlay, Graticule, ScaleLine, Zoom, Draw, Modify, Snap, Translate, GeoJSON, toLonLat, transformExtent, extent as extents, defaultInteractions } from "../../vendor/ol.mjs";
 import { get } from "../common/api.js";
+import { marginStyles } from "./area_margin.js";
 import { CoastLayers } from "./coast_layer.js";
 import { ParticleLayer } from "./particle_layer.js";
 import { KINDS, legendColours, WeatherLayer } from "./weather_layer.js";
@@ -291,7 +292,7 @@ export class Chart extends EventTarget {
     areas.forEach((area, number) => {
       const feature = new Feature({ geometry: new Polygon([area.ring.map((p) => fromLonLat(p))]), area: number });
       const name = area.kind === "no-go" ? "danger" : "amber";
-      feature.setStyle((_, resolution) => [...margin(area, colour(name), resolution), new Style({ stroke: new Stroke({ color: colour(name), width: 1.8 }), fill: new Fill({ color: hatch(colour(name)) }), text: new Text({ text: area.factor ? `× ${area.factor}` : area.kind, font: `600 ${FONT}`, fill: new Fill({ color: colour(name) }), stroke: new Stroke({ color: colour("casing"), width: 3.5 }) }) })]);
+      feature.setStyle((_, resolution) => [...marginStyles(area, colour(name), resolution), new Style({ stroke: new Stroke({ color: colour(name), width: 1.8 }), fill: new Fill({ color: hatch(colour(name)) }), text: new Text({ text: area.factor ? `× ${area.factor}` : area.kind, font: `600 ${FONT}`, fill: new Fill({ color: colour(name) }), stroke: new Stroke({ color: colour("casing"), width: 3.5 }) }) })]);
       source.addFeature(feature);
     });
     if (!this.modify) {
@@ -321,14 +322,6 @@ function bar(colours) {
   const canvas = h("canvas", { width: 180, height: 10, "aria-hidden": "true" }), pen = canvas.getContext("2d");
   colours.forEach((one, i) => { pen.fillStyle = one; pen.fillRect((180 * i) / colours.length, 0, 180 / colours.length + 1, 10); });
   return canvas;
-}
-
-// The line at the distance that a route keeps from an area: as wide as twice the distance, on the ground.
-function margin({ ring, properties }, color, resolution) {
-  const metres = 1852 * (properties?.keep_clear_nm || 0);
-  if (!metres) return [];
-  const lat = ring.slice(1).reduce((sum, [, one]) => sum + one, 0) / (ring.length - 1), width = (2 * metres) / (resolution * Math.cos((lat * Math.PI) / 180));
-  return width > 3 ? [new Style({ stroke: new Stroke({ color: `${color}55`, width, lineJoin: "round" }) })] : [];
 }
 
 function hatch(color) {

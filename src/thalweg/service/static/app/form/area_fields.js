@@ -100,8 +100,8 @@ export class AreaFields {
     const slot = h("div.slot");
     const corners = area.ring.slice(0, -1).map(([lon, lat]) => `${lat}, ${lon}`).join("\n");
     return h("div.field", {},
-      h("div.row", {}, h("b", { style: "white-space: nowrap" }, `${i + 1}. ${area.kind[0].toUpperCase()}${area.kind.slice(1)}`),
-        area.kind !== "no-go" ? null : h("label.inline", {}, "keep clear by", h("input.short", { type: "text", inputmode: "decimal", value: String(area.properties?.keep_clear_nm ?? 0), "aria-label": `Distance kept from area ${i + 1}`, onchange: (event) => this.#typedMargin(i, event.target.value) }), "nm"),
+      h("div.row", {}, h("b", {}, `${i + 1}. ${area.kind[0].toUpperCase()}${area.kind.slice(1)}`),
+        area.kind !== "no-go" ? null : h("label.inline", {}, "clear by", h("input.short", { type: "text", inputmode: "decimal", value: String(area.properties?.keep_clear_nm ?? 0), "aria-label": `Distance kept from area ${i + 1}`, onchange: (event) => this.#typedMargin(i, event.target.value) }), "nm"),
         area.factor === null ? null : h("label.inline", {}, "each mile counts", h("input.short", { type: "text", inputmode: "decimal", value: String(area.factor), "aria-label": `Factor of area ${i + 1}`, onchange: (event) => this.#typedFactor(i, event.target.value) }), "×"),
         h("button.quiet.small", { type: "button", "aria-label": `Remove area ${i + 1}`, onclick: () => this.#change(this.list.filter((one) => one !== area)) }, "Remove")),
       h("label.hidden", { for: `area-${i}` }, `Corners of area ${i + 1}: latitude, longitude`),
