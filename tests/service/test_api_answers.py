@@ -64,6 +64,7 @@ def test_the_examples_of_results_are_each_of_their_own_form():
         "isochrones": "IsochronesAnswer",
         "beside": "BesideAnswer",
         "space_time": "SpaceTimeAnswer",
+        "limits": "LimitsAnswer",
         "diagrams": "DiagramsAnswer",
     }
     for example, model in by_kind.items():

@@ -31,6 +31,11 @@ def test_ready_studies_are_understood(name):
         assert "sea" in row.request
 
 
+def test_what_a_ready_study_shows_is_said_in_whole_sentences():
+    for about in ready_studies().values():
+        assert about.endswith(".") and not about.endswith("ch."), about
+
+
 def test_ready_studies_are_listed_and_printed(capsys):
     assert main(["study", "ready"]) == 0
     assert "fleet " in capsys.readouterr().out

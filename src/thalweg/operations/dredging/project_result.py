@@ -147,12 +147,14 @@ class ProjectResult:
         Returns
         -------
         dict
-            ``project``, ``runs`` by name, ``gains`` and ``provenance``.
+            ``project``, ``runs`` by name, ``gains``, ``prices`` of the cost with their sources, and
+            ``provenance``.
         """
         return {
             "project": self.project.to_dict(),
             "runs": {run.name: _run_data(run) for run in self.runs},
             "gains": self.gains(),
+            "prices": self.environment.ship.fuel_terms.prices(),
             "provenance": dict(self.provenance),
         }
 

@@ -72,7 +72,7 @@ ANSWERS: Final[Mapping[str, OperationAnswer]] = {
     "get /plans/{job_id}/result": OperationAnswer(results.JobResult, _RESULTS),
     "get /plans/{job_id}/tables/{name}.csv": OperationAnswer(None, ("voyages",), "text/csv"),
     "get /plans/{job_id}/{part}.json": OperationAnswer(
-        results.ResultPart, ("isochrones", "beside", "space_time", "diagrams")
+        results.ResultPart, ("isochrones", "beside", "space_time", "limits", "diagrams")
     ),
     "get /plans/{job_id}/profiles/{number}": OperationAnswer(results.ProfileAnswer, ("profile",)),
     "get /plans/{job_id}/routes/{number}.{form}": OperationAnswer(None, ("csv",), "text/csv"),

@@ -72,6 +72,14 @@ class PortAnswer(AnswerModel):
     distance_nm: float | None = Field(None, description="from `near`; otherwise left out")
 
 
+class ApproachAnswer(AnswerModel):
+    """The main way from the berth of a port to the open sea, positions as [lat, lon]."""
+
+    berth: tuple[float, float]
+    sea_end: tuple[float, float]
+    length_nm: float
+
+
 class PlaceAnswer(OpenAnswer):
     """How a place is understood: a position or a port."""
 
@@ -79,6 +87,7 @@ class PlaceAnswer(OpenAnswer):
     label: str
     lat: float
     lon: float
+    approach: ApproachAnswer | None = Field(None, description="of ports; null where none is known")
 
 
 class CoastIndexAnswer(AnswerModel):

@@ -58,6 +58,7 @@ class ProjectAnswer(OpenAnswer):
     project: dict[str, Any]
     runs: dict[str, Any]
     gains: dict[str, Any]
+    prices: dict[str, Any] = Field({}, description="of the cost, each with its value and source")
     provenance: dict[str, Any]
 
 
@@ -128,5 +129,24 @@ class DiagramsAnswer(AnswerModel):
     runs: dict[str, Any]
 
 
-class ResultPart(RootModel[BesideAnswer | DiagramsAnswer | SpaceTimeAnswer | IsochronesAnswer]):
+class LimitMet(AnswerModel):
+    """A limit that applies to a route: its worst value, and when the route is near it."""
+
+    name: str = Field(description="with its unit")
+    limit: float
+    worst: float
+    time: float = Field(description="of the worst value, in seconds since 1970-01-01T00:00Z")
+    near: list[tuple[float, float]] = Field(description="when it is within 5 % of the limit")
+    near_h: float
+
+
+class LimitsAnswer(AnswerModel):
+    """The limits that apply to each route of a result."""
+
+    routes: list[list[LimitMet]]
+
+
+class ResultPart(
+    RootModel[BesideAnswer | DiagramsAnswer | SpaceTimeAnswer | LimitsAnswer | IsochronesAnswer]
+):
     """A further part of a result."""

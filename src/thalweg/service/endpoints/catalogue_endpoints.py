@@ -7,6 +7,7 @@ from typing import Any
 
 from fastapi import APIRouter, Query, UploadFile
 
+from thalweg.chart.approaches import PORT_APPROACHES
 from thalweg.chart.port_names import normalised_port_name
 from thalweg.chart.ports import PORTS, Port
 from thalweg.core.errors import InputError
@@ -166,4 +167,17 @@ def place(text: str = Query(max_length=120)) -> dict[str, Any]:
             "lat": position[0],
             "lon": position[1],
         }
-    return {"kind": "port", **_port(PORTS.lookup(text))}
+    port = PORTS.lookup(text)
+    return {"kind": "port", **_port(port), "approach": _approach(port)}
+
+
+def _approach(port: Port) -> dict[str, Any] | None:
+    """Return the main way from the berth of a port to the open sea; None where it has none."""
+    way = PORT_APPROACHES.of(port)
+    if way is None:
+        return None
+    return {
+        "berth": way.berth,
+        "sea_end": way.sea_end,
+        "length_nm": round(way.length / NAUTICAL_MILE, 1),
+    }

@@ -148,7 +148,8 @@ def list_ready_studies() -> list[dict[str, Any]]:
     found = []
     for name, about in ready_studies().items():
         entries, study = StudyOrder(study=ready_study(name)).checked_study()
-        request = {"title": study.name or name, "study": entries}
+        title = study.name or name
+        request = {"title": title[:1].upper() + title[1:], "study": entries}
         found.append({"name": name, "about": about, "voyages": study.size, "request": request})
     return found
 
@@ -333,7 +334,9 @@ def job_table(
 
 @jobs_router.get("/plans/{job_id}/{part}.json")
 def job_part(
-    state: State, part: Literal["isochrones", "beside", "space_time", "diagrams"], job_id: JobId
+    state: State,
+    part: Literal["isochrones", "beside", "space_time", "limits", "diagrams"],
+    job_id: JobId,
 ) -> FileResponse:
     """Return a further file of a result: isochrones, the route that ignores the weather, place and
     time (where and when the track is closed by the tide), or the diagrams of a project.

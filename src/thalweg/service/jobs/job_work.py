@@ -17,6 +17,7 @@ from thalweg.service.jobs.child_messages import MessageWriter
 from thalweg.service.jobs.closure_facts import PLACES, TIMES, closure_facts
 from thalweg.service.jobs.isochrone_lines import isochrone_lines
 from thalweg.service.jobs.job_order import JobOrder, StageMessages
+from thalweg.service.jobs.limits_met import limits_met
 from thalweg.service.jobs.plan_request import EvaluationRequest, PlanRequest, RequestedRouteFiles
 from thalweg.service.jobs.request_objects import WorldOfJob, network_of, open_world, with_orders_of
 from thalweg.service.jobs.route_profiles import first_look, route_profile
@@ -202,7 +203,7 @@ def write_plan_result(
     Returns
     -------
     list of str
-        ``isochrones``, ``beside`` and ``space_time``, where there are such files.
+        ``isochrones``, ``beside``, ``space_time`` and ``limits``, where there are such files.
     """
     found.to_json(folder / "plan.json")
     chart = None if found.plot_context is None else found.plot_context.chart
@@ -212,7 +213,12 @@ def write_plan_result(
         write_route_result(route, folder, number, options, plan=found, stem=stem)
     lines = isochrone_lines(found)
     other = None if beside is None else {**beside.as_dict(), "profile": route_profile(beside)}
-    parts = {"isochrones": lines, "beside": other, "space_time": _space_time(found)}
+    parts = {
+        "isochrones": lines,
+        "beside": other,
+        "space_time": _space_time(found),
+        "limits": _limits_of_plan(found),
+    }
     for name, data in parts.items():
         write_json_file(folder / f"{name}.json", data)
     return [name for name, data in parts.items() if data is not None]
@@ -224,6 +230,17 @@ def _space_time(found: Plan) -> dict[str, Any] | None:
 
     closures = closures_of_plan(found, PLACES, TIMES)
     return None if closures is None else closure_facts(closures, [found.best])
+
+
+def _limits_of_plan(found: Plan) -> dict[str, Any] | None:
+    from thalweg.planning.request.requirements import required_under_keel_clearance
+
+    known = found.plot_context
+    if known is None:
+        return None
+    min_ukc = required_under_keel_clearance(found.voyage, known.ship)
+    given = {"ship": known.ship, "chart": known.chart, "min_ukc": min_ukc}
+    return {"routes": [limits_met(route, **given) for route in found.routes]}
 
 
 def job_summary(found: Plan, seconds: float) -> dict[str, Any]:
@@ -265,7 +282,12 @@ def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
     folder = Path(order.folder)
     write_json_file(folder / "route.json", route.as_dict())
     write_route_result(route, folder, 1, request.route_files.options(), stem=order.stem)
+    ship, clearance = world.ship, request.min_ukc_m
+    min_ukc = ship.min_under_keel_clearance if clearance is None else clearance
+    met = limits_met(route, ship=ship, chart=world.chart, min_ukc=min_ukc)
+    write_json_file(folder / "limits.json", {"routes": [met]})
     return {
+        "parts": ["limits"],
         "feasible": route.feasible,
         "seconds": stages.seconds(),
         "routes": 1,

@@ -13,7 +13,6 @@ from pydantic.fields import FieldInfo
 from thalweg.core.errors import InputError, close_matches, nearest_names, unknown_name_error
 
 _UNKNOWN_KEY = ("extra_forbidden", "invalid_key")
-_MOST_KEYS = 12  # that an error lists
 _OUT_OF_RANGE = ("greater_than", "greater_than_equal", "less_than_equal")
 
 
@@ -64,7 +63,7 @@ def _unknown_key_error(
     remedy = f"Did you mean {' or '.join(repr(n) for n in near)}?" if near else "Leave it out."
     return InputError(
         f"{_abbreviated(name)} is not a key of {place}.",
-        f"Keys are: {nearest_names(str(name)[:80], known, _MOST_KEYS)}.",
+        f"Keys are: {nearest_names(str(name)[:80], known)}.",
         remedy,
         key=str(name)[:80],
         near=near,

@@ -304,7 +304,7 @@ class Application {
     weather.set({ seas, time: selection.time, kind: kinds.includes(weather.kind) ? weather.kind : "" });
     this.chart.showLegend();
     result.view.show(profile);
-    this.drawer.show({ plan: result.plan, calm: isCalm(result.job.request), front: result.front, spaceTime: selection.route === 0 ? result.spaceTime : null, profile, waypoints: route.waypoints });
+    this.drawer.show({ plan: result.plan, calm: isCalm(result.job.request), front: result.front, spaceTime: selection.route === 0 ? result.spaceTime : null, limits: result.limits?.routes[selection.route], profile, waypoints: route.waypoints });
     if (fit) { this.chart.map.updateSize(); this.chart.fit(profile.lon.map((lon, i) => [lon, profile.lat[i]])); }
     this.#time();
     this.layers.show(kinds);

@@ -1,7 +1,7 @@
 // Diagrams of a dredging project: volume, activities with the tide, place and time, loads, cycles.
 
 import { fill, h } from "../common/elements.js";
-import { duration, known, number, seconds, time } from "../common/format.js";
+import { days, duration, known, number, seconds, time } from "../common/format.js";
 import { svg, ticks } from "../common/svg_parts.js";
 
 const ACTIVITIES = [["loading", "Loading", "--act-1"], ["sailing full", "Sailing full", "--act-2"], ["unloading", "Unloading", "--act-3"], ["sailing empty", "Sailing empty", "--act-4"], ["waiting", "Waiting", "--accent"]];
@@ -33,7 +33,7 @@ function axis(drawing, values, at, place) {
 export function drawVolume(sheet, runs, whole, start, lasted = {}) {
   const names = Object.keys(runs).filter((name) => runs[name].length);
   const last = Math.max(1, ...names.map((name) => (runs[name].at(-1).end - start) / 86400));
-  const [drawing, width, height] = frame(sheet, "Volume moved over time", [names.map((name) => mark(runColour(name), [name[0].toUpperCase() + name.slice(1), h("small", {}, `${number(runs[name].reduce((sum, c) => sum + c.volume_m3, 0))} m³ in ${duration(lasted[name] ?? (runs[name].at(-1).end - start) / 3600)}`)])), mark("--ink-3", "Whole volume", ".dashed")]);
+  const [drawing, width, height] = frame(sheet, "Volume moved over time", [names.map((name) => mark(runColour(name), [name[0].toUpperCase() + name.slice(1), h("small", {}, `${number(runs[name].reduce((sum, c) => sum + c.volume_m3, 0))} m³ in ${days(lasted[name] ?? (runs[name].at(-1).end - start) / 3600)}`)])), mark("--ink-3", "Whole volume", ".dashed")]);
   const left = 62, right = 16, top = 12, bottom = 30, reach = last * 1.02;
   const px = (day) => left + (day / reach) * (width - left - right), py = (v) => height - bottom - (v / (whole * 1.06)) * (height - top - bottom);
   axis(drawing, ticks(0, reach, Math.max(3, width / 110)).map((v) => [v, `${Number(v.toFixed(2))} d`]), px, { from: top, to: height - bottom, text: height - bottom + 17 });
@@ -127,7 +127,7 @@ export function drawLoads(sheet, runs) {
   return "Cycles by share of a full load";
 }
 
-const COLUMNS = [["Cycle", (c) => String(c.cycle)], ["Loading from", (c) => time(seconds(c.start)), true], ["Load", (c) => `${Math.round(100 * c.load_factor)} %`], ["Volume, m³", (c) => number(c.volume_m3)], ["Out, h", (c) => number(c.full_h, 2)], ["Waits, h", (c) => (c.full_waiting_h + c.empty_waiting_h > 0 ? number(c.full_waiting_h + c.empty_waiting_h, 2) : "")], ["Least clearance, m", (c) => number(c.full_least_clearance_m, 2)], ["Back, h", (c) => number(c.empty_h, 2)], ["m³/h", (c) => number(c.production_m3_h)], ["Speed, kn", (c) => number(c.mean_speed_kn, 1)], ["Fuel, t", (c) => number(c.fuel_t, 2)]];
+const COLUMNS = [["Cycle", (c) => String(c.cycle)], ["Loading from", (c) => time(seconds(c.start)), true], ["Load", (c) => `${Math.round(100 * c.load_factor)} %`], ["Volume, m³", (c) => number(c.volume_m3)], ["Out, h", (c) => number(c.full_h, 2)], ["Waits, h", (c) => (c.full_waiting_h + c.empty_waiting_h >= 0.005 ? number(c.full_waiting_h + c.empty_waiting_h, 2) : "")], ["Least clearance, m", (c) => number(c.full_least_clearance_m, 2)], ["Back, h", (c) => number(c.empty_h, 2)], ["m³/h", (c) => number(c.production_m3_h)], ["Speed, kn", (c) => number(c.mean_speed_kn, 1)], ["Fuel, t", (c) => number(c.fuel_t, 2)]];
 
 export function showCycles(sheet, runs, chosen, choose) {
   const rows = Object.entries(runs).flatMap(([name, run]) => run.cycles.map((cycle, i) => h("tr", { onclick: () => choose(name, i), "aria-current": chosen?.name === name && chosen?.i === i ? "true" : null }, h("td", {}, h("button.link", { type: "button" }, name)), COLUMNS.map(([, text, left]) => h(left ? "td.text" : "td", {}, text(cycle))))));

@@ -1,8 +1,9 @@
 // Dredging projects: the form, the simulation while it runs, and the result.
 
 import { get, resultAddress, tableAddress } from "../common/api.js";
-import { announce, errorBox, fill, h, unit } from "../common/elements.js";
-import { duration, inputTime, known, number, plainPosition, seconds, time } from "../common/format.js";
+import { announce, errorBox, fill, h, unit, withUnit } from "../common/elements.js";
+import { days, duration, inputTime, known, number, plainPosition, seconds, time } from "../common/format.js";
+import { pricesText } from "../common/prices.js";
 import { BatchView } from "./batch_view.js";
 import { PlaceField } from "../form/places.js";
 import { drawActivities, drawLoads, drawPlaceAndTime, drawVolume, runColour, showCycles } from "./project_diagrams.js";
@@ -28,7 +29,7 @@ export class ProjectView extends BatchView {
 
   #build() {
     this.numbers = Object.fromEntries(NUMBERS.map(([name]) => [name, h("input", { type: "text", inputmode: "decimal", id: `p-${name}`, autocomplete: "off" })]));
-    const field = (name) => { const [, label, unitText] = NUMBERS.find((row) => row[0] === name); return h("div.field", { "data-field": name }, h("label.label", { for: `p-${name}` }, label), h("div.with-unit", {}, this.numbers[name], h("span.unit", {}, unitText)), h("div.slot")); };
+    const field = (name) => { const [, label, unitText] = NUMBERS.find((row) => row[0] === name); return h("div.field", { "data-field": name }, h("label.label", { for: `p-${name}` }, label), withUnit(this.numbers[name], unitText), h("div.slot")); };
     this.title = h("input", { type: "text", id: "p-title", maxlength: 200 });
     this.ship = h("select", { id: "p-ship" });
     this.sea = h("div");
@@ -45,7 +46,7 @@ export class ProjectView extends BatchView {
         h("div.block", {}, h("div.itinerary", {}, this.load.element, this.unload.element)),
         h("div.block", {}, h("div.field", { "data-field": "ship" }, h("label.label", { for: "p-ship" }, "Ship"), this.ship, h("div.slot"))),
         h("fieldset.block", { "data-field": "seas" }, h("legend", {}, "Sea"), this.sea, h("label.check", {}, this.tides, h("span", {}, "Predict from the tides in the files", h("small", {}, "for dates that the files do not cover"))), h("div.slot")),
-        h("div.block", {}, h("div.pair", {}, field("volume_m3"), field("hopper_m3")), h("div.pair", {}, field("loading"), field("unloading")), h("div.pair", {}, h("div.field", { "data-field": "start" }, h("label.label", { for: "p-start" }, "Starts ", unit("UTC")), this.start, h("div.slot")), field("days"))),
+        h("div.block", {}, h("div.pair", {}, field("volume_m3"), field("hopper_m3")), h("div.pair", {}, field("loading"), field("unloading")), h("div.pair.time", {}, h("div.field", { "data-field": "start" }, h("label.label", { for: "p-start" }, "Starts"), withUnit(this.start, "UTC"), h("div.slot")), field("days"))),
         h("div.block", {}, h("details", {}, h("summary", {}, "Depth and network"), h("div.inside", {}, h("div.pair", {}, field("min_ukc_m"), field("spacing_m")), field("load_factors"), h("p.facts", {}, "Empty: the clearance of the ship file, 11 loads, and the mesh of the sea data."))),
           h("details", {}, h("summary", {}, "Base case to compare with"), h("div.inside", {}, h("div.field", { "data-field": "base_case" }, h("label.label", { for: "p-base" }, "Charted route: latitude, longitude"), this.base, h("div.slot")), h("div.field", {}, h("label.label", { for: "p-base-load" }, "Load"), this.baseLoad)))),
         h("div.field.block", {}, h("label.label", { for: "p-title" }, "Name"), this.title), this.problem),
@@ -86,7 +87,7 @@ export class ProjectView extends BatchView {
   }
 
   fit() {
-    const points = [this.load, this.unload].filter((field) => field.place).map((field) => [field.place.lon, field.place.lat]);
+    const points = [this.load, this.unload].filter((field) => field.place).map(({ spot }) => [spot.lon, spot.lat]);
     if (points.length) this.handlers.fit(points);
   }
 
@@ -119,7 +120,7 @@ export class ProjectView extends BatchView {
   places() {
     if (!this.unload || this.handlers.hidden()) return;
     const ends = [[this.load, "start", "Loads"], [this.unload, "goal", "Unloads"]].filter(([field]) => field.place);
-    this.chart.routes.showEnds(ends.map(([field, role, label]) => ({ role, label, lat: field.place.lat, lon: field.place.lon })), !this.job);
+    this.chart.routes.showEnds(ends.map(([field, role, label]) => ({ role, label, ...field.spot })), !this.job);
   }
 
   moved(number_, lat, lon) {
@@ -139,7 +140,7 @@ export class ProjectView extends BatchView {
   request() {
     const { load, unload } = this;
     for (const [field, what] of [[load, "loading"], [unload, "unloading"]]) if (!field.place) { field.fail({ asked: `The project has no ${what} site.`, remedy: "Type a position, or click it on the chart." }); field.input.focus(); return null; }
-    const project = { ...this.rest, name: this.title.value.trim() || "Dredging project", load: [load.place.lat, load.place.lon], unload: [unload.place.lat, unload.place.lon] };
+    const project = { ...this.rest, name: this.title.value.trim() || "Dredging project", load: [load.spot.lat, load.spot.lon], unload: [unload.spot.lat, unload.spot.lon] };
     for (const [name, label] of NUMBERS) {
       const text = this.numbers[name].value.trim().replace(",", "."), before = this.rest[name];
       if (text === "") { if (typeof before !== "object") delete project[name]; continue; }
@@ -252,12 +253,13 @@ export class ProjectView extends BatchView {
     const card = (name, value, unitText, more) => h("div.card", {}, h("dt", {}, name), h("dd", {}, value, unitText ? unit(unitText) : null, more ? h("small", {}, more) : null));
     const gain = (share, good) => (known(share) ? [h(`span.${(share > 0) === good ? "less" : "more"}`, {}, `${share > 0 ? "+" : "−"}${number(Math.abs(100 * share), 0)} %`), " against the base case"] : null);
     const notes = Object.entries(result.runs).flatMap(([name, run]) => run.notes.map((text) => `${name}: ${text}`));
-    const [head, ...rows] = diagrams.table.map((row) => (row[0] === "duration" ? [row[0], ...diagrams.table[0].slice(1).map((name) => duration(lastedOf(result)[name]))] : row));
+    const [head, ...rows] = diagrams.table.map((row) => (row[0] === "duration" ? [row[0], ...diagrams.table[0].slice(1).map((name) => days(lastedOf(result)[name]))] : row));
     return [h("div.scroll", {},
       h("h1", {}, result.project.name), h("p.lead", {}, `${number(result.project.volume_m3)} m³ from ${time(seconds(result.project.start), true)} UTC`),
       best.feasible ? null : h("div.error", { role: "alert" }, h("b", {}, "Some legs break a limit."), "The notes state how many."),
-      h("dl.cards", {}, card("Production", number(totals.production_m3_week), "m³/week", gain(gains.production_gain, true)), card("Duration", duration(lastedOf(result).optimised), null, known(gains.time_saved) ? gain(-gains.time_saved, false) : null), card("Cycles", number(totals.cycles), null, `mean load ${number(100 * totals.mean_load_factor)} %`), card("Waiting", `${number(100 * totals.waiting_share, 1)}`, "% of the time"), card("Fuel", known(totals.fuel_t) ? number(totals.fuel_t, 1) : "unknown", known(totals.fuel_t) ? "t" : null), card("CO₂ per volume", known(totals.co2_kg_m3) ? number(totals.co2_kg_m3, 2) : "unknown", known(totals.co2_kg_m3) ? "kg/m³" : null)),
-      h("div.block", {}, h("h2", {}, "All figures"), h("div.table.narrow", { tabindex: 0 }, h("table", {}, h("caption.hidden", {}, "Figures of the runs, as in Table 5.1 of van Halem (2019)"), h("thead", {}, h("tr", {}, head.map((text, i) => h(i ? "th" : "th.text", { scope: "col" }, text || h("span.hidden", {}, "Figure"))))), h("tbody", {}, rows.map((row) => h("tr", {}, row.map((text, i) => (i ? h("td", {}, text) : h("th.text", { scope: "row" }, (text[0].toUpperCase() + text.slice(1)).replace(/m3/g, "m³").replace("CO2", "CO₂")))))))))),
+      h("dl.cards", {}, card("Production, m³ a week", number(totals.production_m3_week), null, gain(gains.production_gain, true)), card("Duration", days(lastedOf(result).optimised), null, known(gains.time_saved) ? gain(-gains.time_saved, false) : null), card("Cycles", number(totals.cycles), null, `mean load ${number(100 * totals.mean_load_factor)} %`), card("Waiting", `${number(100 * totals.waiting_share, 1)}`, "% of the time"), card("Fuel", known(totals.fuel_t) ? number(totals.fuel_t, 1) : "unknown", known(totals.fuel_t) ? "t" : null), card("CO₂ per volume", known(totals.co2_kg_m3) ? number(totals.co2_kg_m3, 2) : "unknown", known(totals.co2_kg_m3) ? "kg/m³" : null)),
+      h("div.block", {}, h("h2", {}, "All figures"), h("div.table.narrow", { tabindex: 0 }, h("table", {}, h("caption.hidden", {}, "Figures of the runs, as in Table 5.1 of van Halem (2019)"), h("thead", {}, h("tr", {}, head.map((text, i) => h(i ? "th" : "th.text", { scope: "col" }, text || h("span.hidden", {}, "Figure"))))), h("tbody", {}, rows.map((row) => h("tr", {}, row.map((text, i) => (i ? h("td", {}, text) : h("th.text", { scope: "row" }, (text[0].toUpperCase() + text.slice(1)).replace(/m3/g, "m³").replace("CO2", "CO₂"))))))))),
+        known(totals.cost) && result.prices ? h("p.facts", {}, `Prices, ${totals.currency}: ${pricesText(result.prices)}.`) : null),
       notes.length ? h("div.block", {}, h("h2", {}, "Notes"), h("ul.list", {}, notes.map((text) => h("li", {}, text)))) : null,
       h("div.block", {}, h("h2", {}, "Files"), h("div.exports", {}, h("a.quiet.small", { href: tableAddress(job.id, "cycles"), download: "" }, "Cycles as CSV"), h("a.quiet.small", { href: resultAddress(job.id), download: "project.json" }, "project.json")))),
     h("div.foot", {}, h("button.primary", { type: "button", onclick: async () => this.handlers.panel([await this.show()]) }, "Change the project"))];

@@ -1,8 +1,8 @@
 // Studies: the voyage of the plan form over departures, speeds and ships, as a heat map.
 
 import { get, resultAddress, tableAddress } from "../common/api.js";
-import { announce, errorBox, fill, h, unit } from "../common/elements.js";
-import { duration, inputTime, known, number, seconds, time } from "../common/format.js";
+import { announce, errorBox, fill, h, longList, withUnit } from "../common/elements.js";
+import { duration, inputTime, known, number, readable, seconds, time } from "../common/format.js";
 import { jobFoot } from "../result/progress_view.js";
 import { BatchView } from "./batch_view.js";
 import { HeatMap, quantile } from "./heat_map.js";
@@ -29,13 +29,13 @@ export class StudyView extends BatchView {
     this.voyage = h("div");
     this.ready = h("div");
     this.file = h("input.hidden", { type: "file", id: "study-file", "aria-label": "Study file", accept: ".yaml,.yml,.json", tabindex: "-1", onchange: () => this.#open() });
-    const field = (name, label, input, more = null) => h("div.field", { "data-field": name }, h("label.label", { for: input.id }, label), input, more, h("div.slot"));
+    const field = (name, label, input, more = null) => h("div.field", { "data-field": name }, h("label.label", { for: input.id || input.firstChild.id }, label), input, more, h("div.slot"));
     this.element = h("form", { novalidate: true, class: "form", style: "display: contents", onsubmit: (event) => { event.preventDefault(); this.submit(); } },
       h("div.scroll", {}, h("h1", {}, "Study"), h("p.lead", {}, "One voyage for many departures, speeds and ships: when is it fast, cheap, or not possible at all?"),
         h("div.exports.block", {}, h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Study file …"), this.file), this.ready, this.earlier,
         h("div.block", {}, h("h2", {}, "Voyage"), this.voyage),
-        h("fieldset.block", {}, h("legend", {}, "Departures ", unit("UTC")), h("div.pair", {}, field("from", "From", this.from), field("to", "To", this.to)), h("div.field", { "data-field": "step" }, h("label.label", { for: "s-step" }, "Every"), h("div.with-unit", {}, this.step, h("span.unit", {}, "h")), h("div.slot"))),
-        h("div.block", {}, field("speed_kn", ["Speeds ", unit("kn, separated by commas")], this.speeds, h("p.facts", {}, "Empty: as the voyage states."))),
+        h("fieldset.block", {}, h("legend", {}, "Departures"), field("from", "From", withUnit(this.from, "UTC")), field("to", "To", withUnit(this.to, "UTC")), h("div.field", { "data-field": "step" }, h("label.label", { for: "s-step" }, "Every"), withUnit(this.step, "h"), h("div.slot"))),
+        h("div.block", {}, field("speed_kn", "Speeds", withUnit(this.speeds, "kn"), h("p.facts", {}, "With commas between them. Empty: as the voyage states."))),
         h("fieldset.block", { "data-field": "ship" }, h("legend", {}, "Ships"), this.ships, h("div.slot")),
         h("div.block", {}, h("label.check", {}, this.blind, h("span", {}, "Compare with routes that ignore the weather", h("small", {}, "states what routing saves"))), field("title", "Name", this.title), this.counted), this.problem),
       h("div.foot", {}, h("button.primary", { type: "submit" }, "Plan the study")));
@@ -163,7 +163,7 @@ export class StudyView extends BatchView {
       summary.cancelled ? h("p.note", {}, `Stopped: ${number(summary.voyages)} of ${number(summary.total)} voyages were planned.`) : null,
       h("dl.cards", {}, wide([card("Median time", times.length ? duration(at(0.5)) : "unknown", times.length > 2 ? `80 % within ${duration(at(0.1))} to ${duration(at(0.9))}` : null), card("Without a route", number(this.map.rows.length - usable.length), this.map.rows.length ? `${number((100 * (this.map.rows.length - usable.length)) / this.map.rows.length)} % of the voyages` : null), fastest?.depart ? card("Fastest", duration(fastest.time_h), `leaves ${time(seconds(fastest.depart))}`) : null, best ? card("Best month", months[best.month], `median ${duration(best.median)} of ${best.of} months`) : null])),
       this.cellBox,
-      result.refusals.length ? h("div.block", {}, h("h2", {}, "Why there is no route"), h("ul.list", {}, result.refusals.slice(0, 6).map((row) => h("li", {}, `${number(row.voyages)} voyages: ${row.reason}`)))) : null,
+      result.refusals.length ? h("div.block", {}, h("h2", {}, "Why there is no route"), longList(result.refusals.map((row) => h("li", {}, `${number(row.voyages)} voyage${row.voyages === 1 ? "" : "s"}: ${readable(row.reason)}`)), 6)) : null,
       h("div.block", {}, h("h2", {}, "Files"), h("div.exports", {}, h("a.quiet.small", { href: tableAddress(job.id, "voyages"), download: "" }, "Voyages as CSV"), h("a.quiet.small", { href: tableAddress(job.id, "summary"), download: "" }, "Summary as CSV"), h("a.quiet.small", { href: resultAddress(job.id), download: "study.json" }, "study.json")))),
     h("div.foot", {}, h("button.primary", { type: "button", onclick: async () => this.handlers.panel([await this.show()]) }, "Another study"))]);
     announce("The study is planned.");
@@ -177,8 +177,10 @@ export class StudyView extends BatchView {
   }
 
   #cell(name, cell) {
-    const rows = cell.rows.slice(0, 12);
-    fill(this.cellBox, h("h2", {}, name), h("p.facts", {}, `${number(cell.rows.length)} voyage${cell.rows.length === 1 ? "" : "s"}${cell.lost ? `, ${cell.lost} without a route` : ""}`), rows.map((row) => h("button.job", { type: "button", title: "Fill in this voyage to plan it", onclick: () => this.#plan(row) }, h("b", {}, row.depart ? time(seconds(row.depart)) : "Voyage"), h("span", {}, row.refusal ? row.reason : `${duration(row.time_h)} · ${known(row.fuel_t) ? `${number(row.fuel_t, 1)} t` : "fuel unknown"}${known(row.max_significant_wave_height_m) ? ` · waves ${number(row.max_significant_wave_height_m, 1)} m` : ""}`))), cell.rows.length > rows.length ? h("p.facts", {}, `and ${number(cell.rows.length - rows.length)} more, in the CSV file`) : null);
+    const row = (one) => h("button.job", { type: "button", title: "Fill in this voyage to plan it", onclick: () => this.#plan(one) }, h("b", {}, one.depart ? time(seconds(one.depart)) : "Voyage"), h("span", {}, one.refusal ? readable(one.reason || "") : `${duration(one.time_h)} · ${known(one.fuel_t) ? `${number(one.fuel_t, 1)} t` : "fuel unknown"}${known(one.max_significant_wave_height_m) ? ` · waves ${number(one.max_significant_wave_height_m, 1)} m` : ""}`));
+    const rest = cell.rows.slice(12), box = h("div");
+    const more = rest.length ? h("details.plain", { ontoggle: () => { if (!box.childElementCount) fill(box, rest.map(row)); } }, h("summary", {}, `${number(rest.length)} more`), box) : null;
+    fill(this.cellBox, h("h2", {}, name), h("p.facts", {}, `${number(cell.rows.length)} voyage${cell.rows.length === 1 ? "" : "s"}${cell.lost ? `, ${cell.lost} without a route` : ""}`), cell.rows.slice(0, 12).map(row), more);
   }
 
   // Fill the plan form with one voyage of the study.

@@ -10,10 +10,13 @@ import { RouteLayers, speedColours, layer, stroke, FONT, Feature, Point, Polygon
 import { colour, fill, h } from "../common/elements.js";
 import { known, number, position, time, unwrapped } from "../common/format.js";
 
+const CLOSE = 0.12; // of the chart: places within it are too close
+
 export class Chart extends EventTarget {
   constructor(element) {
     super();
     this.element = element;
+    this.legend = document.getElementById("legend");
     this.map = new OlMap({
       target: element,
       controls: [new Zoom({ zoomInTipLabel: "Closer (+)", zoomOutTipLabel: "Farther (−)" }), new ScaleLine({ units: "nautical", target: document.getElementById("scale") })],
@@ -33,11 +36,12 @@ export class Chart extends EventTarget {
     this.ports = layer(15, { declutter: true, minZoom: 2.5, updateWhileInteracting: false, renderBuffer: 300 });
     this.areas = layer(18);
     [...this.coast.layers, this.depths.layer, this.weather.layer, this.particles.layer, this.eca, this.canals, this.ports, this.areas, ...this.routes.layers].forEach((one) => this.map.addLayer(one));
-    this.graticule = null;
+    this.graticules = [];
     this.#pointer();
     this.#chooser();
     this.#dragging();
     this.#loadChart();
+    this.map.on("change:size", () => this.#sized());
     this.map.once("rendercomplete", () => element.setAttribute("data-idle", "true"));
     this.paint();
     this.coast.load();
@@ -46,17 +50,18 @@ export class Chart extends EventTarget {
   paint() {
     this.coast.paint();
     this.element.style.backgroundColor = colour("sea");
-    if (this.graticule) this.map.removeLayer(this.graticule);
+    for (const one of this.graticules) this.map.removeLayer(one);
     const text = new Text({ font: '11px system-ui, "DejaVu Sans", sans-serif', fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 2.5 }) });
     const label = (style) => { const one = text.clone(); Object.entries(style).forEach(([name, value]) => one[name](value)); return one; };
-    this.graticule = new Graticule({
-      strokeStyle: new Stroke({ color: colour("graticule"), width: 0.6 }), showLabels: true, wrapX: true, zIndex: 9, targetSize: 120,
+    const lines = (zIndex, showLabels) => new Graticule({
+      strokeStyle: new Stroke({ color: showLabels ? "transparent" : colour("graticule"), width: 0.6 }), showLabels, wrapX: true, zIndex, targetSize: 120,
       lonLabelPosition: 0.005, latLabelPosition: 0.998,
       lonLabelStyle: label({ setTextBaseline: "bottom" }), latLabelStyle: label({ setTextAlign: "end", setTextBaseline: "bottom" }),
       lonLabelFormatter: (value) => degrees(value, "E", "W"), latLabelFormatter: (value) => degrees(value, "N", "S"),
       intervals: [30, 20, 10, 5, 2, 1, 0.5, 0.25, 1 / 6, 1 / 12, 1 / 30, 1 / 60],
     });
-    this.map.addLayer(this.graticule);
+    this.graticules = [lines(9, false), lines(13, true)]; // the lines under the land, the labels over it
+    for (const one of this.graticules) this.map.addLayer(one);
     this.portStyles?.splice(0); // of the palette before
     for (const one of [...this.routes.layers, this.eca, this.canals, this.ports, this.areas]) one.changed();
     this.weather.repaint();
@@ -164,13 +169,33 @@ export class Chart extends EventTarget {
     if (!points.length) return;
     const lons = unwrapped(points.map((p) => p[0]));
     const box = extents.boundingExtent(points.map((p, i) => fromLonLat([lons[i], p[1]])));
-    this.map.getView().fit(extents.buffer(box, Math.max(2e4, 0.06 * Math.max(extents.getWidth(box), extents.getHeight(box)))), { padding: [28, 40, 28, 40], maxZoom: 11, duration: 0 });
+    const whole = extents.buffer(box, Math.max(2e4, 0.06 * Math.max(extents.getWidth(box), extents.getHeight(box))));
+    const show = (right) => this.map.getView().fit(whole, { padding: [28, right, 28, 40], maxZoom: 11, duration: 0 });
+    show(40);
+    if (this.#underLegend(points.map((p, i) => fromLonLat([lons[i], p[1]])))) show(this.legend.offsetWidth + 48);
+    this.fitted = { points, place: String(this.place) };
   }
 
-  // The chart moves only where a place [{lon, lat}] is outside of it: to all of them, or to the only one.
+  // Whether the legend covers any of these places.
+  #underLegend(coordinates) {
+    if (this.legend.hidden) return false;
+    const [width, height] = this.map.getSize() || [0, 0], { offsetWidth: wide, offsetHeight: high } = this.legend;
+    if (width < 3 * wide) return false; // there is no room beside it
+    const resolution = this.map.getView().getResolution(), [x0, y0] = this.map.getView().getCenter();
+    return coordinates.some(([x, y]) => (x - x0) / resolution > width / 2 - wide - 24 && (y0 - y) / resolution > height / 2 - high - 48);
+  }
+
+  // A chart that nobody moved since shows all of it again when its size changes.
+  #sized() {
+    if (this.fitted?.place === String(this.place)) this.fit(this.fitted.points);
+  }
+
+  // The chart moves only where a place [{lon, lat}] is outside of it, or all are too close to tell apart: to all of them, or to the only one.
   fitOutside(places) {
     const [w, s, e, n] = this.view, east = (lon) => w + ((((lon - w) % 360) + 360) % 360);
-    if (places.every(({ lon, lat }) => lat > s && lat < n && east(lon) < e)) return;
+    const wide = Math.max(...places.map(({ lon }) => east(lon))) - Math.min(...places.map(({ lon }) => east(lon))), high = Math.max(...places.map(({ lat }) => lat)) - Math.min(...places.map(({ lat }) => lat));
+    const apart = places.length < 2 || wide > CLOSE * (e - w) || high > CLOSE * (n - s);
+    if (apart && places.every(({ lon, lat }) => lat > s && lat < n && east(lon) < e)) return;
     if (places.length > 1) this.fit(places.map(({ lon, lat }) => [lon, lat]));
     else this.map.getView().setCenter(fromLonLat([places[0].lon, places[0].lat]));
   }
@@ -211,7 +236,7 @@ export class Chart extends EventTarget {
 
   showLegend(state = this.legendState) {
     this.legendState = state;
-    const box = document.getElementById("legend");
+    const box = this.legend;
     const { kind } = this.weather;
     box.hidden = !kind && !this.speeds && !this.depths.kind;
     fill(box, this.speeds ? this.#speedLegend(...this.speeds) : null, kind ? this.#weatherLegend(kind, state) : null, this.depths.kind ? this.#depthLegend() : null);
@@ -245,7 +270,7 @@ export class Chart extends EventTarget {
   #weatherLegend(kind, state) {
     const { title, unit, top } = KINDS[kind];
     const words = { "no data": "no data at this time", failed: "cannot be read" }[state];
-    return h("section", { "aria-busy": String(state === "loading") }, h("b", {}, title), words ? ` · ${words}` : null, bar(legendColours(kind)),
+    return h("section", { "aria-busy": String(state === "loading") }, h("b", {}, title), words ? h("div", {}, words) : null, bar(legendColours(kind)),
       h("div.ends", {}, h("span", {}, "0"), h("span", {}, `${top / 2}`), h("span", {}, `${top} ${unit}`.trim())), h("div.none", {}, h("i", {}), "no data"), this.run ? h("div.run", {}, this.run) : null);
   }
 

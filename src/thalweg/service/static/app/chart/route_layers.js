@@ -33,16 +33,17 @@ export class RouteLayers {
     this.isochrones = layer(12, { declutter: true });
     this.beside = layer(20);
     this.others = layer(21);
+    this.near = layer(22);
     this.chosen = layer(23);
     this.marks = layer(24, { declutter: true });
     this.ship = layer(27);
-    this.ends = layer(26);
+    this.ends = layer(26, { declutter: true });
     this.faults = layer(25);
-    this.layers = [this.isochrones, this.beside, this.others, this.chosen, this.faults, this.marks, this.ends, this.ship];
+    this.layers = [this.isochrones, this.beside, this.others, this.near, this.chosen, this.faults, this.marks, this.ends, this.ship];
   }
 
   clear() {
-    for (const one of [this.isochrones, this.beside, this.others, this.chosen, this.marks, this.ship, this.faults]) one.getSource().clear();
+    for (const one of [this.isochrones, this.beside, this.others, this.near, this.chosen, this.marks, this.ship, this.faults]) one.getSource().clear();
   }
 
   showIsochrones(found) {
@@ -116,6 +117,17 @@ export class RouteLayers {
     }
   }
 
+  // Parts of the chosen route that are near a limit.
+  showNear(parts) {
+    const source = this.near.getSource();
+    source.clear();
+    for (const points of parts) {
+      const feature = new Feature(line(points));
+      feature.setStyle(() => stroke(colour("near"), 12));
+      source.addFeature(feature);
+    }
+  }
+
   // Waypoints, and the time along the route every 12 or 24 hours.
   showMarks(waypoints, profile) {
     const source = this.marks.getSource();
@@ -169,8 +181,8 @@ export class RouteLayers {
     for (const [index, end] of ends.entries()) {
       const feature = new Feature({ geometry: new Point(fromLonLat([end.lon, end.lat])), role: end.role, index, movable });
       feature.setStyle(() => new Style({
-        image: new Circle({ radius: 6, fill: new Fill({ color: end.role === "goal" ? colour("route") : colour("casing") }), stroke: new Stroke({ color: colour("route"), width: 2.5 }) }),
-        text: new Text({ text: end.label || "", font: `600 ${FONT}`, offsetX: 11, textAlign: "left", fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 3.5 }) }),
+        image: new Circle({ radius: 6, fill: new Fill({ color: end.role === "goal" ? colour("route") : colour("casing") }), stroke: new Stroke({ color: colour("route"), width: 2.5 }), declutterMode: "obstacle" }),
+        text: new Text({ declutterMode: "obstacle", text: end.label || "", font: `600 ${FONT}`, offsetX: 11, textAlign: "left", fill: new Fill({ color: colour("map-ink") }), stroke: new Stroke({ color: colour("casing"), width: 3.5 }) }),
       }));
       source.addFeature(feature);
     }

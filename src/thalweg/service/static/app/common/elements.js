@@ -31,10 +31,19 @@ export function fill(element, ...children) {
   return element;
 }
 
+// An input with its unit in it, at the right.
+export const withUnit = (input, text) => h("div.with-unit", {}, input, h("span.unit", {}, text));
+
 export const unit = (text) => h("span.unit", {}, ` ${text}`);
 
 // A duration with its units in a lighter tone.
 export const durationParts = (hours) => duration(hours).split(" ").map((word, i, all) => (i % 2 ? h("span.unit", {}, ` ${word}${i < all.length - 1 ? " " : ""}`) : word));
+
+// A list whose first entries are shown, and the others where they are wanted.
+export function longList(items, first) {
+  const rest = items.slice(first);
+  return [h("ul.list", {}, items.slice(0, first)), rest.length ? h("details", {}, h("summary", {}, `${number(rest.length)} more`), h("ul.list", {}, rest)) : null];
+}
 
 export function announce(text) {
   document.getElementById("announcer").textContent = text;

@@ -29,8 +29,10 @@ export function time(s, withYear = false) {
 export const isCalm = (request) => request?.seas?.length === 1 && request.seas[0] === "calm";
 
 // A text of the service: times such as 1998-08-31T12:00:00Z become 31 Aug 1998 12:00 UTC.
+// Positions in degrees become degrees and minutes, as on a chart.
 export function readable(text) {
-  return text.replace(/\d{4}-\d\d-\d\dT\d\d:\d\d(:[\d.]+)?Z/g, (found) => `${time(seconds(found), true)} UTC`);
+  return text.replace(/\d{4}-\d\d-\d\dT\d\d:\d\d(:[\d.]+)?Z/g, (found) => `${time(seconds(found), true)} UTC`)
+    .replace(/\b(\d{1,2}\.\d+)([NS]),? (\d{1,3}\.\d+)([EW])\b/g, (_, lat, north, lon, east) => position(north === "S" ? -lat : Number(lat), east === "W" ? -lon : Number(lon)));
 }
 
 export function duration(hours) {
@@ -38,6 +40,12 @@ export function duration(hours) {
   const minutes = Math.round(hours * 60), days = Math.floor(minutes / 1440);
   if (minutes < 60) return `${minutes} min`;
   return `${days ? `${days} d ` : ""}${Math.floor((minutes % 1440) / 60)} h ${two(minutes % 60)} min`;
+}
+
+// A duration of weeks: days and whole hours.
+export function days(hours) {
+  const whole = Math.round(hours);
+  return known(hours) && whole >= 48 ? `${Math.floor(whole / 24)} d ${whole % 24} h` : duration(hours);
 }
 
 // The difference of two figures as they are shown: of hours to the minute (decimals null), else rounded.

@@ -1,7 +1,7 @@
 // Fetch a forecast from the page: the size first, then the download as a job.
 
 import { follow, get, hasEnded, post, remove, start } from "../common/api.js";
-import { announce, errorBox, fill, h } from "../common/elements.js";
+import { announce, errorBox, fill, h, withUnit } from "../common/elements.js";
 import { inputTime, number, seconds, time } from "../common/format.js";
 import { typedTime } from "../common/typed_time.js";
 
@@ -20,7 +20,7 @@ export class ForecastFetch {
     this.answer = h("div", { role: "status" });
     this.element = h("details.fetch", {}, h("summary", {}, "Fetch a forecast"), h("div.inside", {},
       h("div.field", {}, h("label.label", { for: "f-source" }, "From"), this.source), this.quantities,
-      h("div.pair", {}, h("div.field", {}, h("label.label", { for: "f-from" }, "First time ", h("span.unit", {}, "UTC")), this.from), h("div.field", {}, h("label.label", { for: "f-days" }, "For"), h("div.with-unit", {}, this.days, h("span.unit", {}, "days")))),
+      h("div.pair.time", {}, h("div.field", {}, h("label.label", { for: "f-from" }, "First time"), withUnit(this.from, "UTC")), h("div.field", {}, h("label.label", { for: "f-days" }, "For"), withUnit(this.days, "days"))),
       h("div.field", {}, h("label.label", { for: "f-step" }, "Fields every"), this.step),
       this.area,
       h("button.quiet", { type: "button", onclick: () => this.#estimate() }, "Estimate the download"), this.answer));

@@ -1,9 +1,9 @@
 // Fields of the network that is searched, and of the traffic of other ships.
 
-import { h } from "../common/elements.js";
+import { h, withUnit } from "../common/elements.js";
 import { UploadedFiles } from "./uploaded_files.js";
 
-const NETWORKS = [["auto", "Chosen"], ["lattice", "Grid around the route"], ["mesh", "Mesh of the sea data"], ["globe", "Global grid"], ["layered", "Layers between two places"], ["history", "Water that ships usually use"]];
+const NETWORKS = [["auto", "Chosen by the voyage"], ["lattice", "Grid around the route"], ["mesh", "Mesh of the sea data"], ["globe", "Global grid"], ["layered", "Layers between two places"], ["history", "Water that ships usually use"]];
 const NUMBERS = [["resolution_nm", "Spacing", "nm"], ["proof_s", "Time for the proof", "s"], ["corridor_gain_percent", "Leave it where that saves", "%"], ["near_coast_nm", "Finer near land", "nm"], ["within_percent", "Tolerance of length", "%"]];
 const asNumber = (text) => Number(text.trim().replace(",", "."));
 
@@ -15,7 +15,7 @@ export class NetworkFields {
     this.kind = h("select", { id: "network", onchange: () => this.#parts() }, NETWORKS.map(([value, text]) => h("option", { value }, text)));
     this.shape = Object.fromEntries([["layers", "Layers"], ["fan", "Fan"], ["offset_nm", "Offset"]].map(([name, label]) => [name, h("input", { type: "text", id: `net-${name}`, autocomplete: "off", placeholder: "chosen", "aria-label": label })]));
     this.contain = h("textarea", { id: "net-contain", rows: 2, placeholder: "64.862, 11.253" });
-    const field = (name) => { const [, label, unit] = NUMBERS.find((row) => row[0] === name); return h("div.field", { "data-field": name }, h("label.label", { for: `net-${name}` }, label), h("div.with-unit", {}, this.numbers[name], h("span.unit", {}, unit)), h("div.slot")); };
+    const field = (name) => { const [, label, unit] = NUMBERS.find((row) => row[0] === name); return h("div.field", { "data-field": name }, h("label.label", { for: `net-${name}` }, label), withUnit(this.numbers[name], unit), h("div.slot")); };
     this.layered = h("div.part", { "data-field": "layered" },
       h("div.triple", {}, Object.entries(this.shape).map(([name, input]) => h("div.field", {}, h("label.label", { for: `net-${name}` }, { layers: "Layers", fan: "Fan", offset_nm: "Offset, nm" }[name]), input))),
       h("div.pair", {}, field("near_coast_nm"), field("within_percent")),

@@ -2,7 +2,7 @@
 
 import { get } from "../common/api.js";
 import { errorBox, fill, h } from "../common/elements.js";
-import { plainPosition } from "../common/format.js";
+import { number, plainPosition, position } from "../common/format.js";
 
 let count = 0;
 
@@ -74,8 +74,22 @@ export class PlaceField {
     if (this.failed !== this.value) this.clear();
     this.place = place;
     this.asked = this.value;
-    this.said.textContent = place.kind === "port" ? `${place.label}${place.locode ? ` (${place.locode})` : ""} · ${plainPosition(place.lat, place.lon)}` : "Position";
+    this.said.textContent = this.#words(place);
     this.onChange(typed);
+  }
+
+  // Where the route begins or ends: at the berth, at the end of its way for a via point, or at a position.
+  get spot() {
+    const { approach, lat, lon } = this.place, end = approach && (this.role === "via" ? approach.sea_end : approach.berth);
+    return end ? { lat: end[0], lon: end[1] } : { lat, lon };
+  }
+
+  #words({ kind, label, locode, approach }) {
+    const { lat, lon } = this.spot, where = position(lat, lon);
+    if (kind !== "port") return `Position ${where}`;
+    const name = `${label}${locode ? ` (${locode})` : ""}`;
+    if (!approach) return `${name} · ${where}, no approach known`;
+    return this.role === "via" ? `${name} · passed off its approach, at ${where}` : `${name} · berth ${where}, approach of ${number(approach.length_nm, 1)} nm`;
   }
 
   #typed() {
@@ -107,7 +121,7 @@ export class PlaceField {
     const port = this.ports[i];
     this.input.value = port.locode || port.label;
     this.#close();
-    this.#understood({ kind: "port", ...port }, true);
+    this.understand();
   }
 
   #key(event) {
@@ -131,8 +145,9 @@ export class PlaceField {
 export async function endsOf({ start, goal }) {
   const end = async (given, role) => {
     if (Array.isArray(given)) return { role, lat: given[0], lon: given[1], label: "" };
-    const { kind, display_name: name, lat, lon } = await get(`/places?text=${encodeURIComponent(given)}`);
-    return { role, lat, lon, label: kind === "port" ? name : "" };
+    const { kind, display_name: name, lat, lon, approach } = await get(`/places?text=${encodeURIComponent(given)}`);
+    const [y, x] = approach?.berth || [lat, lon];
+    return { role, lat: y, lon: x, label: kind === "port" ? name : "" };
   };
   return Promise.all([end(start, "start"), end(goal, "goal")]);
 }

@@ -1,7 +1,7 @@
 // The form of a voyage. Errors stand at their field; what is missing is said, not greyed out.
 
 import { get, start } from "../common/api.js";
-import { errorBox, fill, h } from "../common/elements.js";
+import { errorBox, fill, h, withUnit } from "../common/elements.js";
 import { inputTime, plainPosition, seconds, time } from "../common/format.js";
 import { typedTime } from "../common/typed_time.js";
 import { AreaFields } from "./area_fields.js";
@@ -75,19 +75,19 @@ export class PlanForm extends EventTarget {
     const body = h("div.scroll", {},
       h("h1", {}, "Plan a voyage"),
       h("p.lead", {}, "Type the ends or click them on the chart, or ", h("button.link", { type: "button", onclick: () => this.set(DEMO) }, "fill in an example"), "."),
-      h("div.block", {}, h("div.itinerary", {}, this.start.element, this.viaBox, this.goal.element), h("div.row", {}, h("span"), this.undoMove, swap, addVia)),
+      h("div.block", {}, h("div.itinerary", {}, this.start.element, this.viaBox, this.goal.element), h("div.row.ends", {}, h("span"), this.undoMove, swap, addVia)),
       h("div.block", {},
         this.ship.element),
       this.sea.element,
       h("div.block", {},
-        h("div.field", { "data-field": "depart" }, h("label.label", { for: "depart" }, "Departure ", h("span.unit", {}, "UTC")), this.depart, this.departFacts, h("div.slot")),
+        h("div.field", { "data-field": "depart" }, h("label.label", { for: "depart" }, "Departure"), withUnit(this.depart, "UTC"), this.departFacts, h("div.slot")),
         h("div.field", { "data-field": "objective" }, h("label.label", { for: "objective" }, "Objective"), this.objective, h("div.slot")), this.weights.element),
       h("div.block", {},
         this.#details("time", "Time and speed", [
-          fields.pair("speed_kn", "arrive_by"),
-          h("div.field", { "data-field": "depart_window" }, h("label.label", { for: "latest" }, "Latest departure (finds the best between)"), this.latest, h("div.slot")),
-          fields.field("wait"), fields.pair("arrive", "speed_block_h"), fields.field("hold"),
-          h("p.facts", {}, "Arrive at: in the minute before it, at one speed that is found. A speed is held longer than the hours given where speeds are chosen."),
+          fields.pair("arrive_by", "speed_kn", ".time"),
+          h("div.field", { "data-field": "depart_window" }, h("label.label", { for: "latest" }, "Latest departure"), withUnit(this.latest, "UTC"), h("div.slot")),
+          fields.field("wait"), fields.pair("arrive", "speed_block_h", ".time"), fields.field("hold"),
+          h("p.facts", {}, "Latest departure: the best time between is found. Arrive at: one speed is found that arrives in the minute before it. Hold for: a chosen speed is kept for at least so long."),
         ]),
         this.#details("limits", "Limits", [
           fields.pair("wave_height_m", "wind_speed_kn"), fields.pair("min_ukc_m", "offing_nm"), fields.field("motion_sickness_percent"),
@@ -184,7 +184,7 @@ export class PlanForm extends EventTarget {
   // The menu at a clicked position or port.
   offer({ lat, lon, port, coordinate }) {
     const name = port ? port.locode || port.label : "";
-    const set = (field) => () => (port ? field.set(name, { kind: "port", ...port }) : field.setPosition(lat, lon));
+    const set = (field) => () => (port ? field.set(name) : field.setPosition(lat, lon));
     this.chart.choose(coordinate, port ? port.label : plainPosition(lat, lon), [["From here", set(this.start)], ["To here", set(this.goal)], ["Via here", () => this.addVia(name, port ? null : [lat, lon])], ["Close", () => {}]]);
   }
 
@@ -200,7 +200,7 @@ export class PlanForm extends EventTarget {
   }
 
   get ends() {
-    return [this.start, ...this.vias, this.goal].filter((field) => field.place).map((field) => ({ role: field.role, lat: field.place.lat, lon: field.place.lon, label: field.place.kind === "port" ? field.place.display_name : "" }));
+    return [this.start, ...this.vias, this.goal].filter((field) => field.place).map((field) => ({ role: field.role, ...field.spot, label: field.place.kind === "port" ? field.place.display_name : "" }));
   }
 
   #placesChanged(typed = false) {

@@ -1,6 +1,6 @@
 // Fields of a request that hold one value each: where they stand in it, and how they are written.
 
-import { h } from "../common/elements.js";
+import { h, withUnit } from "../common/elements.js";
 import { inputTime, seconds } from "../common/format.js";
 import { typedTime } from "../common/typed_time.js";
 
@@ -13,7 +13,7 @@ const FIELDS = {
   arrive: ["voyage", "Arrive at", "time"],
   hold: ["voyage", "Hold at this speed", "choice", [["", "as the ship file orders"], ["speed", "speed through water"], ["power", "power"], ["ground", "speed over ground"]]],
   wait: ["voyage", "The ship may stop and wait", "tick", false],
-  speed_block_h: ["voyage", "Hold speeds for", "number", "h"],
+  speed_block_h: ["voyage", "Hold for", "number", "h"],
   wave_height_m: ["limits", "Waves at most", "number", "m"],
   wind_speed_kn: ["limits", "Wind at most", "number", "kn"],
   motion_sickness_percent: ["limits", "Sick after two hours at most", "number", "% of people"],
@@ -23,7 +23,7 @@ const FIELDS = {
   open: ["voyage", "Passages to open, though closed to ships of her size", "words", "Raz de Sein, ..."],
   fuel_price_usd: ["voyage", "Fuel", "number", "USD/t"],
   eca_price_factor: ["voyage", "Factor in control areas", "number", "×"],
-  time_price_usd_per_h: ["voyage", "Time without fuel", "number", "USD/h"],
+  time_price_usd_per_h: ["voyage", "Cost of an hour, without fuel", "number", "USD/h"],
   eca: ["", "Emission control areas count in the cost", "tick", false],
   ets_price: ["charges", "Allowance", "number", "USD/t CO₂"],
   eur_rate: ["charges", "Euro", "number", "USD"],
@@ -36,7 +36,7 @@ const FIELDS = {
   average_over_m: ["", "Average currents in layers over", "number", "m"],
   sampling: ["", "Weather between its times", "choice", [["linear", "interpolated"], ["nearest:3", "nearest within 3 h"], ["nearest:6", "nearest within 6 h"], ["nearest:12", "nearest within 12 h"]]],
   method: ["voyage", "Search of trade-offs", "choice", [["default", "exact, then refined"], ["exact", "exact only"], ["nsga2", "NSGA-II"], ["spea2", "SPEA2"], ["mpaes", "M-PAES"]]],
-  ensemble: ["voyage", "Forecasts with members", "choice", [["", "no choice by members"], ["mean", "least mean"], ["cvar", "least mean of the worst tenth"]]],
+  ensemble: ["voyage", "Forecasts with members", "choice", [["", "not used to choose"], ["mean", "least mean"], ["cvar", "least mean of the worst tenth"]]],
   seed: ["voyage", "Seed of random numbers", "number", ""],
   legs: ["route_files", "Lines between waypoints", "choice", [["rhumb", "rhumb lines"], ["great-circle", "great circles"]]],
   rtz_version: ["route_files", "RTZ version", "choice", [["1.2", "1.2"], ["1.1", "1.1"], ["1.0", "1.0"]]],
@@ -65,11 +65,11 @@ export class RequestFields {
   field(name) {
     const [, label, kind, unit] = FIELDS[name], input = this.inputs[name];
     if (kind === "tick") return h("div", { "data-field": name }, h("label.check", {}, input, h("span", {}, label)), h("div.slot"));
-    return h("div.field", { "data-field": name }, h("label.label", { for: input.id }, label), kind === "number" && unit ? h("div.with-unit", {}, input, h("span.unit", {}, unit)) : input, h("div.slot"));
+    return h("div.field", { "data-field": name }, h("label.label", { for: input.id }, label), kind === "time" ? withUnit(input, "UTC") : kind === "number" && unit ? withUnit(input, unit) : input, h("div.slot"));
   }
 
-  pair(a, b) {
-    return h("div.pair", {}, this.field(a), this.field(b));
+  pair(a, b, shape = "") {
+    return h(`div.pair${shape}`, {}, this.field(a), this.field(b));
   }
 
   /**

@@ -24,7 +24,7 @@ export class SeaChoice {
       ondrop: (event) => { event.preventDefault(); this.drop.classList.remove("over"); this.reading = this.#upload([...event.dataTransfer.files]); },
     }, "Drop a GRIB or NetCDF file here, or ", h("button.link", { type: "button", onclick: () => this.file.click() }, "choose a file"), ".");
     this.fetch = new ForecastFetch(handlers.ends, handlers.departs, () => this.chosen, (seas, before) => this.#fetched(seas, before));
-    this.element = h("fieldset.block", { "data-field": "seas" }, h("legend", {}, "Sea"), this.facts, this.box, this.drop, this.file, this.fetch.element, h("div.slot"));
+    this.element = h("fieldset.block", { "data-field": "seas" }, h("legend", {}, "Sea"), this.facts, this.box, this.drop, this.file, h("div.slot"), this.fetch.element);
   }
 
   get chosen() {

@@ -18,7 +18,7 @@ export class ShipChoice {
     this.facts = h("p.facts", { id: "ship-facts" });
     this.sheet = h("details.sheet-of-ship", { hidden: true });
     this.file = h("input.hidden", { type: "file", id: "ship-file", "aria-label": "Ship file", accept: ".yaml,.yml,.json", tabindex: "-1", onchange: () => { this.reading = this.#upload(); } });
-    this.element = h("div.field", { "data-field": "ship" }, h("label.label", { for: "ship" }, "Ship"), h("div.row", {}, this.select, h("button.quiet", { type: "button", onclick: () => this.file.click() }, "Ship file …")), this.file, this.facts, this.sheet, h("div.slot"));
+    this.element = h("div.field", { "data-field": "ship" }, h("div.label-row", {}, h("label.label", { for: "ship" }, "Ship"), h("button.link", { type: "button", onclick: () => this.file.click() }, "Ship file …")), this.select, this.file, this.facts, this.sheet, h("div.slot"));
   }
 
   get value() {

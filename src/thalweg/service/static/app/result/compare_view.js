@@ -1,7 +1,7 @@
 // Two to six routes side by side, with differences to the first; ready studies and scored files.
 
 import { follow, get, hasEnded, post, uploadForm } from "../common/api.js";
-import { errorBox, fill, h } from "../common/elements.js";
+import { errorBox, fill, h, withUnit } from "../common/elements.js";
 import { EXAMPLES, keyOf, VARIATIONS } from "./examples.js";
 import { drawCompared, PAINTS } from "./result_drawing.js";
 import { faultWords } from "../common/faults.js";
@@ -39,7 +39,7 @@ export class CompareView {
     this.file = h("input.hidden", { type: "file", id: "route-file", "aria-label": "Route file", accept: ".rtz,.rtzp,.gml,.gpx,.geojson,.json,.kml,.csv", tabindex: "-1", onchange: () => this.#score() });
     this.element = [h("div.scroll", {}, h("h1", {}, "Compare routes"), h("p.lead", {}, "Choose two to six. The differences are those to the reference. A plan stands here with its first route; its others are below it."), this.problem, h("div.block", {}, h("h2.with-count", {}, "Chosen", this.counted), this.picked), h("div.block", {}, h("h2", {}, "Routes to choose from"), this.list), h("div.block", {}, h("h2", {}, "Examples"), EXAMPLES.map((example) => h("button.job.example", { type: "button", onclick: () => this.#example(example) }, h("b", {}, example.name), h("span", {}, example.facts)))), h("div.block", {}, h("h2", {}, "Vary the reference"), h("p.facts", {}, "Its voyage is planned again with one change, and the results are added."), h("div.exports", {},
       VARIATIONS.map(([text, plans]) => h("button.quiet.small", { type: "button", onclick: () => this.#study(plans) }, text))),
-    h("div.block", {}, h("h2", {}, "A route of your own"), h("p.facts", {}, "An RTZ, S-421, GPX, GeoJSON, KML or CSV file is sailed in the weather and by the ship of the reference, from the time in the file; its speeds and arrival are not used."), h("div.field", {}, h("label.label", { for: "own-speed" }, "Speed"), h("div.with-unit", {}, this.speed, h("span.unit", {}, "kn")), h("p.facts", {}, "Empty: the highest of the ship.")), h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Score a route file …"), this.file)))];
+    h("div.block", {}, h("h2", {}, "A route of your own"), h("p.facts", {}, "An RTZ, S-421, GPX, GeoJSON, KML or CSV file is sailed in the weather and by the ship of the reference, from the time in the file; its speeds and arrival are not used."), h("div.field", {}, h("label.label", { for: "own-speed" }, "Speed"), withUnit(this.speed, "kn"), h("p.facts", {}, "Empty: the highest of the ship.")), h("button.quiet.small", { type: "button", onclick: () => this.file.click() }, "Score a route file …"), this.file)))];
   }
 
   add(job, number_, title) {

@@ -5,6 +5,7 @@ import { colour, fill, h } from "../common/elements.js";
 import { bearing, duration, known, number, position, seconds, time } from "../common/format.js";
 import { FrontDiagram } from "./front_diagram.js";
 import { drawClosures } from "../batch/project_diagrams.js";
+import { limitOf, nearLimits } from "./limits_met.js";
 import { selection } from "../common/selection.js";
 
 const SERIES = [
@@ -36,7 +37,7 @@ export class Drawer {
     this.output = h("output", { for: "time" });
     this.tabs = h("div.tabs", { role: "tablist", "aria-label": "Diagrams" });
     this.sheet = h("div.sheet", { role: "tabpanel", id: "sheet" });
-    fill(element, h("div.player", {}, this.play, this.slider, this.output, this.tabs), this.sheet);
+    fill(element, h("div.player.timed", {}, this.play, this.slider, this.output, this.tabs), this.sheet);
     this.#icon();
     selection.addEventListener("time", () => this.moved());
     for (const kind of ["route", "hover"]) selection.addEventListener(kind, () => this.front?.mark());
@@ -59,7 +60,7 @@ export class Drawer {
     fill(this.sheet);
     this.range(...(period || [null, null]));
     this.slider.disabled = this.play.disabled = !period;
-    if (!period) this.output.textContent = "no data in time";
+    if (!period) this.output.textContent = "no weather to play";
     this.moved();
   }
 
@@ -145,7 +146,7 @@ export class Drawer {
   moved() {
     const t = selection.time;
     if (!known(t) || !known(this.from)) return;
-    this.output.textContent = time(t);
+    fill(this.output, time(t), h("span.unit", {}, " UTC"));
     if (document.activeElement !== this.slider || this.timer) this.slider.value = String(Math.round(((t - this.from) / Math.max(1, this.to - this.from)) * 1000));
     this.slider.style.setProperty("--share", `${(100 * (t - this.from)) / Math.max(1, this.to - this.from)}%`);
     this.slider.setAttribute("aria-valuetext", `${time(t)} UTC`);
@@ -202,11 +203,41 @@ export class Drawer {
       ],
       series: [{}, ...there.map(([name, text, , scale, paint]) => ({ label: text, scale, stroke: getComputedStyle(document.documentElement).getPropertyValue(paint), width: 1.8, spanGaps: false }))],
       legend: { show: false },
-      hooks: { ready: [() => this.moved()], setCursor: [(u) => { if (this.inPlot && u.cursor.idx !== null && u.cursor.left >= 0) selection.at(profile.time[u.cursor.idx]); }] },
+      hooks: { ready: [(u) => { this.#align(u); this.moved(); }], setSize: [(u) => this.#align(u)], draw: [(u) => this.#drawLimits(u, there)], setCursor: [(u) => { if (this.inPlot && u.cursor.idx !== null && u.cursor.left >= 0) selection.at(profile.time[u.cursor.idx]); }] },
     }, [profile.time, ...there.map(([name]) => profile[name])], this.holder);
     this.plot.over.addEventListener("pointerenter", () => { this.inPlot = true; });
     this.plot.over.addEventListener("pointerleave", () => { this.inPlot = false; this.moved(); });
     this.moved();
+  }
+
+  // The slider stands over the plot: the times of both line up.
+  #align(u) {
+    const { left, width } = u.over.getBoundingClientRect(), outer = this.element.getBoundingClientRect();
+    this.element.style.setProperty("--plot-left", `${left - outer.left}px`);
+    this.element.style.setProperty("--plot-right", `${outer.right - left - width}px`);
+  }
+
+  // Limits of the curves as dashed lines, and when the route is near one.
+  #drawLimits(u, there) {
+    const { ctx: pen } = u, { left, top, width, height } = u.bbox, met = this.result.limits, ratio = devicePixelRatio;
+    pen.save();
+    pen.fillStyle = colour("near");
+    for (const [from, to] of nearLimits(met)) {
+      const a = u.valToPos(from, "x", true), b = u.valToPos(to, "x", true);
+      pen.fillRect(a, top, Math.max(2 * ratio, b - a), 5 * ratio);
+    }
+    pen.setLineDash([6 * ratio, 4 * ratio]);
+    pen.lineWidth = 1.2 * ratio;
+    for (const [name, , , scale, paint] of there) {
+      const limit = limitOf(met, name), y = known(limit) ? u.valToPos(limit, scale, true) : -1;
+      if (y < top || y > top + height) continue;
+      pen.strokeStyle = colour(paint.slice(2));
+      pen.beginPath();
+      pen.moveTo(left, y);
+      pen.lineTo(left + width, y);
+      pen.stroke();
+    }
+    pen.restore();
   }
 
   #values(i) {

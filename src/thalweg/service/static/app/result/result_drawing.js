@@ -3,6 +3,7 @@
 import { Feature, line, stroke } from "../chart/route_layers.js";
 import { colour } from "../common/elements.js";
 import { known } from "../common/format.js";
+import { nearParts } from "./limits_met.js";
 import { selection } from "../common/selection.js";
 
 // Draw a result: the chosen route, the others, the one that ignores the weather, isochrones, limits that are broken.
@@ -18,6 +19,7 @@ export function drawResult(layers, result, profile, shown, shipRange) {
   const speeds = profile.speed_over_ground_kn.filter(known);
   const range = [Math.min(...speeds, shipRange?.[0] ?? Infinity), Math.max(...speeds, shipRange?.[1] ?? -Infinity)];
   layers.showChosen(points, shown.bySpeed ? profile.speed_over_ground_kn : null, range, selection.route);
+  layers.showNear(nearParts(result.limits?.routes[selection.route], profile));
   const route = result.plan.routes[selection.route];
   layers.showMarks(route.waypoints, profile);
   layers.showFaults(route.violations);

@@ -1,10 +1,12 @@
 // The result of a plan or an evaluation: key figures, proof, warnings, exports.
 
 import { fileAddress, get, resultAddress } from "../common/api.js";
-import { durationParts, fill, h, REASONS, unit } from "../common/elements.js";
+import { durationParts, fill, h, longList, REASONS, unit } from "../common/elements.js";
 import { faultWords, remedyOf } from "../common/faults.js";
+import { limitsBlock } from "./limits_met.js";
 import { indicatorTable } from "../form/indicators.js";
-import { duration, isCalm, known, number, plainPosition, readable, seconds, signed, signedDuration, time, titleOf } from "../common/format.js";
+import { duration, isCalm, known, number, position, readable, seconds, signed, signedDuration, time, titleOf } from "../common/format.js";
+import { pricesText } from "../common/prices.js";
 import { selection } from "../common/selection.js";
 
 export const OBJECTIVES = { time: "least time", distance: "shortest distance", fuel: "least fuel", energy: "least energy", cost: "least cost", comfort: "least motion sickness", co2: "least CO₂", encounters: "fewest encounters", inshore: "least length near land", weighted: "a weighted sum", front: "all trade-offs", alternatives: "routes that differ" };
@@ -14,9 +16,9 @@ export async function loadResult(job) {
   const plan = { plan: () => raw, alternatives: () => ({ ...raw, routes: raw.alternatives.map((one) => one.route), rejections: {}, objective: "alternatives" }) }[job.kind]?.() || evaluated();
   const optional = (part) => get(`/plans/${job.id}/${part}.json`).catch(() => null);
   const parts = job.summary.parts || [];
-  const [isochrones, beside, spaceTime] = await Promise.all(["isochrones", "beside", "space_time"].map((part) => (parts.includes(part) ? optional(part) : null)));
+  const [isochrones, beside, spaceTime, limits] = await Promise.all(["isochrones", "beside", "space_time", "limits"].map((part) => (parts.includes(part) ? optional(part) : null)));
   const sheet = job.request.ship ? await get(`/ships/${encodeURIComponent(job.request.ship)}`).catch(() => null) : null;
-  return { job, plan, sheet, isochrones, beside, spaceTime, front: plan.front || null, profiles: new Map() };
+  return { job, plan, sheet, isochrones, beside, spaceTime, limits, front: plan.front || null, profiles: new Map() };
 }
 
 export async function profileOf(result, number_) {
@@ -29,17 +31,6 @@ export function costOf(route) {
 }
 
 const worst = (profile, column) => { const values = (profile?.[column] || []).filter(known); return values.length ? Math.max(...values) : null; };
-
-// The prices of a cost, and what it leaves out.
-function pricesText(prices) {
-  const fuel = prices?.fuel_per_t?.value, dear = prices?.fuel_in_eca_per_t?.value;
-  if (!known(fuel)) return "";
-  const parts = [`fuel ${number(fuel)}${known(dear) && dear !== fuel ? `, ${number(dear)} in control areas` : ""}`];
-  const hour = prices.time_per_day?.value;
-  parts.push(hour > 0 ? `time ${number(hour)} a day` : "no price of time");
-  if (prices.european_charges?.not_counted?.length) parts.push("no EU charges");
-  return parts.join("; ");
-}
 
 export class ResultView {
   constructor(result, handlers) {
@@ -58,26 +49,28 @@ export class ResultView {
     fill(this.body,
       h("h1", {}, titleOf(job)),
       h("p.lead", {}, `${plan.voyage ? OBJECTIVES[plan.objective] : "given route"} · ${this.handlers.shipName(job.request.ship)}`),
-      h("p.lead", {}, to ? `${from} to ${to}, leaves ` : "Leaves ", h("b", {}, time(seconds(route.depart), true)), " UTC"),
+      h("p.lead", {}, to ? readable(`${from} to ${to}, leaves `) : "Leaves ", h("b", {}, time(seconds(route.depart), true)), " UTC"),
       plan.cancelled ? h("p.note", {}, "Stopped: this is the best found so far.") : null,
       this.#faults(route),
       this.#cards(route, profile, beside),
       plan.voyage && !plan.alternatives ? this.#proof(plan) : null,
       plan.alternatives ? this.#alternatives(plan) : plan.routes.length > 1 ? this.#routes(plan) : null,
+      limitsBlock(this.result.limits?.routes[selection.route], route, plan.voyage, Object.entries(plan.rejections).map(([reason, count]) => `${number(count)} ${REASONS[reason] || reason}`), isCalm(job.request)),
       this.#indicators(plan),
       this.#notes(plan, route),
       this.#exports(job, route));
     this.body.scrollTop = top;
+    const list = this.body.querySelector(".routes"), pressed = list?.querySelector("[aria-pressed=true]");
+    if (pressed) list.scrollTop = pressed.offsetTop - list.clientHeight / 2;
     if (inList) this.body.querySelector(".routes [aria-pressed=true]").focus({ preventScroll: true });
   }
 
   // Without numbers of legs: those of the referee are not those of the table.
   #faults(route) {
     if (route.feasible) return null;
-    const row = (one) => h("li", {}, `${one.reason.replace(/: leg \d+$/, "")} at ${plainPosition(one.lat, one.lon)}${one.time ? `, ${time(seconds(one.time))}` : ""}${known(one.value) && known(one.limit) ? `: ${number(one.value, 1)}, limit ${number(one.limit, 1)}` : ""}`);
-    const { violations } = route, shown = violations.slice(0, 6), rest = violations.slice(6);
-    return h("div.error", { role: "alert" }, h("b", {}, `This route ${faultWords(violations)}.`), h("ul.list", {}, shown.map(row)),
-      rest.length ? h("details", {}, h("summary", {}, `${number(rest.length)} more`), h("ul.list", {}, rest.map(row))) : null,
+    const row = (one) => h("li", {}, `${one.reason.replace(/: leg \d+$/, "")} at ${position(one.lat, one.lon)}${one.time ? `, ${time(seconds(one.time))}` : ""}${known(one.value) && known(one.limit) ? `: ${number(one.value, 1)}, limit ${number(one.limit, 1)}` : ""}`);
+    const { violations } = route;
+    return h("div.error", { role: "alert" }, h("b", {}, `This route ${faultWords(violations)}.`), longList(violations.map(row), 6),
       h("span.remedy", {}, `The rings on the chart show where.${remedyOf(violations)}`));
   }
 
@@ -94,7 +87,8 @@ export class ResultView {
       card("Time", durationParts(route.time_h), null, complete ? than(route.time_h, beside.time_h, signedDuration) : null),
       card("Arrival, UTC", time(seconds(route.arrive)), null, known(route.waiting_h) && route.waiting_h > 0 ? `waits ${duration(route.waiting_h)}` : null),
       card("Fuel", number(route.fuel_t, 1), "t", complete ? than(route.fuel_t, beside.fuel_t, (d) => `${signed(d)} t`) : null),
-      card("Cost", number(cost), route.currency, [complete ? than(cost, other, (d) => `${signed(d, 0)}`) : null, known(cost) ? h("span.prices", {}, pricesText(route.prices)) : null]),
+      card("Cost", number(cost), route.currency, complete ? than(cost, other, (d) => `${signed(d, 0)}`) : null),
+      known(cost) ? h("div.card.wide.prices", {}, h("dt", {}, `Prices, ${route.currency}`), h("dd", {}, pricesText(route.prices))) : null,
       card("Distance", number(route.distance_nm, 1), "nm", known(route.time_h) ? `mean ${number(route.distance_nm / route.time_h, 1)} kn` : null),
       card("CO₂", number(route.co2_t, 0), "t"),
       calm ? assumed : card("Highest waves", number(waves, 1), "m", known(besideWaves) && known(waves) ? `weather ignored: ${number(besideWaves, 1)} m` : known(waves) ? null : "no waves in the data"),
@@ -122,8 +116,7 @@ export class ResultView {
       h("details", {}, h("summary", {}, "How this is known"), h("ul.list", {},
         known(plan.lower_bound) ? h("li", {}, `${plan.front ? (plan.objective === "front" ? "No route takes less than" : "No route of any time has less than") : "No route is better than"} ${number(plan.lower_bound, 1)} ${plan.objective_unit}. ${kind}.`) : h("li", {}, `${kind}.`),
         h("li", {}, "The bound does not count penalty areas, shoals and traffic lanes: where these make the way longer, the best possible is nearer than stated."),
-        h("li", {}, "Every figure comes from sailing the route again in small steps."),
-        Object.entries(plan.rejections).map(([reason, count]) => h("li", {}, `${number(count)} ${REASONS[reason] || reason} were refused.`)))));
+        h("li", {}, "Every figure comes from sailing the route again in small steps."))));
   }
 
   #routes(plan) {
@@ -155,7 +148,7 @@ export class ResultView {
   #notes(plan, route) {
     const notes = [...new Set([...plan.notes, ...(route.assumptions || [])])];
     if (!notes.length) return null;
-    return h("div.block.plain", {}, h("h2", {}, "What was assumed, and warnings"), h("ul.list", {}, notes.slice(0, 3).map((text) => h("li", {}, readable(text)))), notes.length > 3 ? h("details", {}, h("summary", {}, `${notes.length - 3} more`), h("ul.list", {}, notes.slice(3).map((text) => h("li", {}, readable(text))))) : null);
+    return h("div.block.plain", {}, h("h2", {}, "What was assumed, and warnings"), longList(notes.map((text) => h("li", {}, readable(text))), 3));
   }
 
   #exports(job, route) {

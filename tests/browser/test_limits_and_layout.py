@@ -1,0 +1,131 @@
+"""What limits a route, where the form says that it begins, and parts of the page that line up."""
+
+from __future__ import annotations
+
+import json
+import re
+from datetime import UTC, datetime
+
+import pytest
+
+from tests.browser.conftest import playwright_api
+
+pytestmark = pytest.mark.slow
+
+
+def time_words(seconds: float) -> str:
+    return f"{datetime.fromtimestamp(seconds, UTC):%-d %b %H:%M} UTC"
+
+
+CENTRE_AND_ZOOM = "window.thalweg.chart.place"
+MARKS = """(() => { const rect = (one) => one.getBoundingClientRect();
+  const plot = rect(document.querySelector(".u-over")), line = rect(document.querySelector("#time"));
+  return [line.left + 8 - plot.left, line.right - 8 - plot.right]; })()"""
+
+
+def lined_up(gaps) -> bool:
+    return all(abs(gap) <= 1.0 for gap in gaps)
+
+
+def test_the_slider_stands_over_the_profile(visit, planned):
+    page = visit.open(f"#plan={planned}")
+    page.wait_for_selector(".u-over")
+    assert lined_up(page.evaluate(MARKS))
+    page.locator(".chips").get_by_label("Fuel").check()  # with an axis of its own
+    visit.until(MARKS, lined_up)
+    page.set_viewport_size({"width": 900, "height": 800})
+    visit.until(MARKS, lined_up)
+    times = "(() => { const { drawer } = window.thalweg, { plot } = drawer;"
+    times += "return [drawer.from, drawer.to, plot.scales.x.min, plot.scales.x.max]; })()"
+    begin, end, first, last = page.evaluate(times)
+    assert (begin, end) == (first, last)
+
+
+def test_the_form_states_where_a_route_begins(visit):
+    page = visit.open()
+    visit.fill_short("Rotterdam", "Hull")
+    said = page.locator(".field.start .understood")
+    berth = "Rotterdam, NL (NLRTM) · berth 51°54.0′N 004°27.6′E, approach of 23.5 nm"
+    playwright_api.expect(said).to_have_text(berth)
+    page.locator(".field.goal .understood", has_text="Hull").wait_for()
+    ends = page.evaluate("window.thalweg.form.ends")
+    assert (ends[0]["lat"], ends[0]["lon"]) == (51.9, 4.46)
+    page.get_by_role("button", name="+ Via point").click()
+    page.locator(".field.via input").fill("Vlissingen")
+    page.keyboard.press("Tab")
+    page.locator(".field.via .understood", has_text="passed off its approach").wait_for()
+    via = page.evaluate("window.thalweg.form.ends[1]")
+    approach = visit.service.http.get("/api/v1/places?text=Vlissingen").json()["approach"]
+    assert [via["lat"], via["lon"]] == approach["sea_end"] != approach["berth"]
+
+
+def test_the_chart_goes_to_ends_that_cannot_be_told_apart(visit):
+    page = visit.open()
+    before = page.evaluate(CENTRE_AND_ZOOM)
+    visit.fill_short("51.0N 2.0E", "51.3N 2.6E")  # both are on the chart
+    page.locator("#depart").focus()
+    centre, zoom = visit.until(CENTRE_AND_ZOOM, lambda place: place != before)
+    assert zoom > before[1] + 3.0
+    visit.fill_short("51.0N 2.0E", "51.3N 2.4E")
+    page.locator(".field.goal .understood", has_text="002°24.0′E").wait_for()
+    assert page.evaluate(CENTRE_AND_ZOOM) == [centre, zoom]
+
+
+def test_a_comparison_fits_the_chart_again_unless_somebody_moved_it(visit, planned):
+    page = visit.open(f"#view=compare&routes={planned}.1,{planned}.0")
+    page.locator(".compare-table tbody tr").nth(1).wait_for()
+    _, wide = page.evaluate(CENTRE_AND_ZOOM)
+    page.set_viewport_size({"width": 1280, "height": 560})
+    visit.until(CENTRE_AND_ZOOM, lambda place: place[1] < wide - 0.3)
+    page.set_viewport_size({"width": 1280, "height": 720})
+    visit.until(CENTRE_AND_ZOOM, lambda place: abs(place[1] - wide) < 0.05)
+    page.locator("#chart").focus()
+    page.keyboard.press("+")
+    moved = visit.until(CENTRE_AND_ZOOM, lambda place: place[1] > wide + 0.9)
+    page.set_viewport_size({"width": 1280, "height": 560})
+    page.wait_for_timeout(500)
+    assert page.evaluate(CENTRE_AND_ZOOM)[1] == pytest.approx(moved[1], abs=0.05)
+
+
+def test_what_limits_a_route_is_said_and_shown(visit, planned):
+    page = visit.open(f"#plan={planned}")
+    rows = page.locator(".limits li")
+    rows.first.wait_for()
+    (met,) = visit.service.http.get(f"/api/v1/plans/{planned}/limits.json").json()["routes"]
+    waves = next(one for one in met if one["name"] == "wave_height_m")
+    text = re.sub(r"\s+", " ", rows.filter(has_text="Waves").inner_text())
+    assert f"{waves['worst']:.1f} of 8.0 m" in text
+    assert "15.2 of 15.2 kn" in rows.filter(has_text="Ordered speed").inner_text()
+    page.locator("#time").press("End")
+    rows.filter(has_text="Waves").get_by_role("button").click()
+    moment = "window.thalweg.drawer.output.textContent"
+    expected = time_words(waves["time"])
+    visit.until(moment, lambda said: said == expected)
+    visit.check_accessibility()
+
+
+def test_parts_of_a_route_near_a_limit_are_drawn(visit, planned):
+    given = [{"name": "wave_height_m", "limit": 2.0, "worst": 1.95, "near_h": 1.0}]
+    job = visit.service.http.get(f"/api/v1/plans/{planned}/profiles/1").json()
+    begin, end = job["time"][0], job["time"][-1]
+    near = [begin + 0.25 * (end - begin), begin + 0.5 * (end - begin)]
+    given[0] |= {"near": [near], "time": near[0]}
+    page = visit.page
+    page.route("**/limits.json", lambda route: route.fulfill(body=json.dumps({"routes": [given]})))
+    visit.open(f"#plan={planned}")
+    page.locator(".limits", has_text="near its limit for 1 h 00 min").wait_for()
+    script = "window.thalweg.chart.routes.near.getSource().getFeatures()"
+    assert page.evaluate(f"{script}.length") == 1
+    length = page.evaluate(f"{script}[0].getGeometry().getLength()")
+    whole = "window.thalweg.chart.routes.chosen.getSource().getFeatures()[0].getGeometry()"
+    assert 0.2 < length / page.evaluate(f"{whole}.getLength()") < 0.35
+    visit.picture("limits")
+
+
+def test_a_long_list_can_be_read_to_its_end(visit):
+    page = visit.open()
+    script = """async () => { const { h, longList } = await import("/static/app/common/elements.js");
+      const box = h("div", {}, longList([1, 2, 3, 4, 5].map((n) => h("li", {}, String(n))), 3));
+      return [box.querySelector("summary").textContent, box.querySelectorAll("details li").length,
+              box.querySelectorAll("li").length]; }"""
+    assert page.evaluate(script) == ["2 more", 2, 5]
