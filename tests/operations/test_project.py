@@ -143,6 +143,13 @@ def test_planned_is_faster_than_the_charted_route(result):
     )
 
 
+def test_the_result_states_the_prices_of_its_cost(result):
+    prices = result.as_dict()["prices"]
+    assert prices["currency"] == "EUR" == result.optimised.totals["currency"]
+    assert prices["time_per_day"] == {"value": pytest.approx(100_000.0), "source": "ship file"}
+    assert prices["per_second_per_cubed_speed"] == {"value": 0.008, "source": "ship file"}
+
+
 def test_totals_add_up(result):
     for run in result.runs:
         totals, cycles = run.totals, run.cycles

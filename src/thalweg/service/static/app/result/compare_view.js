@@ -34,7 +34,7 @@ export class CompareView {
     this.list = h("div.pick");
     this.picked = h("ol.picked");
     this.counted = h("span.set");
-    this.problem = h("div");
+    this.problem = h("div.messages");
     this.speed = h("input", { type: "text", inputmode: "decimal", id: "own-speed", autocomplete: "off" });
     this.file = h("input.hidden", { type: "file", id: "route-file", "aria-label": "Route file", accept: ".rtz,.rtzp,.gml,.gpx,.geojson,.json,.kml,.csv", tabindex: "-1", onchange: () => this.#score() });
     this.element = [h("div.scroll", {}, h("h1", {}, "Compare routes"), h("p.lead", {}, "Choose two to six. The differences are those to the reference. A plan stands here with its first route; its others are below it."), this.problem, h("div.block", {}, h("h2.with-count", {}, "Chosen", this.counted), this.picked), h("div.block", {}, h("h2", {}, "Routes to choose from"), this.list), h("div.block", {}, h("h2", {}, "Examples"), EXAMPLES.map((example) => h("button.job.example", { type: "button", onclick: () => this.#example(example) }, h("b", {}, example.name), h("span", {}, example.facts)))), h("div.block", {}, h("h2", {}, "Vary the reference"), h("p.facts", {}, "Its voyage is planned again with one change, and the results are added."), h("div.exports", {},
