@@ -19,7 +19,8 @@ def time_words(seconds: float) -> str:
 
 CENTRE_AND_ZOOM = "window.thalweg.chart.place"
 MARKS = """(() => { const rect = (one) => one.getBoundingClientRect();
-  const plot = rect(document.querySelector(".u-over")), line = rect(document.querySelector("#time"));
+  const plot = rect(document.querySelector(".u-over"));
+  const line = rect(document.querySelector("#time"));
   return [line.left + 8 - plot.left, line.right - 8 - plot.right]; })()"""
 
 
@@ -124,7 +125,8 @@ def test_parts_of_a_route_near_a_limit_are_drawn(visit, planned):
 
 def test_a_long_list_can_be_read_to_its_end(visit):
     page = visit.open()
-    script = """async () => { const { h, longList } = await import("/static/app/common/elements.js");
+    script = """async () => {
+      const { h, longList } = await import("/static/app/common/elements.js");
       const box = h("div", {}, longList([1, 2, 3, 4, 5].map((n) => h("li", {}, String(n))), 3));
       return [box.querySelector("summary").textContent, box.querySelectorAll("details li").length,
               box.querySelectorAll("li").length]; }"""

@@ -19,7 +19,15 @@ const TIMES = [
   ["depart:day", "Day", (t) => Date.UTC(t.getUTCFullYear(), t.getUTCMonth(), t.getUTCDate()), (k) => { const d = new Date(k); return `${d.getUTCDate()} ${MONTHS[d.getUTCMonth()]}`; }],
   ["depart:hour", "Hour of the day", (t) => t.getUTCHours() * 60 + t.getUTCMinutes(), (k) => `${two(Math.floor(k / 60))}:${two(k % 60)}`], ["depart:each", "Departure", (t) => t.getTime(), (k) => time(k / 1000)],
 ];
-const NAMES = { depart: "Departure", speed_kn: "Speed [kn]", ship: "Ship", load_factor: "Load", objective: "Objective", sea: "Sea", member: "Member" };
+const NAMES = { depart: "Departure", load_factor: "Load" };
+const UNITS = { kn: "kn", nm: "nm", m: "m", h: "h", usd_per_h: "USD/h", usd_per_t: "USD/t", percent: "%" };
+
+// Name and unit of an axis, such as ["Speed", "kn"] of speed_kn.
+function axisOf(name) {
+  const ending = Object.keys(UNITS).find((one) => name.endsWith(`_${one}`)), base = NAMES[name] || (ending ? name.slice(0, -ending.length - 1) : name).replaceAll("_", " ");
+  return [base[0].toUpperCase() + base.slice(1), ending ? UNITS[ending] : ""];
+}
+
 export const quantile = (sorted, q) => { const at = q * (sorted.length - 1), i = Math.floor(at); return sorted[i] + (at - i) * ((sorted[i + 1] ?? sorted[i]) - sorted[i]); };
 
 export class HeatMap {
@@ -43,7 +51,7 @@ export class HeatMap {
   }
 
   #keys() {
-    const fixed = this.axes.filter((name) => name !== "depart" && new Set(this.rows.map((row) => row[name])).size > 1).map((name) => [name, NAMES[name] || name[0].toUpperCase() + name.slice(1)]);
+    const fixed = this.axes.filter((name) => name !== "depart" && new Set(this.rows.map((row) => row[name])).size > 1).map((name) => { const [text, unit] = axisOf(name); return [name, unit ? `${text} [${unit}]` : text]; });
     const times = this.rows.some((row) => row.at) ? this.#times.filter(([, , key], i) => { const n = new Set(this.rows.map((row) => row.at && key(row.at))).size; return n > 1 && n <= (i === 4 ? 60 : 370) && !(this.drawn.has("depart") && i === 4); }).map(([name, text]) => [name, text]) : [];
     return [...times, ...fixed];
   }
@@ -75,9 +83,9 @@ export class HeatMap {
 
   #keyOf(name) {
     if (!name) return [() => "", () => "all voyages"];
-    const found = this.#times.find((row) => row[0] === name), step = this.#classOf(name);
-    if (step) return [(row) => Math.floor(row[name] / step + 1e-9) * step, (k) => `${number(k, decimalsOf(step))} to ${number(k + step, decimalsOf(step))}`];
-    return found ? [(row) => found[2](row.at), found[3]] : [(row) => row[name], (k) => (typeof k === "number" ? String(Number(k.toFixed(2))) : String(k))];
+    const found = this.#times.find((row) => row[0] === name), step = this.#classOf(name), unit = found || !axisOf(name)[1] ? "" : ` ${axisOf(name)[1]}`;
+    if (step) return [(row) => Math.floor(row[name] / step + 1e-9) * step, (k) => `${number(k, decimalsOf(step))} to ${number(k + step, decimalsOf(step))}${unit}`];
+    return found ? [(row) => found[2](row.at), found[3]] : [(row) => row[name], (k) => (typeof k === "number" ? `${Number(k.toFixed(2))}${unit}` : String(k))];
   }
 
   draw() {

@@ -2,7 +2,7 @@
 
 import { get, resultAddress, tableAddress } from "../common/api.js";
 import { announce, errorBox, fill, h, unit, withUnit } from "../common/elements.js";
-import { days, duration, inputTime, known, number, plainPosition, seconds, time } from "../common/format.js";
+import { days, duration, inputTime, known, number, position, seconds, time } from "../common/format.js";
 import { pricesText } from "../common/prices.js";
 import { BatchView } from "./batch_view.js";
 import { PlaceField } from "../form/places.js";
@@ -134,7 +134,7 @@ export class ProjectView extends BatchView {
 
   clicked(lat, lon, coordinate) {
     if (this.job) return;
-    this.chart.choose(coordinate, plainPosition(lat, lon), [["Load here", () => this.#place(this.load, lat, lon)], ["Unload here", () => this.#place(this.unload, lat, lon)], ["Close", () => {}]]);
+    this.chart.choose(coordinate, position(lat, lon), [["Load here", () => this.#place(this.load, lat, lon)], ["Unload here", () => this.#place(this.unload, lat, lon)], ["Close", () => {}]]);
   }
 
   request() {
@@ -257,7 +257,7 @@ export class ProjectView extends BatchView {
     return [h("div.scroll", {},
       h("h1", {}, result.project.name), h("p.lead", {}, `${number(result.project.volume_m3)} m³ from ${time(seconds(result.project.start), true)} UTC`),
       best.feasible ? null : h("div.error", { role: "alert" }, h("b", {}, "Some legs break a limit."), "The notes state how many."),
-      h("dl.cards", {}, card("Production, m³ a week", number(totals.production_m3_week), null, gain(gains.production_gain, true)), card("Duration", days(lastedOf(result).optimised), null, known(gains.time_saved) ? gain(-gains.time_saved, false) : null), card("Cycles", number(totals.cycles), null, `mean load ${number(100 * totals.mean_load_factor)} %`), card("Waiting", `${number(100 * totals.waiting_share, 1)}`, "% of the time"), card("Fuel", known(totals.fuel_t) ? number(totals.fuel_t, 1) : "unknown", known(totals.fuel_t) ? "t" : null), card("CO₂ per volume", known(totals.co2_kg_m3) ? number(totals.co2_kg_m3, 2) : "unknown", known(totals.co2_kg_m3) ? "kg/m³" : null)),
+      h("dl.cards", {}, card("Production a week", number(totals.production_m3_week), "m³", gain(gains.production_gain, true)), card("Duration", days(lastedOf(result).optimised), null, known(gains.time_saved) ? gain(-gains.time_saved, false) : null), card("Cycles", number(totals.cycles), null, `mean load ${number(100 * totals.mean_load_factor)} %`), card("Waiting", `${number(100 * totals.waiting_share, 1)}`, "% of the time"), card("Fuel", known(totals.fuel_t) ? number(totals.fuel_t, 1) : "unknown", known(totals.fuel_t) ? "t" : null), card("CO₂ per volume", known(totals.co2_kg_m3) ? number(totals.co2_kg_m3, 2) : "unknown", known(totals.co2_kg_m3) ? "kg/m³" : null)),
       h("div.block", {}, h("h2", {}, "All figures"), h("div.table.narrow", { tabindex: 0 }, h("table", {}, h("caption.hidden", {}, "Figures of the runs, as in Table 5.1 of van Halem (2019)"), h("thead", {}, h("tr", {}, head.map((text, i) => h(i ? "th" : "th.text", { scope: "col" }, text || h("span.hidden", {}, "Figure"))))), h("tbody", {}, rows.map((row) => h("tr", {}, row.map((text, i) => (i ? h("td", {}, text) : h("th.text", { scope: "row" }, (text[0].toUpperCase() + text.slice(1)).replace(/m3/g, "m³").replace("CO2", "CO₂"))))))))),
         known(totals.cost) && result.prices ? h("p.facts", {}, `Prices, ${totals.currency}: ${pricesText(result.prices)}.`) : null),
       notes.length ? h("div.block", {}, h("h2", {}, "Notes"), h("ul.list", {}, notes.map((text) => h("li", {}, text)))) : null,

@@ -2,7 +2,7 @@
 
 import { get, resultAddress, tableAddress } from "../common/api.js";
 import { announce, errorBox, fill, h, longList, withUnit } from "../common/elements.js";
-import { duration, inputTime, known, number, readable, seconds, time } from "../common/format.js";
+import { days, duration, inputTime, known, number, readable, seconds, time } from "../common/format.js";
 import { jobFoot } from "../result/progress_view.js";
 import { BatchView } from "./batch_view.js";
 import { HeatMap, quantile } from "./heat_map.js";
@@ -161,7 +161,7 @@ export class StudyView extends BatchView {
     const wide = (cards) => { const there = cards.filter(Boolean); if (there.length % 2) there.at(-1).classList.add("wide"); return there; };
     this.handlers.panel([h("div.scroll", {}, h("h1", {}, job.title), h("p.lead", {}, this.#facts(summary)),
       summary.cancelled ? h("p.note", {}, `Stopped: ${number(summary.voyages)} of ${number(summary.total)} voyages were planned.`) : null,
-      h("dl.cards", {}, wide([card("Median time", times.length ? duration(at(0.5)) : "unknown", times.length > 2 ? `80 % within ${duration(at(0.1))} to ${duration(at(0.9))}` : null), card("Without a route", number(this.map.rows.length - usable.length), this.map.rows.length ? `${number((100 * (this.map.rows.length - usable.length)) / this.map.rows.length)} % of the voyages` : null), fastest?.depart ? card("Fastest", duration(fastest.time_h), `leaves ${time(seconds(fastest.depart))}`) : null, best ? card("Best month", months[best.month], `median ${duration(best.median)} of ${best.of} months`) : null])),
+      h("dl.cards", {}, wide([card("Median time", times.length ? days(at(0.5)) : "unknown", times.length > 2 ? `80 % within ${days(at(0.1))} to ${days(at(0.9))}` : null), card("Without a route", number(this.map.rows.length - usable.length), this.map.rows.length ? `${number((100 * (this.map.rows.length - usable.length)) / this.map.rows.length)} % of the voyages` : null), fastest?.depart ? card("Fastest", days(fastest.time_h), `leaves ${time(seconds(fastest.depart))}`) : null, best ? card("Best month", months[best.month], `median ${days(best.median)} of ${best.of} months`) : null])),
       this.cellBox,
       result.refusals.length ? h("div.block", {}, h("h2", {}, "Why there is no route"), longList(result.refusals.map((row) => h("li", {}, `${number(row.voyages)} voyage${row.voyages === 1 ? "" : "s"}: ${readable(row.reason)}`)), 6)) : null,
       h("div.block", {}, h("h2", {}, "Files"), h("div.exports", {}, h("a.quiet.small", { href: tableAddress(job.id, "voyages"), download: "" }, "Voyages as CSV"), h("a.quiet.small", { href: tableAddress(job.id, "summary"), download: "" }, "Summary as CSV"), h("a.quiet.small", { href: resultAddress(job.id), download: "study.json" }, "study.json")))),
@@ -192,10 +192,10 @@ export class StudyView extends BatchView {
   }
 }
 
-// The month (from 0) with the least median time of all voyages; null where no month differs by a minute.
+// The month (from 0) with the least median time of all voyages; null of fewer than three months, and where none differs by a minute.
 function bestMonth(rows) {
   const months = new Map();
   for (const row of rows) if (row.at) months.set(row.at.getUTCMonth(), [...(months.get(row.at.getUTCMonth()) || []), row.time_h]);
   const medians = [...months].map(([month, times]) => ({ month, median: quantile(times.sort((a, b) => a - b), 0.5), of: months.size })).sort((a, b) => a.median - b.median);
-  return medians.length > 1 && medians.at(-1).median - medians[0].median > 1 / 60 ? medians[0] : null;
+  return medians.length > 2 && medians.at(-1).median - medians[0].median > 1 / 60 ? medians[0] : null;
 }

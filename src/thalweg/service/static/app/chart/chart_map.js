@@ -231,7 +231,7 @@ export class Chart extends EventTarget {
     const forecast = run === null ? "" : `forecast of ${time(run)}, ${number(Math.max(0, Date.now() / 1000 - run) / 3600)} h old`;
     const age = forecast && ` · ${forecast}`;
     if (this.run !== forecast) { this.run = forecast; this.showLegend(); }
-    fill(document.getElementById("valid"), shown ? [h("b", {}, time(t, true)), " UTC"] : null, outside ? " · outside the data" : period ? ` · data until ${time(period[1])}${age}` : "");
+    fill(document.getElementById("valid"), shown ? [h("b", {}, time(t, true)), " UTC"] : null, outside ? " · outside the data" : period ? h("span.more-of", {}, ` · data until ${time(period[1])}${age}`) : "");
   }
 
   showLegend(state = this.legendState) {
@@ -283,7 +283,7 @@ export class Chart extends EventTarget {
   // Draw an area by hand; resolves with a ring [[lon, lat], ...] or null.
   draw() {
     this.endDrawing(false);
-    const interaction = new Draw({ source: new (this.areas.getSource().constructor)(), type: "Polygon" });
+    const interaction = new Draw({ source: new (this.areas.getSource().constructor)(), type: "Polygon", style: handStyle() });
     this.map.addInteraction(interaction);
     this.drawing = interaction;
     const calm = (still) => { this.map.getInteractions().forEach((one) => { if ("delta_" in one && !("condition_" in one)) one.setActive(!still); }); this.modify?.setActive(!still && Boolean(this.onAreaChange)); }; // the double click that ends it is no zoom, and no corner of another is dragged
@@ -321,7 +321,7 @@ export class Chart extends EventTarget {
       source.addFeature(feature);
     });
     if (!this.modify) {
-      this.modify = new Modify({ source });
+      this.modify = new Modify({ source, style: () => handStyle().slice(-1) });
       this.map.addInteraction(this.modify);
       this.map.addInteraction(new Snap({ source }));
       this.modify.on("modifyend", () => {
@@ -340,6 +340,12 @@ export class Chart extends EventTarget {
 function degrees(value, plus, minus) {
   const size = Math.abs(value), whole = Math.floor(size + 1e-9), minutes = Math.round((size - whole) * 60);
   return `${whole}°${minutes ? `${String(minutes).padStart(2, "0")}′` : ""}${size < 1e-9 ? "" : value < 0 ? minus : plus}`;
+}
+
+// What is drawn by hand.
+function handStyle() {
+  const paint = colour("accent");
+  return [new Style({ stroke: new Stroke({ color: paint, width: 2 }), fill: new Fill({ color: `${paint}1c` }) }), new Style({ image: new Circle({ radius: 5, fill: new Fill({ color: paint }), stroke: new Stroke({ color: colour("casing"), width: 1.5 }) }) })];
 }
 
 // A bar of colours from low to high.

@@ -45,7 +45,7 @@ export function duration(hours) {
 // A duration of weeks: days and whole hours.
 export function days(hours) {
   const whole = Math.round(hours);
-  return known(hours) && whole >= 48 ? `${Math.floor(whole / 24)} d ${whole % 24} h` : duration(hours);
+  return known(hours) && whole >= 48 ? `${Math.floor(whole / 24)}\u00a0d ${whole % 24}\u00a0h` : duration(hours);
 }
 
 // The difference of two figures as they are shown: of hours to the minute (decimals null), else rounded.

@@ -2,7 +2,7 @@
 
 import { get, start } from "../common/api.js";
 import { errorBox, fill, h, withUnit } from "../common/elements.js";
-import { inputTime, plainPosition, seconds, time } from "../common/format.js";
+import { inputTime, position, seconds, time } from "../common/format.js";
 import { typedTime } from "../common/typed_time.js";
 import { AreaFields } from "./area_fields.js";
 import { DataFields } from "./data_fields.js";
@@ -185,7 +185,7 @@ export class PlanForm extends EventTarget {
   offer({ lat, lon, port, coordinate }) {
     const name = port ? port.locode || port.label : "";
     const set = (field) => () => (port ? field.set(name) : field.setPosition(lat, lon));
-    this.chart.choose(coordinate, port ? port.label : plainPosition(lat, lon), [["From here", set(this.start)], ["To here", set(this.goal)], ["Via here", () => this.addVia(name, port ? null : [lat, lon])], ["Close", () => {}]]);
+    this.chart.choose(coordinate, port ? port.label : position(lat, lon), [["From here", set(this.start)], ["To here", set(this.goal)], ["Via here", () => this.addVia(name, port ? null : [lat, lon])], ["Close", () => {}]]);
   }
 
   #swap() {

@@ -31,6 +31,12 @@ export function nearParts(met, profile) {
   }).filter((points) => points.length > 1);
 }
 
+// Each limit in a few words, such as "Waves 4.9 of 8.0 m".
+export const limitTexts = (met) => met.filter(({ name }) => LIMITS[name] && name !== ALWAYS).map((one) => {
+  const [label, unit, decimals] = LIMITS[one.name];
+  return `${label} ${number(one.worst, decimals)} of ${number(one.limit, decimals)} ${unit} on ${time(one.time)}`;
+});
+
 function words(one) {
   if (one.name === ALWAYS) return one.near_h > 0 ? `the highest of the ship for ${duration(one.near_h)}` : "below the highest of the ship";
   if (!one.near.length) return `${one.worst < one.limit ? "highest" : "least"} on ${time(one.time)}`;

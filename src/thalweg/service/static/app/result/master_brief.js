@@ -3,6 +3,8 @@
 import { h } from "../common/elements.js";
 import { faultWords } from "../common/faults.js";
 import { bearing, duration, isCalm, known, number, position, readable, seconds, time } from "../common/format.js";
+import { pricesText } from "../common/prices.js";
+import { limitTexts } from "./limits_met.js";
 import { costOf, OBJECTIVES } from "./result_view.js";
 
 const utc = (t) => `${time(t, true)} UTC`;
@@ -16,8 +18,9 @@ function extreme(profile, column, least = false) {
   return at < 0 ? null : { value: values[at], place: `${utc(profile.time[at])}, ${position(profile.lat[at], profile.lon[at])}` };
 }
 
-// Those of the request, else those of the ship file.
-function limitsOf({ limits, voyage }, sheet) {
+// Those that apply to the route with its worst values; where these are not known, those of the request and the ship file.
+function limitsOf({ limits, voyage }, sheet, met) {
+  if (met?.length) return limitTexts(met).join("; ");
   const { wave_height_m: waves, wind_speed_m_s: wind } = sheet?.limits || {};
   const rows = [["waves", limits?.wave_height_m ?? waves, "m"], ["wind", limits?.wind_speed_kn ?? (known(wind) ? (wind * 3600) / 1852 : null), "kn"], ["under-keel clearance at least", voyage?.min_ukc_m, "m"], ["distance from land at least", voyage?.offing_nm, "nm"]];
   return rows.filter(([, value]) => known(value)).map(([name, value, unit]) => `${name} ${number(value, 1)} ${unit}`).join("; ") || "none are stated";
@@ -47,7 +50,7 @@ const list = (rows) => h("dl", {}, rows.map(([name, value]) => h("div", {}, h("d
  */
 export function masterBrief(result, chosen, profile, { shipName, seas, run }) {
   const { plan, job, sheet } = result, route = plan.routes[chosen], { from, to } = plan.provenance, { request } = job;
-  const ends = to ? `${from} to ${to}` : job.title;
+  const ends = to ? readable(`${from} to ${to}`) : job.title;
   const orders = route.waypoints.map((w) => w.ordered_speed_kn).filter(known);
   const range = orders.length ? [...new Set([Math.min(...orders), Math.max(...orders)].map((v) => number(v, 1)))].join(" to ") : "";
   const eca = known(route.fuel_eca_t) && route.fuel_eca_t > 0 ? `, of it ${number(route.fuel_eca_t, 1)} t in emission control areas` : "";
@@ -58,7 +61,7 @@ export function masterBrief(result, chosen, profile, { shipName, seas, run }) {
     h("div.brief-columns", {},
       list([["Ship", h("b", {}, shipName)], ["Draught", `${measure(sheet?.draught_m, 1, "m")}${known(request.load_factor) ? `, load ${number(100 * request.load_factor)} %` : ""}`], ["Departure", h("b", {}, utc(seconds(route.depart)))], ["Arrival", h("b", {}, utc(seconds(route.arrive)))], ["Time", `${duration(route.time_h)}${route.waiting_h > 0 ? `, of it ${duration(route.waiting_h)} waiting` : ""}`]]),
       list([["Distance", h("b", {}, measure(route.distance_nm, 1, "nm"))], ["Speed", `${known(route.time_h) ? `${number(route.distance_nm / route.time_h, 1)} kn mean over ground` : "unknown"}${range ? `; ${range} kn ordered` : ""}`], ["Fuel", `${measure(route.fuel_t, 1, "t")}${eca}`], ["Cost", measure(costOf(route), 0, route.currency)], ["CO₂", measure(route.co2_t, 0, "t")]])),
-    list([...weatherRows(result, profile, seas, run), ["Least under-keel clearance", clearance(route, profile)], ["Limits", limitsOf(request, sheet)]]));
+    list([...weatherRows(result, profile, seas, run), ["Least under-keel clearance", clearance(route, profile)], ["Limits", limitsOf(request, sheet, result.limits?.routes[chosen])], ...(known(costOf(route)) ? [[`Prices, ${route.currency}`, pricesText(route.prices)]] : [])]));
   return [head, h("section.brief-page", { "aria-label": "Waypoints and warnings" }, waypointTable(route, isCalm(request)), notesOf(plan, route, job),
     h("p.brief-sign", {}, h("span", {}, "Checked by"), h("span", {}, "Master"), h("span", {}, "Date")),
     h("p.brief-foot", {}, `Printed ${utc(Date.now() / 1000)} by Thalweg, plan ${job.number}. All times are UTC. Check the route against official charts, notices to mariners and the rules of the company before use: it is not for navigation.`))];
