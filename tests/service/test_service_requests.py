@@ -79,6 +79,20 @@ def test_a_place_is_shown_as_it_is_understood(client):
     assert "Rotterdam" in unknown["possible"]
 
 
+def test_a_port_states_where_a_route_to_it_ends(client):
+    from thalweg.chart.approaches import PORT_APPROACHES
+    from thalweg.chart.ports import PORTS
+
+    found = client.get("/api/v1/places", params={"text": "Rotterdam"}).json()
+    way = PORT_APPROACHES.of(PORTS.lookup("Rotterdam"))
+    assert tuple(found["approach"]["berth"]) == way.berth == way.line[0]
+    assert tuple(found["approach"]["sea_end"]) == way.line[-1]
+    assert found["approach"]["length_nm"] == pytest.approx(way.length / 1852.0, abs=0.05)
+    without = next(port for port in PORTS.all if PORT_APPROACHES.reason(port))
+    found = client.get("/api/v1/places", params={"text": without.label}).json()
+    assert found["kind"] == "port" and found["approach"] is None
+
+
 @pytest.mark.parametrize(
     ("change", "field", "word"),
     [

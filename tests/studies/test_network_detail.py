@@ -74,6 +74,22 @@ def study(folder, **changes) -> Study:
     return Study.from_dict(data, folder)
 
 
+def test_an_ordered_speed_between_the_settings_of_a_ship_is_sailed():
+    ship, day = Ship.load("handysize-bulker"), parse_time("2026-01-01T00:00Z")
+    chart = Chart.open_water(44.0, 48.0, -30.0, -10.0)
+    knots = np.asarray(ship.speeds) * 3600.0 / 1852.0
+    assert np.abs(knots - 13.0).min() > 1.0  # the nearest settings are 10.8 and 14.1 kn
+    voyage = Voyage(
+        start=(46.0, -24.0), goal=(46.0, -18.0), depart=day, speed_kn=13.0, fuel_price_usd=700.0
+    )
+    series = DepartureSeries.prepare(
+        voyage, ship=ship, sea=Sea.calm(), chart=chart, resolution=40_000.0
+    )
+    (found,) = series.figures([day])
+    assert found["distance_nm"] / found["time_h"] == pytest.approx(13.0, abs=0.02)
+    assert series.context.ship.fuel_terms.prices()["fuel_per_t"]["value"] == pytest.approx(700.0)
+
+
 def without_seconds(rows):
     return [{k: v for k, v in row.items() if k != "seconds"} for row in rows]
 

@@ -38,7 +38,9 @@ from thalweg.planning.planner import voyage_context
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.network_choice import NetworkBuilder, NetworkChoice
 from thalweg.planning.request.offing_choice import chosen_offing
+from thalweg.planning.request.ordered_speed import with_order
 from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.request.voyage_objective import with_voyage_prices
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, with_wind_speed
@@ -116,6 +118,9 @@ class DepartureSeries:
             If a network has no path.
         """
         _check_series(voyage)
+        ship = with_order(with_voyage_prices(ship, voyage), voyage)
+        if voyage.min_ukc_m is not None:
+            ship = ship.with_clearance(voyage.min_ukc_m)
         choice = NetworkChoice(network, resolution, voyage.layered)
         context, ends = voyage_context(voyage, ship, with_wind_speed(ship, sea), chart, choice)
         if shared_line(context, ends) is not None:

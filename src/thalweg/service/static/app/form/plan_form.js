@@ -16,7 +16,7 @@ import { ShipChoice } from "./ship_choice.js";
 import { VoyageFiles } from "./voyage_files.js";
 
 const OBJECTIVES = [
-  ["front", "All trade-offs of time and fuel, or cost where prices are known"], ["time", "Least time"], ["fuel", "Least fuel"], ["cost", "Least cost"],
+  ["front", "All trade-offs of time and fuel or cost"], ["time", "Least time"], ["fuel", "Least fuel"], ["cost", "Least cost"],
   ["co2", "Least CO₂"], ["energy", "Least energy"], ["comfort", "Least motion sickness"], ["encounters", "Fewest encounters with ships"], ["inshore", "Least length near land"], ["distance", "Shortest distance"],
   ["weighted", "A weighted sum …"], ["alternatives", "Routes that differ, to choose from"],
 ];

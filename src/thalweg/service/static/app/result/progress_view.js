@@ -53,7 +53,7 @@ export class ProgressView {
     const row = h("li.now", {}, h("span", {}, words[0].toUpperCase() + words.slice(1)), h("span.unit", {}));
     row.began = data.after_s;
     this.steps.append(row);
-    row.scrollIntoView({ block: "nearest" });
+    this.steps.scrollTop = this.steps.scrollHeight; // what is found stays in sight below
     announce(data.text);
   }
 
