@@ -275,7 +275,7 @@ def test_progress_cancel_and_a_point_of_the_front(visit):
     page.get_by_role("button", name="Plan the voyage").click()
     page.get_by_text("Planning the fastest route first", exact=True).wait_for()
     page.get_by_text("First route: the fastest").wait_for()
-    assert page.locator(".steps li").count() > 6
+    visit.until("document.querySelectorAll('.steps li').length", lambda count: count > 7)
     assert page.locator(".steps").bounding_box()["height"] <= 190  # what is found stays in sight
     visit.picture("progress")
     page.get_by_role("button", name="Stop, keep the best").click()

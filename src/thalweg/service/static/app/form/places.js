@@ -5,6 +5,7 @@ import { errorBox, fill, h } from "../common/elements.js";
 import { number, plainPosition, position } from "../common/format.js";
 
 let count = 0;
+const nameOf = ({ label, locode }) => `${label}${locode ? ` (${locode})` : ""}`;
 
 export class PlaceField {
   constructor(role, label, onChange) {
@@ -87,7 +88,7 @@ export class PlaceField {
   #words({ kind, label, locode, approach }) {
     const { lat, lon } = this.spot, where = position(lat, lon);
     if (kind !== "port") return `Position ${where}`;
-    const name = `${label}${locode ? ` (${locode})` : ""}`;
+    const name = nameOf({ label, locode });
     if (!approach) return `${name} · ${where}, no approach known`;
     return this.role === "via" ? `${name} · passed off its approach, at ${where}` : `${name} · berth ${where}, approach of ${number(approach.length_nm, 1)} nm`;
   }
@@ -122,6 +123,7 @@ export class PlaceField {
     this.input.value = port.locode || port.label;
     this.#close();
     this.understand();
+    this.said.textContent = nameOf(port); // until its approach is known
   }
 
   #key(event) {
