@@ -36,7 +36,9 @@ def browser() -> Iterator[Any]:
     if path is None:
         pytest.skip("there is no chromium (apt-get install chromium, or set THALWEG_CHROMIUM)")
     with playwright_api.sync_playwright() as playwright:
-        found = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        found = playwright.chromium.launch(
+            executable_path=path, args=["--no-sandbox", "--disable-gpu"]
+        )
         yield found
         found.close()
 
