@@ -8,7 +8,7 @@ OUT    ?= demo
 # A worker runs whole files, in the order of tests/conftest.py: fixtures of a module are made once.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
 
-.PHONY: demo serve test check format docs bench install clean
+.PHONY: demo serve test check static quick format docs bench install clean
 
 install: $(STAMP)
 
@@ -31,11 +31,17 @@ serve: $(STAMP)
 test: $(STAMP)
 	$(PYTEST)
 
+# The type checker has one thread: the quick tests run beside it.
 check: $(STAMP)
+	+$(MAKE) --no-print-directory --jobs 2 static quick
+
+static: $(STAMP)
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
-	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/mypy
+
+quick: $(STAMP)
 	$(PYTEST) -q -m "not slow"
 
 format: $(STAMP)

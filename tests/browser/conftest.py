@@ -36,7 +36,9 @@ def browser() -> Iterator[Any]:
     if path is None:
         pytest.skip("there is no chromium (apt-get install chromium, or set THALWEG_CHROMIUM)")
     with playwright_api.sync_playwright() as playwright:
-        found = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        found = playwright.chromium.launch(
+            executable_path=path, args=["--no-sandbox", "--disable-gpu"]
+        )
         yield found
         found.close()
 
@@ -102,13 +104,14 @@ class Visit:
         page.locator("#depart").fill("1998-08-31T12:00")
 
     def plan_coarsely(self, spacing_nm: float) -> None:
-        """Let the form plan on networks of a spacing [nm], with a brief proof."""
+        """Let the form plan on networks of a spacing [nm] alone, with a brief proof."""
 
         def coarser(route: Any) -> None:
             if route.request.method != "POST":
                 return route.continue_()
             request = json.loads(route.request.post_data)
             request |= {"resolution_nm": spacing_nm, "proof_s": 0.2}
+            request["voyage"]["method"] = "exact"
             return route.continue_(post_data=json.dumps(request))
 
         self.page.route("**/api/v1/plans", coarser)

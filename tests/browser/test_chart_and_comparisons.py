@@ -80,7 +80,7 @@ def test_a_comparison_has_a_reference_and_its_address_restores_it(visit, planned
 
 
 def test_any_route_of_a_front_is_compared(visit):
-    voyage = {**SHORT_REQUEST["voyage"], "objective": "front"}
+    voyage = {**SHORT_REQUEST["voyage"], "objective": "front", "method": "exact"}
     request = {**SHORT_REQUEST, "title": "A front", "voyage": voyage, "resolution_nm": 4.0}
     http = visit.service.http
     job = http.post("/api/v1/plans", json=request).raise_for_status().json()

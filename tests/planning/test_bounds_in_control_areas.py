@@ -87,7 +87,7 @@ def test_with_a_short_way_out_the_bound_lies_between_the_cheap_way_and_the_plan(
 @pytest.mark.parametrize(
     ("zone", "truth"),
     [
-        (area(0.5, 1.5), 2.5),  # through the area, a degree long
+        pytest.param(area(0.5, 1.5), 2.5, marks=pytest.mark.slow),  # through it, a degree long
         (area(0.5, 1.5, -0.1, 0.1), 1.0 + 2.0 * np.hypot(0.5, 0.1)),  # round it
     ],
 )

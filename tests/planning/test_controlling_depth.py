@@ -66,9 +66,8 @@ def test_too_late_is_not_too_shallow() -> None:
     assert "too shallow at any tide" not in str(caught.value)
 
 
-@pytest.mark.parametrize(
-    "objective", ["time", "fuel", pytest.param("distance", marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("objective", ["time", "fuel", "distance"])
 def test_an_arrival_before_the_tide_allows_it_is_too_early_and_not_too_shallow(objective) -> None:
     """The gully opens at high water, 6 h after the departure: an arrival 3 h after it is not."""
     cost = {"fuel": {"reference_t_per_day": 24.0}, "engine": {"reference_speed_kn": 10.0}}

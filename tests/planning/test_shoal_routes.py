@@ -45,7 +45,8 @@ def open_part(route, off):
     return lat[keep], lon[keep]
 
 
-@pytest.mark.parametrize("goal", ["USBOS", pytest.param("Halifax, CA", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("goal", ["USBOS", "Halifax, CA"])
 def test_deep_ships_from_new_york_pass_outside_nantucket_shoals(goal):
     found = plan(voyage("USNYC", goal), ship=BULKER, sea=Sea.calm())
     lat, lon = line_of(found.best)

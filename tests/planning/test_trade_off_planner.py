@@ -329,6 +329,7 @@ def test_slower_settings_remain_where_waves_forbid_the_highest():
     assert found.best.time_h == pytest.approx(LENGTH / (18.0 * KNOT) / HOUR, rel=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("objective", ["fuel", "front"])
 def test_no_route_of_a_front_crosses_a_penalty_zone_that_it_can_pass(objective):
     """Over the zone 20 times as dear, round it 2 % longer: speeds and the referee count it too."""

@@ -113,7 +113,8 @@ def lagoon():
     zone = {"type": "Feature", "properties": {"kind": "no-go"}}
     chart = chart.with_zones(zone | {"geometry": {"type": "Polygon", "coordinates": [area]}})
     voyage = Voyage(start=(51.4, 2.0), goal=(51.4, 3.0), depart="1998-08-30T05:10Z")
-    return plan(voyage, ship=SHIP, sea=Sea.storm(), chart=chart.within(50.5, 52.0, 1.0, 4.0))
+    chart = chart.within(50.5, 52.0, 1.0, 4.0)
+    return plan(voyage, ship=SHIP, sea=Sea.storm(), chart=chart, resolution=5000.0)
 
 
 @pytest.mark.slow

@@ -222,6 +222,22 @@ def test_string_pulling_never_costs_more_and_removes_useless_waypoints():
     assert wall.sail(pulled.batch())[1][0] <= wall.sail(line.batch())[1][0]
 
 
+def test_string_pulling_looks_up_land_for_all_shortcuts_at_once():
+    plane, boat = Plane(unit=1000.0), ship(5.0)
+    chart = Islands(rectangle(plane, 10, -5, 11, 0.9))
+    asked, tests = [], chart.legs_blocked
+    chart.legs_blocked = lambda *ends: (asked.append(len(ends[0])), tests(*ends))[1]
+    fields = Sea.calm().freeze_grid(-1, 1, -1, 1, 0, 1e5, [0, 1], spacing_deg=0.2)
+    evaluator = make_time_evaluator(
+        table=boat.tabulate(), chart=chart, fields=fields, limits=NO_LIMITS, origin=0.0,
+        by_length=False, total=6e4,
+    )  # fmt: skip
+    points = [plane.place(x, 1.5 + 0.1 * x) for x in range(7)]
+    line = polyline_of_track(Track.from_positions(points, depart=0), evaluator)
+    assert len(string_pull(line, evaluator)) == 2
+    assert asked == [21]  # of seven points
+
+
 def test_smoothing_violates_no_limit_of_a_field():
     # waves too high in the middle of the way: the route must bend round, and does so closely
     plane = Plane(unit=1000.0)

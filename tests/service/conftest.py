@@ -42,7 +42,7 @@ def settings(folder: Path, **limits: Any) -> Any:
     return ServiceSettings(folder=folder, token=TOKEN, limits=ServiceLimits(**limits))
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     """A client of a service in this process, whose children are real."""
     from starlette.testclient import TestClient

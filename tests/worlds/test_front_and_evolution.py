@@ -15,6 +15,7 @@ from thalweg.evolution.evolve import METHODS
 from thalweg.evolution.variation import OperatorWeights
 from thalweg.search import NetworkFront, ShipOnNetwork, earliest_arrival, pareto_front
 from thalweg.search.pareto.front_problem import (
+    FrontProblem,
     FrontQuery,
     FrontRequest,
     MultiSettingShipOnNetwork,
@@ -79,6 +80,18 @@ def nodes_of(genome: Genome) -> np.ndarray:
     return np.rint(x / GRID.spacing).astype(int) + GRID.side * np.rint(y / GRID.spacing).astype(int)
 
 
+@cache
+def problem(start: int, goal: int) -> tuple[FrontProblem, FrontRequest]:
+    """Return the problem of a front between two nodes, with its request."""
+    net, (table, fuel) = network(), world.tables()
+    request = FrontRequest(
+        start, goal, world.T0, LATEST, np.arange(table.n_settings),
+        LegPrices(), np.ones(net.n_edges), True,
+    )  # fmt: skip
+    ship = MultiSettingShipOnNetwork(net, fields(), table, fuel, NO_LIMITS)
+    return make_front_problem(ship, request), request
+
+
 def sailed(genome: Genome) -> FrontPoint | None:
     """Sail a track edge by edge as the front does; None if it leaves the network."""
     net, nodes = network(), nodes_of(genome)
@@ -93,13 +106,7 @@ def sailed(genome: Genome) -> FrontPoint | None:
         if not len(there):
             return None
         edges.append(net.graph.indptr[a] + there[0])
-    table, fuel = world.tables()
-    request = FrontRequest(
-        int(nodes[0]), int(nodes[-1]), world.T0, LATEST, np.arange(table.n_settings),
-        LegPrices(), np.ones(net.n_edges), True,
-    )  # fmt: skip
-    ship = MultiSettingShipOnNetwork(net, fields(), table, fuel, NO_LIMITS)
-    got = make_front_problem(ship, request)
+    got, request = problem(int(nodes[0]), int(nodes[-1]))
     leave = np.full(len(edges), -np.inf)
     return sail_planned_path(
         got, request, PlannedPath(nodes, np.array(edges), np.asarray(genome.setting), leave)

@@ -82,13 +82,10 @@ def sailed(sea: Sea, build, start, goal, speed: float):
     return plan(voyage, ship=simple_ship(speed), sea=sea, chart=WATER, network=build)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("tidal", "ship_speed", "seconds"),
-    [
-        (False, 4.0, 26240.4617),
-        pytest.param(False, 3.70041, 27787.35, marks=pytest.mark.slow),
-        (True, 4.0, 31512.4115),
-    ],
+    [(False, 4.0, 26240.4617), (False, 3.70041, 27787.35), (True, 4.0, 31512.4115)],
 )
 def test_rotating_flows(tidal, ship_speed, seconds):
     """Cases 1 and 2: a tenth of the nodes; the search within 2 %, the route within 0.01 %."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -34,6 +34,9 @@ _MAX_WAIT = 13.0 * 3600.0  # longest wait for a leg to open [s]: a little more t
 _WAIT_STEPS = (30.0, 900.0)  # least and largest time between two trial departures [s]
 _OPENING_TOLERANCE = 0.1  # tolerance of the time of opening [s]
 _MAX_PIECE_LENGTH = 100_000.0  # metres; keeps lengths within 1e-6 of the geodesic's
+
+#: Whether legs (L, n - 1) are blocked, and their least charted depth [m]; None: not known.
+LookedUpLegs: TypeAlias = tuple[NDArray[np.bool_] | None, FloatArray | None]
 
 
 @dataclass(frozen=True)
@@ -93,7 +96,12 @@ class TimeEvaluator:
         return np.maximum(2, np.ceil(rough_lengths(lat, lon) / self.spacing)).astype(np.int64)
 
     def sail(
-        self, batch: TrackBatch, *, pieces: IntArray | None = None, check: bool = True
+        self,
+        batch: TrackBatch,
+        *,
+        pieces: IntArray | None = None,
+        check: bool = True,
+        looked_up: LookedUpLegs | None = None,
     ) -> tuple[FloatArray, FloatArray]:
         """Sail polylines.
 
@@ -102,6 +110,7 @@ class TimeEvaluator:
         pieces : int64 array (L, n - 1), optional
             Pieces of each leg; the same for polylines whose times are to be differenced.
         check : Check land, zones and charted depth too.
+        looked_up : What `look_up_legs` returns for these polylines, where it is known already.
 
         Returns
         -------
@@ -110,26 +119,33 @@ class TimeEvaluator:
         cost : Last arrival [s] or length [m], with the additions of penalty zones, (L,); +inf for a
             polyline that cannot be sailed.
         """
-        arrive, _, cost = self.sail_and_wait(batch, pieces=pieces, check=check)
+        arrive, _, cost = self.sail_and_wait(batch, pieces=pieces, check=check, looked_up=looked_up)
         return arrive, cost
 
     def sail_and_wait(
-        self, batch: TrackBatch, *, pieces: IntArray | None = None, check: bool = True
+        self,
+        batch: TrackBatch,
+        *,
+        pieces: IntArray | None = None,
+        check: bool = True,
+        looked_up: LookedUpLegs | None = None,
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Sail as `sail` does; return (arrive, leave, cost), with the departure from each point."""
         count, size = batch.lat.shape
         shape = (count, size - 1)
         pieces = self.pieces(batch.lat, batch.lon) if pieces is None else pieces
-        blocked, charted = self.look_up_legs(batch.lat, batch.lon) if check else (None, None)
+        if looked_up is None:
+            looked_up = self.look_up_legs(batch.lat, batch.lon) if check else (None, None)
+        blocked, charted = looked_up
         lines = PolylineArrays(
             np.arange(count + 1, dtype=np.int64) * size,
-            _flat(batch.lat, np.float64),
-            _flat(batch.lon, np.float64),
-            _flat(batch.leave, np.float64),
-            _flat(_padded(batch.setting, shape), np.int64),
-            _flat(_padded(np.broadcast_to(pieces, shape), shape), np.int64),
-            _flat(_padded(np.full(shape, math.inf) if charted is None else charted, shape), float),
-            _flat(batch.depart, np.float64),
+            _flat(batch.lat),
+            _flat(batch.lon),
+            _flat(batch.leave),
+            _of_legs(batch.setting, shape, np.int64),
+            _of_legs(pieces, shape, np.int64),
+            _of_legs(math.inf if charted is None else charted, shape, np.float64),
+            _flat(batch.depart),
         )
         out = PolylineResults(
             np.empty(count * size),
@@ -175,9 +191,7 @@ class TimeEvaluator:
         blocked, _ = self.look_up_legs(batch.lat, batch.lon)
         return bad if blocked is None else bad | blocked
 
-    def look_up_legs(
-        self, lat: FloatArray, lon: FloatArray
-    ) -> tuple[NDArray[np.bool_] | None, FloatArray | None]:
+    def look_up_legs(self, lat: FloatArray, lon: FloatArray) -> LookedUpLegs:
         """Return (blocked, least charted depth) of the legs of polylines; None: not known."""
         if self.chart is None:
             return None, None
@@ -308,12 +322,12 @@ def unique_legs(ends: Sequence[FloatArray]) -> tuple[NDArray[np.intp], NDArray[n
     return every, every
 
 
-def _flat(values: ArrayLike, kind: type) -> NDArray[Any]:
-    return np.require(values, kind, ["C", "W"]).reshape(-1)  # read-only ones are another kernel
+def _flat(values: FloatArray) -> FloatArray:
+    return np.array(values, np.float64, order="C").reshape(-1)  # read-only: another kernel
 
 
-def _padded(values: NDArray[Any], shape: tuple[int, int]) -> NDArray[Any]:
-    """Return values per leg (L, n - 1) with a column for the last points, which is not read."""
-    return np.concatenate(
-        [np.broadcast_to(values, shape), np.ones((shape[0], 1), values.dtype)], axis=1
-    )
+def _of_legs(values: ArrayLike, shape: tuple[int, int], kind: type) -> NDArray[Any]:
+    """Return values per leg (L, n - 1), flat, with those of the last points, which are not read."""
+    padded: NDArray[Any] = np.ones((shape[0], shape[1] + 1), kind)
+    padded[:, :-1] = values
+    return padded.reshape(-1)

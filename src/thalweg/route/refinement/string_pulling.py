@@ -9,7 +9,7 @@ import numpy as np
 from thalweg.core.cheapest_chain import cheapest_chain
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.evaluators.polyline import Polyline, PolylineEvaluator
-from thalweg.route.evaluators.time_evaluator import TrackBatch
+from thalweg.route.evaluators.time_evaluator import LookedUpLegs, TimeEvaluator, TrackBatch
 
 _MAX_SKIPPED = 48  # waypoints that a leg may skip
 _PASSES = 4
@@ -55,20 +55,51 @@ def string_pull(
 def _best_subset(
     line: Polyline, evaluator: PolylineEvaluator, penalty: float, skip: int
 ) -> IntArray | None:
-    count = len(line)
     fixed = np.flatnonzero(line.required_points(evaluator))
+    shortcuts = _shortcuts(len(line), fixed, skip)
+    looked_up = _looked_up(line, evaluator, shortcuts)
     arrive: dict[int, FloatArray] = {}  # at the points after each one
 
     def steps(here: int, previous: int) -> tuple[IntArray, FloatArray]:
         reached = float(arrive[previous][here - previous - 1]) if here else line.depart
-        there = np.arange(here + 1, min(count, here + 1 + skip))
-        there = there[: int(np.searchsorted(there, fixed[fixed > here][0], side="right"))]
+        there = shortcuts[here]
         batch = _shortcut_batch(line, here, there, max(reached, line.leave[here]))
-        ends, cost = evaluator.sail(batch)
+        if looked_up is not None and isinstance(evaluator, TimeEvaluator):
+            ends, cost = evaluator.sail(batch, looked_up=looked_up[here])
+        else:
+            ends, cost = evaluator.sail(batch)
         arrive[here] = ends[:, -1]
         return there, (cost if evaluator.by_length else cost - reached) + penalty
 
-    return cheapest_chain(count, steps, tolerance=1e-9)
+    return cheapest_chain(len(line), steps, tolerance=1e-9)
+
+
+def _shortcuts(count: int, fixed: IntArray, skip: int) -> list[IntArray]:
+    """Return the points to which a leg may lead from each point but the last."""
+    next_fixed = fixed[np.searchsorted(fixed, np.arange(count - 1), side="right")]
+    return [np.arange(here + 1, min(here + skip, last) + 1) for here, last in enumerate(next_fixed)]
+
+
+def _looked_up(
+    line: Polyline, evaluator: PolylineEvaluator, shortcuts: list[IntArray]
+) -> list[LookedUpLegs] | None:
+    """Look up all shortcuts at once: land and depth are the same at any time.
+
+    None where the evaluator looks legs up itself.
+    """
+    if not isinstance(evaluator, TimeEvaluator):
+        return None
+    size = [len(there) for there in shortcuts]
+    ends = np.stack([np.repeat(np.arange(len(size)), size), np.concatenate(shortcuts)], axis=1)
+    blocked, charted = evaluator.look_up_legs(line.lat[ends], line.lon[ends])
+    parts = np.cumsum(size)[:-1]
+    none = [None] * len(size)
+    return list(
+        zip(
+            none if blocked is None else np.split(blocked, parts),
+            none if charted is None else np.split(charted, parts),
+        )
+    )
 
 
 def _shortcut_batch(line: Polyline, here: int, there: IntArray, leave: float) -> TrackBatch:

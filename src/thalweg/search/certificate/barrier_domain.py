@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 _MARGIN: Final = 1.02
 _CELLS_FOR_SPEED: Final = 60  # of functions, while the greatest speed over ground is sought
 _STEPS_ROUND_ELLIPSE: Final = 73
+_HALVINGS: Final = 24  # of the way to the ellipse, which leave a metre or two, outside of it
 _GLOBE: Final = (-89.0, 89.0, -180.0, 180.0)  # south, north, west and east [deg]
 
 
@@ -224,7 +225,7 @@ def _box_of_routes(
     # every such position is on a geodesic from the start, no farther than the ellipse that way
     courses = np.linspace(0.0, 2.0 * math.pi, _STEPS_ROUND_ELLIPSE)
     near, far = np.zeros(courses.size), np.full(courses.size, total)
-    for _ in range(40):
+    for _ in range(_HALVINGS):
         middle = 0.5 * (near + far)
         lat, lon = direct(start[0], start[1], courses, middle)[:2]
         inside = middle + np.asarray(distance(lat, lon, *goal)) < total

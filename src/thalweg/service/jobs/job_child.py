@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 _NICENESS: Final = 5
+_SPACING_M: Final = 3700.0  # of the network of the short voyage
 
 
 def main() -> int:
@@ -58,8 +59,8 @@ def _yield_to_the_server() -> None:
 def _load_libraries(order_read: threading.Event) -> None:
     """Load what every plan needs while no order has come: imports, coastline, kernels.
 
-    The voyage that is planned for this is short; it loads the compiled kernels, the control areas
-    and the traffic lanes, which take longer than itself.
+    The voyage that is planned for this is short, on a coarse network; it loads the compiled
+    kernels, the control areas and the traffic lanes, which take longer than itself.
     """
     import thalweg.planning
     import thalweg.service.jobs.job_work  # noqa: F401
@@ -87,7 +88,10 @@ def _plan_short_voyage(chart: Chart, order_read: threading.Event) -> None:
             raise SearchInterrupted
 
     sea = Sea.storm()
-    plan(voyage, ship=ship, sea=sea, chart=chart, proof=0.0, progress=stop_for_order)
+    plan(
+        voyage, ship=ship, sea=sea, chart=chart, resolution=_SPACING_M, proof=0.0,
+        progress=stop_for_order,
+    )  # fmt: skip
 
 
 def _ended(order: dict[str, Any], messages: MessageWriter) -> dict[str, Any]:
