@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from thalweg.cli import options
 from thalweg.core.errors import InputError
 
 
@@ -22,19 +23,15 @@ def add_layered_options(parser: argparse.ArgumentParser) -> None:
             help=f"{kind} ({letter}); one value, or one for each section between via points; "
             "default: chosen",
         )
-    parser.add_argument(
-        "--near-coast", type=float, metavar="NM",
-        help="within this distance of land the nodes of a layered network are twice as close",
-    )  # fmt: skip
-    parser.add_argument(
-        "--contain", nargs="+", action="extend", metavar="LAT,LON",
-        help="straits that a layered network of chosen shape must contain",
-    )  # fmt: skip
-    parser.add_argument(
-        "--within", type=float, metavar="PERCENT",
-        help="by how much its shortest path may be longer than that of the finest network tried "
-        "(default: 1)",
-    )  # fmt: skip
+    options.add_table(parser, (
+        ("--near-coast", "NM", options.NUMBER,
+         "within this distance of land the nodes of a layered network are twice as close"),
+        ("--contain", "LAT,LON", {"nargs": "+", "action": "extend"},
+         "straits that a layered network of chosen shape must contain"),
+        ("--within", "PERCENT", options.NUMBER,
+         "by how much its shortest path may be longer than that of the finest network tried "
+         "(default: 1)"),
+    ))  # fmt: skip
 
 
 def layered_request(arguments: argparse.Namespace) -> dict[str, Any] | None:
