@@ -19,7 +19,7 @@ import numpy as np
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR
-from thalweg.forecasts.box_cut import cut_to_box, join_pieces
+from thalweg.forecasts.box_cut import cut_to_box, join_pieces, longitude_spans
 from thalweg.forecasts.download_client import DownloadClient, TransferError
 from thalweg.forecasts.download_plan import DownloadPlan
 from thalweg.forecasts.forecast_request import ForecastRequest
@@ -111,12 +111,9 @@ class CopernicusMarine:
     def read(self, request: ForecastRequest, plan: DownloadPlan, files: list[Path]) -> list[Any]:
         """Return the fields, read in slices of time; see `ForecastSource.read`."""
         box = request.box
-        west = (box.west + 180.0) % 360.0 - 180.0
-        east = west + box.width
-        spans = [(west, min(east, 180.0))] + ([(-180.0, east - 360.0)] if east > 180.0 else [])
         pieces = []
         for product in (_PRODUCTS[q] for q in request.quantities):
-            sides = [self._side(product, request, plan, span) for span in spans]
+            sides = [self._side(product, request, plan, span) for span in longitude_spans(box)]
             whole = sides[0] if len(sides) == 1 else _side_by_side(sides)
             pieces.append(cut_to_box(whole, box))
         return join_pieces(pieces)
