@@ -21,7 +21,7 @@ from thalweg.ship.model_protocol import setting_index
 from thalweg.ship.models.prestegardshus_speed_loss import PrestegardshusSpeedLoss
 from thalweg.ship.models.squat_model import SquatModel
 from thalweg.ship.tables.table_parts import TableError, TablePart
-from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, constant_part, tabulate_dense
+from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, constant_part, tabulate_settings
 
 
 @dataclass(frozen=True)
@@ -183,18 +183,9 @@ class KnownSpeedModel:
         self, load_factor: float, tolerance: float
     ) -> tuple[tuple[TablePart, ...], TableError]:
         """One constant, or one part over what is read: wind speed and angle, depth."""
-        if not self.reads:
-            return (constant_part(self.speeds(load_factor)),), TableError(0.0, 0.0, 0.0, 0)
-        count = len(self.speeds_full)
-
-        def speeds(where: Mapping[str, FloatArray]) -> FloatArray:
-            columns = {name: values[..., None] for name, values in where.items()}
-            conditions = Conditions(columns, load_factor=load_factor)
-            return self.speed_through_water(conditions, np.arange(count))
-
-        axes = known_speed_axes(self, load_factor)
-        part, error = tabulate_dense(speeds, axes, tolerance=tolerance)
-        return (part,), error
+        axes, count = known_speed_axes(self, load_factor), len(self.speeds_full)
+        speed = self.speed_through_water
+        return tabulate_settings(speed, axes, count, load_factor, tolerance=tolerance)
 
     def tabulate_fuel(
         self, load_factor: float, tolerance: float

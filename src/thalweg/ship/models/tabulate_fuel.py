@@ -8,12 +8,10 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.ship.condition_variables import AXIS_OF_CONDITION
-from thalweg.ship.conditions import Conditions
 from thalweg.ship.model_protocol import (
     FuelTableModel,
     ModelTables,
@@ -39,11 +37,16 @@ from thalweg.ship.tables.output_curve import OutputCurve
 from thalweg.ship.tables.performance_table import PerformanceTable
 from thalweg.ship.tables.table_cache import TableWithMaxima
 from thalweg.ship.tables.table_parts import TableError, TablePart
-from thalweg.ship.tables.tabulate import DEFAULT_AXES, constant_part, table_error, tabulate_dense
+from thalweg.ship.tables.tabulate import (
+    DEFAULT_AXES,
+    RateFunction,
+    constant_part,
+    table_error,
+    tabulate_settings,
+)  # fmt: skip
 
 _CURVE_POINTS: Final = 1025  #: of the curves of fuel and power
 RateOfPower = Callable[[FloatArray], FloatArray]
-RateFunction = Callable[[Conditions, NDArray[np.intp]], FloatArray]
 
 
 def fuel_table(
@@ -243,13 +246,5 @@ def tabulate_rate(
 ) -> Tabulation:
     """Tabulate a rate of any model over all conditions it reads, in one part."""
     names = sorted(model.reads & AXIS_OF_CONDITION.keys(), key=AXIS_OF_CONDITION.__getitem__)
-    settings = np.arange(len(model.speeds(load_factor)))
-
-    def rates(where: Mapping[str, FloatArray]) -> FloatArray:
-        columns = {name: np.asarray(values)[..., None] for name, values in where.items()}
-        return rate(Conditions(columns, load_factor=load_factor), settings)
-
-    if not names:
-        return Tabulation((constant_part(rates({})),), TableError(0.0, 0.0, 0.0, 0))
-    part, error = tabulate_dense(rates, [DEFAULT_AXES[n] for n in names], tolerance=tolerance)
-    return Tabulation((part,), error)
+    axes, count = [DEFAULT_AXES[name] for name in names], len(model.speeds(load_factor))
+    return Tabulation(*tabulate_settings(rate, axes, count, load_factor, tolerance=tolerance))

@@ -13,11 +13,14 @@ from numpy.typing import NDArray
 from thalweg.core.types import FloatArray
 from thalweg.kernels import codes
 from thalweg.ship.condition_variables import CONDITION_OF_AXIS
+from thalweg.ship.conditions import Conditions
 from thalweg.ship.tables.performance_table import PerformanceTable
 from thalweg.ship.tables.table_parts import TableError, TablePart
 
 #: given conditions by name (arrays that broadcast), returns values of shape (*shape, settings)
 ConditionsFunction = Callable[[Mapping[str, FloatArray]], FloatArray]
+#: values of settings in conditions that broadcast with them
+RateFunction = Callable[[Conditions, NDArray[np.intp]], FloatArray]
 
 RELATIVE_ERROR_FLOOR: Final = (
     0.25  #: relative errors are not taken to less than this share of the greatest value
@@ -107,6 +110,32 @@ def tabulate_dense(
         if worst is None or 2 * values.nbytes > largest:
             return part, error
         axes[worst] = axes[worst].refined()
+
+
+def tabulate_settings(
+    rate: RateFunction,
+    axes: Sequence[AxisRange],
+    settings: int,
+    load_factor: float,
+    *,
+    tolerance: float,
+) -> tuple[tuple[TablePart, ...], TableError]:
+    """Tabulate what a model gives at each of its settings, in one part.
+
+    Parameters
+    ----------
+    axes : As in `tabulate_dense`; none for what no condition changes.
+    """
+
+    def rates(where: Mapping[str, FloatArray]) -> FloatArray:
+        columns = {name: np.asarray(values)[..., None] for name, values in where.items()}
+        found = rate(Conditions(columns, load_factor=load_factor), np.arange(settings))
+        return np.asarray(found)
+
+    if not axes:
+        return (constant_part(rates({})),), TableError(0.0, 0.0, 0.0, 0)
+    part, error = tabulate_dense(rates, axes, tolerance=tolerance)
+    return (part,), error
 
 
 def constant_part(values: FloatArray) -> TablePart:
