@@ -26,7 +26,6 @@ class HillClimber:
     ----------
     score : Score of its current track, (3,).
     near : Its own archive H, (h, 3).
-    fails, moves : int
     """
 
     score: FloatArray

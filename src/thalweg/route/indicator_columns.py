@@ -144,7 +144,6 @@ def named_columns(legs: Mapping[str, Any], kind: str) -> dict[str, Any]:
 
     Parameters
     ----------
-    legs : Columns.
     kind : Such as ``squared_dose``.
     """
     return {

@@ -123,10 +123,6 @@ def nan_pairs(samples: Samples, pairs: Sequence[tuple[str, str]]) -> Samples:
     samples : Values by canonical name; changed in place.
     pairs : sequence of (str, str)
         Names of the components of each vector.
-
-    Returns
-    -------
-    dict of str to ndarray : The samples.
     """
     for east, north in pairs:
         if east in samples and north in samples:

@@ -34,7 +34,6 @@ def drift_deg(period_h: float, name: str) -> float:
     Parameters
     ----------
     period_h : Period [h].
-    name : Constituent.
 
     Returns
     -------

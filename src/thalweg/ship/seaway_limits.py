@@ -264,10 +264,6 @@ class SafetyLimits:
 def build_safety_limits(given: LimitsSection, hull: Hull, loading: Loading) -> SafetyLimits | None:
     """Return the safety and comfort limits of a ship file; None when it states none.
 
-    Parameters
-    ----------
-    given : Limits of the ship file.
-
     Returns
     -------
     SafetyLimits or None : Limits in waves.

@@ -78,7 +78,6 @@ def waypoint_order(values: Mapping[str, object], number: int) -> WaypointOrder:
 
     Parameters
     ----------
-    values : Values of the file at the waypoint, by name.
     number : Number of the waypoint, for messages.
 
     Returns

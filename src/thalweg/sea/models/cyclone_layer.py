@@ -219,7 +219,6 @@ def storm_layer(
 
     Parameters
     ----------
-    name : Name of an embedded storm.
     start : First time of the track; its true date by default.
     ambient : The surrounding sea.
     time_step : Step of frozen times [s], 1 or more.

@@ -138,7 +138,6 @@ def from_dict(data: Mapping[str, Any], source: str = "constituents") -> Constitu
 
     Parameters
     ----------
-    data : Plain data.
     source : File name for messages.
 
     Raises

@@ -151,7 +151,6 @@ def tabulate_fuel_of_balance(
 
     Parameters
     ----------
-    model : The model of the ship.
     load_factor : Load, 0 (empty) to 1 (full).
     tolerance : Largest relative error of the table [-].
     """
@@ -165,7 +164,6 @@ def tabulate_power_of_balance(
 
     Parameters
     ----------
-    model : The model of the ship.
     load_factor : Load, 0 (empty) to 1 (full).
     tolerance : Largest relative error of the table [-].
     """

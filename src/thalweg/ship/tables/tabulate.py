@@ -39,7 +39,6 @@ class AxisRange:
     ----------
     axis : Axis id.
     start, stop : SI.
-    size : Grid points.
     fixed : The grid is exact already and is never refined.
     """
 
@@ -91,11 +90,6 @@ def tabulate_dense(
     axes : Where to begin; at least one.
     tolerance : Relative error that 99 % of random conditions must meet; see `TableError`.
     largest : Bytes the table may take. Refinement stops there; the error says what was reached.
-
-    Returns
-    -------
-    part : TablePart
-    error : TableError
     """
     points = random_conditions(axes, _SAMPLES, 0)
     truth = function(points)
@@ -158,7 +152,6 @@ def random_conditions(axes: Sequence[AxisRange], count: int, seed: int) -> dict[
 
     Parameters
     ----------
-    axes : Axes and their ranges.
     count : Number of conditions.
     seed : Seed of the random numbers.
 
