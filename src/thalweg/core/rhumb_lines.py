@@ -29,6 +29,7 @@ from thalweg.core.geodesy import (
     distance,
     in_equal_pieces,
     inverse,
+    numbered_parts,
     wrap_longitude,
 )
 from thalweg.core.types import BoolArray, FloatArray, IntArray
@@ -258,8 +259,7 @@ def rhumb_pieces(
 
     count = np.ones(len(length), np.int64)
     count = _raised_counts(lat, lon, count, bends, limit, place)
-    leg = np.repeat(np.arange(len(count)), count)
-    number = np.arange(len(leg)) - np.repeat(np.cumsum(count) - count, count)
+    leg, number = numbered_parts(count)
     out_lat, out_lon = lat[leg], wrap_longitude(lon[leg])
     inner = number > 0
     out_lat[inner], out_lon[inner] = place(leg[inner], (number / count[leg])[inner])

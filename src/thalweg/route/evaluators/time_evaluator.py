@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.geodesy import METRES_PER_DEGREE, direct, inverse, rough_lengths
+from thalweg.core.geodesy import METRES_PER_DEGREE, direct, inverse, numbered_parts, rough_lengths
 from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels import codes
@@ -201,8 +201,7 @@ def _least_depths(chart: Chart, legs: FloatArray) -> FloatArray:
     span = np.maximum(np.abs(lat2 - lat1), np.abs(lon2 - lon1))
     count = np.maximum(np.ceil(span / _DEPTH_LOOKUP_SPAN), 1.0).astype(np.int64)
     first = np.cumsum(count) - count
-    leg = np.repeat(np.arange(len(legs)), count)
-    number = np.arange(len(leg)) - first[leg]
+    leg, number = numbered_parts(count)
     length, course, _ = inverse(lat1, lon1, lat2, lon2)
     if not len(legs):
         return np.empty(0)
