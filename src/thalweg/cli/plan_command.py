@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 from thalweg.cli import option_values, options
 from thalweg.cli.exit_codes import INTERRUPTED, NO_ROUTE, SUCCESS
 from thalweg.cli.first_run import announce_compilation
-from thalweg.cli.history.corridor_options import add_corridor_option, requested_network
-from thalweg.cli.layered_options import add_layered_options, layered_request
+from thalweg.cli.network_options import add_network_options, layered_request, requested_network
 from thalweg.cli.tables import print_plan
 from thalweg.core.errors import InputError
 from thalweg.kernels.compilation import warm_up
@@ -49,7 +48,7 @@ def add_voyage_options(parser: argparse.ArgumentParser) -> None:
     options.add_ship_and_chart_options(parser, default_ukc="that of the ship file")
     _add_time_options(parser)
     _add_objective_options(parser)
-    _add_network_options(parser)
+    add_network_options(parser)
     _add_cost_options(parser.add_argument_group("fuel, cost, canals"))
     _add_passage_options(parser.add_argument_group("distance from land, passages"))
     _add_indicator_options(parser.add_argument_group("key performance indicators"))
@@ -119,26 +118,6 @@ def _add_objective_options(parser: argparse.ArgumentParser) -> None:
          "choose the route over all members of an ensemble forecast, by the mean (default) or by "
          "the mean of the worst tenth (cvar)"),
         ("--seed", "N", options.WHOLE | {"default": 0}, "seed of random numbers (default: 0)"),
-    ))  # fmt: skip
-
-
-def _add_network_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--network",
-        default="auto",
-        metavar="auto|lattice|mesh|globe|layered|history:NET",
-        help="network to search: a regular grid around the route (lattice), the mesh of the sea "
-        "data (mesh), a global grid (globe), layers between every two places (layered), or the "
-        "water that ships usually use, from a file of thalweg history build (history:NET); "
-        "default: auto",
-    )
-    add_layered_options(parser)
-    add_corridor_option(parser)
-    options.add_table(parser, (
-        ("--resolution", "NM", options.NUMBER,
-         "spacing of the network [nm], 0.001 to 300; default: from the length of the voyage"),
-        ("--proof", "SECONDS", options.NUMBER,
-         "time for the proof of the lower bound, 0 to 3600 s; default: as long as the search"),
     ))  # fmt: skip
 
 

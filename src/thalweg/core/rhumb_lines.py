@@ -93,24 +93,6 @@ def direct_rhumb(
     return np.where(inside, end, math.nan), np.where(inside, turned, math.nan)
 
 
-def positions_along_rhumb(
-    lat1: float, lon1: float, lat2: float, lon2: float, fractions: ArrayLike
-) -> tuple[FloatArray, FloatArray]:
-    """Return positions [deg] at fractions of the rhumb line from the first to the second.
-
-    Parameters
-    ----------
-    lat1, lon1, lat2, lon2 : Ends of the rhumb line [deg].
-    fractions : Fractions of its length from the first end, 0 to 1.
-
-    Returns
-    -------
-    lat, lon : Positions [deg], in the shape of the fractions.
-    """
-    length, course = inverse_rhumb(lat1, lon1, lat2, lon2)
-    return direct_rhumb(lat1, lon1, course, np.asarray(fractions, float) * length)
-
-
 def rhumb_deviation(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
     """Return how far the rhumb line and the geodesic of each leg are apart.
 

@@ -53,7 +53,9 @@ def run_rows(rows: Sequence[StudyRow], folder: str) -> list[dict[str, Any]]:
     Returns
     -------
     list of dict
-        One per row, as `run_row`.
+        One per row, as plain data: ``id``, the labels, the key figures of the route (None where
+        unknown), ``refusal`` (the kind of error, None for a route) with ``reason``, ``seconds`` and
+        ``version``.
     """
     together: dict[str, list[StudyRow]] = {}
     for row in rows:
@@ -62,22 +64,6 @@ def run_rows(rows: Sequence[StudyRow], folder: str) -> list[dict[str, Any]]:
     results = [result for group in together.values() for result in _run_group(group, folder)]
     order = {row.id: place for place, row in enumerate(rows)}
     return sorted(results, key=lambda result: order[result["id"]])
-
-
-def run_row(row: StudyRow, folder: str) -> dict[str, Any]:
-    """Return the result of one row as plain data.
-
-    Parameters
-    ----------
-    folder : Files are relative to it.
-
-    Returns
-    -------
-    dict
-        ``id``, the labels, the key figures of the route (None where unknown), ``refusal`` (the kind
-        of error, None for a route) with ``reason``, ``seconds`` and ``version``.
-    """
-    return _run_group([row], folder)[0]
 
 
 def _run_group(rows: Sequence[StudyRow], folder: str) -> list[dict[str, Any]]:

@@ -1,16 +1,28 @@
-"""Options of layered networks, and their values."""
+"""Options of the network that is searched, and their values."""
 
 from __future__ import annotations
 
 import argparse
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from thalweg.cli import options
 from thalweg.core.errors import InputError
 
+if TYPE_CHECKING:
+    from thalweg.network.history.history_corridor import HistoryCorridor
 
-def add_layered_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the shape, the refinement and the choice of layered networks."""
+
+def add_network_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the kind of network, its shape and how fine it is."""
+    parser.add_argument(
+        "--network",
+        default="auto",
+        metavar="auto|lattice|mesh|globe|layered|history:NET",
+        help="network to search: a regular grid around the route (lattice), the mesh of the sea "
+        "data (mesh), a global grid (globe), layers between every two places (layered), or the "
+        "water that ships usually use, from a file of thalweg history build (history:NET); "
+        "default: auto",
+    )
     for name, letter, unit, kind in (
         ("layers", "S", "N", "layers between two places of a layered network"),
         ("fan", "H", "N", "segments that leave a node of it towards the next layer"),
@@ -31,7 +43,37 @@ def add_layered_options(parser: argparse.ArgumentParser) -> None:
         ("--within", "PERCENT", options.NUMBER,
          "by how much its shortest path may be longer than that of the finest network tried "
          "(default: 1)"),
+        ("--corridor-gain", "PERCENT", options.NUMBER,
+         "with --network history:NET: leave the usual water where that saves more than this share "
+         "of the objective [%%]; default: never"),
+        ("--resolution", "NM", options.NUMBER,
+         "spacing of the network [nm], 0.001 to 300; default: from the length of the voyage"),
+        ("--proof", "SECONDS", options.NUMBER,
+         "time for the proof of the lower bound, 0 to 3600 s; default: as long as the search"),
     ))  # fmt: skip
+
+
+def requested_network(arguments: argparse.Namespace) -> str | HistoryCorridor:
+    """Return the network that the options ask for.
+
+    Raises
+    ------
+    InputError : If a gain is given without a history network.
+    """
+    from dataclasses import replace
+
+    from thalweg.planning.request.network_choice import history_corridor
+
+    if arguments.corridor_gain is None:
+        return str(arguments.network)
+    corridor = history_corridor(arguments.network)
+    if corridor is None:
+        raise InputError(
+            f"--corridor-gain is given with --network {arguments.network}.",
+            "It states for what gain a plan leaves the water that ships usually use.",
+            "Give --network history:NET, or leave it out.",
+        )
+    return replace(corridor, gain=arguments.corridor_gain / 100.0)
 
 
 def layered_request(arguments: argparse.Namespace) -> dict[str, Any] | None:
