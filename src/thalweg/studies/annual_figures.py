@@ -11,7 +11,7 @@ import numpy as np
 from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import parse_position
-from thalweg.core.given_numbers import finite_or_none
+from thalweg.core.given_numbers import finite_or_none, is_number
 from thalweg.ship import Ship
 from thalweg.ship.methods.carbon_intensity import REDUCTION_PERCENT
 from thalweg.ship.methods.engine.european_charges import (
@@ -59,8 +59,7 @@ def checked_annual(given: Any) -> dict[str, float]:
         )
     for name, value in given.items():
         low, high = _ENTRIES[name]
-        number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        if not number or not low <= value <= high:
+        if not is_number(value) or not low <= value <= high:
             raise InputError(
                 f"{name} of annual is {value!r}.",
                 f"It is a number from {low:g} to {high:g}.",
