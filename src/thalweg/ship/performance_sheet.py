@@ -10,7 +10,7 @@ import numpy as np
 from thalweg.core.errors import InputError
 from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.types import FloatArray
-from thalweg.core.units import HOUR, KNOT
+from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.carbon_intensity import (
     attained_cii,
@@ -231,9 +231,9 @@ def _row(ship: Ship, speed: float, fuel: float) -> dict[str, Any]:
     return {
         "speed_kn": finite_or_none(round(speed / KNOT, 9)),
         "fuel_kg_per_h": finite_or_none(fuel * HOUR),
-        "fuel_kg_per_nm": finite_or_none(fuel * 1852.0 / speed if speed > 0 else np.nan),
+        "fuel_kg_per_nm": finite_or_none(fuel * NAUTICAL_MILE / speed if speed > 0 else np.nan),
         "co2_kg_per_h": finite_or_none(co2 * HOUR),
-        "cii": _cii_of_row(ship, co2 * 1852.0 / speed) if speed > 0 else None,
+        "cii": _cii_of_row(ship, co2 * NAUTICAL_MILE / speed) if speed > 0 else None,
     }
 
 

@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.core.file_writing import new_figure, save_figure, style_panels
-from thalweg.core.units import HOUR, KNOT
+from thalweg.core.units import DAY, HOUR, KNOT
 from thalweg.operations.tracks.activities import (
     AWAY,
     SAILING_EMPTY,
@@ -91,7 +91,7 @@ def _draw_durations(analysis: TrackAnalysis, axes: Any) -> None:
     for kind, colour in ACTIVITY_COLOURS.items():
         found = [a for a in analysis.activities if a.kind == kind and (a.whole or kind == UNSEEN)]
         if found:
-            days = [(a.start - start) / 86400.0 for a in found]
+            days = [(a.start - start) / DAY for a in found]
             hours = [a.duration / HOUR for a in found]
             axes.plot(days, hours, "o", ms=3, color=colour, label=f"{kind} ({len(found)})")
     axes.set(xlabel="day of the track", ylabel="duration of the activity [h]")
@@ -109,7 +109,7 @@ def _draw_speeds(analysis: TrackAnalysis, axes: Any) -> None:
             continue
         at = part.start.to_numpy().astype("datetime64[ns]").astype(np.int64) / 1e9
         label = f"{kind}: {part.speed_kn.mean():.2f} ± {part.speed_kn.std():.2f} kn"
-        days = (at - start) / 86400.0
+        days = (at - start) / DAY
         axes.plot(
             days, part.speed_kn, "o-", ms=3, lw=0.6, color=ACTIVITY_COLOURS[kind], label=label
         )

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.file_writing import write_bytes
-from thalweg.core.units import NAUTICAL_MILE
+from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.route.carried_extensions import (
     LEG_NUMBERS,
     LEG_TEXTS,
@@ -279,7 +279,7 @@ def _schedules(written: FileRoute, carried: CarriedExtensions, version: str) -> 
 
 def waypoint_times(row: Mapping[str, Any], first: bool, last: bool, version: str) -> dict[str, str]:
     """Return the arrival, the stay and the departure at a waypoint."""
-    wait = round(3600.0 * (row.get("waiting_h") or 0.0))
+    wait = round(HOUR * (row.get("waiting_h") or 0.0))
     arrival = np.datetime64(str(row["time"]).removesuffix("Z"))
     times = {} if first else {"eta": str(row["time"])}
     if first or (wait and not last):

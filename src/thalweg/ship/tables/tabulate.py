@@ -22,9 +22,8 @@ ConditionsFunction = Callable[[Mapping[str, FloatArray]], FloatArray]
 #: values of settings in conditions that broadcast with them
 RateFunction = Callable[[Conditions, NDArray[np.intp]], FloatArray]
 
-RELATIVE_ERROR_FLOOR: Final = (
-    0.25  #: relative errors are not taken to less than this share of the greatest value
-)
+#: Relative errors are not taken to less than this share of the greatest value.
+RELATIVE_ERROR_FLOOR: Final = 0.25
 LARGEST_TABLE: Final = 32_000_000  #: bytes of one part
 _CHUNK_SIZE = 40_000
 _SAMPLES = 4000
