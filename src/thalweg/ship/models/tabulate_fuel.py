@@ -144,33 +144,7 @@ def _unknown_power_error(ship: str, why: str) -> InputError:
     )
 
 
-def tabulate_fuel_of_balance(
-    model: TabulatedResistance, load_factor: float, tolerance: float
-) -> TableWithMaxima:
-    """Tabulate the fuel rate [kg/s] of a resistance-based ship; see `_tabulate_rate_of_power`.
-
-    Parameters
-    ----------
-    load_factor : Load, 0 (empty) to 1 (full).
-    tolerance : Largest relative error of the table [-].
-    """
-    return _tabulate_rate_of_power(model, load_factor, tolerance, model.plant.fuel)
-
-
-def tabulate_power_of_balance(
-    model: TabulatedResistance, load_factor: float, tolerance: float
-) -> TableWithMaxima:
-    """Tabulate the brake power [W] of a resistance-based ship; see `_tabulate_rate_of_power`.
-
-    Parameters
-    ----------
-    load_factor : Load, 0 (empty) to 1 (full).
-    tolerance : Largest relative error of the table [-].
-    """
-    return _tabulate_rate_of_power(model, load_factor, tolerance, np.asarray)
-
-
-def _tabulate_rate_of_power(
+def tabulate_rate_of_power(
     model: TabulatedResistance, load_factor: float, tolerance: float, of_power: RateOfPower
 ) -> TableWithMaxima:
     """Tabulate what follows from the power of every setting of a resistance-based ship.
