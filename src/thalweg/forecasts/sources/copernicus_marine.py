@@ -17,7 +17,7 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.core.errors import InputError
-from thalweg.core.time import format_time
+from thalweg.core.time import format_time, to_datetime64
 from thalweg.core.units import HOUR
 from thalweg.forecasts.box_cut import cut_to_box, join_pieces, longitude_spans
 from thalweg.forecasts.download_client import DownloadClient, TransferError
@@ -26,7 +26,6 @@ from thalweg.forecasts.forecast_request import ForecastRequest
 
 _SPACING: Final = 1.0 / 12.0
 _SLICE: Final = 8  #: times read at once
-_STAMP: Final = "datetime64[ns]"
 
 
 @dataclass(frozen=True)
@@ -147,7 +146,7 @@ class CopernicusMarine:
                 remote = remote.isel(depth=0, drop=True)
             given = remote["time"].values.astype("datetime64[s]").astype(float)
             stamps = given // product.step * product.step + product.first
-            remote = remote.assign_coords(time=(stamps * 1e9).astype("int64").astype(_STAMP))
+            remote = remote.assign_coords(time=to_datetime64(stamps))
             at = [k for k, stamp in enumerate(stamps) if np.min(np.abs(stamp - plan.times)) < 60.0]
             slices = [
                 remote.isel(time=at[k : k + _SLICE]).load() for k in range(0, len(at), _SLICE)
