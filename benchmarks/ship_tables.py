@@ -18,7 +18,7 @@ from thalweg.kernels.compilation.jit import jit
 from thalweg.kernels.leg.table_lookup import table_value
 from thalweg.ship import Conditions, Ship, library_names
 from thalweg.ship.models.resistance_model import ResistanceModel
-from thalweg.ship.models.tabulate_fuel import tabulate_fuel_of_balance
+from thalweg.ship.models.tabulate_fuel import tabulate_rate_of_power
 from thalweg.ship.models.tabulate_resistance import tabulate_balance
 
 #: a full ship: calm water, shallow water, waves of every heading, wind, propeller chain
@@ -105,8 +105,10 @@ def fuel_rows() -> None:
         "jbc": {**held, "speeds_kn": [9, 11, 13, 14]},
     }.items():
         model = Ship.from_dict(data).model
-        seconds = _cpu(lambda model=model: tabulate_fuel_of_balance(model, 1.0, 0.01), 1)
-        table, _ = tabulate_fuel_of_balance(model, 1.0, 0.01)
+        seconds = _cpu(
+            lambda model=model: tabulate_rate_of_power(model, 1.0, 0.01, model.plant.fuel), 1
+        )
+        table, _ = tabulate_rate_of_power(model, 1.0, 0.01, model.plant.fuel)
         error = table.error
         print(
             f"{name:24} {seconds:8.2f} {table.nbytes / 1e6:6.1f} "

@@ -12,7 +12,6 @@ from thalweg.core.rhumb_lines import (
     densify_for_rhumb,
     direct_rhumb,
     inverse_rhumb,
-    positions_along_rhumb,
     rhumb_cross_track,
     rhumb_deviation,
     rhumb_pieces,
@@ -68,7 +67,7 @@ def test_direct_undoes_inverse_and_geodesics_are_shorter(lat1, lon1, lat2, lon2)
 def test_quadrature_and_closed_form_agree(lat, lon, step):
     ends = [lat, np.clip(lat + math.degrees(step), -84, 84)]
     whole, course = inverse_rhumb(ends[0], lon, ends[1], lon + 10.0)
-    middle = positions_along_rhumb(ends[0], lon, ends[1], lon + 10.0, 0.5)
+    middle = direct_rhumb(ends[0], lon, course, 0.5 * whole)
     first, bearing = inverse_rhumb(ends[0], lon, *middle)
     assert float(first) == pytest.approx(0.5 * float(whole), rel=1e-10)
     assert float(bearing) == pytest.approx(float(course), abs=1e-10)

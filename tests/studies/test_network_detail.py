@@ -20,7 +20,7 @@ from thalweg.planning.departures.departure_series import DepartureSeries
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 from thalweg.studies import Study, run_study, summarise_study
-from thalweg.studies.row_runner import run_row, run_rows
+from thalweg.studies.row_runner import run_rows
 from thalweg.studies.study_parts import read_parts
 
 WAVES = "sea_surface_wave_significant_height"
@@ -128,7 +128,7 @@ def test_a_season_is_the_same_in_any_order_and_has_its_calm_month(folder, tmp_pa
     rows = study(folder).rows()
     together = run_rows(rows, str(folder))
     assert without_seconds(run_rows(rows[::-1], str(folder))[::-1]) == without_seconds(together)
-    assert without_seconds([run_row(rows[4], str(folder))]) == without_seconds([together[4]])
+    assert without_seconds(run_rows(rows[4:5], str(folder))) == without_seconds([together[4]])
     run_study(study(folder), tmp_path / "out", chunk=1)
     summary = summarise_study(tmp_path / "out")
     assert summary.best["month"].tolist() == [2]
@@ -143,7 +143,7 @@ def test_a_season_is_the_same_in_any_order_and_has_its_calm_month(folder, tmp_pa
 def test_routes_are_no_better_than_the_refined_ones(folder):
     row = study(folder, axes={"depart": ["2026-01-05T00:00Z"]}).rows()[0]
     refined = study(folder, axes={"depart": ["2026-01-05T00:00Z"]}, detail="refined").rows()[0]
-    coarse, fine = (run_row(one, str(folder)) for one in (row, refined))
+    coarse, fine = (run_rows([one], str(folder))[0] for one in (row, refined))
     assert coarse["refusal"] is None is fine["refusal"]
     assert fine["time_h"] <= coarse["time_h"] * (1.0 + 1e-3)
     assert coarse["time_h"] <= fine["time_h"] * 1.02

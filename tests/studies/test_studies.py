@@ -22,7 +22,7 @@ from thalweg.cli.main import main
 from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
 from thalweg.studies import Study, run_study, study_rows, summarise_study
-from thalweg.studies.row_runner import run_row, ship_of_request
+from thalweg.studies.row_runner import run_rows, ship_of_request
 from thalweg.studies.study_parts import read_parts
 from thalweg.studies.study_summary import median_interval
 
@@ -158,7 +158,7 @@ def test_a_study_has_the_areas_limits_and_charges_of_a_plan(tmp_path):
     study = Study.from_dict(
         {**entries, "voyage": voyage, "limits": {"wave_height_m": 3}, "axes": axes}, tmp_path
     )
-    free, area, charged = (run_row(row, str(tmp_path)) for row in study.rows())
+    free, area, charged = run_rows(study.rows(), str(tmp_path))
     assert free["feasible"] and free["refusal"] is None
     assert not area["feasible"] and "no-go" in area["first_violation"]
     assert charged["cost_usd"] > free["cost_usd"] and charged["fuel_t"] == free["fuel_t"]
@@ -277,7 +277,7 @@ def test_a_cluster_gives_the_same_rows(folder, tmp_path):
 
 def test_a_row_with_a_fault_of_its_own_is_a_row(folder):
     study = base(folder, axes={"depart": ["2026-03-01T00:00Z"], "resolution_nm": ["wide"]})
-    result = run_row(study.rows()[0], str(folder))
+    [result] = run_rows(study.rows()[:1], str(folder))
     assert result["refusal"] == "InternalError" and "wide" in result["reason"]
 
 

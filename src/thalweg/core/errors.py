@@ -153,7 +153,6 @@ def nearest_names(word: str, known: Iterable[str], most: int = _MOST_NAMES) -> s
     Parameters
     ----------
     word : The unknown name.
-    known : All known names.
     most : Greatest number of names that are listed.
     """
     names = sorted(known)
@@ -171,8 +170,6 @@ def unknown_name_error(
     Parameters
     ----------
     kind : Kind of the name, for the message, such as ``"method"``.
-    word : The unknown name.
-    known : All known names.
     field : Entry of a request that holds the name.
 
     Returns

@@ -241,6 +241,13 @@ def densify(
     return in_equal_pieces(lat, lon, np.maximum(1, np.ceil(lengths / np.asarray(spacing) - 1e-9)))
 
 
+def numbered_parts(count: ArrayLike) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return of every part of legs in given counts (n,) its leg, and its number in it from 0."""
+    parts = np.asarray(count, np.int64)
+    leg = np.repeat(np.arange(len(parts)), parts)
+    return leg, np.arange(len(leg)) - np.repeat(np.cumsum(parts) - parts, parts)
+
+
 def in_equal_pieces(
     lat: FloatArray, lon: FloatArray, pieces: ArrayLike
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
@@ -258,9 +265,8 @@ def in_equal_pieces(
     """
     count = np.asarray(pieces, dtype=np.int64)
     lengths, courses, _ = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
-    leg = np.repeat(np.arange(len(count)), count)
-    first = np.repeat(np.cumsum(count) - count, count)
-    fraction = (np.arange(len(leg)) - first) / count[leg]
+    leg, number = numbered_parts(count)
+    fraction = number / count[leg]
     out_lat, out_lon = lat[leg], wrap_longitude(lon[leg])
     inner = fraction > 0.0
     out_lat[inner], out_lon[inner] = direct(

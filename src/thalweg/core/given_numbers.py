@@ -30,6 +30,11 @@ def is_number(value: object) -> bool:
     return not isinstance(value, (str, bytes, np.ndarray)) and math.isfinite(to_number(value))
 
 
+def finite_or_none(value: float | None) -> float | None:
+    """Return a number, or None where there is none or it is not finite, as JSON has no other."""
+    return None if value is None or not math.isfinite(value) else float(value)
+
+
 def float_array(values: ArrayLike, what: str) -> FloatArray:
     """Return a new array of floats.
 

@@ -29,6 +29,7 @@ from thalweg.core.geodesy import (
     distance,
     in_equal_pieces,
     inverse,
+    numbered_parts,
     wrap_longitude,
 )
 from thalweg.core.types import BoolArray, FloatArray, IntArray
@@ -90,24 +91,6 @@ def direct_rhumb(
     with np.errstate(divide="ignore", invalid="ignore"):
         turned = wrap_longitude(b + np.degrees(d * np.sin(c) / parallel))
     return np.where(inside, end, math.nan), np.where(inside, turned, math.nan)
-
-
-def positions_along_rhumb(
-    lat1: float, lon1: float, lat2: float, lon2: float, fractions: ArrayLike
-) -> tuple[FloatArray, FloatArray]:
-    """Return positions [deg] at fractions of the rhumb line from the first to the second.
-
-    Parameters
-    ----------
-    lat1, lon1, lat2, lon2 : Ends of the rhumb line [deg].
-    fractions : Fractions of its length from the first end, 0 to 1.
-
-    Returns
-    -------
-    lat, lon : Positions [deg], in the shape of the fractions.
-    """
-    length, course = inverse_rhumb(lat1, lon1, lat2, lon2)
-    return direct_rhumb(lat1, lon1, course, np.asarray(fractions, float) * length)
 
 
 def rhumb_deviation(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
@@ -258,8 +241,7 @@ def rhumb_pieces(
 
     count = np.ones(len(length), np.int64)
     count = _raised_counts(lat, lon, count, bends, limit, place)
-    leg = np.repeat(np.arange(len(count)), count)
-    number = np.arange(len(leg)) - np.repeat(np.cumsum(count) - count, count)
+    leg, number = numbered_parts(count)
     out_lat, out_lon = lat[leg], wrap_longitude(lon[leg])
     inner = number > 0
     out_lat[inner], out_lon[inner] = place(leg[inner], (number / count[leg])[inner])

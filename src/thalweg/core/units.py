@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
-KNOT: Final = 1852.0 / 3600.0  #: metres per second in a knot
 NAUTICAL_MILE: Final = 1852.0  #: metres
 MINUTE: Final = 60.0  #: seconds
 HOUR: Final = 3600.0  #: seconds
+KNOT: Final = NAUTICAL_MILE / HOUR  #: metres per second in a knot
 DAY: Final = 86400.0  #: seconds
 TONNE: Final = 1000.0  #: kilograms
 MEGAWATT_HOUR: Final = 3.6e9  #: joules

@@ -42,12 +42,8 @@ class EvolutionaryAlgorithm(ABC):
         rng: np.random.Generator,
     ) -> None:
         check_size(size)
-        self.evaluator, self.size, self.variation_settings, self.rng = (
-            evaluator,
-            size,
-            variation_settings,
-            rng,
-        )
+        self.evaluator, self.size = evaluator, size
+        self.variation_settings, self.rng = variation_settings, rng
         self.population, self.scores = first, np.empty((0, 3))
         self._steps = self._search()
         self._unscored = next(self._steps)

@@ -29,9 +29,8 @@ from thalweg.route.track import Track
 
 METHODS: dict[str, type[EvolutionaryAlgorithm]] = {"nsga2": Nsga2, "spea2": Spea2, "mpaes": Mpaes}
 SETTLING_WINDOW = 33  #: generations over which the generational distance must have settled
-SETTLED_VARIANCE = (
-    3e-4  #: its variance below which it has, in units of the front's mean spacing squared
-)
+#: Its variance below which it has, in units of the front's mean spacing squared.
+SETTLED_VARIANCE = 3e-4
 MAX_GENERATIONS = 500  #: if nothing else limits a run
 DEFAULT_OPERATORS = VariationSettings()  #: variation operators unless others are given
 _VERIFICATION_REFINEMENT = 4.0  # the front is verified with pieces shorter by this factor

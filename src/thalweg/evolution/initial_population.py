@@ -76,10 +76,8 @@ def initial_population(
         wanted = -(-missing // (2 * _MUTATION_ROUNDS))
         pairs = rng.integers(0, len(base), size=(wanted, 2))
         offspring = reproduce(base, pairs, evaluator=evaluator, variation_settings=first, rng=rng)
-        population, base = (
-            concatenated_populations(population, offspring),
-            concatenated_populations(base, offspring),
-        )
+        population = concatenated_populations(population, offspring)
+        base = concatenated_populations(base, offspring)
     return population
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from collections.abc import Generator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from thalweg.core.types import FloatArray, IntArray
 from thalweg.evolution.algorithm import EvolutionaryAlgorithm, ScoreRequests
 from thalweg.evolution.indicators import crowding_distance
 from thalweg.evolution.ranking import dominates, select_survivors
-from thalweg.route.evaluators.population import concatenated_populations
+from thalweg.route.evaluators.population import Population, concatenated_populations
 
 MAX_FAILURES = 5  #: successive dominated mutants that end a local search
 MAX_MOVES = 20  #: largest number of mutants of a local search
@@ -26,7 +27,6 @@ class HillClimber:
     ----------
     score : Score of its current track, (3,).
     near : Its own archive H, (h, 3).
-    fails, moves : int
     """
 
     score: FloatArray
@@ -76,14 +76,6 @@ def _scores_without(scores: FloatArray, some: FloatArray) -> FloatArray:
     return scores[(scores[:, None] != some[None]).any(axis=2).all(axis=1)]
 
 
-@dataclass
-class _ClimbingRound:
-    """The hill climbers of one round, and the current track of each in the population."""
-
-    climbers: list[HillClimber]
-    track: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
-
-
 class Mpaes(EvolutionaryAlgorithm):
     """A global archive and hill climbers; the mutants of all climbers are scored in one batch.
 
@@ -91,15 +83,12 @@ class Mpaes(EvolutionaryAlgorithm):
     """
 
     def _search(self) -> ScoreRequests:
-        scores = yield self.population
-        self.scores = scores
-        chosen, _, _ = select_survivors(scores, self.size)
-        self.population, self.scores = self.population.take(chosen), scores[chosen]
+        self.scores = yield self.population
+        self._take(select_survivors(self.scores, self.size)[0])
         count = max(2, self.size // _ARCHIVE_PER_CLIMBER)
         base = self._spread_over_archive(count)
         while True:
             yield from self._climb_from(base)
-            base = self._archive()
             base = yield from self._recombine(count)
 
     def _spread_over_archive(self, count: int) -> IntArray:
@@ -114,39 +103,43 @@ class Mpaes(EvolutionaryAlgorithm):
             score = self.scores[index]
             near = archive[~dominates(archive, score[None])]
             climbers.append(HillClimber(score, np.vstack([score[None], near])[: self.size]))
-        climb = _ClimbingRound(climbers, np.array(base))
+        track = np.array(base)  # of each climber, in the population
         mutation_only = replace(self.variation_settings, crossover=0.0)
         while True:
-            active = np.array(
-                [k for k, c in enumerate(climb.climbers) if c.is_active], dtype=np.int64
-            )
+            active = np.flatnonzero([climber.is_active for climber in climbers])
             if not len(active):
                 return
-            pairs = np.resize(climb.track[active], 2 * ((len(active) + 1) // 2)).reshape(-1, 2)
+            pairs = np.resize(track[active], 2 * ((len(active) + 1) // 2)).reshape(-1, 2)
             offspring = self._children(pairs, mutation_only)
             scores = yield offspring
             before = len(self.scores)
             for place, k in enumerate(active):
-                if climb.climbers[k].judge(scores[place], self.size):
-                    climb.track[k] = before + place
-            self._update(climb.track, offspring, scores)
+                if climbers[k].judge(scores[place], self.size):
+                    track[k] = before + place
+            self._append(offspring, scores)
+            track = self._keep_with(select_survivors(self.scores, self.size)[0], track)
 
-    def _update(self, track: IntArray, offspring, scores: FloatArray) -> None:  # type: ignore[no-untyped-def]
-        """Update the archive with all offspring, and the current tracks of the climbers."""
-        both = np.concatenate([self.scores, scores])
-        survivors = select_survivors(both, self.size)[0]
-        chosen = np.concatenate([survivors, np.setdiff1d(track, survivors)])
-        self._keep(chosen, offspring, scores)
-        where = np.full(len(both), -1, dtype=np.int64)
+    def _take(self, chosen: IntArray) -> None:
+        self.population, self.scores = self.population.take(chosen), self.scores[chosen]
+
+    def _append(self, offspring: Population, scores: FloatArray) -> None:
+        self.population = concatenated_populations(self.population, offspring)
+        self.scores = np.concatenate([self.scores, scores])
+
+    def _keep_with(self, archive: IntArray, track: IntArray) -> IntArray:
+        """Keep the archive, then the tracks of climbers; return where these are then."""
+        chosen = np.concatenate([archive, np.setdiff1d(track, archive)])
+        where = np.full(len(self.scores), -1, dtype=np.int64)
         where[chosen] = np.arange(len(chosen))
-        track[:] = where[track]
+        self._take(chosen)
+        return where[track]
 
     def _archive(self) -> IntArray:
         """Return the non-dominated tracks, at most ``size``."""
         chosen, rank, _ = select_survivors(self.scores, self.size)
         return chosen[rank[chosen] == 0]
 
-    def _recombine(self, count: int):  # type: ignore[no-untyped-def]
+    def _recombine(self, count: int) -> Generator[Population, FloatArray, IntArray]:
         """Return the climbers of the next round: accepted children, or tournament winners of G."""
         crossover_only = replace(self.variation_settings, crossover=1.0, mutation=0.0)
         base: list[int] = []
@@ -160,8 +153,7 @@ class Mpaes(EvolutionaryAlgorithm):
                 k for k in range(len(scores)) if self._can_join(scores[k], archive, pairs[k // 2])
             ]
             before = len(self.scores)
-            self.population = concatenated_populations(self.population, offspring)
-            self.scores = np.concatenate([self.scores, scores])
+            self._append(offspring, scores)
             base += [before + k for k in fit[:missing]]
             if len(base) == count:
                 break
@@ -172,12 +164,7 @@ class Mpaes(EvolutionaryAlgorithm):
             place = np.empty(len(best), dtype=np.int64)
             place[np.argsort(-crowding, kind="stable")] = np.arange(len(best))
             base += best[self._binary_tournament(place, remaining)].tolist()
-        track = np.array(base, dtype=np.int64)
-        survivors = np.concatenate([best, np.setdiff1d(track, best)])
-        where = np.full(len(self.scores), -1, dtype=np.int64)
-        where[survivors] = np.arange(len(survivors))
-        self.population, self.scores = self.population.take(survivors), self.scores[survivors]
-        return where[track]
+        return self._keep_with(best, np.array(base, dtype=np.int64))
 
     def _can_join(self, child: FloatArray, archive: FloatArray, parents: IntArray) -> bool:
         """Return whether a child is accepted: not dominated by G, and better or less crowded."""

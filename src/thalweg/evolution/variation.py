@@ -116,16 +116,12 @@ class VariationSettings:
         out = np.empty(mutation.VARIATION_SETTING_COUNT)
         weights = [getattr(self.mix, field.name) for field in fields(OperatorWeights)]
         out[: mutation.OPERATOR_COUNT] = weights
-        out[mutation.CHANGE_SCALE], out[mutation.OFFSET_SHAPE] = (
-            self.changes,
-            INSERTION_SHAPES[self.shape],
-        )
+        out[mutation.CHANGE_SCALE] = self.changes
+        out[mutation.OFFSET_SHAPE] = INSERTION_SHAPES[self.shape]
         out[mutation.INSERT_WIDTH] = self.insert_width
         out[mutation.RADIUS_MIN], out[mutation.RADIUS_MAX] = self.radius
-        out[mutation.CROSSOVER_PROBABILITY], out[mutation.MUTATION_PROBABILITY] = (
-            self.crossover,
-            self.mutation,
-        )
+        out[mutation.CROSSOVER_PROBABILITY] = self.crossover
+        out[mutation.MUTATION_PROBABILITY] = self.mutation
         return out
 
 

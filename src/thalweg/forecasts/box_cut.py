@@ -51,6 +51,13 @@ def _batches(files: Iterable[Path]) -> Iterator[list[Path]]:
         yield batch
 
 
+def longitude_spans(box: BoundingBox) -> list[tuple[float, float]]:
+    """Return west and east of a box [deg] from -180 to 180; two pairs across the antimeridian."""
+    west = (box.west + 180.0) % 360.0 - 180.0
+    east = west + box.width
+    return [(west, min(east, 180.0))] + ([(-180.0, east - 360.0)] if east > 180.0 else [])
+
+
 def cut_to_box(dataset: Any, box: BoundingBox) -> Any:
     """Return the part of a dataset in a box, with the cells that hold its edges.
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import NoRouteError
+from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.objective import KEY_FIGURES
 from thalweg.core.pareto_fronts import (
     ROUNDING_TOLERANCE,
@@ -19,7 +20,6 @@ from thalweg.core.pareto_fronts import (
 )
 from thalweg.planning.plan import Plan
 from thalweg.planning.plan_front import ParetoFront
-from thalweg.planning.report.provenance import finite_or_none
 from thalweg.planning.request.requirements import required_under_keel_clearance
 from thalweg.planning.request.voyage_objective import PricedObjective, priced_objective
 from thalweg.planning.voyage import Voyage

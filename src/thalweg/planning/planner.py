@@ -14,6 +14,7 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.units import KNOT
 from thalweg.network.history.history_corridor import HistoryCorridor
 from thalweg.planning.approach_sailing import (
@@ -28,7 +29,6 @@ from thalweg.planning.plan_data import PlotContext, Proof, in_objective_unit
 from thalweg.planning.planning_context import PlanningContext, ShipTables, performance_table_of
 from thalweg.planning.report.lane_report import lane_detour_notes
 from thalweg.planning.report.provenance import (
-    finite_or_none,
     network_summary,
     provenance,
     route_warnings,

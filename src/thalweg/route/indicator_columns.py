@@ -21,6 +21,7 @@ from typing import Any, Final, Protocol
 import numpy as np
 
 from thalweg.core.errors import unknown_name_error
+from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY, HOUR, NAUTICAL_MILE
 
@@ -144,7 +145,6 @@ def named_columns(legs: Mapping[str, Any], kind: str) -> dict[str, Any]:
 
     Parameters
     ----------
-    legs : Columns.
     kind : Such as ``squared_dose``.
     """
     return {
@@ -280,14 +280,12 @@ def indicator_table(route: RefereedRoute) -> dict[str, Any]:
     """
 
     def plain(name: str, at: str | None = None) -> float | None:
-        value = indicator_value(route, name, at)
-        return value if math.isfinite(value) else None
+        return finite_or_none(indicator_value(route, name, at))
 
     legs = route.legs
     places = {}
     for name, doses in named_columns(legs, "squared_dose").items():
-        squared = _total(doses)
-        row = {"dose_m_s1_5": math.sqrt(squared) if math.isfinite(squared) else None}
+        row = {"dose_m_s1_5": finite_or_none(math.sqrt(_total(doses)))}
         row |= {
             key: plain(key, name)
             for key in ("sick_percent", "worst_hour_percent", "uncomfortable_percent")
@@ -298,8 +296,7 @@ def indicator_table(route: RefereedRoute) -> dict[str, Any]:
             ("velocity", "m_s"),
             ("displacement", "m"),
         ):
-            value = _largest(legs[f"{key}:{name}"])
-            row[f"max_{key}_rms_{unit}"] = value if math.isfinite(value) else None
+            row[f"max_{key}_rms_{unit}"] = finite_or_none(_largest(legs[f"{key}:{name}"]))
         places[name] = row
     tasks = {
         name: {"workable_percent": plain("workable_percent", name)}
@@ -312,7 +309,7 @@ def indicator_table(route: RefereedRoute) -> dict[str, Any]:
             "max_pitch_rms_deg": math.degrees(_largest(legs["pitch"])),
             "max_roll_rms_deg": math.degrees(_largest(legs["roll"])),
         }
-        ship = {name: value if math.isfinite(value) else None for name, value in largest.items()}
+        ship = {name: finite_or_none(value) for name, value in largest.items()}
     around = {name: plain(name) for name in _WATER_COLUMNS}
     fuel = {"fuel_t_per_nm": _per_mile(route)}
     return {**around, **fuel, **ship, "places": places, "tasks": tasks}

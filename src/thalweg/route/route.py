@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thalweg.core.geodesy import format_position
+from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
 from thalweg.route.cost_parts import COST_PARTS
 from thalweg.route.indicator_columns import indicator_table, indicator_value
-from thalweg.route.route_tables import none_if_nan, waypoint_frame, waypoint_rows
+from thalweg.route.route_tables import waypoint_frame, waypoint_rows
 from thalweg.route.track import Track
 
 if TYPE_CHECKING:
@@ -65,8 +66,8 @@ class Violation:
             "time": format_time(self.time) if np.isfinite(self.time) else None,
             "lat": self.lat,
             "lon": self.lon,
-            "value": none_if_nan(self.value),
-            "limit": none_if_nan(self.limit),
+            "value": finite_or_none(self.value),
+            "limit": finite_or_none(self.limit),
         }
 
 
@@ -192,7 +193,7 @@ class Route:
         return {name: self._sum(column) for name, column in COST_PARTS.items()}
 
     def _sum(self, name: str) -> float | None:
-        return none_if_nan(float(self.legs[name].sum())) if name in self.legs else None
+        return finite_or_none(float(self.legs[name].sum())) if name in self.legs else None
 
     @property
     def waiting_h(self) -> float:
@@ -209,17 +210,17 @@ class Route:
     @property
     def comfort(self) -> float | None:
         """Squared motion sickness dose at the first place of the ship file [m2/s3], or None."""
-        return none_if_nan(indicator_value(self, "comfort"))
+        return finite_or_none(indicator_value(self, "comfort"))
 
     @property
     def encounters(self) -> float | None:
         """Expected encounters with other ships; None where the traffic is unknown."""
-        return none_if_nan(indicator_value(self, "encounters"))
+        return finite_or_none(indicator_value(self, "encounters"))
 
     @property
     def inshore_nm(self) -> float | None:
         """Length within 3 nm of land [nautical miles]; None without a chart."""
-        return none_if_nan(indicator_value(self, "inshore_nm"))
+        return finite_or_none(indicator_value(self, "inshore_nm"))
 
     @property
     def indicators(self) -> dict[str, Any]:
@@ -291,7 +292,7 @@ class Route:
         return {
             "depart": format_time(self.depart),
             "arrive": format_time(self.arrive) if np.isfinite(self.arrive) else None,
-            "time_h": none_if_nan(self.time_h),
+            "time_h": finite_or_none(self.time_h),
             "distance_nm": self.distance_nm,
             "fuel_t": self.fuel_t,
             "fuel_eca_t": self.fuel_eca_t,
@@ -305,7 +306,7 @@ class Route:
             "min_ukc_m": self.min_ukc_m,
             "indicators": self.indicators,
             "feasible": self.feasible,
-            "tolerance_s": none_if_nan(self.tolerance_s),
+            "tolerance_s": finite_or_none(self.tolerance_s),
             "assumptions": list(self.assumptions),
             "violations": [violation.as_dict() for violation in self.violations],
             "waypoints": self.waypoints(),

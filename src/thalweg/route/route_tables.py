@@ -46,11 +46,6 @@ class SailedRoute(Protocol):
         """Name of the column of costs."""
 
 
-def none_if_nan(value: float) -> float | None:
-    """Return the number, or None for NaN and infinities, which JSON does not have."""
-    return float(value) if np.isfinite(value) else None
-
-
 def waypoint_rows(route: SailedRoute) -> list[dict[str, Any]]:
     """Return one plain dictionary per waypoint; None where a value is unknown.
 

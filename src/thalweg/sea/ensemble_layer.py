@@ -192,10 +192,6 @@ def ensemble_layers(seas: Sequence[Sequence[Layer]]) -> tuple[Layer, ...]:
 def combine_member_layers(layers: Sequence[Layer]) -> Layer:
     """Return one ensemble layer from the layer of each member; a layer they share stays as it is.
 
-    Parameters
-    ----------
-    layers : The layer of each member.
-
     Raises
     ------
     InputError : If they differ in variables, grid, times or area.

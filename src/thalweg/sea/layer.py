@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
@@ -66,6 +68,53 @@ class Layer(Protocol):
         ...
 
 
+@dataclass(frozen=True, eq=False)
+class RetimedLayer(ABC):
+    """A layer whose values at a time are those of another layer at another time."""
+
+    layer: Layer
+
+    @property
+    def variables(self) -> frozenset[str]:
+        """Those of the layer."""
+        return self.layer.variables
+
+    @property
+    def area(self) -> BoundingBox:
+        """That of the layer."""
+        return self.layer.area
+
+    @abstractmethod
+    def _read_at(self, times: FloatArray) -> FloatArray:
+        """Return the times at which the layer is read."""
+
+    def sample(
+        self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> Samples:
+        """Return values at points (N,); NaN where the layer knows none."""
+        return self.layer.sample(names, self._read_at(time), lat, lon)
+
+    def series(
+        self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> Samples:
+        """Return values (S, T) at stations for all times."""
+        moments, which = np.unique(self._read_at(times), return_inverse=True)
+        found = self.layer.series(names, moments, lat, lon)
+        return {name: values[:, which.ravel()] for name, values in found.items()}
+
+    def inside(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
+        """Return whether the layer may know values at positions."""
+        return self.layer.inside(lat, lon)
+
+    def coverage(self) -> list[Coverage]:
+        """Return where and when each variable of the layer is known."""
+        return self.layer.coverage()
+
+    def mesh(self) -> Mesh | None:
+        """Return the mesh of the layer, if it has one."""
+        return self.layer.mesh()
+
+
 def nan_pairs(samples: Samples, pairs: Sequence[tuple[str, str]]) -> Samples:
     """Make both components of a vector NaN where one of them is.
 
@@ -74,10 +123,6 @@ def nan_pairs(samples: Samples, pairs: Sequence[tuple[str, str]]) -> Samples:
     samples : Values by canonical name; changed in place.
     pairs : sequence of (str, str)
         Names of the components of each vector.
-
-    Returns
-    -------
-    dict of str to ndarray : The samples.
     """
     for east, north in pairs:
         if east in samples and north in samples:

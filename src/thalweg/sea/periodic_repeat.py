@@ -8,23 +8,20 @@ degree. Prediction from constituents (`Sea.from_tides`) needs no repetition.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.sea.coverage import Coverage
-from thalweg.sea.layer import Layer, Samples
+from thalweg.sea.layer import Layer, RetimedLayer
 from thalweg.sea.sea import Sea
 from thalweg.sea.tides import schureman
-from thalweg.sea.triangle_mesh import Mesh
 
 FORTNIGHT_H: Final = 360.0  #: 30 S2; M2 is 5.7 degrees early
 MONTH_H: Final = 707.974  #: 57 M2; S2 is 0.8 degrees early
@@ -37,7 +34,6 @@ def drift_deg(period_h: float, name: str) -> float:
     Parameters
     ----------
     period_h : Period [h].
-    name : Constituent.
 
     Returns
     -------
@@ -55,50 +51,24 @@ def drift_deg(period_h: float, name: str) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class RepeatedLayer:
+class RepeatedLayer(RetimedLayer):
     """A layer whose values between ``start`` and ``start + length`` are repeated at all times.
 
     Attributes
     ----------
-    layer : The layer that is repeated.
     start, length : First time [s since epoch] and period [s].
     """
 
-    layer: Layer
     start: float
     length: float
-
-    @property
-    def variables(self) -> frozenset[str]:
-        """Canonical names of the variables of the layer."""
-        return self.layer.variables
-
-    @property
-    def area(self) -> BoundingBox:
-        """The area of the layer."""
-        return self.layer.area
 
     @property
     def period(self) -> tuple[float, float] | None:
         """None: the values are known at all times."""
         return None
 
-    def _within(self, time: FloatArray) -> FloatArray:
-        return self.start + (time - self.start) % self.length
-
-    def sample(
-        self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
-    ) -> Samples:
-        """Return values at points."""
-        return self.layer.sample(names, self._within(time), lat, lon)
-
-    def series(
-        self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
-    ) -> Samples:
-        """Return values (S, T) at stations."""
-        moments, place = np.unique(self._within(times), return_inverse=True)
-        found = self.layer.series(names, moments, lat, lon)
-        return {name: value[:, place.ravel()] for name, value in found.items()}
+    def _read_at(self, times: FloatArray) -> FloatArray:
+        return self.start + (times - self.start) % self.length
 
     def times(self, start: float, end: float) -> FloatArray:
         """Return native times of every repetition in the window, one beyond each side."""
@@ -113,10 +83,6 @@ class RepeatedLayer:
         high = int(np.searchsorted(every, end, side="left")) + 1
         return np.asarray(every[low:high], np.float64)
 
-    def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
-        """Return whether the layer may know values at positions."""
-        return self.layer.inside(lat, lon)
-
     def coverage(self) -> list[Coverage]:
         """Return the layer's coverage, without an end."""
         return [
@@ -124,10 +90,6 @@ class RepeatedLayer:
                      r.spacing_deg, f"{r.source}, repeated")
             for r in self.layer.coverage()
         ]  # fmt: skip
-
-    def mesh(self) -> Mesh | None:
-        """Return the layer's mesh."""
-        return self.layer.mesh()
 
     def provenance(self) -> Mapping[str, Any]:
         """Return the layer's facts and the period."""

@@ -182,8 +182,4 @@ def check_direction(value: NDArray[Any], variable: str, source: str) -> None:
 
 
 def _extremes(value: NDArray[Any]) -> tuple[float, float]:
-    least, largest = (
-        float(np.fmin.reduce(value, axis=None)),
-        float(np.fmax.reduce(value, axis=None)),
-    )
-    return least, largest
+    return float(np.fmin.reduce(value, axis=None)), float(np.fmax.reduce(value, axis=None))

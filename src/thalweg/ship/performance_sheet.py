@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.types import FloatArray
-from thalweg.core.units import HOUR, KNOT
+from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.carbon_intensity import (
     attained_cii,
@@ -96,7 +97,7 @@ def performance_sheet(
         "name": ship.name,
         "draught_m": ship.draught,
         "load_factor": ship.loading.load_factor,
-        "weather": {name: _number(value) for name, value in (weather or {}).items()},
+        "weather": {name: finite_or_none(value) for name, value in (weather or {}).items()},
         "assumed": [
             *weather_assumptions(ship, weather or {}),
             *_unused_entries(ship),
@@ -184,9 +185,9 @@ def _resistance_model_rows(
         rows.append(
             {
                 **_row(ship, speed, fuel[k]),
-                "resistance_n": {name: _number(parts[name][k]) for name in SHEET_COMPONENTS},
-                "effective_power_kw": _number(parts["total"][k] * speed / 1e3),
-                "brake_power_kw": _number(power[k] / 1e3),
+                "resistance_n": {name: finite_or_none(parts[name][k]) for name in SHEET_COMPONENTS},
+                "effective_power_kw": finite_or_none(parts["total"][k] * speed / 1e3),
+                "brake_power_kw": finite_or_none(power[k] / 1e3),
                 "warnings": notes,
             }
         )
@@ -215,10 +216,10 @@ def _known_speed_rows(
         rows.append(
             {
                 **_row(ship, attained, fuel),
-                "ordered_speed_kn": _number(speed / KNOT),
+                "ordered_speed_kn": finite_or_none(speed / KNOT),
                 "resistance_n": dict.fromkeys(SHEET_COMPONENTS),
                 "effective_power_kw": None,
-                "brake_power_kw": _number(power / 1e3),
+                "brake_power_kw": finite_or_none(power / 1e3),
                 "warnings": notes,
             }
         )
@@ -228,11 +229,11 @@ def _known_speed_rows(
 def _row(ship: Ship, speed: float, fuel: float) -> dict[str, Any]:
     co2 = fuel * ship.fuel_terms.per_kg("co2", inside=False)
     return {
-        "speed_kn": _number(round(speed / KNOT, 9)),
-        "fuel_kg_per_h": _number(fuel * HOUR),
-        "fuel_kg_per_nm": _number(fuel * 1852.0 / speed if speed > 0 else np.nan),
-        "co2_kg_per_h": _number(co2 * HOUR),
-        "cii": _cii_of_row(ship, co2 * 1852.0 / speed) if speed > 0 else None,
+        "speed_kn": finite_or_none(round(speed / KNOT, 9)),
+        "fuel_kg_per_h": finite_or_none(fuel * HOUR),
+        "fuel_kg_per_nm": finite_or_none(fuel * NAUTICAL_MILE / speed if speed > 0 else np.nan),
+        "co2_kg_per_h": finite_or_none(co2 * HOUR),
+        "cii": _cii_of_row(ship, co2 * NAUTICAL_MILE / speed) if speed > 0 else None,
     }
 
 
@@ -335,15 +336,10 @@ def _settings(ship: Ship, conditions: Conditions) -> list[dict[str, Any]]:
     for k, calm in enumerate(ship.speeds):
         rows.append(
             {
-                "calm_speed_kn": _number(calm / KNOT),
-                "speed_kn": _number(float(ship.speed_through_water(conditions, k)) / KNOT),
-                "brake_power_kw": _number(float(ship.power(conditions, k)) / 1e3),
-                "fuel_kg_per_h": _number(float(ship.fuel_rate(conditions, k)) * HOUR),
+                "calm_speed_kn": finite_or_none(calm / KNOT),
+                "speed_kn": finite_or_none(float(ship.speed_through_water(conditions, k)) / KNOT),
+                "brake_power_kw": finite_or_none(float(ship.power(conditions, k)) / 1e3),
+                "fuel_kg_per_h": finite_or_none(float(ship.fuel_rate(conditions, k)) * HOUR),
             }
         )
     return rows
-
-
-def _number(value: Any) -> float | None:
-    number = float(value)
-    return number if np.isfinite(number) else None

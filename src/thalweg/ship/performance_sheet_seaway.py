@@ -8,6 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from thalweg.core.given_numbers import finite_or_none
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.hull.hull import Hull, complete_hull
 from thalweg.ship.methods.seakeeping.motion_sickness import (
@@ -77,7 +78,10 @@ class ShipInSeaway:
         ]
         if not left >= least:
             notes.append(f"{left:.2f} m of water under the keel with squat, less than {least:g} m")
-        return {"squat_m": _number(sunk), "under_keel_clearance_m": _number(left)}, notes
+        return {
+            "squat_m": finite_or_none(sunk),
+            "under_keel_clearance_m": finite_or_none(left),
+        }, notes
 
     def motions(self, speed: float) -> tuple[dict[str, Any] | None, list[str]]:
         """Motions by Jensen, Mansour and Olsen at a speed [m/s], and MSC.1/Circ.1228."""
@@ -109,7 +113,10 @@ class ShipInSeaway:
             "motion_sickness_2h_percent": motion_sickness_percent_iso(dose),
         }
         notes = [str(note) for note in motions_validity(speed, hull)]
-        return {k: _number(v) for k, v in values.items()}, [*notes, *self._dangers(speed, hull)]
+        return {k: finite_or_none(v) for k, v in values.items()}, [
+            *notes,
+            *self._dangers(speed, hull),
+        ]
 
     def _dangers(self, speed: float, hull: MotionHull) -> list[str]:
         """The warnings of MSC.1/Circ.1228 at a speed [m/s]."""
@@ -128,8 +135,3 @@ class ShipInSeaway:
             for name, words in _DANGER_WORDS.items()
             if bool(getattr(checks, name))
         ]
-
-
-def _number(value: Any) -> float | None:
-    number = float(value)
-    return number if np.isfinite(number) else None

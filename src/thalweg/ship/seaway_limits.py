@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
+from thalweg.core.units import HOUR
 from thalweg.kernels.leg import wave_limits as places
 from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.hull.hull_checks import check_aboard
@@ -264,10 +265,6 @@ class SafetyLimits:
 def build_safety_limits(given: LimitsSection, hull: Hull, loading: Loading) -> SafetyLimits | None:
     """Return the safety and comfort limits of a ship file; None when it states none.
 
-    Parameters
-    ----------
-    given : Limits of the ship file.
-
     Returns
     -------
     SafetyLimits or None : Limits in waves.
@@ -346,7 +343,7 @@ def _acceleration_limits(given: LimitsSection) -> tuple[AccelerationLimit, ...]:
         found.append(AccelerationLimit(given.max_vertical_acceleration_m_s2, place))
     if given.max_motion_sickness_percent is not None:
         dose = given.max_motion_sickness_percent / MIXED_ADULT_SUSCEPTIBILITY
-        greatest = dose / math.sqrt(given.motion_sickness_hours * 3600.0)
+        greatest = dose / math.sqrt(given.motion_sickness_hours * HOUR)
         found.append(AccelerationLimit(greatest, given.motion_sickness_at_m, weighted=True))
     return tuple(found)
 

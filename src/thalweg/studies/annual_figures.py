@@ -11,6 +11,7 @@ import numpy as np
 from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import parse_position
+from thalweg.core.given_numbers import finite_or_none, is_number
 from thalweg.ship import Ship
 from thalweg.ship.methods.carbon_intensity import REDUCTION_PERCENT
 from thalweg.ship.methods.engine.european_charges import (
@@ -58,8 +59,7 @@ def checked_annual(given: Any) -> dict[str, float]:
         )
     for name, value in given.items():
         low, high = _ENTRIES[name]
-        number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        if not number or not low <= value <= high:
+        if not is_number(value) or not low <= value <= high:
             raise InputError(
                 f"{name} of annual is {value!r}.",
                 f"It is a number from {low:g} to {high:g}.",
@@ -160,7 +160,7 @@ def european_charges_of_year(
         return none
     if "allowance_price" in annual and "co2_t" in group:
         phase = ets_phase_in(year) * annual["allowance_price"]
-        none["eu_ets_cost"] = _known(trips * phase * float((share * group["co2_t"]).mean()))
+        none["eu_ets_cost"] = finite_or_none(trips * phase * float((share * group["co2_t"]).mean()))
     if "euro_price" in annual and ship is not None and "fuel_eca_t" in group:
         terms = ship.fuel_terms
         outside = (share * (group["fuel_t"] - group["fuel_eca_t"])).mean()
@@ -170,7 +170,7 @@ def european_charges_of_year(
             for fuel, tonnes in burnt
             if tonnes != 0.0
         ]
-        none["fueleu_penalty"] = _known(trips * annual["euro_price"] * sum(parts))
+        none["fueleu_penalty"] = finite_or_none(trips * annual["euro_price"] * sum(parts))
     return none
 
 
@@ -209,7 +209,3 @@ def _penalty(fuel: str, tonnes: float, year: int) -> float:
         return math.nan
     energy = 1000.0 * tonnes * known.heat
     return float(fueleu_penalty(energy, intensity=known.intensity, year=year))
-
-
-def _known(value: float) -> float | None:
-    return value if math.isfinite(value) else None

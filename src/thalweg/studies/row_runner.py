@@ -13,6 +13,7 @@ import numpy as np
 import thalweg
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, ThalwegError
+from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Plan, Voyage, plan
 from thalweg.planning.request.filled_sea import filled_in_turns
@@ -52,7 +53,9 @@ def run_rows(rows: Sequence[StudyRow], folder: str) -> list[dict[str, Any]]:
     Returns
     -------
     list of dict
-        One per row, as `run_row`.
+        One per row, as plain data: ``id``, the labels, the key figures of the route (None where
+        unknown), ``refusal`` (the kind of error, None for a route) with ``reason``, ``seconds`` and
+        ``version``.
     """
     together: dict[str, list[StudyRow]] = {}
     for row in rows:
@@ -61,22 +64,6 @@ def run_rows(rows: Sequence[StudyRow], folder: str) -> list[dict[str, Any]]:
     results = [result for group in together.values() for result in _run_group(group, folder)]
     order = {row.id: place for place, row in enumerate(rows)}
     return sorted(results, key=lambda result: order[result["id"]])
-
-
-def run_row(row: StudyRow, folder: str) -> dict[str, Any]:
-    """Return the result of one row as plain data.
-
-    Parameters
-    ----------
-    folder : Files are relative to it.
-
-    Returns
-    -------
-    dict
-        ``id``, the labels, the key figures of the route (None where unknown), ``refusal`` (the kind
-        of error, None for a route) with ``reason``, ``seconds`` and ``version``.
-    """
-    return _run_group([row], folder)[0]
 
 
 def _run_group(rows: Sequence[StudyRow], folder: str) -> list[dict[str, Any]]:
@@ -144,9 +131,8 @@ def _figures(request: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     }
     if answer.front is not None:
         figures |= _savings(answer)
-        figures["front"] = canonical_json(
-            [[_known(route.time_h), _known(route.fuel_t)] for route in answer.routes]
-        )
+        front = [(route.time_h, route.fuel_t) for route in answer.routes]
+        figures["front"] = canonical_json([[finite_or_none(x) for x in pair] for pair in front])
     if "weather_blind" in request.get("compare", ()):
         figures |= _weather_blind(request, ship, sea, chart, folder)
     return figures
@@ -170,7 +156,7 @@ def _planned(
 def _certified_gap(answer: Plan) -> float | None:
     """Return the excess over the lower bound that is certain, as a fraction."""
     certain, value = answer.proof.certain, answer.objective_value
-    return _known((value - certain) / value) if value > 0.0 else None
+    return finite_or_none((value - certain) / value) if value > 0.0 else None
 
 
 def _savings(answer: Plan) -> dict[str, Any]:
@@ -196,12 +182,12 @@ def _route_figures(route: Route) -> dict[str, Any]:
     }
     for name in INDICATORS:
         if name not in _NAMED_OTHERWISE:
-            figures[name] = _known(indicator_value(route, name))
+            figures[name] = finite_or_none(indicator_value(route, name))
     figures["first_violation"] = str(route.violations[0]) if route.violations else None
     for column, variables in _EXTREMES.items():
         parts = [route.samples[name] for name in variables if name in route.samples]
         size = np.hypot(*parts) if len(parts) == 2 else parts[0] if parts else np.array([])
-        figures[column] = _known(float(size.max())) if size.size else None
+        figures[column] = finite_or_none(float(size.max())) if size.size else None
     return figures
 
 
@@ -214,9 +200,9 @@ def _weather_blind(
     track = _calm_track(key, str(folder))
     blind = _evaluated(track, ship, sea, chart, request["voyage"])
     return {
-        "blind_time_h": _known(blind.time_h),
-        "blind_fuel_t": _known(blind.fuel_t),
-        "blind_distance_nm": _known(blind.distance_nm),
+        "blind_time_h": finite_or_none(blind.time_h),
+        "blind_fuel_t": finite_or_none(blind.fuel_t),
+        "blind_distance_nm": finite_or_none(blind.distance_nm),
         "blind_feasible": blind.feasible,
     }
 
@@ -343,7 +329,3 @@ def _chart(key: str, folder: str) -> Chart:
 def _listed(given: Mapping[str, Any], name: str) -> list[Any]:
     value = given.get(name)
     return value if isinstance(value, list) else [] if value is None else [value]
-
-
-def _known(value: float | None) -> float | None:
-    return None if value is None or not np.isfinite(value) else float(value)

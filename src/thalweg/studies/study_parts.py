@@ -87,7 +87,6 @@ def read_parts(folder: str | Path, columns: Sequence[str] | None = None) -> pd.D
 
     Parameters
     ----------
-    folder : Of the study.
     columns : Only these.
 
     Returns

@@ -48,7 +48,7 @@ class StudyProgress:
     new : int
         Rows done in this run.
     rows : tuple of mapping
-        Results of the rows just done, as `run_row` returns them.
+        Results of the rows just done, as `run_rows` returns them.
     """
 
     done: int

@@ -17,16 +17,15 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.core.errors import InputError
-from thalweg.core.time import format_time
+from thalweg.core.time import format_time, to_datetime64
 from thalweg.core.units import HOUR
-from thalweg.forecasts.box_cut import cut_to_box, join_pieces
+from thalweg.forecasts.box_cut import cut_to_box, join_pieces, longitude_spans
 from thalweg.forecasts.download_client import DownloadClient, TransferError
 from thalweg.forecasts.download_plan import DownloadPlan
 from thalweg.forecasts.forecast_request import ForecastRequest
 
 _SPACING: Final = 1.0 / 12.0
 _SLICE: Final = 8  #: times read at once
-_STAMP: Final = "datetime64[ns]"
 
 
 @dataclass(frozen=True)
@@ -111,12 +110,9 @@ class CopernicusMarine:
     def read(self, request: ForecastRequest, plan: DownloadPlan, files: list[Path]) -> list[Any]:
         """Return the fields, read in slices of time; see `ForecastSource.read`."""
         box = request.box
-        west = (box.west + 180.0) % 360.0 - 180.0
-        east = west + box.width
-        spans = [(west, min(east, 180.0))] + ([(-180.0, east - 360.0)] if east > 180.0 else [])
         pieces = []
         for product in (_PRODUCTS[q] for q in request.quantities):
-            sides = [self._side(product, request, plan, span) for span in spans]
+            sides = [self._side(product, request, plan, span) for span in longitude_spans(box)]
             whole = sides[0] if len(sides) == 1 else _side_by_side(sides)
             pieces.append(cut_to_box(whole, box))
         return join_pieces(pieces)
@@ -150,7 +146,7 @@ class CopernicusMarine:
                 remote = remote.isel(depth=0, drop=True)
             given = remote["time"].values.astype("datetime64[s]").astype(float)
             stamps = given // product.step * product.step + product.first
-            remote = remote.assign_coords(time=(stamps * 1e9).astype("int64").astype(_STAMP))
+            remote = remote.assign_coords(time=to_datetime64(stamps))
             at = [k for k, stamp in enumerate(stamps) if np.min(np.abs(stamp - plan.times)) < 60.0]
             slices = [
                 remote.isel(time=at[k : k + _SLICE]).load() for k in range(0, len(at), _SLICE)

@@ -21,7 +21,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.file_writing import write_bytes
 from thalweg.core.time import format_time
 from thalweg.core.units import DAY, HOUR
-from thalweg.forecasts.box_cut import read_grib_files
+from thalweg.forecasts.box_cut import longitude_spans, read_grib_files
 from thalweg.forecasts.download_client import DownloadClient, TransferError
 from thalweg.forecasts.download_plan import DownloadPlan
 from thalweg.forecasts.forecast_request import ForecastRequest
@@ -132,9 +132,6 @@ class Era5:
             days.add(f"{stamp:%d}")
             hours.add(f"{stamp:%H}:00")
         box = request.box
-        west = (box.west + 180.0) % 360.0 - 180.0
-        east = west + box.width
-        spans = [(west, min(east, 180.0))] + ([(-180.0, east - 360.0)] if east > 180.0 else [])
         return [
             {
                 "product_type": ["reanalysis"],
@@ -148,7 +145,7 @@ class Era5:
                 "download_format": "unarchived",
             }
             for (year, month), (days, hours) in sorted(months.items())
-            for low, high in spans
+            for low, high in longitude_spans(box)
         ]
 
 

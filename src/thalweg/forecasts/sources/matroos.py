@@ -18,7 +18,7 @@ import numpy as np
 
 from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import DatasetError, InputError
-from thalweg.core.time import format_time, parse_time
+from thalweg.core.time import format_time, parse_time, to_datetime64
 from thalweg.core.units import HOUR
 from thalweg.forecasts.box_cut import cut_to_box, join_pieces
 from thalweg.forecasts.download_client import DownloadClient, DownloadPart
@@ -120,7 +120,7 @@ class Matroos:
             cut_to_box(_fields(path, part.url), request.box)
             for part, path in zip(plan.parts, files)
         ]
-        wanted = (np.array(plan.times) * 1e9).astype(np.int64).astype("datetime64[ns]")
+        wanted = to_datetime64(np.array(plan.times))
         return [
             piece.sel(time=np.isin(piece["time"].values, wanted)) for piece in join_pieces(pieces)
         ]
@@ -238,8 +238,7 @@ def _fields(path: Path, url: str) -> Any:
             "Use another source, and report this.",
         )
     seconds = np.asarray(found["time"].values, float) * _MINUTE
-    stamps = (np.round(seconds) * 1e9).astype(np.int64).astype("datetime64[ns]")
-    return xr.Dataset(data).assign_coords(time=stamps)
+    return xr.Dataset(data).assign_coords(time=to_datetime64(np.round(seconds)))
 
 
 def _unit(standard: str) -> str:

@@ -17,7 +17,7 @@ from urllib.parse import urlencode
 import numpy as np
 
 from thalweg.core.errors import DatasetError, InputError
-from thalweg.core.time import format_time
+from thalweg.core.time import format_time, to_datetime64
 from thalweg.core.units import DAY, HOUR, KNOT
 from thalweg.forecasts.box_cut import join_pieces
 from thalweg.forecasts.download_client import DownloadClient, DownloadPart
@@ -223,5 +223,4 @@ def _dataset(
         block = np.moveaxis(values.reshape(shape), 2, 0)
         attributes = {"standard_name": name, "units": unit}
         data[name] = (("time", "latitude", "longitude"), block, attributes)
-    stamps = (times * 1e9).astype(np.int64).astype("datetime64[ns]")
-    return xr.Dataset(data, {"time": stamps, "latitude": lat, "longitude": lon})
+    return xr.Dataset(data, {"time": to_datetime64(times), "latitude": lat, "longitude": lon})

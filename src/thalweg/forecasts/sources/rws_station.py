@@ -19,7 +19,7 @@ import numpy as np
 from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.core.geodesy import distance
-from thalweg.core.time import format_time, parse_time
+from thalweg.core.time import format_time, parse_time, to_datetime64
 from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.forecasts.download_client import DownloadClient, DownloadPart
 from thalweg.forecasts.download_plan import DownloadPlan
@@ -106,7 +106,7 @@ class RwsStation:
         dataset = xr.Dataset(
             {WATER_LEVEL: (("time", "latitude", "longitude"), field, attributes)},
             coords={
-                "time": (np.round(times) * 1e9).astype(np.int64).astype("datetime64[ns]"),
+                "time": to_datetime64(np.round(times)),
                 "latitude": [box.south, box.north],
                 "longitude": [box.west, box.west + box.width],
             },

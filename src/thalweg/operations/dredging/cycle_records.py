@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE, TONNE
-from thalweg.planning.report.provenance import finite_or_none
 from thalweg.route import Route
 
 

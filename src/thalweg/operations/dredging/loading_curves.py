@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.given_numbers import is_number
 from thalweg.operations.dredging.project_validation import positive_number
 
 _KEYS = ("rate_m3_s", "minutes", "share", "power_kw", "fixed_minutes")
@@ -148,8 +148,7 @@ class LoadingCurve:
 
 
 def _non_negative(name: str, value: Any) -> float:
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if not number or not math.isfinite(value) or value < 0.0:
+    if not is_number(value) or value < 0.0:
         raise InputError(f"{name} is {value!r}.", "It is zero or more.", "Correct it.", field=name)
     return float(value)
 

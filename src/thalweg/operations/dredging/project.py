@@ -12,6 +12,7 @@ from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.file_reading import read_text_file
 from thalweg.core.file_writing import write_text
 from thalweg.core.geodesy import Position, distance
+from thalweg.core.given_numbers import is_number
 from thalweg.core.time import format_time
 from thalweg.core.units import DAY
 from thalweg.operations.dredging.loading_curves import LoadingCurve
@@ -252,8 +253,7 @@ def _base_case(data: Any, sites: Sites) -> BaseCase | None:
         )
     factor = data.get("load_factor", 1.0)
     if factor != BEST_LOAD_FACTOR:
-        number = isinstance(factor, (int, float)) and not isinstance(factor, bool)
-        if not number or not 0.0 < factor <= 1.0:
+        if not is_number(factor) or not 0.0 < factor <= 1.0:
             raise InputError(
                 f"base_case.load_factor is {factor!r}.",
                 "It is a number above 0 and up to 1, or 'best' for the highest production.",

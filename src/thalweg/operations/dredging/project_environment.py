@@ -13,7 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import Position, direct, distance, inverse, positions_along
+from thalweg.core.geodesy import (
+    Position,
+    direct,
+    distance,
+    inverse,
+    numbered_parts,
+    positions_along,
+)
 from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray
 from thalweg.deprecated_names import renamed_attributes
@@ -382,10 +389,9 @@ def _minimum_bed_depth(
     if not len(a):
         return np.empty(0)
     length, course, _ = inverse(lat[a], lon[a], lat[b], lon[b])
-    of = np.repeat(np.arange(len(a)), count)
-    first = np.cumsum(count) - count
-    share = (np.arange(len(of)) - first[of]) / (count[of] - 1)
+    of, number = numbered_parts(count)
+    share = number / (count[of] - 1)
     at = direct(lat[a][of], lon[a][of], np.asarray(course)[of], share * np.asarray(length)[of])
     time = np.full(len(of), environment.period[0])
     bed = environment.sea.sample([nm.BED_DEPTH], time, *at)[nm.BED_DEPTH]
-    return np.asarray(np.minimum.reduceat(bed, first))
+    return np.asarray(np.minimum.reduceat(bed, np.cumsum(count) - count))

@@ -14,10 +14,10 @@ import numpy as np
 
 from thalweg.chart.chart import control_areas_in_force
 from thalweg.core.file_writing import write_text
+from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.units import DAY, TONNE
 from thalweg.operations.dredging.cycle_records import DredgingCycle, cycle_record
 from thalweg.operations.dredging.project import Project
-from thalweg.planning.report.provenance import finite_or_none
 from thalweg.ship import Ship
 
 if TYPE_CHECKING:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, check_position
+from thalweg.core.given_numbers import is_number
 from thalweg.core.time import parse_time
 
 MAX_LOAD_FACTORS = 201
@@ -26,9 +26,7 @@ def parse_load_factors(value: Any) -> tuple[float, ...]:
     if isinstance(value, int) and not isinstance(value, bool) and 2 <= value <= MAX_LOAD_FACTORS:
         return tuple(round(float(x), 12) for x in np.linspace(0.0, 1.0, value))
     listed = isinstance(value, Sequence) and not isinstance(value, str) and len(value)
-    if not listed or not all(
-        isinstance(x, (int, float)) and not isinstance(x, bool) and 0.0 <= x <= 1.0 for x in value
-    ):
+    if not listed or not all(is_number(x) and 0.0 <= x <= 1.0 for x in value):
         raise InputError(
             f"load_factors is {value!r}.",
             f"It is a list of shares from 0 to 1, or a number of values (2 to {MAX_LOAD_FACTORS}).",
@@ -89,8 +87,7 @@ def positive_number(data: Mapping[str, Any], name: str, default: float | None = 
     InputError : If it is missing without a default, or not a positive finite number.
     """
     value = data.get(name, default)
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if not number or not math.isfinite(value) or value <= 0.0:  # type: ignore[arg-type]
+    if not is_number(value) or value <= 0.0:  # type: ignore[operator]
         raise InputError(
             f"{name} is {value!r}.", "It is a number above zero.", "Correct it.", field=name
         )
@@ -99,6 +96,5 @@ def positive_number(data: Mapping[str, Any], name: str, default: float | None = 
 
 def check_clearance(name: str, value: Any) -> None:
     """Raise `InputError` unless a clearance is from 0 to 100 m."""
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if not number or not 0.0 <= value < 100.0:
+    if not is_number(value) or not 0.0 <= value < 100.0:
         raise InputError(f"{name} is {value!r}.", "It is 0 to 100 m.", "Correct it.", field=name)

@@ -12,7 +12,7 @@ from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position, check_position, direct, distance, inverse
 from thalweg.core.time import TimeLike, parse_time, to_datetime64
 from thalweg.core.types import FloatArray
-from thalweg.core.units import HOUR, KNOT
+from thalweg.core.units import DAY, HOUR, KNOT, NAUTICAL_MILE
 from thalweg.ship.condition_variables import EASTWARD_CURRENT, NORTHWARD_CURRENT
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from thalweg.sea import Sea
 
 _STEPS_PER_MESSAGE = 4  # steps of the ship between two messages
-_MAX_TRIP_DURATION = 14.0 * 86400.0  # [s]
+_MAX_TRIP_DURATION = 14.0 * DAY  # [s]
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class SyntheticCycle:
     def __post_init__(self) -> None:
         check_position(*self.loading_place, "loading place")
         check_position(*self.unloading_place, "unloading place")
-        apart = float(distance(*self.loading_place, *self.unloading_place)) / 1852.0
+        apart = float(distance(*self.loading_place, *self.unloading_place)) / NAUTICAL_MILE
         numbers = (self.full_kn, self.empty_kn, self.loading_h, self.unloading_h, self.radius_nm)
         if not all(math.isfinite(n) and n > 0.0 for n in numbers) or apart < 3 * self.radius_nm:
             raise InputError(
@@ -168,7 +168,7 @@ class _TrackSynthesiser:
         """Record work around a place, to and fro at a speed, and return when it ends."""
         count = max(2, math.ceil(hours * HOUR / self.step))
         at = np.arange(count, dtype=np.float64) * self.step
-        reach = 0.5 * self.cycle.radius_nm * 1852.0
+        reach = 0.5 * self.cycle.radius_nm * NAUTICAL_MILE
         east = reach * np.sin(speed / reach * at) * np.sin(np.pi * at / at[-1])
         lat, lon = direct(place[0], place[1], math.radians(90.0), east)
         self._record(time + at, lat, lon, kind)
@@ -258,7 +258,7 @@ def _no_progress_error(start: Position, goal: Position) -> NoRouteError:
 
 
 def _circle(place: Position, radius_nm: float, activity: str) -> dict[str, Any]:
-    lat, lon = direct(*place, np.radians(np.arange(0.0, 361.0, 10.0)), radius_nm * 1852.0)
+    lat, lon = direct(*place, np.radians(np.arange(0.0, 361.0, 10.0)), radius_nm * NAUTICAL_MILE)
     ring = [[round(float(x), 6), round(float(y), 6)] for x, y in zip(lon, lat)]
     ring[-1] = ring[0]
     geometry = {"type": "Polygon", "coordinates": [ring]}

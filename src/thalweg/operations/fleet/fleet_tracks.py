@@ -104,7 +104,7 @@ def read_fleet(
     removed: Counter[str] = Counter()
     for a, b in zip(starts.tolist(), ends.tolist()):
         try:
-            log = clean_track(_part(raw, a, b), cleaning or FLEET_CLEANING)
+            log = clean_track(raw.part(slice(a, b)), cleaning or FLEET_CLEANING)
         except InputError:
             few += 1
             continue
@@ -206,12 +206,6 @@ def _by_ship(parts: Sequence[tuple[NDArray[Any], RawTrack]]) -> tuple[IntArray, 
         order = np.argsort(ship, kind="stable")
         ship, raw = ship[order], raw.part(order)
     return ship.astype(np.int64), raw
-
-
-def _part(raw: RawTrack, begin: int, end: int) -> RawTrack:
-    part = slice(begin, end)
-    values = {name: column[part] for name, column in raw.values.items()}
-    return RawTrack(raw.time[part], raw.lat[part], raw.lon[part], values)
 
 
 def _thinned(time: FloatArray, broken: BoolArray, interval: float) -> BoolArray:

@@ -16,6 +16,7 @@ from shapely.geometry import Point, shape
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position
+from thalweg.core.given_numbers import finite_or_none
 from thalweg.deprecated_names import renamed_arguments
 from thalweg.operations.dredging.cycle_records import SailedLeg
 
@@ -216,7 +217,7 @@ def _leg_summary(leg: SailedLeg) -> dict[str, float | None]:
         "energy_j": leg.energy,
         "fuel_kg": leg.fuel,
     }
-    return {key: value if np.isfinite(value) else None for key, value in facts.items()}
+    return {key: finite_or_none(value) for key, value in facts.items()}
 
 
 def _position(place: Any) -> Position:

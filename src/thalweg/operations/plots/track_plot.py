@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.core.file_writing import new_figure, save_figure, style_panels
-from thalweg.core.units import HOUR, KNOT
+from thalweg.core.units import DAY, HOUR, KNOT
 from thalweg.operations.tracks.activities import (
     AWAY,
     SAILING_EMPTY,
@@ -80,8 +80,7 @@ def _draw_map(analysis: TrackAnalysis, axes: Any) -> None:
     middle = 0.5 * float(log.lat.min() + log.lat.max())
     axes.set_aspect(1.0 / max(0.05, np.cos(np.radians(middle))), adjustable="datalim")
     axes.ticklabel_format(useOffset=False)
-    axes.set_xlabel("longitude [deg]")
-    axes.set_ylabel("latitude [deg]")
+    axes.set(xlabel="longitude [deg]", ylabel="latitude [deg]")
     name = f"ship {analysis.log.vessel}" if analysis.log.vessel else "track"
     axes.set_title(f"{name}, areas dashed")
     axes.legend(fontsize=7, frameon=False)
@@ -92,11 +91,10 @@ def _draw_durations(analysis: TrackAnalysis, axes: Any) -> None:
     for kind, colour in ACTIVITY_COLOURS.items():
         found = [a for a in analysis.activities if a.kind == kind and (a.whole or kind == UNSEEN)]
         if found:
-            days = [(a.start - start) / 86400.0 for a in found]
+            days = [(a.start - start) / DAY for a in found]
             hours = [a.duration / HOUR for a in found]
             axes.plot(days, hours, "o", ms=3, color=colour, label=f"{kind} ({len(found)})")
-    axes.set_xlabel("day of the track")
-    axes.set_ylabel("duration of the activity [h]")
+    axes.set(xlabel="day of the track", ylabel="duration of the activity [h]")
     axes.set_ylim(0.0, 1.3 * max(axes.get_ylim()[1], 0.1))
     axes.set_title("complete activities")
     axes.legend(fontsize=7, frameon=False, ncols=2, loc="upper left")
@@ -111,12 +109,11 @@ def _draw_speeds(analysis: TrackAnalysis, axes: Any) -> None:
             continue
         at = part.start.to_numpy().astype("datetime64[ns]").astype(np.int64) / 1e9
         label = f"{kind}: {part.speed_kn.mean():.2f} ± {part.speed_kn.std():.2f} kn"
-        days = (at - start) / 86400.0
+        days = (at - start) / DAY
         axes.plot(
             days, part.speed_kn, "o-", ms=3, lw=0.6, color=ACTIVITY_COLOURS[kind], label=label
         )
-    axes.set_xlabel("day of the track")
-    axes.set_ylabel("measured speed over ground [kn]")
+    axes.set(xlabel="day of the track", ylabel="measured speed over ground [kn]")
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.2 * (high - low))
     axes.set_title("legs (free sailing)")
@@ -149,6 +146,5 @@ def _draw_agreement(analysis: TrackAnalysis, axes: Any) -> None:
             f"{best}: slope {fit.slope:.2f}, r2 {fit.r2:.2f}, intercept {fit.intercept:.2f} kn, "
             f"RMSE {fit.rmse_rel:.1f} %"
         )
-    axes.set_xlabel("measured speed of a leg [kn]")
-    axes.set_ylabel("modelled [kn]")
+    axes.set(xlabel="measured speed of a leg [kn]", ylabel="modelled [kn]")
     axes.legend(fontsize=7, frameon=False)

@@ -57,7 +57,7 @@ class RawTrack(NamedTuple):
     lon: FloatArray
     values: dict[str, FloatArray]
 
-    def part(self, index: NDArray[np.bool_] | NDArray[np.int64]) -> RawTrack:
+    def part(self, index: slice | NDArray[np.bool_] | NDArray[np.int64]) -> RawTrack:
         """Return some of the rows."""
         values = {name: column[index] for name, column in self.values.items()}
         return RawTrack(self.time[index], self.lat[index], self.lon[index], values)

@@ -62,8 +62,7 @@ class MeasuredSegments:
 
     def part(self, keep: NDArray[np.bool_]) -> MeasuredSegments:
         """Return some of the segments."""
-        names = ("leg", "kind", "time", "duration", "lat", "lon", "ground", "current")
-        return MeasuredSegments(**{name: getattr(self, name)[keep] for name in names})
+        return MeasuredSegments(*(values[keep] for values in vars(self).values()))
 
     def sum_by_leg(self, values: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
         """Return (legs, sums of values over each leg)."""

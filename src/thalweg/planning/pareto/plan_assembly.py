@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import NoRouteError
+from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT
@@ -42,7 +43,6 @@ from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.lane_report import lane_detour_notes
 from thalweg.planning.report.note_order import LIMIT_EXCEEDED
 from thalweg.planning.report.provenance import (
-    finite_or_none,
     network_summary,
     provenance,
     route_warnings,

@@ -7,6 +7,7 @@ import math
 from typing import Any
 
 from thalweg.chart import Chart
+from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.time import format_time
 from thalweg.network import Network
 from thalweg.planning.planning_context import PlanningContext
@@ -152,8 +153,3 @@ def network_summary(
         "depart": format_time(depart),
     }
     return facts | ({"way": way} if way else {})
-
-
-def finite_or_none(value: float) -> float | None:
-    """Return a number, or None if it is not finite."""
-    return value if math.isfinite(value) else None

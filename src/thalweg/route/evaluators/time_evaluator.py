@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.geodesy import METRES_PER_DEGREE, direct, inverse, rough_lengths
+from thalweg.core.geodesy import METRES_PER_DEGREE, direct, inverse, numbered_parts, rough_lengths
 from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray, IntArray
+from thalweg.core.units import HOUR
 from thalweg.kernels import codes
 from thalweg.kernels.leg.great_circle_sailing import SCRATCH_SIZE, ShipOnRaster
 from thalweg.kernels.leg.polyline_sailing import (
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 _CORRIDOR_HALF_WIDTH = 5.0  # metres to each side of a leg where charted depth is looked up
 _DEPTH_LOOKUP_SPAN = 0.5  # degrees of a leg whose charted depth is looked up at once
-_MAX_WAIT = 13.0 * 3600.0  # longest wait for a leg to open [s]: a little more than a tide
+_MAX_WAIT = 13.0 * HOUR  # longest wait for a leg to open [s]: a little more than a tide
 _WAIT_STEPS = (30.0, 900.0)  # least and largest time between two trial departures [s]
 _OPENING_TOLERANCE = 0.1  # tolerance of the time of opening [s]
 _MAX_PIECE_LENGTH = 100_000.0  # metres; keeps lengths within 1e-6 of the geodesic's
@@ -215,8 +216,7 @@ def _least_depths(chart: Chart, legs: FloatArray) -> FloatArray:
     span = np.maximum(np.abs(lat2 - lat1), np.abs(lon2 - lon1))
     count = np.maximum(np.ceil(span / _DEPTH_LOOKUP_SPAN), 1.0).astype(np.int64)
     first = np.cumsum(count) - count
-    leg = np.repeat(np.arange(len(legs)), count)
-    number = np.arange(len(leg)) - first[leg]
+    leg, number = numbered_parts(count)
     length, course, _ = inverse(lat1, lon1, lat2, lon2)
     if not len(legs):
         return np.empty(0)

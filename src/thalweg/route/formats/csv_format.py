@@ -10,17 +10,15 @@ from pathlib import Path
 
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import write_csv_rows
-from thalweg.core.time import parse_time
 from thalweg.route.formats.file_route import file_route
 from thalweg.route.formats.parsed_track import (
     GEOMETRY,
     SPEEDS,
     WAITS,
     ParsedTrack,
-    is_rhumb_line,
     position_of,
-    waypoint_order,
-)
+    waypoint_track,
+)  # fmt: skip
 from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.route import Route
 
@@ -66,19 +64,10 @@ def parse_csv(text: str) -> ParsedTrack:
             row[:] = [re.sub(r"^\s*([+-]?\d+),(\d+)\s*$", r"\1.\2", cell) for cell in row]
     positions = [_position(row, lat, lon, i) for i, row in enumerate(rows[1:], start=1)]
     time = _column(header, "time")
-    first = (
-        rows[1][time].strip() if time is not None and len(rows) > 1 and len(rows[1]) > time else ""
-    )
-    given = [name for name in (*WAITS, *SPEEDS) if name in header]
-    orders = [
-        waypoint_order({name: _cell_of(row, header.index(name)) for name in given}, number)
-        for number, row in enumerate(rows[1:] if given else (), start=1)
-    ]
-    rhumb = []
-    if GEOMETRY in header:
-        column = header.index(GEOMETRY)
-        rhumb = [is_rhumb_line(_cell_of(row, column), i) for i, row in enumerate(rows[1:-1], 1)]
-    return ParsedTrack(positions, parse_time(first) if first else None, orders, rhumb)
+    first = _cell_of(rows[1], time) if time is not None and len(rows) > 1 else ""
+    given = {name: header.index(name) for name in (*WAITS, *SPEEDS, GEOMETRY) if name in header}
+    values = [{name: _cell_of(row, k) for name, k in given.items()} for row in rows[1:]]
+    return waypoint_track(positions, first, values)
 
 
 def write_csv(route: Route, path: str | Path, options: RouteFileOptions | None = None) -> None:

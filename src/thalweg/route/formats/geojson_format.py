@@ -14,13 +14,7 @@ from thalweg.core.geodesy import Position, densify, positions_along
 from thalweg.core.time import parse_time
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route.formats.file_route import file_route
-from thalweg.route.formats.parsed_track import (
-    GEOMETRY,
-    ParsedTrack,
-    is_rhumb_line,
-    position_of,
-    waypoint_order,
-)
+from thalweg.route.formats.parsed_track import ParsedTrack, position_of, waypoint_track
 from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.route import Route
 
@@ -71,9 +65,7 @@ def parse_geojson(text: str) -> ParsedTrack:
     positions = [_position(item, i) for i, (item, _) in enumerate(chosen, start=1)]
     if chosen is on_line:
         return ParsedTrack(_without_cuts(positions), first_time)
-    orders = [waypoint_order(properties, i) for i, (_, properties) in enumerate(chosen, start=1)]
-    rhumb = [is_rhumb_line(p.get(GEOMETRY), i) for i, (_, p) in enumerate(chosen[:-1], start=1)]
-    return ParsedTrack(positions, first_time, orders, rhumb)
+    return waypoint_track(positions, first_time, [properties for _, properties in chosen])
 
 
 def _first_line(lines: list[list[list[Any]]]) -> list[Any]:

@@ -8,19 +8,23 @@ from typing import Any
 from xml.etree import ElementTree
 
 from thalweg.core.errors import InputError
-from thalweg.core.time import parse_time
 from thalweg.route.formats.file_route import file_route
 from thalweg.route.formats.parsed_track import (
     GEOMETRY,
     SPEEDS,
     WAITS,
     ParsedTrack,
-    is_rhumb_line,
     position_of,
-    waypoint_order,
-)
-from thalweg.route.formats.route_file_options import RouteFileOptions
-from thalweg.route.formats.xml_elements import decimal, local_name, parse_xml, write_xml
+    waypoint_track,
+)  # fmt: skip
+from thalweg.route.formats.route_file_options import RouteFileOptions, voyage_name
+from thalweg.route.formats.xml_elements import (
+    add_text,
+    decimal,
+    local_name,
+    parse_xml,
+    write_xml,
+)  # fmt: skip
 from thalweg.route.route import Route
 
 _NAMESPACE = "http://www.topografix.com/GPX/1/1"
@@ -44,10 +48,7 @@ def parse_gpx(text: str) -> ParsedTrack:
         )
     positions = [position_of(p.get("lat"), p.get("lon"), i) for i, p in enumerate(points, start=1)]
     time = next((e.text for e in points[0] if local_name(e) == "time" and e.text), None)
-    given = [_extensions(point) for point in points]
-    orders = [waypoint_order(values, i) for i, values in enumerate(given, start=1)]
-    rhumb = [is_rhumb_line(v.get(GEOMETRY), i) for i, v in enumerate(given[:-1], start=1)]
-    return ParsedTrack(positions, parse_time(time) if time else None, orders, rhumb)
+    return waypoint_track(positions, time, [_extensions(point) for point in points])
 
 
 def write_gpx(route: Route, path: str | Path, options: RouteFileOptions | None = None) -> None:
@@ -63,14 +64,13 @@ def write_gpx(route: Route, path: str | Path, options: RouteFileOptions | None =
     options = options or RouteFileOptions()
     root = ElementTree.Element("gpx", {"version": "1.1", "creator": "Thalweg", "xmlns": _NAMESPACE})
     line = ElementTree.SubElement(root, "rte")
-    ends = f"{options.start} to {options.goal}" if options.start and options.goal else ""
-    ElementTree.SubElement(line, "name").text = ends or "Thalweg route"
+    add_text(line, "name", voyage_name(options) or "Thalweg route")
     for row in file_route(route, options).rows:
         place = {name: decimal(row[name], 9) for name in ("lat", "lon")}
         point = ElementTree.SubElement(line, "rtept", place)
         if row["time"] is not None:
-            ElementTree.SubElement(point, "time").text = row["time"]
-        ElementTree.SubElement(point, "name").text = row["name"]
+            add_text(point, "time", row["time"])
+        add_text(point, "name", row["name"])
         _extend(point, row)
     ElementTree.register_namespace("thalweg", _OWN_NAMESPACE)
     write_xml(root, path)
@@ -82,7 +82,7 @@ def _extend(point: ElementTree.Element, row: Mapping[str, Any]) -> None:
     if given:
         extensions = ElementTree.SubElement(point, "extensions")
         for name, value in given.items():
-            ElementTree.SubElement(extensions, f"{{{_OWN_NAMESPACE}}}{name}").text = str(value)
+            add_text(extensions, f"{{{_OWN_NAMESPACE}}}{name}", str(value))
 
 
 def _extensions(point: ElementTree.Element) -> dict[str, str]:

@@ -7,12 +7,12 @@ as KML has no elements for them.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position
-from thalweg.core.time import parse_time
 from thalweg.route.formats.file_route import file_route
 from thalweg.route.formats.geojson_format import line_parts
 from thalweg.route.formats.parsed_track import (
@@ -20,12 +20,11 @@ from thalweg.route.formats.parsed_track import (
     SPEEDS,
     WAITS,
     ParsedTrack,
-    is_rhumb_line,
     position_of,
-    waypoint_order,
-)
-from thalweg.route.formats.route_file_options import RouteFileOptions
-from thalweg.route.formats.xml_elements import local_name, parse_xml, write_xml
+    waypoint_track,
+)  # fmt: skip
+from thalweg.route.formats.route_file_options import RouteFileOptions, voyage_name
+from thalweg.route.formats.xml_elements import add_text, local_name, parse_xml, write_xml
 from thalweg.route.route import Route
 
 _NAMESPACE = "http://www.opengis.net/kml/2.2"
@@ -75,35 +74,35 @@ def write_kml(route: Route, path: str | Path, options: RouteFileOptions | None =
     options = options or RouteFileOptions()
     root = ElementTree.Element("kml", {"xmlns": _NAMESPACE})
     document = ElementTree.SubElement(root, "Document")
-    ends = f"{options.start} to {options.goal}" if options.start and options.goal else ""
-    _add(document, "name", ends or "Thalweg route")
+    ends = voyage_name(options)
+    add_text(document, "name", ends or "Thalweg route")
     style = ElementTree.SubElement(document, "Style", {"id": "route"})
     line = ElementTree.SubElement(style, "LineStyle")
-    _add(line, "color", "ffb25d1f")  # aabbggrr
-    _add(line, "width", "3")
+    add_text(line, "color", "ffb25d1f")  # aabbggrr
+    add_text(line, "width", "3")
     whole = ElementTree.SubElement(document, "Placemark")
-    _add(whole, "name", ends or "Route")
-    _add(whole, "styleUrl", "#route")
+    add_text(whole, "name", ends or "Route")
+    add_text(whole, "styleUrl", "#route")
     lines = ElementTree.SubElement(whole, "MultiGeometry")
     for part in line_parts(route, options.decimals):
         drawn = ElementTree.SubElement(lines, "LineString")
-        _add(drawn, "tessellate", "1")
-        _add(drawn, "coordinates", " ".join(f"{lon!r},{lat!r}" for lon, lat in part))
+        add_text(drawn, "tessellate", "1")
+        add_text(drawn, "coordinates", " ".join(f"{lon!r},{lat!r}" for lon, lat in part))
     for row in file_route(route, options).rows:
         place = ElementTree.SubElement(document, "Placemark")
-        _add(place, "name", row["name"])
+        add_text(place, "name", row["name"])
         facts = [f"{row[name]:g} {unit}" for name, unit in _FACTS.items() if row.get(name)]
-        _add(place, "description", ", ".join(facts))
+        add_text(place, "description", ", ".join(facts))
         if row["time"] is not None:
-            _add(ElementTree.SubElement(place, "TimeStamp"), "when", row["time"])
+            add_text(ElementTree.SubElement(place, "TimeStamp"), "when", row["time"])
         given = {name: row[name] for name in (*WAITS, *SPEEDS, GEOMETRY) if row.get(name)}
         if given:
             extended = ElementTree.SubElement(place, "ExtendedData")
             for name, value in given.items():
                 data = ElementTree.SubElement(extended, "Data", {"name": name})
-                _add(data, "value", str(value))
+                add_text(data, "value", str(value))
         point = ElementTree.SubElement(place, "Point")
-        _add(point, "coordinates", f"{row['lon']!r},{row['lat']!r}")
+        add_text(point, "coordinates", f"{row['lon']!r},{row['lat']!r}")
     write_xml(root, path)
 
 
@@ -120,11 +119,7 @@ def _of_points(places: list[ElementTree.Element]) -> ParsedTrack:
     positions = [
         position for place in places for position in _positions(_named(place, "coordinates")[:1])
     ]
-    given = [_extended_data(place) for place in places]
-    orders = [waypoint_order(values, i) for i, values in enumerate(given, start=1)]
-    rhumb = [is_rhumb_line(v.get(GEOMETRY), i) for i, v in enumerate(given[:-1], start=1)]
-    time = _time(places[0])
-    return ParsedTrack(positions, parse_time(time) if time else None, orders, rhumb)
+    return waypoint_track(positions, _time(places[0]), [_extended_data(place) for place in places])
 
 
 def _of_lines(place: ElementTree.Element) -> ParsedTrack | None:
@@ -133,9 +128,8 @@ def _of_lines(place: ElementTree.Element) -> ParsedTrack | None:
     if not lines:
         return None
     parts = [element for line in lines for element in _named(line, "coordinates")[:1]]
-    time = _time(place)
     notes = ["its lines are joined to one route"] if len(parts) > 1 else []
-    return ParsedTrack(_positions(parts), parse_time(time) if time else None, notes=notes)
+    return replace(waypoint_track(_positions(parts), _time(place), ()), notes=notes)
 
 
 def _of_track(place: ElementTree.Element) -> ParsedTrack | None:
@@ -146,7 +140,7 @@ def _of_track(place: ElementTree.Element) -> ParsedTrack | None:
     texts = [(element.text or "").split() for element in coords]
     positions = [position_of(*_pair(values, i)[::-1], i) for i, values in enumerate(texts, start=1)]
     time = next((element.text for element in _named(place, "when") if element.text), None)
-    return ParsedTrack(positions, parse_time(time) if time else None)
+    return waypoint_track(positions, time, ())
 
 
 def _positions(elements: Iterable[ElementTree.Element]) -> list[Position]:
@@ -192,7 +186,3 @@ def _time(place: ElementTree.Element) -> str | None:
 def _named(element: ElementTree.Element, name: str) -> list[ElementTree.Element]:
     """Return the elements of a name in an element, in any namespace."""
     return [one for one in element.iter() if local_name(one) == name]
-
-
-def _add(parent: ElementTree.Element, name: str, text: str) -> None:
-    ElementTree.SubElement(parent, name).text = text

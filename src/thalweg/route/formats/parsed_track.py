@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import PurePath
 from typing import NamedTuple
@@ -78,7 +78,6 @@ def waypoint_order(values: Mapping[str, object], number: int) -> WaypointOrder:
 
     Parameters
     ----------
-    values : Values of the file at the waypoint, by name.
     number : Number of the waypoint, for messages.
 
     Returns
@@ -100,6 +99,22 @@ def waypoint_order(values: Mapping[str, object], number: int) -> WaypointOrder:
             waypoint=number,
         )
     return WaypointOrder(wait or 0.0, math.nan if speed is None else speed)
+
+
+def waypoint_track(
+    positions: list[Position], time: TimeLike | None, given: Sequence[Mapping[str, object]]
+) -> ParsedTrack:
+    """Return the contents of a file with what it gives at each waypoint, by name.
+
+    Parameters
+    ----------
+    time : Of the first waypoint; None or no text where the file has none.
+    """
+    orders = [waypoint_order(values, i) for i, values in enumerate(given, start=1)]
+    rhumb = [is_rhumb_line(values.get(GEOMETRY), i) for i, values in enumerate(given[:-1], start=1)]
+    return ParsedTrack(
+        positions, parse_time(time) if time not in (None, "") else None, orders, rhumb
+    )
 
 
 def is_rhumb_line(text: object, number: int) -> bool:

@@ -127,3 +127,8 @@ class RouteFileOptions:
     def spacing(self) -> float:
         """Greatest distance between waypoints [m]."""
         return math.inf if self.spacing_nm is None else self.spacing_nm * NAUTICAL_MILE
+
+
+def voyage_name(options: RouteFileOptions) -> str:
+    """Return the voyage in words, such as ``Rotterdam to Southampton``; blank if an end is."""
+    return f"{options.start} to {options.goal}" if options.start and options.goal else ""

@@ -38,7 +38,6 @@ class RouteLine:
         land, (n - 1,).
     held : Waypoints that are never left out, (n,).
     carried : Waypoints with extensions of other makers, which no waypoint beside stands for, (n,).
-    samples : Of the route.
     """
 
     lat: FloatArray

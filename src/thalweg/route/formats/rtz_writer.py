@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.file_writing import write_bytes
-from thalweg.core.units import NAUTICAL_MILE
+from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.route.carried_extensions import (
     LEG_NUMBERS,
     LEG_TEXTS,
@@ -28,7 +28,7 @@ from thalweg.route.carried_extensions import (
 )
 from thalweg.route.formats.file_route import FileRoute, file_route
 from thalweg.route.formats.parsed_track import GEOMETRY, GREAT_CIRCLE, SPEEDS, WAITS
-from thalweg.route.formats.route_file_options import RouteFileOptions
+from thalweg.route.formats.route_file_options import RouteFileOptions, voyage_name
 from thalweg.route.formats.xml_elements import decimal, xml_file, xml_text
 from thalweg.route.route import Route
 
@@ -82,8 +82,8 @@ def _rtz_bytes(route: Route, name: str, options: RouteFileOptions) -> bytes:
     written, version = file_route(route, options), options.rtz_version
     carried = route.track.extensions
     info = {"routeName": name, "routeAuthor": "Thalweg"}
-    if options.start and options.goal:
-        info["vesselVoyage"] = f"{options.start} to {options.goal}"
+    if voyage := voyage_name(options):
+        info["vesselVoyage"] = voyage
     info |= {k: v for k, v in carried.info.items() if version != "1.0" or k != _HISTORY}
     side = max(options.cross_track_nm, written.cross_track_m / NAUTICAL_MILE)
     side = min(side + 0.0005, _LARGEST_XTD) if side > options.cross_track_nm else side
@@ -279,7 +279,7 @@ def _schedules(written: FileRoute, carried: CarriedExtensions, version: str) -> 
 
 def waypoint_times(row: Mapping[str, Any], first: bool, last: bool, version: str) -> dict[str, str]:
     """Return the arrival, the stay and the departure at a waypoint."""
-    wait = round(3600.0 * (row.get("waiting_h") or 0.0))
+    wait = round(HOUR * (row.get("waiting_h") or 0.0))
     arrival = np.datetime64(str(row["time"]).removesuffix("Z"))
     times = {} if first else {"eta": str(row["time"])}
     if first or (wait and not last):

@@ -15,9 +15,9 @@ from xml.etree import ElementTree
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route.formats.file_route import file_route
 from thalweg.route.formats.parsed_track import GEOMETRY, GREAT_CIRCLE, SPEEDS, WAITS
-from thalweg.route.formats.route_file_options import RouteFileOptions
+from thalweg.route.formats.route_file_options import RouteFileOptions, voyage_name
 from thalweg.route.formats.rtz_writer import MANUFACTURER, ORDER, waypoint_times
-from thalweg.route.formats.xml_elements import decimal, write_xml
+from thalweg.route.formats.xml_elements import add_text, decimal, write_xml
 from thalweg.route.route import Route
 
 S421_NAMESPACE = "http://www.iho.int/S421/gml/cs0/1.0"
@@ -52,15 +52,14 @@ def write_s421(route: Route, path: str | Path, options: RouteFileOptions | None 
     scheduled = all(row["time"] is not None for row in rows)
     whole = _member(root, "Route", "RTE")
     for tag, text in (("routeFormatVersion", "1.0"), ("routeID", name), ("routeEditionNo", "1")):
-        _add(whole, tag, text)
+        add_text(whole, tag, text)
     _link(whole, "routeInfo", "RTE.INFO")
     _link(whole, "routeWaypoints", "RTE.WPTS")
     if scheduled:
         _link(whole, "routeSchedules", "RTE.SCHEDS")
     info = _member(root, "RouteInfo", "RTE.INFO", "imember")
-    ends = f"{options.start} to {options.goal}" if options.start and options.goal else name
-    _add(info, "routeInfoName", ends)
-    _add(info, "routeInfoAuthor", "Thalweg")
+    add_text(info, "routeInfoName", voyage_name(options) or name)
+    add_text(info, "routeInfoAuthor", "Thalweg")
     side = max(options.cross_track_nm * NAUTICAL_MILE, written.cross_track_m)
     _add_waypoints(root, rows, decimal(side, 1))
     if scheduled:
@@ -72,8 +71,8 @@ def _add_envelope(root: ElementTree.Element, rows: Sequence[Mapping[str, Any]]) 
     bounded = ElementTree.SubElement(root, f"{{{_GML}}}boundedBy")
     envelope = ElementTree.SubElement(bounded, f"{{{_GML}}}Envelope", {"srsName": _CRS})
     lat, lon = ([row[axis] for row in rows] for axis in ("lat", "lon"))
-    _add(envelope, f"{{{_GML}}}lowerCorner", f"{decimal(min(lat), 9)} {decimal(min(lon), 9)}")
-    _add(envelope, f"{{{_GML}}}upperCorner", f"{decimal(max(lat), 9)} {decimal(max(lon), 9)}")
+    add_text(envelope, f"{{{_GML}}}lowerCorner", f"{decimal(min(lat), 9)} {decimal(min(lon), 9)}")
+    add_text(envelope, f"{{{_GML}}}upperCorner", f"{decimal(max(lat), 9)} {decimal(max(lon), 9)}")
 
 
 def _add_waypoints(root: ElementTree.Element, rows: Sequence[Mapping[str, Any]], side: str) -> None:
@@ -87,20 +86,20 @@ def _add_waypoints(root: ElementTree.Element, rows: Sequence[Mapping[str, Any]],
         held = ElementTree.SubElement(geometry, f"{{{_S100}}}pointProperty")
         about = {f"{{{_GML}}}id": f"{here}.PT", "srsName": _CRS}
         point = ElementTree.SubElement(held, f"{{{_S100}}}Point", about)
-        _add(point, f"{{{_GML}}}pos", f"{decimal(row['lat'], 9)} {decimal(row['lon'], 9)}")
-        _add(waypoint, "routeWaypointID", str(number))
-        _add(waypoint, "routeWaypointName", str(row["name"]))
-        _add(waypoint, "routeWaypointFixed", "true" if number in (1, len(rows)) else "false")
+        add_text(point, f"{{{_GML}}}pos", f"{decimal(row['lat'], 9)} {decimal(row['lon'], 9)}")
+        add_text(waypoint, "routeWaypointID", str(number))
+        add_text(waypoint, "routeWaypointName", str(row["name"]))
+        add_text(waypoint, "routeWaypointFixed", "true" if number in (1, len(rows)) else "false")
         _link(waypoint, "routeWaypointCollection", "RTE.WPTS")
         if number > 1:
             _link(waypoint, "routeWaypointLeg", f"RTE.WPT.LEG.{number - 1}")
         _add_orders(waypoint, row, f"{here}.EXT.1")
     for number in range(1, len(rows)):
         leg = _member(root, "RouteWaypointLeg", f"RTE.WPT.LEG.{number}")
-        _add(leg, "routeWaypointLegStarboardXTDL", side)
-        _add(leg, "routeWaypointLegPortXTDL", side)
+        add_text(leg, "routeWaypointLegStarboardXTDL", side)
+        add_text(leg, "routeWaypointLegPortXTDL", side)
         great_circle = rows[number - 1].get(GEOMETRY) == GREAT_CIRCLE
-        _add(leg, "routeWaypointLegGeometryType", "2" if great_circle else "1")
+        add_text(leg, "routeWaypointLegGeometryType", "2" if great_circle else "1")
         _link(leg, "routeWaypointLegCollection", f"RTE.WPT.{number + 1}")
 
 
@@ -115,15 +114,15 @@ def _add_orders(waypoint: ElementTree.Element, row: Mapping[str, Any], name: str
             "routeExtensionsVersion": "1",
         }
         extension = ElementTree.SubElement(waypoint, "routeWaypointExtensions", about)
-        _add(extension, "routeExtensionsNote", " ".join(orders))
+        add_text(extension, "routeExtensionsNote", " ".join(orders))
 
 
 def _add_schedules(root: ElementTree.Element, rows: Sequence[Mapping[str, Any]]) -> None:
     group = _member(root, "RouteSchedules", "RTE.SCHEDS", "imember")
     _link(group, "routeSchedule", "RTE.SCHED.1")
     schedule = _member(root, "RouteSchedule", "RTE.SCHED.1", "imember")
-    _add(schedule, "routeScheduleID", "1")
-    _add(schedule, "routeScheduleName", "Thalweg plan")
+    add_text(schedule, "routeScheduleID", "1")
+    add_text(schedule, "routeScheduleName", "Thalweg plan")
     _link(schedule, "routeScheduleCollection", "RTE.SCHEDS")
     _link(schedule, "routeScheduleCalculated", "RTE.SCHED.1.CAL")
     calculated = _member(root, "RouteScheduleCalculated", "RTE.SCHED.1.CAL", "imember")
@@ -133,14 +132,14 @@ def _add_schedules(root: ElementTree.Element, rows: Sequence[Mapping[str, Any]])
         _link(calculated, "routeScheduleElement", name(number))
     for number, row in enumerate(rows, start=1):
         element = _member(root, "RouteScheduleElement", name(number), "imember")
-        _add(element, "routeWaypointId", str(number))
+        add_text(element, "routeWaypointId", str(number))
         speed = rows[number - 2].get("speed_over_ground_kn") if number > 1 else None
         if speed is not None:
-            _add(element, "routeScheduleElementPlanSOG", decimal(speed, 2))
+            add_text(element, "routeScheduleElementPlanSOG", decimal(speed, 2))
         times = waypoint_times(row, number == 1, number == len(rows), "1.2")
         for key in ("etd", "eta"):
             if key in times:
-                _add(element, f"routeScheduleElement{key.upper()}", times[key])
+                add_text(element, f"routeScheduleElement{key.upper()}", times[key])
         link = "routeScheduleElementCalculatedCollection"
         _link(element, link, "RTE.SCHED.1.CAL")
 
@@ -156,7 +155,3 @@ def _member(
 def _link(parent: ElementTree.Element, tag: str, target: str, role: str = "") -> None:
     about = {f"{{{_XLINK}}}href": f"#{target}", f"{{{_XLINK}}}arcrole": _ROLES + (role or tag)}
     ElementTree.SubElement(parent, tag, about)
-
-
-def _add(parent: ElementTree.Element, tag: str, text: str) -> None:
-    ElementTree.SubElement(parent, tag).text = text

@@ -99,6 +99,11 @@ def escaped(text: str) -> str:
     return _SPECIAL.sub(lambda found: _ESCAPES[found[0]], text)
 
 
+def add_text(parent: ElementTree.Element, name: str, text: str) -> None:
+    """Add an element that holds a text."""
+    ElementTree.SubElement(parent, name).text = text
+
+
 def xml_text(
     name: str, attributes: Mapping[str, str], inside: Iterable[str] = (), depth: int = 0
 ) -> str:

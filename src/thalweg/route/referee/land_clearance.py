@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from thalweg.chart.offing import required_offing
-from thalweg.core.geodesy import direct, inverse
+from thalweg.core.geodesy import direct, inverse, numbered_parts
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 
@@ -101,8 +101,7 @@ class _Pieces:
         open_sea = np.asarray(chart.canal_of_legs(*ends)) < 0
         lengths, courses, _ = inverse(*ends)
         count = np.where(open_sea, np.maximum(np.ceil(lengths / _FIRST_PIECE), 1), 0).astype(int)
-        leg = np.repeat(np.arange(len(count)), count)
-        number = np.arange(len(leg)) - np.repeat(np.cumsum(count) - count, count)
+        leg, number = numbered_parts(count)
         part = lengths[leg] / count[leg]
         return cls(
             leg, lat[leg], lon[leg], np.asarray(courses)[leg], number * part, (number + 1) * part

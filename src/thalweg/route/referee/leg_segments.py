@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import WGS84, inverse, wrap_longitude
+from thalweg.core.geodesy import WGS84, inverse, numbered_parts, wrap_longitude
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.canal_legs import CanalLegs, canal_legs
 from thalweg.route.track import Track
@@ -50,15 +50,7 @@ class TrackPoints:
 
     def part(self, index: slice | IntArray | NDArray[np.bool_]) -> TrackPoints:
         """Return some of the points."""
-        return TrackPoints(
-            self.lat[index],
-            self.lon[index],
-            self.course[index],
-            self.setting[index],
-            self.leg[index],
-            self.along[index],
-            self.charted[index],
-        )
+        return TrackPoints(*(values[index] for values in vars(self).values()))
 
 
 @dataclass(frozen=True)
@@ -126,8 +118,7 @@ class TrackPieces:
 
     def split(self, parts: IntArray) -> TrackPieces:
         """Return the track with every piece split into a number of equal parts (p,)."""
-        of = np.repeat(np.arange(len(self)), parts)
-        number = np.arange(len(of)) - np.repeat(np.cumsum(parts) - parts, parts)
+        of, number = numbered_parts(parts)
         step = (self.step / parts)[of]
         wait = np.where(number == parts[of] - 1, self.wait[of], 0.0)
         start = self.start[of] + number * step
@@ -166,8 +157,7 @@ def cut_into_pieces(
     length, course, _ = inverse(track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:])
     length = np.where(canals.number >= 0, canals.length, length)
     count = np.maximum(least, np.ceil(length / step - 1e-9)).astype(np.int64)
-    leg = np.repeat(np.arange(len(length)), count)
-    number = np.arange(len(leg)) - np.repeat(np.cumsum(count) - count, count)
+    leg, number = numbered_parts(count)
     piece = length / count
     wait = np.zeros(len(leg))
     wait[np.cumsum(count) - 1] = track.wait[1:]

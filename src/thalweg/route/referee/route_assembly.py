@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thalweg.core.geodesy import numbered_parts
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints
 from thalweg.route.referee.limit_checks import (
@@ -248,8 +249,8 @@ def _check_points(
     spacing = float(pieces.length.sum()) / MAX_CHECK_POINTS
     spacing = max(spacing, min(data_spacings(world, 1.0 / CHECK_POINTS_PER_CELL), default=0.0))
     count = np.maximum(np.ceil(pieces.length / max(spacing, 1e-3)).astype(np.int64), 1) + 1
-    leg = np.repeat(np.arange(len(count)), count)
-    share = (np.arange(len(leg)) - np.repeat(np.cumsum(count) - count, count)) / (count[leg] - 1)
+    leg, number = numbered_parts(count)
+    share = number / (count[leg] - 1)
     near = pieces.points(leg, share * pieces.length[leg])
     near = replace(near, charted=sailed.charted[pieces.containing(leg, near.along)])
     key = pieces.order_key(points.leg, points.along)

@@ -99,7 +99,6 @@ def sailing_state_along(
     Parameters
     ----------
     world : Ship, sea and chart.
-    canals : Legs of the track in canals.
     points : Positions and courses.
     time : Times [s since 1970-01-01T00:00Z], (n,).
     guess : Speeds [m/s] from which an iteration starts, (n,).

@@ -47,7 +47,6 @@ class _Crossing:
 
     Attributes
     ----------
-    leg : Leg of the route that crosses it.
     lat, lon : [deg].
     course : [rad].
     time : [s since 1970-01-01T00:00Z].

@@ -187,7 +187,6 @@ class SpeedSteps:
         Parameters
         ----------
         times, costs : float64 array (legs, settings)
-        chains : For each leg.
         """
         pairs = [(k, a, b) for k, chain in enumerate(chains) for a, b in pairwise(chain)]
         leg, before, after = np.array(pairs, np.int64).reshape(-1, 3).T

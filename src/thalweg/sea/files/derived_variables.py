@@ -78,7 +78,6 @@ def make_conversion(combine: Combine, place: GridPlacement, rotate: bool) -> Any
 
     Parameters
     ----------
-    combine : Makes the variables from the arrays.
     place : Their grid; on faces of a mesh, values are also averaged to its nodes.
     rotate : Whether the variables are components along the grid, to be rotated to east and north.
     """

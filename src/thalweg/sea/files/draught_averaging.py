@@ -32,7 +32,6 @@ class VerticalLayers:
 
     Attributes
     ----------
-    dim : The dimension.
     is_sigma : Whether edges are fractions of the water depth (0 surface, 1 bed), else depths [m
         below datum].
     top, bottom : Upper and lower edge of each layer, (L,).

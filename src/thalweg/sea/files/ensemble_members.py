@@ -64,7 +64,6 @@ class EnsembleFile:
 
     Attributes
     ----------
-    dim : The dimension.
     placement_cache : Positions and meshes, which are the same for every member.
     shared : The candidates of the first member; those that do not vary are used for all.
     """

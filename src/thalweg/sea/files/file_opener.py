@@ -45,7 +45,6 @@ def open_layers(
 
     Parameters
     ----------
-    sources : Files in order of priority.
     mapping : Canonical name to name in the file.
     draught : Draught [m] over which currents in layers are averaged.
 

@@ -29,10 +29,6 @@ TIME_LIMIT: Final = 1800.0  #: [s] after which a worker is stopped
 def open_grib(path: Path) -> list[Any]:
     """Return one xarray dataset for each kind of level in a GRIB file.
 
-    Parameters
-    ----------
-    path : The file.
-
     Returns
     -------
     list of xarray.Dataset : Memory-mapped, not loaded.

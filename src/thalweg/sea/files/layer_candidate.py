@@ -78,7 +78,6 @@ class PlacementCache:
 
     Attributes
     ----------
-    meshes : Meshes of the file.
     places : The grid of each variable.
     """
 

@@ -53,10 +53,6 @@ class _Header:
 def expected_length(path: Path) -> int:
     """Return the shortest length [bytes] of a classic NetCDF file with all its data.
 
-    Parameters
-    ----------
-    path : A classic NetCDF file.
-
     Raises
     ------
     EOFError, KeyError : If the header itself is truncated or damaged.

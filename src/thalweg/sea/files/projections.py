@@ -103,7 +103,6 @@ def meridian_angle(crs: Any, x: FloatArray, y: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    crs : Projection.
     x, y : Projected positions [m], of one shape.
 
     Returns

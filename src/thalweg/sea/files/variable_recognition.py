@@ -157,7 +157,6 @@ def check_mapping(mapping: Mapping[str, str], present: frozenset[str]) -> None:
     Parameters
     ----------
     mapping : Canonical name to name in the file.
-    present : Names of the variables in the files.
     """
     for name, variable in mapping.items():
         if name != "crs" and variable not in present:

@@ -6,7 +6,9 @@ returns the flat indices of the grid points around each given point, and their w
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
 
 from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.types import FloatArray, IntArray
@@ -50,3 +52,21 @@ class Grid(Protocol):
     def mesh(self) -> Mesh | None:
         """Return nodes and triangles, if the grid is a mesh."""
         ...
+
+
+def grid_positions(grid: Any) -> tuple[FloatArray, FloatArray]:
+    """Return latitude and longitude [deg] of all points of a grid, in the order of its values.
+
+    Parameters
+    ----------
+    grid : A rectilinear grid or a grid of triangles.
+
+    Returns
+    -------
+    lat, lon : float64 array (rows * columns,)
+    """
+    rows, columns = grid.shape
+    lat, lon = np.asarray(grid.lat, float), np.asarray(grid.lon, float)
+    if lat.size == rows and lon.size == columns:
+        lat, lon = np.broadcast_arrays(lat[:, None], lon[None, :])
+    return np.ascontiguousarray(lat).ravel(), np.ascontiguousarray(lon).ravel()

@@ -32,7 +32,6 @@ class GridLayer:
 
     Attributes
     ----------
-    quantities : Quantities of the layer.
     grid : Grid points of the values.
     axis : Times of the values.
     cache : Values read so far; it changes no result.

@@ -76,7 +76,6 @@ class SourceVariable:
 
     Attributes
     ----------
-    name : Its name in the files.
     pieces : One per file.
     timed : Whether it has times; if not, there is one piece, which holds at all times.
     is_mesh : bool
@@ -180,7 +179,6 @@ class Quantity:
 
     Attributes
     ----------
-    names : Canonical names.
     variables : The file variables they are made from.
     make : ``make(arrays, window) -> arrays``: components, rotation, averaging.
     source : File names.

@@ -20,6 +20,7 @@ from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.sea import standard_names as nm
 from thalweg.sea.coverage import Coverage
+from thalweg.sea.grids.grid_protocol import grid_positions
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.grids.source_variables import GridWindow
 from thalweg.sea.layer import Layer, Samples
@@ -283,21 +284,3 @@ def _beside_unknown(known: BoolArray, wraps: bool) -> BoolArray:
     wide = np.pad(~known, ((0, 0), (pad, pad)), mode="wrap" if wraps else "edge")
     near = ndimage.binary_dilation(wide, np.ones((2 * pad + 1, 2 * pad + 1), bool))
     return np.asarray(near[:, pad:-pad])
-
-
-def grid_positions(grid: Any) -> tuple[FloatArray, FloatArray]:
-    """Return latitude and longitude [deg] of all points of a grid, in the order of its values.
-
-    Parameters
-    ----------
-    grid : A rectilinear grid or a grid of triangles.
-
-    Returns
-    -------
-    lat, lon : float64 array (rows * columns,)
-    """
-    rows, columns = grid.shape
-    lat, lon = np.asarray(grid.lat, float), np.asarray(grid.lon, float)
-    if lat.size == rows and lon.size == columns:
-        lat, lon = np.broadcast_arrays(lat[:, None], lon[None, :])
-    return np.ascontiguousarray(lat).ravel(), np.ascontiguousarray(lon).ravel()

@@ -103,7 +103,6 @@ def tidal_profile(height: ArrayLike, column: WaterColumn) -> tuple[ComplexArray,
     Parameters
     ----------
     height : Height above the bed [m], 0 to depth.
-    column : The water column.
 
     Returns
     -------
@@ -134,7 +133,6 @@ def tidal_mean(draught: float, column: WaterColumn) -> tuple[complex, complex]:
     Parameters
     ----------
     draught : Draught [m], 0 to depth; 0 for the surface.
-    column : The water column.
 
     Returns
     -------
@@ -279,7 +277,6 @@ def density_mean(draught: float, column: WaterColumn, **density: float) -> tuple
     Parameters
     ----------
     draught : Draught [m], 0 to depth.
-    column : The water column.
     **density
         ``density_gradient`` [kg/m4], ``density`` [kg/m3] and ``rise`` [m], as `density_profile`.
 

@@ -18,9 +18,8 @@ AIR_DENSITY: Final = 1.15  #: [kg/m3], as in Holland (1980)
 AMBIENT_PRESSURE: Final = 101300.0  #: [Pa]
 EARTH_ROTATION: Final = 7.2921150e-5  #: [rad/s]
 SURFACE_FACTOR: Final = 0.9  #: wind at 10 m over gradient wind, Powell et al. (2003): about 0.9
-TEN_MINUTE_FACTOR: Final = (
-    0.93  #: 10-min over 1-min mean wind at sea, Harper et al. (2010) tab. 1.1
-)
+#: 10-min over 1-min mean wind at sea, Harper et al. (2010) tab. 1.1.
+TEN_MINUTE_FACTOR: Final = 0.93
 TRANSLATION_FACTOR: Final = 0.55  #: Lin and Chavas (2012)
 TRANSLATION_TURN_DEG: Final = 20.0  #: counter-clockwise in the north, Lin and Chavas (2012)
 B_RANGE: Final = (1.0, 2.5)  #: Holland (1980), page 1215

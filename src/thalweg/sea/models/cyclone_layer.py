@@ -12,6 +12,7 @@ from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.geodesy import MEAN_RADIUS, local_axes
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.types import BoolArray, FloatArray
+from thalweg.core.units import HOUR
 from thalweg.sea import standard_names as nm
 from thalweg.sea.argument_checks import parse_time_step
 from thalweg.sea.coverage import Coverage
@@ -27,7 +28,7 @@ from thalweg.sea.models.cyclone_vortex import (
 from thalweg.sea.triangle_mesh import Mesh
 
 DEFAULT_STORM: Final = "danielle-1998"
-TIME_STEP: Final = 3600.0  #: [s] step at which the moving storm is frozen
+TIME_STEP: Final = HOUR  #: [s] step at which the moving storm is frozen
 STORM_VARIABLES: Final = frozenset({*nm.WIND.pair, *nm.WAVES.pair, nm.WAVE_HEIGHT, nm.WAVE_PERIOD})
 
 
@@ -219,7 +220,6 @@ def storm_layer(
 
     Parameters
     ----------
-    name : Name of an embedded storm.
     start : First time of the track; its true date by default.
     ambient : The surrounding sea.
     time_step : Step of frozen times [s], 1 or more.

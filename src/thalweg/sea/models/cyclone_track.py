@@ -13,11 +13,11 @@ from thalweg.core.errors import unknown_name_error
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.core.time import parse_time
 from thalweg.core.types import FloatArray
-from thalweg.core.units import KNOT
+from thalweg.core.units import HOUR, KNOT
 from thalweg.sea.models.cyclone_formulas import TEN_MINUTE_FACTOR
 
 BEST_TRACK_FILES: Final = {"danielle-1998": "danielle_1998.csv"}
-HALF_VELOCITY_INTERVAL: Final = 3.0 * 3600.0  #: [s] forward velocity is a mean over twice this
+HALF_VELOCITY_INTERVAL: Final = 3.0 * HOUR  #: [s] forward velocity is a mean over twice this
 
 
 @dataclass(frozen=True, eq=False)

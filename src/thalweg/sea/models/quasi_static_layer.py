@@ -6,21 +6,18 @@ nearest update. `Sea.quasi_static` repeats it, to study what coarse updates do t
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Final, TypeVar
 
 import numpy as np
 
-from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike, format_time, parse_time
-from thalweg.core.types import BoolArray, FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
-from thalweg.sea.coverage import Coverage
 from thalweg.sea.ensemble_layer import EnsembleLayer
-from thalweg.sea.layer import Layer, Samples
-from thalweg.sea.triangle_mesh import Mesh
+from thalweg.sea.layer import Layer, RetimedLayer
 
 LEAST_STEP: Final = 60.0  #: between updates [s]
 LARGEST_STEP: Final = 31 * 24 * HOUR
@@ -30,29 +27,17 @@ SeaOfLayers = TypeVar("SeaOfLayers", bound=Any)
 
 
 @dataclass(frozen=True, eq=False)
-class QuasiStaticLayer:
+class QuasiStaticLayer(RetimedLayer):
     """The values of a layer at the nearest of regular updates.
 
     Attributes
     ----------
-    layer : The layer that is read at the updates.
     step : Between updates [s].
     first : One of the updates [s since 1970-01-01T00:00Z].
     """
 
-    layer: Layer
     step: float
     first: float
-
-    @property
-    def variables(self) -> frozenset[str]:
-        """Those of the layer."""
-        return self.layer.variables
-
-    @property
-    def area(self) -> BoundingBox:
-        """That of the layer."""
-        return self.layer.area
 
     @property
     def period(self) -> tuple[float, float] | None:
@@ -64,24 +49,10 @@ class QuasiStaticLayer:
         high = np.floor((last - self.first) / self.step + 1e-9) + 0.5
         return self.first + low * self.step, self.first + high * self.step - _RAMP
 
-    def _updates(self, times: FloatArray) -> FloatArray:
+    def _read_at(self, times: FloatArray) -> FloatArray:
         """Return the nearest updates; the earlier one has the moment in the middle."""
         number = np.ceil((times - self.first) / self.step - 0.5)
         return np.asarray(self.first + number * self.step)
-
-    def sample(
-        self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
-    ) -> Samples:
-        """Return values at points (N,); NaN where the update is unknown."""
-        return self.layer.sample(names, self._updates(time), lat, lon)
-
-    def series(
-        self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
-    ) -> Samples:
-        """Return values (S, T) at stations for all times."""
-        updates, which = np.unique(self._updates(times), return_inverse=True)
-        found = self.layer.series(names, updates, lat, lon)
-        return {name: values[:, which.reshape(-1)] for name, values in found.items()}
 
     def times(self, start: float, end: float) -> FloatArray:
         """Return the moments at which one update follows another, each with the one after it."""
@@ -94,18 +65,6 @@ class QuasiStaticLayer:
         moments = np.sort(np.concatenate([change, change + _RAMP]))
         kept = moments[(moments >= low) & (moments <= high)]
         return kept if self.layer.times(start, end).size else np.empty(0)
-
-    def inside(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
-        """Return whether the layer may know values at positions."""
-        return self.layer.inside(lat, lon)
-
-    def coverage(self) -> list[Coverage]:
-        """Return where and when each variable of the layer is known."""
-        return self.layer.coverage()
-
-    def mesh(self) -> Mesh | None:
-        """Return the mesh of the layer, if it has one."""
-        return self.layer.mesh()
 
     def provenance(self) -> Mapping[str, Any]:
         """Return the updates and the facts of the layer."""

@@ -152,7 +152,6 @@ def ellipse_phasors(
     Parameters
     ----------
     scenario : Name of a scenario, or an ellipse at the surface.
-    column : The water column.
     draught : Draught [m]; 0 for the surface.
 
     Returns

@@ -11,13 +11,14 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
+from thalweg.core.units import DAY, HOUR
 from thalweg.sea import standard_names as nm
 from thalweg.sea.layer import Layer
 from thalweg.sea.layer_stack import stack_variables
 from thalweg.sea.models.derived_layer import DerivedLayer
 
 DEFAULT_FETCH = 500_000.0  #: [m] assumed fetch of the wind
-DEFAULT_DURATION = 24.0 * 3600.0  #: [s] assumed duration of the wind
+DEFAULT_DURATION = DAY  #: [s] assumed duration of the wind
 
 
 def carter_1982(
@@ -71,7 +72,7 @@ def carter_1982(
             "Correct them.",
         )
     wind = np.asarray(wind_speed, float)
-    km, hours = fetch / 1000.0, duration / 3600.0
+    km, hours = fetch / 1000.0, duration / HOUR
     height = np.minimum(0.0163 * np.sqrt(km) * wind, 0.0146 * hours ** (5 / 7) * wind ** (9 / 7))
     period = np.minimum(0.566 * km**0.3 * wind**0.4, 0.540 * hours ** (3 / 7) * wind ** (4 / 7))
     return np.minimum(height, 0.0248 * wind**2), np.minimum(period, 0.729 * wind)

@@ -30,9 +30,8 @@ from thalweg.sea.tides.constituents import Constituents
 from thalweg.sea.tides.noos_dia_series import LENGTH_UNITS, MET_OFFSET_HOURS
 
 FILE_FORMAT: Final = "thalweg-constituents-1"
-_SPEED_TOLERANCE = (
-    1e-4  #: [deg/h] largest difference of a printed speed from that of the constituent
-)
+#: Largest difference of a printed speed from that of the constituent [deg/h].
+_SPEED_TOLERANCE = 1e-4
 
 
 def read_constituents(path: str | Path, *, station: str | None = None) -> Constituents:
@@ -138,7 +137,6 @@ def from_dict(data: Mapping[str, Any], source: str = "constituents") -> Constitu
 
     Parameters
     ----------
-    data : Plain data.
     source : File name for messages.
 
     Raises

@@ -291,7 +291,6 @@ def check_rayleigh(names: Sequence[str], length_h: float, rayleigh: float = RAYL
 
     Parameters
     ----------
-    names : Constituents.
     length_h : Length of the record [h].
     rayleigh : Least difference of two constituents [cycles over the record].
 

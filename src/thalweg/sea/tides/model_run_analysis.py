@@ -19,8 +19,8 @@ from thalweg.core.file_writing import replacing_file
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
 from thalweg.sea.ensemble_layer import check_not_ensemble
+from thalweg.sea.grids.grid_protocol import grid_positions
 from thalweg.sea.grids.gridded_layer import GridLayer
-from thalweg.sea.grids.rectilinear_grid import RectilinearGrid
 from thalweg.sea.grids.source_variables import GridWindow
 from thalweg.sea.layer import Layer
 from thalweg.sea.tides import harmonic_analysis
@@ -103,7 +103,7 @@ def analyse_layer(
     times = layer.axis.times
     names = harmonic_analysis.select_constituents(times, constituents, rayleigh)
     rows, columns = layer.grid.shape
-    lat, lon = _grid_positions(layer.grid)
+    lat, lon = grid_positions(layer.grid)
     path = _cache_path(layer, names) if cache else None
     cached = _read_cache(path, lat, lon) if path else None
     if cached is not None:
@@ -120,15 +120,6 @@ def analyse_layer(
     if path is not None:
         _write_cache(path, analysis)
     return analysis
-
-
-def _grid_positions(grid: Any) -> tuple[FloatArray, FloatArray]:
-    """Return the position of every grid point, flat."""
-    lat, lon = np.array(grid.lat, np.float64), np.array(grid.lon, np.float64)
-    rows, columns = grid.shape
-    if isinstance(grid, RectilinearGrid):
-        return lat.repeat(columns), np.tile(lon, rows)
-    return lat.ravel(), lon.ravel()
 
 
 def _cache_path(layer: GridLayer, names: Sequence[str]) -> Path:

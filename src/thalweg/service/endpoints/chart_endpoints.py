@@ -9,6 +9,7 @@ from typing import Any, Final, Literal
 import numpy as np
 from fastapi import APIRouter, Path, Query, Response
 
+from thalweg.core.units import HOUR
 from thalweg.service.coast_map import CELL_SIDES, cell_names, cells_folder
 from thalweg.service.endpoints.sea_endpoints import packed_frame, parsed_box
 from thalweg.service.problem_details import not_found
@@ -99,7 +100,7 @@ def _features() -> dict[str, Any]:
             "name": canal.name,
             "title": canal.title,
             "path": [[lon, lat] for lat, lon in canal.path],
-            "hours": canal.transit_time / 3600.0,
+            "hours": canal.transit_time / HOUR,
             "fee_usd": canal.fee,
         }
         for canal in CANALS

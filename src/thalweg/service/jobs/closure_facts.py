@@ -18,10 +18,6 @@ TIMES: Final = 144
 def closure_facts(found: Closures, routes: Iterable[Route]) -> dict[str, Any]:
     """Return the diagram of place and time of a track.
 
-    Parameters
-    ----------
-    routes : Routes on this track.
-
     Returns
     -------
     dict

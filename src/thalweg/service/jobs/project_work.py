@@ -8,6 +8,7 @@ import numpy as np
 
 from thalweg.core.file_writing import write_csv_rows
 from thalweg.core.types import FloatArray
+from thalweg.core.units import HOUR
 from thalweg.service.jobs.child_messages import MessageWriter
 from thalweg.service.jobs.closure_facts import PLACES, TIMES, closure_facts
 from thalweg.service.jobs.job_order import JobOrder, StageMessages
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from thalweg.route import Route
 
 _LEVEL_STEP: Final = 600.0  # between values of the water level [s]
-_AROUND: Final = 7.0 * 3600.0  # shown before and after the leg in that diagram [s]
+_AROUND: Final = 7.0 * HOUR  # shown before and after the leg in that diagram [s]
 _KEY_FIGURES: Final = (
     "production_m3_week", "duration_days", "cycles", "fuel_t", "co2_t", "waiting_share",
 )  # fmt: skip
@@ -63,7 +64,7 @@ def _cycle_facts(cycle: DredgingCycle) -> dict[str, Any]:
         "end": cycle.end,
         "volume_m3": cycle.volume,
         "load_factor": cycle.load_factor,
-        "waiting_h": sum(leg.waiting for leg in cycle.legs) / 3600.0,
+        "waiting_h": sum(leg.waiting for leg in cycle.legs) / HOUR,
         "out": _points(cycle.out.route),
     }
 

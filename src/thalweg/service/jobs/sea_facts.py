@@ -27,7 +27,6 @@ def sea_facts(sea: Sea, *, in_detail: bool = False) -> dict[str, Any]:
 
     Parameters
     ----------
-    sea : Sea
     in_detail : bool
         Also the ignored variables and the share of unknown values.
 

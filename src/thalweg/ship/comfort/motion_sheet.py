@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT
 from thalweg.ship.comfort.onboard_motions import ROLL_NOTE, onboard_motions
@@ -104,4 +105,4 @@ def _attained_speed(ship: Ship, weather: Mapping[str, float], ordered: float) ->
 
 
 def _plain(values: Any) -> list[float | None]:
-    return [float(v) if math.isfinite(v) else None for v in np.asarray(values, float)]
+    return [finite_or_none(v) for v in np.asarray(values, float)]

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+import numpy as np
+
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
 from thalweg.core.units import DAY, TONNE
 from thalweg.ship.file.part_builders import build_speed_loss, hull_for_kwon, lightship_estimate
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.models.known_speed_fuel import fuel_estimates, fuel_rate_of_power
 from thalweg.ship.models.known_speed_model import (
     KnownSpeedModel,
     SpeedPowerLaw,
@@ -38,7 +42,7 @@ def build_known_speed_model(file: ShipFile, hull: Hull, loading: Loading) -> Kno
         check_table(file.table)
     full, empty = calm_speeds(file, law)
     fuel, power = SPEED_POWER_LAWS[law](file, full)
-    power_to_fuel_rate = None if law == "none" else fuel_rate_of_power(file)
+    power_to_fuel_rate = None if law == "none" else _fuel_rate_of_power(file)
     if power_to_fuel_rate is not None:
         fuel = power_to_fuel_rate(power)
     check_table_rises(full, {"fuel_t_per_day": fuel * DAY / TONNE, "power_kw": power / 1000.0})
@@ -65,4 +69,34 @@ def estimates_of_known_speeds(file: ShipFile, hull: Hull, loading: Loading) -> t
     if file.models.speed_loss == "kwon_2008":
         hull = hull_for_kwon(hull, loading)
     light = lightship_estimate(file.loading, loading.displacement_empty)
-    return (*hull.estimated, *light, *fuel_estimates(file))
+    return (*hull.estimated, *light, *_fuel_estimates(file))
+
+
+def _fuel_rate_of_power(file: ShipFile) -> Callable[[FloatArray], FloatArray] | None:
+    """Return the fuel rate [kg/s] of a brake power [W], hotel load included.
+
+    None when the file gives fuel itself, which is the whole ship's, or nothing to burn by. A single
+    ``engine.sfoc_g_per_kwh`` holds at every power; by ``engine.type`` or a curve consumption
+    follows the load.
+    """
+    engine = file.engine
+    in_table = file.table is not None and file.table.fuel_t_per_day is not None
+    if in_table or file.fuel.reference_t_per_day is not None:
+        return None
+    if engine.sfoc_g_per_kwh is not None:
+        sfoc, hotel = engine.sfoc_g_per_kwh, engine.hotel_fuel_rate
+        return lambda power: np.asarray(power * sfoc / 3.6e9 + hotel)
+    if engine.gives("type", "sfoc_curve_g_per_kwh"):
+        from thalweg.ship.models.engine_plant import build_engine_plant  # reads methods of engines
+
+        return build_engine_plant(file).fuel
+    return None
+
+
+def _fuel_estimates(file: ShipFile) -> tuple[Estimate, ...]:
+    """Return what `_fuel_rate_of_power` estimated."""
+    if _fuel_rate_of_power(file) is None or file.engine.sfoc_g_per_kwh is not None:
+        return ()
+    from thalweg.ship.models.engine_plant import build_engine_plant
+
+    return build_engine_plant(file).estimated

@@ -75,7 +75,6 @@ def bare_ship_parts(
 
     Parameters
     ----------
-    name : Name of the ship.
     model : Its speed, power and fuel.
     draught : Draught at any load factor [m].
     limits : Limits of weather; by default none.
@@ -93,7 +92,6 @@ def plugin_parts(name: str, offered: Any) -> ShipParts:
 
     Parameters
     ----------
-    name : Name of the ship.
     offered : Data of a ship file, a model, or a function of conditions that returns speeds [m/s].
 
     Raises
@@ -122,7 +120,6 @@ def simple_data(
 
     Parameters
     ----------
-    name : Name of the ship.
     speeds_kn : Ordered speeds [kn].
     **sections : Keys and values of each section, such as ``hull``.
 

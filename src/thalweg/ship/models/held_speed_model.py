@@ -19,7 +19,7 @@ from thalweg.ship.models.known_speed_model import (
 )
 from thalweg.ship.models.prestegardshus_speed_loss import PrestegardshusSpeedLoss
 from thalweg.ship.tables.table_parts import TableError, TablePart
-from thalweg.ship.tables.tabulate import tabulate_dense
+from thalweg.ship.tables.tabulate import RateFunction, tabulate_settings
 
 _STEPS = 201  #: settings between the lowest ordered speed and the highest of the ship
 
@@ -124,33 +124,25 @@ class HeldSpeedModel:
         self, load_factor: float, tolerance: float
     ) -> tuple[tuple[TablePart, ...], TableError]:
         """One part over wind and depth, as far as they are read."""
-        return self._tabulated(load_factor, tolerance, "speed_through_water")
+        return self._tabulated(load_factor, tolerance, self.speed_through_water)
 
     def tabulate_fuel(
         self, load_factor: float, tolerance: float
     ) -> tuple[tuple[TablePart, ...], TableError]:
         """Fuel rate over wind and depth."""
-        return self._tabulated(load_factor, tolerance, "fuel_rate")
+        return self._tabulated(load_factor, tolerance, self.fuel_rate)
 
     def tabulate_power(
         self, load_factor: float, tolerance: float
     ) -> tuple[tuple[TablePart, ...], TableError]:
         """Brake power over wind and depth."""
-        return self._tabulated(load_factor, tolerance, "power")
+        return self._tabulated(load_factor, tolerance, self.power)
 
     def _tabulated(
-        self, load_factor: float, tolerance: float, what: str
+        self, load_factor: float, tolerance: float, rate: RateFunction
     ) -> tuple[tuple[TablePart, ...], TableError]:
-        settings = np.arange(len(self.ordered))
-
-        def values(where: Mapping[str, FloatArray]) -> FloatArray:
-            columns = {name: column[..., None] for name, column in where.items()}
-            conditions = Conditions(columns, load_factor=load_factor)
-            return np.asarray(getattr(self, what)(conditions, settings))
-
-        axes = known_speed_axes(self.base, load_factor)
-        part, error = tabulate_dense(values, axes, tolerance=tolerance)
-        return (part,), error
+        axes, count = known_speed_axes(self.base, load_factor), len(self.ordered)
+        return tabulate_settings(rate, axes, count, load_factor, tolerance=tolerance)
 
     def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:
         """Where the speed loss is used outside its range."""

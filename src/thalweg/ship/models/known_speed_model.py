@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
+from thalweg.core.units import KNOT
 from thalweg.kernels import codes
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.loading_state import Loading
@@ -21,7 +22,7 @@ from thalweg.ship.model_protocol import setting_index
 from thalweg.ship.models.prestegardshus_speed_loss import PrestegardshusSpeedLoss
 from thalweg.ship.models.squat_model import SquatModel
 from thalweg.ship.tables.table_parts import TableError, TablePart
-from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, constant_part, tabulate_dense
+from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, constant_part, tabulate_settings
 
 
 @dataclass(frozen=True)
@@ -183,18 +184,9 @@ class KnownSpeedModel:
         self, load_factor: float, tolerance: float
     ) -> tuple[tuple[TablePart, ...], TableError]:
         """One constant, or one part over what is read: wind speed and angle, depth."""
-        if not self.reads:
-            return (constant_part(self.speeds(load_factor)),), TableError(0.0, 0.0, 0.0, 0)
-        count = len(self.speeds_full)
-
-        def speeds(where: Mapping[str, FloatArray]) -> FloatArray:
-            columns = {name: values[..., None] for name, values in where.items()}
-            conditions = Conditions(columns, load_factor=load_factor)
-            return self.speed_through_water(conditions, np.arange(count))
-
-        axes = known_speed_axes(self, load_factor)
-        part, error = tabulate_dense(speeds, axes, tolerance=tolerance)
-        return (part,), error
+        axes, count = known_speed_axes(self, load_factor), len(self.speeds_full)
+        speed = self.speed_through_water
+        return tabulate_settings(speed, axes, count, load_factor, tolerance=tolerance)
 
     def tabulate_fuel(
         self, load_factor: float, tolerance: float
@@ -220,11 +212,9 @@ class KnownSpeedModel:
         InputError
             If a speed is outside the table, or above the highest speed of a ship without law.
         """
-        rows = self.law.rows or (
-            *(self.speeds_full, self.speeds_empty),
-            *(self.fuel_rates, self.powers),
-        )
-        own, name = interpolate_loading(load_factor, empty=rows[1], full=rows[0]), self.law.name
+        own_rows = (self.speeds_full, self.speeds_empty, self.fuel_rates, self.powers)
+        rows, name = self.law.rows or own_rows, self.law.name
+        own = interpolate_loading(load_factor, empty=rows[1], full=rows[0])
         low, high = (own[0], own[-1]) if name == "table" else (0.0, np.inf)
         if name == "none":
             high = own[-1] if len(own) > 1 else np.inf
@@ -236,16 +226,10 @@ class KnownSpeedModel:
             beyond = speeds / np.clip(speeds, own[0], own[-1])
             full, empty = full * beyond, empty * beyond
         fuel, power = (_values_by_law(name, rows[0], column, full) for column in rows[2:])
-        return replace(
-            self,
-            speeds_full=full,
-            speeds_empty=empty,
-            fuel_rates=fuel
-            if self.law.power_to_fuel_rate is None
-            else self.law.power_to_fuel_rate(power),
-            powers=power,
-            law=replace(self.law, rows=rows),
-        )
+        if self.law.power_to_fuel_rate is not None:
+            fuel = self.law.power_to_fuel_rate(power)
+        law = replace(self.law, rows=rows)
+        return KnownSpeedModel(full, empty, fuel, power, law, self.loss, self.squat)
 
 
 def _values_by_law(
@@ -335,12 +319,11 @@ def _shape(conditions: Conditions, index: NDArray[np.intp]) -> tuple[int, ...]:
 
 
 def _speed_out_of_range_error(speeds: FloatArray, low: float, high: float) -> InputError:
-    knot = 1852.0 / 3600.0
-    listed = ", ".join(f"{s / knot:g}" for s in speeds)
-    upper = f"{high / knot:g}" if np.isfinite(high) else "any"
+    listed = ", ".join(f"{s / KNOT:g}" for s in speeds)
+    upper = f"{high / KNOT:g}" if np.isfinite(high) else "any"
     return InputError(
         f"The ship cannot be ordered to {listed} kn.",
-        f"Its calm-water speeds run from {low / knot:g} to {upper} kn.",
+        f"Its calm-water speeds run from {low / KNOT:g} to {upper} kn.",
         "Give speeds in that range.",
         value=listed,
     )

@@ -9,18 +9,18 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.delegation import delegated
 from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.models.engine_plant import EnginePlant
-from thalweg.ship.models.force_balance import ForceBalance
-from thalweg.ship.models.known_speed_model import KwonSpeedLoss, wind_angle_axis
-from thalweg.ship.models.resistance_model import ResistanceModel, TabulatedModel
+from thalweg.ship.models.known_speed_model import KwonSpeedLoss
+from thalweg.ship.models.resistance_model import ResistanceModel
 from thalweg.ship.models.resistance_terms import condition_axes
 from thalweg.ship.tables.table_parts import TableError, TablePart
-from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, tabulate_dense
+from thalweg.ship.tables.tabulate import tabulate_settings
 
 _LARGEST_FROUDE_NUMBER: Final = 0.4  #: Froude number of the fastest calm-water speed considered
 _WIND_CONDITIONS: Final = ("wind_speed", "wind_angle")
@@ -70,32 +70,22 @@ class KwonResistanceModel:
         """The engines."""
         return self.base.plant
 
-    def balance(self, load_factor: float) -> ForceBalance:
-        """Forces in calm water at a load factor."""
-        return self.base.balance(load_factor)
-
-    def speeds(self, load_factor: float) -> FloatArray:
-        """Speed of every setting in calm, deep water [m/s]."""
-        return self.base.speeds(load_factor)
+    balance = delegated(ResistanceModel.balance, "base")
+    speeds = delegated(ResistanceModel.speeds, "base")
+    #: Those of the setting in calm water; at full power fuel and power depend on the depth only.
+    power = delegated(ResistanceModel.power, "base")
+    fuel_rate = delegated(ResistanceModel.fuel_rate, "base")
+    power_and_fuel = delegated(ResistanceModel.power_and_fuel, "base")
+    tabulate_fuel = delegated(ResistanceModel.tabulate_fuel, "base")
+    tabulate_power = delegated(ResistanceModel.tabulate_power, "base")
+    #: Calm-water speed [m/s]: weather does not raise it.
+    top_speed = delegated(ResistanceModel.top_speed, "base")
+    resistance = delegated(ResistanceModel.resistance, "base")
 
     def speed_through_water(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
         """Speed through water [m/s]."""
         calm = self.base.speed_through_water(conditions, setting)
         return np.asarray(calm * (1.0 - self.loss.share(conditions, calm)))
-
-    def power(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
-        """Brake power [W]: that of the setting in calm water."""
-        return self.base.power(conditions, setting)
-
-    def fuel_rate(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
-        """Fuel rate [kg/s], hotel load included: that of the setting in calm water."""
-        return self.base.fuel_rate(conditions, setting)
-
-    def power_and_fuel(
-        self, conditions: Conditions, setting: ArrayLike
-    ) -> tuple[FloatArray, FloatArray]:
-        """Brake power [W] and fuel rate [kg/s]: those of the setting in calm water."""
-        return self.base.power_and_fuel(conditions, setting)
 
     def power_at_speed(self, conditions: Conditions, speed: ArrayLike) -> FloatArray:
         """Brake power [W] of the calm-water speeds that weather reduces to given speeds [m/s].
@@ -103,10 +93,6 @@ class KwonResistanceModel:
         NaN where no calm speed up to a Froude number of 0.4 leaves as much.
         """
         return self.base.power_at_speed(conditions, self._calm_speed(conditions, speed))
-
-    def resistance(self, conditions: Conditions, speed: ArrayLike) -> dict[str, FloatArray]:
-        """Resistance in calm water by component [N] at speeds through water [m/s]."""
-        return self.base.resistance(conditions, speed)
 
     def _calm_speed(self, conditions: Conditions, attained: ArrayLike) -> FloatArray:
         """Calm-water speed [m/s] that weather reduces to an attained speed, by bisection."""
@@ -121,40 +107,18 @@ class KwonResistanceModel:
             low, high = np.where(over, low, middle), np.where(over, middle, high)
         return np.where(reached, high, np.nan)
 
-    def top_speed(self, setting: int, load_factor: float) -> float:
-        """Calm-water speed [m/s]: weather does not raise it."""
-        return self.base.top_speed(setting, load_factor)
-
     def tabulate(
         self, load_factor: float, tolerance: float
     ) -> tuple[tuple[TablePart, ...], TableError]:
         """One part over wind speed and angle, and depth where it matters."""
-        settings = np.arange(len(self.speeds(load_factor)))
-
-        def speeds(where: Mapping[str, FloatArray]) -> FloatArray:
-            columns = {name: values[..., None] for name, values in where.items()}
-            conditions = Conditions(columns, load_factor=load_factor)
-            return self.speed_through_water(conditions, settings)
-
         deep = "depth" in self.base.reads
-        size = 129 if deep else 257
-        axes: list[AxisRange] = [
-            replace(DEFAULT_AXES["wind_speed"], size=size),
-            wind_angle_axis(self.loss),
-        ]
+        axes = self.loss.axes(129 if deep else 257)
         if deep:
             depth = condition_axes(self.base.balance(load_factor), self.base.limits)["depth"]
             axes.append(replace(depth, size=65))
-        part, error = tabulate_dense(speeds, axes, tolerance=tolerance)
-        return (part,), error
-
-    def tabulate_fuel(self, load_factor: float, tolerance: float) -> TabulatedModel:
-        """As in calm water; at full power it depends on the depth only."""
-        return self.base.tabulate_fuel(load_factor, tolerance)
-
-    def tabulate_power(self, load_factor: float, tolerance: float) -> TabulatedModel:
-        """As in calm water, like the fuel."""
-        return self.base.tabulate_power(load_factor, tolerance)
+        count = len(self.speeds(load_factor))
+        speed = self.speed_through_water
+        return tabulate_settings(speed, axes, count, load_factor, tolerance=tolerance)
 
     def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:
         """Where methods are used outside their ranges."""

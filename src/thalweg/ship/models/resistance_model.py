@@ -172,38 +172,47 @@ class ResistanceModel:
 
     def tabulate_fuel(self, load_factor: float, tolerance: float) -> TabulatedModel:
         """Tabulate the fuel rate [kg/s]; see `thalweg.ship.models.tabulate_fuel`."""
-        from thalweg.ship.models.tabulate_fuel import tabulate_fuel_of_balance
-
-        table, _ = self._stored("fuel", load_factor, tolerance, tabulate_fuel_of_balance)
-        return table.parts, table.error, table.finish
+        return self._tabulate_rate("fuel", load_factor, tolerance, self.plant.fuel)
 
     def tabulate_power(self, load_factor: float, tolerance: float) -> TabulatedModel:
         """Tabulate the brake power [W]; see `thalweg.ship.models.tabulate_fuel`."""
-        from thalweg.ship.models.tabulate_fuel import tabulate_power_of_balance
+        return self._tabulate_rate("power", load_factor, tolerance, np.asarray)
 
-        table, _ = self._stored("power", load_factor, tolerance, tabulate_power_of_balance)
+    def _tabulate_rate(
+        self,
+        what: str,
+        load_factor: float,
+        tolerance: float,
+        of_power: Callable[[FloatArray], FloatArray],
+    ) -> TabulatedModel:
+        from thalweg.ship.models.tabulate_fuel import tabulate_rate_of_power
+
+        def build() -> TableWithMaxima:
+            return tabulate_rate_of_power(self, float(load_factor), float(tolerance), of_power)
+
+        table, _ = self._stored(what, load_factor, tolerance, build)
         return table.parts, table.error, table.finish
 
     def _table(self, load_factor: float, tolerance: float) -> TableWithMaxima:
         """The table of speeds and the greatest speeds."""
         from thalweg.ship.models.tabulate_resistance import tabulate_balance
 
-        return self._stored("table", load_factor, tolerance, tabulate_balance)
+        def build() -> TableWithMaxima:
+            return tabulate_balance(self, float(load_factor), float(tolerance))
+
+        return self._stored("table", load_factor, tolerance, build)
 
     def _stored(
         self,
         what: str,
         load_factor: float,
         tolerance: float,
-        build: Callable[[ResistanceModel, float, float], TableWithMaxima],
+        build: Callable[[], TableWithMaxima],
     ) -> TableWithMaxima:
         """Return a table that this object holds, from disk, or built."""
         key = (what, float(load_factor), float(tolerance))
         if key not in self._kept:
-            facts = [self.identity, repr(self.limits), key]
-            self._kept[key] = cached_table(
-                facts, lambda: build(self, float(load_factor), float(tolerance))
-            )
+            self._kept[key] = cached_table([self.identity, repr(self.limits), key], build)
         found: TableWithMaxima = self._kept[key]
         return found
 

@@ -8,12 +8,10 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.ship.condition_variables import AXIS_OF_CONDITION
-from thalweg.ship.conditions import Conditions
 from thalweg.ship.model_protocol import (
     FuelTableModel,
     ModelTables,
@@ -39,11 +37,16 @@ from thalweg.ship.tables.output_curve import OutputCurve
 from thalweg.ship.tables.performance_table import PerformanceTable
 from thalweg.ship.tables.table_cache import TableWithMaxima
 from thalweg.ship.tables.table_parts import TableError, TablePart
-from thalweg.ship.tables.tabulate import DEFAULT_AXES, constant_part, table_error, tabulate_dense
+from thalweg.ship.tables.tabulate import (
+    DEFAULT_AXES,
+    RateFunction,
+    constant_part,
+    table_error,
+    tabulate_settings,
+)  # fmt: skip
 
 _CURVE_POINTS: Final = 1025  #: of the curves of fuel and power
 RateOfPower = Callable[[FloatArray], FloatArray]
-RateFunction = Callable[[Conditions, NDArray[np.intp]], FloatArray]
 
 
 def fuel_table(
@@ -141,35 +144,7 @@ def _unknown_power_error(ship: str, why: str) -> InputError:
     )
 
 
-def tabulate_fuel_of_balance(
-    model: TabulatedResistance, load_factor: float, tolerance: float
-) -> TableWithMaxima:
-    """Tabulate the fuel rate [kg/s] of a resistance-based ship; see `_tabulate_rate_of_power`.
-
-    Parameters
-    ----------
-    model : The model of the ship.
-    load_factor : Load, 0 (empty) to 1 (full).
-    tolerance : Largest relative error of the table [-].
-    """
-    return _tabulate_rate_of_power(model, load_factor, tolerance, model.plant.fuel)
-
-
-def tabulate_power_of_balance(
-    model: TabulatedResistance, load_factor: float, tolerance: float
-) -> TableWithMaxima:
-    """Tabulate the brake power [W] of a resistance-based ship; see `_tabulate_rate_of_power`.
-
-    Parameters
-    ----------
-    model : The model of the ship.
-    load_factor : Load, 0 (empty) to 1 (full).
-    tolerance : Largest relative error of the table [-].
-    """
-    return _tabulate_rate_of_power(model, load_factor, tolerance, np.asarray)
-
-
-def _tabulate_rate_of_power(
+def tabulate_rate_of_power(
     model: TabulatedResistance, load_factor: float, tolerance: float, of_power: RateOfPower
 ) -> TableWithMaxima:
     """Tabulate what follows from the power of every setting of a resistance-based ship.
@@ -243,13 +218,5 @@ def tabulate_rate(
 ) -> Tabulation:
     """Tabulate a rate of any model over all conditions it reads, in one part."""
     names = sorted(model.reads & AXIS_OF_CONDITION.keys(), key=AXIS_OF_CONDITION.__getitem__)
-    settings = np.arange(len(model.speeds(load_factor)))
-
-    def rates(where: Mapping[str, FloatArray]) -> FloatArray:
-        columns = {name: np.asarray(values)[..., None] for name, values in where.items()}
-        return rate(Conditions(columns, load_factor=load_factor), settings)
-
-    if not names:
-        return Tabulation((constant_part(rates({})),), TableError(0.0, 0.0, 0.0, 0))
-    part, error = tabulate_dense(rates, [DEFAULT_AXES[n] for n in names], tolerance=tolerance)
-    return Tabulation((part,), error)
+    axes, count = [DEFAULT_AXES[name] for name in names], len(model.speeds(load_factor))
+    return Tabulation(*tabulate_settings(rate, axes, count, load_factor, tolerance=tolerance))

@@ -13,15 +13,17 @@ from numpy.typing import NDArray
 from thalweg.core.types import FloatArray
 from thalweg.kernels import codes
 from thalweg.ship.condition_variables import CONDITION_OF_AXIS
+from thalweg.ship.conditions import Conditions
 from thalweg.ship.tables.performance_table import PerformanceTable
 from thalweg.ship.tables.table_parts import TableError, TablePart
 
 #: given conditions by name (arrays that broadcast), returns values of shape (*shape, settings)
 ConditionsFunction = Callable[[Mapping[str, FloatArray]], FloatArray]
+#: values of settings in conditions that broadcast with them
+RateFunction = Callable[[Conditions, NDArray[np.intp]], FloatArray]
 
-RELATIVE_ERROR_FLOOR: Final = (
-    0.25  #: relative errors are not taken to less than this share of the greatest value
-)
+#: Relative errors are not taken to less than this share of the greatest value.
+RELATIVE_ERROR_FLOOR: Final = 0.25
 LARGEST_TABLE: Final = 32_000_000  #: bytes of one part
 _CHUNK_SIZE = 40_000
 _SAMPLES = 4000
@@ -36,7 +38,6 @@ class AxisRange:
     ----------
     axis : Axis id.
     start, stop : SI.
-    size : Grid points.
     fixed : The grid is exact already and is never refined.
     """
 
@@ -88,11 +89,6 @@ def tabulate_dense(
     axes : Where to begin; at least one.
     tolerance : Relative error that 99 % of random conditions must meet; see `TableError`.
     largest : Bytes the table may take. Refinement stops there; the error says what was reached.
-
-    Returns
-    -------
-    part : TablePart
-    error : TableError
     """
     points = random_conditions(axes, _SAMPLES, 0)
     truth = function(points)
@@ -107,6 +103,32 @@ def tabulate_dense(
         if worst is None or 2 * values.nbytes > largest:
             return part, error
         axes[worst] = axes[worst].refined()
+
+
+def tabulate_settings(
+    rate: RateFunction,
+    axes: Sequence[AxisRange],
+    settings: int,
+    load_factor: float,
+    *,
+    tolerance: float,
+) -> tuple[tuple[TablePart, ...], TableError]:
+    """Tabulate what a model gives at each of its settings, in one part.
+
+    Parameters
+    ----------
+    axes : As in `tabulate_dense`; none for what no condition changes.
+    """
+
+    def rates(where: Mapping[str, FloatArray]) -> FloatArray:
+        columns = {name: np.asarray(values)[..., None] for name, values in where.items()}
+        found = rate(Conditions(columns, load_factor=load_factor), np.arange(settings))
+        return np.asarray(found)
+
+    if not axes:
+        return (constant_part(rates({})),), TableError(0.0, 0.0, 0.0, 0)
+    part, error = tabulate_dense(rates, axes, tolerance=tolerance)
+    return (part,), error
 
 
 def constant_part(values: FloatArray) -> TablePart:
@@ -129,7 +151,6 @@ def random_conditions(axes: Sequence[AxisRange], count: int, seed: int) -> dict[
 
     Parameters
     ----------
-    axes : Axes and their ranges.
     count : Number of conditions.
     seed : Seed of the random numbers.
 

@@ -28,9 +28,8 @@ from thalweg.ship.methods.added_resistance.snnm_hull import SnnmHull
 from thalweg.ship.methods.resistance.friction_lines import froude_number, ship_speed
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
-LONGEST_REFLECTED_WAVE: Final = (
-    2.5  #: wave length over ship length beyond which nothing is reflected
-)
+#: Wave length over ship length beyond which nothing is reflected.
+LONGEST_REFLECTED_WAVE: Final = 2.5
 
 
 def frequency_scale(

@@ -202,10 +202,8 @@ class SnnmTable:
             quick = np.where(fn > _FAR, 1.0 / (pace * (1.0 - _FAR / np.maximum(fn, _FAR))), np.inf)
         fast = np.maximum(np.searchsorted(self.reduced, quick, side="left"), passed)
         below, slow0, slow1 = (self.motion.at(cell, 3 * passed + k) for k in range(3))
-        low, high = (
-            self.motion.at(cell, 3 * fast) - below,
-            self.motion.at(cell, 3 * fast + 1) - slow0,
-        )
+        low = self.motion.at(cell, 3 * fast) - below
+        high = self.motion.at(cell, 3 * fast + 1) - slow0
         waits = stay - part * 0.0072
         total = lead * (waits * slow0 + part * 0.0144 * pace * slow1)
         slope = part * 0.1676 * fn

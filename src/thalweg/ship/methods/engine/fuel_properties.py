@@ -98,10 +98,6 @@ def fuel_named(name: str) -> Fuel:
     ----------
     name : A key of `FUELS` or `FUEL_ALIASES`.
 
-    Returns
-    -------
-    Fuel : The fuel.
-
     Raises
     ------
     InputError : For an unknown name, with near matches.
@@ -140,7 +136,6 @@ def equal_energy_mass(fuel_mass: ArrayLike, *, of: Fuel, to: Fuel) -> FloatArray
     Parameters
     ----------
     fuel_mass : Mass of ``of``.
-    of, to : The fuels.
 
     Returns
     -------

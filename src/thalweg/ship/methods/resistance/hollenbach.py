@@ -140,8 +140,6 @@ def residuary_coefficient(
     ----------
     froude : array_like
         Froude number on `froude_length`.
-    hull : HollenbachHull
-    appendages : AppendageCounts
     variant : str
         Key of `RESISTANCE_COEFFICIENTS`.
 
@@ -273,8 +271,6 @@ def hollenbach_wetted_surface(
 
     Parameters
     ----------
-    hull : HollenbachHull
-    appendages : AppendageCounts
     variant : str
         Key of `SURFACE_COEFFICIENTS`.
 

@@ -67,10 +67,6 @@ def hull_form(
     displacement : Displaced volume [m3].
     midship_coefficient, waterplane_coefficient : C_M and C_WP [-].
     lcb_percent : Centre of buoyancy forward of L/2 [% of the length].
-
-    Returns
-    -------
-    HullForm : Of float arrays.
     """
     given = (
         *(length_waterline, breadth, draught, displacement),

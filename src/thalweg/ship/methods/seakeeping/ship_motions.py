@@ -114,7 +114,6 @@ def jensen_motions(
     frequency : Wave frequency [rad/s]; the last axis runs over frequency.
     speed : Speed through the water [m/s]; NaN gives NaN.
     wave_angle : Angle between bow and where the waves come from [rad], 0 head to pi following.
-    hull : Hull.
     decay : ``published``: exp(-k_e T) as in the paper. ``strip``: exp(-k T), the same in head and
         following seas; see the notes.
     gravity : float [m/s2]
@@ -250,7 +249,6 @@ def ship_response(
     height, period : Significant height [m] and peak period [s].
     wave_angle : Angle between bow and where the waves come from [rad], 0 head to pi following.
     speed : Speed through the water [m/s].
-    hull : Hull.
     forward : Point on the centre line, ahead of midship [m].
     peak_factor : gamma of the spectrum; without it that of DNV-RP-C205.
     decay : As in `jensen_motions`. ``strip`` by default, since with ``published`` the accelerations
@@ -307,7 +305,6 @@ def motions_validity(speed: ArrayLike, hull: MotionHull) -> list[RangeNote]:
     Parameters
     ----------
     speed : array_like [m/s]
-    hull : Hull.
 
     Returns
     -------

@@ -111,14 +111,12 @@ def jonswap(
     ----------
     K. Hasselmann et al., Dt. Hydrogr. Z. A8(12) (1973); DNV-RP-C205 (2010), 3.5.5.
     """
-    w, hs, tp = (
-        as_float_array(frequency),
-        as_float_array(height)[..., None],
-        as_float_array(period)[..., None],
-    )
-    gamma = (
-        dnv_peak_factor(hs, tp) if peak_factor is None else as_float_array(peak_factor)[..., None]
-    )
+    w = as_float_array(frequency)
+    hs, tp = (as_float_array(x)[..., None] for x in (height, period))
+    if peak_factor is None:
+        gamma = dnv_peak_factor(hs, tp)
+    else:
+        gamma = as_float_array(peak_factor)[..., None]
     hs, tp = np.where(hs >= 0.0, hs, np.nan), np.where(tp > 0.0, tp, np.nan)
     peak = 2.0 * np.pi / tp
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
