@@ -25,10 +25,10 @@ def add_command(commands: Any) -> None:
         description="Plan Halifax to Bishop Rock through a modelled storm on its recorded track, "
         "and compare the route with one that ignores the weather.",
     )
-    options.add_table(parser, (
-        ("--out", "DIR", {"default": "demo"}, "folder for files and plots (default: demo)"),
-        ("--json", "", options.FLAG, "print the result as one JSON object"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "--out", default="demo", metavar="DIR", help="folder for files and plots (default: demo)"
+    )
+    parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
     options.add_verbose_option(parser)
     parser.set_defaults(run=run)
 

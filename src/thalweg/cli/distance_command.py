@@ -6,7 +6,6 @@ import argparse
 import json
 from typing import TYPE_CHECKING, Any
 
-from thalweg.cli import options
 from thalweg.cli.exit_codes import SUCCESS
 from thalweg.core.units import NAUTICAL_MILE
 
@@ -24,26 +23,48 @@ def add_command(commands: Any) -> None:
         "(10 to 20 s), which is kept.",
         epilog="Example: thalweg distance Rotterdam Singapore --avoid suez --speed 13.5",
     )
-    options.add_table(parser, (
-        ("start", "FROM", {}, "port, UN/LOCODE or LAT,LON [deg]"),
-        ("goal", "TO", {}, "port, UN/LOCODE or LAT,LON [deg]"),
-        ("--via", "PLACE", options.REPEATED, "place to pass; may be repeated"),
-        ("--speed", "KN", options.NUMBER, "print the days at this speed [kn] as well"),
-        ("--avoid", "NAME", {"action": "append", "default": None},
-         "canal or passage that is not used, for example suez,panama or 'Pentland Firth'; all: "
-         "all canals; none uses every canal (default: corinth, which is too small for most "
-         "ships); may be repeated"),
-        ("--open", "NAME", options.REPEATED,
-         "passage for small or local ships that may be used, for example Canso; may be repeated"),
-        ("--offing", "NM", options.NUMBER | {"default": 2.0},
-         "distance from land that is kept outside passages, where there is so much water [nm] "
-         "(default: 2)"),
-        ("--draught", "M", options.NUMBER,
-         "keep out of water shallower than the next depth contour (5, 10, 20, 30, 40, 50 m) "
-         "beyond one and a half draughts [m] where it can, as plans do; default: shoals do not "
-         "count"),
-        ("--json", "", options.FLAG, "print JSON"),
-    ))  # fmt: skip
+    parser.add_argument("start", metavar="FROM", help="port, UN/LOCODE or LAT,LON [deg]")
+    parser.add_argument("goal", metavar="TO", help="port, UN/LOCODE or LAT,LON [deg]")
+    parser.add_argument(
+        "--via", action="append", default=[], metavar="PLACE", help="place to pass; may be repeated"
+    )
+    parser.add_argument(
+        "--speed", type=float, metavar="KN", help="print the days at this speed [kn] as well"
+    )
+    parser.add_argument(
+        "--avoid",
+        action="append",
+        default=None,
+        metavar="NAME",
+        help="canal or passage that is not used, for example suez,panama or 'Pentland Firth'; all: "
+        "all canals; none uses every canal (default: corinth, which is too small for most ships); "
+        "may be repeated",
+    )
+    parser.add_argument(
+        "--open",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="passage for small or local ships that may be used, for example Canso; may be "
+        "repeated",
+    )
+    parser.add_argument(
+        "--offing",
+        type=float,
+        default=2.0,
+        metavar="NM",
+        help="distance from land that is kept outside passages, where there is so much water [nm] "
+        "(default: 2)",
+    )
+    parser.add_argument(
+        "--draught",
+        type=float,
+        metavar="M",
+        help="keep out of water shallower than the next depth contour (5, 10, 20, 30, 40, 50 m) "
+        "beyond one and a half draughts [m] where it can, as plans do; default: shoals do not "
+        "count",
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON")
     parser.set_defaults(run=run)
 
 

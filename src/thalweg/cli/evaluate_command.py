@@ -26,11 +26,15 @@ def add_command(commands: Any) -> None:
     )
     options.add_ship_and_chart_options(parser, default_ukc="0")
     options.add_verbose_option(parser)
-    options.add_table(parser, (
-        ("--depart", "TIME", {}, "departure (ISO 8601, UTC); default: that of the file"),
-        ("--speed", "KN", options.NUMBER,
-         "ordered speed through calm water [kn]; default: those of the file, else of the ship"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "--depart", metavar="TIME", help="departure (ISO 8601, UTC); default: that of the file"
+    )
+    parser.add_argument(
+        "--speed",
+        type=float,
+        metavar="KN",
+        help="ordered speed through calm water [kn]; default: those of the file, else of the ship",
+    )
     options.add_hold_option(parser)
     options.add_price_options(parser.add_argument_group("fuel, cost"))
     parser.set_defaults(run=run)

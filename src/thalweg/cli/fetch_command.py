@@ -8,7 +8,6 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from thalweg.cli import options
 from thalweg.cli.exit_codes import SUCCESS
 from thalweg.core.errors import InputError
 from thalweg.core.given_numbers import to_number
@@ -30,28 +29,54 @@ def add_command(commands: Any) -> None:
         epilog="Example: thalweg fetch gfs --box 40,60,-75,5 --from 2026-11-22T12:00Z "
         "--to 2026-12-02T12:00Z --out forecast.nc",
     )
-    options.add_table(parser, (
-        ("source", "SOURCE", {"nargs": "?"},
-         "gfs, ecmwf, open-meteo, matroos, rws, copernicus or era5"),
-        ("--box", "S,N,W,E", {}, "area [deg]; an east below west spans the antimeridian"),
-        ("--from", "TIME", {"dest": "start"}, "first time, UTC"),
-        ("--to", "TIME", {"dest": "end"}, "last time, UTC"),
-        ("--out", "FILE", {}, "NetCDF file to write"),
-        ("--quantities", "LIST", {},
-         "of wind,waves,current,level,ice,pressure (default: current of matroos and copernicus, "
-         "level of rws, else wind,waves)"),
-        ("--step", "H", options.NUMBER | {"default": 3.0}, "hours between fields (default: 3)"),
-        ("--run", "TIME", {"dest": "run_time"},
-         "start of the forecast run (default: the latest complete one)"),
-        ("--members", "N", options.WHOLE | {"default": 0}, "members of the ensemble (ecmwf)"),
-        ("--server", "", {"choices": ("nomads", "aws"), "default": "nomads"},
-         "server of gfs: nomads cuts the box (last ten days), aws keeps runs since 2021 and "
-         "sends whole fields (default: nomads)"),
-        ("--max-mb", "MB", options.NUMBER | {"default": 2000.0},
-         "largest download (default: 2000)"),
-        ("--estimate", "", options.FLAG, "print the size of the download and stop"),
-        ("--json", "", options.FLAG, "print JSON"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "source",
+        nargs="?",
+        metavar="SOURCE",
+        help="gfs, ecmwf, open-meteo, matroos, rws, copernicus or era5",
+    )
+    parser.add_argument(
+        "--box", metavar="S,N,W,E", help="area [deg]; an east below west spans the antimeridian"
+    )
+    parser.add_argument("--from", dest="start", metavar="TIME", help="first time, UTC")
+    parser.add_argument("--to", dest="end", metavar="TIME", help="last time, UTC")
+    parser.add_argument("--out", metavar="FILE", help="NetCDF file to write")
+    parser.add_argument(
+        "--quantities",
+        metavar="LIST",
+        help="of wind,waves,current,level,ice,pressure (default: current of matroos and "
+        "copernicus, level of rws, else wind,waves)",
+    )
+    parser.add_argument(
+        "--step", type=float, default=3.0, metavar="H", help="hours between fields (default: 3)"
+    )
+    parser.add_argument(
+        "--run",
+        dest="run_time",
+        metavar="TIME",
+        help="start of the forecast run (default: the latest complete one)",
+    )
+    parser.add_argument(
+        "--members", type=int, default=0, metavar="N", help="members of the ensemble (ecmwf)"
+    )
+    parser.add_argument(
+        "--server",
+        choices=("nomads", "aws"),
+        default="nomads",
+        help="server of gfs: nomads cuts the box (last ten days), aws keeps runs since 2021 and "
+        "sends whole fields (default: nomads)",
+    )
+    parser.add_argument(
+        "--max-mb",
+        type=float,
+        default=2000.0,
+        metavar="MB",
+        help="largest download (default: 2000)",
+    )
+    parser.add_argument(
+        "--estimate", action="store_true", help="print the size of the download and stop"
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON")
     parser.set_defaults(run=run)
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from thalweg.cli import options
 from thalweg.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -35,22 +34,32 @@ def add_network_options(parser: argparse.ArgumentParser) -> None:
             help=f"{kind} ({letter}); one value, or one for each section between via points; "
             "default: chosen",
         )
-    options.add_table(parser, (
-        ("--near-coast", "NM", options.NUMBER,
-         "within this distance of land the nodes of a layered network are twice as close"),
-        ("--contain", "LAT,LON", {"nargs": "+", "action": "extend"},
-         "straits that a layered network of chosen shape must contain"),
-        ("--within", "PERCENT", options.NUMBER,
-         "by how much its shortest path may be longer than that of the finest network tried "
-         "(default: 1)"),
-        ("--corridor-gain", "PERCENT", options.NUMBER,
-         "with --network history:NET: leave the usual water where that saves more than this share "
-         "of the objective [%%]; default: never"),
-        ("--resolution", "NM", options.NUMBER,
-         "spacing of the network [nm], 0.001 to 300; default: from the length of the voyage"),
-        ("--proof", "SECONDS", options.NUMBER,
-         "time for the proof of the lower bound, 0 to 3600 s; default: as long as the search"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "--near-coast", type=float, metavar="NM",
+        help="within this distance of land the nodes of a layered network are twice as close",
+    )  # fmt: skip
+    parser.add_argument(
+        "--contain", nargs="+", action="extend", metavar="LAT,LON",
+        help="straits that a layered network of chosen shape must contain",
+    )  # fmt: skip
+    parser.add_argument(
+        "--within", type=float, metavar="PERCENT",
+        help="by how much its shortest path may be longer than that of the finest network tried "
+        "(default: 1)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--corridor-gain", type=float, metavar="PERCENT",
+        help="with --network history:NET: leave the usual water where that saves more than this "
+        "share of the objective [%%]; default: never",
+    )  # fmt: skip
+    parser.add_argument(
+        "--resolution", type=float, metavar="NM",
+        help="spacing of the network [nm], 0.001 to 300; default: from the length of the voyage",
+    )  # fmt: skip
+    parser.add_argument(
+        "--proof", type=float, metavar="SECONDS",
+        help="time for the proof of the lower bound, 0 to 3600 s; default: as long as the search",
+    )  # fmt: skip
 
 
 def requested_network(arguments: argparse.Namespace) -> str | HistoryCorridor:

@@ -4,24 +4,9 @@ from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Iterable
-from typing import Any, Final
+from typing import Any
 
 FILLABLE = ("currents", "wind", "waves")
-#: Arguments of ``add_argument`` that many options have.
-NUMBER: Final[dict[str, Any]] = {"type": float}
-WHOLE: Final[dict[str, Any]] = {"type": int}
-FLAG: Final[dict[str, Any]] = {"action": "store_true"}
-REPEATED: Final[dict[str, Any]] = {"action": "append", "default": []}
-LISTED: Final[dict[str, Any]] = {"nargs": "+", "action": "extend", "default": []}
-
-
-def add_table(
-    parser: Any, rows: Iterable[tuple[str, str | tuple[str, ...], dict[str, Any], str]]
-) -> None:
-    """Add options: name, what stands for the value in the help, further arguments, help."""
-    for name, value, more, text in rows:
-        parser.add_argument(name, help=text, **({"metavar": value} if value else {}), **more)
 
 
 def add_ship_and_chart_options(parser: argparse.ArgumentParser, *, default_ukc: str) -> None:
@@ -37,20 +22,37 @@ def add_ship_and_chart_options(parser: argparse.ArgumentParser, *, default_ukc: 
     )
     add_sea_options(parser)
     chart = parser.add_argument_group("chart")
-    add_table(chart, (
-        ("--depth", "FILE", REPEATED,
-         "grid of depths or elevations (NetCDF: GEBCO, ETOPO, EMODnet); may be repeated"),
-        ("--zones", "FILE", REPEATED,
-         "zones (GeoJSON with the property kind: no-go, penalty, price, eca, lane, anchorage, "
-         "no-waiting); may be repeated"),
-        ("--traffic", "FILE", REPEATED,
-         "traffic of other ships, for expected encounters: zones (GeoJSON with the property "
-         "encounters_per_h, encounters_per_nm or ships_per_km2) or a grid of density (NetCDF, "
-         "ships km-2); may be repeated"),
-        ("--coast", "", {"default": "i", "choices": ("c", "l", "i", "h", "f", "none")},
-         "resolution of the GSHHG coastline: c (crude), l, i (default), h, f (full; h and f need "
-         "thalweg[hires]); none: no land"),
-    ))  # fmt: skip
+    chart.add_argument(
+        "--depth",
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="grid of depths or elevations (NetCDF: GEBCO, ETOPO, EMODnet); may be repeated",
+    )
+    chart.add_argument(
+        "--zones",
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="zones (GeoJSON with the property kind: no-go, penalty, price, eca, lane, "
+        "anchorage, no-waiting); may be repeated",
+    )
+    chart.add_argument(
+        "--traffic",
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="traffic of other ships, for expected encounters: zones (GeoJSON with the property "
+        "encounters_per_h, encounters_per_nm or ships_per_km2) or a grid of density (NetCDF, "
+        "ships km-2); may be repeated",
+    )
+    chart.add_argument(
+        "--coast",
+        default="i",
+        choices=("c", "l", "i", "h", "f", "none"),
+        help="resolution of the GSHHG coastline: c (crude), l, i (default), h, f (full; h and f "
+        "need thalweg[hires]); none: no land",
+    )
     parser.add_argument(
         "--ukc",
         type=float,
@@ -65,22 +67,37 @@ def add_ship_and_chart_options(parser: argparse.ArgumentParser, *, default_ukc: 
 
 def _add_route_file_options(parser: argparse.ArgumentParser) -> None:
     files = parser.add_argument_group("route files", "Formats and waypoints of the files of --out.")
-    add_table(files, (
-        ("--formats", "LIST", {},
-         "formats by ending, separated by commas: rtz, rtzp, gml (S-421), gpx, geojson, kml, "
-         "csv; or all; default: rtz,gpx,geojson,csv"),
-        ("--xtd", "NM", NUMBER,
-         "cross-track limit: the lines between the waypoints are closer to the route than this "
-         "[nm]; default: 0.1"),
-        ("--legs", "", {"choices": ("rhumb", "great-circle")},
-         "lines between the waypoints: rhumb lines (default), as plotters sail them, or great "
-         "circles"),
-        ("--waypoint-spacing", "NM", NUMBER, "longest leg [nm]; default: no limit"),
-        ("--max-waypoints", "N", WHOLE,
-         "greatest number of waypoints; the cross-track limit grows as far as this needs"),
-        ("--rtz", "VERSION", {"choices": ("1.0", "1.1", "1.2")},
-         "version of RTZ: 1.0, 1.1 or 1.2 (default)"),
-    ))  # fmt: skip
+    files.add_argument(
+        "--formats", metavar="LIST",
+        help="formats by ending, separated by commas: rtz, rtzp, gml (S-421), gpx, geojson, kml, "
+        "csv; or all; default: rtz,gpx,geojson,csv",
+    )  # fmt: skip
+    files.add_argument(
+        "--xtd",
+        type=float,
+        metavar="NM",
+        help="cross-track limit: the lines between the waypoints are closer to the route than this "
+        "[nm]; default: 0.1",
+    )
+    files.add_argument(
+        "--legs",
+        choices=("rhumb", "great-circle"),
+        help="lines between the waypoints: rhumb lines (default), as plotters sail them, or great "
+        "circles",
+    )
+    files.add_argument(
+        "--waypoint-spacing", type=float, metavar="NM", help="longest leg [nm]; default: no limit"
+    )
+    files.add_argument(
+        "--max-waypoints",
+        type=int,
+        metavar="N",
+        help="greatest number of waypoints; the cross-track limit grows as far as this needs",
+    )
+    files.add_argument(
+        "--rtz", choices=("1.0", "1.1", "1.2"), metavar="VERSION",
+        help="version of RTZ: 1.0, 1.1 or 1.2 (default)",
+    )  # fmt: skip
 
 
 def add_hold_option(parser: argparse.ArgumentParser, *, with_arrival: bool = False) -> None:
@@ -100,26 +117,57 @@ def add_hold_option(parser: argparse.ArgumentParser, *, with_arrival: bool = Fal
 
 def add_price_options(group: Any) -> None:
     """Add the options that replace the prices of the ship file, and ``--no-eca``."""
-    add_table(group, (
-        ("--fuel-price", "USD", NUMBER,
-         "price of fuel [USD per tonne]; default: that of the ship file"),
-        ("--eca-price-factor", "F", NUMBER,
-         "price of fuel inside emission control areas divided by the price outside"),
-        ("--time-price", "USD", NUMBER,
-         "cost of time in addition to fuel [USD per hour]; default: the hire of the ship file"),
-        ("--eu-share", "0|50|100", WHOLE | {"choices": (0, 50, 100)},
-         "share of the voyage in scope of charges of the European Union [%%]: 100 between two of "
-         "its ports, 50 to or from one; default with --ets-price and --eur-rate: by the "
-         "countries of the two ports of a plan (Union, Iceland, Norway)"),
-        ("--ets-price", "P", NUMBER,
-         "price of an emission allowance [currency of the prices per tonne of CO2]"),
-        ("--eur-rate", "R", NUMBER,
-         "price of a euro in the currency of the prices: counts the FuelEU penalty"),
-        ("--eu-year", "YEAR", WHOLE | {"default": 2026},
-         "year of the European Union's rules (default: 2026)"),
-        ("--no-eca", "", FLAG,
-         "ignore emission control areas; default: those in force count in every cost"),
-    ))  # fmt: skip
+    group.add_argument(
+        "--fuel-price",
+        type=float,
+        metavar="USD",
+        help="price of fuel [USD per tonne]; default: that of the ship file",
+    )
+    group.add_argument(
+        "--eca-price-factor",
+        type=float,
+        metavar="F",
+        help="price of fuel inside emission control areas divided by the price outside",
+    )
+    group.add_argument(
+        "--time-price",
+        type=float,
+        metavar="USD",
+        help="cost of time in addition to fuel [USD per hour]; default: the hire of the ship file",
+    )
+    group.add_argument(
+        "--eu-share",
+        type=int,
+        choices=(0, 50, 100),
+        metavar="0|50|100",
+        help="share of the voyage in scope of charges of the European Union [%%]: 100 between two "
+        "of its ports, 50 to or from one; default with --ets-price and --eur-rate: by the "
+        "countries of the two ports of a plan (Union, Iceland, Norway)",
+    )
+    group.add_argument(
+        "--ets-price",
+        type=float,
+        metavar="P",
+        help="price of an emission allowance [currency of the prices per tonne of CO2]",
+    )
+    group.add_argument(
+        "--eur-rate",
+        type=float,
+        metavar="R",
+        help="price of a euro in the currency of the prices: counts the FuelEU penalty",
+    )
+    group.add_argument(
+        "--eu-year",
+        type=int,
+        default=2026,
+        metavar="YEAR",
+        help="year of the European Union's rules (default: 2026)",
+    )
+    group.add_argument(
+        "--no-eca",
+        action="store_true",
+        help="ignore emission control areas; default: those in force count in every cost",
+    )
 
 
 def add_load_factor_option(parser: argparse.ArgumentParser) -> None:
@@ -134,10 +182,10 @@ def add_load_factor_option(parser: argparse.ArgumentParser) -> None:
 
 def add_output_options(parser: argparse.ArgumentParser, contents: str) -> None:
     """Add ``--json`` and ``--out``; ``contents`` names what is written into the folder."""
-    add_table(parser, (
-        ("--json", "", FLAG, "print the result as one JSON object"),
-        ("--out", "DIR", {}, f"folder for {contents}; created if it does not exist"),
-    ))  # fmt: skip
+    parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
+    parser.add_argument(
+        "--out", metavar="DIR", help=f"folder for {contents}; created if it does not exist"
+    )
 
 
 def add_verbose_option(parser: argparse.ArgumentParser) -> None:
@@ -173,22 +221,34 @@ def add_sea_options(parser: argparse.ArgumentParser) -> None:
         "'storm': the modelled storm of the package",
     )
     add_mapping_option(sea)
-    add_table(sea, (
-        ("--average-over", "M", NUMBER,
-         "average currents that are given in layers from the surface to this depth [m]; default: "
-         "the surface layer"),
-        ("--calm", "", FLAG, "calm sea: no wind, waves or currents"),
-        ("--fill", "NAME=VALUE", LISTED,
-         f"value to use where {', '.join(FILLABLE[:-1])} or {FILLABLE[-1]} are missing [m/s, "
-         "m/s, m], for example --fill wind=0 waves=wind; waves=head_seas: waves of known height "
-         "without direction come from ahead; NAME=nearest:NM: the nearest known value within so "
-         "many nm (cells without data next to land); waves=coastal_shelter[:NM[:FACTOR]]: the same "
-         "with 0.8 of the height; waves=fetch_limited: those of the local wind over its fetch to "
-         "the coast; the result records it"),
-        ("--sampling", "linear|nearest:H", {"default": "linear"},
-         "weather between its times: linear, or that of the nearest of updates H hours apart "
-         "(quasi-static, to study what coarse updates do)"),
-    ))  # fmt: skip
+    sea.add_argument(
+        "--average-over",
+        type=float,
+        metavar="M",
+        help="average currents that are given in layers from the surface to this depth [m]; "
+        "default: the surface layer",
+    )
+    sea.add_argument("--calm", action="store_true", help="calm sea: no wind, waves or currents")
+    sea.add_argument(
+        "--fill",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="NAME=VALUE",
+        help=f"value to use where {', '.join(FILLABLE[:-1])} or {FILLABLE[-1]} are missing [m/s, "
+        "m/s, m], for example --fill wind=0 waves=wind; waves=head_seas: waves of known height "
+        "without direction come from ahead; NAME=nearest:NM: the nearest known value within so "
+        "many nm (cells without data next to land); waves=coastal_shelter[:NM[:FACTOR]]: the same "
+        "with 0.8 of the height; waves=fetch_limited: those of the local wind over its fetch to "
+        "the coast; the result records it",
+    )
+    sea.add_argument(
+        "--sampling",
+        default="linear",
+        metavar="linear|nearest:H",
+        help="weather between its times: linear, or that of the nearest of updates H hours apart "
+        "(quasi-static, to study what coarse updates do)",
+    )
 
 
 def add_mapping_option(parser: Any) -> None:

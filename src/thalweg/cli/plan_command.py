@@ -39,12 +39,15 @@ def add_command(commands: Any) -> None:
 
 def add_voyage_options(parser: argparse.ArgumentParser) -> None:
     """Add the places of a voyage and the options of a request for a plan."""
-    options.add_table(parser, (
-        ("start", "FROM", {}, "place of departure"),
-        ("goal", "TO", {}, "destination"),
-        ("--via", "PLACE", options.REPEATED,
-         "place to pass; repeat it for several, in their order"),
-    ))  # fmt: skip
+    parser.add_argument("start", metavar="FROM", help="place of departure")
+    parser.add_argument("goal", metavar="TO", help="destination")
+    parser.add_argument(
+        "--via",
+        action="append",
+        default=[],
+        metavar="PLACE",
+        help="place to pass; repeat it for several, in their order",
+    )
     options.add_ship_and_chart_options(parser, default_ukc="that of the ship file")
     _add_time_options(parser)
     _add_objective_options(parser)
@@ -74,51 +77,79 @@ def _add_indicator_options(group: Any) -> None:
 
 def _add_time_options(parser: argparse.ArgumentParser) -> None:
     departure = parser.add_mutually_exclusive_group()
-    options.add_table(departure, (
-        ("--depart", "TIME", {},
-         "departure (ISO 8601, UTC), for example 2026-01-01T06:00Z; default: with the storm of "
-         "the package the time when the ship meets it, else the first time in the sea data, or "
-         "now for a sea without times"),
-        ("--depart-window", ("FIRST", "LAST"), {"nargs": 2},
-         "find the best departure between two times (ISO 8601, UTC)"),
-    ))  # fmt: skip
-    options.add_table(parser, (
-        ("--arrive-by", "TIME", {}, "latest arrival (ISO 8601, UTC)"),
-        ("--arrive", "TIME", {},
-         "arrival (ISO 8601, UTC): with --depart the one speed that arrives then (see --hold), "
-         "without it the latest departure at --speed or the highest speed; with --objective "
-         "fuel, energy, cost, co2 or front the same as --arrive-by"),
-        ("--speed", "KN", options.NUMBER,
-         "ordered speed through calm water [kn], also between the settings of the ship file; "
-         "default: its highest (for time and distance), or a choice leg by leg"),
-    ))  # fmt: skip
+    departure.add_argument(
+        "--depart",
+        metavar="TIME",
+        help="departure (ISO 8601, UTC), for example 2026-01-01T06:00Z; default: with the "
+        "storm of the package the time when the ship meets it, else the first time in the sea "
+        "data, or now for a sea without times",
+    )
+    departure.add_argument(
+        "--depart-window",
+        nargs=2,
+        metavar=("FIRST", "LAST"),
+        help="find the best departure between two times (ISO 8601, UTC)",
+    )
+    parser.add_argument("--arrive-by", metavar="TIME", help="latest arrival (ISO 8601, UTC)")
+    parser.add_argument(
+        "--arrive",
+        metavar="TIME",
+        help="arrival (ISO 8601, UTC): with --depart the one speed that arrives then (see --hold), "
+        "without it the latest departure at --speed or the highest speed; with --objective fuel, "
+        "energy, cost, co2 or front the same as --arrive-by",
+    )
+    parser.add_argument(
+        "--speed",
+        type=float,
+        metavar="KN",
+        help="ordered speed through calm water [kn], also between the settings of the ship file; "
+        "default: its highest (for time and distance), or a choice leg by leg",
+    )
     options.add_hold_option(parser, with_arrival=True)
-    options.add_table(parser, (
-        ("--speed-block", "H", options.NUMBER,
-         "least time that a speed is held where speeds are chosen leg by leg [h], or a quarter "
-         "of the voyage where that is less; 0: none (default: 6; 0 with --method exact)"),
-        ("--wait", "", {"action": argparse.BooleanOptionalAction, "default": True},
-         "whether the ship may stop and wait (default: it may)"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "--speed-block",
+        type=float,
+        metavar="H",
+        help="least time that a speed is held where speeds are chosen leg by leg [h], or a quarter "
+        "of the voyage where that is less; 0: none (default: 6; 0 with --method exact)",
+    )
+    parser.add_argument(
+        "--wait",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="whether the ship may stop and wait (default: it may)",
+    )
 
 
 def _add_objective_options(parser: argparse.ArgumentParser) -> None:
-    options.add_table(parser, (
-        ("--objective", "time|distance|fuel|energy|cost|co2|comfort|encounters|inshore|front",
-         {"default": "time"},
-         "quantity to minimise (default: time). energy: propulsion and hotel load. cost: fuel, "
-         "time and dues; where fuel has no price, time and cubed speed at the costs of the ship "
-         "file. comfort: motion sickness at the first place of the ship file. encounters: with "
-         "other ships (--traffic). inshore: length within 3 nm of land. front: all trade-offs of "
-         "time against fuel or cost (the Pareto front)"),
-        ("--method", "default|exact|nsga2|spea2|mpaes", {"default": "default"},
-         "how a front is found: exact: the front on the network alone; nsga2, spea2, mpaes: "
-         "evolutionary methods, for comparison"),
-        ("--ensemble", "mean|cvar", {"nargs": "?", "const": "mean"},
-         "choose the route over all members of an ensemble forecast, by the mean (default) or by "
-         "the mean of the worst tenth (cvar)"),
-        ("--seed", "N", options.WHOLE | {"default": 0}, "seed of random numbers (default: 0)"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "--objective",
+        default="time",
+        metavar="time|distance|fuel|energy|cost|co2|comfort|encounters|inshore|front",
+        help="quantity to minimise (default: time). energy: propulsion and hotel load. cost: fuel, "
+        "time and dues; where fuel has no price, time and cubed speed at the costs of the ship "
+        "file. comfort: motion sickness at the first place of the ship file. encounters: with "
+        "other ships (--traffic). inshore: length within 3 nm of land. front: all trade-offs of "
+        "time against fuel or cost (the Pareto front)",
+    )
+    parser.add_argument(
+        "--method",
+        default="default",
+        metavar="default|exact|nsga2|spea2|mpaes",
+        help="how a front is found: exact: the front on the network alone; nsga2, spea2, mpaes: "
+        "evolutionary methods, for comparison",
+    )
+    parser.add_argument(
+        "--ensemble",
+        nargs="?",
+        const="mean",
+        metavar="mean|cvar",
+        help="choose the route over all members of an ensemble forecast, by the mean (default) or "
+        "by the mean of the worst tenth (cvar)",
+    )
+    parser.add_argument(
+        "--seed", type=int, default=0, metavar="N", help="seed of random numbers (default: 0)"
+    )
 
 
 def _add_cost_options(group: Any) -> None:
@@ -133,23 +164,42 @@ def _add_cost_options(group: Any) -> None:
 
 
 def _add_passage_options(group: Any) -> None:
-    options.add_table(group, (
-        ("--offing", "NM", options.NUMBER,
-         "least distance from land [nm] outside named passages and near the ends; 0: none; "
-         "default: by the size of the ship (0.5, 1 or 2)"),
-        ("--ignore-shoals", "", options.FLAG,
-         "count miles in shallow water like others; default: without depth data the ship keeps "
-         "out of water shallower than the next depth contour beyond one and a half draughts "
-         "where it can"),
-        ("--ignore-lanes", "", options.FLAG,
-         "do not count the approximate traffic separation schemes of the package; default: a "
-         "mile against their traffic counts ten"),
-        ("--open", "NAME", options.REPEATED,
-         "passage that the ship may use though it is closed to ships of her size; may be repeated"),
-        ("--avoid", "NAME", options.REPEATED,
-         "passage or canal that the ship may not use, for example 'Pentland Firth'; may be "
-         "repeated"),
-    ))  # fmt: skip
+    group.add_argument(
+        "--offing",
+        type=float,
+        metavar="NM",
+        help="least distance from land [nm] outside named passages and near the ends; 0: none; "
+        "default: by the size of the ship (0.5, 1 or 2)",
+    )
+    group.add_argument(
+        "--ignore-shoals",
+        action="store_true",
+        help="count miles in shallow water like others; default: without depth data the ship keeps "
+        "out of water shallower than the next depth contour beyond one and a half draughts where "
+        "it can",
+    )
+    group.add_argument(
+        "--ignore-lanes",
+        action="store_true",
+        help="do not count the approximate traffic separation schemes of the package; default: a "
+        "mile against their traffic counts ten",
+    )
+    group.add_argument(
+        "--open",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="passage that the ship may use though it is closed to ships of her size; may be "
+        "repeated",
+    )
+    group.add_argument(
+        "--avoid",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="passage or canal that the ship may not use, for example 'Pentland Firth'; may be "
+        "repeated",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -8,7 +8,6 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from thalweg.cli import options
 from thalweg.cli.exit_codes import SUCCESS
 from thalweg.cli.progress import ProgressMessages
 from thalweg.core.errors import InputError
@@ -28,23 +27,24 @@ def add_command(commands: Any) -> None:
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
     run = actions.add_parser("run", help="plan the voyages that have no result yet")
     run.add_argument("study", metavar="STUDY.yaml")
-    options.add_table(run, (
-        ("--out", "DIR", {"required": True}, "folder of the results"),
-        ("--workers", "N", options.WHOLE | {"default": 0},
-         "processes of this computer (default: 0, in this process)"),
-        ("--scheduler", "ADDRESS", {}, "Dask scheduler: tcp://host:8786"),
-        ("--count", "", options.FLAG, "print the number of voyages and stop"),
-    ))  # fmt: skip
+    run.add_argument("--out", required=True, metavar="DIR", help="folder of the results")
+    run.add_argument(
+        "--workers",
+        type=int,
+        default=0,
+        metavar="N",
+        help="processes of this computer (default: 0, in this process)",
+    )
+    run.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler: tcp://host:8786")
+    run.add_argument("--count", action="store_true", help="print the number of voyages and stop")
     run.set_defaults(run=_run)
     ready = actions.add_parser("ready", help="list the ready studies, or print one to change it")
     ready.add_argument("name", nargs="?", metavar="NAME", help="print this study file")
     ready.set_defaults(run=_ready)
     summary = actions.add_parser("summary", help="voyages, quantiles by month and axis, refusals")
     summary.add_argument("folder", metavar="DIR")
-    options.add_table(summary, (
-        ("--out", "DIR", {}, "write tables and a plot into this folder"),
-        ("--json", "", options.FLAG, "print JSON"),
-    ))  # fmt: skip
+    summary.add_argument("--out", metavar="DIR", help="write tables and a plot into this folder")
+    summary.add_argument("--json", action="store_true", help="print JSON")
     summary.set_defaults(run=_summary)
 
 

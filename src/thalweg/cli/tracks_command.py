@@ -26,20 +26,30 @@ def add_command(commands: Any) -> None:
         "with models.",
         epilog="Example: thalweg tracks ais.csv --areas areas.geojson --sea tide.nc --out results",
     )
-    options.add_table(parser, (
-        ("file", "FILE", {},
-         "CSV with columns for time, lat and lon; optional: speed, course, draught, power, vessel"),
-        ("--areas", "FILE", {"required": True},
-         "GeoJSON polygons with the property activity: loading, unloading or waiting"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "file",
+        metavar="FILE",
+        help="CSV with columns for time, lat and lon; optional: speed, course, draught, power, "
+        "vessel",
+    )
+    parser.add_argument(
+        "--areas",
+        required=True,
+        metavar="FILE",
+        help="GeoJSON polygons with the property activity: loading, unloading or waiting",
+    )
     _add_reading_options(parser)
     _add_division_options(parser)
     options.add_sea_options(parser)
-    options.add_table(parser, (
-        ("--ship", "NAME|FILE", {}, "ship model to compare (needs --sea or --calm)"),
-        ("--speed", "KN", options.NUMBER,
-         "ordered speed of that ship [kn]; default: its setting nearest to the measured speed"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "--ship", metavar="NAME|FILE", help="ship model to compare (needs --sea or --calm)"
+    )
+    parser.add_argument(
+        "--speed",
+        type=float,
+        metavar="KN",
+        help="ordered speed of that ship [kn]; default: its setting nearest to the measured speed",
+    )
     options.add_output_options(
         parser, "activities.csv, legs.csv, cycles.csv, tracks.json and tracks.png"
     )
@@ -47,28 +57,50 @@ def add_command(commands: Any) -> None:
 
 
 def _add_reading_options(parser: argparse.ArgumentParser) -> None:
-    options.add_table(parser, (
-        ("--vessel", "ID", {}, "MMSI or name of the ship, if the file has several"),
-        ("--column", "WHAT=NAME", options.LISTED,
-         "column that holds time, lat, lon, speed, course, draught, power or vessel, for example "
-         "--column time=t_gps lat=y"),
-        ("--time-format", "FORMAT", {},
-         "format of the times as in strptime, for example '%%d/%%m/%%Y %%H:%%M:%%S'; default: "
-         "recognised"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "--vessel", metavar="ID", help="MMSI or name of the ship, if the file has several"
+    )
+    parser.add_argument(
+        "--column",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="WHAT=NAME",
+        help="column that holds time, lat, lon, speed, course, draught, power or vessel, for "
+        "example --column time=t_gps lat=y",
+    )
+    parser.add_argument(
+        "--time-format",
+        metavar="FORMAT",
+        help="format of the times as in strptime, for example '%%d/%%m/%%Y %%H:%%M:%%S'; default: "
+        "recognised",
+    )
 
 
 def _add_division_options(parser: argparse.ArgumentParser) -> None:
-    options.add_table(parser, (
-        ("--longest-gap", "MIN", options.NUMBER | {"default": 30.0},
-         "time between positions that counts as a gap [min] (default: 30)"),
-        ("--fastest", "KN", options.NUMBER | {"default": 40.0},
-         "highest possible speed between two positions [kn] (default: 40); positions that need "
-         "more are left out"),
-        ("--slow", "KN", options.NUMBER | {"default": 2.0},
-         "outside the areas, a lower speed over ground than this counts as waiting [kn] "
-         "(default: 2)"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "--longest-gap",
+        type=float,
+        default=30.0,
+        metavar="MIN",
+        help="time between positions that counts as a gap [min] (default: 30)",
+    )
+    parser.add_argument(
+        "--fastest",
+        type=float,
+        default=40.0,
+        metavar="KN",
+        help="highest possible speed between two positions [kn] (default: 40); positions that "
+        "need more are left out",
+    )
+    parser.add_argument(
+        "--slow",
+        type=float,
+        default=2.0,
+        metavar="KN",
+        help="outside the areas, a lower speed over ground than this counts as waiting [kn] "
+        "(default: 2)",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

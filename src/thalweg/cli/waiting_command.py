@@ -40,37 +40,65 @@ def add_command(commands: Any) -> None:
         epilog="Example: thalweg waiting 52.1,3.97 52.1,4.26 --ship vox-olympia --north-sea neap "
         "--depart 2026-01-01 --hotel-kw 0",
     )
-    options.add_table(parser, (
-        ("start", "FROM", {}, "LAT,LON [deg] where the ship loads"),
-        ("goal", "TO", {}, "LAT,LON [deg] where the ship unloads"),
-    ))  # fmt: skip
+    parser.add_argument("start", metavar="FROM", help="LAT,LON [deg] where the ship loads")
+    parser.add_argument("goal", metavar="TO", help="LAT,LON [deg] where the ship unloads")
     options.add_ship_and_chart_options(parser, default_ukc="the clearance is not checked")
-    options.add_table(parser, (
-        ("--ship-back", "NAME|FILE", {},
-         "ship for the return trip (empty); default: that of --ship"),
-        ("--north-sea", "|".join(SCENARIOS), {"choices": SCENARIOS},
-         "instead of --sea: the analytic tide along a straight coast at TO, 25 m deep"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "--ship-back",
+        metavar="NAME|FILE",
+        help="ship for the return trip (empty); default: that of --ship",
+    )
+    parser.add_argument(
+        "--north-sea",
+        choices=SCENARIOS,
+        metavar="|".join(SCENARIOS),
+        help="instead of --sea: the analytic tide along a straight coast at TO, 25 m deep",
+    )
     _add_study_options(parser)
     parser.set_defaults(run=run)
 
 
 def _add_study_options(parser: argparse.ArgumentParser) -> None:
-    options.add_table(parser, (
-        ("--depart", "TIME", {"required": True},
-         "time at which the ship is ready for the first trip (ISO 8601, UTC)"),
-        ("--cycles", "N", options.WHOLE | {"default": 5},
-         "number of cycles of two trips (default: 5); 0: a single trip from FROM to TO"),
-        ("--most-wait", "H", options.NUMBER | {"default": 12.4},
-         "longest wait before each trip [h] (default: 12.4)"),
-        ("--starts", "N", options.WHOLE,
-         "number of starts, evenly spread over one tide of 12.42 h; default: 1, or 4 with "
-         "--north-sea"),
-        ("--hotel-kw", "KW", options.NUMBER,
-         "hotel power, used all the time [kW]; default: that of the ship file"),
-        ("--step", "MIN", options.NUMBER | {"default": 5.0},
-         "time between the departures that are simulated [min] (default: 5)"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "--depart",
+        required=True,
+        metavar="TIME",
+        help="time at which the ship is ready for the first trip (ISO 8601, UTC)",
+    )
+    parser.add_argument(
+        "--cycles",
+        type=int,
+        default=5,
+        metavar="N",
+        help="number of cycles of two trips (default: 5); 0: a single trip from FROM to TO",
+    )
+    parser.add_argument(
+        "--most-wait",
+        type=float,
+        default=12.4,
+        metavar="H",
+        help="longest wait before each trip [h] (default: 12.4)",
+    )
+    parser.add_argument(
+        "--starts",
+        type=int,
+        metavar="N",
+        help="number of starts, evenly spread over one tide of 12.42 h; default: 1, or 4 with "
+        "--north-sea",
+    )
+    parser.add_argument(
+        "--hotel-kw",
+        type=float,
+        metavar="KW",
+        help="hotel power, used all the time [kW]; default: that of the ship file",
+    )
+    parser.add_argument(
+        "--step",
+        type=float,
+        default=5.0,
+        metavar="MIN",
+        help="time between the departures that are simulated [min] (default: 5)",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -6,7 +6,7 @@ import argparse
 import json
 from typing import Any
 
-from thalweg.cli import option_values, options
+from thalweg.cli import option_values
 from thalweg.cli.exit_codes import SUCCESS
 from thalweg.core.errors import InputError
 
@@ -21,20 +21,31 @@ def add_command(commands: Any) -> None:
         "at once.",
         epilog="Example: thalweg distances ports.csv --out distances.csv",
     )
-    options.add_table(parser, (
-        ("ports", "PORTS.csv", {}, "CSV with a column port, name or locode; optional: lat, lon"),
-        ("--network", "globe|history:NET", {"default": "globe"},
-         "shortest ways (globe), or usual ways of a network made by thalweg history build; "
-         "default: globe"),
-        ("--month", "1-12", options.WHOLE, "month, with history:NET"),
-        ("--draught", "M", options.NUMBER,
-         "draught [m]: shortest ways keep out of water shallower than one and a half of it where "
-         "they can; usual ways leave out arcs on which only smaller ships were seen"),
-        ("--avoid", "NAME", {"action": "append", "default": None},
-         "canal or passage that shortest ways do not use; may be repeated (default: corinth)"),
-        ("--out", "FILE", {}, "write the table as CSV"),
-        ("--json", "", options.FLAG, "print JSON"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "ports", metavar="PORTS.csv", help="CSV with a column port, name or locode; optional: lat, "
+        "lon",
+    )  # fmt: skip
+    parser.add_argument(
+        "--network",
+        default="globe",
+        metavar="globe|history:NET",
+        help="shortest ways (globe), or usual ways of a network made by thalweg history build; "
+        "default: globe",
+    )
+    parser.add_argument("--month", type=int, metavar="1-12", help="month, with history:NET")
+    parser.add_argument(
+        "--draught",
+        type=float,
+        metavar="M",
+        help="draught [m]: shortest ways keep out of water shallower than one and a half of it "
+        "where they can; usual ways leave out arcs on which only smaller ships were seen",
+    )
+    parser.add_argument(
+        "--avoid", action="append", default=None, metavar="NAME",
+        help="canal or passage that shortest ways do not use; may be repeated (default: corinth)",
+    )  # fmt: skip
+    parser.add_argument("--out", metavar="FILE", help="write the table as CSV")
+    parser.add_argument("--json", action="store_true", help="print JSON")
     parser.set_defaults(run=run)
 
 

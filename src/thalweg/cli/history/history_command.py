@@ -37,17 +37,25 @@ def _add_build(actions: Any) -> None:
         "write the network of arcs between them.",
         epilog="Example: thalweg history build ais-2024-*.csv --out history.json",
     )
-    options.add_table(build, (
-        ("tracks", "TRACKS", {"nargs": "+"},
-         "CSV or Parquet files with columns for time, lat, lon and vessel; optional: draught, "
-         "length"),
-        ("--out", "NET", {"required": True}, "file to write (JSON)"),
-        ("--ports", "FILE", {},
-         "CSV with the ports to use: name, lat, lon, locode, or names of known ports; default: "
-         "the ports of the World Port Index where ships stop"),
-        ("--corridors", "FILE", {},
-         "GeoJSON lines across straits or other places that ships pass"),
-    ))  # fmt: skip
+    build.add_argument(
+        "tracks",
+        nargs="+",
+        metavar="TRACKS",
+        help="CSV or Parquet files with columns for time, lat, lon and vessel; optional: draught, "
+        "length",
+    )
+    build.add_argument("--out", required=True, metavar="NET", help="file to write (JSON)")
+    build.add_argument(
+        "--ports",
+        metavar="FILE",
+        help="CSV with the ports to use: name, lat, lon, locode, or names of known ports; default: "
+        "the ports of the World Port Index where ships stop",
+    )
+    build.add_argument(
+        "--corridors",
+        metavar="FILE",
+        help="GeoJSON lines across straits or other places that ships pass",
+    )
     for name, default, unit, text in (
         ("radius", 10.0, "NM", "radius of a junction [nm]"),
         ("tolerance", 2.0, "NM", "turning points keep tracks within this distance [nm]"),
@@ -62,14 +70,16 @@ def _add_build(actions: Any) -> None:
             f"--{name}", type=float, default=default, metavar=unit,
             help=f"{text} (default: {default:g})",
         )  # fmt: skip
-    options.add_table(build, (
-        ("--least", "N", options.WHOLE | {"default": 3},
-         "fewest voyages that make a junction, or an arc beside another one (default: 3)"),
-        ("--column", "WHAT=NAME", options.LISTED,
-         "column that holds time, lat, lon, draught, length or vessel"),
-        ("--time-format", "FORMAT", {}, "format of the times as in strptime"),
-        ("--json", "", options.FLAG, "print JSON"),
-    ))  # fmt: skip
+    build.add_argument(
+        "--least", type=int, default=3, metavar="N",
+        help="fewest voyages that make a junction, or an arc beside another one (default: 3)",
+    )  # fmt: skip
+    build.add_argument(
+        "--column", nargs="+", action="extend", default=[], metavar="WHAT=NAME",
+        help="column that holds time, lat, lon, draught, length or vessel",
+    )  # fmt: skip
+    build.add_argument("--time-format", metavar="FORMAT", help="format of the times as in strptime")
+    build.add_argument("--json", action="store_true", help="print JSON")
     build.set_defaults(run=_build)
 
 
@@ -79,15 +89,17 @@ def _add_route(actions: Any) -> None:
         help="print the usual route between two ports of a network",
         epilog="Example: thalweg history route history.json Rotterdam 'New York' --month 1",
     )
-    options.add_table(route, (
-        ("network", "NET", {}, "network made by thalweg history build"),
-        ("start", "FROM", {}, "port or UN/LOCODE"),
-        ("goal", "TO", {}, "port or UN/LOCODE"),
-        ("--month", "1-12", options.WHOLE, "leave out arcs that are closed in this month"),
-        ("--draught", "M", options.NUMBER,
-         "leave out arcs on which only smaller ships were seen [m]"),
-        ("--json", "", options.FLAG, "print JSON"),
-    ))  # fmt: skip
+    route.add_argument("network", metavar="NET", help="network made by thalweg history build")
+    route.add_argument("start", metavar="FROM", help="port or UN/LOCODE")
+    route.add_argument("goal", metavar="TO", help="port or UN/LOCODE")
+    route.add_argument(
+        "--month", type=int, metavar="1-12", help="leave out arcs that are closed in this month"
+    )
+    route.add_argument(
+        "--draught", type=float, metavar="M",
+        help="leave out arcs on which only smaller ships were seen [m]",
+    )  # fmt: skip
+    route.add_argument("--json", action="store_true", help="print JSON")
     route.set_defaults(run=_route)
 
 
@@ -100,14 +112,12 @@ def _add_compare(actions: Any) -> None:
         epilog="Example: thalweg history compare history.json Rotterdam 'New York' --ship "
         "handysize-bulker --sea forecast.nc --depart 2026-01-10",
     )
-    options.add_table(compare, (
-        ("network", "NET", {}, "network made by thalweg history build"),
-        ("start", "FROM", {}, "port or UN/LOCODE"),
-        ("goal", "TO", {}, "port or UN/LOCODE"),
-        ("--ship", "NAME|FILE", {"required": True}, "ship or ship file"),
-        ("--speed", "KN", options.NUMBER, "ordered speed [kn]"),
-        ("--depart", "TIME", {"required": True}, "departure (ISO 8601)"),
-    ))  # fmt: skip
+    compare.add_argument("network", metavar="NET", help="network made by thalweg history build")
+    compare.add_argument("start", metavar="FROM", help="port or UN/LOCODE")
+    compare.add_argument("goal", metavar="TO", help="port or UN/LOCODE")
+    compare.add_argument("--ship", required=True, metavar="NAME|FILE", help="ship or ship file")
+    compare.add_argument("--speed", type=float, metavar="KN", help="ordered speed [kn]")
+    compare.add_argument("--depart", required=True, metavar="TIME", help="departure (ISO 8601)")
     options.add_sea_options(compare)
     compare.add_argument("--json", action="store_true", help="print JSON")
     compare.set_defaults(run=_compare)

@@ -7,7 +7,7 @@ import json
 import sys
 from typing import TYPE_CHECKING, Any, Final
 
-from thalweg.cli import option_values, options
+from thalweg.cli import option_values
 from thalweg.cli.exit_codes import INTERRUPTED, SUCCESS
 from thalweg.cli.plan_command import add_voyage_options, requested_plan
 from thalweg.cli.tables import new_table, print_notes, print_written
@@ -50,11 +50,14 @@ def add_command(commands: Any) -> None:
         "--sea waves.nc --speed 9 --out results",
     )
     add_voyage_options(parser)
-    options.add_table(parser, (
-        ("--most", "N", options.WHOLE | {"default": 5}, "greatest number of routes (default: 5)"),
-        ("--front", "NAME,NAME", {},
-         "two key figures: their front on the network, with bounds, such as fuel,comfort"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "--most", type=int, default=5, metavar="N", help="greatest number of routes (default: 5)"
+    )
+    parser.add_argument(
+        "--front",
+        metavar="NAME,NAME",
+        help="two key figures: their front on the network, with bounds, such as fuel,comfort",
+    )
     parser.set_defaults(run=run)
 
 

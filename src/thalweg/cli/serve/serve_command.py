@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from thalweg.cli import options
 from thalweg.cli.first_run import announce_compilation
 
 DEFAULT_PORT = 8765
@@ -24,19 +23,38 @@ def add_command(commands: Any) -> None:
         "every request states.",
         epilog="Example: thalweg serve --open",
     )
-    options.add_table(parser, (
-        ("--port", "N", options.WHOLE | {"default": DEFAULT_PORT}, "port (default: 8765)"),
-        ("--host", "ADDRESS", {"default": "127.0.0.1"},
-         "address to listen on; default: 127.0.0.1, this computer only"),
-        ("--allow-host", "NAME", options.REPEATED,
-         "name under which other computers open it; needed with --host; may be repeated"),
-        ("--data", "DIR", {}, "folder of jobs, results and uploads; default: of the user"),
-        ("--token", "TEXT", {}, "token of 16 characters or more; default: one is made"),
-        ("--workers", "N", options.WHOLE, "plans at the same time; default: half the cores"),
-        ("--job-time", "S", options.NUMBER, "longest time of a plan [s]; default: 3600"),
-        ("--open", "", options.FLAG, "open the page in the browser"),
-        ("--demo", "", options.FLAG, "open it with the voyage of 'thalweg demo' filled in"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "--port", type=int, default=DEFAULT_PORT, metavar="N", help="port (default: 8765)"
+    )
+    parser.add_argument(
+        "--host",
+        default="127.0.0.1",
+        metavar="ADDRESS",
+        help="address to listen on; default: 127.0.0.1, this computer only",
+    )
+    parser.add_argument(
+        "--allow-host",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="name under which other computers open it; needed with --host; may be repeated",
+    )
+    parser.add_argument(
+        "--data", metavar="DIR", help="folder of jobs, results and uploads; default: of the user"
+    )
+    parser.add_argument(
+        "--token", metavar="TEXT", help="token of 16 characters or more; default: one is made"
+    )
+    parser.add_argument(
+        "--workers", type=int, metavar="N", help="plans at the same time; default: half the cores"
+    )
+    parser.add_argument(
+        "--job-time", type=float, metavar="S", help="longest time of a plan [s]; default: 3600"
+    )
+    parser.add_argument("--open", action="store_true", help="open the page in the browser")
+    parser.add_argument(
+        "--demo", action="store_true", help="open it with the voyage of 'thalweg demo' filled in"
+    )
     parser.set_defaults(run=run)
 
 

@@ -26,13 +26,16 @@ def add_command(commands: Any) -> None:
         "at the places of the ship file, at the highest speed.",
         epilog="Example: thalweg ship handysize-bulker --speed 8:16 --hs 3 --wind 12 --out results",
     )
-    options.add_table(parser, (
-        ("ship", "NAME|FILE", {"nargs": "?"}, "ship of the library or a ship file (YAML)"),
-        ("--list", "", options.FLAG, "list the ships of the library"),
-        ("--speed", "KN", {},
-         "speeds through water [kn]: a range 8:16, a range with a step 8:16:0.5, or a list "
-         "10,12,14; default: those of the ship file"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "ship", nargs="?", metavar="NAME|FILE", help="ship of the library or a ship file (YAML)"
+    )
+    parser.add_argument("--list", action="store_true", help="list the ships of the library")
+    parser.add_argument(
+        "--speed",
+        metavar="KN",
+        help="speeds through water [kn]: a range 8:16, a range with a step 8:16:0.5, or a list "
+        "10,12,14; default: those of the ship file",
+    )
     _add_weather_options(parser)
     options.add_load_factor_option(parser)
     parser.add_argument(

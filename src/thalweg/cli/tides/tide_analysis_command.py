@@ -33,21 +33,38 @@ def add_command(actions: Any) -> None:
     )
     parser.add_argument("file", metavar="FILE", help="record or model run")
     options.add_mapping_option(parser)
-    options.add_table(parser, (
-        ("--at", "LAT,LON", {}, "position of the record [deg], if the file does not state it"),
-        ("--unit", "m|dm|cm|mm", {},
-         "unit of the levels, for a record of two columns without a header"),
-        ("--days-since", "DATE", {},
-         "date of day 0, for a record of two columns without a header"),
-        ("--constituents", "NAME", {"nargs": "+"},
-         "constituents to find, for example M2 S2; default: all that the length of the record "
-         "can separate"),
-        ("--rayleigh", "R", options.NUMBER | {"default": 1.0},
-         "Rayleigh criterion: cycles by which two constituents must differ over the record "
-         "(default: 1)"),
-        ("--out", "FILE", {}, "file for the constituents (JSON)"),
-        ("--json", "", options.FLAG, "print the result as one JSON object"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "--at",
+        metavar="LAT,LON",
+        help="position of the record [deg], if the file does not state it",
+    )
+    parser.add_argument(
+        "--unit",
+        metavar="m|dm|cm|mm",
+        help="unit of the levels, for a record of two columns without a header",
+    )
+    parser.add_argument(
+        "--days-since",
+        metavar="DATE",
+        help="date of day 0, for a record of two columns without a header",
+    )
+    parser.add_argument(
+        "--constituents",
+        nargs="+",
+        metavar="NAME",
+        help="constituents to find, for example M2 S2; default: all that the length of the record "
+        "can separate",
+    )
+    parser.add_argument(
+        "--rayleigh",
+        type=float,
+        default=1.0,
+        metavar="R",
+        help="Rayleigh criterion: cycles by which two constituents must differ over the record "
+        "(default: 1)",
+    )
+    parser.add_argument("--out", metavar="FILE", help="file for the constituents (JSON)")
+    parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
     parser.set_defaults(run=run)
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 
-from thalweg.cli import option_values, options
+from thalweg.cli import option_values
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import write_text
 from thalweg.core.time import format_time, parse_time
@@ -34,18 +34,25 @@ def add_command(actions: Any) -> None:
         epilog="Example: thalweg tides predict constituents.json --start 2026-01-01 "
         "--end 2026-02-01 --step 10 --out tide.csv",
     )
-    options.add_table(parser, (
-        ("file", "FILE", {},
-         "constituents: from 'thalweg tides analyse', a hatyan component file or a set of "
-         "stations"),
-        ("--station", "ID|NAME", {}, "station, for a file with several stations"),
-        ("--at", "LAT,LON", {}, "position [deg], for a file with many nodes"),
-        ("--start", "TIME", {"required": True}, "first time (ISO 8601, UTC)"),
-        ("--end", "TIME", {"required": True}, "last time (ISO 8601, UTC)"),
-        ("--step", "MIN", options.NUMBER | {"default": 10.0}, "time step [min] (default: 10)"),
-        ("--out", "FILE", {}, "file for the CSV; default: printed"),
-        ("--json", "", options.FLAG, "print the result as one JSON object"),
-    ))  # fmt: skip
+    parser.add_argument(
+        "file",
+        metavar="FILE",
+        help="constituents: from 'thalweg tides analyse', a hatyan component file or a set of "
+        "stations",
+    )
+    parser.add_argument(
+        "--station", metavar="ID|NAME", help="station, for a file with several stations"
+    )
+    parser.add_argument(
+        "--at", metavar="LAT,LON", help="position [deg], for a file with many nodes"
+    )
+    parser.add_argument("--start", required=True, metavar="TIME", help="first time (ISO 8601, UTC)")
+    parser.add_argument("--end", required=True, metavar="TIME", help="last time (ISO 8601, UTC)")
+    parser.add_argument(
+        "--step", type=float, default=10.0, metavar="MIN", help="time step [min] (default: 10)"
+    )
+    parser.add_argument("--out", metavar="FILE", help="file for the CSV; default: printed")
+    parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
     parser.set_defaults(run=run)
 
 
