@@ -11,7 +11,8 @@ miles from land (`OFFING`) in a basin of more than 1,500 square miles at that di
 the one with the least sum of length times min(20, 1 mile / distance to land) on a grid of 0.1 miles
 over the coastline GSHHG h, so it keeps to the middle of channels. Land between the port and the
 first water counts 10 per mile. Ports whose water is not charted, or where the path takes the wrong
-water, have a line by hand with its source. Where the sea at the end of a path is shoal, the line
+water, have a line by hand with its source; from its vertex ``rivers_from`` on it follows the rivers
+of ``tools/river_lines.py`` near it. Where the sea at the end of a path is shoal, the line
 follows one of ``tools/sea_fairways_by_hand.csv`` from there: a dredged channel, to its sea buoy.
 """
 
@@ -19,6 +20,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import functools
 import gzip
 import io
 import itertools
@@ -28,6 +30,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from river_lines import SOURCE as RIVERS
+from river_lines import along_rivers
 from scipy import ndimage
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
@@ -54,6 +58,7 @@ _NO_WATER = "no charted water that leads to the sea within 25 nm"
 _BLOCK, _CELLS = 8, 60  # coarse cells of 8 minutes; fine cells of 1 minute, 60 a degree
 
 
+@functools.cache
 def open_sea(chart: Chart) -> np.ndarray:
     """Return a mask (10800, 21600) of minutes of arc in basins at `OFFING` from land."""
     cache = Path("/tmp/thalweg-open-sea.npy")
@@ -86,18 +91,17 @@ def open_sea(chart: Chart) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Charts:
-    """The detailed coastline, the usual one, and the open sea."""
+    """The detailed coastline, the usual one, and the fairways."""
 
     fine: Chart
     usual: Chart
-    sea: np.ndarray
     fairways: list[Fairway]
 
     def is_open_sea(self, lat: np.ndarray, lon: np.ndarray) -> np.ndarray:
         """Return which positions are in a basin of the sea, by the nearest minutes of arc."""
         row = np.clip(((lat + 90.0) * _CELLS).astype(int), 0, 180 * _CELLS - 1)
         column = ((lon + 180.0) * _CELLS).astype(int) % (360 * _CELLS)
-        return self.sea[row, column]
+        return open_sea(self.usual)[row, column]
 
 
 @dataclass(frozen=True)
@@ -341,8 +345,20 @@ def _on_great_lakes(port: Port) -> bool:
     return port.country_code in ("US", "CA") and " Lake " in f"{port.region} "
 
 
-def approach_row(charts: Charts, port: Port, hand: dict[str, str] | None) -> dict[str, str]:
-    """Return the row of a port; its line is empty where none was found."""
+def kept_tail(old: dict[str, str] | None, place: np.ndarray) -> np.ndarray | None:
+    """Return the vertices of an old line from a place on; None where it does not pass there."""
+    line = read_line(old["line"]) if old and old["line"] else np.empty((0, 2))
+    there = np.flatnonzero(np.abs(line - place).max(axis=1, initial=0.0) < 1e-4)
+    return line[there[0] :] if len(there) else None
+
+
+def approach_row(
+    charts: Charts, port: Port, hand: dict[str, str] | None, old: dict[str, str] | None
+) -> dict[str, str]:
+    """Return the row of a port; its line is empty where none was found.
+
+    The computed part of an old line by hand that ends at the same place is kept.
+    """
     row = {
         "unlocode": port.locode, "name": port.name, "country_code": port.country_code,
         "quality": "computed", "half_width_nm": "", "max_draught_m": "", "max_length_m": "",
@@ -351,12 +367,18 @@ def approach_row(charts: Charts, port: Port, hand: dict[str, str] | None) -> dic
     if hand and hand["line"]:
         line = read_line(hand["line"])
         row["quality"], row["source"] = hand["quality"] or "by hand", hand["source"]
+        if hand["rivers_from"]:
+            first = int(hand["rivers_from"])
+            line = np.concatenate([line[:first], along_rivers(line[first:])])
+            row["source"] = f"{RIVERS}, {hand['source']}"
         if hand["then"] == "computed":  # by hand to charted water, from there by machine
-            last = Port("", "", "", *line[-1])
-            path = path_to_sea(charts, last)
-            if path is None:
-                raise ValueError(f"{port}: the hand line does not reach charted water.")
-            line = np.concatenate([line, simplified(charts, path, 1.0)[1:]])
+            tail = kept_tail(old, line[-1])
+            if tail is None:
+                path = path_to_sea(charts, Port("", "", "", *line[-1]))
+                if path is None:
+                    raise ValueError(f"{port}: the hand line does not reach charted water.")
+                tail = simplified(charts, path, 1.0)
+            line = np.concatenate([line, tail[1:]])
     elif hand:
         row["quality"], row["source"] = "none", hand["source"]
         return row
@@ -396,7 +418,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=TABLE)
     args = parser.parse_args()
     fine, usual = Chart.gshhg("h"), Chart.gshhg("i")
-    charts = Charts(fine, usual, open_sea(usual), fairways())
+    charts = Charts(fine, usual, fairways())
     hands = by_hand()
     wanted = set(filter(None, args.only.split(",")))
     limits = ship_limits(args.world_port_index) if args.world_port_index else {}
@@ -411,7 +433,7 @@ def main() -> None:
             rows += [old] if old else []
             continue
         row = old if old and not hand and is_kept(charts, old) else None
-        row = row or approach_row(charts, port, hand)
+        row = row or approach_row(charts, port, hand, old)
         if row["quality"] == "none" and not hand:
             row["source"] = _GREAT_LAKES if _on_great_lakes(port) else _NO_WATER
         if limits or not old:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thalweg.chart import Chart
-from thalweg.chart.canals import CANALS, SUEZ, Canal
+from thalweg.chart.canals import CANALS, PANAMA, SUEZ, Canal
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError
 from thalweg.kernels import codes
@@ -51,6 +51,13 @@ def test_ends_are_in_open_water_and_only_the_canal_connects_them(chart, canal):
     assert closed.leg_status(lat1, lon1, lat2, lon2) == codes.LAND
     lat, lon = np.array(canal.path).T
     assert closed.legs_blocked(lat[:-1], lon[:-1], lat[1:], lon[1:]).any()  # nor piece by piece
+
+
+def test_the_channel_through_gatun_lake_has_its_published_length():
+    """80 km from the breakwater of Colon to the sea buoys off Balboa: all but the ends at sea."""
+    lat, lon = np.array(PANAMA.inner_line).T
+    length = float(np.sum(geodesy.distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
+    assert length == pytest.approx(80_000.0, rel=0.01)
 
 
 @pytest.mark.parametrize("canal", CANALS, ids=lambda c: c.name)

@@ -28,6 +28,8 @@ ISLETS = {
     "Pedra Branca": (1.330, 104.406),
     "Saint Peter and Saint Paul": (0.917, -29.346),
     "Bassas da India": (-21.48, 39.68),
+    "Kobe Airport": (34.633, 135.226),
+    "Kansai Airport": (34.430, 135.232),
 }
 
 

@@ -21,7 +21,9 @@ TABLES = [
     ("Hamburg", "Kiel", 95, 0.03),  # Hamburg to Brunsbüttel 37, canal 53, Holtenau to Kiel 3
     ("Port Said", "Suez", 88, 0.05),
     ("Rendsburg", "Hamburg", 72, 0.03),
-    ("Balboa", "Cristobal", 44, 0.21),  # the line through Gatun Lake has eight legs
+    # 80 km from the breakwater to the sea buoys, less 4.5 to Cristobal and 8.2 to Balboa; tables
+    # give 44 nm, the whole canal
+    ("Balboa", "Cristobal", 36.3, 0.03),
     ("Hamburg", "Gdansk", 427, 0.02),
     ("Bremerhaven", "Gothenburg", 365, 0.05),
     ("Kobe", "Busan", 366, 0.05),
@@ -37,6 +39,9 @@ TABLES = [
     ("Montreal", "Quebec", 139, 0.05),
     ("Baltimore", "Philadelphia", 97, 0.05),
     ("Buenos Aires", "La Plata", 35, 0.05),
+    ("New Orleans", "Baton Rouge", 117, 0.08),
+    # across one bay
+    ("Osaka", "Kobe", 15.6, 0.04),  # south of Kobe Airport; tables give 12, between harbour limits
     # by second entrances
     ("Jakarta", "Surabaya", 385, 0.03),  # by the western channel, not round Madura
 ]
@@ -92,6 +97,18 @@ def test_the_way_follows_the_goal_and_the_draught():
     assert chosen("Bergen", "Rotterdam") == ["", ""]
     assert chosen("Antwerp, BE", "Rotterdam", draught=7.0) == ["by Oostgat", ""]
     assert chosen("Antwerp, BE", "Rotterdam", draught=9.5) == ["", ""]
+
+
+@pytest.mark.slow
+def test_ports_of_one_bay_do_not_leave_it():
+    inside = "to the waters off the port"
+    assert chosen("Osaka", "Kobe") == [inside, inside]
+    assert chosen("Chiba", "Yokohama") == [inside, inside]
+    assert chosen("Osaka", "Busan")[0] != inside  # out of the bay
+    assert chosen("Baltimore", "Norfolk")[0] == ""  # the charted channel is hardly longer
+    airport = 34.622, 135.203, 34.644, 135.251  # south, west, north, east
+    for lat, lon in sea_distance("Osaka", "Kobe").line:
+        assert not (airport[0] < lat < airport[2] and airport[1] < lon < airport[3])
 
 
 @pytest.mark.slow

@@ -3,6 +3,10 @@
 A branch (`thalweg.chart.approach_branches`) is open to every port whose approach comes within
 `LONGEST_JOINT` of it. The ends of canals are branches as well. A port on a canal has ways through
 it (`thalweg.chart.canal_parts`).
+
+Approaches lead to open sea, so those of two ports on one bay may go out of it side by side and meet
+off its mouth only, or not at all. For a voyage within the bay a ship leaves its line at the first
+place off land (`bay_way`).
 """
 
 from __future__ import annotations
@@ -13,15 +17,24 @@ from dataclasses import replace
 import numpy as np
 
 from thalweg.chart.approach_branches import ApproachBranch, approach_branches
-from thalweg.chart.approaches import LONGEST_JOINT, PortApproach, dense_line, line_part
+from thalweg.chart.approaches import (
+    LONGEST_JOINT,
+    PortApproach,
+    dense_line,
+    line_length,
+    line_part,
+)
 from thalweg.chart.canal_parts import ways_through_canals
 from thalweg.chart.canals import Canal
+from thalweg.chart.coast.coastline import Coastline
 from thalweg.core.geodesy import distance
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 
 _FAR_IN_LATITUDE = 4.0  # branches farther from the berth than this are not tested [deg]
 _CANAL_REACH = 2.0 * NAUTICAL_MILE  # between an approach and the end of a canal in open water
+_OFF_LAND = 1.0 * NAUTICAL_MILE  # distance from charted land at which a line is left in a bay
+_LEAST_IN_BAY = 3.0 * NAUTICAL_MILE  # of the line beyond that place, or it is no bay
 _LEAST_LEFT_OUT = 1_000.0  # of the main line by leaving it, or the way is not one of its own [m]
 
 
@@ -55,6 +68,35 @@ def approach_choices(
     along = dense_line(approach.line)
     others = (_by_branch(approach, along, branch) for branch in near)
     return (approach, *(other for other in others if other is not None), *through)
+
+
+def bay_way(approach: PortApproach, coastline: Coastline) -> PortApproach | None:
+    """Return the part of an approach to the first place off land, where much of it lies beyond.
+
+    Parameters
+    ----------
+    approach : Of the table.
+    coastline : Of the chart.
+
+    Returns
+    -------
+    PortApproach, or None : With `PortApproach.left_out`. It is for voyages within the bay only.
+    """
+    if approach.length < _LEAST_IN_BAY:
+        return None
+    along = dense_line(approach.line)
+    off = coastline.shore_distance(along[:, 0], along[:, 1], cap=_OFF_LAND)
+    first = max(int(np.argmax(off >= _OFF_LAND)), 1)  # a line has two positions
+    left_out = float(along[-1, 2] - along[first, 2])
+    if off[first] < _OFF_LAND or left_out < _LEAST_IN_BAY:
+        return None
+    line = tuple(line_part(approach.line, float(along[first, 2])))
+    return replace(
+        approach,
+        line=line,
+        way="to the waters off the port",
+        left_out=approach.length - line_length(line),
+    )
 
 
 def _by_branch(

@@ -38,6 +38,8 @@ _SAME_WATER: Final = 0.15 * NAUTICAL_MILE
 #: ... or this close with only water between them.
 LONGEST_JOINT: Final = 1.0 * NAUTICAL_MILE
 _JOINT_SPACING: Final = 0.1 * NAUTICAL_MILE
+_BLOCK: Final = 10  # places of dense lines that are first tested by one of them
+_JOINTS_AT_ONCE: Final = 200  # joints tested against land at once
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,7 @@ class PortApproach:
     way_draught : Largest draught of ships that use this way [m]; inf without a limit.
     through : Name of the canal that the line leads through, or empty.
     through_length, through_time : Of the part in that canal [m, s].
+    left_out : Rest of the line to the open sea, for voyages within a bay [m].
     """
 
     port: Port
@@ -72,6 +75,7 @@ class PortApproach:
     through: str = ""
     through_length: float = 0.0
     through_time: float = 0.0
+    left_out: float = 0.0
 
     @property
     def label(self) -> str:
@@ -273,22 +277,44 @@ def line_between(
     if _far_apart(start.line, goal.line):
         return None
     first, second = dense_line(start.line), dense_line(goal.line)
-    north = first[:, None, 0] - second[None, :, 0]
-    east = _wrapped(first[:, None, 1] - second[None, :, 1]) * np.cos(np.radians(first[:, :1]))
-    apart = np.hypot(north, east) * METRES_PER_DEGREE
-    total = first[:, None, 2] + apart + second[None, :, 2]
-    close = np.argwhere(apart <= LONGEST_JOINT)
-    close = close[np.argsort(total[close[:, 0], close[:, 1]], kind="stable")]
-    far = apart[close[:, 0], close[:, 1]] > _SAME_WATER
-    joint = np.concatenate([first[close[:, 0], :2], second[close[:, 1], :2]], axis=1)
-    blocked = far.copy()
-    blocked[far] = legs_blocked(*joint[far].T)  # type: ignore[operator]
-    free = np.flatnonzero(~blocked)
-    if not len(free):
-        return None
-    i, j = (int(k) for k in close[free[0]])
-    line = [*line_part(start.line, first[i, 2]), *line_part(goal.line, second[j, 2])[::-1]]
-    return tuple(a for k, a in enumerate(line) if k == 0 or _metres(a, line[k - 1]) > 1.0)
+    i, j, apart = _close_pairs(first, second)
+    order = np.argsort(first[i, 2] + apart + second[j, 2], kind="stable")
+    for some in np.array_split(order, len(order) // _JOINTS_AT_ONCE + 1):
+        far = apart[some] > _SAME_WATER
+        free = ~far
+        free[far] = ~legs_blocked(  # type: ignore[operator]
+            *first[i[some[far]], :2].T, *second[j[some[far]], :2].T
+        )
+        if free.any():
+            best = some[np.argmax(free)]
+            end = line_part(goal.line, second[j[best], 2])[::-1]
+            line = [*line_part(start.line, first[i[best], 2]), *end]
+            return tuple(a for k, a in enumerate(line) if k == 0 or _metres(a, line[k - 1]) > 1.0)
+    return None
+
+
+def _close_pairs(
+    first: FloatArray, second: FloatArray
+) -> tuple[NDArray[np.int64], NDArray[np.int64], FloatArray]:
+    """Return the pairs of places of two dense lines that a joint can join, and how far apart [m].
+
+    Every tenth place is tested first: lines of rivers are long.
+    """
+    reach = LONGEST_JOINT + 2.0 * _BLOCK * _JOINT_SPACING
+    rough = _metres_apart(first[::_BLOCK, None], second[None, ::_BLOCK])
+    blocks = _BLOCK * np.argwhere(rough <= reach)
+    i, j = np.moveaxis(blocks[:, None, :] + np.argwhere(np.ones((_BLOCK, _BLOCK))), -1, 0)
+    inside = (i < len(first)) & (j < len(second))
+    i, j = i[inside], j[inside]
+    apart = _metres_apart(first[i], second[j])
+    close = apart <= LONGEST_JOINT
+    return i[close], j[close], apart[close]
+
+
+def _metres_apart(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return distances [m] of places (lat, lon, ...) [deg] near each other."""
+    east = _wrapped(a[..., 1] - b[..., 1]) * np.cos(np.radians(a[..., 0]))
+    return np.asarray(np.hypot(a[..., 0] - b[..., 0], east) * METRES_PER_DEGREE)
 
 
 def _far_apart(first: tuple[Position, ...], second: tuple[Position, ...]) -> bool:

@@ -157,7 +157,12 @@ def chart_leg_status(
     status = leg_status(chart.arrays, lat1, lon1, lat2, lon2)
     near_land = (status == LAND) | (status == OFFING)
     if chart.canals and near_land.any():
-        status[near_land & (chart_canal_of_legs(chart, lat1, lon1, lat2, lon2) >= 0)] = OK
+        ends = np.broadcast_arrays(lat1, lon1, lat2, lon2)
+        status[near_land] = np.where(
+            chart_canal_of_legs(chart, *(np.asarray(x)[near_land] for x in ends)) >= 0,
+            OK,
+            status[near_land],
+        )
     return status
 
 

@@ -47,6 +47,20 @@ class _LegRules:
         """Return which legs touch neither land nor no-go zones."""
         return ~np.asarray(self.chart.legs_blocked(*start, *end))
 
+    def both_allowed(
+        self, start: PolylineCoordinates, by: PolylineCoordinates, end: PolylineCoordinates
+    ) -> BoolArray:
+        """Return where both legs, to a position and on from it, are allowed."""
+        first, second = self.allowed(*_two_legs(start, by, end)).reshape(2, -1)
+        return np.asarray(first & second)
+
+    def cost_by(
+        self, start: PolylineCoordinates, by: PolylineCoordinates, end: PolylineCoordinates
+    ) -> FloatArray:
+        """Return the cost of both legs, to a position and on from it."""
+        first, second = _two_legs(start, by, end)
+        return np.asarray(self.cost(*first, *second).reshape(2, -1).sum(axis=0))
+
     def same_side(
         self, start: PolylineCoordinates, by: PolylineCoordinates, end: PolylineCoordinates
     ) -> BoolArray:
@@ -243,10 +257,14 @@ def _cut_is_better(
     before, after = _cut_points(line, corner, share)
     here = lat[corner], lon[corner]
     ends = (lat[corner - 1], lon[corner - 1]), (lat[corner + 1], lon[corner + 1])
-    cost = rules.cost
-    fine = cost(*before, *after) < cost(*before, *here) + cost(*here, *after)
-    fine &= rules.allowed(before, after) & rules.same_side(before, here, after)
-    return fine & rules.allowed(ends[0], before) & rules.allowed(after, ends[1])
+    fine = rules.cost(*before, *after) < rules.cost_by(before, here, after)
+    fine &= rules.same_side(before, here, after)
+    which = np.flatnonzero(fine)  # tests of land cost more
+    before, after, first, last = (
+        _select_points(points, which) for points in (before, after, *ends)
+    )
+    fine[which] = rules.both_allowed(first, before, after) & rules.allowed(after, last)
+    return fine
 
 
 def _move_waypoints(rules: _LegRules, line: PolylineCoordinates) -> PolylineCoordinates:
@@ -267,28 +285,38 @@ def _move_some(
     k = np.arange(first, len(lat) - 1, 2)
     if not len(k):
         return 0.0
-    cost, size = rules.cost, len(_MOVE_DIRECTIONS)
+    size = len(_MOVE_DIRECTIONS)
     back, here, on = ((lat[k + i], lon[k + i]) for i in (-1, 0, 1))
-    old = cost(*back, *here) + cost(*here, *on)
+    old = rules.cost_by(back, here, on)
     many = np.repeat(np.arange(len(k)), size)
     new = geodesy.direct(here[0][many], here[1][many], np.tile(_MOVE_DIRECTIONS, len(k)), step)
-    price = cost(*_select_points(back, many), *new) + cost(*new, *_select_points(on, many))
+    price = rules.cost_by(_select_points(back, many), new, _select_points(on, many))
     better = np.flatnonzero(price < old[many] * (1.0 - 1e-9))
     ends = (
         _select_points(back, many[better]),
         _select_points(new, better),
         _select_points(on, many[better]),
     )
-    free = rules.allowed(ends[0], ends[1]) & rules.allowed(ends[1], ends[2])
+    free = rules.both_allowed(*ends)
     current = _select_points(here, many[better])
     free &= rules.same_side(ends[0], current, ends[1]) & rules.same_side(ends[1], current, ends[2])
-    price[np.setdiff1d(np.arange(len(many)), better[free])] = np.inf
-    price = price.reshape(len(k), size)
+    allowed = np.zeros(len(many), bool)
+    allowed[better[free]] = True
+    price = np.where(allowed, price, np.inf).reshape(len(k), size)
     best = price.argmin(axis=1)
     moved = np.flatnonzero(np.isfinite(price[np.arange(len(k)), best]))
     take = moved * size + best[moved]
     lat[k[moved]], lon[k[moved]] = new[0][take], new[1][take]
     return float(np.sum(old[moved] - price[moved, best[moved]]))
+
+
+def _two_legs(
+    start: PolylineCoordinates, by: PolylineCoordinates, end: PolylineCoordinates
+) -> tuple[PolylineCoordinates, PolylineCoordinates]:
+    """Return starts and ends of the legs to positions, followed by those of the legs from them."""
+    lat, lon = (np.concatenate([start[k], by[k], end[k]]) for k in (0, 1))
+    count = len(start[0])
+    return (lat[: 2 * count], lon[: 2 * count]), (lat[count:], lon[count:])
 
 
 def _select_points(line: PolylineCoordinates, index: IntArray) -> PolylineCoordinates:

@@ -8,6 +8,8 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
+import numpy as np
+
 from thalweg.chart.approaches import line_between, line_length
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import distance
@@ -16,6 +18,10 @@ from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways, path_length_and_canals
 
 _LEAST_GAIN: Final = 0.5 * NAUTICAL_MILE  # of another way than the approach of the table
+#: A way within a bay leaves the charted channels: it has to be shorter by this share of them.
+_LEAST_GAIN_IN_BAY: Final = 0.1
+_USUAL_DRAUGHT: Final = 8.0  # where none is given, for shoals in a bay [m]
+_MOST_SHOAL: Final = 1.0  # excess of a mile across a bay by shoals (`thalweg.chart.depth.shoals`)
 
 
 def with_chosen_ways(
@@ -31,33 +37,56 @@ def with_chosen_ways(
 
     Returns
     -------
-    list of Endpoint : A way to a canal is chosen only where the voyage passes that canal.
+    list of Endpoint : A way to a canal is chosen only where the voyage passes that canal, and one
+        within a bay only for both ends together, straight across water without shoals.
     """
     found = [_without_shallow_ways(end, draught) for end in ends]
+    if len(found) > 2 or not _share_a_bay(found[0], found[-1]):
+        found = [_without_ways_in_bays(end) for end in found]
     if not (found[0].other_ways or found[-1].other_ways):
         return found
     if len(found) == 2:
-        return _best_pair(found[0], found[1], seas())
+        return _best_pair(found[0], found[1], seas(), draught)
     if found[0].other_ways:
-        found[0] = _best_pair(found[0], found[1], seas())[0]
+        found[0] = _best_pair(found[0], found[1], seas(), draught)[0]
     if found[-1].other_ways:
-        found[-1] = _best_pair(found[-2], found[-1], seas())[1]
+        found[-1] = _best_pair(found[-2], found[-1], seas(), draught)[1]
     return found
 
 
-def _best_pair(start: Endpoint, goal: Endpoint, seas: Seaways) -> list[Endpoint]:
+def _best_pair(start: Endpoint, goal: Endpoint, seas: Seaways, draught: float) -> list[Endpoint]:
     """Return two ends by the ways that make the distance between them least."""
     open_canals = {c.name for c in seas.chart.canals} - set(seas.canals)
     ways = [[way for way in _by_way(end) if _is_open(way, open_canals)] for end in (start, goal)]
-    pairs = [_Pair.of(a, b, seas) for a in ways[0] for b in ways[1]]
+    both = [(a, b) for a in ways[0] for b in ways[1] if bool(_left_out(a)) == bool(_left_out(b))]
+    pairs = [_Pair.of(a, b, seas) for a, b in both]
     best, least = pairs[0], math.inf
     for number, pair in sorted(enumerate(pairs), key=lambda item: item[1].bound):
         if pair.bound >= least:
             break
-        length = pair.length(seas) + (_LEAST_GAIN if number else 0.0)
+        length = pair.length(seas, draught) + (_LEAST_GAIN if number else 0.0)
+        length /= 1.0 - (_LEAST_GAIN_IN_BAY if _left_out(pair.start) else 0.0)
         if length < least:
             best, least = pair, length
     return [best.start, best.goal]
+
+
+def _left_out(end: Endpoint) -> float:
+    """Return how much of its approach a way within a bay leaves out [m]; 0 for other ways."""
+    return 0.0 if end.approach is None else end.approach.left_out
+
+
+def _share_a_bay(start: Endpoint, goal: Endpoint) -> bool:
+    """Return whether two ends may lie on one bay: the ways out of it are longer than between."""
+    inside = [way for end in (start, goal) for way in end.other_ways if way.left_out]
+    if len(inside) < 2:
+        return False
+    apart = float(distance(*inside[0].sea_end, *inside[1].sea_end))
+    return apart < inside[0].left_out + inside[1].left_out
+
+
+def _without_ways_in_bays(end: Endpoint) -> Endpoint:
+    return replace(end, other_ways=tuple(way for way in end.other_ways if not way.left_out))
 
 
 def _without_shallow_ways(end: Endpoint, draught: float) -> Endpoint:
@@ -96,10 +125,12 @@ class _Pair:
         apart = float(distance(start.lat, start.lon, goal.lat, goal.lon))
         return cls(start, goal, _of_lines(start, goal) + apart, math.nan)
 
-    def length(self, seas: Seaways) -> float:
+    def length(self, seas: Seaways, draught: float) -> float:
         """Return the distance [m]; inf where there is no way through the canals of the lines."""
         if not math.isnan(self.shared):
             return self.shared
+        if _left_out(self.start):  # straight across the bay
+            return math.inf if self._is_blocked(seas, draught) else self.bound
         with contextlib.suppress(NoRouteError):
             path = seas.graph_path(self.start, self.goal)
             at_sea, passed = path_length_and_canals(seas.chart, path)
@@ -112,6 +143,17 @@ class _Pair:
             if wanted <= set(passed):
                 return _of_lines(self.start, self.goal) + at_sea
         return math.inf
+
+    def _is_blocked(self, seas: Seaways, draught: float) -> bool:
+        """Return whether land or shoals lie between the ends."""
+        from thalweg.planning.request.shoal_choice import shoals_of_draught
+
+        leg = [np.array([x]) for end in (self.start, self.goal) for x in (end.lat, end.lon)]
+        if seas.chart.legs_blocked(*leg)[0]:
+            return True
+        depth = draught or _USUAL_DRAUGHT
+        shoals = shoals_of_draught(seas.chart, depth, depth, (self.start, self.goal))
+        return bool(shoals.excess(*leg)[0] > _MOST_SHOAL)
 
 
 def _of_lines(*ends: Endpoint) -> float:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from thalweg.chart import Chart
-from thalweg.chart.approach_choices import approach_choices
+from thalweg.chart.approach_choices import approach_choices, bay_way
 from thalweg.chart.approaches import PortApproach
 from thalweg.chart.ports import PORTS, Port
 from thalweg.core.errors import InputError, errors_about
@@ -173,7 +173,9 @@ def _usable_ways(port: Port, chart: Chart) -> list[PortApproach]:
     approach = None if chart.approaches is None else chart.approaches.of(port)
     if approach is None:
         return []
-    return [way for way in approach_choices(approach, chart.canals) if _is_usable(way, chart)]
+    inside = bay_way(approach, chart.coastline)
+    ways = (*approach_choices(approach, chart.canals), *((inside,) if inside else ()))
+    return [way for way in ways if _is_usable(way, chart)]
 
 
 def _is_usable(way: PortApproach, chart: Chart) -> bool:
