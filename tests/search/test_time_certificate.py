@@ -36,11 +36,13 @@ def sea_of(east, north, time_step: float = 0.0) -> Sea:
 
 
 def bound(
-    sea, known, *, chart=None, ship=None, ends=(START, GOAL), cells=120, meshes=1
+    sea, known, *, chart=None, ship=None, ends=(START, GOAL), cells=120, meshes=1, kept_out=()
 ) -> TimeCertificate:
     ship = ship or ship_of_one_speed(SPEED)
     channels = CURRENTS if EAST in sea.variables else ()
-    passage = PassageToBound(sea, chart, ship, channels, *ends, depart=1e9, known=known)
+    passage = PassageToBound(
+        sea, chart, ship, channels, *ends, depart=1e9, known=known, kept_out=kept_out
+    )
     return on_meshes(passage, cells, meshes)
 
 

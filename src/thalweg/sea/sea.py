@@ -10,19 +10,14 @@ from typing import TYPE_CHECKING, Any
 from thalweg.core.delegation import delegated
 from thalweg.core.time import TimeLike
 from thalweg.deprecated_names import renamed_attributes
-from thalweg.sea import freeze, layer_stack, sea_maps
+from thalweg.sea import ensemble_layer, freeze, layer_stack, sea_maps
 from thalweg.sea.argument_checks import parse_area
-from thalweg.sea.ensemble_layer import (
-    check_not_ensemble,
-    ensemble_layers,
-    member_count,
-    select_member,
-)
 from thalweg.sea.fill_policies import CALM_VALUES, FillValue, layers_filled
 from thalweg.sea.inspection import inspect_layers
 from thalweg.sea.layer import Layer
 from thalweg.sea.models import cyclone_layer
 from thalweg.sea.models.function_layer import FieldFunction, constant_layer, layer_of_functions
+from thalweg.sea.models.lipschitz_bounds import parse_lipschitz
 from thalweg.sea.models.quasi_static_layer import quasi_static_sea, sea_sampled
 from thalweg.sea.opening import layers_of_sources
 from thalweg.sea.tides.constituents import Constituents
@@ -55,7 +50,7 @@ class Sea:
         __getattr__ = renamed_attributes(knows="provides")
 
     def __post_init__(self) -> None:
-        member_count(self.layers)
+        ensemble_layer.member_count(self.layers)
 
     @classmethod
     def open(
@@ -146,7 +141,9 @@ class Sea:
             return cls.open(*several, mapping=mapping, draught_m=draught_m)
 
         seas = [one if isinstance(one, Sea) else opened(one) for one in members]
-        return cls(ensemble_layers([sea.layers for sea in seas]), _assumptions_of(seas))
+        return cls(
+            ensemble_layer.ensemble_layers([sea.layers for sea in seas]), _assumptions_of(seas)
+        )
 
     @classmethod
     def from_functions(
@@ -156,6 +153,7 @@ class Sea:
         time_step: float | None = None,
         area: tuple[float, float, float, float] | None = None,
         period: tuple[TimeLike, TimeLike] | None = None,
+        lipschitz: Mapping[str, tuple[float, float]] | None = None,
     ) -> Sea:
         """Return a sea given by formulas.
 
@@ -165,13 +163,12 @@ class Sea:
             ``f(time_s, lat, lon) -> array``: seconds since 1970-01-01T00:00Z and degrees, as
             float64 arrays of one shape; the result has that shape or is one number, in SI units,
             NaN where unknown. Names are CF standard names: components
-            (``eastward_sea_water_velocity``, ...), or speed and direction [deg]
-            (``wind_speed`` + ``wind_from_direction``; ``sea_water_speed`` +
-            ``sea_water_velocity_to_direction``), ``sea_surface_wave_from_direction`` or
-            ``..._to_direction``, any ``sea_floor_depth_below_...`` and
-            ``sea_surface_height_above_...``. The depth below the *moving* surface
-            (``sea_floor_depth_below_sea_surface``) is converted to a depth below datum: the water
-            level is subtracted if it is given too. Other names are stored as plain variables.
+            (``eastward_sea_water_velocity``, ...), or speed and direction [deg] (``wind_speed`` +
+            ``wind_from_direction``; ``sea_water_speed`` + ``sea_water_velocity_to_direction``),
+            ``sea_surface_wave_from_direction`` or ``..._to_direction``, any
+            ``sea_floor_depth_below_...`` and ``sea_surface_height_above_...``. From the depth below
+            the *moving* surface (``sea_floor_depth_below_sea_surface``) the water level is
+            subtracted if it is given too. Other names are stored as plain variables.
         time_step : float, optional
             Step [s] at which kernels receive the formulas (linear in between); 0 for fields that
             never change. By default ``min(600 s, window / 200)``, at most 2000 steps.
@@ -179,6 +176,10 @@ class Sea:
             (south, north, west, east) [deg]; values are unknown outside.
         period : tuple of time, optional
             (start, end); values are unknown outside.
+        lipschitz : mapping of str to pair of float, optional
+            Greatest change of a function a metre and a second, in its unit; not of directions of
+            wind and current. With those of all functions that a ship needs, and without area and
+            period, bounds of plans hold for the functions, and not only for their samples.
 
         Returns
         -------
@@ -187,18 +188,17 @@ class Sea:
         Raises
         ------
         InputError
-            If one half of a vector is missing, a variable is given twice, or (when sampled) a
-            function returns an array of another shape.
+            If a Lipschitz bound is not possible, half of a vector is missing, a variable is given
+            twice, or (when sampled) a function returns an array of another shape.
         """
         layer = layer_of_functions(functions, area=area, period=period, time_step=time_step)
-        return cls((layer,))
+        return cls((replace(layer, lipschitz=parse_lipschitz(lipschitz, functions)),))
 
     @classmethod
     def calm(cls) -> Sea:
         """Return a sea without wind, waves and currents at all places and times.
 
-        Waves of height zero travel north with a placeholder peak period of 8 s. Water level and
-        depth are unknown.
+        Waves of height zero travel north with a peak period of 8 s; level and depth are unknown.
 
         Returns
         -------
@@ -348,7 +348,7 @@ class Sea:
     @property
     def members(self) -> int:
         """Number of members of the sea as an ensemble; 0 for a single sea."""
-        return member_count(self.layers)
+        return ensemble_layer.member_count(self.layers)
 
     def member(self, index: int) -> Sea:
         """Return one member of an ensemble, as a single sea.
@@ -368,9 +368,9 @@ class Sea:
         InputError
             If the sea is not an ensemble or has no such member.
         """
-        return replace(self, layers=select_member(self.layers, index))
+        return replace(self, layers=ensemble_layer.select_member(self.layers, index))
 
-    check_single = delegated(check_not_ensemble, "layers")
+    check_single = delegated(ensemble_layer.check_not_ensemble, "layers")
     quasi_static = delegated(quasi_static_sea)
     sampled = delegated(sea_sampled)
 

@@ -20,9 +20,11 @@ from thalweg.kernels.codes import (
     AXIS_DEPTH,
     AXIS_WAVE_HEIGHT,
     BED_DEPTH,
+    CURRENT_EAST,
     LIMIT_REQUIRED_DEPTH,
     LIMIT_WAVE_HEIGHT,
     LIMIT_WIND_SPEED,
+    WIND_EAST,
 )
 from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit
@@ -85,6 +87,8 @@ class CellMotion(NamedTuple):
         Greatest of these [m/s].
     disc : bool
         Whether ``top`` holds for all headings.
+    drift : float
+        By how much the current may differ from those at the corners [m/s].
     """
 
     currents: np.ndarray
@@ -92,6 +96,7 @@ class CellMotion(NamedTuple):
     speed: np.ndarray
     top: float
     disc: bool
+    drift: float
 
 
 @kernel_only
@@ -162,7 +167,7 @@ def _greatest_rate(phi, centre, scales, motion):
         for per_east in (per_east_low, per_east_high):
             east = x * per_east
             value = greatest_current_along(east, y, pair, motion.currents, motion.instants)
-            value += _support(east, y, motion)
+            value += _support(east, y, motion) + motion.drift * math.hypot(east, y)
             best = max(best, value + slack * abs(y))
     return best
 
@@ -254,7 +259,8 @@ def _check_cell(world, phi, cell, window, forward, strict, buffers, kept):
     sign = 1.0 if forward else -1.0
     if instants < 0:  # a window of too many instants
         return math.inf, 0.25 * (a + b + c + d)
-    strongest = replace_unknown_currents(buffers.current, instants)
+    drift = world.margins[CURRENT_EAST]
+    strongest = replace_unknown_currents(buffers.current, instants) + drift
     dlat = world.raster.corner[1] / world.refinement
     dlon = world.raster.corner[3] / world.refinement
     south, north = world.metres_north[j] * dlat, world.metres_north[j + 1] * dlat
@@ -266,7 +272,7 @@ def _check_cell(world, phi, cell, window, forward, strict, buffers, kept):
     )
     corners = (a, b, c, d)
     centre = 0.25 * (a + b + c + d)
-    motion = CellMotion(buffers.current, instants, buffers.speed, top, disc)
+    motion = CellMotion(buffers.current, instants, buffers.speed, top, disc, drift)
     rate = _greatest_rate(corners, centre, scales, motion)
     if rate > 1.0 + (-6e-4 if strict else 2e-4):
         low, high = min(0.5 * (a + d), 0.5 * (b + c)), max(0.5 * (a + d), 0.5 * (b + c))
@@ -365,4 +371,5 @@ def _may_close(world, winds, buffers):
     if buffers.high[AXIS_WAVE_HEIGHT] > limits[LIMIT_WAVE_HEIGHT]:
         return True
     wind = limits[LIMIT_WIND_SPEED]
-    return winds > 0 and wind < direction_range(buffers.wind_over_ground, winds)[3]
+    strongest = direction_range(buffers.wind_over_ground, winds)[3] + world.margins[WIND_EAST]
+    return winds > 0 and wind < strongest

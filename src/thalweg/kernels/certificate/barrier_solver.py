@@ -102,6 +102,7 @@ def _fill_times(world, ship, node, t, forward, sample, out):
     current_north = sample[CURRENT_NORTH] if flows else 0.0
     known = current_east == current_east and current_north == current_north
     constant = ship.needs == 0 and index[SPEED_FIELD] < 0
+    drift = world.margins[CURRENT_EAST]
     dlat = world.raster.corner[1] / world.refinement
     dlon = world.raster.corner[3] / world.refinement
     south, west = world.metres_north[j] * dlat, world.metres_east[j] * dlon
@@ -123,6 +124,7 @@ def _fill_times(world, ship, node, t, forward, sample, out):
                 sample, index, (east, north), ship, math.inf, math.inf
             )
             speed = attained if status == OK else speed
+        speed += drift
         out[course] = size / speed if speed > 0.0 else UNREACHED
 
 

@@ -10,6 +10,7 @@ from thalweg.kernels.certificate.speed_ranges import (
     angle_from_bow_range,
     direction_range,
     kept_speed,
+    widened_directions,
 )
 from thalweg.kernels.codes import (
     AXIS_COUNT,
@@ -43,6 +44,7 @@ from thalweg.kernels.leg.raster_sampling import RasterArrays
 SECTORS = 48  # of headings
 MAX_INSTANTS = 128  # of one window; longer windows are treated as unlimited
 ANGLES = (1 << AXIS_WIND_ANGLE) | (1 << AXIS_WAVE_ANGLE)
+_PLAIN_AXES = ((AXIS_WAVE_HEIGHT, WAVE_HEIGHT_CHANNEL), (AXIS_WAVE_PERIOD, WAVE_PERIOD))
 _WIND = (1 << AXIS_WIND_SPEED) | (1 << AXIS_WIND_ANGLE)
 
 
@@ -72,6 +74,9 @@ class BarrierWorld(NamedTuple):
     by_steps : bool
         Whether limits may open and close at any moment between two times of the raster, as where it
         samples functions, and not only as its linear interpolation says.
+    margins : float64[CHANNELS]
+        By how much the sea may differ from the interpolated raster, by channel; of vectors the
+        length of the difference, for both components.
     """
 
     raster: RasterArrays
@@ -86,6 +91,7 @@ class BarrierWorld(NamedTuple):
     top_speed: float
     departures: float
     by_steps: bool
+    margins: np.ndarray
 
 
 class TimeWindows(NamedTuple):
@@ -233,6 +239,13 @@ def _read_window(world, j, i, first, last, buffers):
         t = min(end, times[min(step + 1 + (fraction >= 1.0), final)])
     if known_corners < 2 or (unlimited and instants == 0):
         return 0, False, 0.0, 0, 0
+    margins = world.margins
+    for axis, channel in _PLAIN_AXES:
+        low[axis] -= margins[channel]
+        high[axis] += margins[channel]
+    lowest_wave -= margins[WAVE_HEIGHT_CHANNEL]
+    bed_low, bed_high = bed_low - margins[BED_DEPTH], bed_high + margins[BED_DEPTH]
+    level_low, level_high = level_low - margins[WATER_LEVEL], level_high + margins[WATER_LEVEL]
     # depth
     deep = world.deepest[j, i]
     if index[BED_DEPTH] >= 0:
@@ -253,7 +266,7 @@ def _read_window(world, j, i, first, last, buffers):
     if lowest_wave < math.inf:
         is_open = is_open and lowest_wave <= world.ship.limits[LIMIT_WAVE_HEIGHT]
     if winds > 0 and world.ship.limits[LIMIT_WIND_SPEED] < math.inf:
-        shortest = direction_range(buffers.wind_over_ground, winds)[2]
+        shortest = direction_range(buffers.wind_over_ground, winds)[2] - margins[WIND_EAST]
         is_open = is_open and shortest <= world.ship.limits[LIMIT_WIND_SPEED]
     return instants, is_open, field_high, winds, waves
 
@@ -325,7 +338,7 @@ def read_cell(world, j, i, first, last, buffers):
 
 
 @kernel_only
-def fill_ranges(winds, waves, buffers):
+def fill_ranges(world, winds, waves, buffers):
     """Complete the ranges of the conditions of a cell; return those of the directions.
 
     Returns
@@ -334,13 +347,15 @@ def fill_ranges(winds, waves, buffers):
         First and last azimuth of the wind, and of the waves, the way they travel [rad].
     """
     low, high = buffers.low, buffers.high
-    wind_first, wind_last, shortest, longest = direction_range(buffers.wind, winds)
-    wave_first, wave_last, _, _ = direction_range(buffers.waves, waves)
-    low[AXIS_WIND_SPEED], high[AXIS_WIND_SPEED] = shortest, longest
+    margins = world.margins
+    wind, wave = direction_range(buffers.wind, winds), direction_range(buffers.waves, waves)
+    wind = widened_directions(wind, margins[WIND_EAST] + margins[CURRENT_EAST])
+    wave = widened_directions(wave, margins[WAVE_EAST])
+    low[AXIS_WIND_SPEED], high[AXIS_WIND_SPEED] = wind[2], wind[3]
     for axis in range(low.shape[0]):
         if not low[axis] <= high[axis]:  # nothing known: anything
             low[axis], high[axis] = -math.inf, math.inf
-    return wind_first, wind_last, wave_first, wave_last
+    return wind[0], wind[1], wave[0], wave[1]
 
 
 @kernel_only
@@ -369,7 +384,7 @@ def cell_speeds(world, instants, field_high, winds, waves, buffers):
     if instants < 0:
         buffers.speed[:] = world.top_speed
         return world.top_speed, True
-    directions = fill_ranges(winds, waves, buffers)
+    directions = fill_ranges(world, winds, waves, buffers)
     if not needs & ANGLES:
         top = kept_speed(table, setting, world.top_speed, 0, buffers)
         buffers.speed[:] = top

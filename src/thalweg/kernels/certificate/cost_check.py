@@ -14,6 +14,7 @@ from thalweg.kernels.certificate.barrier_check import (
     triangle_differences,
 )
 from thalweg.kernels.certificate.cell_conditions import make_buffers, read_cell
+from thalweg.kernels.codes import CURRENT_EAST
 from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit
 
@@ -63,7 +64,7 @@ def _greatest_gain(east, north, speed, consumption, price):
 def _greatest_fall(corners, centre, scales, motion, price):
     """Return how far a barrier falls in a second along any motion in a cell, less consumption."""
     per_east_low, per_east_high, per_north, slack = scales
-    currents, instants, speed, consumption = motion
+    currents, instants, speed, consumption, drift = motion
     best = -math.inf
     for side in range(4):
         x, y, pair = triangle_differences(corners, centre, side)
@@ -72,6 +73,7 @@ def _greatest_fall(corners, centre, scales, motion, price):
             east = -x * per_east
             value = greatest_current_along(east, north, pair, currents, instants)
             value += _greatest_gain(east, north, speed, consumption, price)
+            value += drift * math.hypot(east, north)
             best = max(best, value + slack * abs(north))
     return best
 
@@ -123,7 +125,8 @@ def check_cost_barrier(world, motions, rates, phi, candidate, windows, excess):
             if instants <= 0 or not motions.is_open[j, i]:
                 excess[j, i] = math.inf
                 continue
-            strongest = replace_unknown_currents(buffers.current, instants)
+            drift = world.margins[CURRENT_EAST]
+            strongest = replace_unknown_currents(buffers.current, instants) + drift
             speed, consumption = motions.speed[j, i], motions.consumption[j, i]
             least, top = _least_and_greatest(speed, consumption)
             south, north = world.metres_north[j] * dlat, world.metres_north[j + 1] * dlat
@@ -136,6 +139,6 @@ def check_cost_barrier(world, motions, rates, phi, candidate, windows, excess):
             corners = (phi[j, i], phi[j, i + 1], phi[j + 1, i], phi[j + 1, i + 1])
             centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3])
             price = rates.consumption[j, i]
-            motion = (buffers.current, instants, speed, consumption)
+            motion = (buffers.current, instants, speed, consumption, drift)
             fall = _greatest_fall(corners, centre, scales, motion, price)
             excess[j, i] = (fall - rates.second) / (price * least + rates.second)

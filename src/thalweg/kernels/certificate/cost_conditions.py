@@ -13,7 +13,12 @@ from thalweg.kernels.certificate.cell_conditions import (
     make_buffers,
     read_cell,
 )
-from thalweg.kernels.certificate.speed_ranges import greatest_speed, least_consumption
+from thalweg.kernels.certificate.speed_ranges import (
+    asked_anew,
+    greatest_speed,
+    least_consumption,
+)
+from thalweg.kernels.codes import CURRENT_EAST
 from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit
 from thalweg.kernels.leg.table_lookup import TableArrays
@@ -65,22 +70,26 @@ class CellMotions(NamedTuple):
 
 
 @kernel_only
-def _fill_sectors(world, priced, cell, directions, buffers, motions):
+def _fill_sectors(world, priced, cell, directions, buffers, motions, kept):
     j, i = cell
     sectors = motions.speed.shape[3]
     half = math.pi / sectors
     for sector in range(sectors):
         if sectors > 1:
             fill_angles(directions, 2.0 * half * sector, half, buffers)
+        anew = asked_anew(sector, buffers)
+        low, high = buffers.asked[sector, 0], buffers.asked[sector, 1]
         for s in range(priced.settings.shape[0]):
-            setting = priced.settings[s]
-            motions.speed[j, i, s, sector] = greatest_speed(
-                world.ship.table, setting, buffers.low, buffers.high, priced.top[s], buffers.place
-            )
-            motions.consumption[j, i, s, sector] = least_consumption(
-                priced.consumption, setting, buffers.low, buffers.high, priced.least[s],
-                buffers.place,
-            )  # fmt: skip
+            if anew:
+                setting = priced.settings[s]
+                kept[sector, s, 0] = greatest_speed(
+                    world.ship.table, setting, low, high, priced.top[s], buffers.place
+                )
+                kept[sector, s, 1] = least_consumption(
+                    priced.consumption, setting, low, high, priced.least[s], buffers.place
+                )
+            motions.speed[j, i, s, sector] = kept[sector, s, 0]
+            motions.consumption[j, i, s, sector] = kept[sector, s, 1]
 
 
 @kernel_only
@@ -107,6 +116,7 @@ def _fill_courses(world, cell, instants, buffers, motions):
         size = math.hypot(east, north)
         east, north = east / size, north / size
         along, to_port = _best_current(buffers.current, instants, east, north)
+        along += world.margins[CURRENT_EAST]
         turn = math.atan2(east, north) / (2.0 * math.pi) * sectors
         for s in range(settings):
             sector = math.floor(turn + 0.5) % sectors
@@ -139,6 +149,7 @@ def fill_motions(world, priced, windows, wanted, motions):
         Filled; cells that are not wanted count as closed.
     """
     buffers = make_buffers()
+    kept = np.empty((motions.speed.shape[3], priced.settings.shape[0], 2))
     for j in range(wanted.shape[0]):
         for i in range(wanted.shape[1]):
             motions.is_open[j, i] = False
@@ -151,7 +162,7 @@ def fill_motions(world, priced, windows, wanted, motions):
             motions.is_open[j, i] = True
             motions.seconds[j, i] = UNREACHED
             if instants > 0:
-                directions = fill_ranges(winds, waves, buffers)
-                _fill_sectors(world, priced, (j, i), directions, buffers, motions)
+                directions = fill_ranges(world, winds, waves, buffers)
+                _fill_sectors(world, priced, (j, i), directions, buffers, motions, kept)
                 replace_unknown_currents(buffers.current, instants)
                 _fill_courses(world, (j, i), instants, buffers, motions)

@@ -43,6 +43,18 @@ def direction_range(vectors, count):
 
 
 @kernel_only
+def widened_directions(found, margin):
+    """Return a range of azimuths and lengths (`direction_range`) of vectors within a distance."""
+    least, greatest, shortest, longest = found
+    if margin <= 0.0:
+        return least, greatest, shortest, longest
+    if margin >= shortest:
+        return -math.pi, math.pi, 0.0, longest + margin
+    turn = math.asin(margin / shortest)
+    return least - turn, greatest + turn, shortest - margin, longest + margin
+
+
+@kernel_only
 def angle_from_bow_range(first, last):
     """Return the range of the angle from the bow [0, pi] over a range of relative azimuths."""
     if last - first >= 2.0 * math.pi:
@@ -276,14 +288,14 @@ def _edge_is_near(edge, value, outwards):
 
 
 @kernel_only
-def kept_speed(table, setting, top_speed, sector, buffers):
-    """Return the greatest speed over the ranges in buffers, or a little wider ones [m/s].
+def asked_anew(sector, buffers):
+    """Return whether the ranges in buffers differ from those asked for before in a sector.
 
-    The last one of a sector is kept: in a calm or uniform sea it is that of all cells.
+    If so, those asked for are renewed, a little wider. In a calm or uniform sea they are the same
+    in all cells.
 
     Parameters
     ----------
-    table, setting, top_speed : As of `greatest_speed`.
     sector : int
     buffers : CellBuffers
         Their ``low`` and ``high`` are the ranges.
@@ -298,9 +310,21 @@ def kept_speed(table, setting, top_speed, sector, buffers):
         for k in range(AXIS_COUNT):
             asked_low[k] = low[k] - _ROUNDING * (1.0 + abs(low[k]))
             asked_high[k] = high[k] + _ROUNDING * (1.0 + abs(high[k]))
-        buffers.answer[sector] = greatest_speed(
-            table, setting, asked_low, asked_high, top_speed, buffers.place
-        )
+    return not same
+
+
+@kernel_only
+def kept_speed(table, setting, top_speed, sector, buffers):
+    """Return the greatest speed over the ranges in buffers, or a little wider ones [m/s].
+
+    Parameters
+    ----------
+    table, setting, top_speed : As of `greatest_speed`.
+    sector, buffers : As of `asked_anew`.
+    """
+    if asked_anew(sector, buffers):
+        low, high = buffers.asked[sector, 0], buffers.asked[sector, 1]
+        buffers.answer[sector] = greatest_speed(table, setting, low, high, top_speed, buffers.place)
     return buffers.answer[sector]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,14 +24,13 @@ from thalweg.planning.plan_front import certain_at
 from thalweg.planning.report.route_summary import canals_passed
 from thalweg.planning.single.certified_bound import (
     certified_distance,
-    certified_priced_length,
+    priced_length,
     strongest_current_in_data,
 )
 from thalweg.route import Route
 from thalweg.search import table_bounds
 
 if TYPE_CHECKING:
-    from thalweg.chart import Chart
     from thalweg.chart.canals import Canal
 
 _KIND = (
@@ -42,7 +41,7 @@ _CURRENT_UNKNOWN = (
     "no bound: the strongest current of the water that the ship can reach was not found"
 )
 _NOTHING_LEAST = "no bound: the least that the data allow is zero"
-_SECONDS = 2.0  # for the bound of the length, by default
+_SECONDS = 10.0  # for each bound of lengths, by default
 _RATIOS = 2  # of the prices inside and outside control areas, for which lengths are bounded
 _LARGEST_RATIO = 10.0
 _NO_PRICE = 1e-9
@@ -99,16 +98,44 @@ def strongest_current_of_plan(
     return max(found[0], at_stations), _KIND + (f", in {found[1]}" if found[1] else "")
 
 
+@dataclass(frozen=True)
+class LeastWay:
+    """What some routes have at least; every route of a voyage is among those of one `LeastWay`.
+
+    Attributes
+    ----------
+    lengths : A route costs no less than a mixture of these pairs of lengths [m], inside the control
+        areas and in all, at any speeds, without those of its canals.
+    hours, value : Time [h] and value of the canals on the way.
+    """
+
+    lengths: tuple[tuple[float, float], ...]
+    hours: float = 0.0
+    value: float = 0.0
+
+
 def certain_front(
-    trade_off: TradeOffContext, lengths: Sequence[tuple[float, float]], current: float
+    trade_off: TradeOffContext, ways: Sequence[LeastWay], current: float
 ) -> FloatArray:
     """Return a lower front that holds for every route: hours and values (2, m), to join by lines.
 
     Parameters
     ----------
-    lengths : Each route is no shorter than one of these pairs, inside the control areas and in all
-        (see `certified_lengths`) [m].
+    ways : See `least_ways`.
     current : No current is stronger [m/s]; inf where none is known to be the strongest.
+    """
+    fronts = [_front_of_lengths(trade_off, way.lengths, current) for way in ways]
+    hours = np.concatenate([front[0] + way.hours for front, way in zip(fronts, ways, strict=True)])
+    values = np.concatenate([front[1] + way.value for front, way in zip(fronts, ways, strict=True)])
+    hull = lower_hull(hours, values)
+    hull = hull[: int(np.argmin(values[hull])) + 1]
+    return np.array([hours[hull], values[hull]])
+
+
+def _front_of_lengths(
+    trade_off: TradeOffContext, lengths: Sequence[tuple[float, float]], current: float
+) -> FloatArray:
+    """Return a lower front of the routes of no less than a mixture of pairs of lengths.
 
     Notes
     -----
@@ -118,14 +145,9 @@ def certain_front(
     points: not below their lower convex hull. At the ends the price is that of control areas, as
     far as it takes to leave them, and a way out that is near is paid for by a longer route.
     """
-    context, prices = trade_off.context, trade_off.objective.prices
-    rates = np.maximum(table_bounds(trade_off.consumption.kernel_arrays(), np.fmin), 0.0)
-    rates = rates[trade_off.settings]
-    top = np.array([float(context.ship.top_speed(int(s)) or math.inf) for s in trade_off.settings])
-    zone_factor = 1.0
-    if prices.dues > 0.0:  # a route off the network may sail in the cheapest zone throughout
-        zone_factor = min([1.0, *(float(factor) for _, factor in context.chart.zones.price)])
-    slow = 1.0 / (top + current)
+    prices = trade_off.objective.prices
+    zone_factor = _least_zone_factor(trade_off)
+    slow, rates = _slowness_and_rates(trade_off, current)
     seconds, values = np.empty(0), np.empty(0)
     for inside, whole in lengths:
         parts = [(inside, prices.inside), (whole - inside, min(prices.inside, prices.outside))]
@@ -141,62 +163,151 @@ def certain_front(
     return np.array([seconds[:last] / HOUR, values[:last]])
 
 
-def front_with_dues(
-    trade_off: TradeOffContext,
-    routes: Sequence[Route],
-    lengths: Sequence[tuple[float, float]],
-    current: float,
-) -> FloatArray | None:
-    """Return a lower front that counts canal dues, or the length of the way round the canals.
+def _least_zone_factor(trade_off: TradeOffContext) -> float:
+    """Return the least factor on prices: a route may sail in the cheapest zone throughout."""
+    if not trade_off.objective.prices.dues > 0.0:
+        return 1.0
+    return min([1.0, *(float(factor) for _, factor in trade_off.context.chart.zones.price)])
+
+
+def _slowness_and_rates(
+    trade_off: TradeOffContext, current: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return the least time of a metre [s] and the least consumption a second of each setting."""
+    rates = np.maximum(table_bounds(trade_off.consumption.kernel_arrays(), np.fmin), 0.0)
+    speed = [trade_off.context.ship.top_speed(int(s)) or math.inf for s in trade_off.settings]
+    return 1.0 / (np.array(speed, float) + current), rates[trade_off.settings]
+
+
+def least_ways(
+    trade_off: TradeOffContext, routes: Sequence[Route], current: float
+) -> tuple[LeastWay, ...]:
+    """Return the least lengths and dues of all routes of a voyage.
 
     Parameters
     ----------
-    routes : Known routes; the bound needs one without dues.
-    lengths, current : As of `certain_front`.
-
-    Returns
-    -------
-    float64 array (2, m), or None
-        As of `certain_front`; None where no dues count, with via points, and without a route.
+    routes : Known routes.
+    current : No current is stronger [m/s].
 
     Notes
     -----
-    Every route keeps clear of all canals with dues, and is no shorter than the way round land
-    without them, or it touches one of them, pays its dues, and is no shorter than the geodesics to
-    an end of it and on, less twice its length. A canal that the approach of a port is a part of is
-    taken as free: its dues belong to the approach.
+    With D metres inside the areas and C outside, every route has ``D + C >= L`` for the least
+    length, ``D >= N`` for the least way out of areas at the ends, and ``q D + C >= W`` for the
+    least length ``W`` when a metre inside counts ``q``. The pairs of lengths are the corners of
+    what these leave of the plane of D and C, for some q. So that ``W`` need not be found on a mesh
+    alone, it is bounded by the geodesics to the exits of the areas and on from there, too.
+
+    Canals: where ``W`` is the least length with canals that count as longer by ``F``, a route
+    through some of them has ``q D + C >= W`` at sea, less their lengths and ``F``. It takes their
+    time, and pays their dues and fuel. A route through a canal is also no shorter than the
+    geodesics to an end of it and on, less twice its length. Canals that the approach of a port is a
+    part of belong to the approach. A route that passes a canal twice is not better than without
+    what is between.
     """
+    feasible = [route for route in routes if route.feasible]
+    whole = certified_length(trade_off, feasible)
+    inside, lines = 0.0, [(1.0, whole)]
     context, prices = trade_off.context, trade_off.objective.prices
-    paying = [canal for canal in context.chart.canals if canal.fee > 0.0]
-    if not prices.dues > 0.0 or not paying or len(trade_off.ends) > 2 or not lengths:
-        return None
-    elsewhere = _paid_in_approaches(trade_off)
-    fees = [0.0 if canal.name in elsewhere else canal.fee for canal in paying]
-    free = [route for route in routes if not _passes_one_of(route, paying, context.chart)]
-    shortest = _shortest(free)
-    if shortest is None or trade_off.interrupt_guard.stopped():
-        return None
-    start, goal = trade_off.ends
-    inside, whole = (min(pair[k] for pair in lengths) for k in (0, 1))
-    closed = context.chart.without_canals(*(canal.name for canal in paying))
-    found = certified_distance(
-        replace(context, chart=closed), shortest, seconds=_seconds(trade_off)
-    )
-    if not found.value > whole:
-        return None
-    fronts = [certain_front(trade_off, [(inside, found.value)], current)]
-    for canal, fee in zip(paying, fees, strict=True):
-        way = min(
-            float(distance(start.lat, start.lon, *end) + distance(*end, goal.lat, goal.lon))
-            for end in canal.ends
+    by_area = prices.inside > prices.outside and bool(context.chart.zones.eca)
+    if by_area:
+        inside, by_exits = _lines_by_exits(trade_off)
+        inside, lines = min(whole, inside), [*lines, *by_exits]
+    simple = len(trade_off.ends) == 2 and bool(feasible)
+    canals = _counted_canals(trade_off) if simple else []
+    longer = _longer_canals(trade_off, feasible, canals, current)
+    ratios = [1.0] if any(longer.values()) else []
+    if by_area and inside < whole and simple:
+        most = min(prices.inside / max(prices.outside, _NO_PRICE), _LARGEST_RATIO)
+        ratios += [float(one) for one in most ** (np.arange(1, _RATIOS + 1) / _RATIOS)]
+    priced = []
+    for ratio in ratios:
+        if trade_off.interrupt_guard.stopped():
+            break
+        found = certified_distance(
+            context, feasible, price=ratio, longer=longer, seconds=_seconds(trade_off)
         )
-        least = max(whole, way - 2.0 * canal.length)
-        front = certain_front(trade_off, [(inside, least)], current)
-        fronts.append(front + np.array([[0.0], [prices.dues * fee]]))
-    hours, values = np.concatenate(fronts, axis=1)
-    hull = lower_hull(hours, values)
-    hull = hull[: int(np.argmin(values[hull])) + 1]
-    return np.array([hours[hull], values[hull]])
+        priced.append((ratio, found.value))
+    ways = []
+    for number in range(len(canals) + 1):
+        for passed in itertools.combinations(canals, number):
+            part = sum(canal.length for canal in passed)
+            counted = part + sum(longer[canal.name] for canal in passed)
+            corners = corners_of_lengths(
+                max(inside - part, 0.0),
+                [
+                    *((ratio, least - ratio * part) for ratio, least in lines),
+                    *((ratio, least - counted) for ratio, least in priced),
+                    *((1.0, _least_by_canal(trade_off, canal) - part) for canal in passed),
+                ],
+            )
+            value = sum(_value_of_canal(trade_off, canal, current) for canal in passed)
+            hours = sum(canal.transit_time for canal in passed) / HOUR
+            ways.append(LeastWay(tuple(corners), hours, value))
+    return tuple(ways)
+
+
+def _counted_canals(trade_off: TradeOffContext) -> list[Canal]:
+    """Return the canals of the chart that are not part of an approach."""
+    elsewhere = _paid_in_approaches(trade_off)
+    return [one for one in trade_off.context.chart.canals if one.name not in elsewhere]
+
+
+def passes_counted_canal(trade_off: TradeOffContext, routes: Sequence[Route]) -> bool:
+    """Return whether one of some routes passes a canal that is not part of an approach."""
+    counted = {canal.name for canal in _counted_canals(trade_off)}
+    chart = trade_off.context.chart
+    return any(one.name in counted for route in routes for one in canals_passed(route, chart))
+
+
+def _value_of_canal(trade_off: TradeOffContext, canal: Canal, current: float) -> float:
+    """Return the least value of the passage of a canal: dues, time and fuel."""
+    prices, zones = trade_off.objective.prices, trade_off.context.chart.zones
+    value = prices.dues * canal.fee + prices.time * canal.transit_time
+    if prices.consumption != "fuel":
+        return value
+    inside = float(zones.eca_fraction(*canal.ends[0], *canal.ends[1]))
+    price = inside * prices.inside + (1.0 - inside) * prices.outside
+    rate = float(_slowness_and_rates(trade_off, current)[1].min())
+    return value + _least_zone_factor(trade_off) * price * rate * canal.transit_time
+
+
+def _longer_canals(
+    trade_off: TradeOffContext, routes: Sequence[Route], canals: Sequence[Canal], current: float
+) -> dict[str, float]:
+    """Return by how much canals count as longer [m], by name: what their dues and time are worth.
+
+    No more than what they save on the known routes: so the ways through them and round them are
+    bounded at once.
+    """
+    chart, prices = trade_off.context.chart, trade_off.objective.prices
+    slow, rates = _slowness_and_rates(trade_off, current)
+    price = _least_zone_factor(trade_off) * min(prices.inside, prices.outside)
+    per_metre = float(np.min(slow * (price * rates + prices.time)))
+    if not per_metre > 0.0:
+        return {canal.name: 0.0 for canal in canals}
+    lengths = [(canals_passed(route, chart), priced_length(route, chart)) for route in routes]
+    names = {canal.name for canal in canals}
+    free = [length for passed, length in lengths if names.isdisjoint(one.name for one in passed)]
+    longer = {}
+    for canal in canals:
+        worth = prices.dues * canal.fee / per_metre
+        worth += max(canal.transit_time / float(slow.min()) - canal.length, 0.0)
+        through = [
+            length for passed, length in lengths if canal.name in {one.name for one in passed}
+        ]
+        saved = min(free, default=math.inf) - min(through, default=math.inf)
+        longer[canal.name] = max(min(worth, saved), 0.0) if through else 0.0
+    return longer
+
+
+def _least_by_canal(trade_off: TradeOffContext, canal: Canal) -> float:
+    """Return a length [m] that no route is shorter than that touches a canal."""
+    start, goal = trade_off.ends
+    way = min(
+        float(distance(start.lat, start.lon, *end) + distance(*end, goal.lat, goal.lon))
+        for end in canal.ends
+    )
+    return way - 2.0 * canal.length
 
 
 def _paid_in_approaches(trade_off: TradeOffContext) -> set[str]:
@@ -205,49 +316,6 @@ def _paid_in_approaches(trade_off: TradeOffContext) -> set[str]:
     lines = [end.approach.line for end in trade_off.ends if end.approach is not None]
     numbers = [part_number_of_legs(canals, *np.array(line, float).T) for line in lines]
     return {canals[k].name for number in numbers for k in number[number >= 0].tolist()}
-
-
-def _passes_one_of(route: Route, canals: Sequence[Canal], chart: Chart) -> bool:
-    passed = {canal.name for canal in canals_passed(route, chart)}
-    return not passed.isdisjoint(canal.name for canal in canals)
-
-
-def certified_lengths(
-    trade_off: TradeOffContext, routes: Sequence[Route]
-) -> list[tuple[float, float]]:
-    """Return pairs of lengths [m], inside the control areas and in all, for `certain_front`.
-
-    Each route costs no less than a mixture of the pairs, at any speeds.
-
-    Parameters
-    ----------
-    routes : Of the front.
-
-    Notes
-    -----
-    With D metres inside the areas and C outside, every route has ``D + C >= L`` for the least
-    length, ``D >= N`` for the least way out of areas at the ends, and ``q D + C >= W`` for the
-    least length ``W`` when a metre inside counts ``q``. The pairs are the corners of what these
-    leave of the plane of D and C, for some q. So that ``W`` need not be found on a mesh alone, it
-    is bounded by the geodesics to the exits of the areas and on from there, too.
-    """
-    context, prices = trade_off.context, trade_off.objective.prices
-    length, shortest = certified_length(trade_off, routes), _shortest(routes)
-    if not prices.inside > prices.outside or not context.chart.zones.eca:
-        return [(0.0, length)]
-    inside, lines = _lines_by_exits(trade_off)
-    inside = min(length, inside)
-    lines.append((1.0, length))
-    if inside < length and len(trade_off.ends) == 2 and shortest is not None:
-        most = min(prices.inside / max(prices.outside, _NO_PRICE), _LARGEST_RATIO)
-        for ratio in most ** (np.arange(1, _RATIOS + 1) / _RATIOS):
-            if trade_off.interrupt_guard.stopped():
-                break
-            found = certified_priced_length(
-                context, shortest, price=float(ratio), seconds=_seconds(trade_off)
-            )
-            lines.append((ratio, found.value))
-    return corners_of_lengths(inside, lines)
 
 
 def _lines_by_exits(trade_off: TradeOffContext) -> tuple[float, list[tuple[float, float]]]:
@@ -305,12 +373,6 @@ def corners_of_lengths(
     return [(float(x[k]), float(x[k] + y[k])) for k in hull]
 
 
-def _shortest(routes: Sequence[Route]) -> Route | None:
-    """Return the shortest feasible route; None where there is none."""
-    feasible = [route for route in routes if route.feasible]
-    return min(feasible, key=lambda route: float(route.legs["length"].sum()), default=None)
-
-
 def _seconds(trade_off: TradeOffContext) -> float:
     """Return the time for a bound of lengths [s]."""
     seconds = trade_off.context.proof_seconds
@@ -325,8 +387,8 @@ def certified_length(trade_off: TradeOffContext, routes: Sequence[Route]) -> flo
     """
     context, ends = trade_off.context, trade_off.ends
     geodesic = sum(float(distance(a.lat, a.lon, b.lat, b.lon)) for a, b in itertools.pairwise(ends))
-    shortest = _shortest(routes)
-    if len(ends) > 2 or shortest is None or trade_off.interrupt_guard.stopped():
+    feasible = [route for route in routes if route.feasible]
+    if len(ends) > 2 or not feasible or trade_off.interrupt_guard.stopped():
         return geodesic
-    found = certified_distance(context, shortest, seconds=_seconds(trade_off))
+    found = certified_distance(context, feasible, seconds=_seconds(trade_off))
     return max(geodesic, found.value) if math.isfinite(found.value) else geodesic

@@ -15,8 +15,8 @@ from thalweg.core.units import HOUR
 from thalweg.kernels.certificate.cost_conditions import PricedShip
 from thalweg.planning.pareto.bounds import (
     certain_front,
-    certified_lengths,
-    front_with_dues,
+    least_ways,
+    passes_counted_canal,
     strongest_current_of_plan,
 )
 from thalweg.planning.pareto.trade_off_context import (
@@ -24,7 +24,7 @@ from thalweg.planning.pareto.trade_off_context import (
     RefereedCandidate,
     TradeOffContext,
 )
-from thalweg.planning.single.certified_bound import TABLE_MARGIN
+from thalweg.planning.single.certified_bound import KEEPING_OUT, TABLE_MARGIN, kept_out
 from thalweg.search import table_bounds
 from thalweg.search.certificate.barrier_domain import PassageToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier
@@ -34,7 +34,7 @@ _KIND = (
     "certificate: checked in every cell of a mesh that no course and speed costs less than the "
     "bound counts there, for routes of at most {until:.1f} h between the sea ends of approaches"
 )
-WITH_DUES = "with the dues of canals, or the way round them"
+WITH_DUES = "with the time, dues and fuel of canals, or the way round them"
 _MOST_PRICES = 8
 _LEAST_GAIN = 1e-5  # share of the greatest value, below which the lines add nothing
 _AFTER = 1e-9  # share of a time, to its next point
@@ -73,12 +73,12 @@ def certified_front(
     context, routes = trade_off.context, [item.route for item in ordered]
     allowed = (context.latest_arrival - context.voyage.earliest_departure) / HOUR
     current, kind = strongest_current_of_plan(trade_off, explored, routes)
-    lengths = certified_lengths(trade_off, routes)
-    points = certain_front(trade_off, lengths, current)
-    known = [*routes, *(one.fastest for one in explored)]
-    with_dues = front_with_dues(trade_off, known, lengths, current)
-    if with_dues is not None and with_dues[1, -1] > points[1, -1]:
-        points, kind = with_dues, f"{kind}; {WITH_DUES}"
+    ways = least_ways(trade_off, [*routes, *(one.fastest for one in explored)], current)
+    points = certain_front(trade_off, ways, current)
+    if len(ways) > 1 and passes_counted_canal(trade_off, routes):
+        kind = f"{kind}; {WITH_DUES}"
+    if kept_out(context.chart, routes):
+        kind = f"{kind}; for routes {KEEPING_OUT}"
     if trade_off.interrupt_guard.stopped() or not context.proof_seconds:
         return CertifiedFront(points, kind, allowed)
     lines, until, sampling = certified_lines(trade_off, ordered, seconds=context.proof_seconds)
@@ -159,7 +159,7 @@ def _cost_to_bound(trade_off: TradeOffContext, feasible: list[RefereedCandidate]
         context.sea, context.chart, ship, context.needs.channels,
         (float(lat[0]), float(lon[0])), (float(lat[-1]), float(lon[-1])),
         depart=min(departures), known=max(route.time_h for route in routes) * HOUR,
-        latest=max(departures),
+        latest=max(departures), kept_out=kept_out(context.chart, routes),
     )  # fmt: skip
     factor = 1.0
     if prices.dues > 0.0:  # a route off the network may sail in the cheapest zone throughout

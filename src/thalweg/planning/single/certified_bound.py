@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thalweg.chart.zones.traffic_schemes import INSHORE
 from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
 from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.route_summary import canals_passed
 from thalweg.route import Route
 from thalweg.sea import Sea
 from thalweg.search import LowerBound
@@ -27,12 +31,17 @@ from thalweg.search.certificate.time_certificate import (
 )
 from thalweg.ship import PerformanceTable, TableError, TablePart
 
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
 _BARRIER_KIND = (
     "certificate: no ship gets ahead of an arrival-time function that was checked in every cell "
     "of a mesh ({cells} cells along the way)"
 )
 _GEODESIC_KIND = "certificate: the geodesic at the greatest speed over ground in the data"
 _HOLDS_FOR = "; it holds for all routes in open water"
+#: Of bounds that count inshore traffic zones as closed.
+KEEPING_OUT = "that keep out of inshore traffic zones"
 #: Tables of ships whose speed varies have an error; bounds are lowered by this share.
 TABLE_MARGIN = 1e-3
 #: A bound this share above the value of a route contradicts it.
@@ -82,7 +91,7 @@ def certified_bound(
     margin = 1.0 if by_length or not context.table.axes else 1.0 - TABLE_MARGIN
     if found.reached * margin > passage.known * (1.0 + _CONTRADICTION) + route.tolerance_s:
         return no_bound(_contradicted(found, passage.known, by_length=by_length))
-    return LowerBound(min(found.value * margin, passage.known), _kind(context, found))
+    return LowerBound(min(found.value * margin, passage.known), _kind(context, route, found))
 
 
 def path_through_data(
@@ -110,42 +119,71 @@ def path_through_data(
     return fast_path_on_raster(passage, max(cells, _FEWEST_CELLS_OF_PATH))
 
 
-def certified_distance(context: PlanningContext, route: Route, *, seconds: float) -> LowerBound:
-    """Return a lower bound of the length [m] of every route between the ends of a route.
-
-    Parameters
-    ----------
-    route : A feasible route.
-    seconds : Time that the search for the bound may take [s].
-
-    Returns
-    -------
-    LowerBound : With the lengths of canals on the way.
-    """
-    return LowerBound(certify_time(_still_water(context, route), seconds=seconds).value, "")
-
-
-def certified_priced_length(
-    context: PlanningContext, route: Route, *, price: float, seconds: float
+def certified_distance(
+    context: PlanningContext,
+    routes: Sequence[Route],
+    *,
+    price: float = 1.0,
+    longer: Mapping[str, float] = MappingProxyType({}),
+    seconds: float,
 ) -> LowerBound:
-    """Return a lower bound of the length [m], with dearer metres inside the control areas.
+    """Return a lower bound of the length [m] of every route between the ends of some routes.
 
     Parameters
     ----------
-    route : A feasible route.
+    routes : Feasible routes between the same ends.
     price : What a metre inside the control areas counts, 1 or more; others count 1.
+    longer : By how much canals count as longer than they are, by name [m].
     seconds : Time that the search for the bound may take [s].
 
     Returns
     -------
-    LowerBound : NaN near a pole and across half of the globe.
+    LowerBound : With the lengths of canals on the way; NaN where there is no mesh.
     """
-    lat, lon = route.track.lat, route.track.lon
-    inside = context.chart.zones.eca_fraction(lat[:-1], lon[:-1], lat[1:], lon[1:])
-    known = float((route.legs["length"] * (1.0 + (price - 1.0) * np.asarray(inside))).sum())
-    passage = replace(_still_water(context, route), known=known)
+    canals = tuple(
+        replace(canal, transit_time=canal.length + longer.get(canal.name, 0.0))
+        for canal in context.chart.canals
+    )
+    passage = replace(
+        _still_water(context, routes[0]),
+        chart=replace(context.chart, canals=canals),
+        known=min(priced_length(route, context.chart, price, longer) for route in routes),
+        kept_out=kept_out(context.chart, routes),
+    )
+    if price == 1.0:
+        return LowerBound(certify_time(passage, seconds=seconds).value, "")
     found = certify_priced_length(passage, price, seconds=seconds)
     return no_bound("") if found is None else LowerBound(found.value, "")
+
+
+def kept_out(chart: Chart, routes: Sequence[Route]) -> tuple[Any, ...]:
+    """Return the inshore traffic zones (shapely polygons) that none of some routes enters.
+
+    Ships on their way to other places keep out of them (Rule 10 (d)): bounds are for such routes.
+    """
+    lanes, entered = chart.zones.lanes, set()
+    zones = [number for number, lane in enumerate(lanes) if lane.name.endswith(INSHORE)]
+    for route in routes if zones else ():
+        lat, lon = np.asarray(route.track.lat, float), np.asarray(route.track.lon, float)
+        _, lane, share = chart.zones.lane_group.shares_against(lat[:-1], lon[:-1], lat[1:], lon[1:])
+        entered.update(np.asarray(lane)[np.asarray(share) > 0.0].tolist())
+    return tuple(lanes[number].shape for number in zones if number not in entered)
+
+
+def priced_length(
+    route: Route,
+    chart: Chart,
+    price: float = 1.0,
+    longer: Mapping[str, float] = MappingProxyType({}),
+) -> float:
+    """Return the length of a route [m] as `certified_distance` counts it."""
+    lengths = np.asarray(route.legs["length"], float)
+    if price != 1.0:
+        lat, lon = route.track.lat, route.track.lon
+        inside = np.asarray(chart.zones.eca_fraction(lat[:-1], lon[:-1], lat[1:], lon[1:]))
+        lengths = lengths * (1.0 + (price - 1.0) * inside)
+    extra = sum(longer.get(canal.name, 0.0) for canal in canals_passed(route, chart))
+    return float(lengths.sum()) + extra
 
 
 def certified_total(
@@ -231,10 +269,12 @@ def no_bound(why: str) -> LowerBound:
     return LowerBound(math.nan, why)
 
 
-def _kind(context: PlanningContext, found: TimeCertificate) -> str:
+def _kind(context: PlanningContext, route: Route, found: TimeCertificate) -> str:
     """Return how a bound was found and what it holds for, as text."""
     text = _BARRIER_KIND.format(cells=found.cells) if found.cells else _GEODESIC_KIND
-    text += _HOLDS_FOR
+    text += _HOLDS_FOR + (
+        f" {KEEPING_OUT}" if found.cells and kept_out(context.chart, [route]) else ""
+    )
     counted = []
     if found.cells:
         counted = ["land"]
@@ -263,6 +303,7 @@ def _passage(context: PlanningContext, route: Route) -> PassageToBound:
     return PassageToBound(
         context.sea, context.chart, ship, context.needs.channels, *_ends(route),
         depart=route.depart, known=route.time_h * HOUR,
+        kept_out=kept_out(context.chart, [route]),
     )  # fmt: skip
 
 
@@ -281,6 +322,7 @@ def _still_water(context: PlanningContext, route: Route) -> PassageToBound:
         *_ends(route),
         depart=route.depart,
         known=length,
+        kept_out=kept_out(context.chart, [route]),
     )
 
 

@@ -42,6 +42,8 @@ class FormulaLayer:
     time_step : Step [s] at which the formula is frozen; 0 for a field that never changes; None to
         choose it by the length of the window (see `automatic_times`).
     facts : Further plain facts for the provenance.
+    lipschitz : Greatest change a metre and a second by canonical name, where known
+        (`thalweg.sea.models.lipschitz_bounds.parse_lipschitz`).
     """
 
     variables: frozenset[str]
@@ -51,6 +53,7 @@ class FormulaLayer:
     period: tuple[float, float] | None = None
     time_step: float | None = None
     facts: Mapping[str, Any] = field(default_factory=dict)
+    lipschitz: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def sample(
         self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
@@ -111,6 +114,7 @@ class FormulaLayer:
             "area": [a.south, a.north, a.west, a.east],
             "period": list(self.period) if self.period else None,
             "time_step": self.time_step,
+            **({"lipschitz": dict(self.lipschitz)} if self.lipschitz else {}),
             **self.facts,
         }
 

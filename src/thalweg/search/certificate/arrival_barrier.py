@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,6 +30,7 @@ from thalweg.search.certificate.barrier_mesh import (
     plane_at_source,
     strongest_current_near,
 )
+from thalweg.search.certificate.linked_solutions import joined_edges, links_kept, solve_joined
 
 _KEPT_SHARE = 0.02  # of the step of the data, for windows in which speeds of cells are kept
 _BESIDE_BAND = 3  # cells that are solved on either side, so that values on its edge are right
@@ -44,7 +44,6 @@ _GENTLE_ROUNDS = 3  # closing rounds that correct nodes beside a cell by half on
 _DIVISIONS = 3  # of a barrier that closing rounds do not correct
 _RAISE = 0.7  # of the slack, where the barrier rises more slowly than it may
 _BESIDE_EXCESS = 0.5  # share of an excess by which nodes beside the corners of a cell are corrected
-_LINK_SLACK = 2e-3  # of the time of a canal, for the values at the centres of cells at its ends
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +138,7 @@ def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
         return np.minimum(phi, _CAP_RATIO * known)
 
     for number in range(rounds + _CLOSING_ROUNDS):
-        phi = _solve_with_links(mesh, solve, given, (1 + closing) * _LINK_SLACK)
+        phi = solve_joined(mesh, solve, given, 1.0 + closing)
         check_barrier(
             mesh.world, phi, task.counts(phi, 1.3), windows, task.forward, closing > 0, found, kept
         )
@@ -213,59 +212,6 @@ def no_kept_speeds(mesh: BarrierMesh) -> KeptSpeeds:
     return KeptSpeeds(first, last, np.empty((*cells, sectors), np.float32), longer)
 
 
-def _solve_with_links(
-    mesh: BarrierMesh,
-    solve: Callable[[FloatArray], FloatArray],
-    given: FloatArray,
-    slack: float,
-) -> FloatArray:
-    """Solve, and again with lower values at the ends of canals while these allow it.
-
-    Past a canal the barrier may be no more than its time higher than before it, less a share of
-    that time for the values at the centres of cells.
-    """
-    phi = solve(given)
-    for _ in range(2 * len(mesh.links)):
-        values, changed = given, False
-        for source, target, seconds in _one_way_links(mesh):
-            most = _least_value(mesh, phi, *source) + (1.0 - slack) * seconds
-            j, i = mesh.cell_of(*target)
-            corners = slice(j, j + 2), slice(i, i + 2)
-            if phi[corners].max() > most + 1.0:
-                values = values.copy() if values is given else values
-                values[corners] = np.fmin(values[corners], np.minimum(phi[corners], most))
-                changed = True
-        if not changed:
-            break
-        given = values
-        phi = solve(given)
-    return phi
-
-
-def _one_way_links(
-    mesh: BarrierMesh,
-) -> Iterator[tuple[tuple[float, float], tuple[float, float], float]]:
-    for link in mesh.links:
-        yield link.one, link.other, link.seconds
-        yield link.other, link.one, link.seconds
-
-
-def _least_value(mesh: BarrierMesh, phi: FloatArray, lat: float, lon: float) -> float:
-    """Return the least value at the corners of the cell of a position."""
-    j, i = mesh.cell_of(lat, lon)
-    return float(phi[j : j + 2, i : i + 2].min())
-
-
-def _links_kept(task: BarrierTask, phi: FloatArray, centre: FloatArray) -> bool:
-    """Return whether the barrier rises along no canal by more than the time it takes."""
-    mesh = task.mesh
-    for source, target, seconds in _one_way_links(mesh):
-        before, after = (mesh.value_at(phi, centre, *place) for place in (source, target))
-        if before < task.known and after - before > seconds:
-            return False
-    return True
-
-
 def _verified(
     task: BarrierTask,
     phi: FloatArray,
@@ -280,9 +226,14 @@ def _verified(
     mask = task.counts(phi)
     check_barrier(mesh.world, phi, mask, windows, task.forward, True, found, kept)
     excess, centre = found
-    if float(excess[mask].max(initial=-1.0)) > -_ROUNDING or not _links_kept(task, phi, centre):
+    if float(excess[mask].max(initial=-1.0)) > -_ROUNDING or not links_kept(
+        mesh, phi, centre, task.known
+    ):
+        return None
+    if mesh.is_round and not np.array_equal(phi, joined_edges(phi)):
         return None
     edges = mask[0].any() or mask[-1].any() or mask[:, 0].any() or mask[:, -1].any()
+    edges = edges and not mesh.is_round
     value = mesh.value_at(phi, centre, *task.target)
     return CheckedBarrier(phi, centre, value, not edges, factor)
 

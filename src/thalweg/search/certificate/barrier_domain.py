@@ -5,15 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from thalweg.core.geodesy import direct, distance
+from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH, SPEED_FIELD
 from thalweg.kernels.leg.raster_sampling import RasterArrays
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier
-from thalweg.search.certificate.barrier_raster import RasterRequest, freeze_barrier_raster
+from thalweg.search.certificate.barrier_raster import (
+    RasterRequest,
+    freeze_barrier_raster,
+    is_uniform,
+)
 from thalweg.search.certificate.closed_water import cells_inside
 
 if TYPE_CHECKING:
@@ -25,6 +30,8 @@ _MARGIN: Final = 1.02
 _CELLS_FOR_SPEED: Final = 60  # of functions, while the greatest speed over ground is sought
 _STEPS_ROUND_ELLIPSE: Final = 73
 _HALVINGS: Final = 24  # of the way to the ellipse, which leave a metre or two, outside of it
+_LARGEST_LATITUDE: Final = 86.0  # of a mesh [deg]
+_BEYOND_GLOBE: Final = 5.0  # of the area of a chart, for a mesh round the globe [deg]
 _GLOBE: Final = (-89.0, 89.0, -180.0, 180.0)  # south, north, west and east [deg]
 
 
@@ -40,6 +47,7 @@ class PassageToBound:
     depart : Departure, or the first one of a window [s since 1970-01-01T00:00Z].
     known : Time of a route that exists [s].
     latest : Last departure of a window [s since 1970-01-01T00:00Z].
+    kept_out : Polygons (x longitude, y latitude [deg]) that the routes of the bound keep out of.
     """
 
     sea: Sea
@@ -51,6 +59,7 @@ class PassageToBound:
     depart: float
     known: float
     latest: float | None = None
+    kept_out: tuple[Any, ...] = ()
 
     @property
     def length(self) -> float:
@@ -86,18 +95,22 @@ class BarrierDomain:
     sampling : How the sea of the raster differs from the data; "" where it does not.
     fastest : Upper bound of the speed over ground [m/s].
     ship : With an upper bound of the speed through water, also where that is a field.
+    margins : By how much the sea may differ from the raster, by channel.
     """
 
     raster: RasterArrays
     sampling: str
     fastest: float
     ship: ShipInBarrier
+    margins: FloatArray
 
     @classmethod
     def around(
         cls, passage: PassageToBound, cells: int, *, fastest: float = 0.0
     ) -> BarrierDomain | None:
-        """Return the domain of a passage; None near a pole and across half of the globe.
+        """Return the domain of a passage: round the globe where need be, in a uniform sea.
+
+        None near a pole and across half of the globe in other seas.
 
         Parameters
         ----------
@@ -134,10 +147,10 @@ class BarrierDomain:
         top = ship.top_speed
         if ship.speed_field is not None:
             top = _greatest(frozen.arrays, SPEED_FIELD)
-        speed = top + _strongest_current(frozen.arrays)
+        speed = top + _strongest_current(frozen.arrays, frozen.margins)
         speed = max(speed, passage.canal_speed(speed))
         sampling = frozen.sampling if flows or ship.speed_field is not None else ""
-        return cls(frozen.arrays, sampling, speed, replace(ship, top_speed=top))
+        return cls(frozen.arrays, sampling, speed, replace(ship, top_speed=top), frozen.margins)
 
     @classmethod
     def _within_reach(
@@ -148,6 +161,8 @@ class BarrierDomain:
         period = passage.depart, passage.depart + passage.departures + passage.known
         for _ in range(8):
             box = _box_of_routes(passage, fastest * _MARGIN)
+            if box is None and is_uniform(passage.sea):
+                box = _round_box(passage)
             if box is None:
                 return None
             request = RasterRequest(
@@ -157,10 +172,11 @@ class BarrierDomain:
             top = ship.top_speed
             if ship.speed_field is not None:
                 top = _greatest(frozen.arrays, SPEED_FIELD)
-            speed = top + _strongest_current(frozen.arrays)
+            speed = top + _strongest_current(frozen.arrays, frozen.margins)
             speed = max(speed, passage.canal_speed(speed))
             if speed <= fastest * _MARGIN:
-                return cls(frozen.arrays, frozen.sampling, speed, replace(ship, top_speed=top))
+                ship = replace(ship, top_speed=top)
+                return cls(frozen.arrays, frozen.sampling, speed, ship, frozen.margins)
             fastest = speed
         return None
 
@@ -172,7 +188,7 @@ class BarrierDomain:
     @property
     def strongest_current(self) -> float:
         """The strongest current in the domain [m/s]; 0 without currents."""
-        return _strongest_current(self.raster)
+        return _strongest_current(self.raster, self.margins)
 
     def from_departure(self, later: float) -> BarrierDomain:
         """Return the domain with times since a departure later than the first by so much [s]."""
@@ -200,13 +216,25 @@ def _greatest(raster: RasterArrays, channel: int) -> float:
     return float(np.nanmax(values, initial=0.0)) if np.isfinite(values).any() else 0.0
 
 
-def _strongest_current(raster: RasterArrays) -> float:
+def _strongest_current(raster: RasterArrays, margins: FloatArray) -> float:
     east, north = raster.channel_index[CURRENT_EAST], raster.channel_index[CURRENT_NORTH]
     if east < 0 or north < 0:
         return 0.0
     values = raster.values
     size = np.hypot(values[..., east], values[..., north])
-    return float(np.nanmax(size, initial=0.0)) if np.isfinite(size).any() else 0.0
+    known = float(np.nanmax(size, initial=0.0)) if np.isfinite(size).any() else 0.0
+    return known + float(margins[CURRENT_EAST])
+
+
+def _round_box(passage: PassageToBound) -> tuple[float, float, float, float]:
+    """Return a box all round the globe, but for the poles; its seam is far from the passage."""
+    south, north = -_LARGEST_LATITUDE, _LARGEST_LATITUDE
+    if passage.chart is not None:  # with some cells beyond, which are closed
+        south = max(south, passage.chart.area.south - _BEYOND_GLOBE)
+        north = min(north, passage.chart.area.north + _BEYOND_GLOBE)
+    start, goal = passage.start[1], passage.goal[1]
+    seam = start + 0.5 * ((goal - start + 180.0) % 360.0 - 180.0) - 180.0
+    return south, north, seam, seam + 360.0
 
 
 def _box_of_routes(
@@ -243,6 +271,6 @@ def _box_of_routes(
     if passage.chart is not None:  # with some cells beyond, which are closed
         area, beyond = passage.chart.area, 0.03 * (north - south) + 0.01
         south, north = max(south, area.south - beyond), min(north, area.north + beyond)
-    if south < -86.0 or north > 86.0 or east - west > 350.0:
+    if south < -_LARGEST_LATITUDE or north > _LARGEST_LATITUDE or east - west > 350.0:
         return None
     return south, north, west, east

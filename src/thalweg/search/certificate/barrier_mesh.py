@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from thalweg.core.ellipsoid import ECCENTRICITY_SQUARED, EQUATORIAL_RADIUS
 from thalweg.core.geodesy import distance
 from thalweg.core.types import FloatArray
 from thalweg.kernels.certificate.cell_conditions import BarrierWorld
-from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
+from thalweg.kernels.codes import CHANNEL_COUNT, CURRENT_EAST, CURRENT_NORTH
 from thalweg.kernels.leg.point_speed import ShipArrays
 from thalweg.kernels.leg.raster_sampling import RasterArrays
 from thalweg.kernels.leg.table_lookup import TableArrays, axes_needed
@@ -82,6 +82,11 @@ class BarrierMesh:
         """Numbers of nodes (Y, X)."""
         return self.lat.size, self.lon.size
 
+    @property
+    def is_round(self) -> bool:
+        """Whether the first and the last column are one meridian."""
+        return bool(self.lon[-1] - self.lon[0] > 360.0 - 1e-6)
+
     def cell_of(self, lat: float, lon: float) -> tuple[int, int]:
         """Return the row and column of the cell that contains a position [deg]."""
         east = (lon - self.lon[0]) % 360.0 + self.lon[0]
@@ -133,6 +138,8 @@ def build_mesh(
     *,
     departures: float = 0.0,
     by_steps: bool = False,
+    kept_out: Sequence[Any] = (),
+    margins: FloatArray | None = None,
 ) -> BarrierMesh:
     """Build the mesh that divides each cell of a raster into ``refinement`` squared cells.
 
@@ -143,6 +150,8 @@ def build_mesh(
     chart : Land, offing, zones and canals; None for open water.
     departures : From the first to the last departure [s].
     by_steps : Whether the raster samples functions, whose limits may open between its times.
+    kept_out : Polygons that count as no-go zones (`closed_cells`).
+    margins : By how much the sea may differ from the raster, by channel; by default not at all.
     """
     _, rows, columns, _ = raster.values.shape
     lat0, dlat, lon0, dlon = raster.corner
@@ -156,12 +165,13 @@ def build_mesh(
         0,
         east,
         north,
-        closed_cells(chart, lat, lon),
+        closed_cells(chart, lat, lon, kept_out),
         np.full((lat.size - 1, lon.size - 1), np.inf, np.float32),
         ShipArrays(ship.table, ship.setting, ship.limits, int(axes_needed(ship.table))),
         ship.top_speed,
         departures,
         by_steps,
+        np.zeros(CHANNEL_COUNT) if margins is None else margins,
     )
     return BarrierMesh(lat, lon, world, _links(chart, lat, lon))
 
@@ -205,7 +215,7 @@ def strongest_current_near(mesh: BarrierMesh, rows: slice, columns: slice) -> fl
     ]
     speed = np.hypot(part[..., east], part[..., north])
     known = speed[np.isfinite(speed)]
-    return float(known.max(initial=0.0))
+    return float(known.max(initial=0.0)) + float(mesh.world.margins[CURRENT_EAST])
 
 
 def slope_direction(mesh: BarrierMesh, phi: FloatArray, lat: float, lon: float) -> float | None:

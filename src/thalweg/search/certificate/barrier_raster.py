@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thalweg.core.types import FloatArray
-from thalweg.kernels.codes import SPEED_FIELD
+from thalweg.kernels.codes import CHANNEL_COUNT, SPEED_FIELD
 from thalweg.kernels.leg.raster_sampling import RasterArrays
 from thalweg.route.evaluators.time_evaluator import raster_arrays
 from thalweg.sea.frozen_fields import GridFields
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.grids.rectilinear_grid import RectilinearGrid
 from thalweg.sea.models.function_layer import FormulaLayer
+from thalweg.sea.models.lipschitz_bounds import greatest_spacing, margins_of_samples
 
 if TYPE_CHECKING:
     from thalweg.sea import Sea
@@ -36,10 +37,12 @@ class BarrierRaster:
     arrays : Times since departure [s].
     sampling : "" where the raster has the values and the interpolation of the data; otherwise a
         note on how it differs.
+    margins : By how much the sea may differ from the raster, by channel (`margins_of_samples`).
     """
 
     arrays: RasterArrays
     sampling: str
+    margins: FloatArray
 
 
 @dataclass(frozen=True)
@@ -98,7 +101,24 @@ def freeze_barrier_raster(request: RasterRequest) -> BarrierRaster:
         step = np.diff(fields.times).max() if fields.times.size > 1 else 0.0
         if lines is None and step > 0.0:
             notes.append(f"and every {step / 60.0:.0f} minutes")
-    return BarrierRaster(_arrays(fields, request.period[0]), ", ".join(notes))
+    margins = _margins(request, fields)
+    if margins is None:
+        margins = np.zeros(CHANNEL_COUNT)
+    elif notes:
+        notes.append("and between samples by the Lipschitz bounds of its functions")
+    return BarrierRaster(_arrays(fields, request.period[0]), ", ".join(notes), margins)
+
+
+def _margins(request: RasterRequest, fields: GridFields) -> FloatArray | None:
+    """Return by how much the sea may differ from its samples; None where that is not known."""
+    if request.speed_field is not None:
+        return None
+    rows = fields.values.shape[1]
+    lat: FloatArray = fields.lat0 + fields.dlat * np.arange(rows, dtype=np.float64)
+    present = np.flatnonzero(fields.channel_index >= 0)
+    channels = present[np.argsort(fields.channel_index[present])].tolist()
+    spacing = greatest_spacing(lat, fields.dlat, fields.dlon, fields.times)
+    return margins_of_samples(request.sea.layers, channels, fields.values, spacing)
 
 
 def _arrays(fields: GridFields, origin: float) -> RasterArrays:
@@ -113,6 +133,11 @@ def _arrays(fields: GridFields, origin: float) -> RasterArrays:
 def _is_uniform(layer: object) -> bool:
     """Return whether a layer has the same values everywhere."""
     return isinstance(layer, FormulaLayer) and "values" in layer.facts
+
+
+def is_uniform(sea: Sea) -> bool:
+    """Return whether a sea has the same values everywhere."""
+    return all(_is_uniform(layer) for layer in sea.layers)
 
 
 def _data_lines(sea: Sea) -> tuple[float, float, float] | None:

@@ -42,7 +42,7 @@ def seconds_a_cell(passage: PassageToBound, domain: BarrierDomain) -> float:
         return usual
     mesh = build_mesh(
         domain.raster, 1, domain.ship, None,
-        departures=passage.departures, by_steps=bool(domain.sampling),
+        departures=passage.departures, by_steps=bool(domain.sampling), margins=domain.margins,
     )  # fmt: skip
     from_start = mesh.least_times(*passage.start, domain.fastest)
     to_goal = mesh.least_times(*passage.goal, domain.fastest)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -21,7 +21,9 @@ _OFFING_SHARE: Final = 0.98  # routes may be nearer to land than required by a s
 _OUTLINE_PARTS: Final = 0.5  # of a cell: outlines of zones are great circles, split into these
 
 
-def closed_cells(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> BoolArray:
+def closed_cells(
+    chart: Chart | None, lat: FloatArray, lon: FloatArray, kept_out: Sequence[Any] = ()
+) -> BoolArray:
     """Return which cells of a mesh are closed all over, whatever the time.
 
     A cell is closed if it is land, no-go zone or closed shoal at its centre and no shore or outline
@@ -32,6 +34,7 @@ def closed_cells(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> BoolA
     ----------
     lat, lon : float64 array (Y,), (X,)
         Nodes [deg].
+    kept_out : Shapely polygons (x longitude, y latitude [deg]) that count as no-go zones too.
 
     Returns
     -------
@@ -56,7 +59,11 @@ def closed_cells(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> BoolA
         closed |= too_near.reshape(shape)
     if chart.zones.closed_shapes:
         inside = points_inside(chart.zones.closed_index, *centres).reshape(shape)
-        closed |= inside & ~_touched(_zone_outlines(chart, lat[1] - lat[0]), lat, lon)
+        outlines = _zone_outlines(chart.zones.closed_shapes, lat[1] - lat[0])
+        closed |= inside & ~_touched(outlines, lat, lon)
+    if kept_out:
+        inside = _inside_one_of(kept_out, *centres).reshape(shape)
+        closed |= inside & ~_touched(_zone_outlines(kept_out, lat[1] - lat[0]), lat, lon)
     result: BoolArray = closed
     return result
 
@@ -94,9 +101,21 @@ def _outside_area(chart: Chart, lat: FloatArray, lon: FloatArray) -> BoolArray:
     return np.broadcast_to(rows[:, None], (rows.size, lon.size - 1))
 
 
-def _zone_outlines(chart: Chart, spacing: float) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Yield the outlines of closed zones and shoals as close positions [deg] on great circles."""
-    for shape in chart.zones.closed_shapes:
+def _inside_one_of(shapes: Sequence[Any], lat: FloatArray, lon: FloatArray) -> BoolArray:
+    import shapely
+
+    inside = np.zeros(lat.size, bool)
+    for shape in shapes:
+        middle = 0.5 * (shape.bounds[0] + shape.bounds[2])
+        inside |= shapely.contains_xy(shape, (lon - middle + 180.0) % 360.0 - 180.0 + middle, lat)
+    return inside
+
+
+def _zone_outlines(
+    shapes: Sequence[Any], spacing: float
+) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Yield the outlines of polygons as close positions [deg] on great circles."""
+    for shape in shapes:
         for ring in (shape.exterior, *shape.interiors):
             lon, lat = np.asarray(ring.coords, float)[:, :2].T
             step = max(_OUTLINE_PARTS * spacing * METRES_PER_DEGREE, 100.0)

@@ -107,7 +107,7 @@ def certify_costs(
     Returns
     -------
     CostCertificate
-        Without bounds near a pole and across half of the globe, and where canals are in reach.
+        Without bounds near a pole and across half of the globe.
     """
     began, count = clock.perf_counter(), len(prices_of_time)
     best = CostCertificate(np.full(count, -math.inf), 0, "")
@@ -135,9 +135,8 @@ def certify_costs(
         mesh = build_mesh(
             raster, refinement, domain.ship, cost.passage.chart,
             departures=cost.passage.departures, by_steps=bool(domain.sampling),
+            kept_out=cost.passage.kept_out, margins=domain.margins,
         )  # fmt: skip
-        if mesh.links:
-            return CostCertificate(np.full(count, -math.inf), 0, "")
         level = _CostLevel.on(mesh, cost, domain.fastest, float((known / per_metre).max()))
         found = [level.bound(*row) for row in zip(seconds_each, known, per_metre)]
         best = CostCertificate(np.maximum(best.values, found), wide, domain.sampling)
@@ -236,9 +235,23 @@ class _CostLevel:
             check_cost_barrier(
                 mesh.world, self.motions, rates, phi, candidate, self.windows, excess
             )
+            if self._falls_along_canals(phi, second):
+                break
             best = max(best, self._proven(phi, excess, candidate, before, known))
             correct_factors(factor, excess, 0)
         return best
+
+    def _falls_along_canals(self, phi: FloatArray, second: float) -> bool:
+        """Return whether a barrier falls along a canal in reach by more than its time costs."""
+        for link in self.mesh.links:
+            cells = [self.mesh.cell_of(*end) for end in (link.one, link.other)]
+            if not all(self.wanted[cell] for cell in cells):
+                continue
+            corners = [phi[j : j + 2, i : i + 2] for j, i in cells]
+            for one, other in (corners, corners[::-1]):
+                if one.max() - other.min() > second * link.seconds:
+                    return True
+        return False
 
     def _proven(
         self,

@@ -201,6 +201,7 @@ class BarrierSearch:
         mesh = build_mesh(
             domain.raster, self._refinement, domain.ship, passage.chart,
             departures=passage.departures, by_steps=bool(domain.sampling),
+            kept_out=passage.kept_out, margins=domain.margins,
         )  # fmt: skip
         self._level = _Level.on(mesh, passage, domain.fastest, self._level)
         task, barrier = self._level.certify(passage)
