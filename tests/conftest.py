@@ -81,7 +81,7 @@ def brief_fronts() -> Iterator[Any]:
 
     with pytest.MonkeyPatch.context() as patch:
         whole = trade_off_context.WHOLE_FRONT
-        brief = FrontDetail(16, 6, 40, 16, 12, 6, 12, 24, 5)
+        brief = FrontDetail(16, 6, 40, 16, 12, 6, 12, 24)
         patch.setattr(trade_off_context, "WHOLE_FRONT", brief)
         yield whole
 

@@ -84,3 +84,25 @@ def test_a_latest_arrival_that_only_the_refined_route_keeps_is_kept(objective) -
         plan(Voyage(**ends, arrive_by=early), **given)
     earliest = parse_time(caught.value.details["earliest"])
     assert earliest == pytest.approx(fastest.best.arrive, abs=5.0)
+
+
+def test_least_fuel_arrives_at_the_latest_arrival() -> None:
+    """120 nm in 11 h with 8, 10 or 12 kn and fuel by the cube: 10 and 12 kn to the last minute."""
+    ship = Ship.from_dict(
+        {
+            "name": "cubic",
+            "hull": {"draught_m": 5.0},
+            "speeds_kn": [8.0, 10.0, 12.0],
+            "engine": {"reference_speed_kn": 12.0},
+            "fuel": {"reference_t_per_day": 24.0},
+            "models": {"calm_water": "cubic"},
+        }
+    )
+    latest = DEPART + 11.0 * HOUR
+    voyage = Voyage(**ENDS, objective="fuel", arrive_by=latest, speed_block_h=0.0)
+    best = plan(voyage, ship=ship, sea=Sea.calm(), chart=WATER, resolution=5000.0).best
+    assert latest - 60.0 < best.arrive <= latest
+    miles = float(distance(0.0, 0.0, 0.0, 2.0)) / 1852.0
+    fast = (miles - 110.0) / 2.0  # hours at 12 kn
+    fuel = fast * 1.0 + (11.0 - fast) * (10.0 / 12.0) ** 3
+    assert best.fuel_t == pytest.approx(fuel, rel=1e-3)

@@ -5,6 +5,7 @@ import pytest
 
 from thalweg import Chart
 from thalweg.core.errors import NoRouteError
+from thalweg.network import NetworkMeta
 from thalweg.planning.network_selection import network_builder, route_alternatives
 from thalweg.planning.network_selection.network_builder import LatticeBetween
 
@@ -16,6 +17,7 @@ class Built:
 
     def __init__(self, nodes=0, **options):
         self.n_nodes, self.options = nodes, options
+        self.meta = NetworkMeta("lattice", 1.0, 32, 0.1)
 
 
 @pytest.fixture
@@ -34,7 +36,7 @@ def calls(monkeypatch):
         return [start, (20.0, 30.0), goal], found["degrees"] * 111_195.0
 
     monkeypatch.setattr(network_builder, "lattice", lattice)
-    monkeypatch.setattr(LatticeBetween, "_globe_path", lambda self: path(None, *self._places))
+    monkeypatch.setattr(LatticeBetween, "_globe_path", lambda self: path(None, *self.places))
     return found
 
 
@@ -68,6 +70,17 @@ def test_open_water_and_short_voyages_need_no_globe_network(calls, monkeypatch):
     assert calls["lattices"][1]["along"] is None
 
 
+def test_the_lattice_of_default_resolution_is_built_once(calls):
+    """77 nm apart the spacing is 1.4 km: coasts are no finer than that or halved twice at most."""
+    lattices = LatticeBetween(Chart.open_water(), *NEAR)
+    found = [lattices.network(coast_levels=levels) for levels in range(4)]
+    assert lattices.network() in found
+    assert lattices.network(coast_levels=found.index(lattices.network())) is lattices.network()
+    assert len(calls["lattices"]) == 4
+    lattices.network(spacing=5000.0)
+    assert len(calls["lattices"]) == 5
+
+
 @pytest.mark.parametrize(
     ("nodes", "levels", "corridor"),
     [
@@ -90,7 +103,7 @@ def test_the_finest_lattice_that_is_small_enough_is_taken(monkeypatch, nodes, le
     monkeypatch.setattr(
         route_alternatives, "_corridor_lattice", lambda _, wide, places: Built(0, along=wide)
     )
-    found = route_alternatives._finest_small_lattice(Chart.open_water(), NEAR)
+    found = route_alternatives._finest_small_lattice(LatticeBetween(Chart.open_water(), *NEAR))
     assert ("along" in found.options) == corridor
     if not corridor:
         assert found.options["coast_levels"] == levels

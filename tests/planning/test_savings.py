@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
-from thalweg.planning.pareto.baseline import undercut_note
+from thalweg.planning.pareto.baseline import constant_speed_tracks, undercut_note
+from thalweg.route import Track
 
 START, GOAL = (0.0, 0.0), (0.0, 2.0)
 CHART = Chart.open_water(-1.0, 1.0, -0.5, 2.5)
@@ -90,3 +91,30 @@ def test_a_cheaper_route_for_comparison_is_explained():
     assert undercut_note(front, values, blind, np.array([110.0, 50.0])) is None
     blind[0].feasible = False
     assert undercut_note(front, values, blind, np.array([99.0, 50.0])) is None
+
+
+class Tabulated:
+    """An evaluator with a score for each track and setting: (time, cost, violation)."""
+
+    settings = 2
+
+    def __init__(self, scores):
+        self.scores = scores
+
+    def __call__(self, genomes):
+        rows = [self.scores[int(genome.setting[0])][k] for k, genome in enumerate(genomes)]
+        return tuple(np.array(rows, float).T)
+
+
+def test_a_constant_speed_is_sailed_on_its_cheapest_and_fastest_track():
+    tracks = [Track([0.0, lat, 0.0], [0.0, 1.0, 2.0], 0.0, None, [0, 1]) for lat in (0.0, 0.1, 0.2)]
+    slow = [(30.0, 5.0, 0.0), (31.0, 4.0, 0.0), (29.0, 3.9, 0.1)]  # the last is not feasible
+    fast = [(21.0, 8.0, 0.0), (20.0, 7.0, 0.0), (22.0, 9.0, 0.0)]
+    found = constant_speed_tracks(tracks, np.arange(2), Tabulated([slow, fast]))
+    assert [(k, track.setting.tolist()) for k, track in found] == [
+        (0, [0, 0]),
+        (1, [0, 0]),
+        (1, [1, 1]),
+    ]
+    closed = [(1.0, 1.0, 1.0)] * 3
+    assert constant_speed_tracks(tracks, np.arange(2), Tabulated([closed, closed])) == []

@@ -10,7 +10,12 @@ from thalweg import Chart, Sea, Ship, Voyage, evaluate
 from thalweg.core.limits import Limits
 from thalweg.core.objective import FUEL_MASS
 from thalweg.core.units import KNOT
-from thalweg.planning.pareto.cheapest_blocks import block_durations, cheapest_blocks
+from thalweg.planning.pareto.cheapest_blocks import (
+    BlockShift,
+    block_durations,
+    cheapest_blocks,
+    cheapest_shift,
+)
 from thalweg.planning.pareto.speed_blocks import in_speed_blocks, merged_settings
 from thalweg.planning.pareto.trade_off_context import RefereedCandidate, TrackCandidate
 from thalweg.route import Track
@@ -135,3 +140,22 @@ def test_a_short_block_goes_and_its_cost_is_stated():
     kept = in_speed_blocks(trade_off, before[:1])
     assert kept[0] is before[0]
     assert "keep shorter ones" in trade_off.notes[-1]
+
+
+def test_the_boundary_of_two_blocks_takes_the_time_that_is_left():
+    """Four pieces of 10 h at the slow setting 0 and 8 h at the fast one; 1 h is left."""
+    time, cost = np.tile([10.0, 8.0], (4, 1)), np.tile([3.0, 5.0], (4, 1))
+    for setting, expected in (
+        ([0, 0, 1, 1], BlockShift(2, 0.5, (0, 1))),  # half of the first fast piece becomes slow
+        ([1, 1, 0, 0], BlockShift(1, 0.5, (1, 0))),
+    ):
+        setting = np.array(setting)
+        assert cheapest_shift(setting, time, cost, 12.0, 37.0) == expected
+        assert cheapest_shift(setting, time, cost, 13.0, 37.0) is None  # 12 h of the fast block
+        assert cheapest_shift(setting, time, cost, 12.0, 36.0) is None  # no time is left
+    assert cheapest_shift(np.ones(4, int), time, cost, 12.0, 37.0) is None  # one block
+
+
+def test_a_boundary_is_not_moved_where_that_costs_more():
+    time, cost = np.tile([10.0, 8.0], (4, 1)), np.tile([6.0, 5.0], (4, 1))
+    assert cheapest_shift(np.array([0, 0, 1, 1]), time, cost, 1.0, 37.0) is None

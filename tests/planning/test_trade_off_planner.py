@@ -68,7 +68,7 @@ def test_with_a_deadline_two_neighbouring_speeds_are_mixed(brief_fronts, monkeyp
     share = 0.5  # of the time at each of the two speeds
     wanted = hours * HOUR * (share * fuel_per_second(8.0) + share * fuel_per_second(10.0))
     assert answer.best.arrive <= arrive + 1.0
-    assert answer.best.fuel_t == pytest.approx(wanted, rel=0.01)
+    assert answer.best.fuel_t == pytest.approx(wanted, rel=0.002)
     assert answer.best.fuel_t >= wanted * (1.0 - 1e-4)
 
 

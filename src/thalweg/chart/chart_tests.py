@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from functools import partial
+from functools import lru_cache, partial
 from typing import Final, Protocol
 
 import numpy as np
@@ -308,9 +308,8 @@ def chart_fingerprint(chart: ChartParts) -> str:
     str
         16 hexadecimal digits.
     """
-    digest = hashlib.sha256(chart.coastline.name.encode())
-    for array in (*chart.coastline.index[1:], chart.area.array()):
-        digest.update(np.ascontiguousarray(array).tobytes())
+    digest = _coastline_digest(chart.coastline).copy()
+    digest.update(chart.area.array().tobytes())
     layers = (layer.fingerprint() for layer in chart.depths.layers)
     off_land = [f"closed {passage.name}" for passage in chart.closed_passages]
     if chart.offing.distance > 0.0:
@@ -320,3 +319,11 @@ def chart_fingerprint(chart: ChartParts) -> str:
     for text in (*chart.zones.texts(), *layers, *map(repr, chart.canals), *off_land):
         digest.update(text.encode())
     return digest.hexdigest()[:16]
+
+
+@lru_cache(maxsize=2)
+def _coastline_digest(coastline: Coastline) -> hashlib._Hash:
+    digest = hashlib.sha256(coastline.name.encode())
+    for array in coastline.index[1:]:
+        digest.update(np.ascontiguousarray(array).reshape(-1).view(np.uint8).data)
+    return digest

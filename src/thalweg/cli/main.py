@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import difflib
+import gc
 import os
 import re
 import sys
@@ -33,6 +34,9 @@ from thalweg.cli.serve import serve_command
 from thalweg.cli.ship import ship_command
 from thalweg.cli.tides import tides_command
 from thalweg.core.errors import InputError, ThalwegError, ThalwegWarning
+
+#: New objects until the next search for cycles among them: imports and plans make many that stay.
+_GARBAGE_COLLECTION_THRESHOLD = 10_000
 
 _COMMANDS = (
     plan_command.add_command,
@@ -136,6 +140,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     int : 0 done, 2 bad input, 3 no coverage, 4 no route.
     """
     as_json = "--json" in (sys.argv[1:] if argv is None else argv)
+    gc.set_threshold(_GARBAGE_COLLECTION_THRESHOLD)
     _prepare_streams()
     try:
         code = _run_command(argv, as_json)

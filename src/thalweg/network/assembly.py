@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 RejectionCounts: TypeAlias = dict[str, int]
-_CHUNK_SIZE = 1_000_000
+_CHUNK_SIZE = 100_000
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,6 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from scipy.optimize import brentq
-
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.geodesy import distance
@@ -287,6 +285,8 @@ def _solve(search: _Search, first: tuple[float, Plan]) -> tuple[float, Plan]:
 
 def _next_value(search: _Search, plan: Plan, low: float, high: float) -> float:
     """Return the value at which the track of a plan arrives in time; else the middle."""
+    from scipy.optimize import brentq
+
     aim = search.arrive - _AIM
 
     def late(value: float) -> float:

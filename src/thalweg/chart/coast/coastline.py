@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property, lru_cache, partial
 from typing import Any, Final
 
 import numpy as np
@@ -46,17 +46,15 @@ class Coastline:
     ) -> Coastline:
         """Return the land of the world from GSHHG (see `thalweg.chart.Chart.gshhg`).
 
+        Charts of one process share it.
+
         Parameters
         ----------
         resolution : 'c', 'l', 'i', 'h' or 'f'.
         narrows_closed : Whether narrows that no ship should use, and dams, are land.
         islets : Whether resolutions i and h have the islets that they lack.
         """
-        choice = {"narrows_closed": narrows_closed, "islets": islets}
-        name = f"GSHHG {resolution}" + ("" if narrows_closed else ", narrows open")
-        name += "" if islets else ", without islets"
-        read = partial(read_land_rings, resolution, **choice)
-        return cls(name, gshhg_index(resolution, **choice), read)
+        return _gshhg(resolution, narrows_closed, islets)
 
     @classmethod
     def none(cls) -> Coastline:
@@ -121,3 +119,12 @@ class Coastline:
     def polygons(self, south: float, north: float, west: float, east: float) -> list[Any]:
         """Return the land in a box [deg] as shapely polygons (x lon, y lat) [deg], for drawing."""
         return land_polygons(self.rings, south, north, west, east)
+
+
+@lru_cache(maxsize=2)
+def _gshhg(resolution: str, narrows_closed: bool, islets: bool) -> Coastline:
+    choice = {"narrows_closed": narrows_closed, "islets": islets}
+    name = f"GSHHG {resolution}" + ("" if narrows_closed else ", narrows open")
+    name += "" if islets else ", without islets"
+    read = partial(read_land_rings, resolution, **choice)
+    return Coastline(name, gshhg_index(resolution, **choice), read)

@@ -160,6 +160,13 @@ def default_spacing(distance: float) -> float:
     return min(max(distance / 100.0, 100.0), 30.0 * NAUTICAL_MILE)
 
 
+def default_coast_levels(chart: Chart, spacing: float) -> int:
+    """Return how often a lattice halves its spacing [m] towards coasts by default."""
+    finest = min(max(spacing / 8.0, 250.0), _FINEST_COAST_SPACING)
+    finest = max(finest, _OFFING_SPACING * chart.offing.distance)  # no narrow water is left
+    return min(max(round(math.log2(spacing / finest)), 0), 6)
+
+
 def _default_slack(distance: float) -> float:
     decades = math.log10(max(distance / NAUTICAL_MILE, 1.0) / 100.0)
     return 1.0 - 0.65 * min(max(decades, 0.0), 1.0)
@@ -210,9 +217,7 @@ def _make_request(
     coast_budget = NODE_BUDGET if coast_levels is None else MAX_NODE_BUDGET
     own = default_spacing(distance) if spacing is None else min(spacing, distance)
     if coast_levels is None:
-        finest = min(max(own / 8.0, 250.0), _FINEST_COAST_SPACING)
-        finest = max(finest, _OFFING_SPACING * chart.offing.distance)  # no narrow water is left
-        coast_levels = min(max(round(math.log2(own / finest)), 0), 6)
+        coast_levels = default_coast_levels(chart, own)
     return LatticeRequest(
         chart, start, goal, own, coast_levels, orientation, area, budget, coast_budget
     )

@@ -19,6 +19,7 @@ from thalweg.network import (
 )
 from thalweg.network.global_grid.globe_builder import globe_path
 from thalweg.network.layered.sections_round_land import layered_section
+from thalweg.network.regional_lattice.lattice_builder import default_coast_levels, default_spacing
 from thalweg.planning.network_selection.model_mesh import model_mesh_network
 from thalweg.planning.request.network_choice import NetworkChoice
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -69,11 +70,13 @@ class LatticeBetween:
     """Lattices of several resolutions between two places; the way round land is found once.
 
     They cover all water between the places unless the voyage is long and land is between them:
-    then the water along the path of the globe network.
+    then the water along the path of the globe network. The lattice of default resolution is built
+    once.
     """
 
     def __init__(self, chart: Chart, start: Position, goal: Position) -> None:
-        self._chart, self._places = chart, (start, goal)
+        self.chart, self.places = chart, (start, goal)
+        self._default: Network | None = None
         self._distance = float(distance(*start, *goal))
         far = self._distance >= _LONG_DISTANCE and chart.area.width >= 360.0
         self._limits_detour, self._path = far, self._long_way_round() if far else None
@@ -85,8 +88,25 @@ class LatticeBetween:
         ------
         NoRouteError : If start and goal do not connect.
         """
+        is_default = spacing is None and coast_levels in (None, self._default_levels())
+        if is_default and self._default is not None:
+            return self._default
+        found = self._built(spacing, coast_levels)
+        if is_default and not found.meta.notes:  # not coarsened, which depends on what is given
+            self._default = found
+        return found
+
+    def _default_levels(self) -> int:
+        """Return the number of coast levels of the lattice of default resolution."""
+        length = self._distance
+        if self._path is not None:
+            lat, lon = np.array(self._path, float).T
+            length = float(np.sum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
+        return default_coast_levels(self.chart, default_spacing(length))
+
+    def _built(self, spacing: float | None, coast_levels: int | None) -> Network:
         build = partial(
-            lattice, self._chart, *self._places, spacing=spacing, coast_levels=coast_levels
+            lattice, self.chart, *self.places, spacing=spacing, coast_levels=coast_levels
         )
         if self._limits_detour and self._path is None:
             try:
@@ -97,8 +117,8 @@ class LatticeBetween:
 
     def _long_way_round(self) -> list[Position] | None:
         """Return the path over the globe network if it is surely too long for a whole lattice."""
-        (lat, lon), (to_lat, to_lon) = self._places
-        if not np.any(self._chart.legs_blocked(lat, lon, to_lat, to_lon)):
+        (lat, lon), (to_lat, to_lon) = self.places
+        if not np.any(self.chart.legs_blocked(lat, lon, to_lat, to_lon)):
             return None
         path, length = self._globe_path()
         return path if length > _SURE * _DETOUR_RATIO * self._distance else None
@@ -106,7 +126,7 @@ class LatticeBetween:
     def _globe_path(self) -> tuple[list[Position] | None, float]:
         """Return the shortest path over the globe network and its length [m]; None without one."""
         try:
-            return globe_path(self._chart, *self._places) or (None, 0.0)
+            return globe_path(self.chart, *self.places) or (None, 0.0)
         except NoRouteError:
             return None, 0.0
 

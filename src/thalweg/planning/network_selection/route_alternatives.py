@@ -32,10 +32,12 @@ class RouteAlternative:
     ----------
     name : Its canals, such as ``"suez"``; ``"open sea"`` without canals.
     network : From start to goal through all via points.
+    lattices : Of which the network is the finest small one, if it is one.
     """
 
     name: str
     network: Network
+    lattices: LatticeBetween | None = None
 
 
 def find_route_alternatives(
@@ -86,34 +88,36 @@ def _route_alternative(
     context = replace(context, chart=chart)
     places = [(end.lat, end.lon) for end in ends]
     choices = [context.choice.of_section(places, i) for i in range(len(ends) - 1)]
-    stretches = [
+    found = [
         _network(replace(context, choice=choice), a, b)
         for choice, (a, b) in zip(choices, itertools.pairwise(ends))
     ]
-    network = concatenate_networks(stretches, [None] * (len(stretches) - 1))
-    return RouteAlternative(" and ".join(canals_used(network, chart)) or "open sea", network)
+    network = concatenate_networks([one for one, _ in found], [None] * (len(found) - 1))
+    name = " and ".join(canals_used(network, chart)) or "open sea"
+    return RouteAlternative(name, network, found[0][1] if len(found) == 1 else None)
 
 
-def _network(context: PlanningContext, start: Endpoint, goal: Endpoint) -> Network:
-    """Return a network that is small enough for the search of a front."""
+def _network(
+    context: PlanningContext, start: Endpoint, goal: Endpoint
+) -> tuple[Network, LatticeBetween | None]:
+    """Return a network that is small enough for the search of a front, and its lattices."""
     choice = context.choice
     period = context.voyage.earliest_departure, context.data_end
     if choice.network not in ("auto", "lattice") or choice.spacing is not None:
-        return build_network(choice, context.chart, context.sea, (start, goal), period=period)
+        return build_network(choice, context.chart, context.sea, (start, goal), period=period), None
     if choice.network == "auto" and context.sea.mesh() is not None:
         network = build_network(choice, context.chart, context.sea, (start, goal), period=period)
         if network.meta.kind == "mesh":
-            return network
-    places = (start.lat, start.lon), (goal.lat, goal.lon)
-    return _finest_small_lattice(context.chart, places)
+            return network, None
+    lattices = LatticeBetween(context.chart, (start.lat, start.lon), (goal.lat, goal.lon))
+    return _finest_small_lattice(lattices), lattices
 
 
-def _finest_small_lattice(chart: Chart, places: tuple[Position, Position]) -> Network:
+def _finest_small_lattice(lattices: LatticeBetween) -> Network:
     """Return the lattice with the finest coasts that is small enough, else one in a corridor.
 
     The coarsest comes first: where it is too large, finer ones are too.
     """
-    lattices = LatticeBetween(chart, *places)
     found: Network | None = None
     refusal: NoRouteError | None = None
     for levels in range(_COAST_LEVELS + 1):
@@ -123,7 +127,7 @@ def _finest_small_lattice(chart: Chart, places: tuple[Position, Position]) -> Ne
             refusal = error
             continue
         if network.n_nodes > MAX_FRONT_NODES:
-            return found or _corridor_lattice(chart, network, places)
+            return found or _corridor_lattice(lattices.chart, network, lattices.places)
         found = network
     if found is None:
         assert refusal is not None  # no lattice was built

@@ -12,13 +12,16 @@ from numpy.typing import NDArray
 from thalweg.core.pareto_fronts import non_dominated_indices
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
+from thalweg.planning.pareto.trade_off_context import spread_settings
 from thalweg.planning.plan_front import BaselineComparison
 from thalweg.route import RefinementConditions, Route, Track, better_route, evaluate
+from thalweg.route.evaluators.population import Genome
 from thalweg.sea import Sea
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from thalweg.evolution import Evaluator
     from thalweg.planning.planning_context import PlanningContext
     from thalweg.planning.request.voyage_objective import PricedObjective
 
@@ -46,8 +49,9 @@ def weather_blind_tracks(
     )
     short = better_route(scored, conditions, objective="distance", wait=False).track
     legs = len(short.lat) - 1
-    chosen = settings[np.unique(np.linspace(0, len(settings) - 1, _MAX_SPEEDS).round().astype(int))]
-    return [short.replaced(setting=np.full(legs, s)) for s in chosen]
+    return [
+        short.replaced(setting=np.full(legs, s)) for s in spread_settings(settings, _MAX_SPEEDS)
+    ]
 
 
 def _calm_sea(context: PlanningContext) -> Sea:
@@ -65,27 +69,32 @@ def evaluate_weather_blind(
 
 
 def constant_speed_tracks(
-    tracks: Sequence[Track], settings: NDArray[np.int64], most: int
+    tracks: Sequence[Track], settings: NDArray[np.int64], evaluator: Evaluator
 ) -> list[tuple[int, Track]]:
-    """Return tracks chosen with the weather, each at up to six constant settings without waits.
+    """Return tracks chosen with the weather at up to six constant settings without waits.
 
     Parameters
     ----------
-    tracks : In order of time.
     settings : Speed settings to choose from, ascending.
-    most : Greatest number of tracks that are taken, the first and the last included.
+    evaluator : Of time and cost on tables, by which the tracks of each setting are chosen.
 
     Returns
     -------
-    list of (int, Track) : With the number of the track given.
+    list of (int, Track) : The cheapest and the fastest feasible track at each setting, with the
+        number of the track given.
     """
-    selected = np.unique(np.linspace(0, len(tracks) - 1, min(most, len(tracks))).round())
-    chosen = settings[np.unique(np.linspace(0, len(settings) - 1, _MAX_SPEEDS).round().astype(int))]
-    return [
-        (k, tracks[k].replaced(wait=None, setting=np.full(len(tracks[k]) - 1, s), speed=None))
-        for k in selected.astype(int).tolist()
-        for s in chosen
-    ]
+    found = []
+    for setting in spread_settings(settings, _MAX_SPEEDS):
+        constant = [
+            track.replaced(wait=None, setting=np.full(len(track) - 1, setting), speed=None)
+            for track in tracks
+        ]
+        genomes = [Genome.from_track(track, settings=evaluator.settings) for track in constant]
+        time, cost, violation = evaluator(genomes)
+        feasible = np.flatnonzero(violation == 0.0)
+        front = feasible[non_dominated_indices(time[feasible], cost[feasible])]
+        found += [(int(k), constant[k]) for k in np.unique(front[[0, -1]] if len(front) else front)]
+    return found
 
 
 def no_reference_note(blind: Sequence[Route]) -> str | None:

@@ -51,6 +51,56 @@ def cheapest_blocks(
     return _best_pair(time, cost, least, available, fast, slow)
 
 
+class BlockShift(NamedTuple):
+    """A move of the boundary of two blocks into the piece beside it, in favour of the slower one.
+
+    Attributes
+    ----------
+    piece : That is cut.
+    share : Of the piece before the cut.
+    setting : Of the parts before and after the cut.
+    """
+
+    piece: int
+    share: float
+    setting: tuple[int, int]
+
+
+def cheapest_shift(
+    setting: IntArray, time: FloatArray, cost: FloatArray, least: float, available: float
+) -> BlockShift | None:
+    """Return the move of one boundary of blocks that saves most in the time that is left.
+
+    Parameters
+    ----------
+    setting : Of every piece, in blocks (`cheapest_blocks`).
+    time, cost, least, available : As for `cheapest_blocks`.
+
+    Returns
+    -------
+    BlockShift or None : None where none saves anything, or the faster block would become too short.
+    """
+    rows = np.arange(len(setting))
+    left = available - float(time[rows, setting].sum())
+    lasting = block_durations(setting, time[rows, setting])
+    best, most = None, 0.0
+    for block, k in enumerate(np.flatnonzero(np.diff(setting)).tolist()):
+        for piece, other, own in ((k, k + 1, block), (k + 1, k, block + 1)):
+            fast, slow = int(setting[piece]), int(setting[other])
+            more = time[piece, slow] - time[piece, fast]
+            saved = cost[piece, fast] - cost[piece, slow]
+            if not (more > left > 0.0 and saved * left / more > most):
+                continue
+            share = left / more
+            if lasting[own] - share * time[piece, fast] < least:
+                continue
+            most = saved * share
+            before = piece < other  # the slow block follows
+            cut = 1.0 - share if before else share
+            best = BlockShift(piece, cut, (fast, slow) if before else (slow, fast))
+    return best
+
+
 def block_durations(setting: IntArray, time: FloatArray) -> FloatArray:
     """Return the durations of the runs of equal settings, for the time of each piece."""
     first = np.flatnonzero(np.concatenate([[True], setting[1:] != setting[:-1]]))

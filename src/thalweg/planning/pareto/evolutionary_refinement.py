@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,7 @@ from thalweg.core.pareto_fronts import (
     non_dominated_indices,
 )
 from thalweg.core.types import FloatArray
+from thalweg.core.units import HOUR
 from thalweg.evolution import (
     EvaluationResolution,
     Evaluator,
@@ -34,7 +36,7 @@ from thalweg.planning.pareto.trade_off_context import (
     TrackCandidate,
     TradeOffContext,
 )
-from thalweg.route import Track
+from thalweg.route import Route, Track
 from thalweg.route.sea_raster import RasterSize, freeze_raster
 
 if TYPE_CHECKING:
@@ -42,6 +44,9 @@ if TYPE_CHECKING:
 
 #: Population and generations of an evolutionary method on its own.
 _EVOLUTION_POPULATION, _EVOLUTION_GENERATIONS = 100, 300
+#: Share of the time until the latest arrival that is left: tables and referee differ by less.
+_TIME_RESERVE = 3e-4
+_LATER = 0.1  # share of the voyage by which tracks near routes may arrive later
 _RASTER_SIZE = RasterSize(margin=0.15, min_cells=24, max_cells=240, largest=24_000_000)
 
 
@@ -122,7 +127,9 @@ def _evaluator(
 ) -> Evaluator:
     context = trade_off.context
     depart = context.voyage.earliest_departure
-    latest = context.latest_arrival if math.isfinite(context.latest_arrival) else context.data_end
+    latest = context.data_end
+    if math.isfinite(context.latest_arrival):
+        latest = depart + (1.0 - _TIME_RESERVE) * (context.latest_arrival - depart)
     assert explored.exact is not None  # an interrupted front is not refined
     slowest = max(point.path_arrive[-1] for point in explored.exact.points)
     until = min(latest, depart + 1.1 * (float(slowest) - depart) + 3600.0)
@@ -135,6 +142,24 @@ def _evaluator(
         latest=until,
         prices=trade_off.objective.prices,
         resolution=EvaluationResolution(total=total),
+    )
+
+
+def evaluator_around_routes(trade_off: TradeOffContext, routes: Sequence[Route]) -> Evaluator:
+    """Return an evaluator of tracks near some routes that arrive little later than these."""
+    context = trade_off.context
+    tracks = [route.track for route in routes]
+    depart, arrive = min(t.depart for t in tracks), max(route.arrive for route in routes)
+    until = min(arrive + _LATER * (arrive - depart) + HOUR, context.data_end)
+    return make_evaluator(
+        TabulatedShip(context.table, trade_off.consumption, trade_off.limits),
+        freeze_around_tracks(trade_off, tracks, depart, until),
+        depart=depart,
+        chart=context.chart,
+        prices=trade_off.objective.prices,
+        resolution=EvaluationResolution(
+            total=float(np.median([route.legs["length"].sum() for route in routes]))
+        ),
     )
 
 

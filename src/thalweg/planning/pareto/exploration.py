@@ -16,7 +16,11 @@ from thalweg.planning.frozen_sea import FrozenSea
 from thalweg.planning.network_selection.route_alternatives import RouteAlternative
 from thalweg.planning.pareto.edge_costs import edge_costs
 from thalweg.planning.pareto.search_horizon import SearchHorizon, extend_horizon
-from thalweg.planning.pareto.trade_off_context import ExploredAlternative, TradeOffContext
+from thalweg.planning.pareto.trade_off_context import (
+    ExploredAlternative,
+    TradeOffContext,
+    spread_settings,
+)
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.single.route_candidates import refine_track, track_from_result
@@ -36,9 +40,12 @@ from thalweg.search import (
     NetworkFront,
     pareto_front,
 )
+from thalweg.search.pareto.discretisation import TABLE_TOLERANCE
 
 #: Number of time bins of a front; refinement corrects what they miss.
 _TIME_BINS = 300
+#: Settings, and tolerance of the tables of edges, where paths are refined.
+_REFINED_SETTINGS, _REFINED_TABLE_TOLERANCE = 8, 3e-3
 
 
 def explore_alternative(
@@ -56,7 +63,9 @@ def explore_alternative(
     trade_off.interrupt_guard.begin()
     context.report_progress(f"searching the front: {alternative.name}")
     try:
-        exact = network_pareto_front(trade_off, alternative.network, frozen, latest)
+        exact = network_pareto_front(
+            trade_off, alternative.network, frozen, latest, refined=trade_off.is_refined
+        )
     except SearchInterrupted:
         exact = None
     until = first.arrive + 0.5 * first.duration
@@ -165,8 +174,14 @@ def network_pareto_front(
     network: Network,
     frozen: FrozenSea,
     latest: float,
+    *,
+    refined: bool = False,
 ) -> NetworkFront:
     """Search the exact front of a network.
+
+    Parameters
+    ----------
+    refined : Whether its paths are refined: then eight settings and coarser tables of edges do.
 
     Raises
     ------
@@ -178,8 +193,14 @@ def network_pareto_front(
             raise SearchInterrupted
 
     ship, query = front_search(trade_off, network, frozen, latest)
+    tolerance = TABLE_TOLERANCE
+    if refined:
+        query = replace(query, settings=spread_settings(trade_off.settings, _REFINED_SETTINGS))
+        tolerance = _REFINED_TABLE_TOLERANCE
     bin_s = (latest - query.depart) / _TIME_BINS
-    return pareto_front(ship, query, bin_s=bin_s, lower=False, progress=progress)
+    return pareto_front(
+        ship, query, bin_s=bin_s, table_tolerance=tolerance, lower=False, progress=progress
+    )
 
 
 def front_search(

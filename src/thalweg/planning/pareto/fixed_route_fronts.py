@@ -8,6 +8,7 @@ and only their speeds and waits are optimised in the weather. Refinement starts 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from thalweg.core.interrupt import SearchInterrupted
 from thalweg.network import (
@@ -17,11 +18,15 @@ from thalweg.network import (
     alternative_paths,
     fixed_route,
 )
-from thalweg.planning.network_selection.network_builder import lattice_between
+from thalweg.planning.network_selection.network_builder import LatticeBetween
 from thalweg.planning.pareto.exploration import network_pareto_front
 from thalweg.planning.pareto.front_points import track_from_front_point
 from thalweg.planning.pareto.search_horizon import extend_horizon
-from thalweg.planning.pareto.trade_off_context import TrackCandidate, TradeOffContext
+from thalweg.planning.pareto.trade_off_context import (
+    ExploredAlternative,
+    TrackCandidate,
+    TradeOffContext,
+)
 
 _MAX_ALTERNATIVES = 5
 _MAX_DETOUR = 0.2  # excess of length or cost over the best
@@ -29,10 +34,16 @@ _LEGS_PER_ROUTE = 60  # between which the speed may change
 _POINTS_PER_FRONT = 24
 
 
-def fixed_route_candidates(trade_off: TradeOffContext) -> list[TrackCandidate]:
+def fixed_route_candidates(
+    trade_off: TradeOffContext, explored: Sequence[ExploredAlternative]
+) -> list[TrackCandidate]:
     """Return candidates along fixed alternative routes, with their best speeds.
 
     None with via points, and none where the user chose a network or a resolution.
+
+    Parameters
+    ----------
+    explored : Route alternatives, whose lattices are used again where they suit.
     """
     context = trade_off.context
     choice = context.choice
@@ -40,8 +51,12 @@ def fixed_route_candidates(trade_off: TradeOffContext) -> list[TrackCandidate]:
     if own or choice.spacing is not None or trade_off.via:
         return []
     context.report_progress("finding alternative routes around land and control areas")
-    start, goal = ((end.lat, end.lon) for end in (trade_off.ends[0], trade_off.ends[-1]))
-    network = lattice_between(context.chart, start, goal)
+    known = (one.alternative.lattices for one in explored)
+    lattices = next((one for one in known if one and one.chart is context.chart), None)
+    if lattices is None:
+        start, goal = ((end.lat, end.lon) for end in (trade_off.ends[0], trade_off.ends[-1]))
+        lattices = LatticeBetween(context.chart, start, goal)
+    network = lattices.network()
     if trade_off.interrupt_guard.stopped():
         return []
     candidates: list[TrackCandidate] = []
@@ -83,7 +98,9 @@ def _speed_optimised(trade_off: TradeOffContext, path: AlternativePath) -> list[
     horizon = extend_horizon(trade_off, network)
     if not horizon.first.found or horizon.first.arrive > horizon.latest:
         return []
-    found = network_pareto_front(trade_off, network, horizon.frozen, horizon.latest)
+    found = network_pareto_front(
+        trade_off, network, horizon.frozen, horizon.latest, refined=trade_off.is_refined
+    )
     name = " and ".join(path.canals) or "open sea"
     return [
         TrackCandidate(

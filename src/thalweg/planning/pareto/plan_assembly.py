@@ -196,9 +196,11 @@ def _constant_speed_candidates(
     found = [(route, "") for route in blind]
     if feasible and len(trade_off.settings) > 1 and not trade_off.interrupt_guard.stopped():
         context.report_progress("evaluating constant speeds")
-        tracks = constant_speed_tracks(
-            [item.route.track for item in feasible], trade_off.settings, trade_off.detail.constant
-        )
+        from thalweg.planning.pareto.evolutionary_refinement import evaluator_around_routes
+
+        routes = [item.route for item in feasible]
+        evaluator = evaluator_around_routes(trade_off, routes)
+        tracks = constant_speed_tracks([r.track for r in routes], trade_off.settings, evaluator)
         found += [
             (context.evaluate(track), feasible[way].candidate.alternative) for way, track in tracks
         ]

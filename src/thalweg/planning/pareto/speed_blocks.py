@@ -9,21 +9,18 @@ from numpy.typing import NDArray
 
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
-from thalweg.planning.pareto.cheapest_blocks import cheapest_blocks
+from thalweg.planning.pareto.cheapest_blocks import cheapest_blocks, cheapest_shift
 from thalweg.planning.pareto.front_points import essential_nodes
 from thalweg.planning.pareto.trade_off_context import RefereedCandidate, TradeOffContext
 from thalweg.route import Route, Track
 from thalweg.route.evaluators.cost_evaluator import CostEvaluator
-from thalweg.route.evaluators.evaluator_inputs import EvaluationResolution, TabulatedShip
 from thalweg.route.evaluators.polyline import polyline_of_track, track_of_polyline
-from thalweg.route.evaluators.population_evaluator import make_evaluator
 from thalweg.route.refinement.speed_profile import times_and_costs_by_setting
 
 #: A block is at least this share of the voyage where that is less than the requested duration.
 _SHARE_OF_PASSAGE = 0.25
 _PIECE_SHARE = 0.25  # of a block: the longest piece whose setting is chosen
 _ROUNDS = 2  # choices of blocks, each at the times of passage of the one before
-_LATER = 0.1  # share of the voyage by which blocks may arrive later within the frozen sea
 
 
 def in_speed_blocks(
@@ -45,7 +42,10 @@ def in_speed_blocks(
     block_duration = context.voyage.least_speed_block_h * HOUR
     if block_duration <= 0.0 or len(trade_off.settings) < 2:
         return scored
-    evaluator = _evaluator(trade_off, [item.route for item in scored])
+    from thalweg.planning.pareto.evolutionary_refinement import evaluator_around_routes
+
+    around = evaluator_around_routes(trade_off, [item.route for item in scored])
+    evaluator = CostEvaluator(around, 0.0)
     found = [_blocked(trade_off, item, block_duration, evaluator) for item in scored]
     _note_costs(trade_off, scored, found)
     return found
@@ -118,29 +118,6 @@ def _blocked(
     return item
 
 
-def _evaluator(trade_off: TradeOffContext, routes: list[Route]) -> CostEvaluator:
-    """Return an evaluator of the cost of legs around some routes."""
-    from thalweg.planning.pareto.evolutionary_refinement import freeze_around_tracks
-
-    context = trade_off.context
-    tracks = [route.track for route in routes]
-    depart, arrive = min(t.depart for t in tracks), max(route.arrive for route in routes)
-    until = min(arrive + _LATER * (arrive - depart) + HOUR, context.data_end)
-    return CostEvaluator(
-        make_evaluator(
-            TabulatedShip(context.table, trade_off.consumption, trade_off.limits),
-            freeze_around_tracks(trade_off, tracks, depart, until),
-            depart=depart,
-            chart=context.chart,
-            prices=trade_off.objective.prices,
-            resolution=EvaluationResolution(
-                total=float(np.median([route.legs["length"].sum() for route in routes]))
-            ),
-        ),
-        0.0,
-    )
-
-
 def _in_cheapest_blocks(route: Route, least: float, evaluator: CostEvaluator) -> Track | None:
     """Return the track of a route at the cheapest speeds in blocks; None if none is in time.
 
@@ -160,6 +137,8 @@ def _in_cheapest_blocks(route: Route, least: float, evaluator: CostEvaluator) ->
         if setting is None:
             return None
         line = replace(line, setting=setting)
+    shift = cheapest_shift(line.setting, times, costs, least, available)
+    line = line if shift is None else line.cut(*shift)
     return _with_settings(track_of_polyline(line, evaluator), line.setting)
 
 

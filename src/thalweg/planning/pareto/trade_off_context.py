@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thalweg.core.interrupt import InterruptGuard
 from thalweg.core.limits import Limits
@@ -36,7 +37,6 @@ class FrontDetail:
         which refinement starts.
     size, time_prices, exploration, generations : Of `thalweg.evolution.refine_front`.
     least, most : Number of routes that the referee evaluates.
-    constant : Greatest number of routes that are evaluated at constant speeds as well.
     """
 
     seeds: int
@@ -47,13 +47,18 @@ class FrontDetail:
     generations: int
     least: int
     most: int
-    constant: int
 
 
-WHOLE_FRONT = FrontDetail(48, 16, 140, 48, 60, 26, 40, 100, 5)
+WHOLE_FRONT = FrontDetail(24, 8, 140, 24, 60, 26, 24, 60)
 #: For the best route by one objective, with a few faster ones for comparison.
-BEST_ROUTE = FrontDetail(12, 6, 24, 6, 0, 0, 12, 12, 2)
+BEST_ROUTE = FrontDetail(6, 3, 24, 4, 0, 0, 12, 12)
 _ONE_BEST: Final = ("fuel", "energy", "cost", "co2")
+
+
+def spread_settings(settings: NDArray[np.int64], most: int) -> NDArray[np.int64]:
+    """Return at most ``most`` of some settings, evenly spread, with the first and the last."""
+    places = np.linspace(0, len(settings) - 1, most).round().astype(int)
+    return settings[np.unique(places)]
 
 
 @dataclass(frozen=True)
@@ -84,12 +89,17 @@ class TradeOffContext:
     def detail(self) -> FrontDetail:
         """How much of the front is computed.
 
-        With an arrival to keep, or in weather, the best route needs the front on both sides of it.
+        In weather the best route needs the front on both sides of it.
         """
         voyage = self.context.voyage
         one = voyage.objective in _ONE_BEST and voyage.method == "default"
-        steady = math.isinf(self.context.data_end) and math.isinf(self.context.latest_arrival)
+        steady = math.isinf(self.context.data_end)
         return BEST_ROUTE if one and steady else WHOLE_FRONT
+
+    @property
+    def is_refined(self) -> bool:
+        """Whether routes are refined in open water."""
+        return self.context.voyage.method != "exact" and not self.objective.prices.counts_water
 
     @property
     def via(self) -> tuple[Endpoint, ...]:

@@ -188,12 +188,12 @@ def _refined_candidates(
 ) -> list[TrackCandidate]:
     """Return candidates from fixed-route fronts and from refinement, as the method requires."""
     method, stopped = trade_off.context.voyage.method, trade_off.interrupt_guard.stopped
-    if method == "exact" or stopped() or trade_off.objective.prices.counts_water:
+    if stopped() or not trade_off.is_refined:
         return []
     from thalweg.planning.pareto.evolutionary_refinement import evolutionary_candidates
     from thalweg.planning.pareto.fixed_route_fronts import fixed_route_candidates
 
-    found = fixed_route_candidates(trade_off) if method == "default" else []
+    found = fixed_route_candidates(trade_off, explored) if method == "default" else []
     for one in explored:
         if stopped():
             break

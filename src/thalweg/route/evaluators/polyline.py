@@ -108,6 +108,21 @@ class Polyline:
             self.depart,
         )
 
+    def cut(self, leg: int, share: float, setting: tuple[int, int]) -> Polyline:
+        """Return the line with a point on one leg, and other settings of its two parts."""
+        ends = (self.lat[leg], self.lon[leg], self.lat[leg + 1], self.lon[leg + 1])
+        lat, lon = positions_along(*ends, share)
+        after = leg + 1
+        own = self.setting.copy()
+        own[leg] = setting[0]
+        return Polyline(
+            np.insert(self.lat, after, float(lat)),
+            unwrap_longitude(np.insert(self.lon, after, float(lon))),
+            np.insert(self.leave, after, -math.inf),
+            np.insert(own, after, setting[1]),
+            self.depart,
+        )
+
 
 def polyline_of_track(track: Track, evaluator: PolylineEvaluator) -> Polyline:
     """Return a track as a polyline; its waits become earliest departures.

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
-from scipy.optimize import minimize
 
 from thalweg.core.geodesy import METRES_PER_DEGREE, rough_lengths, unwrap_longitude, wrap_longitude
 from thalweg.core.types import FloatArray
@@ -289,6 +288,8 @@ class _BentLine:
         chosen = [k for k in range(count) if _may_gain(relative_loss, units[k])]
         if not chosen:
             return self
+        from scipy.optimize import minimize
+
         best = minimize(
             lambda shares: 1.0 + relative_loss(shares @ units[chosen]),
             np.zeros(len(chosen)),

@@ -94,7 +94,7 @@ class LateralDerivatives:
 
 
 def optimise_lateral_offsets(
-    tracks: AnyProblem, *, rounds: int, tolerance: float = 1e-7
+    tracks: AnyProblem, *, rounds: int, tolerance: float = 1e-6
 ) -> AnyProblem:
     r"""Return tracks with their points moved sideways to lower their value.
 
@@ -102,7 +102,7 @@ def optimise_lateral_offsets(
     ----------
     tracks : A batch of tracks, such as `ScoredTracks` or `SailedPolyline`.
     rounds : Newton iterations at most.
-    tolerance : Relative gain below which the iteration ends, when no track gains more.
+    tolerance : Relative gain of a round from which a track takes part in the next.
 
     Returns
     -------
@@ -120,20 +120,21 @@ def optimise_lateral_offsets(
     for several shares of damping :math:`d`, and tries several fractions of each step with the true
     value. Points at the ends of legs that cannot be sailed are held in further attempts.
     """
+    moving = np.arange(len(tracks.value))
     for _ in range(rounds):
         before = tracks.value
-        tracks = _newton_iteration(tracks)
-        if not (tracks.value < before * (1.0 - tolerance)).any():
+        tracks = _newton_iteration(tracks, moving)
+        moving = moving[(tracks.value < before * (1.0 - tolerance))[moving]]
+        if not len(moving):
             break
     return tracks
 
 
-def _newton_iteration(tracks: AnyProblem) -> AnyProblem:
-    """Return tracks after one Newton step each, with attempts that hold ever more points."""
-    derivatives = _lateral_derivatives(tracks)
+def _newton_iteration(tracks: AnyProblem, waiting: IntArray) -> AnyProblem:
+    """Return tracks after one Newton step of some, with attempts that hold ever more points."""
+    derivatives = _lateral_derivatives(tracks, waiting)
     largest = 0.5 * shorter_adjacent_legs(tracks.lengths())
     free, schedule = derivatives.known, tracks.step_schedule
-    waiting = np.arange(len(free))
     for _ in range(_ATTEMPTS):
         if not free[waiting].any():
             break
@@ -146,16 +147,18 @@ def _newton_iteration(tracks: AnyProblem) -> AnyProblem:
             break
         before = tracks.value
         tracks, held = tracks.best_of_offsets(offsets, waiting)
-        waiting = np.flatnonzero(~(tracks.value < before))  # no gain in this attempt
+        waiting = waiting[~(tracks.value < before)[waiting]]  # no gain in this attempt
         if not (held[waiting] & free[waiting]).any():
             break
         free = free & ~held
     return tracks
 
 
-def _lateral_derivatives(tracks: LateralProblem) -> LateralDerivatives:
-    """Difference the value of every leg over lateral offsets of its ends."""
+def _lateral_derivatives(tracks: LateralProblem, some: IntArray) -> LateralDerivatives:
+    """Difference the value of every leg of some tracks over lateral offsets of its ends."""
     row, place = tracks.legs
+    taken = np.isin(row, some)
+    row, place = row[taken], place[taken]
     lengths = tracks.lengths()
     step = np.maximum(DIFFERENCE_STEP * shorter_adjacent_legs(lengths), _MIN_DIFFERENCE)
     base, sp, sm, ep, em, pp, mm = tracks.perturbed_leg_values(row, place, step)

@@ -6,6 +6,7 @@ lower convex hull of the front.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -27,6 +28,7 @@ from thalweg.route.refinement.speed_profile import (
     leg_times_and_costs_by_setting,
 )
 
+_UNTIL_LATEST = 1.0 - 1e-6  # share of the time until the latest arrival that a track takes
 REFINEMENT_LEVELS = (12, 24, 40)  #: least number of legs of a track, level by level
 _REMOVAL_PASSES = 8  # passes at most that remove points at first
 _REMOVAL_LOSS = 2e-4  # share of the value that may be lost with a removed point
@@ -140,8 +142,9 @@ def _own_prices(scores: FloatArray, prices: FloatArray) -> FloatArray:
 def fill_front(lines: ScoredTracks, size: int) -> Population:
     """Return about ``size`` tracks evenly along a front, each made of its nearest track.
 
-    For the same geometry the cheapest change of time is to change settings in the order of the
-    cost of a second, the last one on a part of its leg.
+    One more arrives at the latest arrival of the evaluator, if it has one. For the same geometry
+    the cheapest change of time is to change settings in the order of the cost of a second, the last
+    one on a part of its leg.
 
     Parameters
     ----------
@@ -153,6 +156,9 @@ def fill_front(lines: ScoredTracks, size: int) -> Population:
     scores = lines.scores[front]
     along = length_along_front(scores[:, 0], scores[:, 1])
     targets = np.interp(np.linspace(0.0, along[-1], size), along, scores[:, 0])
+    available = lines.evaluator.latest - lines.evaluator.depart
+    if math.isfinite(available):
+        targets = np.append(targets, _UNTIL_LATEST * available)
     chosen = ScoredTracks(
         lines.evaluator,
         lines.population.take(front),

@@ -24,7 +24,7 @@ from thalweg.search.pareto.goal_bounds import BoundsToGoal
 
 #: What the tables of edges may be off from the legs, as a share of their duration or cost.
 TABLE_TOLERANCE = 1e-3
-_FINE, _CHEAP = 0.02 * TABLE_TOLERANCE, 3e7  # [bytes]
+_FINE, _CHEAP = 0.02, 3e7  # share of the tolerance; [bytes]
 _MAX_BINS = 2000
 _MIN_BINS = 250
 _MAX_RELAXATIONS = 4e9  # that bins chosen here may allow for; a good third of them come about
@@ -97,6 +97,7 @@ def choose_discretisation(
     *,
     bin_s: float | None,
     memory_limit: float,
+    table_tolerance: float = TABLE_TOLERANCE,
 ) -> Discretisation:
     """Choose bins and slices within the memory.
 
@@ -107,6 +108,7 @@ def choose_discretisation(
     bin_s : Width of the bins [s]; by default the horizon is divided into at most 2000, into fewer
         where the memory does not allow that or the relaxations would be too many.
     memory_limit : [bytes]
+    table_tolerance : What the tables of edges may be off from the legs, as a share.
 
     Raises
     ------
@@ -124,7 +126,9 @@ def choose_discretisation(
         ):
             width = _round_bin_width(width * 1.5)
             continue
-        slices, error, memory = _slices(front_problem, request, time_bins, windows, memory_limit)
+        slices, error, memory = _slices(
+            front_problem, request, time_bins, windows, memory_limit, table_tolerance
+        )
         if memory <= memory_limit:
             return Discretisation(time_bins, windows, slices, error, memory)
         if bin_s is not None or coarsest:
@@ -160,6 +164,7 @@ def _slices(
     time_bins: TimeBins,
     windows: BinWindows,
     memory_limit: float,
+    tolerance: float,
 ) -> tuple[FloatArray, float, int]:
     """Return the coarsest slices that are exact enough, finer ones where they cost little.
 
@@ -174,7 +179,7 @@ def _slices(
     chosen, error, memory, fine = ladder[0], math.inf, 0, False
     for slices in ladder:
         needed = _memory(front_problem, time_bins, windows, slices)
-        if error <= TABLE_TOLERANCE and (fine or needed > _CHEAP):
+        if error <= tolerance and (fine or needed > _CHEAP):
             break
         if error < math.inf and needed > most:
             break
@@ -184,7 +189,7 @@ def _slices(
             error = before
             break
         chosen, memory = slices, needed
-        fine = error <= _FINE and not closes
+        fine = error <= _FINE * tolerance and not closes
     return chosen, error, memory
 
 

@@ -18,6 +18,7 @@ from thalweg.kernels.pareto.label_arrays import PRUNED, RELAXED, VISITED, WAITED
 from thalweg.kernels.pareto.time_expanded_labels import process_bins
 from thalweg.search.pareto.discretisation import (
     PROGRESS_CHUNKS,
+    TABLE_TOLERANCE,
     Discretisation,
     choose_discretisation,
     new_active_nodes,
@@ -68,6 +69,7 @@ def pareto_front(
     *,
     bin_s: float | None = None,
     memory_limit: float = MEMORY_LIMIT,
+    table_tolerance: float = TABLE_TOLERANCE,
     lower: bool = True,
     progress: Callable[[float], None] | None = None,
 ) -> NetworkFront:
@@ -88,6 +90,8 @@ def pareto_front(
         2000 bins, fewer, but not below 250, where the memory or the work does not allow that).
     memory_limit : float
         Memory that may be taken [bytes].
+    table_tolerance : float
+        What durations and costs of edges between slices of time may be off, as a share.
     lower : bool
         Whether to search the lower front as well.
     progress : callable, optional
@@ -120,10 +124,10 @@ def pareto_front(
       earlier by less than the bin and lead to a better path. So the front is on or above the true
       one, and approaches it as the bins narrow.
     * While searching, durations and costs of edges are interpolated linearly between departures at
-      slices of time (``work.slices``; chosen so that the interpolation is right within 0.1 % at 95
-      % of a sample, see ``work.table_error``, or the tables would be too large). This may affect
-      a choice, but no result: all points are sailed again. Where an edge opens or closes between
-      two slices it is sailed exactly.
+      slices of time (``work.slices``), within ``table_tolerance`` at 95 % of a sample (see
+      ``work.table_error``) unless the tables would be too large. This may affect a choice, but no
+      result: all points are sailed again. Where an edge opens or closes between two slices it is
+      sailed exactly.
     * Where the ship may wait, a label is dropped if an earlier one costs no more with the waiting
       in between paid: exact, since the earlier ship can wait. A waiting ship leaves at slices, and
       where an edge is closed at all settings at one of the slices around, at the start of any bin.
@@ -149,7 +153,13 @@ def pareto_front(
     earliest = earliest_arrivals(front_problem, request, everywhere=True)
     first = _find_seed_paths(network, front_problem, request, bounds)
     plan = choose_discretisation(
-        front_problem, request, bounds, earliest.time, bin_s=bin_s, memory_limit=memory_limit
+        front_problem,
+        request,
+        bounds,
+        earliest.time,
+        bin_s=bin_s,
+        memory_limit=memory_limit,
+        table_tolerance=table_tolerance,
     )
     return _search(front_problem, request, bounds, plan, first, lower=lower, progress=progress)
 
@@ -207,13 +217,7 @@ def _search(
     below = LowerFront(np.empty(0), np.empty(0), 0, 0, 0)
     if lower:
         below = lower_front(
-            front_problem,
-            request,
-            bounds,
-            plan,
-            blocks,
-            points,
-            lambda share: report(share, 1),
+            front_problem, request, bounds, plan, blocks, points, lambda share: report(share, 1)
         )
     work = FrontWork(
         labels=int(counts[VISITED]) + below.labels,
