@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from thalweg.chart import Chart
@@ -41,19 +41,27 @@ class RouteAlternative:
 
 
 def find_route_alternatives(
-    context: PlanningContext, ends: Sequence[Endpoint]
+    context: PlanningContext, ends: Sequence[Endpoint], worth: Mapping[str, float]
 ) -> list[RouteAlternative]:
     """Return the route alternatives between the ends of a voyage.
 
+    Parameters
+    ----------
+    worth : Length [m] that costs as much as a canal, by its name: so much longer may the way round
+        it be.
+
+    Notes
+    -----
     The shortest one comes first. If it passes n canals there are up to 2^n - 1 more, one for every
-    set of them that is closed. Alternatives over `MAX_LENGTH_RATIO` times as long are left out, and
-    so are repeated ones. A network is built for each; `thalweg.network.paths_without_canals`
-    compares paths on one given network.
+    set of them that is closed. Alternatives over `MAX_LENGTH_RATIO` times as long, beyond what the
+    canals are worth, are left out, and so are repeated ones. A network is built for each;
+    `thalweg.network.paths_without_canals` compares paths on one given network.
     """
     context.report_progress(f"building the network from {ends[0].name} to {ends[-1].name}")
     first = _route_alternative(context, ends, context.chart)
     alternatives, used = {first.name: first}, canals_used(first.network, context.chart)
     longest = MAX_LENGTH_RATIO * _shortest_length(first.network)
+    longest += sum(worth.get(name, 0.0) for name in used)
 
     def find(closed: tuple[str, ...]) -> RouteAlternative | None:
         context.report_progress(f"building the network without {' and '.join(closed)}")

@@ -28,7 +28,6 @@ from thalweg.planning.single.certified_bound import (
     strongest_current_in_data,
 )
 from thalweg.route import Route
-from thalweg.search import table_bounds
 
 if TYPE_CHECKING:
     from thalweg.chart.canals import Canal
@@ -146,8 +145,8 @@ def _front_of_lengths(
     far as it takes to leave them, and a way out that is near is paid for by a longer route.
     """
     prices = trade_off.objective.prices
-    zone_factor = _least_zone_factor(trade_off)
-    slow, rates = _slowness_and_rates(trade_off, current)
+    zone_factor = trade_off.least_zone_factor
+    slow, rates = trade_off.slowness_and_rates(current)
     seconds, values = np.empty(0), np.empty(0)
     for inside, whole in lengths:
         parts = [(inside, prices.inside), (whole - inside, min(prices.inside, prices.outside))]
@@ -161,22 +160,6 @@ def _front_of_lengths(
         seconds, values = seconds[hull], values[hull]
     last = int(np.argmin(values)) + 1
     return np.array([seconds[:last] / HOUR, values[:last]])
-
-
-def _least_zone_factor(trade_off: TradeOffContext) -> float:
-    """Return the least factor on prices: a route may sail in the cheapest zone throughout."""
-    if not trade_off.objective.prices.dues > 0.0:
-        return 1.0
-    return min([1.0, *(float(factor) for _, factor in trade_off.context.chart.zones.price)])
-
-
-def _slowness_and_rates(
-    trade_off: TradeOffContext, current: float
-) -> tuple[FloatArray, FloatArray]:
-    """Return the least time of a metre [s] and the least consumption a second of each setting."""
-    rates = np.maximum(table_bounds(trade_off.consumption.kernel_arrays(), np.fmin), 0.0)
-    speed = [trade_off.context.ship.top_speed(int(s)) or math.inf for s in trade_off.settings]
-    return 1.0 / (np.array(speed, float) + current), rates[trade_off.settings]
 
 
 def least_ways(
@@ -267,8 +250,8 @@ def _value_of_canal(trade_off: TradeOffContext, canal: Canal, current: float) ->
         return value
     inside = float(zones.eca_fraction(*canal.ends[0], *canal.ends[1]))
     price = inside * prices.inside + (1.0 - inside) * prices.outside
-    rate = float(_slowness_and_rates(trade_off, current)[1].min())
-    return value + _least_zone_factor(trade_off) * price * rate * canal.transit_time
+    rate = float(trade_off.slowness_and_rates(current)[1].min())
+    return value + trade_off.least_zone_factor * price * rate * canal.transit_time
 
 
 def _longer_canals(
@@ -279,24 +262,18 @@ def _longer_canals(
     No more than what they save on the known routes: so the ways through them and round them are
     bounded at once.
     """
-    chart, prices = trade_off.context.chart, trade_off.objective.prices
-    slow, rates = _slowness_and_rates(trade_off, current)
-    price = _least_zone_factor(trade_off) * min(prices.inside, prices.outside)
-    per_metre = float(np.min(slow * (price * rates + prices.time)))
-    if not per_metre > 0.0:
-        return {canal.name: 0.0 for canal in canals}
+    chart = trade_off.context.chart
+    worth = trade_off.worth_of_canals(current)
     lengths = [(canals_passed(route, chart), priced_length(route, chart)) for route in routes]
     names = {canal.name for canal in canals}
     free = [length for passed, length in lengths if names.isdisjoint(one.name for one in passed)]
     longer = {}
     for canal in canals:
-        worth = prices.dues * canal.fee / per_metre
-        worth += max(canal.transit_time / float(slow.min()) - canal.length, 0.0)
         through = [
             length for passed, length in lengths if canal.name in {one.name for one in passed}
         ]
         saved = min(free, default=math.inf) - min(through, default=math.inf)
-        longer[canal.name] = max(min(worth, saved), 0.0) if through else 0.0
+        longer[canal.name] = max(min(worth[canal.name], saved), 0.0) if through else 0.0
     return longer
 
 

@@ -22,7 +22,7 @@ from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import PricedObjective
 from thalweg.route import Route, Track
 from thalweg.route.refinement.better_route import penalty_excess
-from thalweg.search import NetworkFront, SearchResult
+from thalweg.search import NetworkFront, SearchResult, table_bounds
 from thalweg.ship import PerformanceTable
 from thalweg.ship.consumption import calm_water_consumption
 
@@ -100,6 +100,41 @@ class TradeOffContext:
     def is_refined(self) -> bool:
         """Whether routes are refined in open water."""
         return self.context.voyage.method != "exact" and not self.objective.prices.counts_water
+
+    @property
+    def least_zone_factor(self) -> float:
+        """The least factor on prices: a route may sail in the cheapest zone throughout."""
+        if not self.objective.prices.dues > 0.0:
+            return 1.0
+        return min([1.0, *(float(factor) for _, factor in self.context.chart.zones.price)])
+
+    def slowness_and_rates(self, current: float) -> tuple[FloatArray, FloatArray]:
+        """Return the least time of a metre [s] and the least consumption a second of each setting.
+
+        Parameters
+        ----------
+        current : No current is stronger [m/s].
+        """
+        rates = np.maximum(table_bounds(self.consumption.kernel_arrays(), np.fmin), 0.0)
+        speed = [self.context.ship.top_speed(int(s)) or math.inf for s in self.settings]
+        return 1.0 / (np.array(speed, float) + current), rates[self.settings]
+
+    def worth_of_canals(self, current: float = 0.0) -> dict[str, float]:
+        """Return the length at sea [m] that costs as much as the dues of a canal, by name.
+
+        The length includes what its slow passage takes longer. It is 0 where nothing has a price.
+        """
+        prices, canals = self.objective.prices, self.context.chart.canals
+        slow, rates = self.slowness_and_rates(current)
+        price = self.least_zone_factor * min(prices.inside, prices.outside)
+        per_metre = float(np.min(slow * (price * rates + prices.time)))
+        if not per_metre > 0.0:
+            return {canal.name: 0.0 for canal in canals}
+        return {
+            canal.name: prices.dues * canal.fee / per_metre
+            + max(canal.transit_time / float(slow.min()) - canal.length, 0.0)
+            for canal in canals
+        }
 
     @property
     def via(self) -> tuple[Endpoint, ...]:

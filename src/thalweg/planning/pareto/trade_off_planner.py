@@ -67,7 +67,7 @@ def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
     """
     with InterruptGuard() as interrupt_guard:
         trade_off = _trade_off_context(context, ends, interrupt_guard)
-        alternatives = find_route_alternatives(context, ends)
+        alternatives = _alternatives(trade_off)
         if alternatives[0].network.meta.kind == "layered":
             trade_off.notes.extend(alternatives[0].network.meta.notes)
         if context.voyage.weights:
@@ -103,7 +103,12 @@ def with_trade_off(
     """Return what a search finds on the networks of the route alternatives, the shortest first."""
     with InterruptGuard() as interrupt_guard:
         trade_off = _trade_off_context(context, ends, interrupt_guard)
-        return search(trade_off, find_route_alternatives(context, ends))
+        return search(trade_off, _alternatives(trade_off))
+
+
+def _alternatives(trade_off: TradeOffContext) -> list[RouteAlternative]:
+    worth = trade_off.worth_of_canals()
+    return find_route_alternatives(trade_off.context, trade_off.ends, worth)
 
 
 def _trade_off_context(
