@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thalweg.chart import Chart
-from thalweg.chart.coast import coast_cache
+from thalweg.chart.coast import coast_cache, coastline
 from thalweg.chart.coast.coast_index_builder import build_index, empty_index
 from thalweg.chart.rings import Rings
 
@@ -49,8 +49,10 @@ def test_a_folder_that_cannot_be_written_is_no_harm(tmp_path):
 @pytest.mark.slow
 def test_gshhg_is_cached(tmp_path, monkeypatch):
     monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
+    coastline.shared_coastline.cache_clear()
     first = Chart.gshhg("c")
     assert len(list((tmp_path / "coast").glob("gshhg-c-*.npz"))) == 1
+    assert Chart.gshhg("c").coastline is first.coastline  # shared, and not read again
     assert Chart.gshhg("c").fingerprint() == first.fingerprint()
     assert Chart.gshhg("l").fingerprint() != first.fingerprint()
     assert first.within(0, 1, 0, 1).fingerprint() != first.fingerprint()

@@ -54,7 +54,7 @@ class Coastline:
         narrows_closed : Whether narrows that no ship should use, and dams, are land.
         islets : Whether resolutions i and h have the islets that they lack.
         """
-        return _gshhg(resolution, narrows_closed, islets)
+        return shared_coastline(resolution, narrows_closed, islets)
 
     @classmethod
     def none(cls) -> Coastline:
@@ -122,7 +122,8 @@ class Coastline:
 
 
 @lru_cache(maxsize=2)
-def _gshhg(resolution: str, narrows_closed: bool, islets: bool) -> Coastline:
+def shared_coastline(resolution: str, narrows_closed: bool, islets: bool) -> Coastline:
+    """Return a coastline of GSHHG that the charts of this process share."""
     choice = {"narrows_closed": narrows_closed, "islets": islets}
     name = f"GSHHG {resolution}" + ("" if narrows_closed else ", narrows open")
     name += "" if islets else ", without islets"

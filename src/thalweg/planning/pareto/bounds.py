@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import time as clock
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -187,8 +188,8 @@ def least_ways(
     part of belong to the approach. A route that passes a canal twice is not better than without
     what is between.
     """
-    feasible = [route for route in routes if route.feasible]
-    whole = certified_length(trade_off, feasible)
+    feasible, began = [route for route in routes if route.feasible], clock.perf_counter()
+    whole = certified_length(trade_off, feasible, _seconds(trade_off, began))
     inside, lines = 0.0, [(1.0, whole)]
     context, prices = trade_off.context, trade_off.objective.prices
     by_area = prices.inside > prices.outside and bool(context.chart.zones.eca)
@@ -206,9 +207,8 @@ def least_ways(
     for ratio in ratios:
         if trade_off.interrupt_guard.stopped():
             break
-        found = certified_distance(
-            context, feasible, price=ratio, longer=longer, seconds=_seconds(trade_off)
-        )
+        seconds = _seconds(trade_off, began) / len(ratios)
+        found = certified_distance(context, feasible, price=ratio, longer=longer, seconds=seconds)
         priced.append((ratio, found.value))
     ways = []
     for number in range(len(canals) + 1):
@@ -350,14 +350,14 @@ def corners_of_lengths(
     return [(float(x[k]), float(x[k] + y[k])) for k in hull]
 
 
-def _seconds(trade_off: TradeOffContext) -> float:
-    """Return the time for a bound of lengths [s]."""
+def _seconds(trade_off: TradeOffContext, now: float) -> float:
+    """Return the time for a bound of lengths [s]: by default no longer than the plan has taken."""
     seconds = trade_off.context.proof_seconds
-    return _SECONDS if seconds is None else seconds
+    return min(now - trade_off.began, _SECONDS) if seconds is None else seconds
 
 
-def certified_length(trade_off: TradeOffContext, routes: Sequence[Route]) -> float:
-    """Return a length [m] that no route is shorter than.
+def certified_length(trade_off: TradeOffContext, routes: Sequence[Route], seconds: float) -> float:
+    """Return a length [m] that no route is shorter than, after a search of some time [s].
 
     Round land, with the offing and no-go zones, where there are neither via points nor canals on
     the way; otherwise that of the geodesics.
@@ -367,5 +367,5 @@ def certified_length(trade_off: TradeOffContext, routes: Sequence[Route]) -> flo
     feasible = [route for route in routes if route.feasible]
     if len(ends) > 2 or not feasible or trade_off.interrupt_guard.stopped():
         return geodesic
-    found = certified_distance(context, feasible, seconds=_seconds(trade_off))
+    found = certified_distance(context, feasible, seconds=seconds)
     return max(geodesic, found.value) if math.isfinite(found.value) else geodesic

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time as clock
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
@@ -74,6 +75,7 @@ class TradeOffContext:
     settings : Speed settings to choose from, ascending.
     limits : Limits along the route, perhaps tightened.
     notes : Notes for the plan; steps add theirs.
+    began : When planning began, by `time.perf_counter` [s].
     """
 
     context: PlanningContext
@@ -84,6 +86,7 @@ class TradeOffContext:
     limits: Limits
     interrupt_guard: InterruptGuard
     notes: list[str] = field(default_factory=list)
+    began: float = field(default_factory=clock.perf_counter)
 
     @property
     def detail(self) -> FrontDetail:
