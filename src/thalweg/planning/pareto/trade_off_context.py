@@ -50,7 +50,7 @@ class FrontDetail:
     most: int
 
 
-WHOLE_FRONT = FrontDetail(24, 8, 140, 24, 60, 26, 24, 60)
+WHOLE_FRONT = FrontDetail(36, 12, 140, 36, 60, 26, 40, 100)
 #: For the best route by one objective, with a few faster ones for comparison.
 BEST_ROUTE = FrontDetail(6, 3, 24, 4, 0, 0, 12, 12)
 _ONE_BEST: Final = ("fuel", "energy", "cost", "co2")
