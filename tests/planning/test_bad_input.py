@@ -1,5 +1,7 @@
 """Bad input is refused with a clear message."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -254,3 +256,20 @@ def test_the_clearance_of_the_voyage_overrides_that_of_the_ship_file():
         ask(ship=ship, chart=shallow)
     assert caught.value.reasons["under-keel clearance"] > 0
     assert ask(ship=ship, chart=shallow, min_ukc_m=0.2).best.min_ukc_m == pytest.approx(0.5)
+
+
+@pytest.mark.slow
+def test_data_that_end_on_a_way_round_land_are_the_reason_given():
+    still = ("eastward_sea_water_velocity", "northward_sea_water_velocity")
+    sea = Sea.from_functions(
+        {name: lambda t, lat, lon: 0.0 * t for name in still},
+        period=("2026-01-01T00:00Z", "2026-01-02T00:00Z"),
+    )
+    venice, genoa = (45.2, 12.9), (44.2, 9.0)  # 170 nm apart, 1,085 by sea
+    voyage = Voyage(start=venice, goal=genoa, depart="2026-01-01T00:00Z")
+    with pytest.raises(NoRouteError, match="arrives before the data end at 2026-01-02") as caught:
+        plan(voyage, ship=Ship.simple(speed_kn=12.0), sea=sea, chart=Chart.gshhg("l"))
+    lat, _ = caught.value.nearest
+    assert lat < 42.5  # a day down the Adriatic, and not off Venice
+    left = float(re.search(r"([\d.]+) nm short", str(caught.value))[1])
+    assert left == pytest.approx(1_085.0 - 24.0 * 12.0, abs=20.0)

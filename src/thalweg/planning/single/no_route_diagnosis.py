@@ -13,6 +13,7 @@ from thalweg.core.time import format_time
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels import codes
 from thalweg.network import Network
+from thalweg.network.shortest_paths import reversed_graph, shortest_path_tree
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.single.controlling_depth import find_controlling_depth
 from thalweg.sea import StationFields, standard_names
@@ -46,19 +47,15 @@ def no_route_error(
     for reason, count in result.refused.items():
         reasons[reason] = reasons.get(reason, 0) + count
     reasons = {reason: count for reason, count in reasons.items() if count}
+    found = _reached(network, result, ends[1], depart)
     nearest, reached, ended = None, "No point beyond the start can be reached.", False
-    if result.nearest_node >= 0:
-        lat = float(network.stations.lat[result.nearest_node])
-        lon = float(network.stations.lon[result.nearest_node])
-        nearest = (lat, lon)
-        left = float(distance(lat, lon, ends[1].lat, ends[1].lon))
+    if found is not None:
+        nearest = found.lat, found.lon
         reached = (
-            f"The nearest point reached is {format_position(lat, lon)}, "
-            f"{left / NAUTICAL_MILE:.1f} nm short."
+            f"The nearest point reached is {format_position(*nearest)}, "
+            f"{found.left / NAUTICAL_MILE:.1f} nm short."
         )
-        sailed = float(distance(ends[0].lat, ends[0].lon, lat, lon))
-        here = float(result.node_arrival[result.nearest_node])
-        ended = sailed > 0.0 and here + (here - depart) * left / sailed > last
+        ended = found.arrival > last
     deficit = None if fields is None else _depth_deficit(network, fields, required)
     if deficit is not None:
         return NoRouteError(
@@ -71,7 +68,7 @@ def no_route_error(
             missing_m=deficit.missing,
         )
     if reasons.get(codes.REASONS[codes.NO_DATA]) and fields is not None:
-        reached += _unknown_beyond(network, result.nearest_node, fields)
+        reached += _unknown_beyond(network, -1 if found is None else found.node, fields)
     ended = ended and bool(reasons.get(codes.REASONS[codes.OUTSIDE_PERIOD]))
     within = f"arrives before the data end at {format_time(last)}" if ended else "keeps the limits"
     when = f"departing {format_time(depart)}"
@@ -84,6 +81,46 @@ def no_route_error(
         reasons=reasons,
         nearest=nearest,
     )
+
+
+class _Reached(NamedTuple):
+    """The node from which the way to the goal is shortest, of those that were reached.
+
+    Attributes
+    ----------
+    left : Length of that way [m], or of the geodesic where the network has none.
+    arrival : At the goal, at the mean speed until then [s since 1970].
+    """
+
+    node: int
+    lat: float
+    lon: float
+    left: float
+    arrival: float
+
+
+def _reached(
+    network: Network, result: SearchResult, goal: Endpoint, depart: float
+) -> _Reached | None:
+    """Return how far the search came; None where it has no node."""
+    if result.nearest_node < 0:
+        return None
+    lat, lon, start = network.lat, network.lon, network.meta.start
+    node, left = result.nearest_node, math.nan
+    if min(start, network.meta.goal) >= 0:
+        backwards, edge = reversed_graph(network)
+        length = network.edges.length[edge]
+        left_of = shortest_path_tree(backwards, length, network.meta.goal).distance
+        left_of = np.where(np.isfinite(result.node_arrival), left_of, math.inf)
+        if np.isfinite(left_of).any():
+            node = int(np.argmin(left_of))
+            left = float(left_of[node])
+    if math.isnan(left):
+        left = float(distance(lat[node], lon[node], goal.lat, goal.lon))
+    here = float(result.node_arrival[node])
+    sailed = float(distance(lat[start], lon[start], lat[node], lon[node])) if start >= 0 else 0.0
+    arrival = here + (here - depart) * left / sailed if sailed > 0.0 else here
+    return _Reached(node, float(lat[node]), float(lon[node]), left, arrival)
 
 
 def _unknown_beyond(network: Network, node: int, fields: StationFields) -> str:
