@@ -14,7 +14,12 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import densify, distance
 from thalweg.network.global_grid.grid import GridResolution, globe_grid
 from thalweg.planning.report.land_report import saved_length
-from thalweg.planning.request.offing_choice import default_offing, restrict_passages
+from thalweg.planning.request.offing_choice import (
+    chart_off_land,
+    default_offing,
+    restrict_passages,
+)
+from thalweg.planning.request.voyage_endpoints import Endpoint
 
 pytestmark = pytest.mark.usefixtures("coarse_networks")
 
@@ -237,3 +242,13 @@ def test_new_york_is_left_by_the_narrows(world):
     assert any("Passes Verrazano Narrows" in note for note in found.notes)
     assert found.best.track.lon.max() < -72.9  # not by Long Island Sound
     assert found.lower_bound <= found.best.distance_nm < 150.0
+
+
+@pytest.mark.parametrize("share", [0.9999, 0.9991, 0.99, 0.5])
+def test_an_end_a_little_nearer_to_land_than_the_offing_can_be_reached(share):
+    """The sea end of the approach of Balboa is 2 m nearer to land than two miles."""
+    chart = Chart.gshhg("i")
+    place = 8.8733, -79.5313
+    offing = float(chart.coastline.shore_distance(*place)) / share
+    off_land = chart_off_land(chart, [Endpoint("Balboa, PA", *place, 0.0)], offing)
+    assert off_land.is_navigable(*place)

@@ -176,7 +176,8 @@ def least_ways(
     Notes
     -----
     With D metres inside the areas and C outside, every route has ``D + C >= L`` for the least
-    length, ``D >= N`` for the least way out of areas at the ends, and ``q D + C >= W`` for the
+    length of its way, ``D >= N`` for the least way out of areas at the ends, or ``D >= L`` if it
+    does not leave them, and ``q D + C >= W`` for the
     least length ``W`` when a metre inside counts ``q``. The pairs of lengths are the corners of
     what these leave of the plane of D and C, for some q. So that ``W`` need not be found on a mesh
     alone, it is bounded by the geodesics to the exits of the areas and on from there, too.
@@ -189,13 +190,13 @@ def least_ways(
     what is between.
     """
     feasible, began = [route for route in routes if route.feasible], clock.perf_counter()
-    whole = certified_length(trade_off, feasible, _seconds(trade_off, began))
+    whole = certified_length(trade_off, feasible, _seconds(trade_off, began, 1))
     inside, lines = 0.0, [(1.0, whole)]
     context, prices = trade_off.context, trade_off.objective.prices
     by_area = prices.inside > prices.outside and bool(context.chart.zones.eca)
     if by_area:
         inside, by_exits = _lines_by_exits(trade_off)
-        inside, lines = min(whole, inside), [*lines, *by_exits]
+        lines = [*lines, *by_exits]
     simple = len(trade_off.ends) == 2 and bool(feasible)
     canals = _counted_canals(trade_off) if simple else []
     longer = _longer_canals(trade_off, feasible, canals, current)
@@ -207,7 +208,7 @@ def least_ways(
     for ratio in ratios:
         if trade_off.interrupt_guard.stopped():
             break
-        seconds = _seconds(trade_off, began) / len(ratios)
+        seconds = _seconds(trade_off, began, 1 + len(ratios))
         found = certified_distance(context, feasible, price=ratio, longer=longer, seconds=seconds)
         priced.append((ratio, found.value))
     ways = []
@@ -215,14 +216,13 @@ def least_ways(
         for passed in itertools.combinations(canals, number):
             part = sum(canal.length for canal in passed)
             counted = part + sum(longer[canal.name] for canal in passed)
-            corners = corners_of_lengths(
-                max(inside - part, 0.0),
-                [
-                    *((ratio, least - ratio * part) for ratio, least in lines),
-                    *((ratio, least - counted) for ratio, least in priced),
-                    *((1.0, _least_by_canal(trade_off, canal) - part) for canal in passed),
-                ],
-            )
+            of_way = [
+                *((ratio, least - ratio * part) for ratio, least in lines),
+                *((ratio, least - counted) for ratio, least in priced),
+                *((1.0, _least_by_canal(trade_off, canal) - part) for canal in passed),
+            ]
+            shortest = max(least for ratio, least in of_way if ratio == 1.0)
+            corners = corners_of_lengths(min(max(inside - part, 0.0), shortest), of_way)
             value = sum(_value_of_canal(trade_off, canal, current) for canal in passed)
             hours = sum(canal.transit_time for canal in passed) / HOUR
             ways.append(LeastWay(tuple(corners), hours, value))
@@ -350,10 +350,15 @@ def corners_of_lengths(
     return [(float(x[k]), float(x[k] + y[k])) for k in hull]
 
 
-def _seconds(trade_off: TradeOffContext, now: float) -> float:
-    """Return the time for a bound of lengths [s]: by default no longer than the plan has taken."""
+def _seconds(trade_off: TradeOffContext, now: float, count: int) -> float:
+    """Return the time for one of some bounds of lengths [s].
+
+    By default all of them take no longer than the plan has taken until now.
+    """
     seconds = trade_off.context.proof_seconds
-    return min(now - trade_off.began, _SECONDS) if seconds is None else seconds
+    if seconds is not None:
+        return seconds / count
+    return min((now - trade_off.began) / count, _SECONDS)
 
 
 def certified_length(trade_off: TradeOffContext, routes: Sequence[Route], seconds: float) -> float:

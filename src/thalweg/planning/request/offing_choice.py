@@ -108,7 +108,7 @@ def _disc_of_end(
     """
     place = end.lat, end.lon
     shore = float(chart.coastline.shore_distance(*place, cap=offing))
-    if shore >= 0.999 * offing:
+    if shore >= offing:
         return None
     least = min(0.9 * shore, _RIVER_OFFING) if in_river else 0.0
     for radius in _DISC_RADII[in_river:]:

@@ -39,6 +39,9 @@ _BARRIER_KIND = (
     "of a mesh ({cells} cells along the way)"
 )
 _GEODESIC_KIND = "certificate: the geodesic at the greatest speed over ground in the data"
+_ROUND_LAND_KIND = (
+    "certificate: the least length round land at the greatest speed over ground in the data"
+)
 _HOLDS_FOR = "; it holds for all routes in open water"
 #: Of bounds that count inshore traffic zones as closed.
 KEEPING_OUT = "that keep out of inshore traffic zones"
@@ -272,14 +275,14 @@ def no_bound(why: str) -> LowerBound:
 def _kind(context: PlanningContext, route: Route, found: TimeCertificate) -> str:
     """Return how a bound was found and what it holds for, as text."""
     text = _BARRIER_KIND.format(cells=found.cells) if found.cells else _GEODESIC_KIND
-    text += _HOLDS_FOR + (
-        f" {KEEPING_OUT}" if found.cells and kept_out(context.chart, [route]) else ""
-    )
+    text = _ROUND_LAND_KIND if found.round_land else text
+    by_land = bool(found.cells) or found.round_land
+    text += _HOLDS_FOR + (f" {KEEPING_OUT}" if by_land and kept_out(context.chart, [route]) else "")
     counted = []
-    if found.cells:
-        counted = ["land"]
-        counted += ["the offing"] if context.chart.offing.distance > 0.0 else []
+    if by_land:
         zones = context.chart.zones
+        counted = ["land"] if found.cells else []
+        counted += ["the offing"] if found.cells and context.chart.offing.distance > 0.0 else []
         counted += ["no-go zones"] if zones.no_go else []
         counted += ["closed shoals"] if zones.closed_shoals else []
         counted += ["canals"] if found.mesh is not None and found.mesh.links else []

@@ -48,8 +48,8 @@ def certify_departures(
     rate = usual_rate(passage)
     domain = BarrierDomain.around(passage, first_cells(seconds, rate))
     if domain is None:
-        return certify_time(passage, seconds=0.0)
-    free = free_space_time(passage, domain)
+        return certify_time(passage, seconds=seconds)
+    free = free_space_time(passage, domain, seconds=seconds)
     if seconds > 0.0:
         rate = seconds_a_cell(passage, domain)
     cells = first_cells(seconds, rate)

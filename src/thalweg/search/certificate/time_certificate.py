@@ -22,7 +22,9 @@ from thalweg.search.certificate.arrival_barrier import (
 )
 from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
 from thalweg.search.certificate.barrier_mesh import BarrierMesh, build_mesh, slope_direction
+from thalweg.search.certificate.barrier_raster import is_uniform
 from thalweg.search.certificate.check_timing import USUAL_SECONDS_A_CELL, seconds_a_cell
+from thalweg.search.certificate.length_round_land import Link, length_round_land
 from thalweg.search.search_problem import ROUNDING_FACTOR
 
 _FIRST_CELLS: Final = 60  # cells of the first mesh along the geodesic
@@ -42,6 +44,7 @@ _MUCH_SLOWER: Final = 2.0  # a check than for most ships: the raster of function
 _FIRST_ROUNDS: Final = 3, 6  # rounds on the first mesh, backwards and forwards
 #: Rounds backwards and forwards on finer meshes, which begin with the factors of a coarser one.
 _LATER_ROUNDS: Final = 2, 5
+_SHARE_OF_LENGTH: Final = 0.4  # of the time for a bound, for the least length, in weather
 _GROWTH: Final = 3.5  # of the time from one mesh to the next
 
 
@@ -53,13 +56,14 @@ class TimeCertificate:
     ----------
     value : No route is faster [s].
     sampling : How the sea of the proof differs from the data; "" where it does not.
-    cells : Cells of the mesh along the geodesic; 0 for the bound of the geodesic at the greatest
-        speed over ground, which has no mesh, barrier and task.
+    cells : Cells of the mesh along the geodesic; 0 for the bound of the least length at the
+        greatest speed over ground, which has no mesh, barrier and task.
     seconds : Time used [s].
     reached : Value of the barrier at the goal [s]. Where it is clearly above the known time the sea
         of the proof is not the one of the known route.
     barrier : The barrier: no ship reaches a position before its value there.
     task : What was checked.
+    round_land : Whether it is the bound of the least length round land (`length_round_land`).
     """
 
     value: float
@@ -70,6 +74,7 @@ class TimeCertificate:
     mesh: BarrierMesh | None = field(default=None, repr=False)
     barrier: CheckedBarrier | None = field(default=None, repr=False)
     task: BarrierTask | None = field(default=None, repr=False)
+    round_land: bool = False
 
 
 def certify_time(
@@ -87,20 +92,21 @@ def certify_time(
     Returns
     -------
     TimeCertificate
-        The largest bound found; that of the geodesic near a pole and across half of the globe.
+        The largest bound found; that of the least length near a pole and across half of the globe.
     """
     began, rate = clock.perf_counter(), usual_rate(passage)
     domain = BarrierDomain.around(passage, _cells(passage, seconds, rate))
     if domain is None:
-        return free_space_time(passage, BarrierDomain.of_globe(passage, _CELLS_OF_GEODESIC))
+        globe = BarrierDomain.of_globe(passage, _CELLS_OF_GEODESIC)
+        return free_space_time(passage, globe, seconds=seconds)
     if seconds > 0.0:
         rate = seconds_a_cell(passage, domain)
     if rate > _MUCH_SLOWER * usual_rate(passage):
         domain = BarrierDomain.around(passage, _cells(passage, seconds, rate)) or domain
-    best = free_space_time(passage, domain)
+    finer = None
     if domain.sampling:
         finer = BarrierDomain.around(passage, _CELLS_OF_GEODESIC, fastest=domain.fastest)
-        best = best if finer is None else free_space_time(passage, finer)
+    best = free_space_time(passage, finer or domain, seconds=seconds)
     if seconds <= 0.0:
         return best
     left = seconds - (clock.perf_counter() - began)
@@ -164,10 +170,31 @@ def _raised_by_barriers(
     return best
 
 
-def free_space_time(passage: PassageToBound, domain: BarrierDomain) -> TimeCertificate:
-    """Return the bound of the geodesic at the greatest speed over ground in a domain."""
-    value = ROUNDING_FACTOR * passage.length / domain.fastest
-    return TimeCertificate(min(value, passage.known), domain.sampling, 0, 0.0, value)
+def free_space_time(
+    passage: PassageToBound, domain: BarrierDomain, *, seconds: float = 0.0
+) -> TimeCertificate:
+    """Return the bound of the least length at the greatest speed over ground in a domain.
+
+    Parameters
+    ----------
+    seconds : Time for a bound [s], of which the least length round land may take all in a sea that
+        is the same everywhere, and a part in others; 0 for that of the geodesic.
+    """
+    seconds *= 1.0 if is_uniform(passage.sea) else _SHARE_OF_LENGTH
+    began, fastest = clock.perf_counter(), domain.fastest
+    value = geodesic = ROUNDING_FACTOR * passage.length / fastest
+    chart = passage.chart
+    if chart is not None and seconds > 0.0:
+        links = [Link(*canal.ends, canal.transit_time * fastest) for canal in chart.canals]
+        length = length_round_land(
+            chart, passage.start, passage.goal, passage.known * fastest,
+            links=links, kept_out=passage.kept_out, seconds=seconds,
+        )  # fmt: skip
+        value = max(value, length / fastest)
+    used, by_land = clock.perf_counter() - began, value > geodesic
+    return TimeCertificate(
+        min(value, passage.known), domain.sampling, 0, used, value, round_land=by_land
+    )
 
 
 @dataclass(eq=False)

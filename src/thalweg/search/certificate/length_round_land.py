@@ -1,0 +1,386 @@
+"""The least length of a way round land: no route to the goal is shorter.
+
+Land is replaced by polygons inside it with fewer corners. The shortest way round polygons turns at
+their corners only, so it is found exactly, by A* on the legs between corners that are free. A route
+keeps clear of all land, and so of the polygons: it is no shorter.
+"""
+
+from __future__ import annotations
+
+import heapq
+import math
+import time as clock
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.chart.basemap import ring_bounds
+from thalweg.chart.coast.coast_index_builder import build_index, empty_index
+from thalweg.chart.coast.leg_tests import point_status
+from thalweg.chart.rings import Rings
+from thalweg.core.geodesy import distance, inverse
+from thalweg.core.types import BoolArray, FloatArray
+from thalweg.kernels.codes import OK
+from thalweg.kernels.geometry.coast_index import CoastArrays, leg_codes
+from thalweg.search.search_problem import ROUNDING_FACTOR
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+_METRES_OF_TOLERANCE: Final = 1.5e8  # of length for a degree of tolerance
+_LEAST_TOLERANCE, _MOST_TOLERANCE = 0.002, 0.1  # [deg]
+_FINER, _FINEST = 0.5, 2  # factor of finer tolerances, and how often it is applied
+_SLOWER: Final = 2.5  # a search with a finer tolerance than the one before
+_ENOUGH: Final = 0.995  # of the known length, at which no finer tolerance is tried
+_LONGEST_EDGE: Final = 4.0  # times the root of the tolerance [deg]: see Notes of `land_inside`
+_LARGEST_LATITUDE: Final = 80.0  # of land that counts [deg]
+_INDEX_CELLS: Final = 256  # along a side of each of the six faces
+_ANGLE_TOLERANCE: Final = 0.02  # of tangents: courses on a sphere are within 0.01 [rad]
+_LONGEST_TESTED: Final = 1.8  # chord of a leg whose arc is tested [radii]
+_FEW_CORNERS: Final = 16  # of rings that are used wherever their corners are
+_CAP_STEP: Final = 2.0  # of the outline of a closed polar cap [deg]
+_LENGTH_TOLERANCE: Final = 1e-6  # by which the known length may be surpassed
+_SPHERE: Final = 6.33e6  # radius at which no great circle is longer than the geodesic [m]
+
+
+@dataclass(frozen=True)
+class Link:
+    """A canal: its ends (lat, lon) [deg] and what its passage counts [m]."""
+
+    one: tuple[float, float]
+    other: tuple[float, float]
+    length: float
+
+
+@dataclass(frozen=True, eq=False)
+class Corners:
+    """Corners of polygons, at which a shortest way may turn.
+
+    Attributes
+    ----------
+    lat, lon : [deg].
+    back, on : Courses to the corners before and after on the outline [rad].
+    coast : Polygons a little inside, which no leg of a shortest way touches.
+    """
+
+    lat: FloatArray
+    lon: FloatArray
+    back: FloatArray
+    on: FloatArray
+    coast: CoastArrays
+
+
+def length_round_land(
+    chart: Chart,
+    start: tuple[float, float],
+    goal: tuple[float, float],
+    known: float,
+    *,
+    links: Sequence[Link] = (),
+    kept_out: Sequence[Any] = (),
+    seconds: float,
+) -> float:
+    """Return a length [m] that no route is shorter than.
+
+    Parameters
+    ----------
+    chart : Its land and no-go zones, and the latitudes beyond its area, are kept clear of.
+    start, goal : (lat, lon) [deg].
+    known : Length of a route that exists [m], with what its canals count.
+    links : Canals that a route may pass.
+    kept_out : Shapely polygons (x longitude, y latitude [deg]) that count as no-go zones too.
+    seconds : Time for the search, after which its bound so far is returned [s].
+
+    Returns
+    -------
+    float : That of the geodesic at least, unless a canal counts less than the way between its ends.
+    """
+    began = clock.perf_counter()
+    direct = float(distance(*start, *goal))
+    links = [link for link in links if _by_link(start, goal, link) < known]
+    short = [link for link in links if link.length < float(distance(*link.one, *link.other))]
+    free = ROUNDING_FACTOR * min([direct, *(_by_link(start, goal, link) for link in short)])
+    if known <= free or seconds <= 0.0 or short:
+        return free
+    tolerance = min(max(known / _METRES_OF_TOLERANCE, _LEAST_TOLERANCE), _MOST_TOLERANCE)
+    reach = _Reach(start, goal, known)
+    closed = _closed_shapes(chart, reach, _FINER**_FINEST * tolerance, kept_out)
+    best = free
+    for level in range(_FINEST + 1):
+        now = clock.perf_counter()
+        found = _least_length(closed, reach, links, _FINER**level * tolerance, began + seconds)
+        best = max(best, ROUNDING_FACTOR * found)
+        ended = clock.perf_counter()
+        if best >= _ENOUGH * known or ended + _SLOWER * (ended - now) > began + seconds:
+            break
+    return best
+
+
+def _least_length(
+    closed: Sequence[Any], reach: _Reach, links: Sequence[Link], tolerance: float, until: float
+) -> float:
+    """Return the least length round polygons inside some [m], or a bound; 0 where there is none."""
+    shapes = land_inside(closed, tolerance)
+    if not shapes:
+        return 0.0
+    search = _Search.between(corners_of(shapes, tolerance, reach), reach, links)
+    if search.is_enclosed():
+        return 0.0
+    found = search.run(until)
+    return 0.0 if math.isnan(found) else found
+
+
+def _by_link(start: tuple[float, float], goal: tuple[float, float], link: Link) -> float:
+    ends = (link.one, link.other), (link.other, link.one)
+    return link.length + min(float(distance(*start, *a) + distance(*b, *goal)) for a, b in ends)
+
+
+@dataclass(frozen=True)
+class _Reach:
+    """Positions that a route of a known length may pass."""
+
+    start: tuple[float, float]
+    goal: tuple[float, float]
+    known: float
+
+    @property
+    def middle(self) -> float:
+        """Longitude between start and goal [deg]."""
+        east = (self.goal[1] - self.start[1] + 180.0) % 360.0 - 180.0
+        return self.start[1] + 0.5 * east
+
+    def has(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
+        """Return which positions may be passed, by lower bounds of lengths."""
+        there = _unit_vectors(lat, lon)
+        ends = _unit_vectors(*np.array([self.start, self.goal]).T)
+        angles = np.arccos(np.clip(there @ ends.T, -1.0, 1.0)).sum(axis=1)
+        return np.asarray(_SPHERE * angles <= self.known)
+
+
+def _unit_vectors(lat: FloatArray, lon: FloatArray) -> FloatArray:
+    phi, lam = np.radians(lat), np.radians(lon)
+    return np.stack([np.cos(phi) * np.cos(lam), np.cos(phi) * np.sin(lam), np.sin(phi)], -1)
+
+
+def _frames(lat: FloatArray, lon: FloatArray) -> FloatArray:
+    """Return unit vectors up, east and north, (3, n, 3)."""
+    lam = np.radians(lon)
+    east = np.stack([-np.sin(lam), np.cos(lam), np.zeros_like(lam)], -1)
+    up = _unit_vectors(lat, lon)
+    return np.stack([up, east, np.cross(up, east)])
+
+
+def _closed_shapes(
+    chart: Chart, reach: _Reach, tolerance: float, kept_out: Sequence[Any]
+) -> list[Any]:
+    """Return the polygons (x lon, y lat [deg]) within reach that are closed to a ship."""
+    import shapely
+
+    west = reach.middle - 180.0
+    box = (west, -_LARGEST_LATITUDE, west + 360.0, _LARGEST_LATITUDE)
+    land = np.array(list(_land_polygons(chart.coastline.rings, reach, box, tolerance)), object)
+    whole = np.where(shapely.is_valid(land), land, shapely.make_valid(land))
+    # one polygon of all that the data cut at meridians, canals and narrows; no water inside it
+    parts = shapely.get_parts(shapely.get_parts(shapely.union_all(whole)))
+    parts = parts[shapely.get_type_id(parts) == shapely.GeometryType.POLYGON]
+    found = list(shapely.polygons(shapely.get_exterior_ring(parts)))
+    for shape in (*chart.zones.closed_shapes, *kept_out):
+        outline = shapely.get_coordinates(shape.exterior)
+        for shift in (-360.0, 0.0, 360.0):
+            moved = shapely.Polygon(outline + np.array([shift, 0.0]))
+            found.append(shapely.clip_by_rect(moved, *box))
+    south, north, _, _ = chart.area.array()
+    across = np.arange(west, west + 360.0 + _CAP_STEP, _CAP_STEP)
+    for edge, pole in ((south, -90.0), (north, 90.0)):
+        if abs(edge) < 89.0:
+            line = [*((x, edge) for x in across), (across[-1], pole), (across[0], pole)]
+            found.append(shapely.Polygon(line))
+    return [shape for shape in found if not shape.is_empty]
+
+
+def _land_polygons(
+    rings: Rings, reach: _Reach, box: tuple[float, ...], tolerance: float
+) -> Iterable[Any]:
+    """Yield the land of outer rings with a corner within reach, or few, that are large enough."""
+    import shapely
+
+    if not len(rings):
+        return
+    south, north, west, east = ring_bounds(rings)
+    large = np.maximum(north - south, east - west) >= 4.0 * tolerance
+    within = np.logical_or.reduceat(reach.has(rings.lat, rings.lon), rings.start[:-1])
+    within |= np.diff(rings.start) <= _FEW_CORNERS  # which may be far away, on both sides
+    for number in np.flatnonzero(within & large):
+        part = slice(rings.start[number], rings.start[number + 1])
+        lat, lon = rings.lat[part], rings.lon[part]
+        ring = np.stack([lon, lat], axis=1)
+        if not shapely.is_ccw(shapely.linearrings(ring)):  # a lake
+            continue
+        for shift in (-360.0, 0.0, 360.0):
+            if lon.max() + shift > box[0] and lon.min() + shift < box[2]:
+                moved = shapely.polygons(ring + np.array([shift, 0.0]))
+                yield shapely.clip_by_rect(moved, *box)
+
+
+def land_inside(shapes: Sequence[Any], tolerance: float) -> list[Any]:
+    """Return polygons inside some polygons, with fewer corners, by half a tolerance at least [deg].
+
+    Notes
+    -----
+    Simplified outlines are within the tolerance of the outline. So what is twice the tolerance
+    inside of the simplified polygon is inside the polygon, and one tolerance away from its outline.
+    Edges are straight in longitude and latitude; from a geodesic between its ends an edge of
+    4 sqrt(tolerance) degrees differs by less than a fifth of the tolerance below 80 degrees of
+    latitude, by ``edge^2 tan(latitude) / 8``.
+    """
+    import shapely
+
+    simple = shapely.simplify(shapely.make_valid(np.array(shapes)), tolerance)
+    inside = shapely.buffer(simple, -2.0 * tolerance, join_style="mitre")
+    parts = shapely.get_parts(shapely.simplify(inside, 0.25 * tolerance))
+    parts = parts[~shapely.is_empty(parts)]
+    outer = shapely.polygons(shapely.get_exterior_ring(parts))
+    return list(shapely.segmentize(outer, _LONGEST_EDGE * math.sqrt(tolerance)))
+
+
+def corners_of(shapes: Sequence[Any], tolerance: float, reach: _Reach) -> Corners:
+    """Return the corners of polygons within reach at which a way can turn."""
+    import shapely
+
+    smaller = shapely.get_parts(shapely.buffer(np.array(shapes), -0.5 * tolerance))
+    rings = [shapely.get_coordinates(one.exterior)[:, ::-1] for one in smaller if not one.is_empty]
+    index = build_index(Rings.from_lists((ring, False) for ring in rings), _INDEX_CELLS)
+    area = np.array([-90.0, 90.0, -180.0, 360.0])
+    lines = [
+        shapely.get_coordinates(one.exterior)[:-1, ::-1] for one in shapely.normalize(shapes)
+    ]  # clockwise: land is to starboard of the way on
+    places, last, further = (
+        np.concatenate([np.roll(line, by, axis=0) for line in lines]) for by in (0, 1, -1)
+    )
+    kept = reach.has(places[:, 0], places[:, 1])
+    places, last, further = places[kept], last[kept], further[kept]
+    back, on = (inverse(*places.T, *beside.T)[1] for beside in (last, further))
+    inner = (back - on) % (2.0 * math.pi)
+    turns = inner <= math.pi + _ANGLE_TOLERANCE
+    return Corners(
+        places[turns, 0], places[turns, 1], back[turns], on[turns],
+        CoastArrays(index, empty_index(), area),
+    )  # fmt: skip
+
+
+@dataclass(eq=False)
+class _Search:
+    """A* from the start to the goal by legs between corners and the ends of canals.
+
+    Attributes
+    ----------
+    lat, lon : Of the nodes [deg]: start, goal, ends of canals, corners.
+    frames : Their unit vectors up, east and north, (3, n, 3).
+    first : Number of nodes that are no corners.
+    rest : Lower bound of the length from each node to the goal [m].
+    known : Longest length that counts [m].
+    """
+
+    corners: Corners
+    links: Sequence[Link]
+    lat: FloatArray
+    lon: FloatArray
+    frames: FloatArray
+    first: int
+    rest: FloatArray
+    known: float
+
+    @classmethod
+    def between(cls, corners: Corners, reach: _Reach, links: Sequence[Link]) -> _Search:
+        """Return the search for a passage."""
+        single = [
+            reach.start,
+            reach.goal,
+            *(end for link in links for end in (link.one, link.other)),
+        ]
+        lat, lon = (np.concatenate([x, y]) for x, y in zip(
+            np.array(single).T, (corners.lat, corners.lon), strict=True))  # fmt: skip
+        rest = np.asarray(distance(lat, lon, *reach.goal))
+        known = reach.known * (1.0 + _LENGTH_TOLERANCE)
+        return cls(corners, links, lat, lon, _frames(lat, lon), len(single), rest, known)
+
+    def is_enclosed(self) -> bool:
+        """Return whether the start, the goal or the end of a canal is inside a polygon."""
+        single = self.lat[: self.first], self.lon[: self.first]
+        return bool((point_status(self.corners.coast, *single) != OK).any())
+
+    def run(self, until: float) -> float:
+        """Return the least length, or a bound of it when time is up [m]; NaN if there is no way."""
+        best = np.full(len(self.lat), math.inf)
+        best[0] = 0.0
+        done = np.zeros(len(self.lat), bool)
+        queue = [(float(self.rest[0]), 0)]
+        while queue:
+            least, node = heapq.heappop(queue)
+            if node == 1 or clock.perf_counter() > until:
+                return least
+            if done[node]:
+                continue
+            done[node] = True
+            others, far = self._reached_from(node, best, done)
+            best[others] = far
+            for entry in zip((far + self.rest[others]).tolist(), others.tolist(), strict=True):
+                heapq.heappush(queue, entry)
+        return math.nan
+
+    def _reached_from(
+        self, node: int, best: FloatArray, done: BoolArray
+    ) -> tuple[NDArray[np.int64], FloatArray]:
+        """Return the nodes that are nearer by a free leg or a canal from one, and how far [m]."""
+        up, east, north = self.frames
+        rough = best[node] + _SPHERE * np.arccos(np.clip(up @ up[node], -1.0, 1.0))
+        some = np.flatnonzero(~done & (rough < best) & (rough + self.rest <= self.known))
+        out = np.arctan2(up[some] @ east[node], up[some] @ north[node])
+        into = np.arctan2(-(east[some] @ up[node]), -(north[some] @ up[node]))
+        some = some[self._touches(np.full(len(some), node), out) & self._touches(some, into)]
+        far = best[node] + distance(self.lat[node], self.lon[node], self.lat[some], self.lon[some])
+        nearer = (far < best[some]) & (far + self.rest[some] <= self.known)
+        some, far = some[nearer], far[nearer]
+        free = self._are_free(node, some)
+        some, far = some[free], far[free]
+        if 2 <= node < self.first:
+            other = node + 1 if node % 2 == 0 else node - 1
+            passed = best[node] + self.links[(node - 2) // 2].length
+            if passed < min([best[other], *far[some == other]]):
+                return np.append(some[some != other], other), np.append(far[some != other], passed)
+        return some, far
+
+    def _are_free(self, node: int, others: NDArray[np.int64]) -> BoolArray:
+        """Return which legs from a node touch no polygon.
+
+        The arcs that are tested are within 100 m of the geodesics, up to 14,000 km, and polygons of
+        `Corners` are farther inside than that. Longer legs count as free.
+        """
+        count = len(others)
+        ends = np.full(count, self.lat[node]), np.full(count, self.lon[node])
+        code, unsure = np.empty(count, np.int8), np.empty(count, np.bool_)
+        leg_codes(self.corners.coast, *ends, self.lat[others], self.lon[others], code, unsure)
+        chord = np.linalg.norm(self.frames[0, others] - self.frames[0, node], axis=1)
+        return np.asarray((code == OK) | (chord > _LONGEST_TESTED))
+
+    def _touches(self, nodes: NDArray[np.int64], course: FloatArray) -> BoolArray:
+        """Return where a course through a corner leaves its polygon on one side."""
+        result = np.ones(len(nodes), bool)
+        corner = np.flatnonzero(nodes >= self.first)
+        at = nodes[corner] - self.first
+        back, on = (
+            (side[at] - course[corner] + math.pi) % (2.0 * math.pi) - math.pi
+            for side in (self.corners.back, self.corners.on)
+        )
+        to_starboard = _is_starboard(back) & _is_starboard(on)
+        result[corner] = to_starboard | (_is_starboard(-back) & _is_starboard(-on))
+        return result
+
+
+def _is_starboard(bearing: FloatArray) -> BoolArray:
+    """Return which relative bearings [-pi, pi] are to starboard, ahead or astern, by a margin."""
+    ahead_or_astern = np.abs(np.sin(bearing)) <= _ANGLE_TOLERANCE
+    return np.asarray((bearing >= 0.0) | ahead_or_astern)

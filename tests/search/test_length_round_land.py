@@ -1,0 +1,113 @@
+"""The least length round land: true shortest ways in made and real water, and no more than ways."""
+
+import numpy as np
+import pytest
+import shapely
+
+from thalweg import Chart
+from thalweg.core.geodesy import distance
+from thalweg.search.certificate.length_round_land import Link, land_inside, length_round_land
+
+NM = 1852.0
+
+
+def island(west, south, east, north):
+    corners = [[west, south], [east, south], [east, north], [west, north], [west, south]]
+    return {"type": "Polygon", "coordinates": [corners]}
+
+
+def by(*places):
+    lat, lon = np.array(places, float).T
+    return float(np.sum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
+
+
+def test_round_an_island_it_is_the_way_by_its_nearer_corners():
+    chart = Chart.from_geojson(island(1.0, -2.0, 1.5, 0.5))
+    start, goal = (0.0, 0.0), (0.0, 2.5)
+    shortest = by(start, (0.5, 1.0), (0.5, 1.5), goal)
+    found = length_round_land(chart, start, goal, 1.01 * shortest, seconds=20.0)
+    assert 0.997 * shortest < found <= shortest
+    assert found > 1.02 * by(start, goal)
+
+
+def test_between_two_islands_the_gap_counts_and_not_the_way_round_both():
+    two = [island(1.0, 0.05, 1.5, 3.0), island(1.0, -3.0, 1.5, -0.05)]
+    chart = Chart.from_geojson({"type": "GeometryCollection", "geometries": two})
+    start, goal = (1.0, 0.0), (1.0, 2.5)
+    shortest = by(start, (0.05, 1.0), (0.05, 1.5), goal)
+    found = length_round_land(chart, start, goal, 1.01 * shortest, seconds=20.0)
+    assert 0.995 * shortest < found <= shortest
+
+
+def test_a_canal_through_an_island_counts_what_it_is_given():
+    chart = Chart.from_geojson(island(1.0, -4.0, 1.5, 4.0))
+    start, goal = (0.0, 0.5), (0.0, 2.0)
+    canal = Link((0.0, 0.9), (0.0, 1.6), 100_000.0)  # 78 km from end to end
+    through = by(start, canal.one) + canal.length + by(canal.other, goal)
+    found = length_round_land(chart, start, goal, 1.01 * through, links=[canal], seconds=20.0)
+    assert found == pytest.approx(through, rel=1e-6)
+    longer = Link(canal.one, canal.other, 2_000_000.0)  # more than the way round
+    round_it = by(start, (4.0, 1.0), (4.0, 1.5), goal)
+    found = length_round_land(chart, start, goal, 1.01 * round_it, links=[longer], seconds=20.0)
+    assert 0.99 * round_it < found <= round_it
+
+
+def test_a_passage_quicker_than_the_geodesic_leaves_only_that_of_the_canal():
+    chart = Chart.from_geojson(island(1.0, -4.0, 1.5, 4.0))
+    quick = Link((0.0, 0.9), (0.0, 1.6), 1_000.0)
+    start, goal = (0.0, 0.5), (0.0, 2.0)
+    found = length_round_land(chart, start, goal, 3e5, links=[quick], seconds=20.0)
+    way = by(start, quick.one) + quick.length + by(quick.other, goal)
+    assert found == pytest.approx(way, rel=1e-6)
+
+
+def test_no_time_or_no_land_leave_the_geodesic():
+    start, goal = (0.0, 0.0), (0.0, 2.5)
+    chart = Chart.from_geojson(island(1.0, -2.0, 1.5, 0.5))
+    direct = by(start, goal)
+    assert length_round_land(chart, start, goal, 4e5, seconds=0.0) == pytest.approx(direct)
+    open_water = Chart.open_water(-5.0, 5.0, -5.0, 5.0)
+    assert length_round_land(open_water, start, goal, 4e5, seconds=5.0) == pytest.approx(direct)
+
+
+def test_places_inside_land_leave_the_geodesic():
+    chart = Chart.from_geojson(island(-3.0, -3.0, 1.5, 3.0))
+    start, goal = (0.0, 0.0), (0.0, 2.5)
+    found = length_round_land(chart, start, goal, 4e5, seconds=5.0)
+    assert found == pytest.approx(by(start, goal))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_polygons_inside_are_inside_by_half_a_tolerance(seed):
+    random = np.random.default_rng(seed)
+    angle = np.sort(random.uniform(0.0, 2.0 * np.pi, 60))
+    radius = random.uniform(0.5, 2.0, 60)
+    shape = shapely.make_valid(
+        shapely.Polygon(np.c_[radius * np.cos(angle), radius * np.sin(angle)])
+    )
+    tolerance = 0.05
+    inside = land_inside([shape], tolerance)
+    assert inside
+    water = shapely.buffer(shape.boundary, 0.5 * tolerance)
+    for one in inside:
+        assert shape.contains(one) and not one.intersects(water)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("start", "goal", "table", "least"),
+    [
+        # ports' sea ends; tables of distances (Pub. 151) less the approaches
+        ((41.30, 2.20), (37.90, 23.60), 1_110.0, 0.93),  # Barcelona - Piraeus by Messina
+        ((52.00, 3.90), (1.20, 103.70), 8_250.0, 0.96),  # Rotterdam - Singapore by Suez
+        ((26.90, 50.30), (52.00, 3.90), 11_170.0, 0.96),  # Ras Tanura - Rotterdam round the Cape
+        ((-33.90, 18.30), (-34.20, 115.50), 4_660.0, 0.98),  # Cape Town - Cape Leeuwin
+    ],
+)
+def test_real_ways_are_a_few_per_cent_longer(start, goal, table, least):
+    chart = Chart.gshhg("i").within(-60.0, 72.0, -180.0, 180.0)
+    links = [
+        Link(*canal.ends, canal.length) for canal in chart.canals if start[0] != 26.9
+    ]  # a deep tanker passes no canal
+    found = length_round_land(chart, start, goal, 1.05 * table * NM, links=links, seconds=40.0)
+    assert least * table * NM < found < 1.01 * table * NM
