@@ -107,3 +107,25 @@ def test_corners_of_lengths_are_those_of_the_lines():
     """10 inside at least, 100 in all, and 150 where a metre inside counts two."""
     corners = corners_of_lengths(10.0, [(1.0, 100.0), (2.0, 150.0), (3.0, float("nan"))])
     assert corners == [(10.0, 140.0), (50.0, 100.0), (100.0, 100.0)]
+
+
+@pytest.mark.slow
+def test_an_ordered_speed_is_kept_where_fuel_costs_more_in_control_areas():
+    ship = Ship.from_dict(
+        {
+            "name": "x", "hull": {"draught_m": 5.0}, "speeds_kn": [10.0, 12.0, 14.0],
+            "engine": {"reference_speed_kn": 12.0}, "models": {"calm_water": "cubic"},
+            "fuel": {
+                "reference_t_per_day": 24.0, "price_per_t": 500.0, "eca_price_per_t": 800.0,
+            },
+        }
+    )  # fmt: skip
+    voyage = Voyage(
+        start=(43.8, -8.6), goal=(48.2, -5.9), depart="2026-01-01T00:00Z", objective="cost",
+        speed_kn=14.0,
+    )  # fmt: skip
+    found = plan(voyage, ship=ship, sea=Sea.calm(), chart=Chart.gshhg("l"), proof=1.0)
+    for route in found.routes:
+        assert (route.track.setting == 2).all()
+    assert found.best.time_h == pytest.approx(found.best.distance_nm / 14.0, rel=1e-3)
+    assert 0.0 < found.lower_bound <= found.best.cost

@@ -255,8 +255,8 @@ class PortApproaches:
     def _rows(self) -> dict[Port, dict[str, str]]:
         """The rows of the table by port."""
         by_key = {_key(port): port for port in PORTS.all}
-        packed = resources.files("thalweg.chart").joinpath("data/port_approaches.csv.gz")
-        rows = csv.DictReader(gzip.decompress(packed.read_bytes()).decode("utf-8").splitlines())
+        packed = resources.files("thalweg.chart") / "data/port_approaches.csv.gz"
+        rows = csv.DictReader(gzip.decompress(packed.read_bytes()).decode().splitlines())
         named = ((by_key.get((r["unlocode"], r["name"], r["country_code"])), r) for r in rows)
         return {port: row for port, row in named if port is not None}
 
@@ -276,8 +276,7 @@ def line_between(
     """
     if _far_apart(start.line, goal.line):
         return None
-    first, second = dense_line(start.line), dense_line(goal.line)
-    i, j, apart = _close_pairs(first, second)
+    i, j, apart = _close_pairs(first := dense_line(start.line), second := dense_line(goal.line))
     order = np.argsort(first[i, 2] + apart + second[j, 2], kind="stable")
     for some in np.array_split(order, len(order) // _JOINTS_AT_ONCE + 1):
         far = apart[some] > _SAME_WATER

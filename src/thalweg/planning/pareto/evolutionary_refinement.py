@@ -58,7 +58,7 @@ def evolutionary_candidates(
     detail = trade_off.detail
     seeds = _seeds(trade_off, explored, candidates)
     evaluator = _evaluator(trade_off, explored, seeds)
-    genomes = [_genome(trade_off, seed) for seed in seeds]
+    genomes = [_genome(trade_off, seed, evaluator.settings) for seed in seeds]
     seed = context.voyage.seed
     if method == "default":
         result = refine_front(
@@ -79,7 +79,10 @@ def evolutionary_candidates(
             stopping=StoppingCriteria(_EVOLUTION_GENERATIONS),
             cancel=trade_off.interrupt_guard.stopped,
         )
-    return _candidates(result, explored, context.voyage.earliest_departure)
+    found = _candidates(result, explored, context.voyage.earliest_departure)
+    if len(trade_off.settings) > 1:
+        return found
+    return [replace(one, track=_at_setting(one.track, int(trade_off.settings[0]))) for one in found]
 
 
 def _seeds(
@@ -110,11 +113,26 @@ def _seeds(
     return [fastest.track, *tracks] if fastest.feasible else tracks
 
 
-def _genome(trade_off: TradeOffContext, track: Track) -> Genome:
+def _genome(trade_off: TradeOffContext, track: Track, settings: int) -> Genome:
     """Return a track as a genome; via points and ends of canals are fixed."""
+    if settings == 1:
+        track = _at_setting(track, 0)
     held = [(end.lat, end.lon) for end in trade_off.via]
     held = [place for place in held if _passes_through(track, place)]
-    return Genome.from_track(track, settings=len(trade_off.context.ship.speeds), via=held)
+    return Genome.from_track(track, settings=settings, via=held)
+
+
+def _at_setting(track: Track, setting: int) -> Track:
+    return track.replaced(setting=np.full(len(track) - 1, setting))
+
+
+def _tabulated_ship(trade_off: TradeOffContext) -> TabulatedShip:
+    """Return the ship for an evaluator; of one setting where one speed is ordered."""
+    tables = trade_off.context.table, trade_off.consumption
+    if len(trade_off.settings) == 1:
+        only = int(trade_off.settings[0])
+        tables = tables[0].at_setting(only), tables[1].at_setting(only)
+    return TabulatedShip(*tables, trade_off.limits)
 
 
 def _passes_through(track: Track, place: tuple[float, float]) -> bool:
@@ -135,7 +153,7 @@ def _evaluator(
     until = min(latest, depart + 1.1 * (float(slowest) - depart) + 3600.0)
     total = float(np.median([rough_lengths(track.lat, track.lon).sum() for track in seeds]))
     return make_evaluator(
-        TabulatedShip(context.table, trade_off.consumption, trade_off.limits),
+        _tabulated_ship(trade_off),
         freeze_around_tracks(trade_off, seeds, depart, until),
         depart=depart,
         chart=context.chart,

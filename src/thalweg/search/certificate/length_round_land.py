@@ -30,9 +30,9 @@ from thalweg.search.search_problem import ROUNDING_FACTOR
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
-_METRES_OF_TOLERANCE: Final = 1.5e8  # of length for a degree of tolerance
+_METRES_OF_TOLERANCE: Final = 4.0e7  # of length for a degree of the first tolerance
 _LEAST_TOLERANCE, _MOST_TOLERANCE = 0.002, 0.1  # [deg]
-_FINER, _FINEST = 0.5, 2  # factor of finer tolerances, and how often it is applied
+_FINER, _FINEST = 0.4, 3  # factor of finer tolerances, and how often it is applied
 _SLOWER: Final = 2.5  # a search with a finer tolerance than the one before
 _ENOUGH: Final = 0.995  # of the known length, at which no finer tolerance is tried
 _LONGEST_EDGE: Final = 4.0  # times the root of the tolerance [deg]: see Notes of `land_inside`
@@ -107,10 +107,10 @@ def length_round_land(
         return free
     tolerance = min(max(known / _METRES_OF_TOLERANCE, _LEAST_TOLERANCE), _MOST_TOLERANCE)
     reach = _Reach(start, goal, known)
-    closed = _closed_shapes(chart, reach, _FINER**_FINEST * tolerance, kept_out)
     best = free
     for level in range(_FINEST + 1):
         now = clock.perf_counter()
+        closed = _closed_shapes(chart, reach, _FINER**level * tolerance, kept_out)
         found = _least_length(closed, reach, links, _FINER**level * tolerance, began + seconds)
         best = max(best, ROUNDING_FACTOR * found)
         ended = clock.perf_counter()

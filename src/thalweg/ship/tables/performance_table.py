@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from typing import TYPE_CHECKING
 
@@ -121,6 +121,15 @@ class PerformanceTable:
         if self.finish is not None:
             return float(self.finish.value(high, np.asarray(setting)))
         return float(high[setting])
+
+    def at_setting(self, setting: int) -> PerformanceTable:
+        """Return the table of one setting, of index 0."""
+        chosen = slice(setting, setting + 1)
+        finish = None if self.finish is None else self.finish.at(chosen)
+        parts = self.parts
+        if finish is None or not finish.falls:
+            parts = tuple(replace(part, values=part.values[..., chosen]) for part in parts)
+        return replace(self, parts=parts, settings=self.settings[chosen], finish=finish)
 
     def kernel_arrays(self) -> TableArrays:
         """Return the arrays that kernels look up (see `thalweg.kernels.leg.table_lookup`).
