@@ -150,7 +150,8 @@ def show(growth: Growth) -> Fit:
     slope, factor = np.polyfit(np.log(sizes), np.log(seconds), 1)
     each, fixed = np.polyfit(sizes, memory, 1)
     print(
-        f"  time grows with the power {slope:.2f}; {each / 1e3:.3g} kB each and {fixed / 1e6:.0f} MB"
+        f"  time grows with the power {slope:.2f}; {each / 1e3:.3g} kB each "
+        f"and {fixed / 1e6:.0f} MB"
     )
     return Fit(float(slope), float(np.exp(factor)), float(each), float(fixed))
 
@@ -193,8 +194,8 @@ def main() -> None:
     fit, total = show(nodes), machine_memory()
     most = (total - fit.fixed) / fit.each
     print(
-        f"  the {total / 1e9:.0f} GB of this machine end at about {most / 1e6:.0f} million nodes (16 "
-        f"directions, 8 times, {EIGHT} channels), which would take {fit.time(most):.0f} s"
+        f"  the {total / 1e9:.0f} GB of this machine end at about {most / 1e6:.0f} million nodes "
+        f"(16 directions, 8 times, {EIGHT} channels), which would take {fit.time(most):.0f} s"
     )
     for growth in GROWTHS:
         show(growth)
