@@ -74,7 +74,7 @@ def test_cubic_law_through_a_reference_power():
         (("hull:", "hul:"), "'hul' is not a key of a ship file.*Did you mean 'hull'"),
         (
             ("breadth_m", "bredth_m"),
-            r"'bredth_m' is not a key of 'hull'.\s+Keys are: (\w+, ){11}\w+ and \d+ more",
+            r"'bredth_m' is not a key of 'hull'.\s+Keys are: (\w+, ){19}\w+ and \d+ more",
         ),
         (("speed_kn: 12", "speed_kn: .nan"), "table.speed_kn.*finite"),
         (("speed_kn: 12", "speed_kn: 0"), "table.speed_kn.*greater than 0"),

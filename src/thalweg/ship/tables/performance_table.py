@@ -123,7 +123,18 @@ class PerformanceTable:
         return float(high[setting])
 
     def at_setting(self, setting: int) -> PerformanceTable:
-        """Return the table of one setting, of index 0."""
+        """Return the table of one setting, which is smaller and quicker to look up.
+
+        Parameters
+        ----------
+        setting : int
+            Index of the setting.
+
+        Returns
+        -------
+        PerformanceTable
+            With one setting, of index 0.
+        """
         chosen = slice(setting, setting + 1)
         finish = None if self.finish is None else self.finish.at(chosen)
         parts = self.parts
