@@ -106,3 +106,16 @@ def test_least_fuel_arrives_at_the_latest_arrival() -> None:
     fast = (miles - 110.0) / 2.0  # hours at 12 kn
     fuel = fast * 1.0 + (11.0 - fast) * (10.0 / 12.0) ** 3
     assert best.fuel_t == pytest.approx(fuel, rel=1e-3)
+
+
+@pytest.mark.slow
+def test_a_slower_route_that_is_late_is_not_said_to_be_better():
+    speeds = [6.0, 8.0, 10.0, 12.0, 14.0]
+    ship = Ship.simple(speed_kn=12.0, speeds_kn=speeds, draught_m=5.0, fuel_t_per_day=24.0)
+    voyage = Voyage(
+        start=(0.0, 0.0), goal=(0.0, 1.0), depart="2026-01-01T00:00Z",
+        arrive_by="2026-01-01T08:00Z", objective="fuel",
+    )  # fmt: skip
+    chart = Chart.open_water(-0.4, 0.4, -0.2, 1.2)
+    found = plan(voyage, ship=ship, sea=Sea.calm(), chart=chart, proof=0.0)
+    assert not any("for comparison, is up to" in note for note in found.notes)

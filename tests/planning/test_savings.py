@@ -82,15 +82,16 @@ def test_a_cheaper_route_for_comparison_is_explained():
     """At 12 h it costs 99 where the front costs 110, and at 9 h the front has no route."""
     front = [SimpleNamespace(time_h=10.0), SimpleNamespace(time_h=14.0)]
     blind = [
-        SimpleNamespace(time_h=12.0, feasible=True),
-        SimpleNamespace(time_h=9.0, feasible=True),
+        SimpleNamespace(time_h=12.0, arrive=12.0, feasible=True),
+        SimpleNamespace(time_h=9.0, arrive=9.0, feasible=True),
     ]
     values = np.array([120.0, 100.0])
-    note = undercut_note(front, values, blind, np.array([99.0, 50.0]))
+    note = undercut_note(front, values, blind, np.array([99.0, 50.0]), np.inf)
     assert note is not None and "up to 10 % better" in note and "traffic lanes" in note
-    assert undercut_note(front, values, blind, np.array([110.0, 50.0])) is None
+    assert undercut_note(front, values, blind, np.array([110.0, 50.0]), np.inf) is None
+    assert undercut_note(front, values, blind, np.array([99.0, 50.0]), 11.0) is None  # late
     blind[0].feasible = False
-    assert undercut_note(front, values, blind, np.array([99.0, 50.0])) is None
+    assert undercut_note(front, values, blind, np.array([99.0, 50.0]), np.inf) is None
 
 
 class Tabulated:

@@ -107,13 +107,18 @@ def no_reference_note(blind: Sequence[Route]) -> str | None:
 
 
 def undercut_note(
-    front: Sequence[Route], values: FloatArray, blind: Sequence[Route], counts: FloatArray
+    front: Sequence[Route],
+    values: FloatArray,
+    blind: Sequence[Route],
+    counts: FloatArray,
+    latest: float,
 ) -> str | None:
     """Return a note where a feasible route for comparison has a lower value than a front.
 
     Parameters
     ----------
     values, counts : Of the routes of the front, and of the weather-blind ones.
+    latest : Routes that arrive later are not compared [s since 1970]; inf for none.
     """
     order = np.argsort([route.time_h for route in front])
     time = np.array([front[i].time_h for i in order])
@@ -121,7 +126,8 @@ def undercut_note(
     most = 0.0
     for route, count in zip(blind, counts):
         planned = float(np.interp(route.time_h, time, least))
-        if route.feasible and route.time_h >= time[0] and count > 0.0 and planned > 0.0:
+        in_time = route.time_h >= time[0] and route.arrive <= latest
+        if route.feasible and in_time and count > 0.0 and planned > 0.0:
             most = max(most, 1.0 - count / planned)
     if most < _LEAST_UNDERCUT:
         return None

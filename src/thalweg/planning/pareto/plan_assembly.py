@@ -89,7 +89,9 @@ def assemble_trade_off_plan(
     ]
     if front.comparison is not None:
         routes, compared = [item.route for item in ordered], front.comparison
-        note = undercut_note(routes, front.values, compared.routes, compared.values)
+        note = undercut_note(
+            routes, front.values, compared.routes, compared.values, context.latest_arrival
+        )
         notes += [note] if note else []
     proof = derive_proof(trade_off, explored, certain.points, certain.kind, until=certain.until)
     notes += _dues_notes(trade_off, ordered[0], proof)
