@@ -151,6 +151,7 @@ def test_a_forecast_without_network_is_an_error_in_words(visit):
     page.locator(".field.goal input").press("Tab")
     page.locator(".field.goal .understood", has_text="Position").wait_for()
     page.get_by_text("Fetch a forecast").click()
+    playwright_api.expect(page.locator("#f-from")).not_to_have_value("")  # set as the part opens
     page.locator("#f-from").fill(f"{datetime.now(UTC):%Y-%m-%d %H:00}")
     page.locator("#f-days").fill("x")
     page.get_by_role("button", name="Estimate the download").click()

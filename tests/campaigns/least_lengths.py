@@ -18,7 +18,8 @@ from thalweg.chart.ports import PORTS
 from thalweg.core.errors import ThalwegError
 from thalweg.core.geodesy import distance
 from thalweg.planning.sea_distance import sea_distance
-from thalweg.search.certificate.length_round_land import Link, length_round_land
+from thalweg.search.certificate.barrier_mesh import BarrierLink
+from thalweg.search.certificate.length_round_land import length_round_land
 
 NM = 1852.0
 
@@ -32,7 +33,7 @@ def main() -> int:
     random = np.random.default_rng(options.seed)
     chart = Chart.gshhg("i").within(-60.0, 72.0, -180.0, 180.0)
     ports = [port for port in PORTS.all if chart.approaches.of(port) is not None]
-    links = [Link(*canal.ends, canal.length) for canal in chart.canals]
+    links = [BarrierLink(*canal.ends, canal.length) for canal in chart.canals]
     shares, violations = [], 0
     while len(shares) < options.pairs:
         start, goal = (ports[k] for k in random.choice(len(ports), 2, replace=False))

@@ -2,6 +2,7 @@
 
 import sys
 
+import numpy as np
 import pytest
 
 from thalweg.core.errors import InputError
@@ -111,3 +112,17 @@ def test_plugins_that_offer_no_ship_are_refused(name, words):
     with pytest.raises(InputError, match=words) as refusal:
         Ship.load(name)
     assert refusal.value.possible and refusal.value.remedy
+
+
+def test_a_model_without_members_of_the_protocol_is_refused_with_their_names():
+    class Incomplete:
+        reads = frozenset({"load_factor"})
+        identity = "incomplete"
+
+        def speeds(self, load_factor):
+            return np.array([5.0])
+
+    message = "it has no speed_through_water; it has no power"
+    with pytest.raises(InputError, match=message) as caught:
+        check_ship_model(Incomplete())
+    assert "it has no speeds" not in str(caught.value)

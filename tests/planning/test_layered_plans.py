@@ -1,10 +1,12 @@
 """Plans on layered networks."""
 
+import numpy as np
 import pytest
 
 from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Voyage, plan
 from thalweg.sea import Sea
 from thalweg.ship import Ship
@@ -19,7 +21,7 @@ def _plan(voyage, **options):
 
 
 def _voyage(**changes):
-    return Voyage(depart="2026-01-01T00:00Z", offing_nm=0.0, **(PLACES | changes))
+    return Voyage(depart="2026-01-01T00:00Z", **(PLACES | {"offing_nm": 0.0} | changes))
 
 
 @pytest.mark.slow
@@ -44,6 +46,19 @@ def test_layers_belong_to_the_layered_network():
 def test_a_shape_without_a_route_is_refused_in_words():
     with pytest.raises(NoRouteError, match="section 1 of 1: it ends between layer 0 and layer 1"):
         _plan(_voyage(layered={"layers": 5, "fan": 3, "offset_nm": 9.0}))
+
+
+@pytest.mark.slow
+def test_a_start_beside_rocks_does_not_lower_the_offing_of_the_whole_voyage():
+    shape = {"layers": 15, "fan": 5, "offset_nm": 2.4}
+    ends = {"start": (64.2, 9.3), "goal": (65.6, 11.0), "offing_nm": 0.3}
+    found = _plan(_voyage(layered=shape, objective="distance", **ends), network="layered").best
+    lat, lon = geodesy.densify(found.track.lat, found.track.lon, 500.0)[:2]
+    from_ends = (geodesy.distance(lat, lon, lat[k], lon[k]) for k in (0, -1))
+    far = np.minimum(*from_ends) > 15.0 * NAUTICAL_MILE
+    assert far.sum() > 200
+    shore = Chart.gshhg("i").coastline.shore_distance(lat[far], lon[far])
+    assert shore.min() >= 0.3 * NAUTICAL_MILE
 
 
 def test_files_of_voyages_keep_the_shape(tmp_path):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from thalweg import Chart, Sea, Ship, Track, Voyage, evaluate, plan
-from thalweg.chart.canals import KIEL
+from thalweg.chart.canals import KIEL, canals_with_dues
 from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.planning.passage_alternatives import MAX_DETOUR, passage_alternatives
 
@@ -50,6 +50,17 @@ def test_ways_by_and_round_the_kiel_canal(planned):
     assert "Skagerrak-Kattegat (Skaw)" in round_it.passes
     assert first.distance < round_it.distance < MAX_DETOUR * first.distance
     assert round_it.time == pytest.approx(round_it.distance / (12.0 * KNOT), rel=0.01)
+
+
+@pytest.mark.slow
+def test_dues_are_those_of_the_ship(planned):
+    ship = Ship.load("handysize-bulker")
+    (canal,) = canals_with_dues((KIEL,), ship.file.hull)
+    assert canal.fee != KIEL.fee
+    context = replace(planned.plot_context, ship=ship)
+    assert (
+        passage_alternatives(replace(planned, plot_context=context))[0].canal_dues_usd == canal.fee
+    )
 
 
 @pytest.mark.slow

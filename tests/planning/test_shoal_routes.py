@@ -162,8 +162,12 @@ def test_shoals_are_closed_and_open_again_where_no_other_way_exists():
     assert close_shoals(WORLD, ENDS) == (WORLD, "")
 
     def run(tried):
-        tries.append((tried.chart.zones.closed_shoals is not None, tried.needs.limits.offing))
-        if len(tries) < 3:
+        kept, discs = tried.needs.limits.offing, tried.chart.offing.discs
+        near = [disc for disc in discs if disc.lat == ENDS[0].lat]
+        closed = tried.chart.zones.closed_shoals is not None
+        least, radius = (near[0].least, near[0].radius) if near else (kept, 0.0)
+        tries.append((closed, *(v / NAUTICAL_MILE for v in (kept, least, radius))))
+        if len(tries) < 6:
             raise NoPathError("No way.", "None.", "None.")
         return tried
 
@@ -172,6 +176,9 @@ def test_shoals_are_closed_and_open_again_where_no_other_way_exists():
     context = PlanningContext(voyage((40.4, -73.8), (42.4, -70.7)), BULKER, Sea.calm(), chart,
                               needs, None, None)  # fmt: skip
     found = plan_off_land(context, ENDS, 2.0 * NAUTICAL_MILE, run)
-    two = 2.0 * NAUTICAL_MILE
-    assert tries == [(True, two), (False, two), (False, 0.5 * two)]
+    assert tries == [
+        (True, 2.0, 2.0, 0.0), (False, 2.0, 2.0, 0.0),
+        (False, 2.0, 0.5, 15.0), (False, 2.0, 0.5, 40.0), (False, 2.0, 0.0, 15.0),
+        (False, 1.0, 1.0, 0.0),
+    ]  # fmt: skip
     assert not any(note.startswith("Closed:") for note in found.needs.notes)

@@ -6,7 +6,8 @@ import shapely
 
 from thalweg import Chart
 from thalweg.core.geodesy import distance
-from thalweg.search.certificate.length_round_land import Link, land_inside, length_round_land
+from thalweg.search.certificate.barrier_mesh import BarrierLink
+from thalweg.search.certificate.length_round_land import land_inside, length_round_land
 
 NM = 1852.0
 
@@ -42,11 +43,11 @@ def test_between_two_islands_the_gap_counts_and_not_the_way_round_both():
 def test_a_canal_through_an_island_counts_what_it_is_given():
     chart = Chart.from_geojson(island(1.0, -4.0, 1.5, 4.0))
     start, goal = (0.0, 0.5), (0.0, 2.0)
-    canal = Link((0.0, 0.9), (0.0, 1.6), 100_000.0)  # 78 km from end to end
-    through = by(start, canal.one) + canal.length + by(canal.other, goal)
+    canal = BarrierLink((0.0, 0.9), (0.0, 1.6), 100_000.0)  # 78 km from end to end
+    through = by(start, canal.one) + canal.seconds + by(canal.other, goal)
     found = length_round_land(chart, start, goal, 1.01 * through, links=[canal], seconds=20.0)
     assert found == pytest.approx(through, rel=1e-6)
-    longer = Link(canal.one, canal.other, 2_000_000.0)  # more than the way round
+    longer = BarrierLink(canal.one, canal.other, 2_000_000.0)  # more than the way round
     round_it = by(start, (4.0, 1.0), (4.0, 1.5), goal)
     found = length_round_land(chart, start, goal, 1.01 * round_it, links=[longer], seconds=20.0)
     assert 0.99 * round_it < found <= round_it
@@ -54,10 +55,10 @@ def test_a_canal_through_an_island_counts_what_it_is_given():
 
 def test_a_passage_quicker_than_the_geodesic_leaves_only_that_of_the_canal():
     chart = Chart.from_geojson(island(1.0, -4.0, 1.5, 4.0))
-    quick = Link((0.0, 0.9), (0.0, 1.6), 1_000.0)
+    quick = BarrierLink((0.0, 0.9), (0.0, 1.6), 1_000.0)
     start, goal = (0.0, 0.5), (0.0, 2.0)
     found = length_round_land(chart, start, goal, 3e5, links=[quick], seconds=20.0)
-    way = by(start, quick.one) + quick.length + by(quick.other, goal)
+    way = by(start, quick.one) + quick.seconds + by(quick.other, goal)
     assert found == pytest.approx(way, rel=1e-6)
 
 
@@ -107,7 +108,7 @@ def test_polygons_inside_are_inside_by_half_a_tolerance(seed):
 def test_real_ways_are_a_few_per_cent_longer(start, goal, table, least):
     chart = Chart.gshhg("i").within(-60.0, 72.0, -180.0, 180.0)
     links = [
-        Link(*canal.ends, canal.length) for canal in chart.canals if start[0] != 26.9
+        BarrierLink(*canal.ends, canal.length) for canal in chart.canals if start[0] != 26.9
     ]  # a deep tanker passes no canal
     found = length_round_land(chart, start, goal, 1.05 * table * NM, links=links, seconds=15.0)
     assert least * table * NM < found < 1.01 * table * NM

@@ -20,7 +20,17 @@ _OPENED: Final = (
     "Crosses shoal water where it must: no route was found with that closed. Check the depths "
     "on the chart."
 )
-_SHARES: Final = (1.0, 0.5, 0.25, 0.0)  # of the offing that are tried where no route exists
+#: What is tried where no route exists: the share of the offing that is kept, and round the first
+#: and the last end a radius [m] within which a smaller share of it is enough.
+_ATTEMPTS: Final = (
+    (1.0, 0.0, 1.0),
+    (1.0, 15.0 * NAUTICAL_MILE, 0.25),
+    (1.0, 40.0 * NAUTICAL_MILE, 0.25),
+    (1.0, 15.0 * NAUTICAL_MILE, 0.0),
+    (0.5, 0.0, 1.0),
+    (0.25, 0.0, 1.0),
+    (0.0, 0.0, 1.0),
+)
 
 
 def plan_off_land(
@@ -31,7 +41,8 @@ def plan_off_land(
 ) -> Planned:
     """Plan at an offing with shoals closed; where no route exists, with these open.
 
-    Where none exists either, at half of the offing, a quarter, and without.
+    Where none exists either, nearer to land round the ends, then at half of the offing, a quarter,
+    and without.
 
     Parameters
     ----------
@@ -47,9 +58,12 @@ def plan_off_land(
         return run(context)
     refusal: NoRouteError | None = None
     was_closed = False
-    for share, closing in ((1.0, True), *((share, False) for share in _SHARES)):
+    attempts = (1.0, 0.0, 1.0, True), *((*one, False) for one in _ATTEMPTS)
+    for share, radius, near_share, closing in attempts:
         kept = share * offing
-        chart = chart_off_land(context.chart, ends, kept)
+        chart = chart_off_land(
+            context.chart, ends, kept, near_ends=radius, near_least=near_share * kept
+        )
         notes = [*context.needs.notes, offing_note(chart, ends, offing)]
         if closing:
             chart, note = close_shoals(chart, ends)
@@ -72,6 +86,7 @@ def plan_off_land(
                 "no route round the shoals"
                 if closing
                 else f"no route {kept / NAUTICAL_MILE:.2g} nm off land"
+                + (f", less within {radius / NAUTICAL_MILE:.0f} nm of the ends" if radius else "")
             )
     assert refusal is not None  # the loop returned otherwise
     raise refusal

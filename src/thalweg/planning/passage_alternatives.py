@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
 from thalweg.chart.approaches import MAX_APPROACH_SPEED
+from thalweg.chart.canals import canals_with_dues
 from thalweg.chart.passage_crossings import CAPES, names_passed
 from thalweg.core.errors import NoRouteError
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.plan_data import PlanData
-from thalweg.planning.request.voyage_endpoints import (
-    Endpoint,
-    resolve_places,
-)
+from thalweg.planning.request.voyage_endpoints import Endpoint, resolve_places
 from thalweg.planning.seaways import Seaways, path_length_and_canals
 
 #: Ways longer than this multiple of the shortest are left out, and those hardly longer.
@@ -67,6 +65,7 @@ class _Question:
     offing: float
     speed: float
     draught: float
+    dues: Mapping[str, float]
 
     def alternative(self, closed: tuple[str, ...]) -> PassageAlternative:
         """Return the shortest way with more canals and passages closed."""
@@ -91,7 +90,7 @@ class _Question:
             (*(canal.name for canal in canals), *names),
             at_sea + near,
             time,
-            sum(canal.fee for canal in canals),
+            sum(self.dues.get(canal.name, canal.fee) for canal in canals),
         )
 
 
@@ -163,10 +162,12 @@ def _question(plan: PlanData) -> _Question | None:
     sailed = float(np.sum(np.asarray(legs["length"])[at_sea]))
     time = float(np.sum(duration[at_sea])) - plan.best.waiting_h * HOUR
     speed = sailed / time if sailed > 0.0 and time > 0.0 else MAX_APPROACH_SPEED
+    canals = canals_with_dues(chart.canals, context.ship.file.hull)
     return _Question(
         Seaways.of_ship_chart(chart),
         tuple(resolve_places(plan.voyage.start, plan.voyage.via, plan.voyage.goal, chart)),
         chart.offing.distance,
         max(speed, 0.1 * KNOT),
         float(context.ship.draught),
+        {canal.name: canal.fee for canal in canals},
     )

@@ -37,10 +37,11 @@ def check_ship_model(
     Raises
     ------
     InputError
-        Listing every fault: a condition read without being declared, arrays that differ from
-        numbers, unknown conditions that give known speeds, negative or not finite speeds, settings
-        that do not ascend, power or fuel that is negative or falls with the setting in calm water,
-        a table that differs from the model by more than its stated error, a speed above the bound.
+        Listing every fault: a missing member of the protocol, a condition read without being
+        declared, arrays that differ from numbers, unknown conditions that give known speeds,
+        negative or not finite speeds, settings that do not ascend, power or fuel that is negative
+        or falls with the setting in calm water, a table that differs from the model by more than
+        its stated error, a speed above the bound.
 
     Examples
     --------
@@ -51,6 +52,10 @@ def check_ship_model(
         load_factor = model.loading.load_factor if isinstance(model, Ship) else 1.0
     if isinstance(ship_model, FunctionModel) and ship_model.is_speed_field:
         return
+    members = [name for name in vars(ShipModel) if not name.startswith("_")]
+    missing = [name for name in members if not hasattr(ship_model, name)]
+    if missing:
+        raise _broken_contract([f"it has no {name}" for name in missing])
     conditions = _conditions(ship_model, load_factor)
     faults: list[str] = []
     checks: tuple[Callable[[ShipModel, Conditions, float], list[str]], ...] = (
@@ -69,12 +74,16 @@ def check_ship_model(
     else:
         faults += _table_error_holds(ship_model, load_factor, tolerance)
     if faults:
-        raise InputError(
-            f"The ship model breaks its contract: {'; '.join(faults)}.",
-            "The contract is that of thalweg.ship.model_protocol.ShipModel.",
-            "Correct the model.",
-            faults=faults,
-        )
+        raise _broken_contract(faults)
+
+
+def _broken_contract(faults: list[str]) -> InputError:
+    return InputError(
+        f"The ship model breaks its contract: {'; '.join(faults)}.",
+        "The contract is that of thalweg.ship.model_protocol.ShipModel.",
+        "Correct the model.",
+        faults=faults,
+    )
 
 
 def _conditions(model: ShipModel, load_factor: float) -> Conditions:

@@ -14,9 +14,9 @@ from thalweg.kernels.certificate.cell_conditions import (
     read_cell,
 )
 from thalweg.kernels.certificate.speed_ranges import (
-    asked_anew,
     greatest_speed,
     least_consumption,
+    ranges_changed,
 )
 from thalweg.kernels.codes import CURRENT_EAST
 from thalweg.kernels.compilation.decorators import kernel_only
@@ -77,10 +77,10 @@ def _fill_sectors(world, priced, cell, directions, buffers, motions, kept):
     for sector in range(sectors):
         if sectors > 1:
             fill_angles(directions, 2.0 * half * sector, half, buffers)
-        anew = asked_anew(sector, buffers)
+        changed = ranges_changed(sector, buffers)
         low, high = buffers.asked[sector, 0], buffers.asked[sector, 1]
         for s in range(priced.settings.shape[0]):
-            if anew:
+            if changed:
                 setting = priced.settings[s]
                 kept[sector, s, 0] = greatest_speed(
                     world.ship.table, setting, low, high, priced.top[s], buffers.place

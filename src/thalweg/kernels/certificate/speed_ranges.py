@@ -288,7 +288,7 @@ def _edge_is_near(edge, value, outwards):
 
 
 @kernel_only
-def asked_anew(sector, buffers):
+def ranges_changed(sector, buffers):
     """Return whether the ranges in buffers differ from those asked for before in a sector.
 
     If so, those asked for are renewed, a little wider. In a calm or uniform sea they are the same
@@ -320,9 +320,9 @@ def kept_speed(table, setting, top_speed, sector, buffers):
     Parameters
     ----------
     table, setting, top_speed : As of `greatest_speed`.
-    sector, buffers : As of `asked_anew`.
+    sector, buffers : As of `ranges_changed`.
     """
-    if asked_anew(sector, buffers):
+    if ranges_changed(sector, buffers):
         low, high = buffers.asked[sector, 0], buffers.asked[sector, 1]
         buffers.answer[sector] = greatest_speed(table, setting, low, high, top_speed, buffers.place)
     return buffers.answer[sector]

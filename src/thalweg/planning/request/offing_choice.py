@@ -89,13 +89,30 @@ def size_restriction(passage: Passage, ship: Ship) -> str:
     )
 
 
-def chart_off_land(chart: Chart, ends: Sequence[Endpoint], offing: float) -> Chart:
-    """Return the chart with an offing [m], smaller round ends and canals nearer to land."""
+def chart_off_land(
+    chart: Chart,
+    ends: Sequence[Endpoint],
+    offing: float,
+    *,
+    near_ends: float = 0.0,
+    near_least: float = 0.0,
+) -> Chart:
+    """Return the chart with an offing [m], smaller round ends and canals nearer to land.
+
+    Parameters
+    ----------
+    near_ends, near_least : Within the first distance [m] of the first and the last end the second
+        is enough [m].
+    """
     if offing <= 0.0:
         return chart
     canals = [Endpoint(canal.title, *end, 0.0) for canal in chart.canals for end in canal.ends]
     discs = [_disc_of_end(chart, end, offing) for end in ends]
     discs += [_disc_of_end(chart, end, offing, in_river=True) for end in canals]
+    if near_ends > 0.0:
+        discs += [
+            OffingDisc(end.lat, end.lon, near_least, near_ends) for end in (ends[0], ends[-1])
+        ]
     return chart.with_offing(offing, discs=[disc for disc in discs if disc is not None])
 
 
@@ -136,11 +153,15 @@ def offing_note(chart: Chart, ends: Sequence[Endpoint], wanted: float) -> str:
     if kept < wanted:
         text = f"{NO_OFFING_ROUTE} {wanted / NAUTICAL_MILE:.2g} nm off land: "
         text += f"keeps {kept / NAUTICAL_MILE:.2g} nm" if kept else "keeps no distance from land"
-    names = []
+    near: dict[str, str] = {}  # the discs asked for a voyage come last, and are the widest
     for disc in chart.offing.discs:
         end = min(ends, key=lambda e: math.hypot(e.lat - disc.lat, e.lon - disc.lon))
         if math.hypot(end.lat - disc.lat, end.lon - disc.lon) > 1e-6:
             continue  # at the end of a canal
         within = f" within {disc.radius / NAUTICAL_MILE:.0f} nm of it" if disc.radius else ""
-        names.append(f"{end.name}{within}")
-    return f"{text}; less near {' and '.join(dict.fromkeys(names))}." if names else f"{text}."
+        if disc.radius and disc.least:
+            within += f" ({disc.least / NAUTICAL_MILE:.2g} nm)"
+        near[end.name] = f"{end.name}{within}"
+    if near:
+        text += f"; less near {' and '.join(near.values())}"
+    return f"{text}."

@@ -25,6 +25,7 @@ from thalweg.core.geodesy import distance, inverse
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.kernels.codes import OK
 from thalweg.kernels.geometry.coast_index import CoastArrays, leg_codes
+from thalweg.search.certificate.barrier_mesh import BarrierLink
 from thalweg.search.search_problem import ROUNDING_FACTOR
 
 if TYPE_CHECKING:
@@ -44,15 +45,6 @@ _FEW_CORNERS: Final = 16  # of rings that are used wherever their corners are
 _CAP_STEP: Final = 2.0  # of the outline of a closed polar cap [deg]
 _LENGTH_TOLERANCE: Final = 1e-6  # by which the known length may be surpassed
 _SPHERE: Final = 6.33e6  # radius at which no great circle is longer than the geodesic [m]
-
-
-@dataclass(frozen=True)
-class Link:
-    """A canal: its ends (lat, lon) [deg] and what its passage counts [m]."""
-
-    one: tuple[float, float]
-    other: tuple[float, float]
-    length: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +71,8 @@ def length_round_land(
     goal: tuple[float, float],
     known: float,
     *,
-    links: Sequence[Link] = (),
+    links: Sequence[BarrierLink] = (),
+    speed: float = 1.0,
     kept_out: Sequence[Any] = (),
     seconds: float,
 ) -> float:
@@ -90,7 +83,8 @@ def length_round_land(
     chart : Its land and no-go zones, and the latitudes beyond its area, are kept clear of.
     start, goal : (lat, lon) [deg].
     known : Length of a route that exists [m], with what its canals count.
-    links : Canals that a route may pass.
+    links : Canals that a route may pass; they count as long as the ship sails in their time.
+    speed : Of the ship [m/s].
     kept_out : Shapely polygons (x longitude, y latitude [deg]) that count as no-go zones too.
     seconds : Time for the search, after which its bound so far is returned [s].
 
@@ -100,13 +94,13 @@ def length_round_land(
     """
     began = clock.perf_counter()
     direct = float(distance(*start, *goal))
-    links = [link for link in links if _by_link(start, goal, link) < known]
-    short = [link for link in links if link.length < float(distance(*link.one, *link.other))]
-    free = ROUNDING_FACTOR * min([direct, *(_by_link(start, goal, link) for link in short)])
+    reach = _Reach(start, goal, known, speed)
+    links = [link for link in links if reach.by_link(link) < known]
+    short = [one for one in links if one.seconds * speed < float(distance(*one.one, *one.other))]
+    free = ROUNDING_FACTOR * min([direct, *(reach.by_link(link) for link in short)])
     if known <= free or seconds <= 0.0 or short:
         return free
     tolerance = min(max(known / _METRES_OF_TOLERANCE, _LEAST_TOLERANCE), _MOST_TOLERANCE)
-    reach = _Reach(start, goal, known)
     best = free
     for level in range(_FINEST + 1):
         now = clock.perf_counter()
@@ -120,7 +114,11 @@ def length_round_land(
 
 
 def _least_length(
-    closed: Sequence[Any], reach: _Reach, links: Sequence[Link], tolerance: float, until: float
+    closed: Sequence[Any],
+    reach: _Reach,
+    links: Sequence[BarrierLink],
+    tolerance: float,
+    until: float,
 ) -> float:
     """Return the least length round polygons inside some [m], or a bound; 0 where there is none."""
     shapes = land_inside(closed, tolerance)
@@ -133,18 +131,21 @@ def _least_length(
     return 0.0 if math.isnan(found) else found
 
 
-def _by_link(start: tuple[float, float], goal: tuple[float, float], link: Link) -> float:
-    ends = (link.one, link.other), (link.other, link.one)
-    return link.length + min(float(distance(*start, *a) + distance(*b, *goal)) for a, b in ends)
-
-
 @dataclass(frozen=True)
 class _Reach:
-    """Positions that a route of a known length may pass."""
+    """Positions that a route of a known length [m] may pass; canals count at a speed [m/s]."""
 
     start: tuple[float, float]
     goal: tuple[float, float]
     known: float
+    speed: float = 1.0
+
+    def by_link(self, link: BarrierLink) -> float:
+        """Return the length by geodesics to one end of a canal, through it and on [m]."""
+        ends = (link.one, link.other), (link.other, link.one)
+        return link.seconds * self.speed + min(
+            float(distance(*self.start, *a) + distance(*b, *self.goal)) for a, b in ends
+        )
 
     @property
     def middle(self) -> float:
@@ -285,7 +286,8 @@ class _Search:
     """
 
     corners: Corners
-    links: Sequence[Link]
+    links: Sequence[BarrierLink]
+    speed: float
     lat: FloatArray
     lon: FloatArray
     frames: FloatArray
@@ -294,7 +296,7 @@ class _Search:
     known: float
 
     @classmethod
-    def between(cls, corners: Corners, reach: _Reach, links: Sequence[Link]) -> _Search:
+    def between(cls, corners: Corners, reach: _Reach, links: Sequence[BarrierLink]) -> _Search:
         """Return the search for a passage."""
         single = [
             reach.start,
@@ -305,7 +307,8 @@ class _Search:
             np.array(single).T, (corners.lat, corners.lon), strict=True))  # fmt: skip
         rest = np.asarray(distance(lat, lon, *reach.goal))
         known = reach.known * (1.0 + _LENGTH_TOLERANCE)
-        return cls(corners, links, lat, lon, _frames(lat, lon), len(single), rest, known)
+        frames = _frames(lat, lon)
+        return cls(corners, links, reach.speed, lat, lon, frames, len(single), rest, known)
 
     def is_enclosed(self) -> bool:
         """Return whether the start, the goal or the end of a canal is inside a polygon."""
@@ -348,7 +351,7 @@ class _Search:
         some, far = some[free], far[free]
         if 2 <= node < self.first:
             other = node + 1 if node % 2 == 0 else node - 1
-            passed = best[node] + self.links[(node - 2) // 2].length
+            passed = best[node] + self.links[(node - 2) // 2].seconds * self.speed
             if passed < min([best[other], *far[some == other]]):
                 return np.append(some[some != other], other), np.append(far[some != other], passed)
         return some, far

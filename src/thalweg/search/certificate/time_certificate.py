@@ -21,10 +21,15 @@ from thalweg.search.certificate.arrival_barrier import (
     finer_factors,
 )
 from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
-from thalweg.search.certificate.barrier_mesh import BarrierMesh, build_mesh, slope_direction
+from thalweg.search.certificate.barrier_mesh import (
+    BarrierLink,
+    BarrierMesh,
+    build_mesh,
+    slope_direction,
+)
 from thalweg.search.certificate.barrier_raster import is_uniform
 from thalweg.search.certificate.check_timing import USUAL_SECONDS_A_CELL, seconds_a_cell
-from thalweg.search.certificate.length_round_land import Link, length_round_land
+from thalweg.search.certificate.length_round_land import length_round_land
 from thalweg.search.search_problem import ROUNDING_FACTOR
 
 _FIRST_CELLS: Final = 60  # cells of the first mesh along the geodesic
@@ -185,10 +190,10 @@ def free_space_time(
     value = geodesic = ROUNDING_FACTOR * passage.length / fastest
     chart = passage.chart
     if chart is not None and seconds > 0.0:
-        links = [Link(*canal.ends, canal.transit_time * fastest) for canal in chart.canals]
+        links = [BarrierLink(*canal.ends, canal.transit_time) for canal in chart.canals]
         length = length_round_land(
             chart, passage.start, passage.goal, passage.known * fastest,
-            links=links, kept_out=passage.kept_out, seconds=seconds,
+            links=links, speed=fastest, kept_out=passage.kept_out, seconds=seconds,
         )  # fmt: skip
         value = max(value, length / fastest)
     used, by_land = clock.perf_counter() - began, value > geodesic

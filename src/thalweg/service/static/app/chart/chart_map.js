@@ -185,7 +185,7 @@ export class Chart extends EventTarget {
     return coordinates.some(([x, y]) => (x - x0) / resolution > width / 2 - wide - 24 && (y0 - y) / resolution > height / 2 - high - 48);
   }
 
-  // A chart that nobody moved since shows all of it again when its size changes.
+  // A chart that the user has not moved since shows all of it again when its size changes.
   #sized() {
     if (this.fitted?.place === String(this.place)) this.fit(this.fitted.points);
   }
