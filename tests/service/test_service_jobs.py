@@ -13,6 +13,11 @@ import pytest
 from tests.service.conftest import LONG_S, SHORT, ended
 
 pytest.importorskip("fastapi", reason='the extra "serve" is not installed')
+
+from thalweg.service.jobs import job_work
+from thalweg.service.jobs.job_order import JobOrder
+from thalweg.service.jobs.plan_request import PlanRequest
+
 pytestmark = pytest.mark.slow
 
 CROSSING: dict[str, Any] = {
@@ -175,6 +180,42 @@ def test_cancelling_keeps_the_route_found_so_far(client):
     assert found["state"] == "cancelled" and found["result"]
     result = client.get(f"/api/v1/plans/{job}/result").json()
     assert result["cancelled"] is True and result["routes"][0]["feasible"]
+
+
+class Messages(list):
+    """What a child sends to the server."""
+
+    def send(self, kind, data):
+        self.append((kind, data))
+
+
+@pytest.mark.parametrize("press_at", [1, 2], ids=["first route", "whole plan"])
+def test_a_job_stopped_while_it_writes_a_result_keeps_it_whole(tmp_path, monkeypatch, press_at):
+    written = []
+    write = job_work.write_plan_result
+
+    def write_and_press(*given, **options):
+        written.append(given[1])
+        if len(written) == press_at:
+            signal.raise_signal(signal.SIGINT)
+        return write(*given, **options)
+
+    monkeypatch.setattr(job_work, "write_plan_result", write_and_press)
+    request = {**SHORT, "voyage": {**SHORT["voyage"], "objective": "cost"}}
+    request = PlanRequest.model_validate(request).model_dump(mode="json")
+    messages = Messages()
+    order = JobOrder("plan", request, str(tmp_path), {})
+    if press_at == 1:
+        with pytest.raises(KeyboardInterrupt):
+            job_work.run_order(order, messages)
+        sent = [data for kind, data in messages if kind == "route" and "summary" in data]
+        parts, folder = sent[-1]["summary"]["parts"], tmp_path / job_work.FIRST_FOLDER
+    else:
+        state, summary = job_work.run_order(order, messages)
+        assert state == "done"
+        parts, folder = summary["parts"], tmp_path
+    assert parts and folder == written[-1]
+    assert json.loads((folder / "plan.json").read_text())["routes"]
 
 
 def test_a_front_is_sent_while_it_is_searched(client):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import signal
 import threading
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import wraps
 from types import TracebackType
 from typing import Any, Protocol, TypeVar
@@ -57,6 +58,25 @@ class InterruptGuard:
     def _note(self, *_: Any) -> None:
         self._pressed.set()
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@contextmanager
+def held_interrupt() -> Iterator[threading.Event]:
+    """Hold Ctrl-C back in a context, so that what it writes is complete; only in the main thread.
+
+    Yields
+    ------
+    threading.Event : It is set when Ctrl-C is pressed; what follows is up to the caller.
+    """
+    pressed = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield pressed
+        return
+    before = signal.signal(signal.SIGINT, lambda *_: pressed.set())
+    try:
+        yield pressed
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 class _CancellableResult(Protocol):

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from thalweg.core.errors import ThalwegError
 from thalweg.core.file_writing import make_folder
+from thalweg.core.interrupt import held_interrupt
 from thalweg.service.jobs.child_messages import MessageWriter
 from thalweg.service.jobs.closure_facts import PLACES, TIMES, closure_facts
 from thalweg.service.jobs.isochrone_lines import isochrone_lines
@@ -92,7 +93,8 @@ def _keep_shown(
         provenance={"from": str(voyage.start), "to": str(voyage.goal)},
         cancelled=True,
     )
-    parts = write_plan_result(found, order.path, None, request.route_files, stem=order.stem)
+    with held_interrupt():
+        parts = write_plan_result(found, order.path, None, request.route_files, stem=order.stem)
     return {**job_summary(found, stages.seconds()), "parts": parts}
 
 
@@ -119,12 +121,14 @@ def _plan_whole(
         proof=request.proof_s,
         progress=stages,
     )
-    messages.send("route", {"route": first_look(found.best), "final": True})
-    folder = Path(order.folder)
-    beside = None if found.cancelled else _beside(found, world, request, stages)
-    stages("writing the files")
-    parts = write_plan_result(found, folder, beside, request.route_files, stem=order.stem)
-    summary = {**job_summary(found, stages.seconds()), "parts": parts}
+    beside = None
+    with suppress(KeyboardInterrupt):  # the plan is kept in any case
+        messages.send("route", {"route": first_look(found.best), "final": True})
+        beside = None if found.cancelled else _beside(found, world, request, stages)
+    with held_interrupt():
+        stages("writing the files")
+        parts = write_plan_result(found, order.path, beside, request.route_files, stem=order.stem)
+        summary = {**job_summary(found, stages.seconds()), "parts": parts}
     return "cancelled" if found.cancelled else "done", summary
 
 
@@ -154,14 +158,18 @@ def _plan_first(
             proof=0.0,
             progress=stages,
         )
+        cancelled = found.cancelled
         note = "The job was stopped: this is the fastest route, the objective was not reached."
         found = replace(found, notes=(note, *found.notes), cancelled=True)
-        folder = make_folder(order.path / FIRST_FOLDER)
-        parts = write_plan_result(found, folder, None, request.route_files, stem=order.stem)
-        summary = {**job_summary(found, stages.seconds()), "parts": parts}
-        messages.send(
-            "route", {"route": first_look(found.best), "final": False, "summary": summary}
-        )
+        with held_interrupt() as stopped:  # the server keeps it if it has both files and summary
+            folder = make_folder(order.path / FIRST_FOLDER)
+            parts = write_plan_result(found, folder, None, request.route_files, stem=order.stem)
+            summary = {**job_summary(found, stages.seconds()), "parts": parts}
+            messages.send(
+                "route", {"route": first_look(found.best), "final": False, "summary": summary}
+            )
+        if cancelled or stopped.is_set():
+            raise KeyboardInterrupt
 
 
 def _beside(
