@@ -120,6 +120,28 @@ def test_wrong_shape_names_the_function() -> None:
         text.sample(["x"], 0.0, 0.0, 0.0)
 
 
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("eastward_current", "eastward_sea_water_velocity"),
+        ("curent_speed", "sea_water_speed"),
+        ("wave_height", "sea_surface_wave_significant_height"),
+        ("wind_from", "wind_from_direction"),
+        ("water_depth", "sea_floor_depth_below_geoid"),
+    ],
+)
+def test_a_name_that_only_looks_like_a_variable_is_refused(name: str, meant: str) -> None:
+    with pytest.raises(InputError, match=f"no variable of the sea named '{name}'.*{meant}"):
+        Sea.from_functions({name: lambda t, y, x: 1.0})
+
+
+def test_names_of_the_user_are_accepted_and_complex_numbers_are_not() -> None:
+    sea = Sea.from_functions({"salinity": lambda t, y, x: 1.0j + t, "eastness": lambda t, y, x: t})
+    assert sea.sample(["eastness"], 3.0, 0.0, 0.0)["eastness"] == 3.0
+    with pytest.raises(InputError, match="must return real numbers"):
+        sea.sample(["salinity"], 0.0, 0.0, 0.0)
+
+
 def test_nan_is_preserved_and_its_reason_reported() -> None:
     sea = Sea.from_functions(
         {"x": lambda t, y, x: np.where(y > 0.5, np.nan, 1.0)},

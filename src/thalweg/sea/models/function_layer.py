@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.bounding_box import WORLD, BoundingBox
-from thalweg.core.errors import InputError
+from thalweg.core.errors import InputError, close_matches
 from thalweg.core.given_numbers import shortened_repr
 from thalweg.core.time import TimeLike
 from thalweg.core.types import FloatArray
@@ -22,6 +22,23 @@ from thalweg.sea.triangle_mesh import Mesh
 
 FieldFunction: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], ArrayLike]
 Evaluate: TypeAlias = Callable[[Sequence[str], FloatArray, FloatArray, FloatArray], Samples]
+
+_VECTOR_NAMES = frozenset(
+    name for v in nm.VECTORS for name in (*v.pair, v.speed, v.towards, v.origin) if name
+)
+_KNOWN_NAMES = _VECTOR_NAMES | nm.CANONICAL_UNITS.keys() | {nm.TOTAL_DEPTH}
+_LEVELS = (nm.WATER_LEVEL, nm.BED_DEPTH, nm.TOTAL_DEPTH)
+_WAVE_NAMES = (nm.WAVE_HEIGHT, nm.WAVE_PERIOD, nm.WAVES.origin, nm.WAVES.towards)
+#: names that may be meant where a name has a word
+_OF_WORD: Final[dict[str, tuple[str, ...]]] = {
+    **dict.fromkeys(
+        ("current", "velocity", "stream"), (*nm.CURRENT.pair, nm.CURRENT.speed, nm.CURRENT.towards)
+    ),
+    "wind": (*nm.WIND.pair, nm.WIND.speed, nm.WIND.origin),
+    **dict.fromkeys(("wave", "waves", "swell", "hs", "swh"), _WAVE_NAMES),
+    **dict.fromkeys(("depth", "level", "tide", "tidal", "bathymetry", "elevation"), _LEVELS),
+    "ice": (nm.ICE,),
+}
 
 MAX_STEP = 600.0  #: [s] longest automatic step when a formula is frozen
 MIN_STEPS = 200  #: automatic steps across a short window
@@ -213,6 +230,8 @@ VariableFunction: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], Sam
 
 def _variable_functions(functions: Mapping[str, FieldFunction]) -> dict[str, VariableFunction]:
     """Return for each canonical variable the function that computes it (and its partner)."""
+    for name in functions:
+        _check_name(name)
     given = {name: _checked(name, function) for name, function in functions.items()}
     makers: dict[str, VariableFunction] = {}
     for vector in nm.VECTORS:
@@ -330,6 +349,8 @@ def _checked(name: str, function: FieldFunction) -> FieldFunction:
     def call(time: FloatArray, lat: FloatArray, lon: FloatArray) -> FloatArray:
         result = function(time, lat, lon)
         try:
+            if np.iscomplexobj(result):
+                raise TypeError
             value = np.asarray(result, dtype=np.float64)
             return value if value.shape == time.shape else np.broadcast_to(value, time.shape).copy()
         except (TypeError, ValueError):
@@ -342,6 +363,25 @@ def _checked(name: str, function: FieldFunction) -> FieldFunction:
             ) from None
 
     return call
+
+
+def _check_name(name: str) -> None:
+    """Refuse a name that looks like a variable of the sea and is none: it would never be read.
+
+    Other names are variables of the user's own, for ships that read them.
+    """
+    if nm.canonical_name(name) in _KNOWN_NAMES or nm.is_bed_level(name):
+        return
+    words = {near for word in name.casefold().split("_") for near in close_matches(word, _OF_WORD)}
+    meant = list(dict.fromkeys(known for word in sorted(words) for known in _OF_WORD[word]))
+    if meant:
+        raise InputError(
+            f"There is no variable of the sea named {name!r}.",
+            f"Names with a similar word: {', '.join(meant)}.",
+            "Write one of these. A variable of your own, which a ship of yours reads, needs a name "
+            "without such words.",
+            field=name,
+        )
 
 
 def _describe(result: object) -> str:
