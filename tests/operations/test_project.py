@@ -427,6 +427,37 @@ def test_a_hopper_larger_than_the_ship_is_refused():
 
 
 @pytest.mark.slow
+def test_a_base_case_that_runs_out_of_days_does_not_lose_the_optimised_run():
+    route = example()["base_case"]["route"]
+    asked = example(volume_m3=24_000, base_case={"route": route, "load_factor": 0.3})
+    ship, sea, chart = open_project_inputs(Project.from_dict(asked))
+    whole = run_project(Project.from_dict(asked), ship=ship, sea=sea, chart=chart)
+    durations = [run.totals["duration_days"] for run in whole.runs]
+    assert durations[0] > 1.2 * durations[1]
+    short = Project.from_dict(asked | {"days": sum(durations) / 2.0})
+    result = run_project(short, ship=ship, sea=sea, chart=chart)
+    assert result.runs == (result.optimised,) and result.gains() == {}
+    assert result.optimised.totals["duration_days"] == pytest.approx(durations[1], rel=1e-4)
+    (note,) = result.optimised.notes
+    assert note.startswith("Without the base case: By ") and "can be moved (base case)" in note
+
+
+def test_unknown_values_of_a_project_are_filled(tmp_path):
+    grid = xr.Dataset(
+        {name: (("lat", "lon"), np.full((2, 2), 0.5)) for name in ("uo", "vo")},
+        coords={"lat": [51.0, 52.0], "lon": [3.0, 4.0]},
+    )
+    grid.uo.attrs["units"] = grid.vo.attrs["units"] = "m/s"
+    grid.to_netcdf(tmp_path / "flow.nc")
+    asked = example(base_case=None, sea=str(tmp_path / "flow.nc"), coast="none")
+    _, sea, _ = open_project_inputs(Project.from_dict(asked | {"fill": {"currents": 0.0}}))
+    east = sea.sample(["eastward_sea_water_velocity"], 0.0, [51.5, 55.0], [3.5, 3.5])
+    assert east["eastward_sea_water_velocity"].tolist() == [0.5, 0.0]
+    with pytest.raises(InputError, match="fill is 3"):
+        open_project_inputs(Project.from_dict(asked | {"fill": 3}))
+
+
+@pytest.mark.slow
 def test_a_base_case_outside_the_data_is_refused_with_the_position():
     north = [51.7449, 3.579], [51.72, 3.70], [51.72, 3.74], [51.6596, 3.6514]
     project = Project.from_dict(example(base_case={"route": [list(place) for place in north]}))

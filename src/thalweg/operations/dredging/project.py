@@ -45,7 +45,8 @@ class Project:
         A ship of the library, a ship file, or the content of a ship file.
     data_sources : mapping
         Sources of the sea and the chart: ``sea`` (files, or "synthetic-estuary"), ``tides``
-        (predict from the tides in the files), ``map``, ``depth``, ``zones``, ``coast``.
+        (predict from the tides in the files), ``map``, ``fill`` (see `thalweg.sea.Sea.filled`),
+        ``depth``, ``zones``, ``coast``.
     base : BaseCase or None
         The case to compare with.
     """
@@ -185,7 +186,7 @@ class Project:
         write_text(path, text)
 
 
-_SOURCE_KEYS = ("sea", "tides", "map", "depth", "zones", "coast")
+_SOURCE_KEYS = ("sea", "tides", "map", "fill", "depth", "zones", "coast")
 _REQUIRED_KEYS = ("load", "unload", "volume_m3", "hopper_m3", "loading", "unloading", "start")
 _ALLOWED_KEYS = (
     *("name", "ship"),

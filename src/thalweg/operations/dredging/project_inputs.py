@@ -112,10 +112,18 @@ def _sea(sources: Mapping[str, Any]) -> Sea:
         )
     named = [] if isinstance(tides, bool) else _as_list(tides)
     _check_names("tides", named, "It is true, or a list of constituents such as [M2, S2].")
+    fill = sources.get("fill") or {}
+    if not isinstance(fill, Mapping):
+        raise InputError(
+            f"fill is {fill!r}.",
+            "It gives a value for unknown ones of each quantity.",
+            "Write it as fill: {currents: 'nearest:25'}.",
+            field="fill",
+        )
     sea = Sea.open(*files, mapping=mapping)
-    if not tides:
-        return sea
-    return Sea.from_tides(sea, constituents=None if tides is True else named)
+    if tides:
+        sea = Sea.from_tides(sea, constituents=None if tides is True else named)
+    return sea.filled(**{str(name): value for name, value in fill.items()}) if fill else sea
 
 
 def _check_names(what: str, given: list[Any], possible: str) -> None:
@@ -127,7 +135,7 @@ def _check_names(what: str, given: list[Any], possible: str) -> None:
 
 def _check_estuary_sources(sources: Mapping[str, Any]) -> None:
     """Raise `InputError` for entries that have no effect on the synthetic estuary."""
-    for what in ("map", "tides", "coast"):
+    for what in ("map", "fill", "tides", "coast"):
         if sources.get(what) not in (None, False, "none"):
             raise InputError(
                 f"{what} is given for the {ESTUARY}.",

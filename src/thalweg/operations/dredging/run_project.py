@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.geodesy import Position, format_position
 from thalweg.core.time import format_time
 from thalweg.kernels import codes
@@ -73,7 +74,8 @@ def run_project(
     Returns
     -------
     ProjectResult
-        With the base case, if the project has one.
+        With the base case, if the project has one and it is finished within the period: a note
+        states why it is missing.
 
     Raises
     ------
@@ -83,7 +85,7 @@ def run_project(
     NoRouteError
         If there is no route at any tide for any load; states the highest water and missing depth.
     OutsidePeriodError
-        If the volume is not moved by the end of the project's period.
+        If the volume is not moved by the end of the project's period in the optimised run.
 
     Notes
     -----
@@ -115,7 +117,11 @@ def run_project(
             environment, fixed_route_network(chart, project.base.route), report
         )
         chosen = factors if given == BEST_LOAD_FACTOR else (float(given),)
-        base = _simulate_run(project, environment, line, chosen, name=BASE_CASE, watch=watch)
+        try:
+            base = _simulate_run(project, environment, line, chosen, name=BASE_CASE, watch=watch)
+        except OutsidePeriodError as error:  # the optimised run is a result without it
+            note = f"Without the base case: {error.asked} {error.possible}"
+            optimised = replace(optimised, notes=(*optimised.notes, note))
     return ProjectResult(
         project, environment, optimised, base, _provenance(environment, site_network)
     )

@@ -257,7 +257,7 @@ def _remedy(unknown: Sequence[str], far: float) -> str:
     return (
         "To reach it, add data that cover it, or fill the unknown values from the nearest known "
         f"ones: --fill {' '.join(fills)} (in Python sea.filled({in_python}), in requests of the "
-        f'service "fill": {in_request}).'
+        f'service and project files "fill": {in_request}).'
     )
 
 
