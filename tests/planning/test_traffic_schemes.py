@@ -16,7 +16,7 @@ from thalweg.chart.zones.traffic_schemes import (
     lanes_of_schemes,
 )
 from thalweg.chart.zones.zone_set import Zones
-from thalweg.core.geodesy import direct, inverse
+from thalweg.core.geodesy import densify, direct, inverse
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network import lattice
 from thalweg.planning import Voyage, plan
@@ -203,3 +203,43 @@ def test_ways_against_lanes_are_left_out_of_alternatives(past_finisterre):
     assert kept == routes[:1]
     assert note.startswith("1 of 2 ways found are left out")
     assert routes_within_lanes(chart, routes[:1]) == (routes[:1], [])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "start", "goal"),
+    [
+        ("Gulf of Suez", (29.75, 32.55), (27.2, 34.4)),
+        ("Gulf of Suez", (27.2, 34.4), (29.75, 32.55)),
+        ("Bab el Mandeb", (13.7, 42.6), (12.2, 44.2)),
+        ("Singapore Strait", (1.6, 102.9), (2.0, 105.0)),
+        ("Singapore Strait", (2.0, 105.0), (1.6, 102.9)),
+        ("Malacca Strait", (1.3, 103.3), (3.5, 100.2)),
+    ],
+)
+def test_plans_in_a_strait_keep_its_separation_line_to_port_over_the_whole_width(name, start, goal):
+    scheme = next(scheme for scheme in TRAFFIC_SCHEMES if scheme.name == name)
+    found = plan(voyage(start, goal, objective="distance"), ship=SHIP, sea=Sea.calm(), proof=0.0)
+    track = found.best.track
+    lat, lon, _ = densify(track.lat, track.lon, 1000.0)
+    stretch = np.cos(np.radians(lat.mean()))
+    line = np.array(scheme.line)[:, ::-1] * (stretch, 1.0)
+    distances = shapely.distance(shapely.LineString(line), shapely.points(lon * stretch, lat))
+    course = np.array([lon[-1] - lon[0], lat[-1] - lat[0]])
+    if course @ (line[-1] - line[0]) < 0.0:
+        line = line[::-1]
+    points = np.stack([lon * stretch, lat], axis=1)
+    along = np.diff(line, axis=0)
+    starboard = np.full(len(points), True)  # beyond the ends of the line
+    nearest = np.full(len(points), np.inf)
+    for first, leg in zip(line, along):
+        share = (points - first) @ leg / (leg @ leg)
+        across = (points - first)[:, 0] * leg[1] - (points - first)[:, 1] * leg[0]
+        beside = (share >= 0.0) & (share <= 1.0)
+        distance = np.abs(across) / np.linalg.norm(leg)
+        closer = beside & (distance < nearest)
+        nearest[closer] = distance[closer]
+        starboard[closer] = across[closer] > 0.0
+    in_strait = np.isfinite(nearest) & (distances < 20.0 / 60.0)
+    assert in_strait.sum() > 30
+    assert starboard[in_strait].mean() > 0.95  # narrow bends of an approximate line are cut

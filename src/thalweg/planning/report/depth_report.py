@@ -20,7 +20,7 @@ from thalweg.ship import Ship
 _STEP: Final = 1.0 * NAUTICAL_MILE
 _NOT_JUDGED: Final = 1.0 * NAUTICAL_MILE  # from land, the spacing of the data of the layer
 _NARROW: Final = 3.0 * NAUTICAL_MILE  # half width of passages that the layer does not show
-_ENDS: Final = 12.0 * NAUTICAL_MILE  # from the ends, where ports have dredged channels
+_ENDS: Final = 12.0 * NAUTICAL_MILE  # from ends and canals, where channels are dredged
 _MOST_LEGS: Final = 5
 CHECK_DEPTH: Final = "Check the depth"  #: a note on legs that may be too shallow begins so
 CROSSES_SHOAL: Final = "Crosses"  #: a note on a named shoal area begins so
@@ -54,8 +54,13 @@ def depth_notes(chart: Chart, route: Route, ship: Ship, clearance: float) -> lis
         if area.contains(lat, lon).any()
     ]
     depth = np.asarray(coarse_depth(lat, lon))
-    in_approach = canal_legs(route.track, chart, ship).approach[leg]
-    shallow = (depth < required) & ~in_approach & _judged(chart, route, lat, lon)
+    dredged = canal_legs(route.track, chart, ship)
+    judged = _judged(chart, route, lat, lon) & (dredged.number[leg] < 0)
+    in_canals = dredged.number[(dredged.number >= 0) & ~dredged.approach]
+    for k in np.unique(in_canals).tolist():
+        for end in dredged.canals[k].ends:
+            judged &= np.asarray(distance(lat, lon, *end)) >= _ENDS
+    shallow = (depth < required) & judged
     if shallow.any():
         notes.append(
             _shallow_legs(route, depth, np.flatnonzero(shallow), (lat, lon, leg), required)
@@ -99,5 +104,5 @@ def _shallow_legs(
     return (
         f"{CHECK_DEPTH}: {required:.1f} m are required, and the {NAME} has {'; '.join(named)}"
         f"{more}. It does not show small shoals and channels, and was not read in the approaches "
-        "of ports, within 12 nm of the ends, 1 nm of land and in narrow passages."
+        "of ports, within 12 nm of the ends and of canals, 1 nm of land and in narrow passages."
     )
