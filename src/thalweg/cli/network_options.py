@@ -58,7 +58,8 @@ def add_network_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--proof", type=float, metavar="SECONDS",
-        help="time for the proof of the lower bound, 0 to 3600 s; default: as long as the search",
+        help="time for the proof of the lower bound, 0 to 3600 s; default: as long as the search, "
+        "1 s or more",
     )  # fmt: skip
 
 

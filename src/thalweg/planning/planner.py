@@ -76,6 +76,7 @@ _Replan: TypeAlias = Callable[..., Plan]
 
 _LONGEST_PROOF = 3600.0  # [s]
 _LONGEST_DEFAULT_PROOF = 30.0  # [s]
+_SHORTEST_DEFAULT_PROOF = 1.0  # [s]
 
 
 def plan(
@@ -110,7 +111,7 @@ def plan(
         Spacing of the network [m]; by default it depends on the distance.
     proof : float, optional
         Time for the proof of the lower bound [s], 0 for the bound of the geodesic alone; by
-        default as long as the search. It ends earlier where the gap is below 0.5 %.
+        default as long as the search, 1 s or more. It ends earlier where the gap is below 0.5 %.
     progress : callable, optional
         Called with a short text at each stage. If it also has methods ``show_route`` and
         ``show_front``, these receive each better route, and the times [s] and values of each
@@ -269,7 +270,8 @@ def _plan_at_sea(context: PlanningContext, ends: list[Endpoint]) -> Plan:
     stretches = _plan_stretches(context, ends)
     seconds = context.proof_seconds
     if seconds is None:
-        seconds = min(clock.perf_counter() - began, _LONGEST_DEFAULT_PROOF)
+        searched = clock.perf_counter() - began
+        seconds = min(max(searched, _SHORTEST_DEFAULT_PROOF), _LONGEST_DEFAULT_PROOF)
     window = context.voyage.earliest_departure, context.voyage.latest_departure
     routes = [stretch.route for stretch in stretches]
     bound = certified_total(context, routes, window, seconds=seconds)
