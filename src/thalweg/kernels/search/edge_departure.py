@@ -19,7 +19,9 @@ from thalweg.kernels.search.sample_openings import opening_of_sample
 OPENING_TOLERANCE = 0.1  # accuracy of opening times [s]
 _SLOW = 3.0  # times the least time of an edge: slower ships may gain by a short wait
 _MOST_MARCHES = 2000  # of one edge in one call
-_SHORT_STEP, _MOST_STEPS = 20.0, 400  # between departures of a ship that may be overtaken [s]
+#: Between departures of a ship that may be overtaken [s]: in the first steps it is, at most, and so
+#: many; in the second where passing a sample gets later again.
+_SHORT_STEP, _LONG_STEP, _MOST_STEPS = 20.0, 50.0, 400
 _PROBES = 7  # before the first of these, each at half the distance of the one before
 _GOLDEN = 0.6180339887498949
 _CLOSE = 0.2  # accuracy of the best departure between openings [s]
@@ -135,6 +137,13 @@ def _push(status):
     return 0.0 if status == NO_DATA else 0.5 * OPENING_TOLERANCE
 
 
+@inlined_by_numba
+def _share_to_sample(network, edge, sample):
+    """Return the share of an edge up to one of its samples, which are evenly spaced."""
+    first, last = network.via_ptr[edge], network.via_ptr[edge + 1]
+    return min(sample - first + 1, last - first + 1) / (last - first + 1)
+
+
 @kernel_only
 def _next_open_departure(world, where, since, latest, bounds, work):
     """Return (departure, arrival, status, interval) of the first departure that is open.
@@ -145,7 +154,7 @@ def _next_open_departure(world, where, since, latest, bounds, work):
     very slow at first may be overtaken, and are followed in small steps.
     """
     edge, tail_node, k = where
-    times = world.sea.times
+    times, network = world.sea.times, world.network
     useless, least_time = bounds
     then, status, sample = _march_at(world, edge, tail_node, k, since, work)
     push, rate, crawl = _push(status), 1.0, 1.0
@@ -154,7 +163,7 @@ def _next_open_departure(world, where, since, latest, bounds, work):
             return since, then, status, k
         blocked = (status, sample)
         opens = _opening_on_edge(world, (edge, tail_node, k), then, blocked, useless, work)
-        slow = then - since > _SLOW * least_time
+        slow = then - since > _SLOW * least_time * _share_to_sample(network, edge, sample)
         if since >= latest or not (opens < math.inf or slow):
             break
         step = max((opens - then) / rate, 0.0) + push
@@ -167,7 +176,7 @@ def _next_open_departure(world, where, since, latest, bounds, work):
         )
         k = interval_near(times, k, since)
         rate, same = 1.0, sample == at and status == blocked[0]
-        crawl = min(2.0 * crawl, _SHORT_STEP) if then < moment else math.inf
+        crawl = min(2.0 * crawl, _SHORT_STEP if then < moment else _LONG_STEP)
         crawl = crawl if same else 1.0
         if not same:
             push = _push(status)
@@ -285,6 +294,7 @@ def wait_for_edge(world, edge, tail, k, at_once, terms, work):
             if now not in (OK, OUTSIDE_PERIOD) or s >= useless:
                 break
         cost = math.inf
+        now_slow = now == OK and then - s > _SLOW * least_time
         if now == OK:
             cost = s - t + factor * (then - s)
         if cost < best:
@@ -298,7 +308,8 @@ def wait_for_edge(world, edge, tail, k, at_once, terms, work):
         soon = s + min(max(0.002 * (end - s), 1.0), end - s)
         where = (edge, tail, k)
         nearby = _cost_at(world, where, t, factor, soon, work)[0]
-        if nearby < cost - 1e-6 or at_end < cost or (cost == math.inf and best == math.inf):
+        slow = now_slow or (cost == math.inf and best == math.inf)
+        if nearby < cost - 1e-6 or at_end < cost or slow:
             one, two, three = _best_in_stretch(world, where, t, factor, (s, end), work)
             if three < best:
                 departure, arrival, best, found = one, two, three, OK
