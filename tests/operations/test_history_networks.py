@@ -177,6 +177,23 @@ def test_ways_seen_in_one_direction_are_reversed_and_marked(fleet):
     assert back.voyages == 0 and back.length == net.route("Bravo", "Charlie").length
 
 
+def test_a_way_back_round_the_ocean_is_not_taken_for_a_usual_one(fleet):
+    """Ships sail A-B, B-C and C-A: from B to A the arc is reversed, of low confidence, not by C."""
+    calls = find_port_calls(fleet, [port.places for port in PORTS])
+    tracks = voyages_between_calls(fleet, calls)
+    ways = [(0, 1), (1, 2), (2, 0)]
+    some = [np.flatnonzero((tracks.start == a) & (tracks.goal == b))[:12] for a, b in ways]
+    net = build_history(Chart.open_water(), _some(tracks, np.sort(np.concatenate(some))), PORTS)
+    there, back = net.route("Alpha", "Bravo"), net.route("Bravo", "Alpha")
+    assert there.confidence in ("high", "medium") and there.voyages > 0
+    assert (
+        back.nm
+        < 1.05 * there.nm
+        < net.route("Bravo", "Charlie").nm + net.route("Charlie", "Alpha").nm
+    )
+    assert back.confidence == "low" and back.voyages == 0
+
+
 def test_corridors_are_junctions_with_names(fleet):
     line = CorridorLine("Gate", (47.5, -25.0), (48.5, -25.0))
     net = history_from_tracks(fleet, Chart.open_water(), ports=PORTS, corridors=[line])

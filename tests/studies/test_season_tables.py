@@ -176,4 +176,10 @@ def test_percentiles_by_month_are_those_of_the_departures(tmp_path, monkeypatch)
         assert row["time_h_p50_low"] in own and row["time_h_p50_high"] in own
         assert row["time_h_p50_low"] < row["time_h_p50"] < row["time_h_p50_high"]
     assert summary.best_months["month"].tolist() == [5]
-    assert summary.hours["routes"].sum() == study.size
+    assert summary.hours["routes"].sum() == study.size and summary.left == 0
+    parts = sorted(tmp_path.rglob("*.parquet"))
+    lost = len(pd.read_parquet(parts[0]))
+    parts[0].unlink()
+    if lost == study.size:  # one part
+        return
+    assert summarise_study(tmp_path).left == lost

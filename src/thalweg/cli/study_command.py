@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -167,6 +168,12 @@ def _summary(arguments: argparse.Namespace) -> int:
     from thalweg.studies import summarise_study
 
     summary = summarise_study(arguments.folder)
+    if summary.left:
+        print(
+            f"warning: {summary.left} voyages of this study are not planned yet: shares and "
+            "choices below compare a part of it. thalweg study run plans the others.",
+            file=sys.stderr,
+        )
     if arguments.out is not None:
         summary.write(arguments.out)
     if arguments.json:
@@ -185,6 +192,7 @@ def _summary(arguments: argparse.Namespace) -> int:
                 ("fidelity", summary.fidelity),
             )
         }
+        parts["voyages_left"] = summary.left
         print(json.dumps(parts, indent=2, allow_nan=False))
         return SUCCESS
     _print_voyages(summary.voyages)
@@ -195,7 +203,8 @@ def _summary(arguments: argparse.Namespace) -> int:
         print()
     if not summary.choices.empty:
         print(
-            "Share of departures for which a value is the best, and of those whose next one agrees:"
+            "Share of departures for which a value is the best (chosen), and of those with the "
+            "same choice at the next departure (persistence):"
         )
         print(summary.choices.round(2).to_string(index=False, na_rep="-"))
         print()

@@ -71,6 +71,9 @@ class StudySummary:
     fidelity : pandas.DataFrame
         Networks, distances between nodes or samplings against the finest (`fidelity_table`); empty
         without an axis ``network``, ``resolution_nm`` or ``sampling``.
+    left : int
+        Voyages of the study that have no result yet: until it is 0, shares and choices compare
+        parts of the study only.
     """
 
     table: pd.DataFrame
@@ -83,6 +86,7 @@ class StudySummary:
     hours: pd.DataFrame = field(default_factory=pd.DataFrame)
     best_months: pd.DataFrame = field(default_factory=pd.DataFrame)
     fidelity: pd.DataFrame = field(default_factory=pd.DataFrame)
+    left: int = 0
 
     def write(self, folder: str | Path) -> list[Path]:
         """Write ``summary.csv``, ``voyages.csv``, and the tables and plots that are not empty.
@@ -232,6 +236,7 @@ def summarise_study(folder: str | Path) -> StudySummary:
         month_by_hour(frame[usable], figures),
         _best_months(table, by),
         fidelity_table(frame[usable], study.axes.get(fine, ()), fine),
+        len({row.id for row in study.rows()}) - len(frame),
     )
 
 

@@ -19,11 +19,14 @@ from thalweg.network.history.history_network import (
     SAILED,
     HistoryArcs,
 )
+from thalweg.network.history.season_masks import LEAST_SAMPLES
 from thalweg.network.history.voyage_tracks import sphere_vectors
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
+_FAR_ROUND: Final = 1.5  # times an arc: a way back that is longer is no usual one
+_AT_ONCE: Final = 500  # arcs whose way back is searched at the same time
 _TRIED: Final = 4  # nearest nodes of other parts to which a way is searched
 
 
@@ -36,7 +39,8 @@ def connected_arcs(
 ) -> tuple[HistoryArcs, list[int]]:
     """Return arcs over which every node in use reaches every other.
 
-    First arcs that join parts in one direction only are added in the other direction; their
+    First arcs that join parts in one direction only are added in the other direction, and those
+    of ten voyages or more from whose end the way back is more than 1.5 times as long; their
     evidence is that of the arc, their kind "reversed". Then parts that no track joins are joined to
     the nearest other part by the shortest way by sea, both ways, of the kind "globe".
 
@@ -53,13 +57,37 @@ def connected_arcs(
     """
     count = len(places[0])
     part = strongly_connected_parts(count, arcs.tail, arcs.head)
-    one_way = np.flatnonzero(part[arcs.tail] != part[arcs.head])
+    far_round = (arcs.evidence.count >= LEAST_SAMPLES) & _returns_far_round(count, arcs)
+    lacking = (part[arcs.tail] != part[arcs.head]) | far_round
+    one_way = np.flatnonzero(lacking)
     arcs = joined_arcs([arcs, _reversed(arcs, one_way)])
     nodes = np.union1d(np.union1d(arcs.tail, arcs.head), np.asarray(used, np.int64))
     part = strongly_connected_parts(count, arcs.tail, arcs.head, both_ways=True)
     found, alone = _ways_between_parts(places, nodes.astype(np.int64), part, ways)
     both = [*found, *((b, a, line[::-1]) for a, b, line in found)]
     return joined_arcs([arcs, globe_arcs(chart, both)]), alone
+
+
+def _returns_far_round(count: int, arcs: HistoryArcs) -> BoolArray:
+    """Return whether the way back along the arcs is more than `_FAR_ROUND` times the arc, (A,)."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import dijkstra
+
+    length, order = arcs.length, np.lexsort((arcs.length, arcs.head, arcs.tail))
+    _, first = np.unique(arcs.tail[order] * count + arcs.head[order], return_index=True)
+    shortest = order[first]  # of several arcs between two nodes
+    graph = csr_array(
+        (length[shortest], (arcs.tail[shortest], arcs.head[shortest])), shape=(count, count)
+    )
+    far = np.ones(len(length), bool)
+    for heads in np.array_split(np.unique(arcs.head), max(1, len(length) // _AT_ONCE)):
+        if not len(heads):
+            continue
+        own = np.isin(arcs.head, heads)
+        most = _FAR_ROUND * length[own]
+        back = dijkstra(graph, indices=heads, limit=float(most.max()))
+        far[own] = back[np.searchsorted(heads, arcs.head[own]), arcs.tail[own]] > most
+    return far
 
 
 def globe_arcs(chart: Chart, ways: Sequence[tuple[int, int, list[Position]]]) -> HistoryArcs:
