@@ -6,8 +6,10 @@ import json
 import os
 import signal
 import time
+from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.service.conftest import LONG_S, SHORT, ended
@@ -216,6 +218,31 @@ def test_a_job_stopped_while_it_writes_a_result_keeps_it_whole(tmp_path, monkeyp
         parts, folder = summary["parts"], tmp_path
     assert parts and folder == written[-1]
     assert json.loads((folder / "plan.json").read_text())["routes"]
+
+
+def test_a_stopped_front_keeps_the_faster_route_that_was_shown_first():
+    from thalweg import Chart, Sea, Ship, Voyage, plan
+
+    ship, chart = Ship.load("handysize-bulker"), Chart.open_water(46.0, 49.0, -22.0, -18.0)
+    ends = {"start": (47.0, -20.0), "goal": (47.0, -19.0), "depart": "1998-08-31T12:00Z"}
+    given = {"ship": ship, "sea": Sea.storm(), "chart": chart, "resolution": 8000.0, "proof": 0.0}
+    first = plan(Voyage(**ends), **given).best
+    whole = plan(Voyage(**ends, objective="front"), **given)
+    slow = [k for k, route in enumerate(whole.routes) if route.time_h > first.time_h + 0.2]
+    part = replace(
+        whole, routes=tuple(whole.routes[k] for k in slow), cancelled=True,
+        front=replace(
+            whole.front, values=whole.front.values[slow],
+            stages=tuple(whole.front.stages[k] for k in slow),
+            ways=tuple(whole.front.ways[k] for k in slow),
+        ),
+    )  # fmt: skip
+    found = job_work.with_faster_route(part, first)
+    assert found.routes[0] is first and found.routes[1:] == part.routes
+    assert found.front.values[0] == pytest.approx(found.front.objective.value(first))
+    assert (np.diff(found.front.values) < 0.0).all()
+    assert len(found.to_dict()["front"]["points"]) == len(found.routes)
+    assert job_work.with_faster_route(whole, whole.routes[1]) is whole  # not faster
 
 
 def test_a_front_is_sent_while_it_is_searched(client):

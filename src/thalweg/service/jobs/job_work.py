@@ -11,6 +11,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
 from thalweg.core.errors import ThalwegError
 from thalweg.core.file_writing import make_folder
 from thalweg.core.interrupt import held_interrupt
@@ -89,7 +91,11 @@ def _keep_shown(
         routes=(route,),
         proof=Proof(math.nan, "no bound: the job was stopped before", route.time_h),
         rejections={},
-        notes=("The job was stopped: this is the best route found until then.",),
+        notes=(
+            "The job was stopped: this is the best route found until then.",
+            "Depth, approaches, speed loss and traffic were not reported on before it was stopped: "
+            "plan again for the notes of this voyage.",
+        ),
         provenance={"from": str(voyage.start), "to": str(voyage.goal)},
         cancelled=True,
     )
@@ -109,8 +115,9 @@ def _plan_whole(
 
     stages("reading the ship, the sea and the coastline")
     world = open_world(request, order.files)
+    first = None
     if voyage.chooses_speeds:
-        _plan_first(voyage, request, world, order, messages, stages)
+        first = _plan_first(voyage, request, world, order, messages, stages)
     found = plan(
         voyage,
         ship=world.ship,
@@ -121,6 +128,8 @@ def _plan_whole(
         proof=request.proof_s,
         progress=stages,
     )
+    if found.cancelled and first is not None:
+        found = with_faster_route(found, first)
     beside = None
     with suppress(KeyboardInterrupt):  # the plan is kept in any case
         messages.send("route", {"route": first_look(found.best), "final": True})
@@ -139,13 +148,13 @@ def _plan_first(
     order: JobOrder,
     messages: MessageWriter,
     stages: StageMessages,
-) -> None:
+) -> Route | None:
     """Plan the fastest route first, show it, and keep it as the result if the job is stopped."""
     from thalweg.planning import plan
 
     fastest = replace(voyage, objective="time", method="default", ensemble=None)
     if world.sea.members:
-        return
+        return None
     stages("planning the fastest route first")
     with suppress(ThalwegError):  # the plan itself states what is wrong
         found = plan(
@@ -170,6 +179,30 @@ def _plan_first(
             )
         if cancelled or stopped.is_set():
             raise KeyboardInterrupt
+        return found.best
+    return None
+
+
+def with_faster_route(found: Plan, first: Route) -> Plan:
+    """Return a front that was stopped with a route found before it, if that is faster than all.
+
+    Routes that take longer and are not better in the other figure are left out.
+    """
+    front = found.front
+    if front is None or front.objective is None or not first.feasible:
+        return found
+    value = front.objective.value(first)
+    fastest = min(route.time_h for route in found.routes)
+    if not (math.isfinite(value) and first.time_h < fastest):
+        return found
+    kept = [k for k, other in enumerate(front.values.tolist()) if other < value]
+    rows = [(found.routes[k], front.values[k], front.stages[k], front.ways[k]) for k in kept]
+    first_row = (first, value, "fastest", "fastest route, found first")
+    is_best = found.voyage.objective == "front" or not rows
+    rows.insert(0 if is_best else 1, first_row)
+    routes, values, front_stages, ways = zip(*rows)
+    front = replace(front, values=np.array(values), stages=front_stages, ways=ways)
+    return replace(found, routes=routes, front=front)
 
 
 def _beside(
