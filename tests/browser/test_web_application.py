@@ -98,6 +98,19 @@ def test_a_refusal_stands_at_its_field_and_offers_a_remedy(visit):
     assert field.locator(".error").count() == 0
 
 
+def test_a_voyage_beyond_the_end_of_the_data_offers_an_earlier_departure(visit):
+    page = visit.open()
+    visit.fill_short("47.0N 20.0W", "47.0N 12.0W")
+    page.locator("#depart").fill("1998-09-07 20:00")
+    page.locator("#objective").select_option("time")
+    page.get_by_role("button", name="Plan the voyage").click()
+    remedies = page.locator(".remedies")
+    remedies.get_by_role("button", name="Depart 6 Sep 1998 20:00").wait_for()
+    assert remedies.get_by_role("button").count() == 1  # limits and land are not the reason
+    remedies.get_by_role("button").click()
+    assert page.locator("#depart").input_value() == "1998-09-06 20:00"
+
+
 def test_a_refused_job_fills_the_form_and_stands_at_its_field(visit):
     voyage = {**SHORT_REQUEST["voyage"], "arrive_by": "1998-08-31T12:30Z"}
     post, get = visit.service.http.post, visit.service.http.get

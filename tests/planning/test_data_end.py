@@ -21,3 +21,4 @@ def test_the_end_of_the_data_is_the_first_reason():
         )  # fmt: skip
     assert "arrives before the data end at 2023-11-15T01:00:00Z" in caught.value.asked
     assert caught.value.remedy.startswith("Add a longer forecast, or depart earlier.")
+    assert caught.value.details["data_end"] == "2023-11-15T01:00:00Z"

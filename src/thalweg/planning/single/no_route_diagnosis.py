@@ -80,6 +80,7 @@ def no_route_error(
         _advice(reasons, ended),
         reasons=reasons,
         nearest=nearest,
+        **({"data_end": format_time(last)} if ended else {}),
     )
 
 
