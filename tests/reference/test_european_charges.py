@@ -11,6 +11,7 @@ from thalweg.ship.methods.engine.european_charges import (
     ets_phase_in,
     fueleu_penalty,
     fueleu_target,
+    other_greenhouse_gases,
     voyage_share_between,
 )
 
@@ -24,6 +25,16 @@ def test_the_phase_in_and_the_targets_are_those_of_the_regulations():
     assert fueleu_target(2030) == pytest.approx(85.6904)
     assert fueleu_target(2050) == pytest.approx(18.232)
     assert math.isinf(fueleu_target(2024))
+
+
+def test_methane_and_nitrous_oxide_need_allowances_from_2026():
+    """3.114 + 28 x 0.00005 + 265 x 0.00018 = 3.1631 t of CO2 equivalent per t of HFO."""
+    assert [3.114 + other_greenhouse_gases("hfo", year) for year in (2025, 2026)] == [
+        3.114, pytest.approx(3.1631)
+    ]  # fmt: skip
+    charges = EuropeanCharges(0.5, allowance_price=80.0, year=2026)
+    assert charges.per_kg("hfo", 3.114) == pytest.approx(0.5 * 0.080 * 3.1631)
+    assert charges.per_kg("lng", 2.75) == pytest.approx(0.5 * 0.080 * 2.75)
 
 
 def test_default_intensities_of_fuels():

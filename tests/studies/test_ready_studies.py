@@ -111,6 +111,8 @@ def test_european_charges_and_rating_of_a_ship_year_by_hand():
     assert row["cii_required"] == pytest.approx(required, rel=1e-6)
     bounds = [required * d for d in (0.82, 0.93, 1.08, 1.28)]  # MEPC.354(78), Table 1
     assert row["cii_rating"] == "ABCDE"[sum(attained > b for b in bounds)]
+    later = annual_figures(rows, ["ship"], {"a": ship}, {**annual, "year": 2026}).iloc[0]
+    assert later["eu_ets_cost"] == pytest.approx(trips * tonnes * 3.1631 * 0.5 * 80.0)
     unknown = annual_figures(rows.assign(eu_share=float("nan")), ["ship"], {"a": ship}, annual)
     assert unknown.iloc[0]["eu_ets_cost"] is None
 

@@ -18,6 +18,7 @@ from thalweg.ship.methods.engine.european_charges import (
     WELL_TO_WAKE,
     ets_phase_in,
     fueleu_penalty,
+    other_greenhouse_gases,
     voyage_share_between,
 )
 from thalweg.ship.performance_sheet import carbon_intensity_of
@@ -134,9 +135,10 @@ def european_charges_of_year(
 ) -> dict[str, float | None]:
     """Return the cost of emission allowances and the FuelEU penalty of a year.
 
-    Directive 2003/87/EC, articles 3ga and 3gb: CO2 times the share of the voyage in scope, the
-    phase-in of the year and the price of an allowance. Regulation (EU) 2023/1805, annex IV, part B:
-    the penalty of the fuels inside and outside emission control areas. Fuel in port is not counted.
+    Directive 2003/87/EC, articles 3ga and 3gb: CO2, from 2026 with methane and nitrous oxide, times
+    the share of the voyage in scope, the phase-in of the year and the price of an allowance.
+    Regulation (EU) 2023/1805, annex IV, part B: the penalty of the fuels inside and outside
+    emission control areas. Fuel in port is not counted.
 
     Parameters
     ----------
@@ -160,7 +162,8 @@ def european_charges_of_year(
         return none
     if "allowance_price" in annual and "co2_t" in group:
         phase = ets_phase_in(year) * annual["allowance_price"]
-        none["eu_ets_cost"] = finite_or_none(trips * phase * float((share * group["co2_t"]).mean()))
+        gases = group["co2_t"] + _other_gases(group, ship, year)
+        none["eu_ets_cost"] = finite_or_none(trips * phase * float((share * gases).mean()))
     if "euro_price" in annual and ship is not None and "fuel_eca_t" in group:
         terms = ship.fuel_terms
         outside = (share * (group["fuel_t"] - group["fuel_eca_t"])).mean()
@@ -172,6 +175,19 @@ def european_charges_of_year(
         ]
         none["fueleu_penalty"] = finite_or_none(trips * annual["euro_price"] * sum(parts))
     return none
+
+
+def _other_gases(group: pd.DataFrame, ship: Ship | None, year: int) -> Any:
+    """Return the methane and nitrous oxide of rows that need allowances [t of CO2 equivalent]."""
+    if ship is None or "fuel_t" not in group:
+        return 0.0
+    terms = ship.fuel_terms
+    inside = group["fuel_eca_t"].fillna(0.0) if "fuel_eca_t" in group else 0.0 * group["fuel_t"]
+    outside, in_areas = (
+        other_greenhouse_gases(fuel.name if fuel else "", year)
+        for fuel in (terms.outside, terms.inside)
+    )
+    return (group["fuel_t"] - inside) * outside + inside * in_areas
 
 
 def share_of_voyage(voyage: Mapping[str, Any], annual: Mapping[str, float]) -> float:

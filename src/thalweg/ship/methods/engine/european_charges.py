@@ -82,6 +82,19 @@ def ets_phase_in(year: int) -> float:
     return {2024: 0.4, 2025: 0.7}.get(year, 1.0 if year >= 2026 else 0.0)
 
 
+def other_greenhouse_gases(fuel_name: str, year: int) -> float:
+    """Return the methane and nitrous oxide that need allowances [kg of CO2 equivalent per kg fuel].
+
+    From 2026 on (Directive 2003/87/EC, annex I, as amended by Directive (EU) 2023/959), by the
+    factors of `WELL_TO_WAKE` at sea and the warming potentials 28 and 265 of Delegated Regulation
+    (EU) 2020/1044; these potentials were not compared with the source. 0 for fuels that are not in
+    that table: their factors depend on the engine.
+    """
+    if year < 2026 or fuel_name not in WELL_TO_WAKE:
+        return 0.0
+    return 28.0 * 5e-5 + 265.0 * 1.8e-4
+
+
 def fueleu_target(year: int) -> float:
     """Return the greatest intensity of the energy used on board [gCO2eq/MJ]; inf before 2025.
 
@@ -120,7 +133,7 @@ class EuropeanCharges:
     voyage_share : float
         1 between ports of the Union, 0.5 to or from one, 0 otherwise.
     allowance_price : float
-        Of a tonne of CO2 [currency of the ship's prices]; 0: not counted.
+        Of a tonne of CO2 equivalent [currency of the ship's prices]; 0: not counted.
     euro_price : float
         Of a euro in that currency, for the FuelEU penalty; 0: not counted.
     year : int
@@ -172,7 +185,8 @@ class EuropeanCharges:
             return 0.0
         charge = 0.0
         if self.allowance_price > 0.0:
-            charge += self.allowance_price * ets_phase_in(self.year) * co2 / TONNE
+            gases = co2 + other_greenhouse_gases(fuel_name, self.year)
+            charge += self.allowance_price * ets_phase_in(self.year) * gases / TONNE
         if self.euro_price > 0.0:
             known = WELL_TO_WAKE.get(fuel_name)
             if known is None:
