@@ -31,7 +31,7 @@ _MEANINGS: Final = {
     "inshore_percent": "inshore: share of the length within 3 nm of land",
     "land_distance_nm": "off land: least distance from land",
     "contour_distance_nm": "off shoals: least distance from charted water that is too shallow",
-    "near_ground_h": "near ground: time within 1 nm of land or such water",
+    "near_ground_h": "near ground: time within 1 nm of land or of water that is too shallow",
     "workable_percent": "workable: share of the time in which the first task can be done",
 }
 

@@ -157,7 +157,7 @@ def _interruption_notes(explored: list[ExploredAlternative], front: ParetoFront)
         content = "before refinement: the plan holds the exact front of the network"
     else:
         content = "before refinement was complete: the plan holds the best front so far"
-    return [f"Stopped by Ctrl-C {content}; a longer run may improve it."]
+    return [f"Stopped {content}; a longer run may improve it."]
 
 
 def _weather_blind_routes(

@@ -38,7 +38,7 @@ export const limitTexts = (met) => met.filter(({ name }) => LIMITS[name] && name
 });
 
 function words(one) {
-  if (one.name === ALWAYS) return one.near_h > 0 ? `the highest of the ship for ${duration(one.near_h)}` : "below the highest of the ship";
+  if (one.name === ALWAYS) return one.near_h > 0 ? `the highest of the ship for ${duration(one.near_h)}` : "at most the highest of the ship";
   if (!one.near.length) return `${one.worst < one.limit ? "highest" : "least"} on ${time(one.time)}`;
   const [[from]] = one.near, often = one.near.length > 1 ? `, ${one.near.length} times` : "";
   return `near its limit for ${duration(Math.max(one.near_h, 1 / 60))}${often}, first on ${time(from)}`;

@@ -39,7 +39,7 @@ export class ProgressView {
     if (data.state === "queued" || data.state === "running") { this.#say(); return; }
     this.steps.querySelector(".now")?.classList.remove("now");
     this.close();
-    announce(`The job is ${data.state}.`);
+    announce({ done: "The result is ready.", failed: "The job ended with an error.", cancelled: "The job was stopped." }[data.state] || `State of the job: ${data.state}.`);
     this.handlers.ended(data);
   }
 
