@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Final, TypeVar
 
 from thalweg.core.errors import NoPathError, NoRouteError
+from thalweg.core.geodesy import distance
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels.codes import DEPTH, REASONS
 from thalweg.planning.planning_context import PlanningContext
@@ -31,6 +32,9 @@ _ATTEMPTS: Final = (
     (0.25, 0.0, 1.0),
     (0.0, 0.0, 1.0),
 )
+
+
+_NEAR_SHARE: Final = 0.3  # of the distance between the ends: what is farther is not near them
 
 
 def plan_off_land(
@@ -58,7 +62,9 @@ def plan_off_land(
         return run(context)
     refusal: NoRouteError | None = None
     was_closed = False
-    attempts = (1.0, 0.0, 1.0, True), *((*one, False) for one in _ATTEMPTS)
+    length = float(distance(ends[0].lat, ends[0].lon, ends[-1].lat, ends[-1].lon))
+    tried = [one for one in _ATTEMPTS if one[1] <= _NEAR_SHARE * length]
+    attempts = (1.0, 0.0, 1.0, True), *((*one, False) for one in tried)
     for share, radius, near_share, closing in attempts:
         kept = share * offing
         chart = chart_off_land(
