@@ -30,7 +30,9 @@ def answer():
             "northward_wind": lambda time, lat, lon: 0.0 * lat,
             WAVES: lambda time, lat, lon: 2.0 + lon,
             "sea_surface_wave_from_direction": lambda time, lat, lon: 270.0 + 0.0 * lat,
-            "sea_surface_wave_mean_period": lambda time, lat, lon: 8.0 + 0.0 * lat,
+            "sea_surface_wave_period_at_variance_spectral_density_maximum": lambda time, lat, lon: (
+                8.0 + 0.0 * lat
+            ),
         }
     )
     chart = Chart.open_water(50.0, 52.5, 1.0, 4.0).with_depth(lambda lat, lon: 30.0 - 4.0 * lon)

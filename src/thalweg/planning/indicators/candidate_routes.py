@@ -63,14 +63,7 @@ from thalweg.route import Route, Track
 from thalweg.ship.comfort.onboard_motions import required_motions
 
 STOPPED: Final = "Stopped"  #: first word of notes after Ctrl-C
-#: Objectives of candidates, in words.
-_OBJECTIVES: Final = {
-    "fuel": "least fuel",
-    "comfort": "least motion sickness",
-    "encounters": "fewest encounters",
-    "inshore": "least length inshore",
-    "distance": "least distance",
-}
+_OBJECTIVES: Final = ("fuel", "comfort", "encounters", "inshore", "distance")
 _WEIGHTED: Final = ("time", "fuel", "comfort", "encounters")
 #: Offings of the route farther off land, tried in turn: at least [nm], and times the voyage's own.
 _WIDER_OFFINGS: Final = ((4.0, 2.0), (3.0, 1.5), (2.0, 1.25))
@@ -136,7 +129,7 @@ def candidate_routes(
     search = _Candidates(trade_off)
     first = search.fastest(alternatives[0])
     steps: list[tuple[str, Iterator[Track]]] = [
-        (f"of {words}", search.of_least(first.network, name)) for name, words in _OBJECTIVES.items()
+        (f"for {name}", search.of_least(first.network, name)) for name in _OBJECTIVES
     ]
     steps += [
         ("of a weighted sum", search.of_weighted_sum(first.network)),

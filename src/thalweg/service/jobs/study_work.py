@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from thalweg.core.file_writing import write_text
+from thalweg.core.interrupt import held_interrupt
 from thalweg.service.jobs.child_messages import MessageWriter
 from thalweg.service.jobs.job_order import JobOrder, StageMessages
 
@@ -39,8 +40,9 @@ def plan_study(
     """
     from thalweg.studies import Study, run_study
 
-    study = Study.from_dict(order.with_paths(order.request["study"]), Path(order.workspace))
     folder = Path(order.workspace) / "study"
+    with held_interrupt() as stopped:
+        study = Study.from_dict(order.with_paths(order.request["study"]), Path(order.workspace))
 
     def progress(state: StudyProgress) -> None:
         messages.send(
@@ -57,6 +59,8 @@ def plan_study(
     stages(f"planning {study.size} voyages")
     state = "done"
     try:
+        if stopped.is_set():
+            raise KeyboardInterrupt
         with _stop_at_once():
             chunk = min(20, max(1, study.size // _PARTS))
             run_study(study, folder, chunk=chunk, progress=progress)
@@ -64,8 +68,9 @@ def plan_study(
         if not any(folder.glob("parts/part-*")):
             raise
         state = "cancelled"
-    stages("writing the files")
-    return state, _write_study(order, study, folder, stages, cancelled=state == "cancelled")
+    with held_interrupt():
+        stages("writing the files")
+        return state, _write_study(order, study, folder, stages, cancelled=state == "cancelled")
 
 
 @contextmanager
