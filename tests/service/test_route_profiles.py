@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thalweg import Chart, Sea, Ship, evaluate
+from thalweg import Chart, Sea, Ship, Track, evaluate
 
 pytest.importorskip("fastapi", reason='the extra "serve" is not installed')
 
@@ -47,6 +47,27 @@ def test_motion_is_unknown_where_the_waves_are():
     waves[:3] = np.nan
     profile = route_profile(replace(route, samples={**route.samples, name: waves}))
     assert profile["weighted_acceleration_m_s2"][:4].count(None) == 3
+
+
+def test_a_ship_that_waits_lies_still_in_the_profile():
+    from thalweg.service.jobs.route_profiles import route_profile
+
+    track = Track([63.5, 64.0, 64.5], [6.0, 6.0, 6.0], depart=0.0, wait=[0.0, 7200.0, 0.0])
+    chart = Chart.open_water(63.0, 65.0, 5.0, 8.0)
+    ship = Ship.load("handysize-bulker")
+    route = evaluate(track, ship=ship, sea=Sea.calm(), chart=chart)
+    profile = route_profile(route)
+    time, speed = np.array(profile["time"]), np.array(profile["speed_over_ground_kn"])
+    assert (np.diff(time) >= 0.0).all()
+    begin, end = float(route.legs["arrive"][0]), float(route.legs["depart"][1])
+    assert end - begin == pytest.approx(7200.0)
+    waits = (time >= begin - 0.1) & (time <= end + 0.1) & (speed == 0.0)
+    assert time[waits].tolist() == pytest.approx([begin, end], abs=0.1)
+    assert (speed[~waits] > 5.0).all()
+    assert np.array(profile["lat"])[waits].tolist() == [64.0, 64.0]
+    burnt = np.array(profile["fuel_t_per_day"])
+    rate = float(route.legs["waiting_fuel"][1]) / 7200.0 * 86.4
+    assert burnt[waits] == pytest.approx(rate, abs=0.006) and burnt[~waits].min() > rate
 
 
 def test_a_ship_without_places_has_none():

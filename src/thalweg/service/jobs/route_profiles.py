@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
@@ -16,6 +17,7 @@ from thalweg.sea import standard_names as nm
 if TYPE_CHECKING:
     from thalweg.route import Route
 
+_LEAST_WAIT: Final = 60.0  # of a wait that has points of its own [s]
 MOST_POINTS: Final = 600  #: points of a profile
 _COMFORT: Final = "weighted_acceleration:"  # and the name of a place
 #: Columns of a profile: source in the samples of a route, factor, decimals.
@@ -42,12 +44,13 @@ def route_profile(route: Route) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``time`` [s since 1970] and columns of equal length whose names end with their unit; None
-        where a value is unknown. Columns without any known value are left out.
+        ``time`` [s since 1970], with begin and end of each wait under way, and columns of equal
+        length whose names end with their unit; None where a value is unknown. Columns without any
+        known value are left out.
     """
-    samples = route.samples
+    samples, still = _with_waits(route)
     time = np.asarray(samples["time"], float)
-    take = _thinned(time)
+    take = np.union1d(_thinned(time), still)
     columns: dict[str, Any] = {"time": [round(float(t), 1) for t in time[take]]}
     for name, (source, factor, decimals) in _COLUMNS.items():
         if source in samples:
@@ -69,6 +72,33 @@ def route_profile(route: Route) -> dict[str, Any]:
             felt = np.where(np.isfinite(samples[nm.WAVE_HEIGHT][take]), felt, np.nan)
         _add(columns, "weighted_acceleration_m_s2", felt, 3)
     return columns
+
+
+def _with_waits(route: Route) -> tuple[dict[str, FloatArray], NDArray[np.int64]]:
+    """Return the samples of a route with two for each wait under way, and the indices of these.
+
+    A ship that waits lies still and burns the fuel of her hotel load; the sea at begin and end is
+    that of the samples before and after.
+    """
+    samples = {name: np.asarray(values, float) for name, values in route.samples.items()}
+    time, legs, wait = samples["time"], route.legs, np.asarray(route.track.wait, float)
+    added: list[int] = []
+    for leg in np.flatnonzero(wait[1:-1] > _LEAST_WAIT) + 1:
+        begin, end = float(legs["arrive"][leg - 1]), float(legs["depart"][leg])
+        at = int(np.searchsorted(samples["time"], 0.5 * (begin + end)))
+        if not 0 < at < len(samples["time"]):
+            continue
+        rate = float(legs["waiting_fuel"][leg]) / (end - begin) if "waiting_fuel" in legs else 0.0
+        own = {
+            "lat": route.track.lat[leg], "lon": route.track.lon[leg], "speed_over_ground": 0.0,
+            "speed_through_water": 0.0, "power": 0.0, "fuel_rate": rate,
+        }  # fmt: skip
+        for name, values in samples.items():
+            pair = [own[name]] * 2 if name in own else [values[at - 1], values[at]]
+            samples[name] = np.insert(values, at, [begin, end] if name == "time" else pair)
+        added += [at, at + 1]
+    assert len(samples["time"]) == len(time) + len(added)
+    return samples, np.array(added, np.int64)
 
 
 def _thinned(time: FloatArray) -> Any:
