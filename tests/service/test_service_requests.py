@@ -502,6 +502,8 @@ def test_an_uploaded_sea_is_inspected_and_kept_once(client, tmp_path):
     frame = client.get(f"/api/v1/seas/{found['id']}/frames", params=query).content
     assert np.frombuffer(frame, "<i2", offset=32)[: 96 * 64].max() == 250
     assert client.delete(f"/api/v1/seas/{found['id']}").status_code == 204
+    kept = problem(client.delete("/api/v1/seas/storm"), 409)
+    assert "'storm' is part of the package" in kept["asked"]
     problem(client.get(f"/api/v1/seas/{found['id']}"), 404)
 
 

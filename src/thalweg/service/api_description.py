@@ -136,6 +136,8 @@ def _errors_of(path: str, method: str, operation: Mapping[str, Any]) -> list[str
             found += ["409", "429"]
         if last in _UPLOADS:
             found += ["415", "507"]
-    elif path.startswith("/api/v1/plans/{job_id}/") and last != "events":
+    elif (method == "delete" and path.startswith("/api/v1/seas/")) or (
+        path.startswith("/api/v1/plans/{job_id}/") and last != "events"
+    ):
         found.append("409")
     return found

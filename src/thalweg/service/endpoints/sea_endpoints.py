@@ -12,6 +12,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
 from thalweg.service.endpoints.upload_reading import kept_upload
 from thalweg.service.jobs.plan_request import EMBEDDED_SEAS
+from thalweg.service.problem_details import ServiceError
 from thalweg.service.service_state import State
 
 seas_router = APIRouter(tags=["seas"])
@@ -87,6 +88,13 @@ async def add_sea(
 @seas_router.delete("/seas/{sea_id}", status_code=204)
 def delete_sea(state: State, sea_id: str) -> None:
     """Remove an uploaded sea."""
+    if sea_id in EMBEDDED_SEAS:
+        raise ServiceError(
+            409,
+            f"The sea {sea_id!r} is part of the package.",
+            "Uploaded seas can be removed.",
+            "Leave it; it takes no room.",
+        )
     state.seas.delete(sea_id)
 
 
