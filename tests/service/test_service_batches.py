@@ -183,6 +183,19 @@ def test_a_killed_study_keeps_its_voyages(server):
         time.sleep(0.05)
 
 
+def test_a_study_that_is_queued_again_and_stopped_keeps_its_voyages(server):
+    study = {**STUDY["study"], "axes": {"speed_kn": {"from": 8, "to": 13.9, "step": 0.1}}}
+    job = server.http.post("/api/v1/studies", json={"study": study}).json()["id"]
+    _until_progress(server, job, 3)
+    server.kill()
+    server.start()
+    server.http.delete(f"/api/v1/plans/{job}")  # its next child still loads, or is not started
+    found = ended(server.http.get, job)
+    assert found["state"] == "cancelled" and found["result"]
+    result = server.http.get(f"/api/v1/plans/{job}/result").json()
+    assert 3 <= len(result["rows"]) < result["total"] == 60
+
+
 def _until_queued_again(server: Any, job: str, times: int) -> int:
     """Wait until a job was returned to the queue so often; return how many voyages it had done."""
     reached = 0

@@ -14,7 +14,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Final
 
 from thalweg.core.errors import InputError, ThalwegError
-from thalweg.core.interrupt import SearchInterrupted
+from thalweg.core.interrupt import SearchInterrupted, held_interrupt
 from thalweg.service.jobs.child_messages import (
     MessageWriter,
     end_with_the_server,
@@ -41,9 +41,15 @@ def main() -> int:
     if not line:
         return 0
     end_with_the_server()
+    order = json.loads(line)
     try:
-        loading.join()  # two threads that import the same modules can each find half of one
-        end = _ended(json.loads(line), messages)
+        with held_interrupt() as stopped:
+            loading.join()  # two threads that import the same modules can each find half of one
+        if stopped.is_set():
+            order["stopped"] = True
+        if order["stopped"] and order["kind"] != "study":
+            raise KeyboardInterrupt
+        end = _ended(order, messages)
     except KeyboardInterrupt:
         end = {"state": "cancelled"}
     messages.send("end", end)

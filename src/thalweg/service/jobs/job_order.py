@@ -18,6 +18,7 @@ from thalweg.service.jobs.route_profiles import first_look
 if TYPE_CHECKING:
     from thalweg.route import Route
 
+STUDY_FOLDER: Final = "study"  #: of the workspace, with the voyages that are planned
 _MOST_SHOWN: Final = 40  # stretches of a voyage whose routes are shown before the end
 
 
@@ -37,6 +38,7 @@ class JobOrder:
     files : Paths of uploaded files by id.
     workspace : Folder that the attempts of the job share; it is removed when the job has ended.
     seas_folder : Folder of the uploaded seas.
+    stopped : Whether the job is to stop at once, with the results of its earlier starts.
     """
 
     kind: str
@@ -45,6 +47,7 @@ class JobOrder:
     files: dict[str, str]
     workspace: str = ""
     seas_folder: str = ""
+    stopped: bool = False
 
     @property
     def path(self) -> Path:

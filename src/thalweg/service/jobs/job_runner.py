@@ -18,6 +18,7 @@ from typing import IO, Any, Final
 
 from thalweg.core.errors import InputError, ThalwegError
 from thalweg.core.file_writing import make_folder, write_text
+from thalweg.service.jobs.job_order import STUDY_FOLDER
 from thalweg.service.jobs.job_store import FINAL_STATES, Job, JobStore
 from thalweg.service.jobs.job_work import FIRST_FOLDER
 from thalweg.service.problem_details import problem_of
@@ -115,7 +116,7 @@ class JobRunner:
 
     def cancel(self, job_id: str) -> Job:
         """Ask a job to stop; what it has found so far is kept."""
-        job = self._store.ask_to_stop(job_id)
+        job = self._store.ask_to_stop(job_id, has_results=self._has_results(job_id))
         with self._changed:
             child = self._children.get(job_id)
             if child is not None and child.stop_asked is None:
@@ -131,6 +132,10 @@ class JobRunner:
         """Remove the result of a job."""
         shutil.rmtree(self._results / job_id, ignore_errors=True)
 
+    def _has_results(self, job_id: str) -> bool:
+        """Return whether earlier starts of a job left results that its next start can write."""
+        return any((self._workspaces / job_id / STUDY_FOLDER).glob("parts/part-*"))
+
     def _clear_workspace(self, job_id: str) -> None:
         """Remove what the attempts of a job share, when there will be no further attempt."""
         if self._store.state_of(job_id) in (*FINAL_STATES, None):
@@ -142,7 +147,7 @@ class JobRunner:
         if kept.exists():
             end = json.loads(kept.read_text("utf-8"))
             self._store.finish(job.id, end["state"], summary=end["summary"])
-        elif job.cancelling:
+        elif job.cancelling and not self._has_results(job.id):
             self._store.finish(job.id, "cancelled")
         else:  # not the fault of the job
             self._store.requeue(job.id, "the service was stopped", count_attempt=False)
@@ -187,6 +192,8 @@ class JobRunner:
             child = self._new_child()
         self._waiting_child = None
         child.started = time.monotonic()
+        if job.cancelling:
+            child.stop_asked = child.started
         self._children[job.id] = child
         threading.Thread(target=self._follow, args=(job, child), daemon=True).start()
 
@@ -246,6 +253,7 @@ class JobRunner:
             "files": self._files_of(job.request),
             "workspace": str(make_folder(self._workspaces / job.id)),
             "seas_folder": str(self._seas),
+            "stopped": job.cancelling,
         }
         assert child.process.stdin is not None
         with contextlib.suppress(OSError, ValueError):
@@ -275,6 +283,8 @@ class JobRunner:
         elif child.stop_asked is not None:
             if first is not None and (folder / FIRST_FOLDER / "plan.json").exists():
                 self._keep(job, child, folder / FIRST_FOLDER, "cancelled", first)
+            elif not job.cancelling and self._has_results(job.id):  # stopped while it started
+                self._store.requeue(job.id, "its results are written", count_attempt=False)
             else:
                 self._store.finish(job.id, "cancelled")
         else:

@@ -279,14 +279,22 @@ class JobStore:
 
         self._write(work, job_id)
 
-    def ask_to_stop(self, job_id: str) -> Job:
-        """Note that a job is to stop; one that waits is cancelled at once."""
+    def ask_to_stop(self, job_id: str, *, has_results: bool = False) -> Job:
+        """Note that a job is to stop; one that waits is cancelled at once.
+
+        Parameters
+        ----------
+        has_results : Whether it has results of an earlier start: it waits for a child that writes
+            them.
+        """
 
         def work(database: sqlite3.Connection) -> None:
             database.execute(
                 "UPDATE jobs SET cancelling = 1 WHERE id = ? AND state IN ('queued', 'running')",
                 (job_id,),
             )
+            if has_results:
+                return
             changed = database.execute(
                 "UPDATE jobs SET state = 'cancelled', finished = ? WHERE id = ? AND state = "
                 "'queued'",

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 from thalweg.core.file_writing import write_text
 from thalweg.core.interrupt import held_interrupt
 from thalweg.service.jobs.child_messages import MessageWriter
-from thalweg.service.jobs.job_order import JobOrder, StageMessages
+from thalweg.service.jobs.job_order import STUDY_FOLDER, JobOrder, StageMessages
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -40,7 +40,7 @@ def plan_study(
     """
     from thalweg.studies import Study, run_study
 
-    folder = Path(order.workspace) / "study"
+    folder = Path(order.workspace) / STUDY_FOLDER
     with held_interrupt() as stopped:
         study = Study.from_dict(order.with_paths(order.request["study"]), Path(order.workspace))
 
@@ -59,7 +59,7 @@ def plan_study(
     stages(f"planning {study.size} voyages")
     state = "done"
     try:
-        if stopped.is_set():
+        if stopped.is_set() or order.stopped:
             raise KeyboardInterrupt
         with _stop_at_once():
             chunk = min(20, max(1, study.size // _PARTS))
