@@ -28,7 +28,7 @@ TABLES = [
     ("Bremerhaven", "Gothenburg", 365, 0.05),
     ("Kobe", "Busan", 366, 0.05),
     ("Osaka", "Busan", 372, 0.05),
-    ("Bergen", "Trondheim", 338, 0.05),
+    ("Bergen", "Trondheim", 313, 0.02),  # by Trondheimsleia; outside Smoela tables give 338
     ("Antwerp, BE", "Rotterdam", 119, 0.07),
     ("Baltimore", "Norfolk", 172, 0.04),
     ("Buenos Aires", "Montevideo", 123, 0.05),
@@ -93,7 +93,8 @@ def test_the_way_follows_the_canals_that_are_open():
 
 @pytest.mark.slow
 def test_the_way_follows_the_goal_and_the_draught():
-    assert chosen("Bergen", "Trondheim") == ["by Fedjeosen", ""]
+    assert chosen("Bergen", "Trondheim") == ["by Fedjeosen", "by Trondheimsleia"]
+    assert chosen("Bergen", "Stavanger") == ["", ""]
     assert chosen("Bergen", "Rotterdam") == ["", ""]
     assert chosen("Antwerp, BE", "Rotterdam", draught=7.0) == ["by Oostgat", ""]
     assert chosen("Antwerp, BE", "Rotterdam", draught=9.5) == ["", ""]
@@ -109,6 +110,30 @@ def test_ports_of_one_bay_do_not_leave_it():
     airport = 34.622, 135.203, 34.644, 135.251  # south, west, north, east
     for lat, lon in sea_distance("Osaka", "Kobe").line:
         assert not (airport[0] < lat < airport[2] and airport[1] < lon < airport[3])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("start", "goal", "opened", "miles"),
+    [  # of the leads, by hand on the chart; round the islands they are 266, 98, 243 and 72
+        ("Narvik", "Harstad", ["Tjeldsund"], 70.0),
+        ("Narvik", "Harstad", ["Tjeldsund", "Ramsund"], 51.0),
+        ("Harstad", "Tromso", ["Gisund"], 85.0),
+        ("Bodo", "Tromso", ["Tjeldsund", "Gisund"], 200.0),
+        ("Alta", "Hammerfest", ["Vargsund"], 52.0),
+    ],
+)
+def test_small_ships_use_the_norwegian_leads(start, goal, opened, miles):
+    assert sea_distance(start, goal, open=opened).nm == pytest.approx(miles, rel=0.06)
+
+
+@pytest.mark.slow
+def test_a_small_ship_passes_a_strait_that_the_depth_layer_shows_as_land():
+    voyage = Voyage(start="Narvik", goal="Harstad", depart="2024-06-01T00:00Z")
+    small = Ship.load("gunnerus-2019")
+    plan = thalweg.plan(voyage, ship=small, sea=Sea.calm(), chart=chart(), proof=0.0)
+    assert plan.best.distance_nm == pytest.approx(51.8, rel=0.03)  # by Ramsund
+    assert plan.best.track.lat.max() < 68.85  # not by Andfjord
 
 
 @pytest.mark.slow

@@ -1,8 +1,8 @@
 """The ways between a berth and the sea: the approach, its branches, and where canals meet it.
 
 A branch (`thalweg.chart.approach_branches`) is open to every port whose approach comes within
-`LONGEST_JOINT` of it. The ends of canals are branches as well. A port on a canal has ways through
-it (`thalweg.chart.canal_parts`).
+`LONGEST_JOINT` of it. The ends of canals are branches as well, and those of named passages that the
+approach does not follow. A port on a canal has ways through it (`thalweg.chart.canal_parts`).
 
 Approaches lead to open sea, so those of two ports on one bay may go out of it side by side and meet
 off its mouth only, or not at all. For a voyage within the bay a ship leaves its line at the first
@@ -11,7 +11,7 @@ place off land (`bay_way`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -27,19 +27,21 @@ from thalweg.chart.approaches import (
 from thalweg.chart.canal_parts import ways_through_canals
 from thalweg.chart.canals import Canal
 from thalweg.chart.coast.coastline import Coastline
+from thalweg.chart.passages import Passage
 from thalweg.core.geodesy import distance
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 
 _FAR_IN_LATITUDE = 4.0  # branches farther from the berth than this are not tested [deg]
 _CANAL_REACH = 2.0 * NAUTICAL_MILE  # between an approach and the end of a canal in open water
-_OFF_LAND = 1.0 * NAUTICAL_MILE  # distance from charted land at which a line is left in a bay
+#: Distances from charted land at which a line is left in a bay: the first that it reaches there.
+_OFF_LAND = 1.0 * NAUTICAL_MILE, 0.5 * NAUTICAL_MILE
 _LEAST_IN_BAY = 3.0 * NAUTICAL_MILE  # of the line beyond that place, or it is no bay
 _LEAST_LEFT_OUT = 1_000.0  # of the main line by leaving it, or the way is not one of its own [m]
 
 
 def approach_choices(
-    approach: PortApproach, canals: Sequence[Canal] = ()
+    approach: PortApproach, canals: Sequence[Canal] = (), passages: Sequence[Passage] = ()
 ) -> tuple[PortApproach, ...]:
     """Return the ways between a berth and the waters that its approach leads to.
 
@@ -47,6 +49,7 @@ def approach_choices(
     ----------
     approach : Of the table.
     canals : Of the chart; a way ends where the approach passes the end of one.
+    passages : The same.
 
     Returns
     -------
@@ -58,9 +61,10 @@ def approach_choices(
         for end in canal.ends
     )
     through = ways_through_canals(approach, canals)
+    mouths = _passage_mouths(approach, passages)
     near = [
         branch
-        for branch in (*approach_branches(), *ends)
+        for branch in (*approach_branches(), *ends, *mouths)
         if abs(branch.line[0][0] - approach.berth[0]) < _FAR_IN_LATITUDE
     ]
     if not near:
@@ -85,18 +89,32 @@ def bay_way(approach: PortApproach, coastline: Coastline) -> PortApproach | None
     if approach.length < _LEAST_IN_BAY:
         return None
     along = dense_line(approach.line)
-    off = coastline.shore_distance(along[:, 0], along[:, 1], cap=_OFF_LAND)
-    first = max(int(np.argmax(off >= _OFF_LAND)), 1)  # a line has two positions
-    left_out = float(along[-1, 2] - along[first, 2])
-    if off[first] < _OFF_LAND or left_out < _LEAST_IN_BAY:
-        return None
-    line = tuple(line_part(approach.line, float(along[first, 2])))
-    return replace(
-        approach,
-        line=line,
-        way="to the waters off the port",
-        left_out=approach.length - line_length(line),
-    )
+    off = coastline.shore_distance(along[:, 0], along[:, 1], cap=max(_OFF_LAND))
+    for required in _OFF_LAND:
+        first = max(int(np.argmax(off >= required)), 1)  # a line has two positions
+        if off[first] >= required and along[-1, 2] - along[first, 2] >= _LEAST_IN_BAY:
+            line = tuple(line_part(approach.line, float(along[first, 2])))
+            return replace(
+                approach,
+                line=line,
+                way="to the waters off the port",
+                left_out=approach.length - line_length(line),
+            )
+    return None
+
+
+def _passage_mouths(
+    approach: PortApproach, passages: Sequence[Passage]
+) -> Iterator[ApproachBranch]:
+    """Return the ends of passages that an approach meets, without those it leads through."""
+    lat, lon = (part[:, None] for part in dense_line(approach.line).T[:2])
+    for passage in passages:
+        ends = passage.line[0], passage.line[-1]
+        if abs(ends[0][0] - approach.berth[0]) < _FAR_IN_LATITUDE:
+            met = distance(lat, lon, *np.array(ends, float).T).min(axis=0) <= LONGEST_JOINT
+            if met.sum() == 1:
+                end = ends[int(np.argmax(met))]
+                yield ApproachBranch(passage.name, (end,), passage.source)
 
 
 def _by_branch(

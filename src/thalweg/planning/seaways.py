@@ -76,8 +76,14 @@ class Seaways:
 
     @classmethod
     def of_ship_chart(cls, chart: Chart) -> Seaways:
-        """Return the seaways of the world without what the chart of a plan closes."""
-        world = cls.of_chart(world_chart(), ())
+        """Return the seaways of the world without what the chart of a plan closes.
+
+        They have all passages for small ships, or none, so that few graphs are made.
+        """
+        every = world_chart()
+        small = {p.name for p in every.passages if p.use == "small_or_local"}
+        is_small = any(p.name in small for p in chart.passages)
+        world = cls.of_chart(every, (), opened=sorted(small) if is_small else ())
         canals = {canal.name for canal in chart.canals}
         shut = tuple(canal.name for canal in world.chart.canals if canal.name not in canals)
         open_here = {passage.name for passage in world.chart.passages}

@@ -12,7 +12,8 @@ import numpy as np
 
 from thalweg.chart.approaches import line_between, line_length
 from thalweg.core.errors import NoRouteError
-from thalweg.core.geodesy import distance
+from thalweg.core.geodesy import Position, distance
+from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways, path_length_and_canals
@@ -38,7 +39,7 @@ def with_chosen_ways(
     Returns
     -------
     list of Endpoint : A way to a canal is chosen only where the voyage passes that canal, and one
-        within a bay only for both ends together, straight across water without shoals.
+        within a bay only for both ends together, by water without shoals.
     """
     found = [_without_shallow_ways(end, draught) for end in ends]
     if len(found) > 2 or not _share_a_bay(found[0], found[-1]):
@@ -129,11 +130,15 @@ class _Pair:
         """Return the distance [m]; inf where there is no way through the canals of the lines."""
         if not math.isnan(self.shared):
             return self.shared
-        if _left_out(self.start):  # straight across the bay
-            return math.inf if self._is_blocked(seas, draught) else self.bound
+        straight = [(self.start.lat, self.start.lon), (self.goal.lat, self.goal.lon)]
+        in_bay = _left_out(self.start) > 0.0
+        if in_bay and not _is_blocked(straight, seas):
+            return math.inf if self._has_shoals(straight, seas, draught) else self.bound
         with contextlib.suppress(NoRouteError):
             path = seas.graph_path(self.start, self.goal)
             at_sea, passed = path_length_and_canals(seas.chart, path)
+            if in_bay and (passed or self._has_shoals(path, seas, draught)):
+                return math.inf
             wanted = {
                 canal.title
                 for canal in seas.chart.canals
@@ -144,16 +149,22 @@ class _Pair:
                 return _of_lines(self.start, self.goal) + at_sea
         return math.inf
 
-    def _is_blocked(self, seas: Seaways, draught: float) -> bool:
-        """Return whether land or shoals lie between the ends."""
+    def _has_shoals(self, path: Sequence[Position], seas: Seaways, draught: float) -> bool:
+        """Return whether a leg of a way between the ends is over shoals."""
         from thalweg.planning.request.shoal_choice import shoals_of_draught
 
-        leg = [np.array([x]) for end in (self.start, self.goal) for x in (end.lat, end.lon)]
-        if seas.chart.legs_blocked(*leg)[0]:
-            return True
         depth = draught or _USUAL_DRAUGHT
         shoals = shoals_of_draught(seas.chart, depth, depth, (self.start, self.goal))
-        return bool(shoals.excess(*leg)[0] > _MOST_SHOAL)
+        return bool(shoals.excess(*_legs(path)).max() > _MOST_SHOAL)
+
+
+def _is_blocked(path: Sequence[Position], seas: Seaways) -> bool:
+    return bool(np.any(seas.chart.legs_blocked(*_legs(path))))
+
+
+def _legs(path: Sequence[Position]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    lat, lon = np.array(path, float).T
+    return lat[:-1], lon[:-1], lat[1:], lon[1:]
 
 
 def _of_lines(*ends: Endpoint) -> float:

@@ -102,7 +102,7 @@ def _channels(chart: Chart, passage: Passage) -> list[tuple[Position, ...]]:
     Its line is the widest way between coasts and may lead over banks far from land. It counts as a
     whole where the passage has a largest draught, else near land, where the layer shows no channel.
     """
-    if passage.use != "trade" or passage.half_width >= _NARROW:
+    if passage.use == "never" or passage.half_width >= _NARROW:
         return []
     if passage.max_draught < math.inf:
         return [passage.line]

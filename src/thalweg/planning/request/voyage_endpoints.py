@@ -174,7 +174,8 @@ def _usable_ways(port: Port, chart: Chart) -> list[PortApproach]:
     if approach is None:
         return []
     inside = bay_way(approach, chart.coastline)
-    ways = (*approach_choices(approach, chart.canals), *((inside,) if inside else ()))
+    ways = approach_choices(approach, chart.canals, chart.passages)
+    ways = (*ways, *((inside,) if inside else ()))
     return [way for way in ways if _is_usable(way, chart)]
 
 
