@@ -26,7 +26,13 @@ def add_command(commands: Any) -> None:
         "random draws. A study that was stopped goes on where it was.",
     )
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
-    run = actions.add_parser("run", help="plan the voyages that have no result yet")
+    run = actions.add_parser(
+        "run",
+        help="plan the voyages that have no result yet",
+        description="Plan the voyages of a study that have no result in the folder yet. Ctrl-C "
+        "stops it: what is finished is kept, and the same command plans the rest.",
+        epilog="Example: thalweg study run season.yaml --out season --workers 2",
+    )
     run.add_argument("study", metavar="STUDY.yaml")
     run.add_argument("--out", required=True, metavar="DIR", help="folder of the results")
     run.add_argument(
@@ -39,10 +45,21 @@ def add_command(commands: Any) -> None:
     run.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler: tcp://host:8786")
     run.add_argument("--count", action="store_true", help="print the number of voyages and stop")
     run.set_defaults(run=_run)
-    ready = actions.add_parser("ready", help="list the ready studies, or print one to change it")
+    ready = actions.add_parser(
+        "ready",
+        help="list the ready studies, or print one to change it",
+        description="List the ready studies, or print the file of one, to save and change it.",
+        epilog="Example: thalweg study ready season > season.yaml",
+    )
     ready.add_argument("name", nargs="?", metavar="NAME", help="print this study file")
     ready.set_defaults(run=_ready)
-    summary = actions.add_parser("summary", help="voyages, quantiles by month and axis, refusals")
+    summary = actions.add_parser(
+        "summary",
+        help="voyages, quantiles by month and axis, refusals",
+        description="Print the voyages of a study, the median and the 10 and 90 % quantiles of "
+        "their figures by month or by what the study varies, and why voyages have no route.",
+        epilog="Example: thalweg study summary season --out season-tables",
+    )
     summary.add_argument("folder", metavar="DIR")
     summary.add_argument("--out", metavar="DIR", help="write tables and a plot into this folder")
     summary.add_argument("--json", action="store_true", help="print JSON")

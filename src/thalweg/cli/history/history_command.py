@@ -87,6 +87,8 @@ def _add_route(actions: Any) -> None:
     route = actions.add_parser(
         "route",
         help="print the usual route between two ports of a network",
+        description="Print the route that ships usually take between two ports: its arcs, how "
+        "many voyages were seen on each, and where no ship was seen.",
         epilog="Example: thalweg history route history.json Rotterdam 'New York' --month 1",
     )
     route.add_argument("network", metavar="NET", help="network made by thalweg history build")
