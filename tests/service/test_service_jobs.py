@@ -211,7 +211,7 @@ def test_a_job_stopped_while_it_writes_a_result_keeps_it_whole(tmp_path, monkeyp
         with pytest.raises(KeyboardInterrupt):
             job_work.run_order(order, messages)
         sent = [data for kind, data in messages if kind == "route" and "summary" in data]
-        parts, folder = sent[-1]["summary"]["parts"], tmp_path / job_work.FIRST_FOLDER
+        parts, folder = sent[-1]["summary"]["parts"], order.first_path
     else:
         state, summary = job_work.run_order(order, messages)
         assert state == "done"

@@ -114,7 +114,7 @@ def _passage_mouths(
             met = distance(lat, lon, *np.array(ends, float).T).min(axis=0) <= LONGEST_JOINT
             if met.sum() == 1:
                 end = ends[int(np.argmax(met))]
-                yield ApproachBranch(passage.name, (end,), passage.source)
+                yield ApproachBranch(f"the entrance of {passage.name}", (end,), passage.source)
 
 
 def _by_branch(

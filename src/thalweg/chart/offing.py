@@ -229,7 +229,7 @@ def _corridors(
 @lru_cache(maxsize=1024)
 def _segments(coastline: Coastline, distance: float, passage: Passage) -> FloatArray:
     """Return the segments of a passage whose line is nearer to land than a distance [m]."""
-    sample = float(np.clip(0.2 * passage.half_width, _SAMPLE, _SEGMENT))
+    sample = float(np.clip(0.2 * passage.half_width, 0.2 * _SAMPLE, _SEGMENT))
     lat, lon, _ = densify(*passage.positions, sample)
     shore = coastline.shore_distance(lat, lon, cap=1.2 * distance)
     many = max(round(_SEGMENT / sample), 1)

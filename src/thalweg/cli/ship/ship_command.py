@@ -162,9 +162,12 @@ def _weather(arguments: argparse.Namespace) -> dict[str, float]:
     angles["wind_angle"] = ("--wind-from", arguments.wind_from)
     for name, (option, degrees) in angles.items():
         if degrees is not None:
-            if not math.isfinite(degrees):
+            if not -360.0 <= degrees <= 360.0:
                 raise InputError(
-                    f"{option} is {degrees:g}.", "It is an angle in degrees.", f"Correct {option}."
+                    f"{option} is {degrees:g} degrees.",
+                    "It is an angle off the bow, 0 (ahead) to 360.",
+                    f"Correct {option}.",
+                    option=option,
                 )
             weather[name] = math.radians(abs((degrees + 180.0) % 360.0 - 180.0))
     if arguments.crab is not None:

@@ -18,6 +18,9 @@ from thalweg.service.jobs.route_profiles import first_look
 if TYPE_CHECKING:
     from thalweg.route import Route
 
+#: Of the workspace: the result if the job is stopped before its own, complete with its summary.
+FIRST_FOLDER: Final = "first"
+FIRST_SUMMARY: Final = "summary.json"
 STUDY_FOLDER: Final = "study"  #: of the workspace, with the voyages that are planned
 _MOST_SHOWN: Final = 40  # stretches of a voyage whose routes are shown before the end
 
@@ -53,6 +56,11 @@ class JobOrder:
     def path(self) -> Path:
         """The draft folder."""
         return Path(self.folder)
+
+    @property
+    def first_path(self) -> Path:
+        """Folder of the result that the job keeps if it is stopped before its own."""
+        return Path(self.workspace or self.folder) / FIRST_FOLDER
 
     @property
     def stem(self) -> str:

@@ -18,9 +18,8 @@ from typing import IO, Any, Final
 
 from thalweg.core.errors import InputError, ThalwegError
 from thalweg.core.file_writing import make_folder, write_text
-from thalweg.service.jobs.job_order import STUDY_FOLDER
+from thalweg.service.jobs.job_order import FIRST_FOLDER, FIRST_SUMMARY, STUDY_FOLDER
 from thalweg.service.jobs.job_store import FINAL_STATES, Job, JobStore
-from thalweg.service.jobs.job_work import FIRST_FOLDER
 from thalweg.service.problem_details import problem_of
 from thalweg.service.service_settings import ServiceLimits, ServiceSettings
 
@@ -134,7 +133,9 @@ class JobRunner:
 
     def _has_results(self, job_id: str) -> bool:
         """Return whether earlier starts of a job left results that its next start can write."""
-        return any((self._workspaces / job_id / STUDY_FOLDER).glob("parts/part-*"))
+        left = self._workspaces / job_id
+        is_first = (left / FIRST_FOLDER / FIRST_SUMMARY).exists()
+        return is_first or any((left / STUDY_FOLDER).glob("parts/part-*"))
 
     def _clear_workspace(self, job_id: str) -> None:
         """Remove what the attempts of a job share, when there will be no further attempt."""
@@ -213,7 +214,6 @@ class JobRunner:
         """Send a job to its child, store its events, and keep its result."""
         folder = self._drafts / f"{job.id}-{job.attempt}"
         end: dict[str, Any] | None = None
-        first: dict[str, Any] | None = None
         try:
             folder.mkdir(exist_ok=True)
             self._send_order(job, child, folder)
@@ -222,13 +222,12 @@ class JobRunner:
                 if kind == "end":
                     end = message
                 else:
-                    first = message.get("summary", first)
                     self._store.add_event(job.id, kind, message)
                     if kind in ("route", "front") and not child.has_shown:
                         child.has_shown = True
                         self.wake()
             child.process.wait()
-            self._end(job, child, folder, end, first)
+            self._end(job, child, folder, end)
         except ThalwegError as error:
             child.kill()
             self._store.finish(job.id, "failed", problem=problem_of(error))
@@ -266,14 +265,12 @@ class JobRunner:
         child: RunningChild,
         folder: Path,
         end: dict[str, Any] | None,
-        first: dict[str, Any] | None,
     ) -> None:
         """Keep the result of a child that has ended, and give its job the next state."""
         if self._ending and end is None:
             self._store.requeue(job.id, "the service was stopped", count_attempt=False)
             return
         if end is not None and "summary" in end:
-            shutil.rmtree(folder / FIRST_FOLDER, ignore_errors=True)
             self._keep(job, child, folder, end["state"], end["summary"])
         elif end is not None and end["state"] == "failed" and child.stop_asked is None:
             self._keep_log(job, child)
@@ -281,8 +278,10 @@ class JobRunner:
         elif child.stopped_why is not None:
             self._store.finish(job.id, "failed", problem=problem_of(child.stopped_why))
         elif child.stop_asked is not None:
-            if first is not None and (folder / FIRST_FOLDER / "plan.json").exists():
-                self._keep(job, child, folder / FIRST_FOLDER, "cancelled", first)
+            first = self._workspaces / job.id / FIRST_FOLDER
+            if (first / FIRST_SUMMARY).exists():  # of this start, or of an earlier one
+                summary = json.loads((first / FIRST_SUMMARY).read_text("utf-8"))
+                self._keep(job, child, first, "cancelled", summary)
             elif not job.cancelling and self._has_results(job.id):  # stopped while it started
                 self._store.requeue(job.id, "its results are written", count_attempt=False)
             else:

@@ -5,21 +5,22 @@ Files are written into a draft folder; the server gives the complete folder its 
 
 from __future__ import annotations
 
+import json
 import math
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from thalweg.core.errors import ThalwegError
-from thalweg.core.file_writing import make_folder
+from thalweg.core.file_writing import make_folder, write_text
 from thalweg.core.interrupt import held_interrupt
 from thalweg.service.jobs.child_messages import MessageWriter
 from thalweg.service.jobs.closure_facts import PLACES, TIMES, closure_facts
 from thalweg.service.jobs.isochrone_lines import isochrone_lines
-from thalweg.service.jobs.job_order import JobOrder, StageMessages
+from thalweg.service.jobs.job_order import FIRST_SUMMARY, JobOrder, StageMessages
 from thalweg.service.jobs.limits_met import limits_met
 from thalweg.service.jobs.plan_request import EvaluationRequest, PlanRequest, RequestedRouteFiles
 from thalweg.service.jobs.request_objects import WorldOfJob, network_of, open_world, with_orders_of
@@ -29,8 +30,6 @@ from thalweg.service.jobs.route_results import route_totals, write_json_file, wr
 if TYPE_CHECKING:
     from thalweg.planning import Plan, Voyage
     from thalweg.route import Route
-
-FIRST_FOLDER: Final = "first"  #: the result if the job is stopped before its own
 
 
 def run_order(order: JobOrder, messages: MessageWriter) -> tuple[str, dict[str, Any]]:
@@ -73,7 +72,7 @@ def _plan(
     try:
         return _plan_whole(voyage, request, order, messages, stages)
     except KeyboardInterrupt:
-        kept = (order.path / FIRST_FOLDER / "plan.json").exists()
+        kept = (order.first_path / FIRST_SUMMARY).exists()
         if kept or stages.route is None or voyage.via:
             raise
         return "cancelled", _keep_shown(stages.route, voyage, request, order, stages)
@@ -171,9 +170,10 @@ def _plan_first(
         note = "The job was stopped: this is the fastest route, the objective was not reached."
         found = replace(found, notes=(note, *found.notes), cancelled=True)
         with held_interrupt() as stopped:  # the server keeps it if it has both files and summary
-            folder = make_folder(order.path / FIRST_FOLDER)
+            folder = make_folder(order.first_path)
             parts = write_plan_result(found, folder, None, request.route_files, stem=order.stem)
             summary = {**job_summary(found, stages.seconds()), "parts": parts}
+            write_text(folder / FIRST_SUMMARY, json.dumps(summary, allow_nan=False))
             messages.send(
                 "route", {"route": first_look(found.best), "final": False, "summary": summary}
             )
