@@ -220,6 +220,30 @@ def test_a_job_stopped_while_it_writes_a_result_keeps_it_whole(tmp_path, monkeyp
     assert json.loads((folder / "plan.json").read_text())["routes"]
 
 
+def test_a_job_that_is_queued_again_and_stopped_keeps_its_first_route(server):
+    request = {**CROSSING, "voyage": {**CROSSING["voyage"], "objective": "front"}}
+    job = server.http.post("/api/v1/plans", json=request).json()["id"]
+    first = _until_first_route(server, job)
+    server.kill()
+    server.start()
+    server.http.delete(f"/api/v1/plans/{job}")  # its next child still loads, or is not started
+    found = ended(server.http.get, job)
+    assert found["state"] == "cancelled" and found["result"]
+    kept = server.http.get(f"/api/v1/plans/{job}/result").json()
+    assert kept["routes"][0]["time_h"] == pytest.approx(first, abs=1e-3)
+
+
+def _until_first_route(server, job):
+    """Wait until the fastest route of a job is kept; return its time [h]."""
+    with server.http.stream("GET", f"/api/v1/plans/{job}/events") as stream:
+        for line in stream.iter_lines():
+            if line.startswith("data: "):
+                data = json.loads(line[6:])
+                if "summary" in data:
+                    return data["route"]["time_h"]
+    raise AssertionError("the job ended without a first route")
+
+
 def test_a_stopped_front_keeps_the_faster_route_that_was_shown_first():
     from thalweg import Chart, Sea, Ship, Voyage, plan
 
