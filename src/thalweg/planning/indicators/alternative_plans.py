@@ -363,7 +363,9 @@ def _named(chosen: Sequence[Route], chart: Chart) -> tuple[RouteChoice, ...]:
         difference = difference_in_words(values[k], values[0]) if k else "the fastest"
         same = next((j for j in range(k) if not lines_differ(lines[k], lines[j])), None)
         if same is not None:
-            difference = f"the way of route {same + 1}, slower: {difference}"
+            speeds = [chosen[j].distance_nm / chosen[j].time_h for j in (k, same)]
+            how = "slower" if speeds[0] < (1.0 - _SLOWER) * speeds[1] else "with more miles"
+            difference = f"the way of route {same + 1}, {how}: {difference}"
         found.append(RouteChoice(name, route, words, difference, passes[k]))
     return tuple(found)
 
@@ -381,5 +383,5 @@ def _label(route: Route, names: Sequence[str]) -> str:
         "inshore" if share >= _INSHORE else "offshore" if share <= _OFFSHORE else "along the coast"
     )
     where = "direct" if not np.isfinite(share) else where
-    by = " and the ".join(names[:2])
+    by = " and the ".join(filter(None, (", the ".join(names[:-1]), *names[-1:])))
     return f"{where} by the {by}" if by else where
