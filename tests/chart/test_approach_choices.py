@@ -11,6 +11,7 @@ from thalweg.chart.approach_branches import approach_branches
 from thalweg.chart.approach_choices import approach_choices
 from thalweg.chart.approaches import LONGEST_JOINT, PORT_APPROACHES, dense_line
 from thalweg.chart.canals import CANALS, KIEL
+from thalweg.chart.passages import find_passages
 from thalweg.chart.ports import PORTS
 from thalweg.core.geodesy import distance
 from thalweg.core.units import NAUTICAL_MILE
@@ -124,3 +125,14 @@ def test_no_way_leads_through_the_naruto_strait():
 def test_an_approach_far_from_all_branches_is_the_only_way():
     main = choices("Santos")[0]
     assert approach_choices(replace(main, way_draught=5.0)) == (replace(main, way_draught=5.0),)
+
+
+def test_an_approach_is_left_where_a_passage_begins_that_it_does_not_follow():
+    (leia,) = find_passages(["Trondheimsleia"])
+    (elbe,) = find_passages(["Elbe (Brunsbuttel to sea)"])
+    trondheim = PORT_APPROACHES.of(PORTS.lookup("Trondheim"))
+    left = [w for w in approach_choices(trondheim, (), [leia]) if "Trondheimsleia" in w.way]
+    assert [w.way for w in left] == ["by the entrance of Trondheimsleia"]
+    assert distance(*left[0].sea_end, *leia.line[-1]) < LONGEST_JOINT
+    hamburg = PORT_APPROACHES.of(PORTS.lookup("Hamburg"))
+    assert not any("Elbe" in w.way for w in approach_choices(hamburg, (), [elbe]))

@@ -151,6 +151,15 @@ def test_lines_of_passages_are_water_in_the_usual_chart(world):
         assert (status == OK).all(), passage.name
 
 
+@pytest.mark.parametrize("offing_nm", [0.5, 2.0])
+def test_lines_of_passages_are_open_at_an_offing(world, offing_nm):
+    """The line of Ramsund is 0.01 nm off land: between samples it may be nearer than at them."""
+    off_land = world.with_offing(offing_nm * NAUTICAL_MILE)
+    for passage in world.passages:
+        lat, lon = np.array(passage.line).T
+        assert not off_land.legs_blocked(lat[:-1], lon[:-1], lat[1:], lon[1:]).any(), passage.name
+
+
 def test_narrows_that_no_ship_passes_are_closed(world):
     legs = {
         "Menai": (53.2300, -4.1500, 53.2100, -4.2000),

@@ -71,6 +71,17 @@ def ended(get: Any, job: str, seconds: float = LONG_S) -> dict[str, Any]:
     raise AssertionError(f"the job is still {found['state']}")
 
 
+def result_of_stop_after_kill(server: Any, job: str) -> dict[str, Any]:
+    """Kill the service, start it, and stop a job before its next child calculates."""
+    server.kill()
+    server.start()
+    server.http.delete(f"/api/v1/plans/{job}")  # its child still loads, or is not started
+    found = ended(server.http.get, job)
+    assert found["state"] == "cancelled" and found["result"]
+    result: dict[str, Any] = server.http.get(f"/api/v1/plans/{job}/result").json()
+    return result
+
+
 def free_port() -> int:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))

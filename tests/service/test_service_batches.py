@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tests.service.conftest import LONG_S, ended
+from tests.service.conftest import LONG_S, ended, result_of_stop_after_kill
 from tests.service.test_service_jobs import events_of
 from tests.service.test_service_requests import problem
 
@@ -187,12 +187,7 @@ def test_a_study_that_is_queued_again_and_stopped_keeps_its_voyages(server):
     study = {**STUDY["study"], "axes": {"speed_kn": {"from": 8, "to": 13.9, "step": 0.1}}}
     job = server.http.post("/api/v1/studies", json={"study": study}).json()["id"]
     _until_progress(server, job, 3)
-    server.kill()
-    server.start()
-    server.http.delete(f"/api/v1/plans/{job}")  # its next child still loads, or is not started
-    found = ended(server.http.get, job)
-    assert found["state"] == "cancelled" and found["result"]
-    result = server.http.get(f"/api/v1/plans/{job}/result").json()
+    result = result_of_stop_after_kill(server, job)
     assert 3 <= len(result["rows"]) < result["total"] == 60
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.service.conftest import LONG_S, SHORT, ended
+from tests.service.conftest import LONG_S, SHORT, ended, result_of_stop_after_kill
 
 pytest.importorskip("fastapi", reason='the extra "serve" is not installed')
 
@@ -224,12 +224,7 @@ def test_a_job_that_is_queued_again_and_stopped_keeps_its_first_route(server):
     request = {**CROSSING, "voyage": {**CROSSING["voyage"], "objective": "front"}}
     job = server.http.post("/api/v1/plans", json=request).json()["id"]
     first = _until_first_route(server, job)
-    server.kill()
-    server.start()
-    server.http.delete(f"/api/v1/plans/{job}")  # its next child still loads, or is not started
-    found = ended(server.http.get, job)
-    assert found["state"] == "cancelled" and found["result"]
-    kept = server.http.get(f"/api/v1/plans/{job}/result").json()
+    kept = result_of_stop_after_kill(server, job)
     assert kept["routes"][0]["time_h"] == pytest.approx(first, abs=1e-3)
 
 

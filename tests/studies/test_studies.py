@@ -23,6 +23,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
 from thalweg.studies import Study, run_study, study_rows, summarise_study
 from thalweg.studies.row_runner import run_rows, ship_of_request
+from thalweg.studies.study_axes import axis_values
 from thalweg.studies.study_parts import read_parts
 from thalweg.studies.study_summary import median_interval
 
@@ -324,3 +325,9 @@ def test_times_of_a_sample_are_within_it():
     data = {"voyage": {"start": "A", "goal": "B"}, "sample": sample}
     for row in Study.from_dict(data).rows():
         assert first <= parse_time(row.labels["depart"]) <= last
+
+
+def test_a_range_that_runs_backwards_is_stated_as_it_was_given():
+    given = {"from": "2026-01-10", "to": "2026-01-09", "step_h": 24}
+    with pytest.raises(InputError, match="from 2026-01-10, to 2026-01-09, step_h 24"):
+        axis_values("depart", given)

@@ -68,8 +68,8 @@ class Seaways:
         canals, passages = split_avoided([name for name in avoid if name not in every])
         left = exclude_canals(chart.canals, [*every, *canals])
         used = find_passages(opened)
-        small = [p.name for p in chart.passages if p.use == "small_or_local" and p not in used]
-        chart = chart.without_passages(*small) if small else chart
+        small = _small_passages(chart) - {passage.name for passage in used}
+        chart = chart.without_passages(*sorted(small)) if small else chart
         shut = tuple(canal.name for canal in chart.canals if canal not in left)
         open_names = {passage.name for passage in chart.passages}
         return cls(chart, shut, tuple(p.name for p in passages if p.name in open_names))
@@ -81,9 +81,8 @@ class Seaways:
         They have all passages for small ships, or none, so that few graphs are made.
         """
         every = world_chart()
-        small = {p.name for p in every.passages if p.use == "small_or_local"}
-        is_small = any(p.name in small for p in chart.passages)
-        world = cls.of_chart(every, (), opened=sorted(small) if is_small else ())
+        opened = sorted(_small_passages(every)) if _small_passages(chart) else ()
+        world = cls.of_chart(every, (), opened=opened)
         canals = {canal.name for canal in chart.canals}
         shut = tuple(canal.name for canal in world.chart.canals if canal.name not in canals)
         open_here = {passage.name for passage in world.chart.passages}
@@ -163,6 +162,11 @@ class Seaways:
 def world_chart() -> Chart:
     """Return the chart of the world's coasts, once for all questions of a process."""
     return Chart.gshhg("i")
+
+
+def _small_passages(chart: Chart) -> set[str]:
+    """Return the names of the passages of a chart that are for small or local ships."""
+    return {passage.name for passage in chart.passages if passage.use == "small_or_local"}
 
 
 def _pulled(chart: Chart, off_land: Chart, path: FloatArray) -> list[Position]:

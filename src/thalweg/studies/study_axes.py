@@ -62,7 +62,7 @@ def _count(name: str, steps: float) -> int:
 
 def _range_error(name: str, given: Mapping[str, Any]) -> InputError:
     return InputError(
-        f"The range of {name} is {dict(given)!r}.",
+        f"The range of {name} is {', '.join(f'{key} {value}' for key, value in given.items())}.",
         "A range of times has from, to and step_h; a range of numbers from, to and step, with to "
         "not below from.",
         "Correct it.",

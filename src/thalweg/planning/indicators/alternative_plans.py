@@ -13,6 +13,7 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.chart.passage_crossings import names_passed
+from thalweg.chart.passages import PASSAGES
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.file_writing import make_folder, write_csv_rows, write_text
 from thalweg.core.units import HOUR
@@ -166,6 +167,8 @@ class AlternativePlans:
         for number, one in enumerate(self.choices, start=1):
             best = f" [{', '.join(one.best_in)}]" if one.best_in else ""
             lines.append(f"{number}. {one.name}{best}: {one.difference}")
+            if one.passes:
+                lines.append(f"   passes {', '.join(map(_with_limits, one.passes))}")
         return "\n".join(lines)
 
 
@@ -368,6 +371,12 @@ def _named(chosen: Sequence[Route], chart: Chart) -> tuple[RouteChoice, ...]:
             difference = f"the way of route {same + 1}, {how}: {difference}"
         found.append(RouteChoice(name, route, words, difference, passes[k]))
     return tuple(found)
+
+
+def _with_limits(name: str) -> str:
+    """Return the name of a passage or cape with the limits of ships there."""
+    limits = next((p.limits for p in PASSAGES if p.name == name), "")
+    return f"{name} ({limits})" if limits else name
 
 
 def _passes(route: Route, chart: Chart) -> tuple[str, ...]:

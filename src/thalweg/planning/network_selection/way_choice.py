@@ -130,15 +130,11 @@ class _Pair:
         """Return the distance [m]; inf where there is no way through the canals of the lines."""
         if not math.isnan(self.shared):
             return self.shared
-        straight = [(self.start.lat, self.start.lon), (self.goal.lat, self.goal.lon)]
-        in_bay = _left_out(self.start) > 0.0
-        if in_bay and not _is_blocked(straight, seas):
-            return math.inf if self._has_shoals(straight, seas, draught) else self.bound
         with contextlib.suppress(NoRouteError):
+            if _left_out(self.start):
+                return self._length_in_bay(seas, draught)
             path = seas.graph_path(self.start, self.goal)
             at_sea, passed = path_length_and_canals(seas.chart, path)
-            if in_bay and (passed or self._has_shoals(path, seas, draught)):
-                return math.inf
             wanted = {
                 canal.title
                 for canal in seas.chart.canals
@@ -149,6 +145,16 @@ class _Pair:
                 return _of_lines(self.start, self.goal) + at_sea
         return math.inf
 
+    def _length_in_bay(self, seas: Seaways, draught: float) -> float:
+        """Return the distance [m] straight across a bay, or round its land; inf over shoals."""
+        path = [(self.start.lat, self.start.lon), (self.goal.lat, self.goal.lon)]
+        if np.any(seas.chart.legs_blocked(*_legs(path))):
+            path = seas.graph_path(self.start, self.goal)
+        length, canals = path_length_and_canals(seas.chart, path)
+        if canals or self._has_shoals(path, seas, draught):
+            return math.inf
+        return _of_lines(self.start, self.goal) + length
+
     def _has_shoals(self, path: Sequence[Position], seas: Seaways, draught: float) -> bool:
         """Return whether a leg of a way between the ends is over shoals."""
         from thalweg.planning.request.shoal_choice import shoals_of_draught
@@ -156,10 +162,6 @@ class _Pair:
         depth = draught or _USUAL_DRAUGHT
         shoals = shoals_of_draught(seas.chart, depth, depth, (self.start, self.goal))
         return bool(shoals.excess(*_legs(path)).max() > _MOST_SHOAL)
-
-
-def _is_blocked(path: Sequence[Position], seas: Seaways) -> bool:
-    return bool(np.any(seas.chart.legs_blocked(*_legs(path))))
 
 
 def _legs(path: Sequence[Position]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
