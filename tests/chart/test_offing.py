@@ -12,6 +12,7 @@ from thalweg.chart.offing import OffingDisc
 from thalweg.chart.passages import PASSAGES, Passage, find_passages
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import densify, direct, distance
+from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels.codes import LAND, NO_GO, OFFING, OK
 
 NM = 1852.0
