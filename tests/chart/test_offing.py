@@ -12,7 +12,6 @@ from thalweg.chart.offing import OffingDisc
 from thalweg.chart.passages import PASSAGES, Passage, find_passages
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import densify, direct, distance
-from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels.codes import LAND, NO_GO, OFFING, OK
 
 NM = 1852.0
@@ -155,7 +154,7 @@ def test_lines_of_passages_are_water_in_the_usual_chart(world):
 @pytest.mark.parametrize("offing_nm", [0.5, 2.0])
 def test_lines_of_passages_are_open_at_an_offing(world, offing_nm):
     """The line of Ramsund is 0.01 nm off land: between samples it may be nearer than at them."""
-    off_land = world.with_offing(offing_nm * NAUTICAL_MILE)
+    off_land = world.with_offing(offing_nm * NM)
     for passage in world.passages:
         lat, lon = np.array(passage.line).T
         assert not off_land.legs_blocked(lat[:-1], lon[:-1], lat[1:], lon[1:]).any(), passage.name
