@@ -238,10 +238,11 @@ def main() -> None:
         return
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
+        # first: a child process starts with the peak memory of its parent
+        subprocess.run([sys.executable, __file__, "--driver", name], check=True)
         write_sea(folder / "sea.nc", arguments.years)
         building()
         runner(folder)
-        subprocess.run([sys.executable, __file__, "--driver", name], check=True)
         segments(folder)
         months(folder)
         season(folder, arguments.years)

@@ -233,6 +233,24 @@ def test_impossible_weather_is_refused(capsys, ship_file, option, value):
         _run(capsys, ship_file, f"{option}={value}")
 
 
+def test_waves_too_steep_for_any_sea_are_refused(capsys, ship_file):
+    """Of a peak period of 8 s, the height of a steepness of 0.1 is 0.1 g Tp^2 / (2 pi) = 9.99 m."""
+    _run(capsys, ship_file, "--hs", 9.98, "--tp", 8)
+    with pytest.raises(InputError, match=r"steepness of 0\.10.*10\.0 m at this period"):
+        _run(capsys, ship_file, "--hs", 10.02, "--tp", 8)
+    with pytest.raises(InputError, match=r"need 11\.3 s or more"):
+        _run(capsys, ship_file, "--hs", 20, "--tp", 3)
+
+
+def test_no_task_is_possible_in_waves_above_the_limit_of_the_ship(capsys):
+    def tasks(height):
+        words = ("gunnerus-2019", "--hs", height, "--tp", 13, "--speed", 6)
+        return json.loads(_run(capsys, *words, "--json"))["motions"]["tasks"]
+
+    assert any(any(row) for row in tasks(3.9).values())
+    assert not any(any(row) for row in tasks(4.1).values())
+
+
 def test_speeds_a_ship_cannot_show_are_left_out_and_named(capsys):
     sheet = json.loads(_run(capsys, "handysize-bulker", "--speed", "8:16", "--json"))
     shown = [row["ordered_speed_kn"] for row in sheet["conditions"]]

@@ -7,6 +7,7 @@ import pytest
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
+from thalweg.core.geodesy import inverse
 from thalweg.core.limits import Limits
 from thalweg.core.objective import LegPrices
 from thalweg.network import layered_network
@@ -191,3 +192,21 @@ def test_outputs_state_the_sickness_at_every_place(plans):
     sick = places["bridge"]["sick_percent"]
     assert sick == plan_of_comfort.best.indicators["places"]["bridge"]["sick_percent"] > 0.0
     assert f"bridge {sick:.0f} %" in str(plan_of_comfort)
+
+
+@pytest.mark.slow
+def test_the_route_of_least_motion_sickness_does_not_tack_in_a_strait(ship):
+    """Gisund in waves from abeam: the path of the network turned 7 times in 12 miles."""
+    beam = {"sea_surface_wave_significant_height": 2.0, PERIOD: 8.0}
+    constants = {**beam, "sea_surface_wave_from_direction": 290.0, "eastward_wind": 6.0,
+                 "northward_wind": -2.0}  # fmt: skip
+    functions = {
+        name: lambda t, lat, lon, v=value: v + 0.0 * lat for name, value in constants.items()
+    }
+    sea = Sea.from_functions(functions, time_step=1800.0)
+    voyage = Voyage(start=(69.30, 18.0), goal=(69.45, 18.1), depart=DEPART, objective="comfort")
+    found = plan(voyage, ship=ship, sea=sea, proof=0.0)
+    track = found.best.track
+    _, course, end = inverse(track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:])
+    turns = np.abs(np.angle(np.exp(1j * (course[1:] - end[:-1]))))
+    assert np.count_nonzero(turns > np.radians(30.0)) <= 4

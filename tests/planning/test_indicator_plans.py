@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from tests.planning.test_comfort_plans import DATA, DEPART, _sea
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.geodesy import inverse
 from thalweg.core.objective import Objective
 from thalweg.planning import Voyage, alternative_plans, indicator_front, plan
 from thalweg.planning.indicators.route_figures import champions, difference_in_words
@@ -276,8 +278,25 @@ def test_alternatives_differ_and_each_is_best_in_something(ship, chart, tmp_path
     assert len(rows) == 1 + len(found.choices) and "sick_percent:bridge" in rows[0]
     assert {"alternatives.json", "alternative_1.rtz"} <= {path.name for path in files}
     assert json.loads((tmp_path / "alternatives.json").read_text())["alternatives"]
+    (tmp_path / "alternative_5.rtz").write_text("of an earlier plan")
+    replace(found, choices=found.choices[:2], slack_h=found.slack_h[:2]).write(tmp_path)
+    assert sorted(path.name for path in tmp_path.glob("*.rtz")) == [
+        "alternative_1.rtz", "alternative_2.rtz"]  # fmt: skip
     with pytest.raises(InputError, match="2 to 5"):
         alternative_plans(_voyage(), **given, most=1)
+
+
+@pytest.mark.slow
+def test_alternatives_in_open_water_have_few_turns(ship, chart):
+    """Off land and in waves, where the paths of a network have its directions."""
+    voyage = Voyage(start=(65.0, 0.0), goal=(65.0, 1.0), depart=DEPART, offing_nm=0.0)
+    found = alternative_plans(voyage, ship=ship, sea=_sea(), chart=chart)
+    assert len(found.choices) > 1
+    for one in found.choices:
+        lat, lon = np.asarray(one.route.track.lat), np.asarray(one.route.track.lon)
+        _, course, end = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
+        turns = np.abs(np.degrees(np.angle(np.exp(1j * (course[1:] - end[:-1])))))
+        assert np.count_nonzero(turns > 30.0) <= 4, one.name
 
 
 @pytest.mark.slow

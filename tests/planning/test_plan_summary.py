@@ -9,6 +9,7 @@ from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.chart.canals import Canal
 from thalweg.core.geodesy import format_position_minutes, parse_position
 from thalweg.core.time import duration_text, utc_text
+from thalweg.planning.report.filled_weather import wave_shares
 from thalweg.planning.report.note_order import notes_of_routes
 from thalweg.planning.report.plan_summary import (
     MAX_LINES,
@@ -18,6 +19,7 @@ from thalweg.planning.report.plan_summary import (
 )
 from thalweg.planning.report.route_summary import cost_text, prices_text, route_items, weather_text
 from thalweg.route import Violation
+from thalweg.route.route_tables import LEG_KINDS
 
 WAVES = "sea_surface_wave_significant_height"
 
@@ -162,6 +164,31 @@ def test_the_share_of_the_way_without_known_waves_is_stated(answer):
     waves = np.where(along > 0.75 * along[-1], np.nan, 2.0)
     text = weather_text(replace(best, samples=dict(best.samples) | {WAVES: waves}), None)
     assert "; waves not known on 2" in text and text.endswith(" % of the way")
+
+
+def test_filled_waves_and_approaches_without_weather_are_stated(answer):
+    """A sea with waves on the first half of the way, and a last leg that is an approach."""
+    best = answer.best
+    along, count = np.asarray(best.samples["distance"]), len(best.legs["length"])
+    waves = {WAVES: np.full(len(along), 2.0)}
+    middle = float(np.interp(0.5 * along[-1], along, best.samples["time"]))
+    data = Sea.from_functions(
+        {WAVES: lambda t, lat, lon: 2.0 + 0.0 * lat}, period=(best.depart - 3600.0, middle)
+    )
+    sailed = replace(best, samples=dict(best.samples) | waves)
+    assert weather_text(sailed, data).count("filled") == 0
+    shares = wave_shares(sailed, data.filled(waves=1.0), waves[WAVES])
+    assert shares.unknown == 0.0 and shares.approaches == 0.0
+    assert shares.filled == pytest.approx(50.0, abs=5.0)
+    text = weather_text(sailed, data.filled(waves=1.0))
+    assert f"; waves filled, not of the data, on {shares.filled:.0f} % of the way" in text
+    kind = np.zeros(count, int)
+    kind[-1] = LEG_KINDS.index("approach")
+    ended = replace(sailed, legs=dict(best.legs) | {"leg_kind": kind})
+    share = 100.0 * best.legs["length"][-1] / best.legs["length"].sum()
+    assert weather_text(ended, None).endswith(
+        f"; no weather counted on the approaches, {share:.0f} % of the way"
+    )
 
 
 def test_the_uniform_sea_around_a_storm_is_named(answer):

@@ -15,7 +15,14 @@ from thalweg.cli.main import main
 from thalweg.core.errors import InputError
 from thalweg.planning import Voyage
 from thalweg.ship import Ship
-from thalweg.studies import Study, front_statistics, ready_studies, ready_study
+from thalweg.studies import (
+    Study,
+    front_statistics,
+    ready_studies,
+    ready_study,
+    run_study,
+    summarise_study,
+)
 from thalweg.studies.annual_figures import annual_figures, checked_annual, share_of_voyage
 from thalweg.studies.study_summary import StudySummary
 
@@ -43,6 +50,18 @@ def test_ready_studies_are_listed_and_printed(capsys):
     assert yaml.safe_load(capsys.readouterr().out)["annual"]["port_h"] == 48
     assert main(["study", "ready", "fleat"]) == 2
     assert "fleet" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_departures_of_the_coast_season_differ_and_so_does_the_best_way(tmp_path):
+    """A storm reaches the coast, so that a study of departures has something to compare."""
+    study = Study.from_dict(yaml.safe_load(ready_study("coast-season")), tmp_path)
+    run_study(study, tmp_path / "result")
+    summary = summarise_study(tmp_path / "result")
+    sick = summary.voyages.groupby("way")["sick_percent"]
+    assert len(sick) == 2 and (sick.max() > 2.0 * sick.min()).all()
+    chosen = summary.choices.set_index("value")["chosen"]
+    assert len(chosen) == 2 and chosen.min() > 0.0 and chosen.sum() == pytest.approx(1.0)
 
 
 def fronts() -> pd.DataFrame:

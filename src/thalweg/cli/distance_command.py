@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from thalweg.cli.exit_codes import SUCCESS
@@ -45,8 +46,8 @@ def add_command(commands: Any) -> None:
         action="append",
         default=[],
         metavar="NAME",
-        help="passage for small or local ships that may be used, for example Canso; may be "
-        "repeated",
+        help="passage for small or local ships that may be used, for example Canso; all: all of "
+        "them, for a ship shorter than 120 m; may be repeated",
     )
     parser.add_argument(
         "--offing",
@@ -73,22 +74,27 @@ def run(arguments: argparse.Namespace) -> int:
     from thalweg.chart.ports import place_positions
 
     place_positions([arguments.start, arguments.goal, *arguments.via])  # refuses unknown ports
-    from thalweg.planning.sea_distance import SMALL_CANALS, sea_distance
+    from thalweg.planning.sea_distance import (
+        SMALL_CANALS,
+        may_be_shorter_for_small_ships,
+        sea_distance,
+    )
 
     avoid: tuple[str, ...] = SMALL_CANALS
     if arguments.avoid is not None:
         names = [name.strip() for text in arguments.avoid for name in text.split(",")]
         avoid = tuple(name for name in names if name and name != "none")
     arguments.progress("finding the shortest way")
-    way = sea_distance(
+    find = partial(
+        sea_distance,
         arguments.start,
         arguments.goal,
         via=arguments.via,
         avoid=avoid,
-        open=tuple(arguments.open),
         offing_nm=arguments.offing,
         draught_m=arguments.draught,
     )
+    way = find(open=tuple(arguments.open))
     days = None if arguments.speed is None else way.days(arguments.speed)
     if arguments.json:
         more = {} if days is None else {"speed_kn": arguments.speed, "days": days}
@@ -97,7 +103,20 @@ def run(arguments: argparse.Namespace) -> int:
         _print_distance(way, arguments.speed, days)
         if arguments.draught is None:
             print("  shoals and draught were not considered: give --draught for a ship")
+        if not (arguments.open or arguments.via) and may_be_shorter_for_small_ships(way):
+            _print_small_ships(way, find(open=("all",)))
     return SUCCESS
+
+
+def _print_small_ships(way: SeaDistance, small: SeaDistance) -> None:
+    """Print the way by passages for small ships, if it is clearly shorter."""
+    from thalweg.planning.sea_distance import LEAST_SHORTER
+
+    if small.length > (1.0 - LEAST_SHORTER) * way.length:
+        return
+    by = [name for name in small.straits if name not in way.straits]
+    through = f" by {', '.join(by)}" if by else ""
+    print(f"  ships shorter than 120 m: {small.nm:,.0f} nm{through} (--open all)")
 
 
 def _print_distance(way: SeaDistance, speed: float | None, days: float | None) -> None:

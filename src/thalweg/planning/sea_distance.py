@@ -25,13 +25,20 @@ from thalweg.planning.request.voyage_endpoints import (
     Endpoint,
     resolve_places,
 )
-from thalweg.planning.seaways import Seaways, path_length_and_canals, world_chart
+from thalweg.planning.seaways import (
+    Seaways,
+    path_length_and_canals,
+    small_passages,
+    world_chart,
+)
 from thalweg.planning.voyage_parts import Place
 
 #: Canals too small for most ships, which are not used by default.
 SMALL_CANALS: Final = ("corinth",)
 #: Distance from land that ways keep outside passages, where they can [nm].
 DEFAULT_OFFING_NM: Final = 2.0
+LEAST_SHORTER: Final = 0.05  #: share by which a way is clearly shorter
+_LONGEST_WITH_HINT: Final = 500.0  # [nm]
 _DEEPEST_DRAUGHT: Final = 30.0  # [m]
 
 
@@ -147,7 +154,7 @@ def sea_distance(
         canals. By default the canal of Corinth, which is 7.2 m deep; give an empty list to use
         every canal.
     open : sequence of str
-        Passages for small or local ships that may be used, such as "Canso".
+        Passages for small or local ships that may be used, such as "Canso"; "all" for all of them.
     offing_nm : float
         Distance from land [nm] that the way keeps outside passages, ends and canals, 0 to 50;
         less only where the graph has no water so far from land.
@@ -181,7 +188,7 @@ def sea_distance(
     check_offing(offing_nm)
     closed = (avoid,) if isinstance(avoid, str) else tuple(avoid)
     ends = resolve_places(start, via, goal, chart)
-    seas = Seaways.of_chart(chart, closed, opened=open)
+    seas = Seaways.of_chart(chart, closed, opened=_opened(chart, open))
     if draught_m is not None:
         seas = _seas_for_draught(seas, draught_m, ends)
     ends = with_chosen_ways(ends, lambda: seas, draught=draught_m or 0.0)
@@ -210,6 +217,35 @@ def sea_distance(
         canals = _canals_entered(chart, line)
     straits = names_passed(chart.coastline, chart.passages, *np.array(line, float).T)
     return SeaDistance(ends[0].name, ends[-1].name, total, canals, straits, approaches, line, notes)
+
+
+def may_be_shorter_for_small_ships(way: SeaDistance, chart: Chart | None = None) -> bool:
+    """Return whether a passage for small or local ships lies where it may shorten a way.
+
+    Parameters
+    ----------
+    way : A way up to 500 nm; longer ones are not looked at.
+    chart : Chart, optional
+        By default the GSHHG coastline at resolution "i".
+    """
+    if len(way.line) < 2 or way.nm > _LONGEST_WITH_HINT:
+        return False
+    chart = world_chart() if chart is None else chart
+    ends = np.array([way.line[0], way.line[-1]])
+    for name in small_passages(chart):
+        place = next(p.line[len(p.line) // 2] for p in chart.passages if p.name == name)
+        by = np.asarray(distance(ends[:, 0], ends[:, 1], *place)).sum()
+        if name not in way.straits and by < (1.0 - LEAST_SHORTER) * way.length:
+            return True
+    return False
+
+
+def _opened(chart: Chart, names: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of passages to open; "all" stands for all that are for small ships."""
+    given = (names,) if isinstance(names, str) else tuple(names)
+    if not any(name.strip().casefold() == "all" for name in given):
+        return given
+    return tuple(sorted(small_passages(chart)))
 
 
 def _canals_entered(chart: Chart, line: Sequence[Position]) -> tuple[str, ...]:

@@ -68,7 +68,7 @@ class Seaways:
         canals, passages = split_avoided([name for name in avoid if name not in every])
         left = exclude_canals(chart.canals, [*every, *canals])
         used = find_passages(opened)
-        small = _small_passages(chart) - {passage.name for passage in used}
+        small = small_passages(chart) - {passage.name for passage in used}
         chart = chart.without_passages(*sorted(small)) if small else chart
         shut = tuple(canal.name for canal in chart.canals if canal not in left)
         open_names = {passage.name for passage in chart.passages}
@@ -81,7 +81,7 @@ class Seaways:
         They have all passages for small ships, or none, so that few graphs are made.
         """
         every = world_chart()
-        opened = sorted(_small_passages(every)) if _small_passages(chart) else ()
+        opened = sorted(small_passages(every)) if small_passages(chart) else ()
         world = cls.of_chart(every, (), opened=opened)
         canals = {canal.name for canal in chart.canals}
         shut = tuple(canal.name for canal in world.chart.canals if canal.name not in canals)
@@ -164,7 +164,7 @@ def world_chart() -> Chart:
     return Chart.gshhg("i")
 
 
-def _small_passages(chart: Chart) -> set[str]:
+def small_passages(chart: Chart) -> set[str]:
     """Return the names of the passages of a chart that are for small or local ships."""
     return {passage.name for passage in chart.passages if passage.use == "small_or_local"}
 

@@ -12,11 +12,11 @@ import numpy as np
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.sea import standard_names as nm
-from thalweg.sea.layer import Layer
+from thalweg.sea.layer import Layer, RetimedLayer
 from thalweg.sea.layer_stack import stack_variables
-from thalweg.sea.models.coast_fills import head_seas_layer, nearest_layer
-from thalweg.sea.models.function_layer import constant_layer
-from thalweg.sea.models.wind_sea import FetchFunction, wind_sea_layer
+from thalweg.sea.models.coast_fills import NearestLayer, head_seas_layer, nearest_layer
+from thalweg.sea.models.function_layer import FormulaLayer, constant_layer
+from thalweg.sea.models.wind_sea import FetchFunction, WindSeaLayer, wind_sea_layer
 from thalweg.sea.plausible_values import PLAUSIBLE_RANGES
 
 #: A number, a vector, a named policy, or a function of the fetch.
@@ -28,6 +28,7 @@ SHELTER_DISTANCE: Final = 25.0  #: [nm] of that policy where none is given
 SHELTER_FACTOR: Final = 0.8  #: of the wave height there, as in Prestegardshus (2020), eq. 3.4
 FETCH_LIMITED: Final = "fetch_limited"  #: waves of the local wind over the true fetch
 MAX_NEAREST: Final = 100.0  #: [nm] greatest distance of that policy
+_FILLED: Final = "filled"  # label of the layer of constant values
 CALM_PERIOD = 8.0  #: [s] placeholder peak period of waves of height zero
 CALM_VALUES = {
     nm.EASTWARD_WIND: 0.0,
@@ -89,7 +90,7 @@ def layers_filled(
             filled.append(layer)
             assumptions.append(text)
     if values:
-        filled.append(constant_layer(values, "filled"))
+        filled.append(constant_layer(values, _FILLED))
     for _, value in models:
         if isinstance(value, str) and value.startswith((NEAREST, SHELTER)):
             continue
@@ -97,6 +98,23 @@ def layers_filled(
         filled.append(make(filled))
         assumptions.append(text)
     return tuple(filled), tuple(assumptions)
+
+
+def layers_without_fills(layers: Sequence[Layer]) -> tuple[Layer, ...]:
+    """Return the layers that hold data or models, without those of fill values and policies.
+
+    Parameters
+    ----------
+    layers : In order of priority; those whose times are changed count as what they change.
+    """
+
+    def is_fill(layer: Layer) -> bool:
+        while isinstance(layer, RetimedLayer):
+            layer = layer.layer
+        constant = isinstance(layer, FormulaLayer) and layer.label == _FILLED
+        return constant or isinstance(layer, (NearestLayer, WindSeaLayer))
+
+    return tuple(layer for layer in layers if not is_fill(layer))
 
 
 def check_fill(policy: str, value: FillValue) -> None:

@@ -16,6 +16,7 @@ from thalweg.core.errors import InputError, ThalwegError
 from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Plan, Voyage, plan
+from thalweg.planning.report.filled_weather import has_fills, wave_shares
 from thalweg.planning.request.filled_sea import filled_in_turns
 from thalweg.planning.request.voyage_surroundings import chart_of_entries, ship_of_entries
 from thalweg.route import Route, Track, evaluate, read_track
@@ -27,9 +28,10 @@ from thalweg.studies.series_rows import SeriesInputs, series_figures, series_key
 from thalweg.studies.study import StudyRow, canonical_json
 from thalweg.studies.study_axes import fill_policies
 
+_WAVE_HEIGHT = "sea_surface_wave_significant_height"
 #: Largest values over a route: column and sampled variables.
 _EXTREMES = {
-    "max_significant_wave_height_m": ("sea_surface_wave_significant_height",),
+    "max_significant_wave_height_m": (_WAVE_HEIGHT,),
     "max_wind_speed_ms": ("eastward_wind", "northward_wind"),
     "max_current_ms": ("eastward_sea_water_velocity", "northward_sea_water_velocity"),
 }
@@ -116,11 +118,11 @@ def _figures(request: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         path = folder / str(request["track"])
         track = read_track(path, depart=voyage.get("depart"))
         route = _evaluated(track, ship, sea, chart, voyage)
-        return _route_figures(route)
+        return _route_figures(route, sea)
     answer = _planned(voyage, ship, sea, chart, request)
     if answer.cancelled:  # Ctrl-C: the best plan so far is no result of this row
         raise KeyboardInterrupt
-    figures = _route_figures(answer.best)
+    figures = _route_figures(answer.best, sea)
     objective = answer.voyage.objective
     networks = answer.provenance.get("networks", [])
     figures |= {
@@ -173,8 +175,8 @@ def _savings(answer: Plan) -> dict[str, Any]:
     return {name: nearest[name] for name in names}
 
 
-def _route_figures(route: Route) -> dict[str, Any]:
-    """Return the totals of a route and the worst weather on it."""
+def _route_figures(route: Route, sea: Sea) -> dict[str, Any]:
+    """Return the totals of a route, the worst weather on it, and where its waves are filled."""
     figures = {
         key: value
         for key, value in route.as_dict().items()
@@ -188,6 +190,9 @@ def _route_figures(route: Route) -> dict[str, Any]:
         parts = [route.samples[name] for name in variables if name in route.samples]
         size = np.hypot(*parts) if len(parts) == 2 else parts[0] if parts else np.array([])
         figures[column] = finite_or_none(float(size.max())) if size.size else None
+    height = route.samples.get(_WAVE_HEIGHT)
+    if height is not None and has_fills(sea):
+        figures["waves_filled_percent"] = wave_shares(route, sea, np.asarray(height)).filled
     return figures
 
 

@@ -14,6 +14,7 @@ from thalweg.cli.ship.ship_sheet_table import print_sheet
 from thalweg.cli.tables import print_written
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import make_folder, write_text
+from thalweg.core.units import GRAVITY
 
 
 def add_command(commands: Any) -> None:
@@ -138,6 +139,8 @@ _RANGES: Final = {
     "depth": ("--water-depth", 12_000.0, True),
 }
 
+_STEEPEST: Final = 0.1  # 2 pi Hs / (g Tp^2) above which no sea is; steep ones have 0.07
+
 
 def _weather(arguments: argparse.Namespace) -> dict[str, float]:
     given = {
@@ -158,6 +161,7 @@ def _weather(arguments: argparse.Namespace) -> dict[str, float]:
                 f"Correct {option}.",
                 option=option,
             )
+    _check_steepness(weather.get("wave_height"), weather.get("wave_period"))
     angles = {"wave_angle": ("--wave-from", arguments.wave_from)}
     angles["wind_angle"] = ("--wind-from", arguments.wind_from)
     for name, (option, degrees) in angles.items():
@@ -179,6 +183,23 @@ def _weather(arguments: argparse.Namespace) -> dict[str, float]:
             )
         weather["crab_angle"] = math.radians(arguments.crab)
     return weather
+
+
+def _check_steepness(height: float | None, period: float | None) -> None:
+    """Refuse waves that break: no sea is so steep."""
+    if not height or period is None:
+        return
+    per_metre = 2.0 * math.pi / (GRAVITY * period**2)
+    if height * per_metre > _STEEPEST:
+        raise InputError(
+            f"Waves of {height:g} m with a peak period of {period:g} s have a steepness of "
+            f"{height * per_metre:.2f}.",
+            f"Seas have up to about 0.07 (2 pi Hs / (g Tp^2)): {_STEEPEST / per_metre:.1f} m at "
+            f"this period is the most that is taken, and {height:g} m need "
+            f"{math.sqrt(height * per_metre / _STEEPEST) * period:.1f} s or more.",
+            "Correct --hs or --tp.",
+            option="--tp",
+        )
 
 
 def _check_ranges(sheet: dict[str, Any], strict: bool) -> None:

@@ -19,6 +19,7 @@ from thalweg.network.assembly import measured_pairs
 from thalweg.network.short_legs import positions_on_short_legs
 from thalweg.planning.approach_sailing import ApproachSailing
 from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.filled_weather import has_fills, waves_are_filled
 from thalweg.route import Track
 from thalweg.route.indicator_columns import (
     INSHORE_DISTANCE,
@@ -194,7 +195,8 @@ def figures_of_paths(
         ``arrive``, ``time_h``, ``waiting_h``, ``distance_nm``, ``fuel_t``, ``comfort`` [m2/s3] and
         ``sick_percent`` at the first place of the ship, ``inshore_nm``, ``inshore_percent``,
         ``inshore_h``, ``land_distance_nm`` (approaches left out),
-        ``max_significant_wave_height_m``, ``max_wind_speed_ms``; None where unknown.
+        ``max_significant_wave_height_m``, ``max_wind_speed_ms``, and of a sea with fills
+        ``waves_filled_percent``, the share of the way where waves are filled; None where unknown.
         ``feasible`` is true: the network keeps the limits.
     """
     if not paths:
@@ -226,6 +228,9 @@ def figures_of_paths(
         "max_significant_wave_height_m": _greatest(at.path, sampled.get(WAVE_HEIGHT), len(paths)),
         "max_wind_speed_ms": _greatest(at.path, _wind_speed(sampled), len(paths)),
     }
+    if WAVE_HEIGHT in sampled and has_fills(context.sea):
+        filled = waves_are_filled(context.sea, at.time, at.lat, at.lon)
+        columns["waves_filled_percent"] = 100.0 * at.sums(filled.astype(float), at.length) / length
     rows = []
     for number, path in enumerate(paths):
         row: dict[str, Any] = {

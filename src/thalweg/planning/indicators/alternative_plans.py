@@ -42,10 +42,12 @@ from thalweg.planning.request.ordered_speed import with_order
 from thalweg.planning.request.voyage_objective import priced_objective, with_voyage_prices
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, RouteFileOptions, with_wind_speed, write_route_files
+from thalweg.route.formats import remove_route_files
 from thalweg.route.indicator_columns import indicator_value
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 
+_MOST: Final = 5  # routes
 _INSHORE, _OFFSHORE = 50.0, 15.0  # share of the length near land above and below which [%]
 _SLOWER: Final = 0.05  # routes on the same way differ where one takes this share longer
 
@@ -56,8 +58,7 @@ class RouteChoice:
 
     Attributes
     ----------
-    name : Such as ``"inshore by the Naeroysund"``.
-    best_in : What it is best in among the choices, in words.
+    name, best_in : Such as ``"inshore by the Naeroysund"``; what it is best in, in words.
     difference : From the fastest one, in words.
     passes : Named passages and capes that it passes, in order.
     """
@@ -142,7 +143,8 @@ class AlternativePlans:
         Parameters
         ----------
         folder : path
-            Made where it does not exist.
+            Made where it does not exist. Files of alternatives of an earlier plan with more of
+            them are removed.
         options : RouteFileOptions, optional
             Formats and waypoints of the route files.
 
@@ -160,6 +162,8 @@ class AlternativePlans:
         files = [folder / "alternatives.json", folder / "alternatives.csv"]
         for number, one in enumerate(self.choices, start=1):
             files += write_route_files(one.route, folder, f"alternative_{number}", options)
+        for number in range(len(self.choices) + 1, _MOST + 1):
+            remove_route_files(folder, f"alternative_{number}")
         return files
 
     def __str__(self) -> str:
@@ -255,7 +259,7 @@ def _check_request(
     voyage: Voyage, sea: Sea, network: str | NetworkBuilder | HistoryCorridor, most: int
 ) -> None:
     """Refuse what alternatives cannot be planned for."""
-    if not 2 <= most <= 5:
+    if not 2 <= most <= _MOST:
         raise InputError(
             f"{most} alternatives were requested.",
             "There are 2 to 5.",

@@ -48,6 +48,7 @@ from thalweg.planning.pareto.front_points import track_from_front_point
 from thalweg.planning.pareto.search_horizon import FastestPaths, extend_horizon
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
 from thalweg.planning.pareto.trade_off_planner import with_trade_off
+from thalweg.planning.pareto.turn_reduction import scored_with_fewer_turns
 from thalweg.planning.pareto.weighted_sums import (
     KeyFigureRange,
     key_figure,
@@ -250,7 +251,8 @@ class _Candidates:
             )
         middle = knee(*(np.array([getattr(p, at) for p in points]) for at in ("time", "cost")))
         chosen = [front.cheapest] if len(points) < 3 else [front.cheapest, points[middle]]
-        return [track_from_front_point(network, point) for point in chosen]
+        tracks = [(track_from_front_point(network, point), point.time) for point in chosen]
+        return [scored_with_fewer_turns(own, track, time).track for track, time in tracks]
 
     def round_islands(self, network: Network) -> Iterator[Track]:
         """Yield the shortest ways on the other sides of islands."""
@@ -344,10 +346,11 @@ class _Candidates:
         shore = chart.coastline.shore_distance(*line, cap=NAUTICAL_MILE)
         middle = 1 + int(np.argmin(shore[1:-1])) if len(lat) > 2 else 1
         paths = trees[0].path(first_node), trees[1].path(last_node)[::-1]
+        places = network.lat, network.lon
         return _PassageWay(
             length,
-            tuple(np.append(x[paths[0]], y[: middle + 1]) for x, y in zip(_places(network), line)),
-            tuple(np.append(y[middle:], x[paths[1]]) for x, y in zip(_places(network), line)),
+            tuple(np.append(x[paths[0]], y[: middle + 1]) for x, y in zip(places, line)),
+            tuple(np.append(y[middle:], x[paths[1]]) for x, y in zip(places, line)),
         )
 
     def _trees(self, network: Network) -> tuple[ShortestPathTree, ShortestPathTree]:
@@ -393,8 +396,3 @@ class _Candidates:
         track = self.best["time"].track
         setting = int(np.max(track.setting))
         return Track(lat, lon, self.best["time"].depart, setting=np.full(len(lat) - 1, setting))
-
-
-def _places(network: Network) -> tuple[FloatArray, FloatArray]:
-    """Return latitudes and longitudes of the nodes [deg]."""
-    return network.lat, network.lon

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -46,32 +47,63 @@ def edge_costs(
     cost = prices.length * length + prices.time * penalty * length / speed
     if max(prices.inshore, prices.encounters) <= 0.0:
         return np.asarray(cost)
-    lat, lon = _edge_samples(network)
+    tail, head = network.tails(), np.asarray(network.graph.target)
+    legs = network.lat[tail], network.lon[tail], network.lat[head], network.lon[head]
+    start = float(network.lat[network.meta.start]), float(network.lon[network.meta.start])
+    return np.asarray(cost + costs_of_water(legs, chart, prices, start, depart=depart, speed=speed))
+
+
+def costs_of_water(
+    legs: Sequence[FloatArray],
+    chart: Chart,
+    prices: LegPrices,
+    start: tuple[float, float],
+    *,
+    depart: float,
+    speed: float,
+    samples: int = _SAMPLES,
+) -> FloatArray:
+    """Return the cost of land and other ships of legs.
+
+    Parameters
+    ----------
+    legs : Latitudes and longitudes of their starts and ends [deg], 4 arrays (n,).
+    start : Latitude and longitude [deg] of the ship when she leaves.
+    depart, speed : As in `edge_costs`.
+    samples : Positions on each leg.
+
+    Raises
+    ------
+    InputError
+        If encounters have a price and the traffic on some leg is not known.
+    """
+    (length, _, _), (lat, lon) = inverse(*legs), _leg_samples(legs, samples)
+    cost = np.zeros(len(length))
     if prices.inshore > 0.0:
         shore = chart.coastline.shore_distance(lat, lon, cap=LAND_DISTANCE_CAP)
-        near = np.asarray(shore < INSHORE_DISTANCE, float).reshape(-1, _SAMPLES)
-        cost = cost + prices.inshore * length * near.mean(axis=1)
+        near = np.asarray(shore < INSHORE_DISTANCE, float).reshape(-1, samples)
+        cost += prices.inshore * length * near.mean(axis=1)
     if prices.encounters > 0.0:
-        cost = cost + prices.encounters * _encounters(network, chart, (lat, lon), depart, speed)
-    return np.asarray(cost)
+        away = np.asarray(distance(*start, lat, lon))
+        times = depart + away / speed
+        cost += prices.encounters * _encounters(chart, (lat, lon), times, length, speed)
+    return cost
 
 
-def _edge_samples(network: Network) -> tuple[FloatArray, FloatArray]:
-    """Return positions on the edges [deg], `_SAMPLES` for each in order, at equal distances."""
-    tail, head = network.tails(), np.asarray(network.graph.target)
-    places = network.lat[tail], network.lon[tail], network.lat[head], network.lon[head]
-    length, course, _ = inverse(*places)
-    share = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
-    at = [np.repeat(x, _SAMPLES) for x in (*places[:2], course, length)]
-    lat, lon = direct(at[0], at[1], at[2], at[3] * np.tile(share, len(tail)))
+def _leg_samples(legs: Sequence[FloatArray], samples: int) -> tuple[FloatArray, FloatArray]:
+    """Return positions on legs [deg], some for each in order, at equal distances."""
+    length, course, _ = inverse(*legs)
+    share = (np.arange(samples) + 0.5) / samples
+    at = [np.repeat(x, samples) for x in (*legs[:2], course, length)]
+    lat, lon = direct(at[0], at[1], at[2], at[3] * np.tile(share, len(length)))
     return np.asarray(lat), np.asarray(lon)
 
 
 def _encounters(
-    network: Network,
     chart: Chart,
     places: tuple[FloatArray, FloatArray],
-    depart: float,
+    times: FloatArray,
+    length: FloatArray,
     speed: float,
 ) -> FloatArray:
     if chart.traffic is None:
@@ -82,16 +114,13 @@ def _encounters(
             field="objective",
         )
     lat, lon = places
-    start = network.meta.start
-    away = distance(network.lat[start], network.lon[start], lat, lon)
-    rate = chart.traffic.rate(lat, lon, depart + np.asarray(away) / speed, speed)
-    length = np.asarray(network.edges.length, float)
-    found = rate.reshape(-1, _SAMPLES).mean(axis=1) * length / speed
+    rate = chart.traffic.rate(lat, lon, times, speed)
+    found = rate.reshape(len(length), -1).mean(axis=1) * length / speed
     unknown = np.flatnonzero(np.isnan(found))
     if len(unknown):
         at = np.flatnonzero(np.isnan(rate))[0]
         raise InputError(
-            f"The traffic is not known on {len(unknown)} of {len(found)} edges, such as at "
+            f"The traffic is not known on {len(unknown)} of {len(found)} legs, such as at "
             f"{lat[at]:.2f}, {lon[at]:.2f}.",
             "Encounters can be minimised where the traffic is known in all water.",
             "Add a zone or a grid there, or a member 'elsewhere' to the GeoJSON of the zones.",

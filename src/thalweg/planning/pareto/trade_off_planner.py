@@ -37,6 +37,7 @@ from thalweg.planning.pareto.trade_off_context import (
     non_dominated_candidates,
     scored_candidate,
 )
+from thalweg.planning.pareto.turn_reduction import scored_with_fewer_turns
 from thalweg.planning.pareto.weighted_sums import normalised_trade_off
 from thalweg.planning.plan import Plan
 from thalweg.planning.planning_context import PlanningContext
@@ -243,7 +244,7 @@ def _refereed(
             if monotonic() > until and any(item.route.feasible for item in by_index.values()):
                 break
         candidate = candidates[k]
-        route = context.evaluate(candidate.track, trade_off.objective.terms)
+        route = scored_with_fewer_turns(trade_off, candidate.track, candidate.time)
         by_index[k] = scored_candidate(
             trade_off, candidate, route, trade_off.objective.value(route)
         )

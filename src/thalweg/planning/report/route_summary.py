@@ -13,6 +13,7 @@ from thalweg.core.geodesy import format_position_minutes
 from thalweg.core.time import duration_text, utc_text
 from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.report.depth_report import CHECK_DEPTH
+from thalweg.planning.report.filled_weather import wave_shares
 from thalweg.sea.models.cyclone_layer import AmbientSea, StormLayer
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ _WAVES = "sea_surface_wave_significant_height"
 _WIND = ("eastward_wind", "northward_wind")
 _CURRENT = ("eastward_sea_water_velocity", "northward_sea_water_velocity")
 _NAMES = (_WAVES, *_WIND, *_CURRENT)
+_LEAST_PERCENT: Final = 0.5  # smaller shares of the way are not named
 _SOURCES: Final = {"request": "given"}  # other sources of prices by their own name
 
 
@@ -161,7 +163,7 @@ def weather_text(route: Route, sea: Sea | None) -> str:
         at = int(np.nanargmax(waves))
         more = "" if wind is None else f" with wind of {wind[at]:.0f} kn"
         found = f"highest waves {waves[at]:.1f} m{more}, {_place(route, at)}"
-        return found + _ambient_text(sea, float(waves[at])) + _unknown_text(route, waves)
+        return found + _ambient_text(sea, float(waves[at])) + _unknown_text(route, sea, waves)
     for values, word in ((wind, "wind"), (current, "current")):
         if values is not None and np.nanmax(values, initial=0.0) > 0.0:
             at = int(np.nanargmax(values))
@@ -170,15 +172,15 @@ def weather_text(route: Route, sea: Sea | None) -> str:
     return "calm or not known: no wind, waves or currents in the data"
 
 
-def _unknown_text(route: Route, waves: np.ndarray) -> str:
-    """Return on what share of the way at sea waves are not known; empty where they are known."""
-    step = np.diff(np.asarray(route.samples["distance"], float), prepend=0.0)
-    kind = np.asarray(route.legs.get("leg_kind", np.zeros(len(route.legs["length"]))))
-    step = np.where(kind[route.samples["leg"]] == 0, step, 0.0)  # no canals and approaches
-    if not np.isnan(waves).any() or not step.sum() > 0.0:
-        return ""
-    share = 100.0 * float(step[np.isnan(waves)].sum() / step.sum())
-    return f"; waves not known on {max(share, 1.0):.0f} % of the way"
+def _unknown_text(route: Route, sea: Sea | None, waves: np.ndarray) -> str:
+    """Return on what shares of the way waves are not known, filled, or not counted."""
+    shares = wave_shares(route, sea, waves)
+    texts = (
+        (shares.unknown, "waves not known on {:.0f} % of the way"),
+        (shares.filled, "waves filled, not of the data, on {:.0f} % of the way"),
+        (shares.approaches, "no weather counted on the approaches, {:.0f} % of the way"),
+    )
+    return "".join(f"; {text.format(share)}" for share, text in texts if share >= _LEAST_PERCENT)
 
 
 def _ambient_text(sea: Sea | None, highest: float) -> str:

@@ -164,4 +164,4 @@ def offing_note(chart: Chart, ends: Sequence[Endpoint], wanted: float) -> str:
         near[end.name] = f"{end.name}{within}"
     if near:
         text += f"; less near {' and '.join(near.values())}"
-    return f"{text}."
+    return f"{text}; not in approaches of ports and narrow passages."

@@ -159,7 +159,8 @@ def close_shoals(chart: Chart, ends: Sequence[Endpoint]) -> tuple[Chart, str]:
         if radius is not None and radius > _RADII[0]
     ]
     note = (
-        f"Closed: water with less than {depth:.1f} m by the {NAME}, and named shoal areas; not "
+        f"Closed: water with less than {depth:.1f} m by the {NAME}, which is too "
+        f"coarse to close water by the draught itself, and named shoal areas; not "
         f"within {' and '.join([*wide, '8 nm of other ends'] if wide else ['8 nm of the ends'])} "
         "and in narrow passages."
     )

@@ -40,6 +40,7 @@ __all__ = [
     "RouteFileOptions",
     "cross_track_notes",
     "read_track",
+    "remove_route_files",
     "write_csv",
     "write_geojson",
     "write_gpx",
@@ -98,6 +99,17 @@ def write_route_files(
     for path, ending in zip(files, options.formats):
         _WRITERS[ending](route, path, options)
     return files
+
+
+def remove_route_files(folder: str | Path, name: str) -> None:
+    """Remove the route files of a name, in all formats, as far as there are any.
+
+    Parameters
+    ----------
+    name : Of the files, without ending.
+    """
+    for ending in _WRITERS:
+        (Path(folder) / f"{name}.{ending}").unlink(missing_ok=True)
 
 
 def read_track(path: str | Path, *, depart: TimeLike | None = None) -> Track:

@@ -44,7 +44,8 @@ def motion_sheet(
     dict or None : ``headings_deg`` between bow and waves; ``attained_speed_kn``, ``heave_rms_m``,
         ``pitch_rms_deg``, ``roll_rms_deg`` by heading; ``places``: for each name root mean squares
         by heading and the percentage of people sick after `EXPOSURE_H`; ``tasks``: by heading
-        whether each can be done. None where the ship file has no places.
+        whether each can be done, none in waves above the limit of the ship. None where the ship
+        file has no places.
 
     Raises
     ------
@@ -73,7 +74,8 @@ def motion_sheet(
     tasks = {}
     for task in own.tasks:
         good, known = own.workable(task, motions)
-        tasks[task] = [bool(g) if k else None for g, k in zip(good, known)]
+        kept = height <= ship.limits.wave_height
+        tasks[task] = [bool(g) and kept if k or not kept else None for g, k in zip(good, known)]
     return {
         "ordered_speed_kn": ordered / KNOT,
         "wave_height_m": height,
