@@ -192,7 +192,7 @@ def test_a_route_through_narrows_lists_them(world, ship):
     found = plan(voyage, ship=ship, sea=Sea.calm(), chart=world)
     text = " ".join(found.notes)
     assert "Passes Dardanelles" in text
-    assert "Passes Bosporus (half width" in text
+    assert "Passes Bosporus (line at least" in text
     assert "air draught 58 m" in text
     assert found.best.feasible
     assert found.best.distance_nm == pytest.approx(229.0, abs=5.0)  # by the lines of the table 232

@@ -86,8 +86,8 @@ def test_notes_on_danger_come_first_and_are_never_hidden(answer):
 
 
 def test_notes_of_several_routes():
-    found = notes_of_routes(["a."], [["b.", "c.", "Crosses D."], ["b."]])
-    assert found == ["Route 1: Crosses D.", "a.", "b."]
+    found = notes_of_routes(["a."], [["b.", "c.", "Crosses D."], ["b.", "Passes E (one)."]])
+    assert found == ["Route 1: Crosses D.", "a.", "b.", "Route 2: Passes E (one)."]
 
 
 def with_bound(answer, certain, kind="certificate"):

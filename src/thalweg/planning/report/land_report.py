@@ -22,6 +22,7 @@ _PIECE: Final = 20.0 * NAUTICAL_MILE  # routes are split so to find where a pass
 _LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE  # closed passages that save less are not mentioned
 _FARTHEST: Final = 120.0 * NAUTICAL_MILE  # nor are those farther from the route
 NEAREST_LAND: Final = "Nearest land"  #: a note on it begins so
+PASSES: Final = "Passes "  #: one on a named passage
 _NEAR: Final = 30.0 * NAUTICAL_MILE  # land farther from the route is not mentioned
 
 
@@ -42,13 +43,13 @@ def land_notes(context: PlanningContext, route: Route) -> list[str]:
         )
     for passage in passages_used(context.chart, route):
         facts = [
-            f"half width {passage.half_width / NAUTICAL_MILE:.2g} nm",
+            f"line at least {passage.half_width / NAUTICAL_MILE:.2g} nm off the coastline",
             *([f"limits: {passage.limits}"] if passage.limits else []),
             *([f"pilotage {passage.pilotage}"] if passage.pilotage else []),
             *([passage.note] if passage.note else []),
             *(["unchecked"] if "unchecked" in passage.source else []),
         ]
-        notes.append(f"Passes {passage.name} ({'; '.join(facts)}).")
+        notes.append(f"{PASSES}{passage.name} ({'; '.join(facts)}).")
     return notes + closed_passage_notes(context, route)
 
 

@@ -7,6 +7,7 @@ from typing import Final
 
 from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
 from thalweg.planning.report.ice_report import REACHES_ICE
+from thalweg.planning.report.land_report import PASSES
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, LANE_DETOUR
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
 from thalweg.planning.request.voyage_endpoints import CHECK_POSITION, NOT_REACHED
@@ -40,19 +41,20 @@ def count_of_dangers(notes: Iterable[str]) -> int:
 
 
 def notes_of_routes(notes: Iterable[str], of_each: Sequence[Sequence[str]]) -> list[str]:
-    """Return notes on all of some routes, and notes on danger of each with its number.
+    """Return notes on all of some routes, and notes on danger and passages of each by its number.
 
     Parameters
     ----------
     notes : On all routes.
-    of_each : Notes of each route; of those that differ only the ones on danger are returned.
+    of_each : Notes of each route; of those that differ only the ones on danger and on named
+        passages are returned.
     """
     found = list(notes)
     for number, own in enumerate(of_each, start=1):
         for note in own:
             if all(note in other for other in of_each):
                 found.append(note)
-            elif count_of_dangers([note]):
+            elif count_of_dangers([note]) or note.startswith(PASSES):
                 found.append(f"Route {number}: {note}")
     return danger_first(dict.fromkeys(found))
 

@@ -25,6 +25,7 @@ from thalweg.planning.report.route_summary import (
     weather_on_route,
     weather_text,
 )
+from thalweg.route.indicator_columns import indicator_value
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData
@@ -183,9 +184,13 @@ def _choice(plan: PlanData) -> str:
         int(order[-1]): _LEAST.get(front.criterion, f"least {front.criterion}"),
     }
     chosen.setdefault(int(order[knee(time[order], front.values[order])]), "between")
-    digits = 0 if float(front.values.max()) >= 1e4 else 1
+    values, unit = front.values, front.unit
+    if front.criterion == "comfort":  # a share of people says more than a squared dose
+        values = np.array([indicator_value(route, "sick_percent") for route in plan.routes])
+        unit = "% sick"
+    digits = 0 if float(np.nanmax(values)) >= 1e4 else 1
     texts = [
-        f"{word} {time[k]:.1f} h {front.values[k]:,.{digits}f} {front.unit}"
+        f"{word} {time[k]:.1f} h {values[k]:,.{digits}f} {unit}"
         for k, word in sorted(chosen.items(), key=lambda item: time[item[0]])
     ]
     return "; ".join(texts)
