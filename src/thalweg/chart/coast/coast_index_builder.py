@@ -210,12 +210,14 @@ def _set_clearance(index: IndexArrays, pieces: CoastSegments) -> None:
     for dj, di in ((0, 0), (0, 1), (1, 0), (1, 1)):
         corner = corners[dj : dj + blocks, di : di + blocks]
         reach = np.maximum(reach, np.arccos(np.sum(corner * centres, -1)))
+    far = MAX_CLEARANCE + float(reach.max() + lengths.max()) + 1e-3  # more makes no difference
+    largest_chord = 2.0 * np.sin(0.5 * min(far, np.pi))
     cells = index.cell.reshape(6, side, side)
     for face in range(6):
         turned = np.roll(centres, face // 2 + 1, -1)
         if face % 2:
             turned[..., face // 2] *= -1.0
-        chord, _ = tree.query(turned.reshape(-1, 3), workers=2)
+        chord, _ = tree.query(turned.reshape(-1, 3), workers=2, distance_upper_bound=largest_chord)
         separation = 2.0 * np.arcsin(np.minimum(chord, 2.0) / 2.0).reshape(blocks, blocks)
         bound = np.clip(separation - reach - lengths.max() - 1e-4, 0.0, MAX_CLEARANCE)
         fine = np.repeat(np.repeat(bound, size, 0), size, 1).astype(np.float32)

@@ -41,6 +41,7 @@ _LARGEST_LATITUDE: Final = 80.0  # of land that counts [deg]
 _INDEX_CELLS: Final = 256  # along a side of each of the six faces
 _ANGLE_TOLERANCE: Final = 0.02  # of tangents: courses on a sphere are within 0.01 [rad]
 _LONGEST_TESTED: Final = 1.8  # chord of a leg whose arc is tested [radii]
+_BOX_MARGIN: Final = 1.0  # beyond the positions within reach [deg]
 _FEW_CORNERS: Final = 16  # of rings that are used wherever their corners are
 _CAP_STEP: Final = 2.0  # of the outline of a closed polar cap [deg]
 _LENGTH_TOLERANCE: Final = 1e-6  # by which the known length may be surpassed
@@ -153,6 +154,24 @@ class _Reach:
         east = (self.goal[1] - self.start[1] + 180.0) % 360.0 - 180.0
         return self.start[1] + 0.5 * east
 
+    def box(self) -> tuple[float, float, float, float]:
+        """Return west, south, east and north [deg] of a box that holds all these positions.
+
+        None is farther from the middle of the ends than half of the known length, as for an
+        ellipse on a sphere: ``cos m = (cos d1 + cos d2) / (2 cos(c / 2)) >= cos(known / 2)``.
+        """
+        whole = (self.middle - 180.0, -_LARGEST_LATITUDE, self.middle + 180.0, _LARGEST_LATITUDE)
+        centre = _unit_vectors(*np.array([self.start, self.goal]).T).sum(axis=0)
+        half = 0.5 * self.known / _SPHERE
+        lat = math.atan2(centre[2], math.hypot(centre[0], centre[1]))
+        if half + abs(lat) >= math.radians(_LARGEST_LATITUDE) - math.radians(_BOX_MARGIN):
+            return whole
+        lon = math.degrees(math.atan2(centre[1], centre[0]))
+        lon = self.middle + (lon - self.middle + 180.0) % 360.0 - 180.0
+        wide = math.degrees(math.asin(math.sin(half) / math.cos(lat))) + _BOX_MARGIN
+        low, high = (math.degrees(lat + sign * half) + sign * _BOX_MARGIN for sign in (-1.0, 1.0))
+        return max(whole[0], lon - wide), low, min(whole[2], lon + wide), high
+
     def has(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
         """Return which positions may be passed, by lower bounds of lengths."""
         there = _unit_vectors(lat, lon)
@@ -180,8 +199,8 @@ def _closed_shapes(
     """Return the polygons (x lon, y lat [deg]) within reach that are closed to a ship."""
     import shapely
 
+    box = reach.box()  # land outside is left out: the length round less land is no longer
     west = reach.middle - 180.0
-    box = (west, -_LARGEST_LATITUDE, west + 360.0, _LARGEST_LATITUDE)
     land = np.array(list(_land_polygons(chart.coastline.rings, reach, box, tolerance)), object)
     whole = np.where(shapely.is_valid(land), land, shapely.make_valid(land))
     # one polygon of all that the data cut at meridians, canals and narrows; no water inside it
@@ -205,7 +224,10 @@ def _closed_shapes(
 def _land_polygons(
     rings: Rings, reach: _Reach, box: tuple[float, ...], tolerance: float
 ) -> Iterable[Any]:
-    """Yield the land of outer rings with a corner within reach, or few, that are large enough."""
+    """Yield the land in a box of outer rings that are large enough.
+
+    They have a corner within reach, or so few corners that these may be far away on both sides.
+    """
     import shapely
 
     if not len(rings):
@@ -213,7 +235,8 @@ def _land_polygons(
     south, north, west, east = ring_bounds(rings)
     large = np.maximum(north - south, east - west) >= 4.0 * tolerance
     within = np.logical_or.reduceat(reach.has(rings.lat, rings.lon), rings.start[:-1])
-    within |= np.diff(rings.start) <= _FEW_CORNERS  # which may be far away, on both sides
+    within |= np.diff(rings.start) <= _FEW_CORNERS
+    within &= (north > box[1]) & (south < box[3])
     for number in np.flatnonzero(within & large):
         part = slice(rings.start[number], rings.start[number + 1])
         lat, lon = rings.lat[part], rings.lon[part]
