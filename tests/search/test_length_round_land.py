@@ -7,7 +7,7 @@ import shapely
 from thalweg import Chart
 from thalweg.core.geodesy import distance
 from thalweg.search.certificate.barrier_mesh import BarrierLink
-from thalweg.search.certificate.length_round_land import land_inside, length_round_land
+from thalweg.search.certificate.length_round_land import _Reach, land_inside, length_round_land
 
 NM = 1852.0
 
@@ -76,6 +76,33 @@ def test_places_inside_land_leave_the_geodesic():
     start, goal = (0.0, 0.0), (0.0, 2.5)
     found = length_round_land(chart, start, goal, 4e5, seconds=5.0)
     assert found == pytest.approx(by(start, goal))
+
+
+@pytest.mark.parametrize(
+    ("start", "goal"),
+    [
+        ((52.0, 4.0), (53.5, 0.3)),
+        ((-18.0, 178.0), (-14.0, -172.0)),  # across the date line
+        ((60.0, -175.0), (60.0, 175.0)),
+        ((70.0, 10.0), (70.0, 60.0)),
+        ((-34.0, 18.0), (51.0, 3.0)),
+        ((10.0, 0.0), (-10.0, 179.0)),  # nearly across the globe
+    ],
+)
+@pytest.mark.parametrize("longer", [1.0005, 1.2, 2.5])
+def test_positions_within_reach_are_in_the_box(start, goal, longer):
+    """Less land outside leaves a lower bound; land within reach must not be missed."""
+    reach = _Reach(start, goal, longer * float(distance(*start, *goal)))
+    west, south, east, north = reach.box()
+    points = np.random.default_rng(1).uniform(size=(2, 40_000))
+    lat, lon = np.degrees(np.arcsin(1.6 * points[0] - 0.8)), 360.0 * points[1] - 180.0
+    ends = np.array([start, goal])
+    lat, lon = np.concatenate([lat, ends[:, 0]]), np.concatenate([lon, ends[:, 1]])
+    inside = reach.has(lat, lon) & (np.abs(lat) < 80.0)
+    assert inside.any()
+    lon = reach.middle + (lon[inside] - reach.middle + 180.0) % 360.0 - 180.0
+    assert ((lon >= west) & (lon <= east)).all()
+    assert ((lat[inside] >= south) & (lat[inside] <= north)).all()
 
 
 @pytest.mark.parametrize("seed", range(20))

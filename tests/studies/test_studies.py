@@ -263,6 +263,20 @@ def test_a_killed_driver_is_followed_by_one_that_finishes(folder, tmp_path):
     assert sorted(rows["id"]) == sorted(row.id for row in study.rows())
 
 
+def test_a_folder_has_one_driver_at_a_time(folder, tmp_path):
+    study = base(folder, axes={"depart": DAYS})
+    refused = []
+
+    def start_another(state) -> None:
+        with pytest.raises(InputError, match="Another process runs a study in") as caught:
+            run_study(study, tmp_path / "out")
+        refused.append(caught.value)
+
+    run_study(study, tmp_path / "out", chunk=len(DAYS), progress=start_another)
+    assert len(refused) == 1
+    assert run_study(study, tmp_path / "out").new == 0  # free again
+
+
 @pytest.mark.slow
 def test_a_cluster_gives_the_same_rows(folder, tmp_path):
     distributed = pytest.importorskip("distributed", reason="the extra 'cluster' is not installed")

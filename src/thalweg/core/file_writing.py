@@ -114,6 +114,31 @@ def _is_abandoned(path: str, age: float) -> bool:
     return True
 
 
+def taken_lock(path: Path) -> int | None:
+    """Take a lock file for this process; the system frees it when the process ends.
+
+    Returns
+    -------
+    int or None : Descriptor, which `os.close` frees; None on a system or in a folder without locks.
+
+    Raises
+    ------
+    BlockingIOError : If another process holds it.
+    """
+    if fcntl is None:
+        return None
+    descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(descriptor)
+        raise
+    except OSError:
+        os.close(descriptor)
+        return None
+    return descriptor
+
+
 def _existing_mode(path: Path) -> int | None:
     """Return the kind and the permissions of a file; None if it does not exist."""
     try:

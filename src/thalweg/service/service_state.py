@@ -12,6 +12,7 @@ from typing import Annotated, Any, Final
 from fastapi import Depends, Request
 
 from thalweg.core.errors import InputError, ThalwegError
+from thalweg.core.file_writing import taken_lock
 from thalweg.service.coast_map import remove_old_drafts
 from thalweg.service.jobs.job_runner import JobRunner
 from thalweg.service.jobs.job_store import JobStore
@@ -170,19 +171,11 @@ State = Annotated[ServiceState, Depends(state_of)]
 def _folder_lock(settings: ServiceSettings) -> int | None:
     """Take the data folder for this process; the system frees it when the process ends."""
     try:
-        import fcntl
-    except ImportError:  # not on this system
-        return None
-    path = settings.subfolder("") / "lock"
-    handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        os.close(handle)
+        return taken_lock(settings.subfolder("") / "lock")
+    except BlockingIOError:
         raise InputError(
             f"Another service uses the folder {str(settings.folder)!r}.",
             "Each service needs a folder of its own.",
             "End the other one, or give another folder with --data.",
             field="data",
         ) from None
-    return handle

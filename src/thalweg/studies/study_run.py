@@ -6,6 +6,7 @@ Results do not depend on the number of workers.
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import os
 import signal
@@ -19,10 +20,12 @@ from pathlib import Path
 from typing import Any
 
 from thalweg.core.errors import InputError
+from thalweg.core.file_writing import make_folder, taken_lock
 from thalweg.studies.row_runner import run_rows
 from thalweg.studies.study import Study, StudyRow
 from thalweg.studies.study_parts import read_parts, require_parquet, write_part, write_study
 
+LOCK_FILE = "lock"  #: of a folder in which a study runs
 CHUNK = 20  #: rows of a part
 ATTEMPTS = 3  #: of a chunk whose worker dies
 _AHEAD = 3  # chunks per worker that wait in a cluster
@@ -99,7 +102,8 @@ def run_study(
     Raises
     ------
     InputError
-        If the folder cannot be written, or pyarrow or distributed is not installed.
+        If the folder cannot be written or another process runs a study there, or pyarrow or
+        distributed is not installed.
     """
     require_parquet()
     if chunk < 1 or workers < 0:
@@ -109,6 +113,37 @@ def run_study(
             "Correct the numbers.",
         )
     folder = Path(out)
+    with _taken(make_folder(folder)):
+        return _run_missing(study, folder, (workers, scheduler, chunk), progress)
+
+
+@contextlib.contextmanager
+def _taken(folder: Path) -> Iterator[None]:
+    """Hold the folder of a study, so that no other process plans the same rows."""
+    try:
+        lock = taken_lock(folder / LOCK_FILE)
+    except BlockingIOError:
+        raise InputError(
+            f"Another process runs a study in {str(folder)!r}.",
+            "Each study has one driver at a time; --workers gives it more processes.",
+            "Wait for it, stop it, or give another folder.",
+            field="out",
+        ) from None
+    try:
+        yield
+    finally:
+        if lock is not None:
+            os.close(lock)
+
+
+def _run_missing(
+    study: Study,
+    folder: Path,
+    how: tuple[int, str | None, int],
+    progress: Callable[[StudyProgress], None] | None,
+) -> StudyProgress:
+    """Run the rows without a result by some workers, or a scheduler, in chunks."""
+    workers, scheduler, chunk = how
     write_study(study, folder)
     rows = list({row.id: row for row in study.rows()}.values())
     known = set(read_parts(folder, ["id"])["id"])
