@@ -185,3 +185,17 @@ def test_a_port_on_a_canal_pays_its_dues_once():
     closed = sea_distance("Port Said", "Suez", avoid=["suez"])
     assert closed.nm > 10_000.0
     assert closed.canals == ()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("start", "goal", "least", "most"),
+    [
+        ("Campana, AR", "Buenos Aires", 44.0, 56.0),  # 209 by the sea end of Buenos Aires
+        ("Oostende", "Zeebrugge", 13.0, 22.0),  # 32 by that of Zeebrugge
+    ],
+)
+def test_a_port_within_the_bay_of_another_needs_no_way_out_of_it(start, goal, least, most):
+    """One of the approaches ends within the bay already, so that only the other is cut short."""
+    assert least < sea_distance(start, goal).nm < most
+    assert least < sea_distance(goal, start).nm < most

@@ -59,14 +59,21 @@ def _best_pair(start: Endpoint, goal: Endpoint, seas: Seaways, draught: float) -
     """Return two ends by the ways that make the distance between them least."""
     open_canals = {c.name for c in seas.chart.canals} - set(seas.canals)
     ways = [[way for way in _by_way(end) if _is_open(way, open_canals)] for end in (start, goal)]
-    both = [(a, b) for a in ways[0] for b in ways[1] if bool(_left_out(a)) == bool(_left_out(b))]
+    bays = [any(map(_left_out, of_end)) for of_end in ways]
+    both = [
+        (a, b)
+        for a in ways[0]
+        for b in ways[1]
+        if (_left_out(a) > 0.0 or not bays[0]) == (_left_out(b) > 0.0 or not bays[1])
+        or not (_left_out(a) or _left_out(b))
+    ]
     pairs = [_Pair.of(a, b, seas) for a, b in both]
     best, least = pairs[0], math.inf
     for number, pair in sorted(enumerate(pairs), key=lambda item: item[1].bound):
         if pair.bound >= least:
             break
         length = pair.length(seas, draught) + (_LEAST_GAIN if number else 0.0)
-        length /= 1.0 - (_LEAST_GAIN_IN_BAY if _left_out(pair.start) else 0.0)
+        length /= 1.0 - (_LEAST_GAIN_IN_BAY if pair.in_bay else 0.0)
         if length < least:
             best, least = pair, length
     return [best.start, best.goal]
@@ -78,10 +85,17 @@ def _left_out(end: Endpoint) -> float:
 
 
 def _share_a_bay(start: Endpoint, goal: Endpoint) -> bool:
-    """Return whether two ends may lie on one bay: the ways out of it are longer than between."""
-    inside = [way for end in (start, goal) for way in end.other_ways if way.left_out]
-    if len(inside) < 2:
+    """Return whether two ends may lie on one bay: the ways out of it are longer than between.
+
+    The approach of one of them may end within the bay, as that of Campana on the River Plate.
+    """
+    if start.approach is None or goal.approach is None:
         return False
+    inside = [
+        next((way for way in end.other_ways if way.left_out), end.approach)
+        for end in (start, goal)
+        if end.approach is not None
+    ]
     apart = float(distance(*inside[0].sea_end, *inside[1].sea_end))
     return apart < inside[0].left_out + inside[1].left_out
 
@@ -126,12 +140,17 @@ class _Pair:
         apart = float(distance(start.lat, start.lon, goal.lat, goal.lon))
         return cls(start, goal, _of_lines(start, goal) + apart, math.nan)
 
+    @property
+    def in_bay(self) -> bool:
+        """Whether one of the ways ends within a bay."""
+        return _left_out(self.start) > 0.0 or _left_out(self.goal) > 0.0
+
     def length(self, seas: Seaways, draught: float) -> float:
         """Return the distance [m]; inf where there is no way through the canals of the lines."""
         if not math.isnan(self.shared):
             return self.shared
         with contextlib.suppress(NoRouteError):
-            if _left_out(self.start):
+            if self.in_bay:
                 return self._length_in_bay(seas, draught)
             path = seas.graph_path(self.start, self.goal)
             at_sea, passed = path_length_and_canals(seas.chart, path)
