@@ -14,13 +14,18 @@ from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import inverse
 from thalweg.core.objective import Objective
 from thalweg.planning import Voyage, alternative_plans, indicator_front, plan
-from thalweg.planning.indicators.route_figures import champions, difference_in_words
+from thalweg.planning.indicators.route_figures import (
+    champions,
+    difference_in_words,
+    waiting_in_words,
+)
 from thalweg.planning.pareto.weighted_sums import (
     KeyFigureRange,
     key_figure,
     key_figure_notes,
     normalised_objective,
 )
+from thalweg.route import Track, evaluate
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 from thalweg.ship.consumption import calm_water_consumption, consumption_table, leg_prices
@@ -305,6 +310,16 @@ def test_alternatives_say_why_there_is_no_route_of_least_motion_sickness(chart):
     found = alternative_plans(_voyage(), ship=plain, sea=_sea(), chart=chart)
     assert any("she has no named places" in note for note in found.notes)
     assert all("sickness" not in one for choice in found.choices for one in choice.best_in)
+
+
+def test_waits_of_alternatives_are_in_words(ship):
+    """A ship without a hotel load waits free of fuel, which the words state."""
+    track = Track.from_positions([(65.0, 0.0), (65.0, 0.5), (65.0, 1.0)], depart=DEPART)
+    waits = track.replaced(wait=np.array([0.0, 3.0 * 3600.0, 0.0]))
+    route = evaluate(waits, ship=ship, sea=Sea.calm())
+    words = "; 3.0 h of it waiting, which takes no fuel (no hotel load in the ship file)"
+    assert waiting_in_words(route) == words
+    assert waiting_in_words(evaluate(track, ship=ship, sea=Sea.calm())) == ""
 
 
 def test_champions_and_differences_in_words():

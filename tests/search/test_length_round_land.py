@@ -7,7 +7,8 @@ import shapely
 from thalweg import Chart
 from thalweg.core.geodesy import distance
 from thalweg.search.certificate.barrier_mesh import BarrierLink
-from thalweg.search.certificate.length_round_land import _Reach, land_inside, length_round_land
+from thalweg.search.certificate.length_round_land import land_inside, length_round_land
+from thalweg.search.certificate.positions_in_reach import Reach
 
 NM = 1852.0
 
@@ -92,7 +93,7 @@ def test_places_inside_land_leave_the_geodesic():
 @pytest.mark.parametrize("longer", [1.0005, 1.2, 2.5])
 def test_positions_within_reach_are_in_the_box(start, goal, longer):
     """Less land outside leaves a lower bound; land within reach must not be missed."""
-    reach = _Reach(start, goal, longer * float(distance(*start, *goal)))
+    reach = Reach(start, goal, longer * float(distance(*start, *goal)))
     west, south, east, north = reach.box()
     points = np.random.default_rng(1).uniform(size=(2, 40_000))
     lat, lon = np.degrees(np.arcsin(1.6 * points[0] - 0.8)), 360.0 * points[1] - 180.0

@@ -440,3 +440,14 @@ def test_powers_are_settings_of_a_table_and_of_the_cubic_law():
 def test_settings_off_the_law_are_refused(more, words):
     with pytest.raises(InputError, match=words):
         Ship.from_dict({"name": "x", "hull": HULL, **more})
+
+
+def test_a_misspelt_key_of_one_task_is_refused_with_the_nearest_known_one():
+    data = {
+        "name": "one",
+        "speeds_kn": [10.0],
+        "places": {"mess": 0.0},
+        "tasks": {"crane work": {"place": "mess", "max_pich_deg": 1.5}},
+    }
+    with pytest.raises(InputError, match=r"is not a key of 'tasks'.*'max_pitch_deg'"):
+        Ship.from_dict(data)

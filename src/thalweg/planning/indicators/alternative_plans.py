@@ -26,6 +26,7 @@ from thalweg.planning.indicators.route_figures import (
     champions,
     compared_values,
     difference_in_words,
+    waiting_in_words,
 )
 from thalweg.planning.pareto.limited_plan import IndicatorLimit
 from thalweg.planning.planner import voyage_context
@@ -219,8 +220,7 @@ def alternative_plans(
     chart, the knees of their fronts with time, and the best by a weighted sum; and at the speed of
     the fastest route the shortest ways round islands, by and round named passages and farther off
     land, pulled taut. All share one network and one sea for each set of open canals. Chosen are the
-    best in one figure after the other (`thalweg.planning.indicators.route_figures`) that differ
-    from those chosen before, in water or in time.
+    best in one figure after the other that differ from those chosen before, in water or in time.
     """
     chart = Chart.gshhg("i") if chart is None else chart
     check_argument_types(voyage, ship, sea, chart)
@@ -367,7 +367,8 @@ def _named(chosen: Sequence[Route], chart: Chart) -> tuple[RouteChoice, ...]:
         name = labels[k]
         if labels.count(name) > 1:
             name = f"{name}, {words[0] if words else f'number {k + 1}'}"
-        difference = difference_in_words(values[k], values[0]) if k else "the fastest"
+        words_of_it = difference_in_words(values[k], values[0]) if k else "the fastest"
+        difference = words_of_it + waiting_in_words(route)
         same = next((j for j in range(k) if not lines_differ(lines[k], lines[j])), None)
         if same is not None:
             speeds = [chosen[j].distance_nm / chosen[j].time_h for j in (k, same)]
@@ -384,8 +385,7 @@ def _with_limits(name: str) -> str:
 
 
 def _passes(route: Route, chart: Chart) -> tuple[str, ...]:
-    track = route.track
-    lat, lon = np.asarray(track.lat, float), np.asarray(track.lon, float)
+    lat, lon = np.asarray(route.track.lat, float), np.asarray(route.track.lon, float)
     return names_passed(chart.coastline, chart.passages, lat, lon)
 
 

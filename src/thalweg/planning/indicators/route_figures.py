@@ -48,6 +48,7 @@ COMPARED_FIGURES: Final = {
 _OF_PLACES: Final = (
     "comfort", "sick_percent", "worst_hour_percent", "max_acceleration", "uncomfortable_percent"
 )  # fmt: skip
+_LEAST_WAIT_H: Final = 0.1
 _EQUAL: Final = 1e-2  # figures that differ by less than this share are the same
 _WORTH_WORDS: Final = 0.03  # smaller differences are not put into words ...
 _WORTH_WORDS_OF_TIME: Final = 0.005  # ... but those of time are
@@ -130,6 +131,17 @@ def difference_in_words(values: dict[str, float], reference: dict[str, float]) -
             share = f" ({sign}{abs(change) / other:.0%})" if other > 0.0 else ""
             words.append(f"{sign}{abs(change):.2g} t fuel{share}".replace("%)", " %)"))
     return ", ".join(words) or "nearly the same figures"
+
+
+def waiting_in_words(route: Route) -> str:
+    """Return how long a route waits, such as ``, 4.4 h of it waiting``; empty below 6 minutes."""
+    if not route.waiting_h > _LEAST_WAIT_H:
+        return ""
+    none = np.sum(route.legs["waiting_fuel"]) == 0.0 and math.isfinite(
+        compared_values(route)["fuel"]
+    )
+    free = ", which takes no fuel (no hotel load in the ship file)" if none else ""
+    return f"; {_duration(route.waiting_h)} of it waiting{free}"
 
 
 def _duration(hours: float) -> str:

@@ -26,6 +26,7 @@ from thalweg.core.types import BoolArray, FloatArray
 from thalweg.kernels.codes import OK
 from thalweg.kernels.geometry.coast_index import CoastArrays, leg_codes
 from thalweg.search.certificate.barrier_mesh import BarrierLink
+from thalweg.search.certificate.positions_in_reach import SPHERE, Reach, sphere_directions
 from thalweg.search.search_problem import ROUNDING_FACTOR
 
 if TYPE_CHECKING:
@@ -37,15 +38,12 @@ _FINER, _FINEST = 0.4, 3  # factor of finer tolerances, and how often it is appl
 _SLOWER: Final = 2.5  # a search with a finer tolerance than the one before
 _ENOUGH: Final = 0.995  # of the known length, at which no finer tolerance is tried
 _LONGEST_EDGE: Final = 4.0  # times the root of the tolerance [deg]: see Notes of `land_inside`
-_LARGEST_LATITUDE: Final = 80.0  # of land that counts [deg]
 _INDEX_CELLS: Final = 256  # along a side of each of the six faces
 _ANGLE_TOLERANCE: Final = 0.02  # of tangents: courses on a sphere are within 0.01 [rad]
 _LONGEST_TESTED: Final = 1.8  # chord of a leg whose arc is tested [radii]
-_BOX_MARGIN: Final = 1.0  # beyond the positions within reach [deg]
 _FEW_CORNERS: Final = 16  # of rings that are used wherever their corners are
 _CAP_STEP: Final = 2.0  # of the outline of a closed polar cap [deg]
 _LENGTH_TOLERANCE: Final = 1e-6  # by which the known length may be surpassed
-_SPHERE: Final = 6.33e6  # radius at which no great circle is longer than the geodesic [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +93,7 @@ def length_round_land(
     """
     began = clock.perf_counter()
     direct = float(distance(*start, *goal))
-    reach = _Reach(start, goal, known, speed)
+    reach = Reach(start, goal, known, speed)
     links = [link for link in links if reach.by_link(link) < known]
     short = [one for one in links if one.seconds * speed < float(distance(*one.one, *one.other))]
     free = ROUNDING_FACTOR * min([direct, *(reach.by_link(link) for link in short)])
@@ -116,7 +114,7 @@ def length_round_land(
 
 def _least_length(
     closed: Sequence[Any],
-    reach: _Reach,
+    reach: Reach,
     links: Sequence[BarrierLink],
     tolerance: float,
     until: float,
@@ -132,69 +130,16 @@ def _least_length(
     return 0.0 if math.isnan(found) else found
 
 
-@dataclass(frozen=True)
-class _Reach:
-    """Positions that a route of a known length [m] may pass; canals count at a speed [m/s]."""
-
-    start: tuple[float, float]
-    goal: tuple[float, float]
-    known: float
-    speed: float = 1.0
-
-    def by_link(self, link: BarrierLink) -> float:
-        """Return the length by geodesics to one end of a canal, through it and on [m]."""
-        ends = (link.one, link.other), (link.other, link.one)
-        return link.seconds * self.speed + min(
-            float(distance(*self.start, *a) + distance(*b, *self.goal)) for a, b in ends
-        )
-
-    @property
-    def middle(self) -> float:
-        """Longitude between start and goal [deg]."""
-        east = (self.goal[1] - self.start[1] + 180.0) % 360.0 - 180.0
-        return self.start[1] + 0.5 * east
-
-    def box(self) -> tuple[float, float, float, float]:
-        """Return west, south, east and north [deg] of a box that holds all these positions.
-
-        None is farther from the middle of the ends than half of the known length, as for an
-        ellipse on a sphere: ``cos m = (cos d1 + cos d2) / (2 cos(c / 2)) >= cos(known / 2)``.
-        """
-        whole = (self.middle - 180.0, -_LARGEST_LATITUDE, self.middle + 180.0, _LARGEST_LATITUDE)
-        centre = _unit_vectors(*np.array([self.start, self.goal]).T).sum(axis=0)
-        half = 0.5 * self.known / _SPHERE
-        lat = math.atan2(centre[2], math.hypot(centre[0], centre[1]))
-        if half + abs(lat) >= math.radians(_LARGEST_LATITUDE) - math.radians(_BOX_MARGIN):
-            return whole
-        lon = math.degrees(math.atan2(centre[1], centre[0]))
-        lon = self.middle + (lon - self.middle + 180.0) % 360.0 - 180.0
-        wide = math.degrees(math.asin(math.sin(half) / math.cos(lat))) + _BOX_MARGIN
-        low, high = (math.degrees(lat + sign * half) + sign * _BOX_MARGIN for sign in (-1.0, 1.0))
-        return max(whole[0], lon - wide), low, min(whole[2], lon + wide), high
-
-    def has(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
-        """Return which positions may be passed, by lower bounds of lengths."""
-        there = _unit_vectors(lat, lon)
-        ends = _unit_vectors(*np.array([self.start, self.goal]).T)
-        angles = np.arccos(np.clip(there @ ends.T, -1.0, 1.0)).sum(axis=1)
-        return np.asarray(_SPHERE * angles <= self.known)
-
-
-def _unit_vectors(lat: FloatArray, lon: FloatArray) -> FloatArray:
-    phi, lam = np.radians(lat), np.radians(lon)
-    return np.stack([np.cos(phi) * np.cos(lam), np.cos(phi) * np.sin(lam), np.sin(phi)], -1)
-
-
 def _frames(lat: FloatArray, lon: FloatArray) -> FloatArray:
     """Return unit vectors up, east and north, (3, n, 3)."""
     lam = np.radians(lon)
     east = np.stack([-np.sin(lam), np.cos(lam), np.zeros_like(lam)], -1)
-    up = _unit_vectors(lat, lon)
+    up = sphere_directions(lat, lon)
     return np.stack([up, east, np.cross(up, east)])
 
 
 def _closed_shapes(
-    chart: Chart, reach: _Reach, tolerance: float, kept_out: Sequence[Any]
+    chart: Chart, reach: Reach, tolerance: float, kept_out: Sequence[Any]
 ) -> list[Any]:
     """Return the polygons (x lon, y lat [deg]) within reach that are closed to a ship."""
     import shapely
@@ -222,7 +167,7 @@ def _closed_shapes(
 
 
 def _land_polygons(
-    rings: Rings, reach: _Reach, box: tuple[float, ...], tolerance: float
+    rings: Rings, reach: Reach, box: tuple[float, ...], tolerance: float
 ) -> Iterable[Any]:
     """Yield the land in a box of outer rings that are large enough.
 
@@ -270,7 +215,7 @@ def land_inside(shapes: Sequence[Any], tolerance: float) -> list[Any]:
     return list(shapely.segmentize(outer, _LONGEST_EDGE * math.sqrt(tolerance)))
 
 
-def corners_of(shapes: Sequence[Any], tolerance: float, reach: _Reach) -> Corners:
+def corners_of(shapes: Sequence[Any], tolerance: float, reach: Reach) -> Corners:
     """Return the corners of polygons within reach at which a way can turn."""
     import shapely
 
@@ -319,7 +264,7 @@ class _Search:
     known: float
 
     @classmethod
-    def between(cls, corners: Corners, reach: _Reach, links: Sequence[BarrierLink]) -> _Search:
+    def between(cls, corners: Corners, reach: Reach, links: Sequence[BarrierLink]) -> _Search:
         """Return the search for a passage."""
         single = [
             reach.start,
@@ -362,7 +307,7 @@ class _Search:
     ) -> tuple[NDArray[np.int64], FloatArray]:
         """Return the nodes that are nearer by a free leg or a canal from one, and how far [m]."""
         up, east, north = self.frames
-        rough = best[node] + _SPHERE * np.arccos(np.clip(up @ up[node], -1.0, 1.0))
+        rough = best[node] + SPHERE * np.arccos(np.clip(up @ up[node], -1.0, 1.0))
         some = np.flatnonzero(~done & (rough < best) & (rough + self.rest <= self.known))
         out = np.arctan2(up[some] @ east[node], up[some] @ north[node])
         into = np.arctan2(-(east[some] @ up[node]), -(north[some] @ up[node]))

@@ -306,6 +306,13 @@ class ResistanceModel:
 
 def _unreachable_speed_error(speeds: FloatArray, power: FloatArray, limit: float) -> InputError:
     knots = ", ".join(f"{s / KNOT:.4g}" for s in speeds)
+    if np.any(speeds <= 0.0):
+        return InputError(
+            f"The ship cannot be ordered to {knots} kn.",
+            "Speeds are above 0.",
+            "Order a positive speed.",
+            value=knots,
+        )
     needed = ", ".join(f"{p / 1000:.0f}" for p in power)
     return InputError(
         f"The ship cannot be ordered to {knots} kn: it takes {needed} kW in calm water.",

@@ -110,6 +110,8 @@ def _no_value_error(schema: type[BaseModel], keys: Sequence[str]) -> InputError:
 def _section_class(schema: type[BaseModel], keys: Sequence[int | str]) -> type[BaseModel]:
     """Return the class of a section of the file, or of the whole file for no key."""
     for key in keys:
+        if str(key) not in schema.model_fields:  # the name of one of several, such as a task
+            continue
         parts = _parts(schema.model_fields[str(key)].annotation)
         schema = next(p for p in parts if isinstance(p, type) and issubclass(p, BaseModel))
     return schema
