@@ -411,6 +411,18 @@ def test_motions_and_sickness_by_place_and_heading(capsys, tmp_path):
     assert "bridge" in text and "laboratory work is possible" in text
 
 
+def test_the_motions_of_a_ship_that_holds_her_speed_say_so(capsys, tmp_path):
+    (tmp_path / "boat.yaml").write_text(
+        "{name: boat, speeds_kn: [8.0, 10.0], places: {mess: 0.0}, hull: "
+        "{length_between_perpendiculars_m: 33.9, breadth_m: 9.6, draught_m: 2.8, "
+        "block_coefficient: 0.62}}"
+    )
+    text = _run(capsys, tmp_path / "boat.yaml", "--hs", 2, "--tp", 8, "--speed", 10)
+    assert "at 10.0 kn on all headings" in " ".join(text.split())
+    text = _run(capsys, "gunnerus-2019", "--hs", 2, "--tp", 8, "--speed", 10)
+    assert "with the power for 10.0 kn in calm water" in " ".join(text.split())
+
+
 def test_no_motions_without_waves_or_places(capsys):
     assert "motions" not in json.loads(_run(capsys, "gunnerus-2019", "--json"))
     assert "motions" not in json.loads(_run(capsys, "handysize-bulker", "--hs", 2, "--json"))

@@ -5,12 +5,15 @@ import pytest
 
 from thalweg import Chart, InputError, Sea, Ship, Voyage, plan
 from thalweg.core.errors import OutsideAreaError
+from thalweg.core.units import NAUTICAL_MILE as NM
 from thalweg.planning.report.note_order import danger_first
 from thalweg.planning.report.plan_summary import plan_summary
-from thalweg.planning.request.coverage_check import endpoints_within_coverage
+from thalweg.planning.request.coverage_check import _remedy, endpoints_within_coverage
 from thalweg.planning.request.requirements import derive_requirements
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route.formats.waypoint_names import waypoint_names
+from thalweg.sea.fill_policies import filled_distance
+from thalweg.sea.models.coast_fills import NearestLayer
 
 SHIP = Ship.simple(speed_kn=10.0, draught_m=5.0)
 WATER = Chart.open_water(50.0, 52.5, 1.0, 5.0)
@@ -63,6 +66,16 @@ def test_a_port_moves_to_covered_water_with_a_note():
     assert found.provenance["to"].startswith("51 5")
     assert "nm from Rotterdam, NL" in plan_summary(found)[0]
     assert not any("Rotterdam" in name for name in names_of_waypoints(found))
+
+
+def test_the_distance_of_a_fill_is_that_from_the_data():
+    """A port 5 nm beyond values that are filled up to 10 nm needs 20, not the 10 it has."""
+    grid = Sea.calm().layers
+    assert filled_distance(grid) == 0.0
+    near = NearestLayer(grid, frozenset({"eastward_wind"}), 10.0 * NM)
+    assert filled_distance((*grid, near)) == 10.0 * NM
+    assert "wind=nearest:10" in _remedy(["eastward_wind"], 5.0 * NM)
+    assert "wind=nearest:20" in _remedy(["eastward_wind"], 5.0 * NM + filled_distance([near]))
 
 
 @pytest.mark.slow

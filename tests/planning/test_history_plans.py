@@ -1,6 +1,7 @@
 """Plans in the water that ships usually use: inside it, out of it for a gain, beside the usual."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.history.history_builder import HistoryRules, build_history
 from thalweg.network.history.history_corridor import HistoryCorridor
 from thalweg.network.history.history_file import write_history
+from thalweg.network.history.history_network import no_arcs_text
 from thalweg.network.history.voyage_tracks import HistoryPort
 from thalweg.planning import Voyage, plan
 from thalweg.planning.distance_table import usual_distance_table
@@ -105,6 +107,35 @@ def test_usual_against_optimal_is_the_saving_of_the_straight_way(network):
     assert row["usual"] == pytest.approx(legs, rel=1e-3)
     assert row["saving_percent"] == pytest.approx(100.0 * (1.0 - straight / legs), abs=0.15)
     assert found.to_dict()["voyages"] == 9
+    assert found.ways == ((), ()) and found.notes == ()  # open water without schemes
+
+
+@pytest.mark.slow
+def test_the_rules_that_a_usual_route_does_not_keep_are_stated(network):
+    """A track along the Dutch coast, through the inshore traffic zone off Texel."""
+    chart, line = Chart.gshhg("i"), ((52.02, 3.88), (52.6, 4.35), (53.1, 4.6), (53.6, 6.0))
+    history = replace(network.route("West", "East"), line=line)
+
+    class OneRoute:
+        def route(self, *names, **limits):
+            return history
+
+    def plan_one(request):
+        return plan(request, ship=SHIP, sea=OPTIONS["sea"], chart=chart, proof=0.0)
+
+    voyage = Voyage(start="West", goal="East", depart="2026-01-10")
+    found = usual_against_optimal(
+        voyage, OneRoute(), ship=SHIP, sea=OPTIONS["sea"], chart=chart, plan_one=plan_one
+    )
+    assert any("inshore traffic zone of Off Texel" in note for note in found.notes)
+    assert found.to_dict()["notes"] == list(found.notes)
+
+
+def test_refusals_name_the_month_and_draught_in_use():
+    assert no_arcs_text(None, None) == "No arcs join them."
+    assert no_arcs_text(2, 9.5) == (
+        "No arcs join them that are open in month 2 and deep enough for a draught of 9.5 m."
+    )
 
 
 def test_tables_hold_the_routes_of_the_network(network):

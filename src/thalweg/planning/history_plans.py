@@ -9,18 +9,23 @@ from typing import Any
 import numpy as np
 
 from thalweg.chart import Chart
+from thalweg.chart.passage_crossings import names_passed
 from thalweg.core.errors import NoRouteError
 from thalweg.core.time import to_datetime64
 from thalweg.network.history.history_corridor import HistoryCorridor
 from thalweg.network.history.history_network import HistoryNetwork
 from thalweg.network.history.history_route import HistoryRoute
 from thalweg.planning.plan import Plan
+from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, lane_notes
+from thalweg.planning.report.route_summary import canals_passed
 from thalweg.planning.request.ordered_speed import with_order
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, evaluate
 from thalweg.sea import Sea
 from thalweg.ship import Ship
+
+_BREAKS_RULES = (AGAINST_TRAFFIC, INSHORE_USED)  # notes on traffic rules begin so
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,11 +113,17 @@ class UsualAgainstOptimal:
         From sea end to sea end, with the same departure and ordered speed.
     history : HistoryRoute
         What is known of the usual route.
+    ways : (tuple of str, tuple of str)
+        Canals and named passages of the usual and of the optimal route.
+    notes : tuple of str
+        Traffic rules that the usual route does not keep, and the optimal one does.
     """
 
     usual: Route
     optimal: Route
     history: HistoryRoute
+    ways: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
+    notes: tuple[str, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data for JSON.
@@ -136,6 +147,9 @@ class UsualAgainstOptimal:
             "confidence": self.history.confidence,
             "voyages": self.history.voyages,
             "usual_within_limits": self.usual.feasible,
+            "usual_passes": list(self.ways[0]),
+            "optimal_passes": list(self.ways[1]),
+            "notes": list(self.notes),
             **rows,
         }
 
@@ -180,9 +194,19 @@ def usual_against_optimal(
         str(voyage.start), str(voyage.goal), month=month, draught=ship.draught or None
     )
     start, goal = history.line[0], history.line[-1]
-    optimal = plan_one(replace(voyage, start=start, goal=goal)).best
+    best = plan_one(replace(voyage, start=start, goal=goal))
     usual = evaluate(
         list(history.line), ship=with_order(ship, voyage), sea=sea, chart=chart,
         depart=voyage.earliest_departure, speed_kn=voyage.speed_kn, strict=False,
     )  # fmt: skip
-    return UsualAgainstOptimal(usual, optimal, history)
+    sailed = chart if best.plot_context is None else best.plot_context.chart
+    broken = [note for note in lane_notes(sailed, usual) if note.startswith(_BREAKS_RULES)]
+    ways = _passes(usual, chart), _passes(best.best, chart)
+    return UsualAgainstOptimal(usual, best.best, history, ways, tuple(broken))
+
+
+def _passes(route: Route, chart: Chart) -> tuple[str, ...]:
+    """Return the canals and named passages of a route."""
+    lat, lon = np.asarray(route.track.lat, float), np.asarray(route.track.lon, float)
+    canals = [canal.title for canal in canals_passed(route, chart)]
+    return (*canals, *names_passed(chart.coastline, chart.passages, lat, lon))

@@ -117,6 +117,11 @@ def layers_without_fills(layers: Sequence[Layer]) -> tuple[Layer, ...]:
     return tuple(layer for layer in layers if not is_fill(layer))
 
 
+def filled_distance(layers: Sequence[Layer]) -> float:
+    """Return how far from data values are filled with the nearest ones [m]; 0 where none are."""
+    return max((one.distance for one in layers if isinstance(one, NearestLayer)), default=0.0)
+
+
 def check_fill(policy: str, value: FillValue) -> None:
     """Raise `InputError` for a fill value that no sea can be filled with.
 

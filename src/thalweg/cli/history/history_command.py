@@ -200,10 +200,15 @@ def _print_route(route: HistoryRoute) -> None:
     print(f"{route.start.name} to {route.goal.name}: {route.nm:,.0f} nm")
     p10, p50, p90 = (time / HOUR for time in route.duration)
     if p50 == p50:  # known
-        print(f"  {p50:.1f} h under way at sea (p10 {p10:.1f}, p90 {p90:.1f})")
-    print(f"  confidence {route.confidence}: at least {route.voyages} voyages on every arc")
-    if route.globe_share > 0.0:
-        print(f"  {100.0 * route.globe_share:.0f} % of the length without tracks")
+        print(
+            f"  {p50:.1f} h between the sea ends of the ports, without their approaches "
+            f"(p10 {p10:.1f}, p90 {p90:.1f})"
+        )
+    unseen = f", {100.0 * route.globe_share:.0f} % of the length without tracks"
+    print(
+        f"  confidence {route.confidence}: at least {route.voyages} voyages on every arc with "
+        f"tracks{unseen if route.globe_share > 0.0 else ''}"
+    )
     if route.eca_share == route.eca_share:
         print(f"  {100.0 * route.eca_share:.0f} % of the length in emission control areas")
     if route.passes:
@@ -244,6 +249,12 @@ def _compare(arguments: argparse.Namespace) -> int:
             saved = row["saving_percent"]
             print(f"  {title:14} usual {row['usual']:,.1f}, optimal {row['optimal']:,.1f}: "
                   f"{abs(saved):.1f} % {'less' if saved >= 0.0 else 'more'}")  # fmt: skip
+    if comparison["usual_passes"] != comparison["optimal_passes"]:
+        for name in ("usual", "optimal"):
+            print(f"  {name} by: {', '.join(comparison[f'{name}_passes']) or 'open water'}")
+    print("  The optimal route keeps to traffic schemes; the usual one is as it was sailed.")
+    for note in comparison["notes"]:
+        print(f"  usual route: {note}")
     if not comparison["usual_within_limits"]:
         print("  the usual route exceeds a limit of this ship on this day")
     return SUCCESS

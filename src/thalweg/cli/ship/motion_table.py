@@ -10,6 +10,7 @@ import numpy as np
 
 from thalweg.core.file_writing import save_figure
 
+_SAME_SPEED_KN = 0.05
 _SHOWN_DEG = (0, 30, 60, 90, 120, 150, 180)
 
 
@@ -28,7 +29,7 @@ def print_motions(sheet: Mapping[str, Any]) -> None:
     console = Console()
     console.print(
         f"Motions in waves of {sheet['wave_height_m']:g} m and {sheet['wave_period_s']:.1f} s, "
-        f"with the power for {sheet['ordered_speed_kn']:.1f} kn in calm water: root mean squares; "
+        f"{_speed_text(sheet)}: root mean squares; "
         f"waves by their angle off the bow; sick: share of people after {sheet['exposure_h']:g} h "
         "(ISO 2631-1)",
         highlight=False,
@@ -83,11 +84,20 @@ def draw_motions(sheet: Mapping[str, Any], path: Path) -> Path:
     axes.set_title(
         f"Per cent of people sick after {sheet['exposure_h']:g} h, by where the waves come from\n"
         f"(0: ahead); {sheet['wave_height_m']:g} m, {sheet['wave_period_s']:.1f} s, "
-        f"power for {sheet['ordered_speed_kn']:.1f} kn in calm water"
+        + _speed_text(sheet)
     )
     axes.legend(loc="lower left", bbox_to_anchor=(-0.1, -0.1))
     save_figure(figure, path)
     return path
+
+
+def _speed_text(sheet: Mapping[str, Any]) -> str:
+    """Return the speed of the sheet in words: that which is held, or that of the same power."""
+    ordered = sheet["ordered_speed_kn"]
+    attained = [speed for speed in sheet["attained_speed_kn"] if speed is not None]
+    if attained and max(abs(speed - ordered) for speed in attained) < _SAME_SPEED_KN:
+        return f"at {ordered:.1f} kn on all headings"
+    return f"with the power for {ordered:.1f} kn in calm water"
 
 
 def _text(value: float | None, digits: int) -> str:

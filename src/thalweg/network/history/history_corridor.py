@@ -29,7 +29,7 @@ from thalweg.network.history.corridor_ways import (
     arcs_between,
     strip_polygons,
 )
-from thalweg.network.history.history_network import HistoryNetwork
+from thalweg.network.history.history_network import HistoryNetwork, no_arcs_text
 from thalweg.network.history.missing_arcs import globe_arcs, joined_arcs
 from thalweg.network.history.voyage_tracks import sphere_vectors
 from thalweg.network.network import Graph, Network, NetworkMeta, Stations
@@ -127,7 +127,7 @@ class HistoryCorridor:
             raise NoPathError(
                 f"The history network has no way from {format_position(*start)} to "
                 f"{format_position(*goal)}.",
-                "No arcs join them that are open in this month and deep enough for this draught.",
+                no_arcs_text(self.month, self.draught),
                 "Plan on another network, or build the history network with more tracks.",
             )
         return CorridorWays((lat, lon), arcs, kept, (ends[0], ends[1]), weight)

@@ -210,8 +210,8 @@ class HistoryNetwork:
         if not arcs:
             raise NoRouteError(
                 f"The history network has no route from {start} to {goal}.",
-                "No arcs join them that are open in this month and deep enough for this draught.",
-                "Leave out the month or the draught, or build the network with more tracks.",
+                no_arcs_text(month, draught),
+                f"{_what_to_leave_out(month, draught)}uild the network with more tracks.",
             )
         return self._route_of(ends, arcs)
 
@@ -342,6 +342,18 @@ class HistoryNetwork:
             for name in names - {""}:
                 found.setdefault(name, []).append(node)
         return found
+
+
+def no_arcs_text(month: int | None, draught: float | None) -> str:
+    """Return that no open arcs join two places, in the month and for the draught [m] in use."""
+    limits = [] if month is None else [f"open in month {month}"]
+    limits += [] if draught is None else [f"deep enough for a draught of {draught:g} m"]
+    return f"No arcs join them that are {' and '.join(limits)}." if limits else "No arcs join them."
+
+
+def _what_to_leave_out(month: int | None, draught: float | None) -> str:
+    given = [name for name, one in (("month", month), ("draught", draught)) if one is not None]
+    return f"Leave out the {' or the '.join(given)}, or b" if given else "B"
 
 
 def _plain(name: str) -> str:

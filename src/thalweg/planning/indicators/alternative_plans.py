@@ -219,8 +219,8 @@ def alternative_plans(
     comfort, encounters, length near land and distance, as far as they are known for this ship and
     chart, the knees of their fronts with time, and the best by a weighted sum; and at the speed of
     the fastest route the shortest ways round islands, by and round named passages and farther off
-    land, pulled taut. All share one network and one sea for each set of open canals. Chosen are the
-    best in one figure after the other that differ from those chosen before, in water or in time.
+    land, straightened. All share one network and one sea for each set of open canals. Chosen are
+    the best in one figure after the other that differ from those chosen before, in water or time.
     """
     chart = Chart.gshhg("i") if chart is None else chart
     check_argument_types(voyage, ship, sea, chart)

@@ -384,7 +384,7 @@ class _Candidates:
         return [name for name in names if name in through]
 
     def _pulled(self, network: Network, chart: Chart, path: list[int]) -> Track:
-        """Return a path of the network, pulled taut on a chart."""
+        """Return a path of the network, straightened on a chart."""
         cost = self._weights(network).leg_cost
         lat, lon = network.lat[path], network.lon[path]
         return self._at_full_speed(

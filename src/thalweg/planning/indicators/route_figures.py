@@ -99,6 +99,7 @@ def champions(values: Sequence[dict[str, float]]) -> dict[str, int]:
             continue
         signed = column if figure.best == "least" else -column
         equal = _EQUAL * max(float(np.abs(column).max()), 1e-12)
+        equal = max(equal, 10.0**-figure.digits)  # no table shows less
         if np.ptp(column) > equal:  # of equal ones the fastest
             near = np.flatnonzero(signed <= signed.min() + (equal if name != "time" else 0.0))
             times = np.array([one["time"] for one in values])
@@ -134,12 +135,10 @@ def difference_in_words(values: dict[str, float], reference: dict[str, float]) -
 
 
 def waiting_in_words(route: Route) -> str:
-    """Return how long a route waits, such as ``, 4.4 h of it waiting``; empty below 6 minutes."""
+    """Return how long a route waits, such as ``; 4.4 h of it waiting``; empty below 6 minutes."""
     if not route.waiting_h > _LEAST_WAIT_H:
         return ""
-    none = np.sum(route.legs["waiting_fuel"]) == 0.0 and math.isfinite(
-        compared_values(route)["fuel"]
-    )
+    none = route.fuel_t is not None and np.sum(route.legs["waiting_fuel"]) == 0.0
     free = ", which takes no fuel (no hotel load in the ship file)" if none else ""
     return f"; {_duration(route.waiting_h)} of it waiting{free}"
 

@@ -6,6 +6,7 @@ import contextlib
 import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Final
 
 import numpy as np
@@ -59,14 +60,9 @@ def _best_pair(start: Endpoint, goal: Endpoint, seas: Seaways, draught: float) -
     """Return two ends by the ways that make the distance between them least."""
     open_canals = {c.name for c in seas.chart.canals} - set(seas.canals)
     ways = [[way for way in _by_way(end) if _is_open(way, open_canals)] for end in (start, goal)]
-    bays = [any(map(_left_out, of_end)) for of_end in ways]
-    both = [
-        (a, b)
-        for a in ways[0]
-        for b in ways[1]
-        if (_left_out(a) > 0.0 or not bays[0]) == (_left_out(b) > 0.0 or not bays[1])
-        or not (_left_out(a) or _left_out(b))
-    ]
+    outward, inward = ([way for way in of_end if not _left_out(way)] for of_end in ways)
+    in_bay = [[way for way in of_end if _left_out(way)] or of_end[:1] for of_end in ways]
+    both = [*product(outward, inward), *product(*in_bay)]
     pairs = [_Pair.of(a, b, seas) for a, b in both]
     best, least = pairs[0], math.inf
     for number, pair in sorted(enumerate(pairs), key=lambda item: item[1].bound):

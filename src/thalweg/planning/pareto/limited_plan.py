@@ -75,7 +75,9 @@ class IndicatorLimit:
         if route is None:
             return words
         value = indicator_value(route, self.name, self.at)
-        return f"{words} ({value:.3g})" if math.isfinite(value) else f"{words} (not known)"
+        return (
+            f"{words} (this route: {value:.3g})" if math.isfinite(value) else f"{words} (not known)"
+        )
 
     def value_text(self, route: Route) -> str:
         """Return the value of a route in words."""

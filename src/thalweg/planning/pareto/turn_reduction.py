@@ -47,7 +47,7 @@ def scored_with_fewer_turns(trade_off: TradeOffContext, track: Track, duration: 
     if not given and not trade_off.via:
         if prices.counts_water:
             own = context.evaluate(track, trade_off.objective.terms)
-            changed = _pulled_taut(trade_off, own) if own.feasible else track
+            changed = _straightened(trade_off, own) if own.feasible else track
         elif prices.counts_dose:
             changed = _without_needless_turns(trade_off, track, duration)
     if changed is not track:
@@ -82,8 +82,8 @@ def _without_needless_turns(trade_off: TradeOffContext, track: Track, duration: 
     return track if fewer is line else track_of_polyline(fewer, evaluator)
 
 
-def _pulled_taut(trade_off: TradeOffContext, route: Route) -> Track:
-    """Return the track of a route at one speed, pulled taut; its own where it waits."""
+def _straightened(trade_off: TradeOffContext, route: Route) -> Track:
+    """Return the track of a route at one speed, straightened; its own where it waits."""
     track, prices, chart = route.track, trade_off.objective.prices, trade_off.context.chart
     if track.wait.any() or np.ptp(track.setting) > 0:
         return track

@@ -14,7 +14,6 @@ from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network import Network
 from thalweg.network.shortest_paths import shortest_path
-from thalweg.planning.planning_context import PlanningContext
 from thalweg.route import Route
 
 AGAINST_TRAFFIC: Final = "Runs against the traffic"  #: a note on such miles begins so
@@ -26,18 +25,17 @@ _LONG_DETOUR: Final = 5.0 * NAUTICAL_MILE  # detours are stated from this length
 _LARGE_DETOUR: Final = 0.03  # ... or this share of the shortest way
 
 
-def lane_notes(context: PlanningContext, route: Route) -> list[str]:
+def lane_notes(chart: Chart, route: Route) -> list[str]:
     """Return through which schemes a route leads, and where it runs against their traffic.
 
     Parameters
     ----------
-    context : Request, data and ship of the plan.
+    chart : Of the plan.
 
     Returns
     -------
     list of str : Empty where the route meets none, and for charts with lanes of their own.
     """
-    chart = context.chart
     if not _has_schemes(chart):
         return []
     legs = _legs(*_positions(route))

@@ -42,7 +42,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     notes += ice_warnings(route, context.sea)
     notes += data_gap_warnings(context.sea, route)
     notes += [text for text in route.assumptions if text.startswith(OUT_OF_RANGE)]
-    notes += lane_notes(context, route)
+    notes += lane_notes(context.chart, route)
     if context.needs.limits.depth_checked:
         return notes
     return notes + depth_notes(context.chart, route, context.ship, context.min_ukc)

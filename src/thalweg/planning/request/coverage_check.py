@@ -28,7 +28,7 @@ from thalweg.planning.request.voyage_endpoints import MAX_SNAP_PORT, Endpoint
 from thalweg.planning.voyage import Voyage
 from thalweg.sea import Sea, standard_names
 from thalweg.sea.doubtful_values import doubts_of_files
-from thalweg.sea.fill_policies import MAX_NEAREST, nearest_fills
+from thalweg.sea.fill_policies import MAX_NEAREST, filled_distance, nearest_fills
 from thalweg.ship import Ship
 
 _DIRECTIONS = ("sea_surface_wave_to_direction_east", "sea_surface_wave_to_direction_north")
@@ -236,7 +236,7 @@ def _moved_to(
         lon=near[1],
         moved_distance_m=far,
         why=why,
-        remedy=_remedy(unknown, far),
+        remedy=_remedy(unknown, far + filled_distance(coverage_probe.sea.layers)),
         approach=None,
         other_ways=(),
         given_position=berth,
@@ -245,7 +245,7 @@ def _moved_to(
 
 
 def _remedy(unknown: Sequence[str], far: float) -> str:
-    """Return what a user can do so that a port is reached, a sentence."""
+    """Return what a user can do so that a port [m] from data is reached, a sentence."""
     if not unknown:
         return "To reach it, load less or require less clearance under the keel."
     miles = min(MAX_NEAREST, 10.0 * math.ceil(far / NAUTICAL_MILE / 10.0 + 0.5))
