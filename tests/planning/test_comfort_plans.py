@@ -7,11 +7,11 @@ import pytest
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import inverse
 from thalweg.core.limits import Limits
 from thalweg.core.objective import LegPrices
 from thalweg.network import layered_network
 from thalweg.planning import Voyage, plan
+from thalweg.route.refinement.track_geometry import course_changes
 from thalweg.sea import Sea
 from thalweg.search import FrontQuery, MultiSettingShipOnNetwork, pareto_front
 from thalweg.ship import Ship
@@ -207,6 +207,5 @@ def test_the_route_of_least_motion_sickness_does_not_tack_in_a_strait(ship):
     voyage = Voyage(start=(69.30, 18.0), goal=(69.45, 18.1), depart=DEPART, objective="comfort")
     found = plan(voyage, ship=ship, sea=sea, proof=0.0)
     track = found.best.track
-    _, course, end = inverse(track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:])
-    turns = np.abs(np.angle(np.exp(1j * (course[1:] - end[:-1]))))
+    turns = np.abs(course_changes(track.lat, track.lon))
     assert np.count_nonzero(turns > np.radians(30.0)) <= 4

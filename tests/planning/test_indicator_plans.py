@@ -11,7 +11,6 @@ import pytest
 from tests.planning.test_comfort_plans import DATA, DEPART, _sea
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.geodesy import inverse
 from thalweg.core.objective import Objective
 from thalweg.planning import Voyage, alternative_plans, indicator_front, plan
 from thalweg.planning.indicators.route_figures import (
@@ -26,6 +25,7 @@ from thalweg.planning.pareto.weighted_sums import (
     normalised_objective,
 )
 from thalweg.route import Track, evaluate
+from thalweg.route.refinement.track_geometry import course_changes
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 from thalweg.ship.consumption import calm_water_consumption, consumption_table, leg_prices
@@ -298,9 +298,7 @@ def test_alternatives_in_open_water_have_few_turns(ship, chart):
     found = alternative_plans(voyage, ship=ship, sea=_sea(), chart=chart)
     assert len(found.choices) > 1
     for one in found.choices:
-        lat, lon = np.asarray(one.route.track.lat), np.asarray(one.route.track.lon)
-        _, course, end = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
-        turns = np.abs(np.degrees(np.angle(np.exp(1j * (course[1:] - end[:-1])))))
+        turns = np.abs(np.degrees(course_changes(one.route.track.lat, one.route.track.lon)))
         assert np.count_nonzero(turns > 30.0) <= 4, one.name
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from thalweg.core.geodesy import inverse
 from thalweg.route.evaluators.polyline import Polyline
+from thalweg.route.refinement.track_geometry import course_changes
 from thalweg.route.refinement.turn_removal import without_needless_turns
 
 SPEED = 5.0  # m/s
@@ -74,3 +75,13 @@ def test_gentle_turns_are_no_reason_to_cut_corners():
         -np.cos(bearing), np.sin(bearing), np.full(21, -np.inf), np.zeros(20, np.int64), 0.0
     )
     assert without_needless_turns(line, HeadingCost(0.0)) is line
+
+
+def test_alterations_of_course_are_to_starboard_and_none_on_a_meridian():
+    lat = np.array([0.0, 1.0, 2.0, 2.0, 1.0])
+    lon = np.array([10.0, 10.0, 10.0, 11.0, 11.0])
+    turns = np.degrees(course_changes(lat, lon))
+    assert turns == pytest.approx([0.0, 90.0, 90.0], abs=0.05)
+    assert np.degrees(course_changes(lat[::-1], lon[::-1])) == pytest.approx(
+        [-90.0, -90.0, 0.0], abs=0.05
+    )

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from thalweg.core.geodesy import inverse
 from thalweg.core.types import FloatArray
 from thalweg.network import Network
 from thalweg.route import Track
+from thalweg.route.refinement.track_geometry import course_changes
 
 #: Course changes below this [rad] are ignored: 1 m of cross-track error on a leg of 100 km.
 _MIN_COURSE_CHANGE = 2e-5
@@ -56,8 +56,7 @@ def essential_nodes(lat: FloatArray, lon: FloatArray, setting: Any, wait: FloatA
     bool array (points,) : The ends included.
     """
     keep = np.ones(len(lat), bool)
-    _, course, back = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
-    turn = np.angle(np.exp(1j * (course[1:] - back[:-1])))
+    turn = course_changes(lat, lon)
     same = (np.abs(turn) < _MIN_COURSE_CHANGE) & (setting[1:] == setting[:-1]) & (wait[1:-1] == 0.0)
     keep[1:-1] = ~same
     return keep

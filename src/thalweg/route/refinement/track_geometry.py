@@ -1,10 +1,10 @@
-"""Sideways directions and displacements of batches of tracks."""
+"""Sideways directions, displacements and alterations of course of tracks."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from thalweg.core.geodesy import METRES_PER_DEGREE, rough_lengths, unit_vectors
+from thalweg.core.geodesy import METRES_PER_DEGREE, inverse, rough_lengths, unit_vectors
 from thalweg.core.types import FloatArray, IntArray
 
 _SMALLEST_COSINE = 1e-3  # of the latitude, so that displacements at the poles stay finite
@@ -90,3 +90,18 @@ def turning_losses(lat: FloatArray, lon: FloatArray) -> FloatArray:
     lengths = rough_lengths(lat, lon)
     loss: FloatArray = both * both * lengths / (24.0 * lengths.sum())
     return loss
+
+
+def course_changes(lat: FloatArray, lon: FloatArray) -> FloatArray:
+    """Return the alterations of course at the inner waypoints of a line of geodesics.
+
+    Parameters
+    ----------
+    lat, lon : float64 array (n,) [deg]
+
+    Returns
+    -------
+    float64 array (n - 2,) : To starboard [rad], in [-pi, pi].
+    """
+    _, start, end = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    return np.asarray(np.angle(np.exp(1j * (start[1:] - end[:-1]))))

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from thalweg.core.geodesy import inverse
 from thalweg.route.evaluators.polyline import Polyline, PolylineEvaluator
+from thalweg.route.refinement.track_geometry import course_changes
 
 _SHARP_TURN = math.radians(30.0)
 _WORTH_A_TURN = 900.0  # each sharp turn must save the mean cost of this time [s]
@@ -62,7 +62,4 @@ def _sailed(line: Polyline, evaluator: PolylineEvaluator) -> tuple[float, float]
 
 def _sharp_turns(line: Polyline) -> int:
     """Return the number of alterations of course of more than 30 degrees."""
-    lat, lon = line.lat, line.lon
-    _, course, end = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
-    turn = np.angle(np.exp(1j * (course[1:] - end[:-1])))
-    return int(np.count_nonzero(np.abs(turn) > _SHARP_TURN))
+    return int(np.count_nonzero(np.abs(course_changes(line.lat, line.lon)) > _SHARP_TURN))
