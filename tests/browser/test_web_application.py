@@ -55,11 +55,12 @@ def test_a_voyage_is_planned_by_clicking_on_the_chart(visit):
 def test_the_address_restores_the_result_after_a_reload(visit, planned):
     page = visit.open(f"#plan={planned}")
     page.wait_for_selector(".proof")
-    page.wait_for_url(re.compile("route=1"))
+    page.wait_for_url(re.compile("route=1&t=[1-9]"))
     before = visit.figure("Time"), page.url
     page.reload()
     page.wait_for_selector(".proof")
-    assert (visit.figure("Time"), page.url) == before
+    page.wait_for_url(before[1])
+    assert visit.figure("Time") == before[0]
 
 
 def test_a_place_that_is_not_understood_is_an_error_at_its_field(visit):

@@ -18,6 +18,7 @@ from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import PlotContext, Proof
 from thalweg.planning.plan_front import BaselineComparison, ParetoFront
 from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.approach_report import turn_back_notes_of_route
 from thalweg.planning.report.provenance import provenance
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import priced_objective
@@ -122,7 +123,7 @@ class ApproachSailing:
             routes=routes,
             proof=proof,
             front=front,
-            notes=(*self.notes(context), *plan.notes),
+            notes=(*self.notes(context), *turn_back_notes_of_route(routes[0]), *plan.notes),
             plot_context=plots,
         )
 

@@ -21,6 +21,7 @@ from thalweg.core.geodesy import Position, densify, distance
 from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
+from thalweg.planning.report.approach_report import turn_back_notes
 from thalweg.planning.request.voyage_endpoints import (
     Endpoint,
     resolve_places,
@@ -215,7 +216,11 @@ def sea_distance(
     total = length + sum(miles for _, miles in approaches)
     if (first and first.through) or (last and last.through):
         canals = _canals_entered(chart, line)
-    straits = names_passed(chart.coastline, chart.passages, *np.array(line, float).T)
+    lat, lon = np.array(line, float).T
+    straits = names_passed(chart.coastline, chart.passages, lat, lon)
+    joints = [len(first.line) - 1] if first else []
+    joints += [len(line) - len(last.line)] if last else []
+    notes += tuple(turn_back_notes(lat, lon, joints))
     return SeaDistance(ends[0].name, ends[-1].name, total, canals, straits, approaches, line, notes)
 
 

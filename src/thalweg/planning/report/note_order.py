@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Final
 
+from thalweg.planning.report.approach_report import TURNS_BACK
 from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
 from thalweg.planning.report.ice_report import REACHES_ICE
 from thalweg.planning.report.land_report import PASSES
@@ -24,6 +25,7 @@ _FIRST: Final = (
     CROSSES_SHOAL,
     AGAINST_TRAFFIC,
     NO_OFFING_ROUTE,
+    TURNS_BACK,
     INSHORE_USED,
     LANE_DETOUR,
     OUT_OF_RANGE,

@@ -11,6 +11,7 @@ from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.time import format_time
 from thalweg.network import Network
 from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.approach_report import turn_back_notes_of_route
 from thalweg.planning.report.depth_report import depth_notes
 from thalweg.planning.report.ice_report import ice_warnings
 from thalweg.planning.report.land_report import land_notes
@@ -39,6 +40,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     list of str : One sentence for each warning.
     """
     notes = year_warnings(route) + land_notes(context, route)
+    notes += turn_back_notes_of_route(route)
     notes += ice_warnings(route, context.sea)
     notes += data_gap_warnings(context.sea, route)
     notes += [text for text in route.assumptions if text.startswith(OUT_OF_RANGE)]

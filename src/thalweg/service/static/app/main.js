@@ -353,7 +353,8 @@ class Application {
   }
 
   get #place() {
-    return `plan=${this.result.job.id}&route=${selection.route + 1}&t=${Math.round(selection.time)}`;
+    const time = selection.time === null ? "" : `&t=${Math.round(selection.time)}`; // not known before the first profile
+    return `plan=${this.result.job.id}&route=${selection.route + 1}${time}`;
   }
 
   // Compare and voyages

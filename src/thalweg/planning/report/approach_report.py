@@ -1,0 +1,50 @@
+"""Ways that turn back where the approach of a port ends."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Final
+
+import numpy as np
+
+from thalweg.core.geodesy import format_position
+from thalweg.core.types import FloatArray
+from thalweg.route import Route
+from thalweg.route.refinement.track_geometry import course_changes
+from thalweg.route.route_tables import LEG_KINDS
+
+TURNS_BACK: Final = "Turns back"  #: a note on such a way begins so
+_SHARP: Final = math.radians(120.0)
+
+
+def turn_back_notes(lat: FloatArray, lon: FloatArray, ends: Iterable[int]) -> list[str]:
+    """Return a note for each end of an approach at which a way turns back.
+
+    Approaches lead to open sea on one side; where the way onwards lies on the other side and no
+    branch of the approach leads there, it is longer than a pilot would go.
+
+    Parameters
+    ----------
+    lat, lon : float64 array (n,) of the whole way [deg].
+    ends : Which of its waypoints are ends of approaches, 1 to n - 2.
+    """
+    turns = np.abs(course_changes(lat, lon))
+    return [
+        f"{TURNS_BACK} by {math.degrees(turns[at - 1]):.0f} degrees at "
+        f"{format_position(lat[at], lon[at])}, where the approach of a port ends, so that the way "
+        "is longer than need be. Plan from or to a position on the side of the way onwards, if the "
+        "chart allows it."
+        for at in ends
+        if turns[at - 1] > _SHARP
+    ]
+
+
+def turn_back_notes_of_route(route: Route) -> list[str]:
+    """Return the notes of a route with the approaches of its ports."""
+    kind = np.asarray(route.legs.get("leg_kind", np.zeros(len(route.legs["length"]))))
+    is_approach = kind == LEG_KINDS.index("approach")
+    ends = np.flatnonzero(is_approach[1:] != is_approach[:-1]) + 1
+    track = route.track
+    lat, lon = np.asarray(track.lat, float), np.asarray(track.lon, float)
+    return turn_back_notes(lat, lon, ends.tolist())

@@ -1,0 +1,34 @@
+"""Notes on ways that turn back where the approach of a port ends."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from thalweg import Sea, Ship, evaluate
+from thalweg.planning.report.approach_report import turn_back_notes, turn_back_notes_of_route
+from thalweg.planning.report.note_order import count_of_dangers
+from thalweg.route.route_tables import LEG_KINDS
+
+LAT = np.array([56.40, 56.28, 56.45, 56.60])  # out of Oban to the south-west, and back
+LON = np.array([-5.50, -5.80, -5.60, -5.95])
+
+
+def test_a_way_that_turns_back_is_stated_with_the_place():
+    (note,) = turn_back_notes(LAT, LON, [1])
+    assert note.startswith("Turns back by 1") and "56.2800N 5.8000W" in note
+    assert count_of_dangers([note]) == 1  # no summary leaves it out
+
+
+def test_turns_elsewhere_and_ways_onwards_have_no_note():
+    assert turn_back_notes(LAT, LON, []) == []
+    assert turn_back_notes(np.array([56.4, 56.3, 56.2]), np.array([-5.5, -5.7, -5.8]), [1]) == []
+
+
+@pytest.mark.parametrize(("kinds", "found"), [(("approach", "sea", "sea"), 1), (("sea",) * 3, 0)])
+def test_ends_of_approaches_are_found_on_a_route(kinds, found):
+    ship = Ship.simple(speed_kn=10.0, draught_m=3.0)
+    route = evaluate(list(zip(LAT, LON)), ship=ship, sea=Sea.calm(), depart="2026-01-01T00:00Z")
+    kind = np.array([LEG_KINDS.index(name) for name in kinds])
+    sailed = replace(route, legs=dict(route.legs) | {"leg_kind": kind})
+    assert len(turn_back_notes_of_route(sailed)) == found
