@@ -22,7 +22,7 @@ from thalweg.chart.depth.global_depth import coarse_depth
 from thalweg.chart.ports import PORTS
 from thalweg.core.geodesy import densify, distance, geocentric_unit_vectors
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.network.global_grid.sea_graph import sea_graph
+from thalweg.network.global_grid.sea_graph_cache import sea_graph
 
 SHALLOW = 8.0  # [m]
 OFF_LAND = 2.0  # [nm]

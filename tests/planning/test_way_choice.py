@@ -102,14 +102,49 @@ def test_the_way_follows_the_goal_and_the_draught():
 
 @pytest.mark.slow
 def test_ports_of_one_bay_do_not_leave_it():
-    inside = "to the waters off the port"
-    assert chosen("Osaka", "Kobe") == [inside, inside]
-    assert chosen("Chiba", "Yokohama") == [inside, inside]
-    assert chosen("Osaka", "Busan")[0] != inside  # out of the bay
+    for start, goal in (("Osaka", "Kobe"), ("Chiba", "Yokohama")):
+        assert all(way.startswith("as far as") for way in chosen(start, goal))
+    assert "as far as" not in chosen("Osaka", "Busan")[0]  # out of the bay
     assert chosen("Baltimore", "Norfolk")[0] == ""  # the charted channel is hardly longer
     airport = 34.622, 135.203, 34.644, 135.251  # south, west, north, east
     for lat, lon in sea_distance("Osaka", "Kobe").line:
         assert not (airport[0] < lat < airport[2] and airport[1] < lon < airport[3])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("start", "goal", "opened", "miles"),
+    [  # with the passages that the ferries use, as the operators give the crossings, by hand
+        ("Oban", "Tobermory", ["Sound of Mull"], 25.0),  # 72 by both sea ends
+        ("Oban", "Stornoway", ["Sound of Mull"], 130.0),
+        ("Jebel Ali", "Sharjah", [], 34.0),  # round the Palms off Dubai; 46 by the sea end
+    ],
+)
+def test_approaches_are_left_where_the_way_leads_to_the_other_side(start, goal, opened, miles):
+    there, back = (sea_distance(*ends, open=opened) for ends in ((start, goal), (goal, start)))
+    assert there.nm == pytest.approx(miles, rel=0.06)
+    assert there.nm == pytest.approx(back.nm, rel=0.02)
+    assert not any("Turns back" in note for note in there.notes)
+
+
+@pytest.mark.slow
+def test_no_approach_is_left_over_shoals():
+    assert chosen("Bremerhaven", "Brunsbuttel") == ["", ""]  # drying flats lie between them
+    assert chosen("Antwerp, BE", "Rotterdam", draught=9.5) == ["", ""]  # the banks off Zeeland
+
+
+@pytest.mark.slow
+def test_a_small_ship_sails_through_the_sound_of_mull():
+    voyage = Voyage(start="Oban", goal="Tobermory", depart="2024-06-01T00:00Z")
+    small = Ship.load("gunnerus-2019")
+    plan = thalweg.plan(voyage, ship=small, sea=Sea.calm(), chart=chart(), proof=0.0)
+    route = plan.best
+    assert route.feasible
+    assert route.distance_nm == pytest.approx(26.0, rel=0.04)
+    assert plan.lower_bound <= plan.objective_value
+    line = PORT_APPROACHES.of(PORTS.lookup("Oban"))
+    assert route.track.positions[0] == pytest.approx(line.berth)
+    assert any("as far as" in note for note in plan.notes)
 
 
 @pytest.mark.slow
@@ -147,7 +182,7 @@ def test_via_points_choose_the_ways_of_their_own_side():
 
 
 def test_without_a_choice_no_seaways_are_asked_for():
-    ends = resolve_places("Santos", (), "Durban", chart())
+    ends = resolve_places("Cadiz", (), "Durban", chart())
     assert with_chosen_ways(ends, pytest.fail) == ends
 
 
@@ -191,11 +226,10 @@ def test_a_port_on_a_canal_pays_its_dues_once():
 @pytest.mark.parametrize(
     ("start", "goal", "least", "most"),
     [
-        ("Campana, AR", "Buenos Aires", 44.0, 56.0),  # 209 by the sea end of Buenos Aires
+        ("Campana, AR", "Buenos Aires", 44.0, 56.0),  # along the channels of both
         ("Oostende", "Zeebrugge", 13.0, 22.0),  # 32 by that of Zeebrugge
     ],
 )
 def test_a_port_within_the_bay_of_another_needs_no_way_out_of_it(start, goal, least, most):
-    """One of the approaches ends within the bay already, so that only the other is cut short."""
     assert least < sea_distance(start, goal).nm < most
     assert least < sea_distance(goal, start).nm < most

@@ -4,15 +4,15 @@ A branch (`thalweg.chart.approach_branches`) is open to every port whose approac
 `LONGEST_JOINT` of it. The ends of canals are branches as well, and those of named passages that the
 approach does not follow. A port on a canal has ways through it (`thalweg.chart.canal_parts`).
 
-Approaches lead to open sea, so those of two ports on one bay may go out of it side by side and meet
-off its mouth only, or not at all. For a voyage within the bay a ship leaves its line at the first
-place off land (`bay_way`).
+Approaches lead to open sea on one side. A voyage to the other side, or to a port on the same bay,
+leaves the line before its sea end (`may_leave_early`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -21,7 +21,6 @@ from thalweg.chart.approaches import (
     LONGEST_JOINT,
     PortApproach,
     dense_line,
-    line_length,
     line_part,
 )
 from thalweg.chart.canal_parts import ways_through_canals
@@ -34,9 +33,9 @@ from thalweg.core.units import NAUTICAL_MILE
 
 _FAR_IN_LATITUDE = 4.0  # branches farther from the berth than this are not tested [deg]
 _CANAL_REACH = 2.0 * NAUTICAL_MILE  # between an approach and the end of a canal in open water
-#: Distances from charted land at which a line is left in a bay: the first that it reaches there.
-_OFF_LAND = 1.0 * NAUTICAL_MILE, 0.5 * NAUTICAL_MILE
-_LEAST_IN_BAY = 3.0 * NAUTICAL_MILE  # of the line beyond that place, or it is no bay
+#: A line is left before its sea end at least so far from charted land [m].
+LEAST_OFF_LAND: Final = 0.5 * NAUTICAL_MILE
+_LEAST_BEYOND = 3.0 * NAUTICAL_MILE  # of the line beyond the first such place
 _LEAST_LEFT_OUT = 1_000.0  # of the main line by leaving it, or the way is not one of its own [m]
 
 
@@ -74,33 +73,20 @@ def approach_choices(
     return (approach, *(other for other in others if other is not None), *through)
 
 
-def bay_way(approach: PortApproach, coastline: Coastline) -> PortApproach | None:
-    """Return the part of an approach to the first place off land, where much of it lies beyond.
+def may_leave_early(approach: PortApproach, coastline: Coastline) -> bool:
+    """Return whether much of an approach lies beyond the first place at `LEAST_OFF_LAND`.
 
     Parameters
     ----------
     approach : Of the table.
     coastline : Of the chart.
-
-    Returns
-    -------
-    PortApproach, or None : With `PortApproach.left_out`. It is for voyages within the bay only.
     """
-    if approach.length < _LEAST_IN_BAY:
-        return None
+    if approach.length < _LEAST_BEYOND:
+        return False
     along = dense_line(approach.line)
-    off = coastline.shore_distance(along[:, 0], along[:, 1], cap=max(_OFF_LAND))
-    for required in _OFF_LAND:
-        first = max(int(np.argmax(off >= required)), 1)  # a line has two positions
-        if off[first] >= required and along[-1, 2] - along[first, 2] >= _LEAST_IN_BAY:
-            line = tuple(line_part(approach.line, float(along[first, 2])))
-            return replace(
-                approach,
-                line=line,
-                way="to the waters off the port",
-                left_out=approach.length - line_length(line),
-            )
-    return None
+    off = coastline.shore_distance(along[:, 0], along[:, 1], cap=LEAST_OFF_LAND)
+    first = int(np.argmax(np.asarray(off) >= LEAST_OFF_LAND))
+    return bool(off[first] >= LEAST_OFF_LAND and along[-1, 2] - along[first, 2] >= _LEAST_BEYOND)
 
 
 def _passage_mouths(

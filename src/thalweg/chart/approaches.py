@@ -59,7 +59,6 @@ class PortApproach:
     way_draught : Largest draught of ships that use this way [m]; inf without a limit.
     through : Name of the canal that the line leads through, or empty.
     through_length, through_time : Of the part in that canal [m, s].
-    left_out : Rest of the line to the open sea, for voyages within a bay [m].
     """
 
     port: Port
@@ -75,7 +74,6 @@ class PortApproach:
     through: str = ""
     through_length: float = 0.0
     through_time: float = 0.0
-    left_out: float = 0.0
 
     @property
     def label(self) -> str:

@@ -279,7 +279,9 @@ def _seas_for_draught(seas: Seaways, draught: float, ends: Sequence[Endpoint]) -
     for passage in seas.chart.passages:
         if passage.name not in seas.passages and passage.max_draught < draught:
             seas = seas.without(passage.name)
-    shoals = shoals_of_draught(seas.chart, float(draught), float(draught), ends)
+    shoals = shoals_of_draught(
+        seas.chart, float(draught), float(draught), [(e.lat, e.lon) for e in ends]
+    )
     return replace(seas, shoals=shoals)
 
 

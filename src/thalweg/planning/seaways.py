@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -18,12 +18,13 @@ from thalweg.core.geodesy import Position, distance, wrap_longitude
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.alternatives.path_shortening import LegCost, leg_lengths, string_pull_path
+from thalweg.network.global_grid.endpoint_attachment import LinePlaces
 from thalweg.network.global_grid.sea_graph import (
     ICE_LATITUDES,
     outside_ice,
     path_length,
-    sea_graph,
 )
+from thalweg.network.global_grid.sea_graph_cache import sea_graph
 from thalweg.planning.request.voyage_endpoints import Endpoint
 
 _ROUNDS: Final = 4  # passes of string pulling; each may double the waypoints of a corner
@@ -106,16 +107,34 @@ class Seaways:
         ------
         NoRouteError : If there is no way.
         """
-        chart = self._open_chart
-        closed = [k for k, canal in enumerate(chart.canals) if canal.name in self.canals]
-        return sea_graph(self.chart).path(
-            chart,
-            (start.lat, start.lon),
-            (goal.lat, goal.lon),
-            closed=closed,
-            passages=find_passages(self.passages),
-            shoals=self.shoals,
-        )
+        places = (start.lat, start.lon), (goal.lat, goal.lon)
+        return sea_graph(self.chart).path(self._open_chart, *places, **self._closures())
+
+    def path_between_lines(
+        self, start: LinePlaces, goal: LinePlaces
+    ) -> tuple[list[Position], tuple[int, int]]:
+        """Return the shortest way over the graph between the first places of two lines.
+
+        Returns
+        -------
+        list of (lat, lon) : From where the first line is left to where the second one is met [deg].
+        (int, int) : Numbers of these two places.
+
+        Raises
+        ------
+        NoRouteError : If there is no way.
+        """
+        graph = sea_graph(self.chart)
+        return graph.path_between_lines(self._open_chart, start, goal, **self._closures())
+
+    def _closures(self) -> dict[str, Any]:
+        """Return what the graph may not use, and its shoals, as keyword arguments."""
+        canals = self.chart.canals
+        return {
+            "closed": [k for k, canal in enumerate(canals) if canal.name in self.canals],
+            "passages": find_passages(self.passages),
+            "shoals": self.shoals,
+        }
 
     def path(self, start: Endpoint, goal: Endpoint, *, offing: float) -> list[Position]:
         """Return the waypoints of the shortest way between two end points.

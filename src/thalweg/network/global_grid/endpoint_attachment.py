@@ -31,6 +31,8 @@ _MIN_BASIN_NODES: Final = 200  # connected water of at least this many nodes is 
 _FARTHEST_APPROACH: Final = 150.0 * NAUTICAL_MILE
 _MAX_APPROACHES: Final = 3
 _CHAIN_REACH: Final = 20.0 * NAUTICAL_MILE
+_LINE_REACH: Final = 8.0 * NAUTICAL_MILE
+_LONGEST_DIRECT_LEG: Final = 30.0 * NAUTICAL_MILE  # between two lines
 
 
 @dataclass(frozen=True)
@@ -100,6 +102,23 @@ class Attachment:
     link_node: IntArray
 
 
+@dataclass(frozen=True)
+class LinePlaces:
+    """Places along a line that a way may leave at some of them.
+
+    Attributes
+    ----------
+    lat, lon : float64[K]
+        From the first place of the line on [deg].
+    may_leave : bool[K]
+        Where the line may be left.
+    """
+
+    lat: FloatArray
+    lon: FloatArray
+    may_leave: BoolArray
+
+
 def attach(
     chart: Chart, waters: ConnectedWaters, place: Position, *, what: str, approach: bool = True
 ) -> Attachment:
@@ -145,6 +164,44 @@ def attach(
         "Give another position or more coast levels.",
         nearest=place,
     )
+
+
+def attach_line(chart: Chart, waters: ConnectedWaters, line: LinePlaces) -> Attachment:
+    """Join the places where a line may be left to the nodes they can reach by tested legs.
+
+    Parameters
+    ----------
+    chart : Tests the legs.
+    waters : Nodes of the grid; those of small waters are not used.
+    line : Places, each joined to the one before.
+
+    Returns
+    -------
+    Attachment : Without links where no node is reached.
+    """
+    inside = waters.size >= _MIN_BASIN_NODES
+    at, nodes = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
+    for k in np.flatnonzero(line.may_leave).tolist():
+        place = float(line.lat[k]), float(line.lon[k])
+        near = _candidates(waters, place, inside, min(waters.reach, _LINE_REACH))
+        seen = _nearest_by_sector(waters, place, _reachable_nodes(chart, place, waters, near))
+        at.append(np.full(len(seen), k))
+        nodes.append(seen)
+    return Attachment(line.lat, line.lon, np.concatenate(at), np.concatenate(nodes))
+
+
+def line_to_line_pairs(
+    chart: Chart, start: LinePlaces, goal: LinePlaces
+) -> tuple[IntArray, IntArray]:
+    """Return the places of two lines, by number, that one leg joins where both may be left."""
+    from_start, from_goal = (np.flatnonzero(line.may_leave) for line in (start, goal))
+    i, j = np.repeat(from_start, len(from_goal)), np.tile(from_goal, len(from_start))
+    legs = start.lat[i], start.lon[i], goal.lat[j], goal.lon[j]
+    apart = np.asarray(distance(*legs))
+    near = (apart > _SHORTEST_LINK) & (apart <= _LONGEST_DIRECT_LEG)
+    i, j = i[near], j[near]
+    free = np.asarray(chart.leg_status(*(part[near] for part in legs))) == codes.OK
+    return i[free], j[free]
 
 
 def _direct_attachment(place: Position, nodes: IntArray) -> Attachment:

@@ -7,21 +7,15 @@ for planning are built by `thalweg.network.globe`.
 from __future__ import annotations
 
 import contextlib
-import hashlib
-import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from thalweg.chart.offing import closing_line
 from thalweg.chart.passages import Passage
-from thalweg.core.cache_folder import cache_folder
 from thalweg.core.errors import NoRouteError
-from thalweg.core.file_writing import replacing_file
 from thalweg.core.geodesy import (
     MEAN_RADIUS,
     Position,
@@ -35,19 +29,25 @@ from thalweg.kernels.network.static_paths import static_astar
 from thalweg.network.assembly import Pairs, directed_edges, measured_pairs
 from thalweg.network.distance_bounds import distance_bounds
 from thalweg.network.endpoints import concatenate_pairs
-from thalweg.network.global_grid.endpoint_attachment import Attachment, ConnectedWaters, attach
-from thalweg.network.global_grid.grid import FORMAT, GlobeGrid, GridResolution, globe_grid
+from thalweg.network.global_grid.endpoint_attachment import (
+    Attachment,
+    ConnectedWaters,
+    LinePlaces,
+    attach,
+    attach_line,
+    line_to_line_pairs,
+)
+from thalweg.network.global_grid.grid import GlobeGrid, GridResolution, globe_grid
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.chart.depth.shoals import Shoals
 
-_FORMAT: Final = 5  # increase when the arrays or their construction change
-_RESOLUTION: Final = GridResolution(4, 5, 4, 12)
+RESOLUTION: Final = GridResolution(4, 5, 4, 12)
 _LINK_REACH: Final = 2.2  # positions are joined to nodes within this many legs of the uniform grid
-#: Water nearer to land than this counts up to `_NEAR_LAND_FACTOR` times in the choice of the way.
-_OFFING: Final = 2.0 * NAUTICAL_MILE
-_NEAR_LAND_FACTOR: Final = 1.5
+#: Water nearer to land than this counts up to `NEAR_LAND_FACTOR` times in the choice of the way.
+OFFING: Final = 2.0 * NAUTICAL_MILE
+NEAR_LAND_FACTOR: Final = 1.5
 #: Water beyond these latitudes [deg], where ice is likely, is used only by ways that begin or end
 #: there: 72 N closes the Northwest and Northeast Passages and leaves the North Cape open; south of
 #: 60 S is the Antarctic area of the Polar Code (SOLAS chapter XIV).
@@ -110,14 +110,95 @@ class SeaGraph:
             attach(sea, self.waters, place, what=what)
             for place, what in ((start, "start"), (goal, "goal"))
         ]
-        if outside_ice(start, goal):
+        weight = self._weights(sea, (start, goal), closed, passages)
+        lat, lon, nodes, _ = self._shortest(ends, weight, shoals)
+        return list(zip(lat[nodes].tolist(), lon[nodes].tolist()))
+
+    def path_between_lines(
+        self,
+        chart: Chart,
+        start: LinePlaces,
+        goal: LinePlaces,
+        *,
+        closed: Sequence[int] = (),
+        passages: Sequence[Passage] = (),
+        shoals: Shoals | None = None,
+    ) -> tuple[list[Position], tuple[int, int]]:
+        """Return the shortest way from the first place of one line to the first of another one.
+
+        It follows each line for a part and leaves it where that makes the whole shortest.
+
+        Parameters
+        ----------
+        chart, closed, passages, shoals : As of `path`.
+        start, goal : Places of lines that begin at berths.
+
+        Returns
+        -------
+        list of (lat, lon) : From where the first line is left to where the second one is met [deg].
+        (int, int) : Numbers of these two places.
+
+        Raises
+        ------
+        NoRouteError : If there is no way.
+        """
+        sea = chart.without_canals("all")
+        ends = [attach_line(sea, self.waters, line) for line in (start, goal)]
+        first, last = ((float(line.lat[0]), float(line.lon[0])) for line in (start, goal))
+        weight = self._weights(sea, (first, last), closed, passages)
+        direct = line_to_line_pairs(sea, start, goal)
+        lat, lon, nodes, begins = self._shortest(ends, weight, shoals, direct=direct)
+        of_start = (nodes >= begins[0]) & (nodes < begins[1])
+        left = int(np.flatnonzero(of_start)[-1])
+        met = int(np.flatnonzero(nodes >= begins[1])[0])
+        between = nodes[left : met + 1]
+        path = list(zip(lat[between].tolist(), lon[between].tolist()))
+        return path, (int(nodes[left]) - begins[0], int(nodes[met]) - begins[1])
+
+    def _weights(
+        self,
+        chart: Chart,
+        ends: Sequence[Position],
+        closed: Sequence[int],
+        passages: Sequence[Passage],
+    ) -> FloatArray:
+        """Return the weights for a way between two ends, inf where it may not go."""
+        if outside_ice(*ends):
             closed = (*closed, _IN_ICE)
-        weight = self._weight_without(sea, closed, passages)
+        return self._weight_without(chart, closed, passages)
+
+    def _shortest(
+        self,
+        ends: Sequence[Attachment],
+        weight: FloatArray,
+        shoals: Shoals | None,
+        *,
+        direct: tuple[IntArray, IntArray] | None = None,
+    ) -> tuple[FloatArray, FloatArray, IntArray, tuple[int, int]]:
+        """Return the shortest way between the first positions of two attachments.
+
+        Parameters
+        ----------
+        direct : Positions of the first and of the second one that a leg joins, by number.
+
+        Returns
+        -------
+        lat, lon : Of all nodes and attached positions [deg].
+        nodes : Those of the way.
+        begins : Numbers of the first position of each attachment.
+
+        Raises
+        ------
+        NoRouteError : If there is no way.
+        """
         lat = np.concatenate([self.waters.lat, *(end.lat for end in ends)])
         lon = np.concatenate([self.waters.lon, *(end.lon for end in ends)])
         first = len(self.waters.lat)
         second = first + len(ends[0].lat)
         links = [_joint_pairs(end, at, lat, lon) for end, at in zip(ends, (first, second))]
+        if direct is not None:
+            heads, tails = first + direct[0], second + direct[1]
+            links.append(measured_pairs(lat, lon, heads.astype(np.int32), tails.astype(np.int32)))
         joints = concatenate_pairs(links)
         if shoals is not None:
             weight *= 1.0 + self._shoal_excess(shoals)
@@ -126,6 +207,7 @@ class SeaGraph:
             joints = replace(joints, length=joints.length * (1.0 + excess))
         indptr, target, weight = self._with_links(joints, len(lat), weight)
         known, parent = np.empty(len(lat)), np.empty(len(lat), np.int64)
+        start, goal = ((float(lat[k]), float(lon[k])) for k in (first, second))
         bound = distance_bounds(lat, lon, *goal)
         static_astar(indptr, target, weight, bound, first, second, known, parent)
         if not np.isfinite(known[second]):
@@ -135,10 +217,10 @@ class SeaGraph:
                 "Both positions are on water, but their waters do not meet on this chart.",
                 "Allow canals, or choose another position.",
             )
-        path = [second]
-        while parent[path[-1]] >= 0:
-            path.append(int(parent[path[-1]]))
-        return [(float(lat[k]), float(lon[k])) for k in reversed(path)]
+        nodes = [second]
+        while parent[nodes[-1]] >= 0:
+            nodes.append(int(parent[nodes[-1]]))
+        return lat, lon, np.array(nodes[::-1], np.int64), (first, second)
 
     def _shoal_excess(self, shoals: Shoals) -> FloatArray:
         """Return by how much a mile counts more on each edge; 0 in canals."""
@@ -203,53 +285,9 @@ def _joint_pairs(joint: Attachment, at: int, lat: FloatArray, lon: FloatArray) -
     return measured_pairs(lat, lon, first, second)
 
 
-def sea_graph(chart: Chart) -> SeaGraph:
-    """Return the graph of a chart's coastline and canals, from memory or disk if made before.
-
-    Parameters
-    ----------
-    chart : Zones, depth, the area and the offing of the chart are not used.
-    """
-    bare = type(chart)(
-        chart.coastline,
-        canals=chart.canals,
-        passages=chart.passages,
-        closed_passages=chart.closed_passages,
-    )
-    lines = [(passage.name, passage.line) for passage in chart.passages]
-    facts = (FORMAT, _FORMAT, bare.fingerprint(), _RESOLUTION, _OFFING, _NEAR_LAND_FACTOR, lines)
-    name = hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
-    return _load_or_make(_GraphRequest(bare, cache_folder("globe") / f"sea-{name}.npz"))
-
-
-@dataclass(frozen=True)
-class _GraphRequest:
-    """A graph to make, and its file in the cache; two requests for one file are equal."""
-
-    chart: Chart
-    path: Path
-
-    def __hash__(self) -> int:
-        return hash(self.path)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _GraphRequest) and other.path == self.path
-
-
-@lru_cache(maxsize=2)
-def _load_or_make(request: _GraphRequest) -> SeaGraph:
-    try:
-        return _load_graph(request.path)
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        graph = make_sea_graph(request.chart)
-    with contextlib.suppress(OSError):
-        _save_graph(request.path, graph)
-    return graph
-
-
 def make_sea_graph(chart: Chart) -> SeaGraph:
     """Make the graph of a chart's coastline and canals (see `sea_graph`)."""
-    grid = globe_grid(chart, _RESOLUTION)
+    grid = globe_grid(chart, RESOLUTION)
     sea = chart.without_canals("all")
     usable = np.ones(len(grid.lat), bool)
     reach = _LINK_REACH * grid.spacing
@@ -286,9 +324,9 @@ def make_sea_graph(chart: Chart) -> SeaGraph:
 
 def _factors(chart: Chart, grid: GlobeGrid) -> FloatArray:
     """Return the factor of the length of every pair near land."""
-    off = np.asarray(chart.coastline.shore_distance(grid.lat, grid.lon, cap=_OFFING))
-    near = 1.0 - np.minimum(off, _OFFING) / _OFFING
-    node = 1.0 + (_NEAR_LAND_FACTOR - 1.0) * near
+    off = np.asarray(chart.coastline.shore_distance(grid.lat, grid.lon, cap=OFFING))
+    near = 1.0 - np.minimum(off, OFFING) / OFFING
+    node = 1.0 + (NEAR_LAND_FACTOR - 1.0) * near
     return np.asarray(0.5 * (node[grid.pairs.first] + node[grid.pairs.second]))
 
 
@@ -315,26 +353,3 @@ def path_length(line: Sequence[Position]) -> float:
     """Return the length of the geodesics along positions [m]."""
     lat, lon = np.array(line, float).T
     return float(np.sum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
-
-
-def _load_graph(path: Path) -> SeaGraph:
-    with np.load(path, allow_pickle=False) as file:
-        lat, lon, water, size = (file[name] for name in ("lat", "lon", "water", "size"))
-        waters = ConnectedWaters(lat, lon, water, size, float(file["reach"]))
-        graph = SeaGraph(waters, *(file[n] for n in ("indptr", "target", "weight", "canal")))
-    n, e = len(waters.lat), len(graph.target)
-    if len(graph.indptr) != n + 1 or int(graph.indptr[-1]) != e or int(graph.target.max()) >= n:
-        raise ValueError("the arrays do not fit together")
-    if not len(graph.weight) == len(graph.canal) == e:
-        raise ValueError("the arrays do not fit together")
-    return graph
-
-
-def _save_graph(path: Path, graph: SeaGraph) -> None:
-    waters = graph.waters
-    with replacing_file(path) as file:
-        np.savez(
-            file, allow_pickle=False, lat=waters.lat, lon=waters.lon, water=waters.water,
-            size=waters.size, reach=np.array(waters.reach), indptr=graph.indptr,
-            target=graph.target, weight=graph.weight, canal=graph.canal,
-        )  # fmt: skip

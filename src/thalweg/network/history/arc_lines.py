@@ -13,7 +13,8 @@ from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import Position, distance, geocentric_positions
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.network.alternatives.path_shortening import string_pull_path
-from thalweg.network.global_grid.sea_graph import path_length, sea_graph
+from thalweg.network.global_grid.sea_graph import path_length
+from thalweg.network.global_grid.sea_graph_cache import sea_graph
 from thalweg.network.history.arc_statistics import CANDIDATES
 from thalweg.network.history.junction_visits import ArcOccurrences
 from thalweg.network.history.voyage_tracks import VoyageTracks

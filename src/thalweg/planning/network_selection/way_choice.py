@@ -9,21 +9,15 @@ from dataclasses import dataclass, replace
 from itertools import product
 from typing import Final
 
-import numpy as np
-
 from thalweg.chart.approaches import line_between, line_length
 from thalweg.core.errors import NoRouteError
-from thalweg.core.geodesy import Position, distance
-from thalweg.core.types import FloatArray
+from thalweg.core.geodesy import distance
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.network_selection.approach_parts import ends_left_early
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways, path_length_and_canals
 
 _LEAST_GAIN: Final = 0.5 * NAUTICAL_MILE  # of another way than the approach of the table
-#: A way within a bay leaves the charted channels: it has to be shorter by this share of them.
-_LEAST_GAIN_IN_BAY: Final = 0.1
-_USUAL_DRAUGHT: Final = 8.0  # where none is given, for shoals in a bay [m]
-_MOST_SHOAL: Final = 1.0  # excess of a mile across a bay by shoals (`thalweg.chart.depth.shoals`)
 
 
 def with_chosen_ways(
@@ -39,65 +33,44 @@ def with_chosen_ways(
 
     Returns
     -------
-    list of Endpoint : A way to a canal is chosen only where the voyage passes that canal, and one
-        within a bay only for both ends together, by water without shoals.
+    list of Endpoint : A way to a canal is chosen only where the voyage passes that canal. An
+        approach is left before its sea end where that saves clearly, by water without shoals.
     """
     found = [_without_shallow_ways(end, draught) for end in ends]
-    if len(found) > 2 or not _share_a_bay(found[0], found[-1]):
-        found = [_without_ways_in_bays(end) for end in found]
-    if not (found[0].other_ways or found[-1].other_ways):
+    if not any(_has_choice(end) for end in (found[0], found[-1])):
         return found
     if len(found) == 2:
         return _best_pair(found[0], found[1], seas(), draught)
-    if found[0].other_ways:
+    if _has_choice(found[0]):
         found[0] = _best_pair(found[0], found[1], seas(), draught)[0]
-    if found[-1].other_ways:
+    if _has_choice(found[-1]):
         found[-1] = _best_pair(found[-2], found[-1], seas(), draught)[1]
     return found
+
+
+def _has_choice(end: Endpoint) -> bool:
+    return bool(end.other_ways) or end.may_leave_early
 
 
 def _best_pair(start: Endpoint, goal: Endpoint, seas: Seaways, draught: float) -> list[Endpoint]:
     """Return two ends by the ways that make the distance between them least."""
     open_canals = {c.name for c in seas.chart.canals} - set(seas.canals)
     ways = [[way for way in _by_way(end) if _is_open(way, open_canals)] for end in (start, goal)]
-    outward, inward = ([way for way in of_end if not _left_out(way)] for of_end in ways)
-    in_bay = [[way for way in of_end if _left_out(way)] or of_end[:1] for of_end in ways]
-    both = [*product(outward, inward), *product(*in_bay)]
-    pairs = [_Pair.of(a, b, seas) for a, b in both]
+    pairs = [_Pair.of(a, b, seas) for a, b in product(*ways)]
     best, least = pairs[0], math.inf
     for number, pair in sorted(enumerate(pairs), key=lambda item: item[1].bound):
         if pair.bound >= least:
             break
-        length = pair.length(seas, draught) + (_LEAST_GAIN if number else 0.0)
-        length /= 1.0 - (_LEAST_GAIN_IN_BAY if pair.in_bay else 0.0)
+        length = pair.length(seas) + (_LEAST_GAIN if number else 0.0)
         if length < least:
             best, least = pair, length
-    return [best.start, best.goal]
-
-
-def _left_out(end: Endpoint) -> float:
-    """Return how much of its approach a way within a bay leaves out [m]; 0 for other ways."""
-    return 0.0 if end.approach is None else end.approach.left_out
-
-
-def _share_a_bay(start: Endpoint, goal: Endpoint) -> bool:
-    """Return whether two ends may lie on one bay: the ways out of it are longer than between.
-
-    The approach of one of them may end within the bay, as that of Campana on the River Plate.
-    """
-    if start.approach is None or goal.approach is None:
-        return False
-    inside = [
-        next((way for way in end.other_ways if way.left_out), end.approach)
-        for end in (start, goal)
-        if end.approach is not None
+    tried = [best] if best is pairs[0] else [best, pairs[0]]
+    early = [
+        ends_left_early(pair.start, pair.goal, seas, draught=draught, longest=least)
+        for pair in tried
     ]
-    apart = float(distance(*inside[0].sea_end, *inside[1].sea_end))
-    return apart < inside[0].left_out + inside[1].left_out
-
-
-def _without_ways_in_bays(end: Endpoint) -> Endpoint:
-    return replace(end, other_ways=tuple(way for way in end.other_ways if not way.left_out))
+    shortest = min((one for one in early if one is not None), key=lambda one: one[0], default=None)
+    return [best.start, best.goal] if shortest is None else list(shortest[1])
 
 
 def _without_shallow_ways(end: Endpoint, draught: float) -> Endpoint:
@@ -136,18 +109,11 @@ class _Pair:
         apart = float(distance(start.lat, start.lon, goal.lat, goal.lon))
         return cls(start, goal, _of_lines(start, goal) + apart, math.nan)
 
-    @property
-    def in_bay(self) -> bool:
-        """Whether one of the ways ends within a bay."""
-        return _left_out(self.start) > 0.0 or _left_out(self.goal) > 0.0
-
-    def length(self, seas: Seaways, draught: float) -> float:
+    def length(self, seas: Seaways) -> float:
         """Return the distance [m]; inf where there is no way through the canals of the lines."""
         if not math.isnan(self.shared):
             return self.shared
         with contextlib.suppress(NoRouteError):
-            if self.in_bay:
-                return self._length_in_bay(seas, draught)
             path = seas.graph_path(self.start, self.goal)
             at_sea, passed = path_length_and_canals(seas.chart, path)
             wanted = {
@@ -159,29 +125,6 @@ class _Pair:
             if wanted <= set(passed):
                 return _of_lines(self.start, self.goal) + at_sea
         return math.inf
-
-    def _length_in_bay(self, seas: Seaways, draught: float) -> float:
-        """Return the distance [m] straight across a bay, or round its land; inf over shoals."""
-        path = [(self.start.lat, self.start.lon), (self.goal.lat, self.goal.lon)]
-        if np.any(seas.chart.legs_blocked(*_legs(path))):
-            path = seas.graph_path(self.start, self.goal)
-        length, canals = path_length_and_canals(seas.chart, path)
-        if canals or self._has_shoals(path, seas, draught):
-            return math.inf
-        return _of_lines(self.start, self.goal) + length
-
-    def _has_shoals(self, path: Sequence[Position], seas: Seaways, draught: float) -> bool:
-        """Return whether a leg of a way between the ends is over shoals."""
-        from thalweg.planning.request.shoal_choice import shoals_of_draught
-
-        depth = draught or _USUAL_DRAUGHT
-        shoals = shoals_of_draught(seas.chart, depth, depth, (self.start, self.goal))
-        return bool(shoals.excess(*_legs(path)).max() > _MOST_SHOAL)
-
-
-def _legs(path: Sequence[Position]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    lat, lon = np.array(path, float).T
-    return lat[:-1], lon[:-1], lat[1:], lon[1:]
 
 
 def _of_lines(*ends: Endpoint) -> float:

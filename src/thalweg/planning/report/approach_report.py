@@ -33,8 +33,8 @@ def turn_back_notes(lat: FloatArray, lon: FloatArray, ends: Iterable[int]) -> li
     return [
         f"{TURNS_BACK} by {math.degrees(turns[at - 1]):.0f} degrees at "
         f"{format_position(lat[at], lon[at])}, where the approach of a port ends, so that the way "
-        "is longer than need be. Plan from or to a position on the side of the way onwards, if the "
-        "chart allows it."
+        "may be longer than need be. Plan from or to a position on the side of the way onwards, if "
+        "the chart allows it."
         for at in ends
         if turns[at - 1] > _SHARP
     ]

@@ -69,7 +69,7 @@ def add_shoals(
     if not draught > 0.0:
         return chart, ["Shoals were not avoided: the draught of the ship is not known."]
     least = draught + required_under_keel_clearance(voyage, ship)
-    shoals = shoals_of_draught(chart, draught, least, ends)
+    shoals = shoals_of_draught(chart, draught, least, [(float(e.lat), float(e.lon)) for e in ends])
     note = (
         f"Keeps out of water shallower than {shoals.contour:g} m where it can: a mile there counts "
         f"up to 20 by the {NAME} and the named shoal areas; not near the ends and in narrow "
@@ -79,7 +79,7 @@ def add_shoals(
 
 
 def shoals_of_draught(
-    chart: Chart, draught: float, least: float, ends: Sequence[Endpoint]
+    chart: Chart, draught: float, least: float, harbours: Sequence[Position]
 ) -> Shoals:
     """Return the shoal water for a draught.
 
@@ -88,12 +88,11 @@ def shoals_of_draught(
     chart : With the passages that may be used.
     draught : [m], above 0.
     least : Depth that the ship requires [m].
-    ends : Round them the layer does not count.
+    harbours : (lat, lon) [deg]: round them the layer does not count.
     """
     contour = safety_contour(draught)
     lines = tuple(line for passage in chart.passages for line in _channels(chart, passage))
-    harbours = tuple((float(end.lat), float(end.lon)) for end in ends)
-    return Shoals(contour, min(least, 0.9 * contour), lines, harbours)
+    return Shoals(contour, min(least, 0.9 * contour), lines, tuple(harbours))
 
 
 def _channels(chart: Chart, passage: Passage) -> list[tuple[Position, ...]]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from thalweg.chart import Chart
-from thalweg.chart.approach_choices import approach_choices, bay_way
+from thalweg.chart.approach_choices import approach_choices, may_leave_early
 from thalweg.chart.approaches import PortApproach
 from thalweg.chart.ports import PORTS, Port
 from thalweg.core.errors import InputError, errors_about
@@ -53,6 +53,7 @@ class Endpoint:
     way_left_m : Least length of the way between this position and the berth [m]; 0 if unknown.
     approach : The approach from the berth to this position.
     other_ways : Other ways from the berth, by branches of the approach and to canals.
+    may_leave_early : Whether the approach comes off land well before its sea end.
     notice : A further note for the user, or empty.
     """
 
@@ -68,6 +69,7 @@ class Endpoint:
     approach: PortApproach | None = None
     notice: str = ""
     other_ways: tuple[PortApproach, ...] = ()
+    may_leave_early: bool = False
 
     @property
     def ways(self) -> tuple[PortApproach, ...]:
@@ -155,7 +157,13 @@ def resolve_port(port: Port, chart: Chart, what: str) -> Endpoint:
     if ways:
         first, others = ways[0], tuple(ways[1:])
         return Endpoint(
-            port.label, *first.sea_end, 0.0, is_port=True, approach=first, other_ways=others
+            port.label,
+            *first.sea_end,
+            0.0,
+            is_port=True,
+            approach=first,
+            other_ways=others,
+            may_leave_early=may_leave_early(first, chart.coastline),
         )
     reason = "" if chart.approaches is None else chart.approaches.reason(port)
     if reason:
@@ -173,9 +181,7 @@ def _usable_ways(port: Port, chart: Chart) -> list[PortApproach]:
     approach = None if chart.approaches is None else chart.approaches.of(port)
     if approach is None:
         return []
-    inside = bay_way(approach, chart.coastline)
     ways = approach_choices(approach, chart.canals, chart.passages)
-    ways = (*ways, *((inside,) if inside else ()))
     return [way for way in ways if _is_usable(way, chart)]
 
 
@@ -345,7 +351,11 @@ def without_approach(end: Endpoint) -> Endpoint:
         "give each leg of a voyage with calls as a voyage of its own."
     )
     return replace(
-        end, approach=None, other_ways=(), notice=" ".join(t for t in (end.notice, notice) if t)
+        end,
+        approach=None,
+        other_ways=(),
+        may_leave_early=False,
+        notice=" ".join(t for t in (end.notice, notice) if t),
     )
 
 

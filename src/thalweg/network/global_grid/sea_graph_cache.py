@@ -1,0 +1,97 @@
+"""The graph of all seas, kept in memory and on disk."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import zipfile
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from thalweg.core.cache_folder import cache_folder
+from thalweg.core.file_writing import replacing_file
+from thalweg.network.global_grid.endpoint_attachment import ConnectedWaters
+from thalweg.network.global_grid.grid import FORMAT
+from thalweg.network.global_grid.sea_graph import (
+    NEAR_LAND_FACTOR,
+    OFFING,
+    RESOLUTION,
+    SeaGraph,
+    make_sea_graph,
+)
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+_FORMAT: Final = 5  # increase when the arrays or their construction change
+
+
+def sea_graph(chart: Chart) -> SeaGraph:
+    """Return the graph of a chart's coastline and canals, from memory or disk if made before.
+
+    Parameters
+    ----------
+    chart : Zones, depth, the area and the offing of the chart are not used.
+    """
+    bare = type(chart)(
+        chart.coastline,
+        canals=chart.canals,
+        passages=chart.passages,
+        closed_passages=chart.closed_passages,
+    )
+    lines = [(passage.name, passage.line) for passage in chart.passages]
+    facts = (FORMAT, _FORMAT, bare.fingerprint(), RESOLUTION, OFFING, NEAR_LAND_FACTOR, lines)
+    name = hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
+    return _load_or_make(_GraphRequest(bare, cache_folder("globe") / f"sea-{name}.npz"))
+
+
+@dataclass(frozen=True)
+class _GraphRequest:
+    """A graph to make, and its file in the cache; two requests for one file are equal."""
+
+    chart: Chart
+    path: Path
+
+    def __hash__(self) -> int:
+        return hash(self.path)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _GraphRequest) and other.path == self.path
+
+
+@lru_cache(maxsize=2)
+def _load_or_make(request: _GraphRequest) -> SeaGraph:
+    try:
+        return _load_graph(request.path)
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        graph = make_sea_graph(request.chart)
+    with contextlib.suppress(OSError):
+        _save_graph(request.path, graph)
+    return graph
+
+
+def _load_graph(path: Path) -> SeaGraph:
+    with np.load(path, allow_pickle=False) as file:
+        lat, lon, water, size = (file[name] for name in ("lat", "lon", "water", "size"))
+        waters = ConnectedWaters(lat, lon, water, size, float(file["reach"]))
+        graph = SeaGraph(waters, *(file[n] for n in ("indptr", "target", "weight", "canal")))
+    n, e = len(waters.lat), len(graph.target)
+    if len(graph.indptr) != n + 1 or int(graph.indptr[-1]) != e or int(graph.target.max()) >= n:
+        raise ValueError("the arrays do not fit together")
+    if not len(graph.weight) == len(graph.canal) == e:
+        raise ValueError("the arrays do not fit together")
+    return graph
+
+
+def _save_graph(path: Path, graph: SeaGraph) -> None:
+    waters = graph.waters
+    with replacing_file(path) as file:
+        np.savez(
+            file, allow_pickle=False, lat=waters.lat, lon=waters.lon, water=waters.water,
+            size=waters.size, reach=np.array(waters.reach), indptr=graph.indptr,
+            target=graph.target, weight=graph.weight, canal=graph.canal,
+        )  # fmt: skip

@@ -1,0 +1,139 @@
+"""Where a way leaves the approach of a port before its sea end, because it leads elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from thalweg.chart.approach_choices import LEAST_OFF_LAND
+from thalweg.chart.approaches import dense_line, line_part
+from thalweg.chart.depth.shoals import EXCESS, Shoals
+from thalweg.core.errors import NoRouteError
+from thalweg.core.geodesy import Position, distance, format_position_minutes
+from thalweg.core.types import FloatArray
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.network.global_grid.endpoint_attachment import LinePlaces
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.seaways import Seaways, path_length_and_canals
+
+#: What leaving the charted channels has to save: of the whole way this share, or of the part of
+#: the lines that is left out, if so much of it would be sailed back.
+_LEAST_SHARE: Final = 0.1
+_LEAST_SHARE_OF_LINE: Final = 0.5
+_LEAST_GAIN: Final = 5.0 * NAUTICAL_MILE  # in the second case
+_SHORTEST_LEFT_OUT: Final = 1.0 * NAUTICAL_MILE
+_SPACING: Final = 0.5 * NAUTICAL_MILE  # of the places at which a line may be left
+_USUAL_DRAUGHT: Final = 8.0  # where none is given, for shoals beside the channels [m]
+_MOST_SHOAL: Final = EXCESS[0]  # of a mile where the depth is the draught
+
+
+def ends_left_early(
+    start: Endpoint, goal: Endpoint, seas: Seaways, *, draught: float, longest: float
+) -> tuple[float, list[Endpoint]] | None:
+    """Return two ends with their approaches cut where the way between them leaves these.
+
+    Parameters
+    ----------
+    start, goal : By the ways that make the distance least, as far as their sea ends.
+    seas : The seaways that the voyage may use.
+    draught : Of the ship [m], 0 where it is not known.
+    longest : Distance from berth to berth by those ways [m].
+
+    Returns
+    -------
+    (float, list of Endpoint), or None : Distance from berth to berth [m] and the ends; None where
+        that does not save clearly, or leads over shoals.
+    """
+    if not (start.may_leave_early or goal.may_leave_early):
+        return None
+    lines = [_places_of(end, seas) for end in (start, goal)]
+    try:
+        length, path, cut = _cut_ends((start, goal), lines, seas)
+    except NoRouteError:
+        return None
+    left_out = [_length(a) - _length(b) for a, b in zip((start, goal), cut)]
+    turned_back = max(_LEAST_GAIN, _LEAST_SHARE_OF_LINE * sum(left_out))
+    least_gain = max(min(_LEAST_SHARE * longest, turned_back), _SHORTEST_LEFT_OUT)
+    if longest - length < least_gain:
+        return None
+    harbours = _harbours((start, goal), cut)
+    return None if _has_shoals(path, left_out, _shoals(seas, harbours, draught)) else (length, cut)
+
+
+def _places_of(end: Endpoint, seas: Seaways) -> FloatArray:
+    """Return rows (lat, lon [deg], length from the berth [m], whether the line may be left)."""
+    approach = end.approach
+    if approach is None:
+        return np.array([[end.lat, end.lon, 0.0, 1.0]])
+    dense = dense_line(approach.line)
+    count = max(int(dense[-1, 2] / _SPACING), 1)
+    wanted = np.linspace(0.0, dense[-1, 2], count + 1)
+    rows = dense[np.unique(np.searchsorted(dense[:, 2], wanted).clip(0, len(dense) - 1))]
+    may_leave = np.zeros(len(rows))
+    if end.may_leave_early and not approach.canal and not approach.through:
+        coast = seas.chart.coastline
+        off = coast.shore_distance(rows[:, 0], rows[:, 1], cap=LEAST_OFF_LAND)
+        may_leave[np.asarray(off) >= LEAST_OFF_LAND] = 1.0
+    may_leave[0], may_leave[-1] = 0.0, 1.0  # a berth is left along its line
+    return np.column_stack([rows, may_leave])
+
+
+def _cut_ends(
+    ends: tuple[Endpoint, Endpoint],
+    lines: Sequence[FloatArray],
+    seas: Seaways,
+) -> tuple[float, list[Position], list[Endpoint]]:
+    """Return the shortest way from berth to berth: its length [m], the part at sea, and its ends.
+
+    Raises
+    ------
+    NoRouteError : If there is no way.
+    """
+    start, goal = (LinePlaces(a[:, 0], a[:, 1], a[:, 3] > 0.0) for a in lines)
+    path, numbers = seas.path_between_lines(start, goal)
+    cut = [_cut(end, float(line[number, 2])) for end, line, number in zip(ends, lines, numbers)]
+    length, _ = path_length_and_canals(seas.chart, path)
+    return length + sum(map(_length, cut)), path, cut
+
+
+def _cut(end: Endpoint, along: float) -> Endpoint:
+    """Return an end whose approach is left at a length from the berth [m]."""
+    approach = end.approach
+    if approach is None or approach.length - along < _SHORTEST_LEFT_OUT:
+        return end
+    line = tuple(line_part(approach.line, along))
+    way = f"{approach.way} as far as {format_position_minutes(*line[-1])}".strip()
+    return end.by(replace(approach, line=line, way=way))
+
+
+def _has_shoals(path: Sequence[Position], left_out: Sequence[float], shoals: Shoals) -> bool:
+    """Return whether a way is over shoals as long as the parts of the lines [m] that it leaves."""
+    legs = _legs(path)
+    sailed = np.concatenate([[0.0], np.cumsum(distance(*legs))])
+    beside = (sailed[:-1] < left_out[0]) | (sailed[-1] - sailed[1:] < left_out[1])
+    return bool(np.any(np.asarray(shoals.excess(*legs))[beside] > _MOST_SHOAL))
+
+
+def _shoals(seas: Seaways, harbours: Sequence[Position], draught: float) -> Shoals:
+    from thalweg.planning.request.shoal_choice import shoals_of_draught
+
+    depth = draught or _USUAL_DRAUGHT
+    return shoals_of_draught(seas.chart, depth, depth, harbours)
+
+
+def _harbours(ends: Sequence[Endpoint], cut: Sequence[Endpoint]) -> list[Position]:
+    """Return the berths, and the sea ends of approaches that are not left early."""
+    berths = [end.approach.berth if end.approach else (end.lat, end.lon) for end in ends]
+    return berths + [(a.lat, a.lon) for a, b in zip(ends, cut) if a is b]
+
+
+def _length(end: Endpoint) -> float:
+    return 0.0 if end.approach is None else end.approach.length
+
+
+def _legs(path: Sequence[Position]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    lat, lon = np.array(path, float).T
+    return lat[:-1], lon[:-1], lat[1:], lon[1:]
