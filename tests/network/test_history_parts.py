@@ -16,6 +16,7 @@ from thalweg.network.history.history_builder import HistoryRules, build_history
 from thalweg.network.history.history_corridor import HistoryCorridor
 from thalweg.network.history.junction_visits import ArcOccurrences
 from thalweg.network.history.season_masks import open_months
+from thalweg.network.history.stretch_ends import EndFinder
 from thalweg.network.history.turning_points import turning_points
 from thalweg.network.history.voyage_tracks import (
     HistoryPort,
@@ -164,7 +165,9 @@ def test_tracks_over_land_are_replaced_and_marked():
         tried[0, : len(lines)] = np.arange(len(lines))
         found = lines_off_land(
             island, tracks, stretches, tried,
-            places=(np.array([45.0, 45.0]), np.array([-20.0, -10.0])),
+            finder=EndFinder(
+                island, tracks, (np.array([45.0, 45.0]), np.array([-20.0, -10.0])), PORTS, 10 * NM
+            ),
             turning=turning_points(tracks, 1 * NM), radius=10 * NM, ways=StubWays(island),
         )  # fmt: skip
         assert not found.lines.blocked(island).any()

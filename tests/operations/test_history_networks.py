@@ -8,7 +8,9 @@ import pandas as pd
 import pytest
 
 from thalweg.chart import Chart
+from thalweg.chart.approaches import line_length
 from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.geodesy import distance
 from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.network.history.history_builder import HistoryRules, build_history
 from thalweg.network.history.history_file import read_history, write_history
@@ -22,6 +24,7 @@ from thalweg.operations.examples.synthetic_fleet import (
 )
 from thalweg.operations.fleet import history_from_tracks, read_fleet
 from thalweg.operations.fleet.port_calls import find_port_calls, voyages_between_calls
+from thalweg.planning.distance_table import usual_distance_table
 
 A, B, C = (50.0, -30.0), (50.0, -20.0), (44.0, -25.0)
 SUMMER = SyntheticRoute((A, (52.0, -25.0), B), months=(5, 6, 7, 8, 9))
@@ -192,6 +195,33 @@ def test_a_way_back_round_the_ocean_is_not_taken_for_a_usual_one(fleet):
         < net.route("Bravo", "Charlie").nm + net.route("Charlie", "Alpha").nm
     )
     assert back.confidence == "low" and back.voyages == 0
+
+
+def test_ships_that_leave_an_approach_early_do_not_sail_to_its_sea_end():
+    """As between Hamburg and the Kiel Canal: 60 nm of the Elbe lead on to the open sea."""
+    berth, turn, sea = (50.0, -29.0), (50.0, -30.0), (50.0, -32.0)
+    line = (berth, turn, sea)
+    river = HistoryPort("Delta, XX", "XXDEL", *sea, line_length(line), (berth, *line))
+    out = SyntheticRoute((berth, turn, C))
+    west = SyntheticRoute((berth, turn, sea, (47.0, -34.0)))
+    far = HistoryPort("Echo, XX", "XXECH", 47.0, -34.0, 0.0, ((47.0, -34.0),))
+    routes = (out, SyntheticRoute(out.line[::-1]), west, SyntheticRoute(west.line[::-1]))
+    messages = synthetic_fleet(
+        SyntheticFleet(routes, ships=6, interval_s=1800.0), start="2024-01-01", days=200, seed=4
+    )
+    ports = [river, PORTS[2], far]
+    made = history_from_tracks(read_fleet([messages]), Chart.open_water(), ports=ports)
+    for ends, truth in (
+        (("Delta", "Charlie"), out), (("Charlie", "Delta"), out),
+        (("Delta", "Echo"), west), (("Echo", "Delta"), west),
+    ):  # fmt: skip
+        assert made.route(*ends).length == pytest.approx(truth.length, rel=0.01)
+    left = made.route("Delta", "Charlie").line[0]
+    assert float(distance(*left, *turn)) < 10.0 * NAUTICAL_MILE
+    names = ("Delta", "Charlie", "Echo")
+    table = usual_distance_table(names, made)
+    assert table.length[0, 1] == pytest.approx(out.length, rel=0.01)
+    assert not any("doubtful" in note for note in table.notes)
 
 
 def test_corridors_are_junctions_with_names(fleet):

@@ -154,10 +154,9 @@ def usual_distance_table(
     """
     names = _checked_names(ports)
     nodes = [network.port_node(name) for name in ports]
-    approach = np.array([network.ports[k - network.nodes.first_port].approach_m for k in nodes])
     weight = network.weights(month=month, draught=draught)
     length = np.zeros((len(ports), len(ports)))
-    notes = []
+    notes, doubtful = [], []
     for i, start in enumerate(nodes):
         for j, goal in enumerate(nodes):
             if start == goal:
@@ -167,7 +166,16 @@ def usual_distance_table(
                 notes.append(f"No way from {names[i]} to {names[j]}.")
                 length[i, j] = math.nan
                 continue
-            length[i, j] = network.arcs.length[arcs].sum() + approach[i] + approach[j]
+            route = network.route_along((start, goal), arcs)
+            length[i, j] = route.length
+            if route.confidence in ("low", "none"):
+                doubtful.append(f"{names[i]} to {names[j]}")
+    if doubtful:
+        notes.append(
+            "Few voyages or none on the way, so that the distance is doubtful: "
+            + ", ".join(doubtful)
+            + "."
+        )
     return DistanceTable(names, length, tuple(notes))
 
 

@@ -201,7 +201,7 @@ def _print_route(route: HistoryRoute) -> None:
     p10, p50, p90 = (time / HOUR for time in route.duration)
     if p50 == p50:  # known
         print(
-            f"  {p50:.1f} h between the sea ends of the ports, without their approaches "
+            f"  {p50:.1f} h under way, without the approaches of the ports "
             f"(p10 {p10:.1f}, p90 {p90:.1f})"
         )
     unseen = f", {100.0 * route.globe_share:.0f} % of the length without tracks"

@@ -17,6 +17,7 @@ from thalweg.network.global_grid.sea_graph import path_length
 from thalweg.network.global_grid.sea_graph_cache import sea_graph
 from thalweg.network.history.arc_statistics import CANDIDATES
 from thalweg.network.history.junction_visits import ArcOccurrences
+from thalweg.network.history.stretch_ends import EndFinder
 from thalweg.network.history.voyage_tracks import VoyageTracks
 
 if TYPE_CHECKING:
@@ -198,7 +199,7 @@ def lines_off_land(
     stretches: ArcOccurrences,
     candidates: IntArray,
     *,
-    places: tuple[FloatArray, FloatArray],
+    finder: EndFinder,
     turning: BoolArray,
     radius: float,
     ways: GlobeWays,
@@ -214,7 +215,7 @@ def lines_off_land(
     stretches : Stretches of tracks.
     candidates : int64 ndarray (A, c)
         Stretches that may become the line of each arc, the medoid first; -1 for none.
-    places : Positions of the nodes [deg], (lat, lon).
+    finder : Finds where the lines begin and end.
     turning : Positions that are kept as waypoints, (n,).
     radius : Radius of a junction [m].
     """
@@ -226,7 +227,7 @@ def lines_off_land(
         left = left[candidates[left, k] >= 0]
         if not len(left):
             break
-        drawn = _drawn(tracks, stretches.take(candidates[left, k]), places, turning, radius)
+        drawn = _drawn(tracks, stretches.take(candidates[left, k]), finder, turning, radius)
         bad = np.bincount(drawn.arc_of_leg[drawn.blocked(chart)], minlength=len(left)) > 0
         for i in range(len(left)) if k == 0 else np.flatnonzero(~bad).tolist():
             lat, lon = drawn.of(i)
@@ -248,11 +249,12 @@ def lines_off_land(
 def _drawn(
     tracks: VoyageTracks,
     stretches: ArcOccurrences,
-    places: tuple[FloatArray, FloatArray],
+    finder: EndFinder,
     turning: BoolArray,
     radius: float,
 ) -> ArcLines:
     """Return the lines of stretches: node, turning points of the track between, node."""
+    ends = finder.ends(stretches)
     at = np.flatnonzero(turning)
     step = stretches.end - stretches.begin
     margin = np.minimum(_NEAR_ENDS * radius, 0.25 * step)
@@ -263,9 +265,8 @@ def _drawn(
     inner = np.maximum(last - first, 0)
     ptr = np.concatenate([[0], np.cumsum(inner + 4)])
     lat, lon = np.empty(ptr[-1]), np.empty(ptr[-1])
-    for k, node in ((0, stretches.tail), (-1, stretches.head)):
-        edge = ptr[:-1] if k == 0 else ptr[1:] - 1
-        lat[edge], lon[edge] = places[0][node], places[1][node]
+    for k, edge in enumerate((ptr[:-1], ptr[1:] - 1)):
+        lat[edge], lon[edge] = ends.lat[:, k], ends.lon[:, k]
     for edge, vectors in ((ptr[:-1] + 1, begin), (ptr[1:] - 2, end)):
         lat[edge], lon[edge] = geocentric_positions(vectors)
     line = np.repeat(np.arange(len(inner)), inner)

@@ -10,7 +10,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time
-from thalweg.core.types import IntArray
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.history.arc_lines import GlobeWays, LinesOffLand, lines_off_land
 from thalweg.network.history.arc_statistics import ArcEvidence, FoundArcs, arcs_of_occurrences
@@ -23,6 +23,7 @@ from thalweg.network.history.history_network import (
 from thalweg.network.history.junction_visits import arc_occurrences
 from thalweg.network.history.junctions import CorridorLine, Junctions, find_junctions
 from thalweg.network.history.missing_arcs import connected_arcs
+from thalweg.network.history.stretch_ends import EndFinder
 from thalweg.network.history.turning_points import turning_points
 from thalweg.network.history.voyage_tracks import HistoryPort, VoyageTracks
 
@@ -129,22 +130,28 @@ def build_history(
         np.append(junctions.lon, [port.lon for port in ports]),
     )
     ways = GlobeWays(chart)
+    finder = EndFinder(chart, tracks, places, ports, rules.radius)
     tested = lines_off_land(
-        chart, tracks, occurrences, sailed.candidates, places=places, turning=turning,
+        chart, tracks, occurrences, sailed.candidates, finder=finder, turning=turning,
         radius=rules.radius, ways=ways,
     )  # fmt: skip
-    arcs = _sailed_arcs(chart, sailed, tested)
+    approach = finder.ends(occurrences.take(tested.source)).approach
+    arcs = _sailed_arcs(chart, sailed, tested, approach)
     report("connecting the network")
     nodes = HistoryNodes(*places, (*junctions.names, *([""] * len(ports))), tuple(ports))
     used = range(nodes.first_port, len(nodes))
-    arcs, alone = connected_arcs(chart, arcs, places, used, ways)
+    arcs, alone = connected_arcs(
+        chart, arcs, places, used, ways, node_approach=finder.node_approach
+    )
     notes = [f"{ports[k - nodes.first_port].name} cannot be reached by sea."
              for k in alone if k >= nodes.first_port]  # fmt: skip
     summary = _summary(tracks, sailed, tested, junctions) | {"notes": notes}
     return _without_unused(HistoryNetwork(nodes, arcs, rules.radius, rules.least, summary))
 
 
-def _sailed_arcs(chart: Chart, sailed: FoundArcs, tested: LinesOffLand) -> HistoryArcs:
+def _sailed_arcs(
+    chart: Chart, sailed: FoundArcs, tested: LinesOffLand, approach: FloatArray
+) -> HistoryArcs:
     """Return the arcs whose lines are allowed."""
     arc = tested.arc
     evidence = ArcEvidence(
@@ -159,6 +166,7 @@ def _sailed_arcs(chart: Chart, sailed: FoundArcs, tested: LinesOffLand) -> Histo
         sailed.tube[arc],
         tested.lines.control_area_shares(chart),
         tested.repaired,
+        approach,
     )
 
 
@@ -188,6 +196,6 @@ def _without_unused(network: HistoryNetwork) -> HistoryNetwork:
     left = HistoryNodes(nodes.lat[keep], nodes.lon[keep], names, nodes.ports)
     new = HistoryArcs(
         number[arcs.tail], number[arcs.head], arcs.kind, arcs.lines, arcs.evidence, arcs.tube,
-        arcs.eca_share, arcs.repaired,
+        arcs.eca_share, arcs.repaired, arcs.approach,
     )  # fmt: skip
     return HistoryNetwork(left, new, network.radius, network.least, network.summary)

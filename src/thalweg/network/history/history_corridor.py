@@ -120,7 +120,7 @@ class HistoryCorridor:
                     links.append((ends[-1], node, way) if outward else (node, ends[-1], way[::-1]))
             lat, lon = np.append(lat, place[0]), np.append(lon, place[1])
         if links:
-            more = globe_arcs(chart, links)
+            more = globe_arcs(chart, links, np.zeros(len(lat)))
             arcs, weight = joined_arcs([arcs, more]), np.append(weight, more.length)
         kept = arcs_between(len(lat), arcs, weight, (ends[0], ends[1]), self.longest)
         if not len(kept):

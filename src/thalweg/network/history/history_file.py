@@ -20,6 +20,7 @@ from thalweg.network.history.history_network import (
     HistoryNetwork,
     HistoryNodes,
 )
+from thalweg.network.history.stretch_ends import ends_at_nodes
 from thalweg.network.history.voyage_tracks import HistoryPort
 
 FORMAT: Final = "thalweg history network"
@@ -127,6 +128,7 @@ def _arc_to_dict(arcs: HistoryArcs, arc: int) -> dict[str, Any]:
         "line": [list(p) for p in zip(_rounded(lat, _PLACES), _rounded(lon, _PLACES))],
         "eca_share": _rounded(arcs.eca_share[arc : arc + 1], _SHARES_OF_ONE)[0],
         "repaired_share": round(float(arcs.repaired[arc]), _SHARES_OF_ONE),
+        "approach_m": _rounded(arcs.approach[arc], _METRES),
     }
     if evidence.count[arc]:
         entry |= {
@@ -168,15 +170,19 @@ def _network_of(data: dict[str, Any]) -> HistoryNetwork:
         np.array([row.get("draughts_known", 0) for row in rows], np.int64),
     )
     flat = [[0.0, 0.0]] * len(SHARES)
+    tail, head = (np.array([row[end] for row in rows], np.int64) for end in ("from", "to"))
+    approach = ends_at_nodes(tail, head, nodes.approach)  # in files that lack those of arcs
+    given = np.array([row.get("approach_m", [np.nan] * 2) for row in rows], float).reshape(-1, 2)
     arcs = HistoryArcs(
-        np.array([row["from"] for row in rows], np.int64),
-        np.array([row["to"] for row in rows], np.int64),
+        tail,
+        head,
         np.array([ARC_KINDS.index(row["kind"]) for row in rows], np.int64),
         ArcLines.of_lists([row["line"] for row in rows]),
         evidence,
         np.array([row.get("tube_m", flat) for row in rows], float).reshape(-1, len(SHARES), 2),
         np.array([row["eca_share"] for row in rows], float),
         np.array([row["repaired_share"] for row in rows], float),
+        np.where(np.isnan(given), approach, given),
     )
     return HistoryNetwork(
         nodes, arcs, float(data["radius_m"]), int(data["least_voyages"]), dict(data["summary"])

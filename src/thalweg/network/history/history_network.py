@@ -51,6 +51,11 @@ class HistoryNodes:
         return len(self.lat)
 
     @property
+    def approach(self) -> FloatArray:
+        """Length of the approach of every node [m], (N,); 0 at junctions."""
+        return np.append(np.zeros(self.first_port), [port.approach_m for port in self.ports])
+
+    @property
     def first_port(self) -> int:
         """Node of the first port."""
         return len(self.lat) - len(self.ports)
@@ -69,6 +74,8 @@ class HistoryArcs:
     tube : p5 and p95 of the distance of tracks to starboard of the line [m], (A, 9, 2).
     eca_share, repaired : Shares of the line inside emission control areas (NaN: unknown), and of
         ways over the globe in place of tracks over land, (A,).
+    approach : Length from the berth of a port to the first place of the line, and from the last one
+        to a berth [m], (A, 2); 0 at junctions.
     """
 
     tail: IntArray
@@ -79,6 +86,7 @@ class HistoryArcs:
     tube: FloatArray
     eca_share: FloatArray
     repaired: FloatArray
+    approach: FloatArray
 
     def __len__(self) -> int:
         return len(self.tail)
@@ -213,7 +221,7 @@ class HistoryNetwork:
                 no_arcs_text(month, draught),
                 f"{_what_to_leave_out(month, draught)}uild the network with more tracks.",
             )
-        return self._route_of(ends, arcs)
+        return self.route_along(ends, arcs)
 
     def weights(self, *, month: int | None = None, draught: float | None = None) -> FloatArray:
         """Return what arcs count in the choice of the way; inf for those that are closed.
@@ -275,22 +283,26 @@ class HistoryNetwork:
             node = before
         return arcs[::-1]
 
-    def _by_other_name(self, place: str) -> list[int]:
-        """Return the node of a port that the World Port Index has under another name."""
-        try:
-            port = PORTS.lookup(place)
-        except InputError:
-            return []
-        return self._by_name.get(_plain(port.locode), []) or self._by_name.get(
-            _plain(port.label), []
-        )
+    def route_along(self, ends: tuple[int, int], arcs: Sequence[int]) -> HistoryRoute:
+        """Return the route between two ports along given arcs.
 
-    def _route_of(self, ends: tuple[int, int], arcs: Sequence[int]) -> HistoryRoute:
+        Parameters
+        ----------
+        ends : (int, int)
+            Nodes of the ports.
+        arcs : sequence of int
+            From `path`, at least one.
+
+        Returns
+        -------
+        HistoryRoute
+        """
         index = np.array(arcs)
         of, evidence = self.arcs, self.arcs.evidence
         length = of.length[index]
         sailed = of.kind[index] == SAILED
         total = float(length.sum())
+        approaches = float(of.approach[arcs[0], 0] + of.approach[arcs[-1], 1])
         unknown = np.where(of.kind[index] == GLOBE, 1.0, of.repaired[index])
         start, goal = (self.ports[node - self.nodes.first_port] for node in ends)
         line: list[Position] = []
@@ -304,13 +316,23 @@ class HistoryNetwork:
             start,
             goal,
             tuple(arcs),
-            total + start.approach_m + goal.approach_m,
+            total + approaches,
             (float(p10), float(p50), float(p90)),
             int(np.where(sailed, evidence.count[index], 0).min()),
             float((unknown * length).sum() / total),
             float((of.eca_share[index] * length).sum() / total),
             tuple(line),
             tuple(dict.fromkeys(name for name in names if name)),
+        )
+
+    def _by_other_name(self, place: str) -> list[int]:
+        """Return the node of a port that the World Port Index has under another name."""
+        try:
+            port = PORTS.lookup(place)
+        except InputError:
+            return []
+        return self._by_name.get(_plain(port.locode), []) or self._by_name.get(
+            _plain(port.label), []
         )
 
     @cached_property
@@ -320,7 +342,7 @@ class HistoryNetwork:
         factor = np.where(few, _DOUBT["few"], 1.0)
         factor[arcs.kind == REVERSED] = _DOUBT["reversed"]
         factor[arcs.kind == GLOBE] = _DOUBT["globe"]
-        return arcs.length * factor
+        return arcs.length * factor + arcs.approach.sum(axis=1)
 
     @cached_property
     def _by_tail(self) -> tuple[IntArray, IntArray]:

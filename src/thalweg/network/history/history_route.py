@@ -37,7 +37,8 @@ class HistoryRoute:
     eca_share : float
         Share of the length inside emission control areas; NaN where unknown.
     line : tuple of (lat, lon)
-        Waypoints from sea end to sea end [deg].
+        Waypoints from where the approach of the start is left to where that of the goal is met
+        [deg]: the sea ends, or places nearer to the berths as before canals.
     passes : tuple of str
         Corridors and canals, in order.
     """

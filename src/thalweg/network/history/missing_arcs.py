@@ -20,6 +20,7 @@ from thalweg.network.history.history_network import (
     HistoryArcs,
 )
 from thalweg.network.history.season_masks import LEAST_SAMPLES
+from thalweg.network.history.stretch_ends import ends_at_nodes
 from thalweg.network.history.voyage_tracks import sphere_vectors
 
 if TYPE_CHECKING:
@@ -36,6 +37,8 @@ def connected_arcs(
     places: tuple[FloatArray, FloatArray],
     used: Sequence[int],
     ways: GlobeWays,
+    *,
+    node_approach: FloatArray,
 ) -> tuple[HistoryArcs, list[int]]:
     """Return arcs over which every node in use reaches every other.
 
@@ -49,6 +52,7 @@ def connected_arcs(
     chart : Gives the emission control areas.
     places : Positions of the nodes [deg], (lat, lon).
     used : Nodes that must be connected, such as ports, beside those of the arcs.
+    node_approach : Length of the approach of every node [m]; 0 at junctions.
 
     Returns
     -------
@@ -65,7 +69,7 @@ def connected_arcs(
     part = strongly_connected_parts(count, arcs.tail, arcs.head, both_ways=True)
     found, alone = _ways_between_parts(places, nodes.astype(np.int64), part, ways)
     both = [*found, *((b, a, line[::-1]) for a, b, line in found)]
-    return joined_arcs([arcs, globe_arcs(chart, both)]), alone
+    return joined_arcs([arcs, globe_arcs(chart, both, node_approach)]), alone
 
 
 def _returns_far_round(count: int, arcs: HistoryArcs) -> BoolArray:
@@ -90,18 +94,22 @@ def _returns_far_round(count: int, arcs: HistoryArcs) -> BoolArray:
     return far
 
 
-def globe_arcs(chart: Chart, ways: Sequence[tuple[int, int, list[Position]]]) -> HistoryArcs:
+def globe_arcs(
+    chart: Chart, ways: Sequence[tuple[int, int, list[Position]]], node_approach: FloatArray
+) -> HistoryArcs:
     """Return arcs of ways by sea (tail, head, waypoints) on which nothing was seen."""
     lines = ArcLines.of_lists([line for _, _, line in ways])
+    tail, head = (np.array([way[k] for way in ways], np.int64) for k in (0, 1))
     return HistoryArcs(
-        np.array([a for a, _, _ in ways], np.int64),
-        np.array([b for _, b, _ in ways], np.int64),
+        tail,
+        head,
         np.full(len(ways), GLOBE, np.int64),
         lines,
         unknown_evidence(len(ways)),
         np.zeros((len(ways), 9, 2)),
         lines.control_area_shares(chart),
         np.zeros(len(ways)),
+        ends_at_nodes(tail, head, node_approach),
     )
 
 
@@ -123,7 +131,7 @@ def joined_arcs(parts: Sequence[HistoryArcs]) -> HistoryArcs:
     )
     columns = {
         name: np.concatenate([getattr(part, name) for part in parts])
-        for name in ("tail", "head", "kind", "tube", "eca_share", "repaired")
+        for name in ("tail", "head", "kind", "tube", "eca_share", "repaired", "approach")
     }
     return HistoryArcs(lines=whole, evidence=evidence, **columns)
 
@@ -143,6 +151,7 @@ def _reversed(arcs: HistoryArcs, index: IntArray) -> HistoryArcs:
         arcs, tail=arcs.head[index], head=arcs.tail[index], kind=kind,
         lines=ArcLines.of_lists(lines), evidence=evidence, tube=tube,
         eca_share=arcs.eca_share[index], repaired=arcs.repaired[index],
+        approach=arcs.approach[index][:, ::-1],
     )  # fmt: skip
 
 

@@ -1,0 +1,107 @@
+"""Where stretches of tracks begin and end: at nodes, or where ships leave an approach early."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from thalweg.chart.approaches import dense_line
+from thalweg.core.geodesy import distance, geocentric_positions
+from thalweg.core.types import FloatArray, IntArray
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.network.history.junction_visits import ArcOccurrences
+from thalweg.network.history.voyage_tracks import HistoryPort, VoyageTracks
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+_OFF_LINE: Final = 2.0 * NAUTICAL_MILE  # tracks so near to an approach are on it
+_MOVED: Final = 3.0 * NAUTICAL_MILE  # to water, where the coastline does not show the river
+
+
+@dataclass(frozen=True, eq=False)
+class StretchEnds:
+    """Ends of m stretches.
+
+    Parameters
+    ----------
+    lat, lon : Positions of the first and the last place [deg], (m, 2).
+    approach : Length between these and the berths of ports [m], (m, 2); 0 at junctions.
+    """
+
+    lat: FloatArray
+    lon: FloatArray
+    approach: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class EndFinder:
+    """Finds where stretches of tracks begin and end.
+
+    A ship that turns into a canal does not come near the sea end of the approach. Where a track is
+    on the line of the approach, and farther from its sea end than the radius of a junction, the
+    stretch begins there, and so much of the approach is sailed as lies before.
+
+    Parameters
+    ----------
+    chart : Shows where water is.
+    tracks : VoyageTracks
+    places : Positions of the nodes [deg], (lat, lon): junctions, then ports.
+    ports : The ports.
+    radius : Radius of a junction [m].
+    """
+
+    chart: Chart
+    tracks: VoyageTracks
+    places: tuple[FloatArray, FloatArray]
+    ports: Sequence[HistoryPort]
+    radius: float
+
+    @property
+    def node_approach(self) -> FloatArray:
+        """Length of the approach of every node [m]; 0 at junctions."""
+        junctions = np.zeros(len(self.places[0]) - len(self.ports))
+        return np.append(junctions, [port.approach_m for port in self.ports])
+
+    def ends(self, stretches: ArcOccurrences) -> StretchEnds:
+        """Return the ends of stretches."""
+        nodes = np.stack([stretches.tail, stretches.head], axis=1)
+        lat, lon = self.places[0][nodes], self.places[1][nodes]
+        approach = self.node_approach[nodes]
+        along = np.stack([stretches.begin, stretches.end], axis=1)
+        track = geocentric_positions(self.tracks.vectors_at(along.ravel()))
+        track_lat, track_lon = (np.asarray(part).reshape(along.shape) for part in track)
+        far = (approach > 0.0) & (distance(lat, lon, track_lat, track_lon) > self.radius)
+        for row, side in np.argwhere(far).tolist():
+            found = self._left_early(
+                int(nodes[row, side]), float(track_lat[row, side]), float(track_lon[row, side])
+            )
+            if found is not None:
+                lat[row, side], lon[row, side], approach[row, side] = found
+        return StretchEnds(lat, lon, approach)
+
+    def _left_early(self, node: int, lat: float, lon: float) -> tuple[float, float, float] | None:
+        """Return the water where a track leaves an approach, and the length of it from the berth.
+
+        None where the track is not on the line of the approach.
+        """
+        port = self.ports[node - (len(self.places[0]) - len(self.ports))]
+        if len(port.places) < 3:
+            return None
+        line = dense_line(port.places[1:])
+        apart = np.asarray(distance(lat, lon, line[:, 0], line[:, 1]))
+        nearest = int(np.argmin(apart))
+        if apart[nearest] > _OFF_LINE:
+            return None
+        water = self.chart.nearest_navigable(lat, lon, largest=_MOVED)
+        if water is None:
+            return None
+        return float(water[0]), float(water[1]), float(line[nearest, 2] + apart[nearest])
+
+
+def ends_at_nodes(tail: IntArray, head: IntArray, node_approach: FloatArray) -> FloatArray:
+    """Return the lengths of whole approaches at the ends of arcs (A, 2) [m]."""
+    return np.asarray(node_approach[np.stack([tail, head], axis=1)], float).reshape(-1, 2)
