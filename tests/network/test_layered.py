@@ -246,7 +246,7 @@ def test_a_chosen_network_turns_where_land_is_across_the_direct_line():
     round_west = float(geodesy.distance(lat[:-1], lon[:-1], lat[1:], lon[1:]).sum())
     assert path and round_west <= length[network.meta.goal] <= 1.03 * round_west
     assert "Land is across the direct line" in network.meta.notes[0]
-    assert "turning points of the shortest way: 64" in network.meta.notes[1]
+    assert "turning points of a way round land: 64" in network.meta.notes[1]
 
 
 def test_straits_belong_to_the_section_that_is_nearest():

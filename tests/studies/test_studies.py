@@ -21,7 +21,7 @@ pytest.importorskip("pyarrow", reason="the extra 'studies' is not installed")
 from thalweg.cli.main import main
 from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
-from thalweg.studies import Study, run_study, study_rows, summarise_study
+from thalweg.studies import Study, run_study, study_rows, study_run, summarise_study
 from thalweg.studies.row_runner import run_rows, ship_of_request
 from thalweg.studies.study_axes import axis_values
 from thalweg.studies.study_parts import read_parts
@@ -237,6 +237,25 @@ def test_processes_give_the_same_bits_and_a_killed_one_loses_nothing(folder, tmp
     assert killed
     serial, parallel = (read_parts(tmp_path / name) for name in ("serial", "parallel"))
     assert comparable(serial) == comparable(parallel)
+
+
+def first_row_only(rows, folder):
+    return run_rows(rows[:1], folder)
+
+
+@pytest.mark.slow
+def test_long_chunks_are_kept_in_parts(folder, tmp_path, monkeypatch):
+    """A chunk whose voyages take long is written as it goes, here and in processes."""
+    study = base(folder, axes={"depart": DAYS})
+    run_study(study, tmp_path / "serial")
+    monkeypatch.setattr(study_run, "_KEEP_S", 0.0)
+    monkeypatch.setattr(study_run, "run_for_a_while", first_row_only)
+    for workers in (0, 2):
+        steps = []
+        out = tmp_path / f"parts of {workers}"
+        run_study(study, out, workers=workers, chunk=len(DAYS), progress=steps.append)
+        assert [state.done for state in steps] == list(range(1, len(DAYS) + 1))
+        assert comparable(read_parts(tmp_path / "serial")) == comparable(read_parts(out))
 
 
 @pytest.mark.slow

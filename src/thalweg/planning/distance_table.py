@@ -166,7 +166,7 @@ def usual_distance_table(
                 notes.append(f"No way from {names[i]} to {names[j]}.")
                 length[i, j] = math.nan
                 continue
-            route = network.route_along((start, goal), arcs)
+            route = network.route_along((start, goal), arcs, month=month)
             length[i, j] = route.length
             if route.confidence in ("low", "none"):
                 doubtful.append(f"{names[i]} to {names[j]}")

@@ -75,6 +75,8 @@ def plan_in_corridor(request: CorridorRequest, draught: float | None) -> Plan:
         if corridor.gain is None:
             raise
         refusal = str(error)
+    if inside is not None:
+        inside = replace(inside, notes=(*inside.notes, *_unknown_ports(request)))
     if corridor.gain is None:
         assert inside is not None  # refused above otherwise
         return _with_note(inside, "The route stays in the water that ships usually use.")
@@ -92,6 +94,23 @@ def plan_in_corridor(request: CorridorRequest, draught: float | None) -> Plan:
         f"The route stays in the water that ships usually use: leaving it saves {words}, not more "
         f"than {100.0 * corridor.gain:g} %.",
     )
+
+
+def _unknown_ports(request: CorridorRequest) -> list[str]:
+    """Return a note for each port of a voyage to which no track of the network leads."""
+    network = request.corridor.network
+    notes = []
+    for end in request.ends:
+        if end.approach is None:
+            continue
+        port = end.approach.port
+        if not any(port.locode == known.locode if port.locode else end.name == known.name
+                   for known in network.ports):  # fmt: skip
+            notes.append(
+                f"{end.name} is in no track of the history network: from there the route takes the "
+                "shortest way to its water."
+            )
+    return notes
 
 
 def _with_note(plan: Plan, note: str) -> Plan:

@@ -175,9 +175,11 @@ def _mixed_table(ship: Ship, mix: Mix) -> PerformanceTable:
         table = consumption_table(ship, name)
         if table.finish is not None:
             raise InputError(
-                f"A weighted sum counts the {name} of {ship.name!r}, which holds a constant speed.",
+                f"The {name} of {ship.name!r} is weighed against other figures, and the ship holds "
+                "a constant speed.",
                 "Its fuel is a curve of its resistance, and cannot be added to other tables.",
-                "Let the ship hold its power (leave out --hold), or weigh time in place of fuel.",
+                "Weigh time in place of fuel, or let the ship hold its power: leave out --hold, or "
+                "give powers_kw in place of speeds_kn in the ship file.",
                 field="weights",
             )
         parts += [replace(part, values=weight * part.values) for part in table.parts]

@@ -12,6 +12,7 @@ import os
 import signal
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -31,7 +32,7 @@ ATTEMPTS = 3  #: of a chunk whose worker dies
 _AHEAD = 3  # chunks per worker that wait in a cluster
 _SHARES = 4  # least number of chunks for each process, so that short studies use all of them
 _CLUSTER = 16  # processes of a cluster that short studies are cut for
-_KEEP_S = 20.0  # rows of this process are written this often
+_KEEP_S = 20.0  # rows are written at least this often, but for the one under way
 
 Chunk = list[StudyRow]
 
@@ -182,28 +183,43 @@ def _results(
 def _in_this_process(chunks: list[Chunk], folder: str) -> Iterator[list[dict[str, Any]]]:
     """Yield the results of chunks, of long ones in parts; after Ctrl-C those that are finished."""
     for chunk in chunks:
-        at_once = all(row.request.get("detail") == "network" for row in chunk)
-        done: list[dict[str, Any]] = []
-        begin = time.monotonic()
-        try:
-            for rows in [chunk] if at_once else [[row] for row in chunk]:
-                done += run_rows(rows, folder)
-                if time.monotonic() - begin >= _KEEP_S:
+        left = chunk
+        while left:
+            done: list[dict[str, Any]] = []
+            try:
+                for results in _in_turns(left, folder):
+                    done += results
+            except KeyboardInterrupt:
+                if done:
                     yield done
-                    done, begin = [], time.monotonic()
-        except KeyboardInterrupt:
-            if done:
-                yield done
-            raise
-        if done:
+                raise
             yield done
+            left = left[len(done) :]
+
+
+def run_for_a_while(rows: Chunk, folder: str) -> list[dict[str, Any]]:
+    """Return the results of the first rows of a chunk: as many as are done in 20 seconds."""
+    return [result for results in _in_turns(rows, folder) for result in results]
+
+
+def _in_turns(rows: Chunk, folder: str) -> Iterator[list[dict[str, Any]]]:
+    """Yield the results of rows one by one for `_KEEP_S`, or those of one network together."""
+    if all(row.request.get("detail") == "network" for row in rows):
+        yield run_rows(rows, folder)
+        return
+    begin = time.monotonic()
+    for row in rows:
+        yield run_rows([row], folder)
+        if time.monotonic() - begin >= _KEEP_S:
+            return
 
 
 def _in_processes(chunks: list[Chunk], folder: str, workers: int) -> Iterator[list[dict[str, Any]]]:
-    """Yield the results of chunks as processes finish them; a chunk whose process dies is tried
-    again, and in the end refused.
+    """Yield the results of chunks, of long ones in parts, as processes finish them.
+
+    A chunk whose process dies is tried again, and in the end refused.
     """
-    waiting, attempts = list(reversed(chunks)), {id(chunk): 0 for chunk in chunks}
+    waiting, attempts = list(reversed(chunks)), Counter[str]()
     while waiting:
         pool = ProcessPoolExecutor(
             workers, multiprocessing.get_context("spawn"), _prepare_worker, (os.getpid(),)
@@ -213,17 +229,19 @@ def _in_processes(chunks: list[Chunk], folder: str, workers: int) -> Iterator[li
             while waiting or running:
                 while waiting and len(running) < workers:
                     one = waiting[-1]  # a pool whose process died raises here too
-                    running[pool.submit(run_rows, one, folder)] = one
+                    running[pool.submit(run_for_a_while, one, folder)] = one
                     waiting.pop()
                 finished, _ = wait(running, return_when=FIRST_COMPLETED)
                 for future in finished:
                     results = future.result()
-                    del running[future]
+                    left = running.pop(future)[len(results) :]
+                    if left:
+                        waiting.append(left)
                     yield results
         except BrokenProcessPool:
             for one in running.values():
-                attempts[id(one)] += 1
-                if attempts[id(one)] < ATTEMPTS:
+                attempts[one[0].id] += 1
+                if attempts[one[0].id] < ATTEMPTS:
                     waiting.append(one)
                 else:
                     yield _refused(one)

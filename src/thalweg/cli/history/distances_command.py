@@ -84,7 +84,7 @@ def run(arguments: argparse.Namespace) -> int:
     elif not arguments.out:
         print(table.to_csv(), end="")
     else:
-        print(f"written: {arguments.out}")
+        print(f"wrote {arguments.out}")
     return SUCCESS
 
 

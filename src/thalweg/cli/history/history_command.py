@@ -179,7 +179,7 @@ def _print_summary(network: HistoryNetwork, path: str) -> None:
     print(f"  {made['arcs_repaired']} arcs repaired over land, {made['outliers']} outliers")
     for note in made["notes"]:
         print(f"  note: {note}")
-    print(f"written: {path}")
+    print(f"wrote {path}")
 
 
 def _route(arguments: argparse.Namespace) -> int:
@@ -204,11 +204,7 @@ def _print_route(route: HistoryRoute) -> None:
             f"  {p50:.1f} h under way, without the approaches of the ports "
             f"(p10 {p10:.1f}, p90 {p90:.1f})"
         )
-    unseen = f", {100.0 * route.globe_share:.0f} % of the length without tracks"
-    print(
-        f"  confidence {route.confidence}: at least {route.voyages} voyages on every arc with "
-        f"tracks{unseen if route.globe_share > 0.0 else ''}"
-    )
+    print(f"  confidence {route.confidence}: {route.reason}")
     if route.eca_share == route.eca_share:
         print(f"  {100.0 * route.eca_share:.0f} % of the length in emission control areas")
     if route.passes:

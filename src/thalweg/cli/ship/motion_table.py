@@ -21,10 +21,8 @@ def print_motions(sheet: Mapping[str, Any]) -> None:
     ----------
     sheet : From `thalweg.ship.comfort.motion_sheet.motion_sheet`.
     """
-    from rich import box
     from rich.console import Console
     from rich.markup import escape
-    from rich.table import Table
 
     console = Console()
     console.print(
@@ -34,32 +32,50 @@ def print_motions(sheet: Mapping[str, Any]) -> None:
         "(ISO 2631-1)",
         highlight=False,
     )
-    table = Table(box=box.SIMPLE, pad_edge=False, padding=(0, 1, 0, 0))
-    for head in ("waves\ndeg", "speed\nkn", "heave\nm", "pitch\ndeg", "roll\ndeg"):
-        table.add_column(head, justify="right", no_wrap=True)
-    for name in sheet["places"]:
-        table.add_column(f"{escape(name)}\nm/s2", justify="right", no_wrap=True)
-        table.add_column("sick\n%", justify="right", no_wrap=True)
-    for k, heading in enumerate(sheet["headings_deg"]):
-        if heading not in _SHOWN_DEG:
-            continue
-        cells = [
-            f"{heading}",
-            _text(sheet["attained_speed_kn"][k], 1),
-            _text(sheet["heave_rms_m"][k], 2),
-            _text(sheet["pitch_rms_deg"][k], 2),
-            _text(sheet["roll_rms_deg"][k], 1),
-        ]
-        for at in sheet["places"].values():
-            cells += [_text(at["acceleration_rms_m_s2"][k], 2), _text(at["sick_percent"][k], 0)]
-        table.add_row(*cells)
-    console.print(table)
+    for table in _motion_tables(sheet, console.width):
+        console.print(table)
     for task, good in sheet["tasks"].items():
         possible = [h for h, g in zip(sheet["headings_deg"], good) if g]
         text = ", ".join(f"{h}" for h in possible) or "no heading"
         console.print(f"{escape(task)} is possible with waves from: {text}", highlight=False)
     for note in sheet["warnings"]:
         console.print("[yellow]warning:[/yellow] " + escape(note), highlight=False)
+
+
+def _motion_tables(sheet: Mapping[str, Any], width: int) -> list[Any]:
+    """Return the table of motions, in parts where it is wider than the terminal [characters]."""
+    from rich import box
+    from rich.markup import escape
+    from rich.table import Table
+
+    general = {
+        "waves\ndeg": [f"{heading}" for heading in sheet["headings_deg"]],
+        "speed\nkn": [_text(x, 1) for x in sheet["attained_speed_kn"]],
+        "heave\nm": [_text(x, 2) for x in sheet["heave_rms_m"]],
+        "pitch\ndeg": [_text(x, 2) for x in sheet["pitch_rms_deg"]],
+        "roll\ndeg": [_text(x, 1) for x in sheet["roll_rms_deg"]],
+    }
+    parts, used = [list(general.items())], 7 * len(general)
+    for name, at in sheet["places"].items():
+        more = max(len(name), 4) + 8
+        if used + more > width:
+            parts.append([next(iter(general.items()))])
+            used = 7
+        used += more
+        parts[-1] += [
+            (f"{escape(name)}\nm/s2", [_text(x, 2) for x in at["acceleration_rms_m_s2"]]),
+            ("sick\n%", [_text(x, 0) for x in at["sick_percent"]]),
+        ]
+    tables = []
+    for columns in parts:
+        table = Table(box=box.SIMPLE, pad_edge=False, padding=(0, 1, 0, 0))
+        for head, _ in columns:
+            table.add_column(head, justify="right", no_wrap=True)
+        for k, heading in enumerate(sheet["headings_deg"]):
+            if heading in _SHOWN_DEG:
+                table.add_row(*(cells[k] for _, cells in columns))
+        tables.append(table)
+    return tables
 
 
 def draw_motions(sheet: Mapping[str, Any], path: Path) -> Path:

@@ -221,7 +221,7 @@ class HistoryNetwork:
                 no_arcs_text(month, draught),
                 f"{_what_to_leave_out(month, draught)}uild the network with more tracks.",
             )
-        return self.route_along(ends, arcs)
+        return self.route_along(ends, arcs, month=month)
 
     def weights(self, *, month: int | None = None, draught: float | None = None) -> FloatArray:
         """Return what arcs count in the choice of the way; inf for those that are closed.
@@ -283,7 +283,9 @@ class HistoryNetwork:
             node = before
         return arcs[::-1]
 
-    def route_along(self, ends: tuple[int, int], arcs: Sequence[int]) -> HistoryRoute:
+    def route_along(
+        self, ends: tuple[int, int], arcs: Sequence[int], *, month: int | None = None
+    ) -> HistoryRoute:
         """Return the route between two ports along given arcs.
 
         Parameters
@@ -292,6 +294,8 @@ class HistoryNetwork:
             Nodes of the ports.
         arcs : sequence of int
             From `path`, at least one.
+        month : int, optional
+            1 to 12, to count the voyages in that month.
 
         Returns
         -------
@@ -323,6 +327,7 @@ class HistoryNetwork:
             float((of.eca_share[index] * length).sum() / total),
             tuple(line),
             tuple(dict.fromkeys(name for name in names if name)),
+            None if month is None else int(evidence.months[index, month - 1].min()),
         )
 
     def _by_other_name(self, place: str) -> list[int]:

@@ -41,6 +41,8 @@ class HistoryRoute:
         [deg]: the sea ends, or places nearer to the berths as before canals.
     passes : tuple of str
         Corridors and canals, in order.
+    voyages_in_month : int, optional
+        Least number of voyages of its arcs in the month of the request; None without a month.
     """
 
     start: HistoryPort
@@ -53,6 +55,7 @@ class HistoryRoute:
     eca_share: float
     line: tuple[Position, ...]
     passes: tuple[str, ...]
+    voyages_in_month: int | None = None
 
     @property
     def nm(self) -> float:
@@ -66,7 +69,17 @@ class HistoryRoute:
             return "none"
         if self.globe_share > _MUCH or self.voyages < _FEW:
             return "low"
-        return "high" if self.voyages >= LEAST_SAMPLES else "medium"
+        return "high" if self.voyages >= LEAST_SAMPLES and self.voyages_in_month != 0 else "medium"
+
+    @property
+    def reason(self) -> str:
+        """Why the route is known so well or so little, in words."""
+        reasons = [f"at least {self.voyages} voyages on every arc with tracks"]
+        if self.globe_share > 0.0:
+            reasons.append(f"{100.0 * self.globe_share:.0f} % of the length without tracks")
+        if self.voyages_in_month == 0:
+            reasons.append("no voyage in this month on some of them")
+        return ", ".join(reasons)
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data for JSON.
@@ -84,6 +97,8 @@ class HistoryRoute:
             "duration_h": dict(zip(("p10", "p50", "p90"), hours)),
             "voyages": self.voyages,
             "confidence": self.confidence,
+            "reason": self.reason,
+            "voyages_in_month": self.voyages_in_month,
             "share_without_tracks": self.globe_share,
             "eca_share": None if np.isnan(self.eca_share) else self.eca_share,
             "passes": list(self.passes),

@@ -205,15 +205,16 @@ def _broken_network(
         2 * shape.layers + 1, shape.fan + 1 if shape.fan % 2 == 0 else shape.fan + 2,
         max(shape.offset / 2.0, 1.0),
     )  # fmt: skip
-    reasons = " and ".join(f"{n:,} by {reason}" for reason, n in rejected.items())
+    reasons = ", ".join(f"{n:,} {reason}" for reason, n in rejected.items())
     at = int(np.flatnonzero(reached)[-1])
     return NoPathError(
         f"The layered network has no path through section {number} of {numbering[1]}: "
         f"it ends between layer {layer} and layer {layer + 1}, where all {tried:,} segments from "
         "the nodes that are reached are refused.",
-        f"Of all {len(draft.first):,} segments the chart refuses {reasons}.",
-        f"Take for this section {better.layers} layers, a fan of {better.fan} and an offset of "
-        f"{better.offset / NAUTICAL_MILE:.3g} nm, or move the waypoint away from land.",
+        f"Segments refused, of all {len(draft.first):,}: {reasons}.",
+        f"Try a finer network for this section, such as {better.layers} layers, a fan of "
+        f"{better.fan} and an offset of {better.offset / NAUTICAL_MILE:.3g} nm; or leave out all "
+        "three, so that a shape that has a path is searched; or move the waypoint away from land.",
         reasons=rejected,
         nearest=(float(draft.lat[at]), float(draft.lon[at])),
         section=number,

@@ -28,6 +28,7 @@ _LADDER_FAN = 7
 #: Half widths of the rhombus that are tried, as shares of the length of the section: courses then
 #: differ by up to 39 and 17 degrees from that of the section.
 _HALF_WIDTHS = (0.4, 0.15)
+_ALONG_THE_WAY = 1.05  # times the distance between the ends by a passage that lies between them
 _STRAIT_DISTANCE = 0.5 * NAUTICAL_MILE  #: of a node from a place that paths must pass
 _SHAPE = ("layers", "fan", "offset_nm")
 _KEYS = (*_SHAPE, "near_coast_nm", "contain", "within_percent")
@@ -295,6 +296,33 @@ def _passes(network: Network, place: Position) -> bool:
     """Return whether paths of a network pass a place: all of its nodes are on paths."""
     away = geodesy.distance(network.lat, network.lon, *place)
     return bool(np.min(away) <= _STRAIT_DISTANCE)
+
+
+def missed_straits_note(
+    chart: Chart, network: Network, ends: tuple[Position, Position]
+) -> tuple[str, ...]:
+    """Return a note on named passages along the way that no path of a network passes, or none.
+
+    Parameters
+    ----------
+    chart : With the passages that are open.
+    network : The layered network.
+    ends : Start and goal [deg].
+    """
+    start, goal = ends
+    most = _ALONG_THE_WAY * float(geodesy.distance(*start, *goal))
+    missed = []
+    for passage in chart.passages:
+        middle = passage.line[len(passage.line) // 2]
+        by = float(geodesy.distance(*start, *middle) + geodesy.distance(*middle, *goal))
+        if by <= most and not _passes(network, middle):
+            missed.append(passage.name)
+    if not missed:
+        return ()
+    return (
+        f"No path of the layered network passes {', '.join(missed)}: name places in them that it "
+        "must contain, or compare the plan with one on the network that is used by default.",
+    )
 
 
 def narrow_strait_note(chart: Chart, place: Position) -> str:

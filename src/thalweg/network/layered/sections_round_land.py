@@ -19,6 +19,7 @@ from thalweg.network.layered.layered_builder import layered_network
 from thalweg.network.layered.layered_request import (
     LayeredRequest,
     distances_from_line,
+    missed_straits_note,
     narrow_strait_note,
     suggested_shape,
 )
@@ -30,6 +31,7 @@ from thalweg.network.shortest_paths import shortest_path
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
+_CLEARLY_LONGER = 0.02  # share by which a shortest path is longer than another way
 _WIDEST_SPACING = 8.0 * NAUTICAL_MILE  # of the lattice on which turning points are found
 
 
@@ -75,9 +77,9 @@ def layered_section(
     """
     wanted = request or LayeredRequest()
     if shape is not None:
-        places, shapes = [start, goal], [shape]
+        places, shapes, shortest = [start, goal], [shape], None
     else:
-        places, shapes = _chosen_sections(chart, start, goal, wanted, numbering)
+        places, shapes, shortest = _chosen_sections(chart, start, goal, wanted, numbering)
     shapes = [
         _close_enough(own, float(geodesy.distance(*a, *b)), spacing)
         for own, a, b in zip(shapes, places[:-1], places[1:])
@@ -91,7 +93,9 @@ def layered_section(
     if shape is not None:
         return network
     straits = (note for place in wanted.contain if (note := narrow_strait_note(chart, place)))
-    notes = (*_choice_notes(places, shapes, wanted), *straits, *network.meta.notes)
+    missed = missed_straits_note(chart, network, (start, goal))
+    choice = (*_choice_notes(places, shapes, wanted), *_longer_note(network, shortest))
+    notes = (*choice, *straits, *missed, *network.meta.notes)
     return replace(network, meta=replace(network.meta, notes=notes))
 
 
@@ -120,8 +124,23 @@ def _choice_notes(
         f"Land is across the direct line: the layered network has {len(shapes)} sections, with "
         f"{layers} layers, a fan of {shapes[0].fan} and offsets of {offsets} nm, chosen for "
         f"shortest paths within {wanted.within_percent:g} % of those of the finest networks tried.",
-        f"All its routes pass turning points of the shortest way: {turns}. Give waypoints (via) "
+        f"All its routes pass turning points of a way round land: {turns}. Give waypoints (via) "
         "for routes that turn elsewhere.",
+    ]
+
+
+def _longer_note(network: Network, shortest: float | None) -> list[str]:
+    """Return a note where the shortest path of a network is clearly longer than a way [m]."""
+    if shortest is None:
+        return []
+    length, _ = shortest_path(network, network.meta.start, network.meta.goal)
+    least = float(length[network.meta.goal])
+    if least <= (1.0 + _CLEARLY_LONGER) * shortest:
+        return []
+    return [
+        f"Its shortest path is {least / NAUTICAL_MILE:.0f} nm long, and "
+        f"{shortest / NAUTICAL_MILE:.0f} nm are possible: compare the plan with one on the network "
+        "that is used by default."
     ]
 
 
@@ -131,19 +150,22 @@ def _chosen_sections(
     goal: Position,
     wanted: LayeredRequest,
     numbering: tuple[int, int],
-) -> tuple[list[Position], list[SectionShape]]:
-    """Return waypoints from start to goal and the shapes between them.
+) -> tuple[list[Position], list[SectionShape], float | None]:
+    """Return waypoints from start to goal, the shapes between them, and the length of a way [m].
 
-    One section if a shape has a path; else those between turning points of the shortest way.
+    One section if a shape has a path, without that length; else those between turning points of the
+    shortest way over a lattice.
     """
     try:
-        return [start, goal], [_chosen_shape(chart, start, goal, wanted, numbering)]
+        return [start, goal], [_chosen_shape(chart, start, goal, wanted, numbering)], None
     except NoPathError:
         way = _turning_points(chart, start, goal)
         if len(way) == 2:
             raise
     ends, shapes = zip(*_divided(chart, way, wanted, numbering))
-    return [start, *ends], list(shapes)
+    lat, lon = np.array(way, float).T
+    length = float(np.sum(geodesy.distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
+    return [start, *ends], list(shapes), length
 
 
 def _divided(

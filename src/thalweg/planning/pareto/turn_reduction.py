@@ -11,6 +11,7 @@ from thalweg.network.alternatives.path_shortening import leg_lengths, string_pul
 from thalweg.planning.pareto.edge_costs import costs_of_water
 from thalweg.planning.pareto.evolutionary_refinement import freeze_around_tracks
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
+from thalweg.planning.request.network_choice import NetworkChoice
 from thalweg.route import Route, Track
 from thalweg.route.evaluators.cost_evaluator import make_cost_evaluator
 from thalweg.route.evaluators.polyline import polyline_of_track, track_of_polyline
@@ -42,7 +43,7 @@ def scored_with_fewer_turns(trade_off: TradeOffContext, track: Track, duration: 
     Route : Scored by the referee.
     """
     context, prices = trade_off.context, trade_off.objective.prices
-    given = context.choice.network not in _OPEN_WATER or context.voyage.method == "exact"
+    given = not _is_of_no_meaning(context.choice) or context.voyage.method == "exact"
     changed, own = track, None
     if not given and not trade_off.via:
         if prices.counts_water:
@@ -56,6 +57,13 @@ def scored_with_fewer_turns(trade_off: TradeOffContext, track: Track, duration: 
         if route.feasible and in_time and not (own and _is_worse(trade_off, route, own)):
             return route
     return own or context.evaluate(track, trade_off.objective.terms)
+
+
+def _is_of_no_meaning(choice: NetworkChoice) -> bool:
+    """Return whether the nodes of a network have no meaning of their own."""
+    if choice.network == "layered":  # of a chosen shape
+        return choice.layered is None or choice.layered.layers is None
+    return choice.network in _OPEN_WATER
 
 
 def _is_worse(trade_off: TradeOffContext, route: Route, own: Route) -> bool:

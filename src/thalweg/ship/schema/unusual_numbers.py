@@ -29,7 +29,7 @@ _SEA_WATER: Final = 1.025  # [t/m3]
 
 
 def check_possible_numbers(file: ShipFile) -> None:
-    """Raise `InputError` for a draught or specific consumption that no ship has.
+    """Raise `InputError` for a draught, breadth or specific consumption that no ship has.
 
     Parameters
     ----------
@@ -43,6 +43,14 @@ def check_possible_numbers(file: ShipFile) -> None:
             f"Breadths are usually {_words(_BREADTH_TO_DRAUGHT)} times the draught.",
             "Correct hull.draught_m or hull.breadth_m.",
             key="hull.draught_m",
+        )
+    length = file.hull.length_m
+    if breadth is not None and length is not None and breadth > length:
+        raise InputError(
+            f"The breadth of {breadth:g} m is greater than the length of {length:g} m.",
+            f"Lengths are usually {_words(_LENGTH_TO_BREADTH)} times the breadth.",
+            "Correct hull.breadth_m or hull.length_m; are they swapped?",
+            key="hull.breadth_m",
         )
     engine = file.engine
     curve = [("sfoc_curve_g_per_kwh", value) for value in engine.sfoc_curve_g_per_kwh]
