@@ -1,6 +1,7 @@
 """Layered networks: placing by geodesics, exact tests of segments, refusals in words."""
 
 import itertools
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from thalweg.network import (
     shortest_path,
 )
 from thalweg.network.layered.layered_draft import layered_draft
-from thalweg.network.layered.layered_request import suggested_shape
+from thalweg.network.layered.layered_request import missed_straits_note, suggested_shape
 from thalweg.network.layered.sections_round_land import layered_section
 from thalweg.network.short_legs import positions_on_short_legs
 
@@ -256,3 +257,15 @@ def test_straits_belong_to_the_section_that_is_nearest():
         ((65.01, 1.0),), ((64.3, 5.0),)
     ]  # fmt: skip
     assert request.of_section(places[:2], 0) == request
+
+
+def test_straits_between_the_ends_that_no_path_passes_are_named():
+    passages = [
+        SimpleNamespace(name="Aside", line=((65.0, 1.0), (65.2, 2.0), (65.0, 3.0))),
+        SimpleNamespace(name="On the way", line=((65.0, 1.9), (65.01, 2.0), (65.0, 2.1))),
+        SimpleNamespace(name="Far away", line=((60.0, 1.0), (60.0, 2.0), (60.0, 3.0))),
+    ]
+    ends = (65.0, 0.0), (65.0, 4.0)
+    network = layered_network(Chart.open_water(), ends, layers=99, fan=3, offset=200.0)
+    [note] = missed_straits_note(SimpleNamespace(passages=passages), network, ends)
+    assert "passes Aside:" in note

@@ -72,6 +72,19 @@ def test_medians_of_length_and_time_are_recovered(network, start, goal, month, t
     assert found.duration[0] < found.duration[1] < found.duration[2]
     assert found.voyages >= 30 and found.confidence == "high"
     assert found.globe_share == 0.0
+    if month is not None:
+        assert found.voyages_in_month > 0
+
+
+def test_a_month_without_voyages_lowers_the_confidence(network):
+    august = network.route("Bravo", "Charlie", month=8)
+    evidence = network.arcs.evidence
+    months = evidence.months.copy()
+    months[:, 7] = 0
+    arcs = replace(network.arcs, evidence=replace(evidence, months=months))
+    unseen = replace(network, arcs=arcs).route("Bravo", "Charlie", month=8)
+    assert (august.confidence, unseen.confidence) == ("high", "medium")
+    assert "no voyage in this month" in unseen.reason and "no voyage" not in august.reason
 
 
 def test_seasons_are_honoured_and_without_a_month_the_shortest_way_is_taken(network):

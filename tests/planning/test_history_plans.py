@@ -2,6 +2,7 @@
 
 import itertools
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from thalweg.network.history.history_network import no_arcs_text
 from thalweg.network.history.voyage_tracks import HistoryPort
 from thalweg.planning import Voyage, plan
 from thalweg.planning.distance_table import usual_distance_table
-from thalweg.planning.history_plans import usual_against_optimal
+from thalweg.planning.history_plans import _unknown_ports, usual_against_optimal
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 
@@ -59,6 +60,15 @@ def test_the_plan_stays_in_the_usual_water(network, inside):
     straight, usual = distance(*WEST, *EAST) / NM, network.route("West", "East").nm
     assert 1.005 * straight < route.distance_nm <= usual * 1.001
     assert any("stays in the water that ships usually use" in note for note in inside.notes)
+
+
+def test_ports_without_tracks_are_named(network):
+    known, other = (SimpleNamespace(approach=SimpleNamespace(port=SimpleNamespace(locode=code)),
+                                    name=name)
+                    for code, name in (("", "West"), ("XXOTH", "Other, XX")))  # fmt: skip
+    request = SimpleNamespace(ends=(known, other), corridor=HistoryCorridor(network))
+    [note] = _unknown_ports(request)
+    assert note.startswith("Other, XX is in no track")
 
 
 @pytest.mark.slow

@@ -74,6 +74,7 @@ def test_unusual_numbers_are_named_with_the_usual_range(sections, text):
 @pytest.mark.parametrize(
     ("sections", "key"),
     [
+        ({"hull": {"breadth_m": 175.0}}, "hull.breadth_m"),
         ({"hull": {"draught_m": 36.0, "breadth_m": 23.0}}, "hull.draught_m"),
         ({"engine": {"sfoc_g_per_kwh": 0.185}}, "engine.sfoc_g_per_kwh"),
     ],
