@@ -348,7 +348,9 @@ def _chosen(routes: Sequence[Route], most: int) -> list[Route]:
             )
             if apart or (same_way_too and slower):
                 found.append(k)
-    return sorted((routes[k] for k in found), key=lambda route: route.time_h)
+    chosen = sorted((routes[k] for k in found), key=lambda route: route.time_h)
+    good = {0, *champions([compared_values(route) for route in chosen]).values()}
+    return [route for k, route in enumerate(chosen) if k in good]  # each is best in something
 
 
 def _named(chosen: Sequence[Route], chart: Chart) -> tuple[RouteChoice, ...]:

@@ -46,9 +46,10 @@ from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.pareto.exploration import fastest_in_known_water, network_pareto_front
 from thalweg.planning.pareto.front_points import track_from_front_point
 from thalweg.planning.pareto.search_horizon import FastestPaths, extend_horizon
+from thalweg.planning.pareto.single_speed import refined_in_open_water
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
 from thalweg.planning.pareto.trade_off_planner import with_trade_off
-from thalweg.planning.pareto.turn_reduction import scored_with_fewer_turns
+from thalweg.planning.pareto.turn_reduction import may_leave_nodes, scored_with_fewer_turns
 from thalweg.planning.pareto.weighted_sums import (
     KeyFigureRange,
     key_figure,
@@ -252,7 +253,10 @@ class _Candidates:
         middle = knee(*(np.array([getattr(p, at) for p in points]) for at in ("time", "cost")))
         chosen = [front.cheapest] if len(points) < 3 else [front.cheapest, points[middle]]
         tracks = [(track_from_front_point(network, point), point.time) for point in chosen]
-        return [scored_with_fewer_turns(own, track, time).track for track, time in tracks]
+        scored = [scored_with_fewer_turns(own, track, time) for track, time in tracks]
+        if objective.name == "fuel" and may_leave_nodes(own):
+            scored = [refined_in_open_water(own, route) for route in scored]
+        return [route.track for route in scored]
 
     def round_islands(self, network: Network) -> Iterator[Track]:
         """Yield the shortest ways on the other sides of islands."""

@@ -52,8 +52,29 @@ def _refined(trade_off: TradeOffContext, one: ExploredAlternative, track: Track)
     context, terms = trade_off.context, trade_off.objective.terms
     context.report_progress(f"refining the route: {one.alternative.name}")
     longest = one.fastest.depart + _LONGEST * (one.fastest.arrive - one.fastest.depart)
+    route = context.evaluate(track, terms)
+    return refined_in_open_water(trade_off, route, arrive_by=longest)
+
+
+def refined_in_open_water(
+    trade_off: TradeOffContext, route: Route, *, arrive_by: float | None = None
+) -> Route:
+    """Return a route of a network, refined between its obstacles for its objective.
+
+    Parameters
+    ----------
+    trade_off : Its objective is fuel, cost or CO2.
+    route : Scored by the referee.
+    arrive_by : Latest arrival [s since 1970]; by default when the route arrives.
+
+    Returns
+    -------
+    Route : No worse than the given one; waits and canals do not change.
+    """
+    context, objective = trade_off.context, trade_off.objective
+    latest = route.arrive if arrive_by is None else arrive_by
     return refine_cost(
-        context.evaluate(track, terms),
+        route,
         RefinementConditions(
             context.ship,
             context.sea,
@@ -63,9 +84,9 @@ def _refined(trade_off: TradeOffContext, one: ExploredAlternative, track: Track)
             context.min_ukc,
         ),
         fuel=trade_off.consumption,
-        objective=context.voyage.objective,
-        arrive_by=min(context.latest_arrival, longest, context.data_end),
-        terms=terms,
+        objective=objective.name,
+        arrive_by=min(context.latest_arrival, latest, context.data_end),
+        terms=objective.terms,
     )
 
 

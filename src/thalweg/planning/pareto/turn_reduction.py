@@ -11,7 +11,6 @@ from thalweg.network.alternatives.path_shortening import leg_lengths, string_pul
 from thalweg.planning.pareto.edge_costs import costs_of_water
 from thalweg.planning.pareto.evolutionary_refinement import freeze_around_tracks
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
-from thalweg.planning.request.network_choice import NetworkChoice
 from thalweg.route import Route, Track
 from thalweg.route.evaluators.cost_evaluator import make_cost_evaluator
 from thalweg.route.evaluators.polyline import polyline_of_track, track_of_polyline
@@ -43,9 +42,8 @@ def scored_with_fewer_turns(trade_off: TradeOffContext, track: Track, duration: 
     Route : Scored by the referee.
     """
     context, prices = trade_off.context, trade_off.objective.prices
-    given = not _is_of_no_meaning(context.choice) or context.voyage.method == "exact"
     changed, own = track, None
-    if not given and not trade_off.via:
+    if may_leave_nodes(trade_off):
         if prices.counts_water:
             own = context.evaluate(track, trade_off.objective.terms)
             changed = _straightened(trade_off, own) if own.feasible else track
@@ -59,11 +57,18 @@ def scored_with_fewer_turns(trade_off: TradeOffContext, track: Track, duration: 
     return own or context.evaluate(track, trade_off.objective.terms)
 
 
-def _is_of_no_meaning(choice: NetworkChoice) -> bool:
-    """Return whether the nodes of a network have no meaning of their own."""
-    if choice.network == "layered":  # of a chosen shape
-        return choice.layered is None or choice.layered.layers is None
-    return choice.network in _OPEN_WATER
+def may_leave_nodes(trade_off: TradeOffContext) -> bool:
+    """Return whether routes may pass beside the nodes of the network.
+
+    Not with the exact method, with via points, and on meshes, history networks and layered networks
+    of a given shape, whose nodes have a meaning of their own.
+    """
+    choice = trade_off.context.choice
+    if choice.network == "layered":
+        is_open = choice.layered is None or choice.layered.layers is None
+    else:
+        is_open = choice.network in _OPEN_WATER
+    return is_open and not trade_off.via and trade_off.context.voyage.method != "exact"
 
 
 def _is_worse(trade_off: TradeOffContext, route: Route, own: Route) -> bool:
