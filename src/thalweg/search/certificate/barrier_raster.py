@@ -18,6 +18,13 @@ from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.grids.rectilinear_grid import RectilinearGrid
 from thalweg.sea.models.function_layer import FormulaLayer
 from thalweg.sea.models.lipschitz_bounds import greatest_spacing, margins_of_samples
+from thalweg.sea.standard_names import (
+    EASTWARD_CURRENT,
+    EASTWARD_WIND,
+    NORTHWARD_CURRENT,
+    NORTHWARD_WIND,
+    WAVE_HEIGHT,
+)
 
 if TYPE_CHECKING:
     from thalweg.sea import Sea
@@ -26,6 +33,8 @@ if TYPE_CHECKING:
 _MOST_VALUES = 60_000_000
 _MOST_CELLS = 400_000
 _LINE_TOLERANCE = 1e-4  # of the spacing
+#: Variables that change the speed of a ship over ground.
+_MOVING = (EASTWARD_CURRENT, NORTHWARD_CURRENT, EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGHT)
 
 
 @dataclass(frozen=True)
@@ -138,6 +147,16 @@ def _is_uniform(layer: object) -> bool:
 def is_uniform(sea: Sea) -> bool:
     """Return whether a sea has the same values everywhere."""
     return all(_is_uniform(layer) for layer in sea.layers)
+
+
+def is_calm(sea: Sea) -> bool:
+    """Return whether there are no currents, wind and waves anywhere."""
+    return is_uniform(sea) and not any(
+        layer.facts["values"].get(name, 0.0)
+        for layer in sea.layers
+        if isinstance(layer, FormulaLayer)
+        for name in _MOVING
+    )
 
 
 def _data_lines(sea: Sea) -> tuple[float, float, float] | None:

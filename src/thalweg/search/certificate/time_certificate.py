@@ -27,7 +27,7 @@ from thalweg.search.certificate.barrier_mesh import (
     build_mesh,
     slope_direction,
 )
-from thalweg.search.certificate.barrier_raster import is_uniform
+from thalweg.search.certificate.barrier_raster import is_calm, is_uniform
 from thalweg.search.certificate.check_timing import USUAL_SECONDS_A_CELL, seconds_a_cell
 from thalweg.search.certificate.length_round_land import length_round_land
 from thalweg.search.search_problem import ROUNDING_FACTOR
@@ -49,6 +49,9 @@ _MUCH_SLOWER: Final = 2.0  # a check than for most ships: the raster of function
 _FIRST_ROUNDS: Final = 3, 6  # rounds on the first mesh, backwards and forwards
 #: Rounds backwards and forwards on finer meshes, which begin with the factors of a coarser one.
 _LATER_ROUNDS: Final = 2, 5
+#: In calm water the least length round land is the time: only meshes finer than those of so much
+#: time [s], which know the zones that ships keep out of, are better.
+_LEAST_IN_CALM: Final = 10.0
 _SHARE_OF_LENGTH: Final = 0.4  # of the time for a bound, for the least length, in weather
 _GROWTH: Final = 3.5  # of the time from one mesh to the next
 
@@ -115,6 +118,8 @@ def certify_time(
     if seconds <= 0.0:
         return best
     left = seconds - (clock.perf_counter() - began)
+    if best.round_land and left < _LEAST_IN_CALM and is_calm(passage.sea):
+        return best
     search = BarrierSearch(passage, domain, first_cells(seconds, rate), rate)
     return _raised_by_barriers(best, search, left, target)
 
