@@ -57,7 +57,7 @@ SHOWN = Shown()
 
 
 @functools.cache
-def planned(start="Amsterdam", goal="Rotterdam", **options):
+def planned(start="Rotterdam", goal="Lowestoft", **options):
     voyage = Voyage(start=start, goal=goal, depart=DEPART, **options)
     return thalweg.plan(voyage, ship=ship(), sea=Sea.calm(), chart=chart(), progress=SHOWN)
 
@@ -88,7 +88,7 @@ def test_routes_found_so_far_go_from_berth_to_berth():
 @pytest.mark.slow
 def test_totals_are_those_of_the_sea_and_the_two_approaches():
     route = planned().best
-    start, goal = approach_of("Amsterdam"), approach_of("Rotterdam")
+    start, goal = approach_of("Rotterdam"), approach_of("Lowestoft")
     kind = np.asarray(route.legs["leg_kind"])
     length, time = route.legs["length"], route.legs["arrive"] - route.legs["depart"]
     first, last = len(start.line) - 1, len(goal.line) - 1
@@ -115,7 +115,7 @@ def test_bounds_and_notes_count_the_approaches():
     assert plan.lower_bound <= plan.objective_value * (1.0 + 1e-9)
     assert 0.0 <= plan.gap < 0.05
     texts = " ".join(plan.notes)
-    for name in ("Amsterdam", "Rotterdam"):
+    for name in ("Rotterdam", "Lowestoft"):
         miles = approach_of(name).length / NAUTICAL_MILE
         assert f"+{miles:.1f} nm" in texts
         assert name in texts
@@ -141,7 +141,7 @@ def test_a_written_route_has_the_same_totals_when_it_is_read_back(form, tmp_path
     rows = plan.best.waypoints()
     assert rows[0]["leg_kind"] == "approach"
     assert rows[-1]["leg_kind"] is None
-    assert len(again.track) <= len(rows)  # those on a straight line are left out
+    assert len(again.track) <= len(rows) + 4  # great circles are divided for plotters
 
 
 def test_parts_of_a_divided_leg_have_its_kind():
@@ -268,7 +268,7 @@ def test_slow_ships_keep_their_own_speed_in_approaches():
 
 @pytest.mark.slow
 def test_departure_is_from_the_berth():
-    plan = planned(goal="Rotterdam", objective="distance")
+    plan = planned(objective="distance")
     assert plan.best.depart == plan.voyage.earliest_departure
     assert plan.lower_bound <= plan.objective_value * (1.0 + 1e-9)
     assert plan.objective_value == pytest.approx(plan.best.distance_nm)

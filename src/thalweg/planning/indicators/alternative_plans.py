@@ -321,12 +321,8 @@ def _kept(routes: list[Route], limits: Sequence[IndicatorLimit]) -> list[Route]:
         return kept
     nearest = min(routes, key=lambda route: sum(one.excess(route) > 0.0 for one in limits))
     broken = ", ".join(one.text(nearest) for one in limits if one.excess(nearest) > 0.0)
-    raise NoRouteError(
-        f"None of {len(routes)} routes keeps the limits of the voyage.",
-        f"The nearest breaks: {broken}.",
-        "Relax the limits.",
-        reasons={},
-    )
+    asked = f"None of {len(routes)} routes keeps the limits of the voyage."
+    raise NoRouteError(asked, f"The nearest breaks: {broken}.", "Relax the limits.", reasons={})
 
 
 def _chosen(routes: Sequence[Route], most: int) -> list[Route]:

@@ -30,11 +30,7 @@ from thalweg.network import Network, alternative_paths
 from thalweg.network.alternatives.alternative_path import EdgeWeights
 from thalweg.network.alternatives.path_shortening import string_pull_path
 from thalweg.network.assembly import allowed_legs
-from thalweg.network.shortest_paths import (
-    ShortestPathTree,
-    reversed_graph,
-    shortest_path_tree,
-)
+from thalweg.network.shortest_paths import ShortestPathTree, reversed_graph, shortest_path_tree
 from thalweg.planning.approach_sailing import (
     ApproachSailing,
     SailedApproaches,
@@ -253,10 +249,9 @@ class _Candidates:
         middle = knee(*(np.array([getattr(p, at) for p in points]) for at in ("time", "cost")))
         chosen = [front.cheapest] if len(points) < 3 else [front.cheapest, points[middle]]
         tracks = [(track_from_front_point(network, point), point.time) for point in chosen]
-        scored = [scored_with_fewer_turns(own, track, time) for track, time in tracks]
-        if objective.name == "fuel" and may_leave_nodes(own):
-            scored = [refined_in_open_water(own, route) for route in scored]
-        return [route.track for route in scored]
+        scored = (scored_with_fewer_turns(own, track, time) for track, time in tracks)
+        refined = objective.name == "fuel" and may_leave_nodes(own)
+        return [(refined_in_open_water(own, r) if refined else r).track for r in scored]
 
     def round_islands(self, network: Network) -> Iterator[Track]:
         """Yield the shortest ways on the other sides of islands."""

@@ -22,9 +22,11 @@ from thalweg.planning.seaways import Seaways, path_length_and_canals
 #: What leaving the charted channels has to save: of the whole way this share, or of the part of
 #: the lines that is left out, if so much of it would be sailed back.
 _LEAST_SHARE: Final = 0.1
+_LEAST_SHARE_NEARER: Final = 0.05  # over another way that leaves the lines farther off land
 _LEAST_SHARE_OF_LINE: Final = 0.5
 _LEAST_GAIN: Final = 5.0 * NAUTICAL_MILE  # in the second case
 _SHORTEST_LEFT_OUT: Final = 1.0 * NAUTICAL_MILE
+_USUAL_OFF_LAND: Final = 1.0 * NAUTICAL_MILE  # where a line is left, if that does
 _SPACING: Final = 0.5 * NAUTICAL_MILE  # of the places at which a line may be left
 _USUAL_DRAUGHT: Final = 8.0  # where none is given, for shoals beside the channels [m]
 _MOST_SHOAL: Final = EXCESS[0]  # of a mile where the depth is the draught
@@ -49,22 +51,50 @@ def ends_left_early(
     """
     if not (start.may_leave_early or goal.may_leave_early):
         return None
-    lines = [_places_of(end, seas) for end in (start, goal)]
+    best = _left_off_land(start, goal, seas, draught, (longest, _LEAST_SHARE, _USUAL_OFF_LAND))
+    share = _LEAST_SHARE
+    if best is not None:
+        longest, share = best[0], _LEAST_SHARE_NEARER
+    nearer = _left_off_land(start, goal, seas, draught, (longest, share, LEAST_OFF_LAND))
+    return nearer or best
+
+
+def _left_off_land(
+    start: Endpoint,
+    goal: Endpoint,
+    seas: Seaways,
+    draught: float,
+    rules: tuple[float, float, float],
+) -> tuple[float, list[Endpoint]] | None:
+    """Return the distance and the ends by a way that leaves the lines off land; None if no better.
+
+    Parameters
+    ----------
+    rules : Distance that has to be shortened [m] and by what share; distance from land of the
+        places where a line is left [m].
+    """
+    longest, share, off_land = rules
+    lines = [_places_of(end, seas, off_land) for end in (start, goal)]
     try:
         length, path, cut = _cut_ends((start, goal), lines, seas)
     except NoRouteError:
         return None
     left_out = [_length(a) - _length(b) for a, b in zip((start, goal), cut)]
     turned_back = max(_LEAST_GAIN, _LEAST_SHARE_OF_LINE * sum(left_out))
-    least_gain = max(min(_LEAST_SHARE * longest, turned_back), _SHORTEST_LEFT_OUT)
+    least_gain = max(min(share * longest, turned_back), _SHORTEST_LEFT_OUT)
     if longest - length < least_gain:
         return None
     harbours = _harbours((start, goal), cut)
     return None if _has_shoals(path, left_out, _shoals(seas, harbours, draught)) else (length, cut)
 
 
-def _places_of(end: Endpoint, seas: Seaways) -> FloatArray:
-    """Return rows (lat, lon [deg], length from the berth [m], whether the line may be left)."""
+def _places_of(end: Endpoint, seas: Seaways, off_land: float) -> FloatArray:
+    """Return rows (lat, lon [deg], length from the berth [m], whether the line may be left).
+
+    Parameters
+    ----------
+    off_land : It is left at least so far from land [m], or at its sea end.
+    """
     approach = end.approach
     if approach is None:
         return np.array([[end.lat, end.lon, 0.0, 1.0]])
@@ -75,8 +105,8 @@ def _places_of(end: Endpoint, seas: Seaways) -> FloatArray:
     may_leave = np.zeros(len(rows))
     if end.may_leave_early and not approach.canal and not approach.through:
         coast = seas.chart.coastline
-        off = coast.shore_distance(rows[:, 0], rows[:, 1], cap=LEAST_OFF_LAND)
-        may_leave[np.asarray(off) >= LEAST_OFF_LAND] = 1.0
+        off = coast.shore_distance(rows[:, 0], rows[:, 1], cap=off_land)
+        may_leave[np.asarray(off) >= off_land] = 1.0
     may_leave[0], may_leave[-1] = 0.0, 1.0  # a berth is left along its line
     return np.column_stack([rows, may_leave])
 
