@@ -17,9 +17,16 @@ from thalweg.network.history.history_corridor import HistoryCorridor
 from thalweg.network.history.history_file import write_history
 from thalweg.network.history.history_network import no_arcs_text
 from thalweg.network.history.voyage_tracks import HistoryPort
+from thalweg.operations.examples.synthetic_fleet import (
+    SyntheticFleet,
+    SyntheticRoute,
+    synthetic_fleet,
+)
+from thalweg.operations.fleet import history_from_tracks, read_fleet
 from thalweg.planning import Voyage, plan
 from thalweg.planning.distance_table import usual_distance_table
 from thalweg.planning.history_plans import _unknown_ports, usual_against_optimal
+from thalweg.planning.sea_distance import sea_distance
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 
@@ -156,3 +163,24 @@ def test_tables_hold_the_routes_of_the_network(network):
     assert table.to_csv().splitlines()[0] == "nm,West,East"
     with pytest.raises(InputError, match="twice"):
         usual_distance_table(["West", "West"], network)
+
+
+@pytest.mark.slow
+def test_ships_from_a_river_into_a_canal_are_not_taken_out_to_sea():
+    """Hamburg to Gothenburg: the Kiel Canal leaves the Elbe 40 nm before its sea end."""
+    way = sea_distance("Hamburg", "Gothenburg")
+    assert way.canals == ("Kiel Canal",)
+    routes = (SyntheticRoute(way.line), SyntheticRoute(way.line[::-1]))
+    fleet = SyntheticFleet(routes, ships=3, interval_s=900.0)
+    messages = synthetic_fleet(fleet, start="2024-01-01", days=60, seed=5)
+    chart = Chart.gshhg("i")
+    made = history_from_tracks(read_fleet([messages]), chart)
+    assert made.route("Hamburg", "Gothenburg").nm == pytest.approx(way.nm, rel=0.02)
+    assert made.route("Gothenburg", "Hamburg").nm == pytest.approx(way.nm, rel=0.02)
+    voyage = Voyage(start="Hamburg", goal="Gothenburg", depart="2024-01-10T00:00Z")
+    found = plan(
+        voyage, ship=Ship.simple(speed_kn=10.0, draught_m=3.0), sea=Sea.calm(), chart=chart,
+        network=HistoryCorridor(made), proof=0.0,
+    )  # fmt: skip
+    assert found.best.feasible
+    assert found.best.distance_nm == pytest.approx(way.nm, rel=0.02)

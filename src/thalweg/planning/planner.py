@@ -220,13 +220,8 @@ def _plan_in_usual_water(
     def plan_one(open_water: Chart, builder: Any) -> Plan:
         return replan(voyage, ship=ship, sea=sea, chart=open_water, network=builder)
 
-    request = CorridorRequest(
-        voyage,
-        corridor,
-        chart,
-        resolve_places(voyage.start, voyage.via, voyage.goal, chart),
-        plan_one,
-    )
+    ends = _ends_by_ways(voyage, ship, chart)[0]
+    request = CorridorRequest(voyage, corridor, chart, ends, plan_one)
     return plan_in_corridor(request, ship.draught)
 
 
@@ -285,11 +280,7 @@ def voyage_context(
     if choice.layered is not None:
         choice.layered.shapes(len(voyage.via) + 1)  # refuses lists of another length
     check_request(voyage, ship, sea)
-    ends = resolve_places(voyage.start, voyage.via, voyage.goal, chart)
-    chart, notes = exclude_closed_canals(chart, voyage, ship, ends)
-    chart = restrict_passages(chart, voyage, ship, chosen_offing(voyage, ship))
-    seas = partial(Seaways.of_ship_chart, chart)
-    ends = with_chosen_ways(ends, seas, draught=float(ship.draught))
+    ends, chart, notes = _ends_by_ways(voyage, ship, chart)
     chart, shoal_notes = add_shoals(chart, voyage, ship, sea, ends)
     notes += shoal_notes
     chart = add_traffic_schemes(chart, voyage, ship, ends)
@@ -311,6 +302,17 @@ def voyage_context(
         choice=choice,
     )
     return context, ends
+
+
+def _ends_by_ways(
+    voyage: Voyage, ship: Ship, chart: Chart
+) -> tuple[list[Endpoint], Chart, list[str]]:
+    """Return the ends by the ways from their berths, the chart open to the ship, and notes."""
+    ends = resolve_places(voyage.start, voyage.via, voyage.goal, chart)
+    chart, notes = exclude_closed_canals(chart, voyage, ship, ends)
+    chart = restrict_passages(chart, voyage, ship, chosen_offing(voyage, ship))
+    seas = partial(Seaways.of_ship_chart, chart)
+    return with_chosen_ways(ends, seas, draught=float(ship.draught)), chart, notes
 
 
 def _plan_stretches(context: PlanningContext, ends: list[Endpoint]) -> list[StretchResult]:

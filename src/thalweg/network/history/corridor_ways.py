@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -13,6 +13,10 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels.network.static_paths import static_astar
 from thalweg.network.history.arc_statistics import SHARES
 from thalweg.network.history.history_network import HistoryArcs
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.chart.canals import Canal
 
 LANES: Final = 5  #: nodes across the corridor
 _TUBE_SPACING: Final = 5.0 * NAUTICAL_MILE
@@ -79,6 +83,16 @@ class CorridorWays:
         for values, middle in zip(found, (lat, lon)):
             values[:, half] = middle
         return found[0][1:-1], found[1][1:-1]
+
+    def canals_on_way(self, chart: Chart, radius: float) -> list[Canal]:
+        """Return the canals of a chart with both ends within a radius [m] of nodes in use."""
+        nodes = np.union1d(self.arcs.tail[self.kept], self.arcs.head[self.kept])
+        lat, lon = self.places[0][nodes], self.places[1][nodes]
+        return [
+            canal
+            for canal in chart.canals
+            if all(np.min(geodesy.distance(lat, lon, *end)) <= radius for end in canal.ends)
+        ]
 
     def tube(self, arc: int, radius: float) -> list[Any]:
         """Return shapely polygons that cover the tube of an arc and its nodes."""

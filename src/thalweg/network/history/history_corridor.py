@@ -45,6 +45,7 @@ _STATIONS: Final = 150.0  # along the whole way, at least
 _LEAST_SPACING: Final = 5.0 * NAUTICAL_MILE
 _PIECES_PER_EDGE: Final = 2  # pieces in which every edge is sampled
 _TOUCH: Final = 1e-5  # by which parts of the tube overlap [deg]
+_AT_END: Final = 10.0  # of a canal [m]
 _APPROACH_WIDTH: Final = 1.0 * NAUTICAL_MILE
 
 
@@ -109,7 +110,12 @@ class HistoryCorridor:
         for place, outward in ((start, True), (goal, False)):
             away = np.sqrt(np.sum((vectors - sphere_vectors(*np.array([place]).T)) ** 2, axis=1))
             nearest = int(np.argmin(away))
-            if away[nearest] <= _AT_NODE:
+            end_of_canal = any(
+                float(geodesy.distance(lat[nearest], lon[nearest], *end)) <= _AT_END
+                for canal in chart.canals
+                for end in canal.ends
+            )  # stays where the canal begins
+            if away[nearest] <= _AT_NODE and not end_of_canal:
                 lat[nearest], lon[nearest] = place
                 ends.append(nearest)
                 continue
@@ -161,7 +167,12 @@ class HistoryCorridor:
         """
         ways = self.ways_between(chart, start, goal)
         spacing = spacing or max(_LEAST_SPACING, ways.shortest() / _STATIONS)
-        lanes = [ways.lanes(int(arc), spacing) for arc in ways.kept]
+        (lat, lon), tail, head = ways.places, ways.arcs.tail[ways.kept], ways.arcs.head[ways.kept]
+        in_canal = np.asarray(chart.canal_of_legs(lat[tail], lon[tail], lat[head], lon[head])) >= 0
+        lanes = [
+            (np.empty((0, LANES)),) * 2 if is_canal else ways.lanes(arc, spacing)
+            for arc, is_canal in zip(ways.kept.tolist(), in_canal.tolist())
+        ]
         network = _assembled(chart, ways, lanes, spacing)
         known, path = shortest_path(network, network.meta.start, network.meta.goal)
         if not path:
@@ -204,6 +215,8 @@ class HistoryCorridor:
             ways = self.ways_between(chart, a, b)
             for arc in ways.kept.tolist():
                 shapes += ways.tube(arc, self.network.radius)
+            for canal in ways.canals_on_way(chart, self.network.radius):
+                shapes += strip_polygons(np.array(canal.path), _APPROACH_WIDTH)
         for place in places:
             shapes += strip_polygons(np.array([place, place]), self.network.radius)
         for line in approaches:
