@@ -237,6 +237,13 @@ def _summary(arguments: argparse.Namespace) -> int:
             "In a year (cii in grams of CO2 per tonne and nautical mile, cost in the prices given):"
         )
         print(summary.annual.round(2).to_string(index=False, na_rep="-"))
+        if "cii" in summary.annual and summary.annual["cii"].isna().any():
+            print(
+                "cii -: the ship file has no hull.deadweight_t (or hull.gross_tonnage, for some "
+                "types of ship), no type that the rating is for, or no carbon of the fuel."
+            )
+        if "eu_ets_cost" in summary.annual and summary.annual["eu_ets_cost"].notna().any():
+            print("The costs (cost_...) do not include eu_ets_cost and fueleu_penalty.")
     for _, row in summary.refusals.head(5).iterrows():
         count = f"{row['voyages']} voyages" if row["voyages"] > 1 else "1 voyage"
         print(f"{count} without a route ({row['refusal']}): {row['reason']}")
