@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -16,7 +17,7 @@ from thalweg.chart.depth.global_depth import NAME
 from thalweg.chart.depth.shoals import EXCESS
 from thalweg.chart.offing import check_offing
 from thalweg.chart.passage_crossings import names_passed
-from thalweg.core.errors import InputError
+from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position, densify, distance
 from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
@@ -189,10 +190,29 @@ def sea_distance(
     check_offing(offing_nm)
     closed = (avoid,) if isinstance(avoid, str) else tuple(avoid)
     ends = resolve_places(start, via, goal, chart)
-    seas = Seaways.of_chart(chart, closed, opened=_opened(chart, open))
-    if draught_m is not None:
-        seas = _seas_for_draught(seas, draught_m, ends)
-    ends = with_chosen_ways(ends, lambda: seas, draught=draught_m or 0.0)
+    opened = _opened(chart, open)
+    found = [_way_over_seas(chart, ends, closed, opened, offing_nm * NAUTICAL_MILE, draught_m)]
+    if opened:  # never longer than without: the graph with these passages is another one
+        with contextlib.suppress(NoRouteError):
+            found.append(
+                _way_over_seas(chart, ends, closed, (), offing_nm * NAUTICAL_MILE, draught_m)
+            )
+    return min(found, key=lambda way: way.length)
+
+
+def _way_over_seas(
+    chart: Chart,
+    ends: Sequence[Endpoint],
+    closed: Sequence[str],
+    opened: Sequence[str],
+    offing: float,
+    draught: float | None,
+) -> SeaDistance:
+    """Return the shortest way with some passages for small ships open; offing and draught [m]."""
+    seas = Seaways.of_chart(chart, closed, opened=opened)
+    if draught is not None:
+        seas = _seas_for_draught(seas, draught, ends)
+    ends = with_chosen_ways(ends, lambda: seas, draught=draught or 0.0)
     notes = tuple(end.note for end in ends if end.note)
     first, last = ends[0].approach, ends[-1].approach
     if len(ends) == 2 and first and last:
@@ -202,7 +222,6 @@ def sea_distance(
             along = ((f"{first.port.label} to {last.port.label}", length),)
             titles = _canals_entered(chart, line)
             return SeaDistance(ends[0].name, ends[-1].name, length, titles, (), along, line, notes)
-    offing = offing_nm * NAUTICAL_MILE
     parts = [seas.path(a, b, offing=offing) for a, b in itertools.pairwise(ends)]
     path = [parts[0][0], *(place for part in parts for place in part[1:])]
     length, canals = path_length_and_canals(chart, path)

@@ -31,7 +31,6 @@ _MIN_BASIN_NODES: Final = 200  # connected water of at least this many nodes is 
 _FARTHEST_APPROACH: Final = 150.0 * NAUTICAL_MILE
 _MAX_APPROACHES: Final = 3
 _CHAIN_REACH: Final = 20.0 * NAUTICAL_MILE
-_LINE_REACH: Final = 8.0 * NAUTICAL_MILE
 _LONGEST_DIRECT_LEG: Final = 30.0 * NAUTICAL_MILE  # between two lines
 
 
@@ -72,6 +71,12 @@ class ConnectedWaters:
         size = np.bincount(water)[water]
         size[~usable] = 0
         return cls(lat, lon, water, size, reach)
+
+    def part(self, nodes: IntArray) -> ConnectedWaters:
+        """Return some of the nodes, with the sizes of their whole waters."""
+        return ConnectedWaters(
+            self.lat[nodes], self.lon[nodes], self.water[nodes], self.size[nodes], self.reach
+        )
 
     @cached_property
     def largest(self) -> int:
@@ -179,15 +184,28 @@ def attach_line(chart: Chart, waters: ConnectedWaters, line: LinePlaces) -> Atta
     -------
     Attachment : Without links where no node is reached.
     """
-    inside = waters.size >= _MIN_BASIN_NODES
+    number = _nodes_near(waters, line)
+    around = waters.part(number)
+    every = np.ones(len(number), bool)
     at, nodes = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
     for k in np.flatnonzero(line.may_leave).tolist():
         place = float(line.lat[k]), float(line.lon[k])
-        near = _candidates(waters, place, inside, min(waters.reach, _LINE_REACH))
-        seen = _nearest_by_sector(waters, place, _reachable_nodes(chart, place, waters, near))
+        near = _candidates(around, place, every, waters.reach)
+        seen = _nearest_by_sector(around, place, _reachable_nodes(chart, place, around, near))
         at.append(np.full(len(seen), k))
-        nodes.append(seen)
+        nodes.append(number[seen])
     return Attachment(line.lat, line.lon, np.concatenate(at), np.concatenate(nodes))
+
+
+def _nodes_near(waters: ConnectedWaters, line: LinePlaces) -> IntArray:
+    """Return the nodes of basins that may be within reach of a line."""
+    places = conformal_unit_vectors(line.lat, line.lon)
+    middle = places.mean(axis=0)
+    middle /= np.linalg.norm(middle)
+    angle = float(np.arccos(np.clip(places @ middle, -1.0, 1.0).min()))
+    least = np.cos(min(angle + waters.reach / MEAN_RADIUS, np.pi)) - 1e-9
+    near = (waters.size >= _MIN_BASIN_NODES) & (waters.vectors @ middle >= least)
+    return np.flatnonzero(near)
 
 
 def line_to_line_pairs(

@@ -19,12 +19,12 @@ from thalweg.network.global_grid.endpoint_attachment import LinePlaces
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways, path_length_and_canals
 
-#: What leaving the charted channels has to save: of the whole way this share, or of the part of
-#: the lines that is left out, if so much of it would be sailed back.
+#: What leaving the charted channels has to save: of the whole way this share; or as much as is left
+#: out of the lines, which would be sailed back; or half of that, and some miles.
 _LEAST_SHARE: Final = 0.1
 _LEAST_SHARE_NEARER: Final = 0.05  # over another way that leaves the lines farther off land
 _LEAST_SHARE_OF_LINE: Final = 0.5
-_LEAST_GAIN: Final = 5.0 * NAUTICAL_MILE  # in the second case
+_LEAST_GAIN: Final = 5.0 * NAUTICAL_MILE  # in the last case
 _SHORTEST_LEFT_OUT: Final = 1.0 * NAUTICAL_MILE
 _USUAL_OFF_LAND: Final = 1.0 * NAUTICAL_MILE  # where a line is left, if that does
 _SPACING: Final = 0.5 * NAUTICAL_MILE  # of the places at which a line may be left
@@ -80,7 +80,7 @@ def _left_off_land(
     except NoRouteError:
         return None
     left_out = [_length(a) - _length(b) for a, b in zip((start, goal), cut)]
-    turned_back = max(_LEAST_GAIN, _LEAST_SHARE_OF_LINE * sum(left_out))
+    turned_back = min(sum(left_out), max(_LEAST_GAIN, _LEAST_SHARE_OF_LINE * sum(left_out)))
     least_gain = max(min(share * longest, turned_back), _SHORTEST_LEFT_OUT)
     if longest - length < least_gain:
         return None
