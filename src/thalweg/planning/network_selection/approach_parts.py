@@ -23,6 +23,7 @@ from thalweg.planning.seaways import Seaways, path_length_and_canals
 #: out of the lines, which would be sailed back; or half of that, and some miles.
 _LEAST_SHARE: Final = 0.1
 _LEAST_SHARE_NEARER: Final = 0.05  # over another way that leaves the lines farther off land
+_LEAST_OF_LONG_WAYS: Final = 0.02  # a ship on a long voyage takes the charted channel
 _LEAST_SHARE_OF_LINE: Final = 0.5
 _LEAST_GAIN: Final = 5.0 * NAUTICAL_MILE  # in the last case
 _SHORTEST_LEFT_OUT: Final = 1.0 * NAUTICAL_MILE
@@ -81,7 +82,9 @@ def _left_off_land(
         return None
     left_out = [_length(a) - _length(b) for a, b in zip((start, goal), cut)]
     turned_back = min(sum(left_out), max(_LEAST_GAIN, _LEAST_SHARE_OF_LINE * sum(left_out)))
-    least_gain = max(min(share * longest, turned_back), _SHORTEST_LEFT_OUT)
+    least_gain = max(
+        min(share * longest, turned_back), _LEAST_OF_LONG_WAYS * longest, _SHORTEST_LEFT_OUT
+    )
     if longest - length < least_gain:
         return None
     harbours = _harbours((start, goal), cut)
