@@ -10,6 +10,7 @@ from thalweg import Chart, Sea, Ship, Voyage
 from thalweg.chart.approaches import PORT_APPROACHES
 from thalweg.chart.canals import KIEL, SUEZ, canals_with_dues
 from thalweg.chart.ports import PORTS
+from thalweg.core.geodesy import densify, distance
 from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.request.voyage_endpoints import resolve_places
@@ -130,6 +131,25 @@ def test_approaches_are_left_where_the_way_leads_to_the_other_side(start, goal, 
 @pytest.mark.slow
 def test_more_open_passages_make_no_way_longer():
     assert sea_distance("Bergen", "Alesund", open="all").nm <= sea_distance("Bergen", "Alesund").nm
+
+
+@pytest.mark.slow
+def test_approaches_of_the_wadden_sea_follow_the_channels():
+    """Graadyb north of Fanoe, Schulpengat south of Noorderhaaks, and the Elbe, not the sands."""
+    for name, shoal in (
+        ("Esbjerg", (55.41, 8.526)), ("Den Helder", (52.975, 4.664)), ("Cuxhaven", (53.95, 8.75)),
+    ):  # fmt: skip
+        lat, lon = np.array(PORT_APPROACHES.of(PORTS.lookup(name)).line).T
+        lat, lon, _ = densify(lat, lon, 500.0)
+        assert float(np.min(distance(lat, lon, *shoal))) > 2.0 * NAUTICAL_MILE
+
+
+@pytest.mark.slow
+def test_a_bulk_carrier_passes_west_of_karmoey():
+    """The way between Utsira and Karmoey is open sea, 10 nm wide."""
+    plan = planned("Bergen", "Hamburg")
+    assert plan.best.feasible
+    assert plan.best.distance_nm == pytest.approx(sea_distance("Bergen", "Hamburg").nm, rel=0.03)
 
 
 @pytest.mark.slow

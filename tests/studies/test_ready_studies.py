@@ -132,6 +132,12 @@ def test_european_charges_and_rating_of_a_ship_year_by_hand():
     assert row["cii_rating"] == "ABCDE"[sum(attained > b for b in bounds)]
     later = annual_figures(rows, ["ship"], {"a": ship}, {**annual, "year": 2026}).iloc[0]
     assert later["eu_ets_cost"] == pytest.approx(trips * tonnes * 3.1631 * 0.5 * 80.0)
+    small = Ship.from_dict({**ship.file.plain(), "hull": {**ship.file.plain()["hull"],
+                                                          "gross_tonnage": 4999.0}})  # fmt: skip
+    below = annual_figures(rows, ["ship"], {"a": small}, annual).iloc[0]  # the rules: from 5,000 GT
+    assert below["fuel_t"] == row["fuel_t"]
+    for name in ("eu_ets_cost", "fueleu_penalty", "cii", "cii_rating"):
+        assert below[name] is None
     unknown = annual_figures(rows.assign(eu_share=float("nan")), ["ship"], {"a": ship}, annual)
     assert unknown.iloc[0]["eu_ets_cost"] is None
 

@@ -143,6 +143,8 @@ def _print_voyages(voyages: Any) -> None:
         for name in _SHOWN_FIGURES
         if name in voyages and voyages[name].fillna(0.0).round(2).any()
     ]
+    if "arrive" not in voyages:  # none has a route
+        return
     axes = list(voyages.columns[: list(voyages.columns).index("arrive")])
     broken = "feasible" in voyages and not voyages["feasible"].fillna(True).all()
     last = [*(["feasible"] if broken else []), *(["refusal"] if "refusal" in voyages else [])]
@@ -239,11 +241,17 @@ def _summary(arguments: argparse.Namespace) -> int:
         print(summary.annual.round(2).to_string(index=False, na_rep="-"))
         if "cii" in summary.annual and summary.annual["cii"].isna().any():
             print(
-                "cii -: the ship file has no hull.deadweight_t (or hull.gross_tonnage, for some "
-                "types of ship), no type that the rating is for, or no carbon of the fuel."
+                "cii -: the ship is below 5,000 GT, or the ship file has no hull.deadweight_t (or "
+                "hull.gross_tonnage, for some types), no type that the rating is for, or no carbon "
+                "of the fuel."
             )
         if "eu_ets_cost" in summary.annual and summary.annual["eu_ets_cost"].notna().any():
             print("The costs (cost_...) do not include eu_ets_cost and fueleu_penalty.")
+        elif "eu_ets_cost" in summary.annual:
+            print(
+                "eu_ets_cost, fueleu_penalty -: no price, no share of the voyage in the European "
+                "Union is known, or the ship is below 5,000 GT."
+            )
     for _, row in summary.refusals.head(5).iterrows():
         count = f"{row['voyages']} voyages" if row["voyages"] > 1 else "1 voyage"
         print(f"{count} without a route ({row['refusal']}): {row['reason']}")

@@ -33,6 +33,9 @@ _ENTRIES: Final = {
     "euro_price": (0.0, 1e3),
     "eu_share": (0.0, 100.0),
 }
+#: Gross tonnage from which the rating (MARPOL Annex VI, regulation 28), emission allowances
+#: (Directive 2003/87/EC, article 3gb) and FuelEU (Regulation (EU) 2023/1805, article 2) apply.
+LEAST_TONNAGE: Final = 5000.0
 _HOURS: Final = 8760.0
 
 
@@ -100,8 +103,8 @@ def annual_figures(
         ``distance_nm``, ``fuel_t``, ``co2_t`` and ``cost_...`` of the year; ``cii`` (attained
         [g/(t nm)] or [g/(GT nm)]), ``cii_required`` and ``cii_rating``, None where the ship file
         has no capacity or another type; ``eu_ets_cost`` and ``fueleu_penalty`` by
-        `european_charges_of_year`, None where a price, the share or the fuel is not known. Time and
-        emissions in port are not counted.
+        `european_charges_of_year`, None where a price, the share or the fuel is not known. All
+        are None for ships below `LEAST_TONNAGE`. Time and emissions in port are not counted.
     """
     found = []
     for key, group in rows.groupby(by, dropna=False) if by else [((), rows)]:
@@ -116,7 +119,8 @@ def annual_figures(
             row[name] = trips * mean[name] if name in mean and np.isfinite(mean[name]) else None
         ship = ships.get(keys.get("ship"), ships.get(None))
         rating = None
-        if ship is not None and row["co2_t"] is not None and row["distance_nm"]:
+        rated = ship is not None and not is_below_tonnage(ship)
+        if ship is not None and rated and row["co2_t"] is not None and row["distance_nm"]:
             grams = row["co2_t"] * 1000.0 / row["distance_nm"]  # kg of CO2 per nm
             rating = carbon_intensity_of(ship, grams, year=int(annual["year"]))
         row |= {
@@ -128,6 +132,12 @@ def annual_figures(
     import pandas as pd
 
     return pd.DataFrame(found)
+
+
+def is_below_tonnage(ship: Ship | None) -> bool:
+    """Return whether the gross tonnage of a ship is known and below `LEAST_TONNAGE`."""
+    tonnage = None if ship is None else ship.file.hull.gross_tonnage
+    return tonnage is not None and tonnage < LEAST_TONNAGE
 
 
 def european_charges_of_year(
@@ -158,7 +168,7 @@ def european_charges_of_year(
     """
     none: dict[str, float | None] = {"eu_ets_cost": None, "fueleu_penalty": None}
     year, share = int(annual["year"]), group.get("eu_share")
-    if share is None or share.isna().any():
+    if share is None or share.isna().any() or is_below_tonnage(ship):
         return none
     if "allowance_price" in annual and "co2_t" in group:
         phase = ets_phase_in(year) * annual["allowance_price"]

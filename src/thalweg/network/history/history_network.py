@@ -10,6 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from thalweg.chart.canals import CANALS
 from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError, NoRouteError, unknown_name_error
 from thalweg.core.geodesy import Position
@@ -314,7 +315,7 @@ class HistoryNetwork:
             lat, lon = of.lines.of(arc)
             places = list(zip(lat.tolist(), lon.tolist()))
             line += places if not line else places[1:]
-        names = [self.nodes.names[node] for node in of.head[index].tolist()]
+        names = self._names_passed([int(of.tail[index[0]]), *of.head[index].tolist()])
         p10, p50, p90 = np.where(sailed[:, None], evidence.duration[index], np.nan).sum(axis=0)
         return HistoryRoute(
             start,
@@ -326,9 +327,16 @@ class HistoryNetwork:
             float((unknown * length).sum() / total),
             float((of.eca_share[index] * length).sum() / total),
             tuple(line),
-            tuple(dict.fromkeys(name for name in names if name)),
+            names,
             None if month is None else int(evidence.months[index, month - 1].min()),
         )
+
+    def _names_passed(self, nodes: Sequence[int]) -> tuple[str, ...]:
+        """Return the corridors and canals of a way; of a canal it has both ends in turn."""
+        names, canals = [self.nodes.names[node] for node in nodes], {c.name for c in CANALS}
+        after = [*names[1:], ""]
+        passed = [name for name, then in zip(names, after) if name == then or name not in canals]
+        return tuple(dict.fromkeys(name for name in passed if name))
 
     def _by_other_name(self, place: str) -> list[int]:
         """Return the node of a port that the World Port Index has under another name."""

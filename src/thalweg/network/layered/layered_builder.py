@@ -214,7 +214,8 @@ def _broken_network(
         f"Segments refused, of all {len(draft.first):,}: {reasons}.",
         f"Try a finer network for this section, such as {better.layers} layers, a fan of "
         f"{better.fan} and an offset of {better.offset / NAUTICAL_MILE:.3g} nm; or leave out all "
-        "three, so that a shape that has a path is searched; or move the waypoint away from land.",
+        "three, so that a shape that has a path is searched; or move the waypoint away from land, "
+        "or require less distance from it (offing).",
         reasons=rejected,
         nearest=(float(draft.lat[at]), float(draft.lon[at])),
         section=number,

@@ -7,9 +7,11 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
+import shapely
 
 from thalweg.chart.approach_choices import LEAST_OFF_LAND
 from thalweg.chart.approaches import dense_line, line_part
+from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.chart.depth.shoals import EXCESS, Shoals
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import Position, distance, format_position_minutes
@@ -88,7 +90,9 @@ def _left_off_land(
     if longest - length < least_gain:
         return None
     harbours = _harbours((start, goal), cut)
-    return None if _has_shoals(path, left_out, _shoals(seas, harbours, draught)) else (length, cut)
+    depth = draught or _USUAL_DRAUGHT
+    shoals = _shoals(seas, harbours, depth)
+    return None if _has_shoals(path, left_out, shoals, depth) else (length, cut)
 
 
 def _places_of(end: Endpoint, seas: Seaways, off_land: float) -> FloatArray:
@@ -142,19 +146,35 @@ def _cut(end: Endpoint, along: float) -> Endpoint:
     return end.by(replace(approach, line=line, way=way))
 
 
-def _has_shoals(path: Sequence[Position], left_out: Sequence[float], shoals: Shoals) -> bool:
-    """Return whether a way is over shoals as long as the parts of the lines [m] that it leaves."""
+def _has_shoals(
+    path: Sequence[Position], left_out: Sequence[float], shoals: Shoals, draught: float
+) -> bool:
+    """Return whether a way is over shoals as long as the parts of the lines [m] that it leaves.
+
+    A named shoal area counts beside a channel as well, unless a harbour is in it.
+    """
     legs = _legs(path)
     sailed = np.concatenate([[0.0], np.cumsum(distance(*legs))])
     beside = (sailed[:-1] < left_out[0]) | (sailed[-1] - sailed[1:] < left_out[1])
-    return bool(np.any(np.asarray(shoals.excess(*legs))[beside] > _MOST_SHOAL))
+    if np.any(np.asarray(shoals.excess(*legs))[beside] > _MOST_SHOAL):
+        return True
+    if not beside.any():
+        return False
+    harbours = np.array(shoals.harbours).reshape(-1, 2).T
+    parts = np.stack(legs, axis=1)[beside].reshape(-1, 2, 2)[:, :, ::-1]
+    lines = shapely.multilinestrings(list(shapely.linestrings(parts)))
+    return any(
+        area.depth < draught
+        and not area.contains(*harbours).any()
+        and area.polygon.intersects(lines)
+        for area in SHOAL_AREAS
+    )
 
 
 def _shoals(seas: Seaways, harbours: Sequence[Position], draught: float) -> Shoals:
     from thalweg.planning.request.shoal_choice import shoals_of_draught
 
-    depth = draught or _USUAL_DRAUGHT
-    return shoals_of_draught(seas.chart, depth, depth, harbours)
+    return shoals_of_draught(seas.chart, draught, draught, harbours)
 
 
 def _harbours(ends: Sequence[Endpoint], cut: Sequence[Endpoint]) -> list[Position]:
