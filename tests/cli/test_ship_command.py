@@ -417,8 +417,17 @@ def test_the_motions_of_a_ship_that_holds_her_speed_say_so(capsys, tmp_path):
         "{length_between_perpendiculars_m: 33.9, breadth_m: 9.6, draught_m: 2.8, "
         "block_coefficient: 0.62}}"
     )
+    (tmp_path / "coaster.yaml").write_text(
+        "{name: coaster, speeds_kn: [9, 12], places: {bridge: -30.0}, hull: "
+        "{length_between_perpendiculars_m: 82, breadth_m: 13, draught_m: 5, block_coefficient: "
+        "0.75}, engine: {power_kw: 1850, type: medium_speed_diesel}, propulsion: {propellers: 1, "
+        "propeller_diameter_m: 2.8, propulsive_efficiency: 0.6}, fuel: {type: mgo}, models: "
+        "{calm_water: holtrop_1984, waves: snnm}}"
+    )  # 12 kn in these waves take more than the engine gives
     text = _run(capsys, tmp_path / "boat.yaml", "--hs", 2, "--tp", 8, "--speed", 10)
     assert "at 10.0 kn on all headings" in " ".join(text.split())
+    text = _run(capsys, tmp_path / "coaster.yaml", "--hs", 2.5, "--tp", 7.5)
+    assert "at 12.0 kn, or less where the engines do not give it" in " ".join(text.split())
     text = _run(capsys, "gunnerus-2019", "--hs", 2, "--tp", 8, "--speed", 10)
     assert "with the power for 10.0 kn in calm water" in " ".join(text.split())
 

@@ -214,6 +214,18 @@ def test_refusals_are_rows(folder, tmp_path):
     assert summary.refusals["voyages"].sum() == 3
 
 
+@pytest.mark.slow
+def test_a_study_without_any_route_is_summarised_with_the_reason(folder, tmp_path, capsys):
+    study = base(folder, axes={"depart": ["2031-01-01T00:00Z", "2031-01-02T00:00Z"]})
+    path = folder / "late.yaml"
+    path.write_text(yaml.safe_dump(study.to_dict()))
+    assert main(["study", "run", str(path), "--out", str(tmp_path / "out"), "--quiet"]) == 0
+    assert "2 of them without a route\n1 of these: " in capsys.readouterr().out
+    assert main(["study", "summary", str(tmp_path / "out")]) == 0
+    printed = capsys.readouterr().out
+    assert "1 voyage without a route (OutsidePeriodError)" in printed and "2027" in printed
+
+
 def comparable(frame: pd.DataFrame) -> list:
     frame = frame.drop(columns=["seconds"]).sort_values("id")
     return frame[sorted(frame.columns)].astype(object).where(frame.notna(), None).values.tolist()

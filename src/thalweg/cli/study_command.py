@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 import time
+from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -76,17 +77,25 @@ def _run(arguments: argparse.Namespace) -> int:
         return SUCCESS
     report: ProgressMessages = arguments.progress
     report(f"planning {study.size} voyages")
+    reasons: Counter[str] = Counter()
+
+    def progress(state: StudyProgress) -> None:
+        reasons.update(row["reason"] for row in state.rows if row["refusal"] is not None)
+        report(_words(state))
+
     state = run_study(
         study,
         arguments.out,
         workers=arguments.workers,
         scheduler=arguments.scheduler,
-        progress=lambda state: report(_words(state)),
+        progress=progress,
     )
     print(
         f"{state.done} of {state.total} voyages have a result in {arguments.out}; "
         f"{state.new} were planned now, {state.refused} of them without a route"
     )
+    for reason, count in reasons.most_common(1):
+        print(f"{count} of these: {reason}")
     return SUCCESS
 
 

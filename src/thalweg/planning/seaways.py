@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from thalweg.network.alternatives.path_shortening import LegCost, leg_lengths, s
 from thalweg.network.global_grid.endpoint_attachment import LinePlaces
 from thalweg.network.global_grid.sea_graph import (
     ICE_LATITUDES,
+    GraphClosures,
     outside_ice,
     path_length,
 )
@@ -108,33 +109,21 @@ class Seaways:
         NoRouteError : If there is no way.
         """
         places = (start.lat, start.lon), (goal.lat, goal.lon)
-        return sea_graph(self.chart).path(self._open_chart, *places, **self._closures())
+        return sea_graph(self.chart).path(self._open_chart, *places, self._closures)
 
     def path_between_lines(
         self, start: LinePlaces, goal: LinePlaces
     ) -> tuple[list[Position], tuple[int, int]]:
-        """Return the shortest way over the graph between the first places of two lines.
-
-        Returns
-        -------
-        list of (lat, lon) : From where the first line is left to where the second one is met [deg].
-        (int, int) : Numbers of these two places.
-
-        Raises
-        ------
-        NoRouteError : If there is no way.
-        """
+        """Return the shortest way between two lines: `SeaGraph.path_between_lines`."""
         graph = sea_graph(self.chart)
-        return graph.path_between_lines(self._open_chart, start, goal, **self._closures())
+        return graph.path_between_lines(self._open_chart, start, goal, self._closures)
 
-    def _closures(self) -> dict[str, Any]:
-        """Return what the graph may not use, and its shoals, as keyword arguments."""
+    @property
+    def _closures(self) -> GraphClosures:
+        """What the graph may not use, and its shoals."""
         canals = self.chart.canals
-        return {
-            "closed": [k for k, canal in enumerate(canals) if canal.name in self.canals],
-            "passages": find_passages(self.passages),
-            "shoals": self.shoals,
-        }
+        closed = [k for k, canal in enumerate(canals) if canal.name in self.canals]
+        return GraphClosures(closed, find_passages(self.passages), self.shoals)
 
     def path(self, start: Endpoint, goal: Endpoint, *, offing: float) -> list[Position]:
         """Return the waypoints of the shortest way between two end points.

@@ -34,7 +34,8 @@ _ENTRIES: Final = {
     "eu_share": (0.0, 100.0),
 }
 #: Gross tonnage from which the rating (MARPOL Annex VI, regulation 28), emission allowances
-#: (Directive 2003/87/EC, article 3gb) and FuelEU (Regulation (EU) 2023/1805, article 2) apply.
+#: (Directive 2003/87/EC, annex I, by Regulation (EU) 2015/757, article 2) and FuelEU (Regulation
+#: (EU) 2023/1805, article 2) apply; the texts were not compared.
 LEAST_TONNAGE: Final = 5000.0
 _HOURS: Final = 8760.0
 

@@ -113,6 +113,8 @@ def _speed_text(sheet: Mapping[str, Any]) -> str:
     attained = [speed for speed in sheet["attained_speed_kn"] if speed is not None]
     if attained and max(abs(speed - ordered) for speed in attained) < _SAME_SPEED_KN:
         return f"at {ordered:.1f} kn on all headings"
+    if sheet["held"] == "constant speed":
+        return f"at {ordered:.1f} kn, or less where the engines do not give it"
     return f"with the power for {ordered:.1f} kn in calm water"
 
 

@@ -115,12 +115,15 @@ class LinePlaces:
     ----------
     lat, lon : float64[K]
         From the first place of the line on [deg].
+    along : float64[K]
+        Length of the line from its first place [m].
     may_leave : bool[K]
         Where the line may be left.
     """
 
     lat: FloatArray
     lon: FloatArray
+    along: FloatArray
     may_leave: BoolArray
 
 

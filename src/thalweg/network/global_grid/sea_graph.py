@@ -1,7 +1,7 @@
-"""A graph of all seas for distances: the globe grid with the canals, kept ready on disk.
+"""A graph of all seas for distances: the globe grid with the canals.
 
 It is used to find the shortest way between two positions within a fraction of a second; networks
-for planning are built by `thalweg.network.globe`.
+for planning are built by `thalweg.network.global_grid.globe_builder`. `sea_graph_cache` keeps it.
 """
 
 from __future__ import annotations
@@ -57,6 +57,22 @@ _IN_ICE: Final = -2  # among the canals of edges
 _LONGEST_EDGE: Final = 250e3  # of edges across a passage, between two coasts [m]
 
 
+@dataclass(frozen=True)
+class GraphClosures:
+    """What a way over the graph may not use, and where a mile counts more.
+
+    Attributes
+    ----------
+    canals : Canals of the chart that are closed, by number.
+    passages : Passages that are closed in the chart but not in the graph.
+    shoals : Shoal water, in which a mile counts more.
+    """
+
+    canals: Sequence[int] = ()
+    passages: Sequence[Passage] = ()
+    shoals: Shoals | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class SeaGraph:
     """All seas of a chart as a graph.
@@ -85,10 +101,7 @@ class SeaGraph:
         chart: Chart,
         start: Position,
         goal: Position,
-        *,
-        closed: Sequence[int] = (),
-        passages: Sequence[Passage] = (),
-        shoals: Shoals | None = None,
+        closures: GraphClosures = GraphClosures(),
     ) -> list[Position]:
         """Return the positions of the shortest way between two positions over the graph.
 
@@ -97,9 +110,7 @@ class SeaGraph:
         chart : Tests the legs that join the positions to the graph, and those near closed passages.
         start, goal : (lat, lon)
             Positions on navigable water [deg].
-        closed : Canals of the chart that may not be used.
-        passages : Passages that are closed in the chart but not in the graph.
-        shoals : Shoal water, in which a mile counts more.
+        closures : Canals, passages and shoals that are closed or count more.
 
         Raises
         ------
@@ -110,8 +121,8 @@ class SeaGraph:
             attach(sea, self.waters, place, what=what)
             for place, what in ((start, "start"), (goal, "goal"))
         ]
-        weight = self._weights(sea, (start, goal), closed, passages)
-        lat, lon, nodes, _ = self._shortest(ends, weight, shoals)
+        weight = self._weights(sea, (start, goal), closures)
+        lat, lon, nodes, _ = self._shortest(ends, weight, closures.shoals)
         return list(zip(lat[nodes].tolist(), lon[nodes].tolist()))
 
     def path_between_lines(
@@ -119,10 +130,7 @@ class SeaGraph:
         chart: Chart,
         start: LinePlaces,
         goal: LinePlaces,
-        *,
-        closed: Sequence[int] = (),
-        passages: Sequence[Passage] = (),
-        shoals: Shoals | None = None,
+        closures: GraphClosures = GraphClosures(),
     ) -> tuple[list[Position], tuple[int, int]]:
         """Return the shortest way from the first place of one line to the first of another one.
 
@@ -130,7 +138,7 @@ class SeaGraph:
 
         Parameters
         ----------
-        chart, closed, passages, shoals : As of `path`.
+        chart, closures : As of `path`.
         start, goal : Places of lines that begin at berths.
 
         Returns
@@ -145,9 +153,9 @@ class SeaGraph:
         sea = chart.without_canals("all")
         ends = [attach_line(sea, self.waters, line) for line in (start, goal)]
         first, last = ((float(line.lat[0]), float(line.lon[0])) for line in (start, goal))
-        weight = self._weights(sea, (first, last), closed, passages)
+        weight = self._weights(sea, (first, last), closures)
         direct = line_to_line_pairs(sea, start, goal)
-        lat, lon, nodes, begins = self._shortest(ends, weight, shoals, direct=direct)
+        lat, lon, nodes, begins = self._shortest(ends, weight, closures.shoals, direct=direct)
         of_start = (nodes >= begins[0]) & (nodes < begins[1])
         left = int(np.flatnonzero(of_start)[-1])
         met = int(np.flatnonzero(nodes >= begins[1])[0])
@@ -156,16 +164,11 @@ class SeaGraph:
         return path, (int(nodes[left]) - begins[0], int(nodes[met]) - begins[1])
 
     def _weights(
-        self,
-        chart: Chart,
-        ends: Sequence[Position],
-        closed: Sequence[int],
-        passages: Sequence[Passage],
+        self, chart: Chart, ends: Sequence[Position], closures: GraphClosures
     ) -> FloatArray:
         """Return the weights for a way between two ends, inf where it may not go."""
-        if outside_ice(*ends):
-            closed = (*closed, _IN_ICE)
-        return self._weight_without(chart, closed, passages)
+        closed = (*closures.canals, _IN_ICE) if outside_ice(*ends) else closures.canals
+        return self._weight_without(chart, closed, closures.passages)
 
     def _shortest(
         self,

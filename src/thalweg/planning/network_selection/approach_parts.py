@@ -54,49 +54,52 @@ def ends_left_early(
     """
     if not (start.may_leave_early or goal.may_leave_early):
         return None
-    best = _left_off_land(start, goal, seas, draught, (longest, _LEAST_SHARE, _USUAL_OFF_LAND))
-    share = _LEAST_SHARE
-    if best is not None:
-        longest, share = best[0], _LEAST_SHARE_NEARER
-    nearer = _left_off_land(start, goal, seas, draught, (longest, share, LEAST_OFF_LAND))
+    ends = start, goal
+    best = _left_off_land(ends, seas, draught, longest=longest, off_land=_USUAL_OFF_LAND)
+    if best is None:
+        return _left_off_land(ends, seas, draught, longest=longest, off_land=LEAST_OFF_LAND)
+    nearer = _left_off_land(
+        ends, seas, draught, longest=best[0], off_land=LEAST_OFF_LAND, share=_LEAST_SHARE_NEARER
+    )
     return nearer or best
 
 
 def _left_off_land(
-    start: Endpoint,
-    goal: Endpoint,
+    ends: tuple[Endpoint, Endpoint],
     seas: Seaways,
     draught: float,
-    rules: tuple[float, float, float],
+    *,
+    longest: float,
+    off_land: float,
+    share: float = _LEAST_SHARE,
 ) -> tuple[float, list[Endpoint]] | None:
     """Return the distance and the ends by a way that leaves the lines off land; None if no better.
 
     Parameters
     ----------
-    rules : Distance that has to be shortened [m] and by what share; distance from land of the
-        places where a line is left [m].
+    longest, share : Distance [m] that has to be shortened, and by what share.
+    off_land : Distance from land of the places where a line is left [m].
     """
-    longest, share, off_land = rules
-    lines = [_places_of(end, seas, off_land) for end in (start, goal)]
+    lines = [_places_of(end, seas, off_land) for end in ends]
     try:
-        length, path, cut = _cut_ends((start, goal), lines, seas)
+        length, path, cut = _cut_ends(ends, lines, seas)
     except NoRouteError:
         return None
-    left_out = [_length(a) - _length(b) for a, b in zip((start, goal), cut)]
+    left_out = [_length(a) - _length(b) for a, b in zip(ends, cut)]
     turned_back = min(sum(left_out), max(_LEAST_GAIN, _LEAST_SHARE_OF_LINE * sum(left_out)))
     least_gain = max(
         min(share * longest, turned_back), _LEAST_OF_LONG_WAYS * longest, _SHORTEST_LEFT_OUT
     )
     if longest - length < least_gain:
         return None
-    harbours = _harbours((start, goal), cut)
+    harbours = _harbours(ends, cut)
     depth = draught or _USUAL_DRAUGHT
     shoals = _shoals(seas, harbours, depth)
     return None if _has_shoals(path, left_out, shoals, depth) else (length, cut)
 
 
-def _places_of(end: Endpoint, seas: Seaways, off_land: float) -> FloatArray:
-    """Return rows (lat, lon [deg], length from the berth [m], whether the line may be left).
+def _places_of(end: Endpoint, seas: Seaways, off_land: float) -> LinePlaces:
+    """Return the places of the line of an approach, from the berth; or the end, which has none.
 
     Parameters
     ----------
@@ -104,24 +107,23 @@ def _places_of(end: Endpoint, seas: Seaways, off_land: float) -> FloatArray:
     """
     approach = end.approach
     if approach is None:
-        return np.array([[end.lat, end.lon, 0.0, 1.0]])
+        lat, lon = np.array([end.lat]), np.array([end.lon])
+        return LinePlaces(lat, lon, np.zeros(1), np.ones(1, bool))
     dense = dense_line(approach.line)
     count = max(int(dense[-1, 2] / _SPACING), 1)
     wanted = np.linspace(0.0, dense[-1, 2], count + 1)
     rows = dense[np.unique(np.searchsorted(dense[:, 2], wanted).clip(0, len(dense) - 1))]
-    may_leave = np.zeros(len(rows))
+    may_leave = np.zeros(len(rows), bool)
     if end.may_leave_early and not approach.canal and not approach.through:
         coast = seas.chart.coastline
         off = coast.shore_distance(rows[:, 0], rows[:, 1], cap=off_land)
-        may_leave[np.asarray(off) >= off_land] = 1.0
-    may_leave[0], may_leave[-1] = 0.0, 1.0  # a berth is left along its line
-    return np.column_stack([rows, may_leave])
+        may_leave = np.asarray(off) >= off_land
+    may_leave[0], may_leave[-1] = False, True  # a berth is left along its line
+    return LinePlaces(rows[:, 0], rows[:, 1], rows[:, 2], may_leave)
 
 
 def _cut_ends(
-    ends: tuple[Endpoint, Endpoint],
-    lines: Sequence[FloatArray],
-    seas: Seaways,
+    ends: tuple[Endpoint, Endpoint], lines: Sequence[LinePlaces], seas: Seaways
 ) -> tuple[float, list[Position], list[Endpoint]]:
     """Return the shortest way from berth to berth: its length [m], the part at sea, and its ends.
 
@@ -129,9 +131,8 @@ def _cut_ends(
     ------
     NoRouteError : If there is no way.
     """
-    start, goal = (LinePlaces(a[:, 0], a[:, 1], a[:, 3] > 0.0) for a in lines)
-    path, numbers = seas.path_between_lines(start, goal)
-    cut = [_cut(end, float(line[number, 2])) for end, line, number in zip(ends, lines, numbers)]
+    path, numbers = seas.path_between_lines(*lines)
+    cut = [_cut(end, float(line.along[k])) for end, line, k in zip(ends, lines, numbers)]
     length, _ = path_length_and_canals(seas.chart, path)
     return length + sum(map(_length, cut)), path, cut
 

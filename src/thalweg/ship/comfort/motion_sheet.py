@@ -12,6 +12,7 @@ from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT
 from thalweg.ship.comfort.onboard_motions import ROLL_NOTE, onboard_motions
+from thalweg.ship.consumption import engine_order
 from thalweg.ship.methods.seakeeping.motion_sickness import (
     motion_sickness_dose,
     motion_sickness_percent_iso,
@@ -37,11 +38,13 @@ def motion_sheet(
         angle comes from the direction of the waves.
     speed_kn : float, optional
         Speed through water in calm water [kn]; by default the highest of the ship. The motions are
-        those at the speed that she attains in these waves with the same power, where it is known.
+        those at the speed that she attains in these waves, with the same power or holding her speed
+        up to the largest power.
 
     Returns
     -------
-    dict or None : ``headings_deg`` between bow and waves; ``attained_speed_kn``, ``heave_rms_m``,
+    dict or None : ``headings_deg`` between bow and waves; ``held``, as of
+        `thalweg.ship.consumption.engine_order`; ``attained_speed_kn``, ``heave_rms_m``,
         ``pitch_rms_deg``, ``roll_rms_deg`` by heading; ``places``: for each name root mean squares
         by heading and the percentage of people sick after `EXPOSURE_H`; ``tasks``: by heading
         whether each can be done, none in waves above the limit of the ship. None where the ship
@@ -78,6 +81,7 @@ def motion_sheet(
         tasks[task] = [bool(g) and kept if k or not kept else None for g, k in zip(good, known)]
     return {
         "ordered_speed_kn": ordered / KNOT,
+        "held": engine_order(ship.with_speeds([ordered])),
         "wave_height_m": height,
         "wave_period_s": period,
         "exposure_h": EXPOSURE_H,
