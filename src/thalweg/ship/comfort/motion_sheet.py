@@ -12,12 +12,12 @@ from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT
 from thalweg.ship.comfort.onboard_motions import ROLL_NOTE, onboard_motions
-from thalweg.ship.consumption import engine_order
 from thalweg.ship.methods.seakeeping.motion_sickness import (
     motion_sickness_dose,
     motion_sickness_percent_iso,
 )
 from thalweg.ship.methods.seakeeping.ship_motions import motions_validity
+from thalweg.ship.model_protocol import engine_order
 from thalweg.ship.performance_sheet_weather import assumed_peak_period, sheet_conditions
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def motion_sheet(
     Returns
     -------
     dict or None : ``headings_deg`` between bow and waves; ``held``, as of
-        `thalweg.ship.consumption.engine_order`; ``attained_speed_kn``, ``heave_rms_m``,
+        `thalweg.ship.model_protocol.engine_order`; ``attained_speed_kn``, ``heave_rms_m``,
         ``pitch_rms_deg``, ``roll_rms_deg`` by heading; ``places``: for each name root mean squares
         by heading and the percentage of people sick after `EXPOSURE_H`; ``tasks``: by heading
         whether each can be done, none in waves above the limit of the ship. None where the ship
