@@ -6,8 +6,8 @@ import pytest
 from thalweg import InputError, Sea, Ship, evaluate
 from thalweg.core.units import KNOT
 from thalweg.ship import Conditions
+from thalweg.ship.consumption import engine_order
 from thalweg.ship.held_speed import with_held_power, with_held_speed
-from thalweg.ship.model_protocol import engine_order
 from thalweg.ship.models.known_speed_model import SpeedLossModel
 
 BULKER = Ship.load("handysize-bulker")

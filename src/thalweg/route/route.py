@@ -104,7 +104,7 @@ class Route:
         Currency of the cost, and the prices with their sources
         (`thalweg.ship.fuel_prices.FuelTerms.prices`).
     engine_order : str
-        What the engine holds on every leg (`thalweg.ship.model_protocol.engine_order`).
+        What the engine holds on every leg (`thalweg.ship.consumption.engine_order`).
     """
 
     track: Track

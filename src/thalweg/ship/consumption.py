@@ -13,6 +13,7 @@ from thalweg.core.objective import Consumption, LegPrices, Objective
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
 from thalweg.ship.conditions import Conditions
+from thalweg.ship.model_protocol import does_hold_speed
 from thalweg.ship.tables.performance_table import PerformanceTable
 from thalweg.ship.tables.table_parts import TableError, TablePart
 from thalweg.ship.tables.tabulate import tabulate_cubed_speed
@@ -119,6 +120,20 @@ def _consumption_prices(name: str, price: float, ship: Ship, terms: FuelTerms) -
         return LegPrices(inside, outside, second, ship.waiting_fuel_rate * outside, price)
     inside, outside = inside / TONNE, outside / TONNE
     return LegPrices(inside, outside, 0.0, ship.waiting_fuel_rate * outside)
+
+
+def engine_order(ship: Ship) -> str:
+    """Return what the engine of a ship holds on a leg, for results.
+
+    Returns
+    -------
+    str
+        ``"constant power"`` (weather changes the speed), ``"constant speed"`` (through water, up to
+        the largest power of the engines), or ``"speed of the model"`` for ships without settings.
+    """
+    if ship.speed_field is not None:
+        return "speed of the model"
+    return "constant speed" if does_hold_speed(ship.model) else "constant power"
 
 
 def consumption_table(ship: Ship, consumption: Consumption, mix: Mix = ()) -> PerformanceTable:

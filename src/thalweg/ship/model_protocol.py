@@ -8,7 +8,7 @@ models with a resistance is `thalweg.ship.models.resistance_protocol.ResistanceB
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias, runtime_checkable
+from typing import NamedTuple, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,9 +20,6 @@ from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.tables.output_curve import OutputCurve
 from thalweg.ship.tables.table_parts import TableError, TablePart
-
-if TYPE_CHECKING:
-    from thalweg.ship.ship import Ship
 
 #: The parts of a table, their error, and the output curve where there is one.
 ModelTables: TypeAlias = (
@@ -339,16 +336,6 @@ def setting_index(setting: ArrayLike, count: int) -> NDArray[np.intp]:
     return index.astype(np.intp)
 
 
-def engine_order(ship: Ship) -> str:
-    """Return what the engine of a ship holds on a leg, for results.
-
-    Returns
-    -------
-    str
-        ``"constant power"`` (weather changes the speed), ``"constant speed"`` (through water, up to
-        the largest power of the engines), or ``"speed of the model"`` for ships without settings.
-    """
-    if ship.speed_field is not None:
-        return "speed of the model"
-    holds_speed = isinstance(ship.model, SpeedHoldingModel) and ship.model.holds_speed
-    return "constant speed" if holds_speed else "constant power"
+def does_hold_speed(model: object) -> bool:
+    """Return whether a ship model holds the speed that is ordered, up to the largest power."""
+    return isinstance(model, SpeedHoldingModel) and bool(model.holds_speed)

@@ -31,8 +31,8 @@ from thalweg.route.referee.sailing_physics import (
 from thalweg.route.referee.surroundings import surroundings_columns
 from thalweg.route.route import Route, Violation
 from thalweg.route.track import Track
+from thalweg.ship.consumption import engine_order
 from thalweg.ship.fuel_prices import FuelTerms
-from thalweg.ship.model_protocol import engine_order
 from thalweg.ship.models.known_speed_model import SpeedLossModel
 
 if TYPE_CHECKING:

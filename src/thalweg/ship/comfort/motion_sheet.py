@@ -17,7 +17,7 @@ from thalweg.ship.methods.seakeeping.motion_sickness import (
     motion_sickness_percent_iso,
 )
 from thalweg.ship.methods.seakeeping.ship_motions import motions_validity
-from thalweg.ship.model_protocol import engine_order
+from thalweg.ship.model_protocol import does_hold_speed
 from thalweg.ship.performance_sheet_weather import assumed_peak_period, sheet_conditions
 
 if TYPE_CHECKING:
@@ -43,8 +43,8 @@ def motion_sheet(
 
     Returns
     -------
-    dict or None : ``headings_deg`` between bow and waves; ``held``, as of
-        `thalweg.ship.model_protocol.engine_order`; ``attained_speed_kn``, ``heave_rms_m``,
+    dict or None : ``headings_deg`` between bow and waves; ``held``: "constant speed" or
+        "constant power"; ``attained_speed_kn``, ``heave_rms_m``,
         ``pitch_rms_deg``, ``roll_rms_deg`` by heading; ``places``: for each name root mean squares
         by heading and the percentage of people sick after `EXPOSURE_H`; ``tasks``: by heading
         whether each can be done, none in waves above the limit of the ship. None where the ship
@@ -81,7 +81,7 @@ def motion_sheet(
         tasks[task] = [bool(g) and kept if k or not kept else None for g, k in zip(good, known)]
     return {
         "ordered_speed_kn": ordered / KNOT,
-        "held": engine_order(ship.with_speeds([ordered])),
+        "held": "constant speed" if does_hold_speed(ship.model) else "constant power",
         "wave_height_m": height,
         "wave_period_s": period,
         "exposure_h": EXPOSURE_H,
