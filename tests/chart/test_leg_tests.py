@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import shapely
@@ -9,8 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from thalweg.chart import Chart
+from thalweg.chart.coast import gshhg
 from thalweg.core import geodesy
-from thalweg.core.errors import InputError
+from thalweg.core.errors import DatasetError, InputError
 from thalweg.kernels.codes import LAND, NO_DATA, NO_GO, OK
 from thalweg.kernels.geometry.coast_index import leg_blocked, leg_code
 
@@ -274,3 +277,25 @@ def test_unknown_or_missing_resolution_is_refused_with_a_remedy():
         Chart.gshhg("f")
     except InputError as error:
         assert "thalweg[hires]" in str(error)
+
+
+def test_plans_take_the_fine_coastline_where_it_is_installed(monkeypatch):
+    def with_files(resolution):
+        return Path("meta"), Path("points")
+
+    def without_files(resolution):
+        raise InputError("The high coastline (h) is not installed.", "", "")
+
+    for files, expected in ((with_files, "h"), (without_files, "i")):
+        monkeypatch.setattr(gshhg, "data_files", files)
+        assert gshhg.usual_resolution() == expected
+
+
+@pytest.mark.parametrize("table", ["1 5.0 4 0.0 1.0 0 64 0\n", "1 5.0 3 0.0 1.0\n"])
+def test_coastline_files_that_do_not_belong_together_are_refused(monkeypatch, tmp_path, table):
+    meta, points = tmp_path / "gshhsmeta_c.dat", tmp_path / "gshhs_c.dat"
+    meta.write_text(table, encoding="ascii")
+    np.array([[0, 0], [1, 0], [0, 1]], "<f4").tofile(points)
+    monkeypatch.setattr(gshhg, "data_files", lambda resolution: (meta, points))
+    with pytest.raises(DatasetError, match="do not belong together"):
+        gshhg.read_land_rings("c")

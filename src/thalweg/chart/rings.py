@@ -58,11 +58,13 @@ class Rings:
         step = self.lon[:-1] * self.lat[1:] - self.lon[1:] * self.lat[:-1]
         step[self.start[1:-1] - 1] = 0.0
         clockwise = np.add.reduceat(np.append(step, 0.0), self.start[:-1]) < 0.0
+        if not clockwise.any():
+            return self
         counts = np.diff(self.start)
-        within = np.arange(len(self.lat)) - np.repeat(self.start[:-1], counts)
-        last = np.repeat(self.start[1:] - 1, counts)
-        first = np.repeat(self.start[:-1], counts)
-        take = np.where(np.repeat(clockwise, counts), last - within, first + within)
+        take = np.arange(len(self.lat))
+        turned = np.flatnonzero(np.repeat(clockwise, counts))
+        ends = (self.start[:-1] + self.start[1:] - 1)[clockwise]  # sums of first and last
+        take[turned] = np.repeat(ends, counts[clockwise]) - turned
         return Rings(self.lat[take], self.lon[take], self.start)
 
     def fingerprint(self) -> str:

@@ -94,7 +94,7 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
         from thalweg.planning.request.voyage_surroundings import chart_of_entries
 
         by_fetch = ("waves", "fetch_limited") in policies
-        coast = chart_of_entries(getattr(arguments, "coast", "i")) if by_fetch else None
+        coast = chart_of_entries(_resolution(arguments)) if by_fetch else None
         sea = filled_in_turns(sea, policies, coast)
     return sea.sampled(getattr(arguments, "sampling", "linear"))
 
@@ -168,12 +168,18 @@ def open_chart(arguments: argparse.Namespace) -> Chart:
 
     arguments.progress("reading the chart")
     return chart_of_entries(
-        getattr(arguments, "coast", "i"),
+        _resolution(arguments),
         depths=arguments.depth,
         areas=arguments.zones,
         traffic=arguments.traffic,
         eca=not getattr(arguments, "no_eca", False),
     )
+
+
+def _resolution(arguments: argparse.Namespace) -> str:
+    from thalweg.chart.coast.gshhg import usual_resolution
+
+    return getattr(arguments, "coast", None) or usual_resolution()
 
 
 def open_ship(arguments: argparse.Namespace) -> Ship:

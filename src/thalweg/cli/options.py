@@ -48,10 +48,9 @@ def add_ship_and_chart_options(parser: argparse.ArgumentParser, *, default_ukc: 
     )
     chart.add_argument(
         "--coast",
-        default="i",
         choices=("c", "l", "i", "h", "f", "none"),
-        help="resolution of the GSHHG coastline: c (crude), l, i (default), h, f (full; h and f "
-        "need thalweg[hires]); none: no land",
+        help="resolution of the GSHHG coastline: c (crude), l, i, h, f (full; h and f need "
+        "thalweg[hires]); none: no land; default: h where it is installed, else i",
     )
     parser.add_argument(
         "--ukc",

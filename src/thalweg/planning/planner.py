@@ -13,6 +13,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from thalweg.chart import Chart
+from thalweg.chart.coast.gshhg import usual_resolution
 from thalweg.core.errors import InputError
 from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.units import KNOT
@@ -133,7 +134,7 @@ def plan(
     NoRouteError
         If no route exists within the limits (with the reasons counted).
     """
-    chart = Chart.gshhg("i") if chart is None else chart
+    chart = Chart.gshhg(usual_resolution()) if chart is None else chart
     check_argument_types(voyage, ship, sea, chart)
     ship = with_voyage_prices(ship, voyage)
     if voyage.min_ukc_m is not None:

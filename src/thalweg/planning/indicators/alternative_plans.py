@@ -12,6 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.chart import Chart
+from thalweg.chart.coast.gshhg import usual_resolution
 from thalweg.chart.passage_crossings import names_passed
 from thalweg.chart.passages import PASSAGES
 from thalweg.core.errors import InputError, NoRouteError
@@ -222,7 +223,7 @@ def alternative_plans(
     land, straightened. All share one network and one sea for each set of open canals. Chosen are
     the best in one figure after the other that differ from those chosen before, in water or time.
     """
-    chart = Chart.gshhg("i") if chart is None else chart
+    chart = Chart.gshhg(usual_resolution()) if chart is None else chart
     check_argument_types(voyage, ship, sea, chart)
     _check_request(voyage, sea, network, most)
     limits = IndicatorLimit.of_voyage(voyage)

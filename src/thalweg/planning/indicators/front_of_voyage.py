@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from thalweg.chart import Chart
+from thalweg.chart.coast.gshhg import usual_resolution
 from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.pareto.indicator_front import IndicatorFront, search_indicator_front
 from thalweg.planning.pareto.trade_off_planner import with_trade_off
@@ -55,7 +56,7 @@ def indicator_front(
     InputError, CoverageError, NoRouteError
         As `plan`.
     """
-    chart = Chart.gshhg("i") if chart is None else chart
+    chart = Chart.gshhg(usual_resolution()) if chart is None else chart
     check_argument_types(voyage, ship, sea, chart)
     ship = with_order(with_voyage_prices(ship, voyage), voyage)
     request = replace(voyage, objective="weighted", weights=dict.fromkeys(of, 1.0))

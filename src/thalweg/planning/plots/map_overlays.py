@@ -22,13 +22,25 @@ _LAND, _SHORE, _STORM = "#e2d6b5", "#6f6650", "#4a148c"
 _NO_GO, _PENALTY, _CONTROL, _LANE = "#c62828", "#ef6c00", "#00796b", "#ad1457"
 _LEAST_CELLS, _OPENING = 4, 0.15  # of enclosed water; part of its outline that may be open
 _ARROWS = 15.0  # height of maps [deg] from which on arrows of lanes would cover them
+_DOTS = 4_000.0  # details of land smaller than the width of the map over this are not drawn
 _NEAR = 2.5  # spacings of the network within which water counts as searched
 
 
 def draw_land(axes: Any, chart: Chart, box: MapExtent) -> None:
-    """Draw the land of a chart."""
-    for polygon in chart.coastline.polygons(box.south, box.north, box.west, box.east):
-        axes.add_patch(_patch(polygon, fc=_LAND, ec=_SHORE, lw=0.5, zorder=3))
+    """Draw the land of a chart, without what is too small to be seen on the map."""
+    import shapely
+    from matplotlib.collections import PathCollection
+
+    detail = (box.east - box.west) / _DOTS
+    land: Any = chart.coastline.polygons(box.south, box.north, box.west, box.east)
+    shapes = np.array(land, dtype=object)
+    west, south, east, north = shapely.bounds(shapes).reshape(-1, 4).T
+    is_seen = np.maximum(east - west, box_stretch(box) * (north - south)) >= detail
+    drawn = shapely.simplify(shapes[is_seen], detail / box_stretch(box))
+    outlines = [_outline(polygon) for polygon in drawn]
+    axes.add_collection(
+        PathCollection(outlines, fc=_LAND, ec=_SHORE, lw=0.5, zorder=3), autolim=False
+    )
 
 
 def draw_enclosed_water(
@@ -198,12 +210,17 @@ def place_labels(placer: LabelPlacer, labels: list[tuple[str, float, float]]) ->
 
 def _patch(polygon: Any, turn: float = 0.0, **style: Any) -> Any:
     from matplotlib.patches import PathPatch
+
+    return PathPatch(_outline(polygon, turn), **style)
+
+
+def _outline(polygon: Any, turn: float = 0.0) -> Any:
+    """Return a polygon as a path of matplotlib, shifted by ``turn`` [deg] of longitude."""
     from matplotlib.path import Path as Outline
 
     rings = [np.asarray(ring.coords) for ring in (polygon.exterior, *polygon.interiors)]
     shifted = [np.column_stack([ring[:, 0] + turn, ring[:, 1]]) for ring in rings]
-    outline = Outline.make_compound_path(*(Outline(ring, closed=True) for ring in shifted))
-    return PathPatch(outline, **style)
+    return Outline.make_compound_path(*(Outline(ring, closed=True) for ring in shifted))
 
 
 def _plain(name: str) -> str:

@@ -152,11 +152,14 @@ def _closed_shapes(
     parts = shapely.get_parts(shapely.get_parts(shapely.union_all(whole)))
     parts = parts[shapely.get_type_id(parts) == shapely.GeometryType.POLYGON]
     found = list(shapely.polygons(shapely.get_exterior_ring(parts)))
-    for shape in (*chart.zones.closed_shapes, *kept_out):
-        outline = shapely.get_coordinates(shape.exterior)
-        for shift in (-360.0, 0.0, 360.0):
-            moved = shapely.Polygon(outline + np.array([shift, 0.0]))
-            found.append(shapely.clip_by_rect(moved, *box))
+    zones = np.array([*chart.zones.closed_shapes, *kept_out], dtype=object)
+    left, bottom, right, top = shapely.bounds(zones).reshape(-1, 4).T
+    for shift in (-360.0, 0.0, 360.0):
+        near = (left + shift < box[2]) & (right + shift > box[0])
+        near &= (bottom < box[3]) & (top > box[1])
+        outlines = shapely.polygons(shapely.get_exterior_ring(zones[near]))
+        moved = shapely.transform(outlines, lambda xy, by=shift: xy + np.array([by, 0.0]))
+        found += list(shapely.clip_by_rect(moved, *box))
     south, north, _, _ = chart.area.array()
     across = np.arange(west, west + 360.0 + _CAP_STEP, _CAP_STEP)
     for edge, pole in ((south, -90.0), (north, 90.0)):
