@@ -10,15 +10,17 @@ from thalweg.route.evaluators.polyline import Polyline, PolylineEvaluator
 from thalweg.route.refinement.track_geometry import course_changes
 
 _SHARP_TURN = math.radians(30.0)
-_WORTH_A_TURN = 900.0  # each sharp turn must save the mean cost of this time [s]
+_WORTH_A_TURN = 900.0  # each 30 degrees of sharp turns must save the mean cost of this time [s]
+_LEAST_SAVING = 1e-6  # share of the cost that leaving out a point without a turn must save
 _LONGEST_SPAN = 32  # legs that are replaced by one
 
 
 def without_needless_turns(line: Polyline, evaluator: PolylineEvaluator) -> Polyline:
-    """Return the line without sharp turns that save less than 15 minutes of its mean cost.
+    """Return the line without sharp turns that save little.
 
     The cheapest path of a network may turn to and fro, as for the heading of least motions, where
-    no master would. A turn of more than 30 degrees stays where it saves more.
+    no master would. A turn of more than 30 degrees stays where it saves the mean cost of 15 minutes
+    for each 30 degrees of it. Points that cost something without any turn go too.
 
     Parameters
     ----------
@@ -37,16 +39,17 @@ def without_needless_turns(line: Polyline, evaluator: PolylineEvaluator) -> Poly
     latest = arrive + 1e-6
     least_gain = _WORTH_A_TURN * abs(cost) / max(arrive - line.depart, _WORTH_A_TURN)
     turns, span = _sharp_turns(line), _LONGEST_SPAN
-    while span >= 2 and turns:
+    while span >= 2:
         first = 0
         while first + span < len(line):
             inside = np.arange(first + 1, first + span)
             fixed = evaluator.fixed_points(line.lat, line.lon) | np.isfinite(line.leave)
             shorter = line.kept(np.delete(np.arange(len(line)), inside))
             fewer = turns - _sharp_turns(shorter)
-            if fewer > 0 and not fixed[inside].any():
+            if fewer >= 0.0 and not fixed[inside].any():
                 arrive, other = _sailed(shorter, evaluator)
-                if arrive <= latest and other <= cost + fewer * least_gain:
+                most = cost + fewer * least_gain if fewer else cost * (1.0 - _LEAST_SAVING)
+                if arrive <= latest and other <= most:
                     line, cost, turns = shorter, other, turns - fewer
                     continue
             first += 1
@@ -60,6 +63,7 @@ def _sailed(line: Polyline, evaluator: PolylineEvaluator) -> tuple[float, float]
     return float(arrive[0, -1]), float(cost[0])
 
 
-def _sharp_turns(line: Polyline) -> int:
-    """Return the number of alterations of course of more than 30 degrees."""
-    return int(np.count_nonzero(np.abs(course_changes(line.lat, line.lon)) > _SHARP_TURN))
+def _sharp_turns(line: Polyline) -> float:
+    """Return the sum of the alterations of course of more than 30 degrees, in units of these."""
+    turns = np.abs(course_changes(line.lat, line.lon))
+    return float(turns[turns > _SHARP_TURN].sum()) / _SHARP_TURN
