@@ -166,7 +166,7 @@ def test_tracks_over_land_are_replaced_and_marked():
         found = lines_off_land(
             island, tracks, stretches, tried,
             finder=EndFinder(
-                island, tracks, (np.array([45.0, 45.0]), np.array([-20.0, -10.0])), PORTS, 10 * NM
+                island, tracks, (np.array([45.0, 45.0]), np.array([-20.0, -10.0])), PORTS
             ),
             turning=turning_points(tracks, 1 * NM), radius=10 * NM, ways=StubWays(island),
         )  # fmt: skip

@@ -166,6 +166,20 @@ def test_tables_hold_the_routes_of_the_network(network):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("ports", [("Hamburg", "Kiel"), ("Antwerp", "Bergen")])
+def test_ships_that_leave_an_approach_early_do_not_sail_to_its_end(ports):
+    """Off the Scheldt ships turn north 20 nm before its western end, which they pass later."""
+    way = sea_distance(*ports)
+    routes = (SyntheticRoute(way.line), SyntheticRoute(way.line[::-1]))
+    messages = synthetic_fleet(
+        SyntheticFleet(routes, ships=2, interval_s=900.0), start="2024-01-01", days=40, seed=5
+    )
+    made = history_from_tracks(read_fleet([messages]), Chart.gshhg("i"))
+    for there in (ports, ports[::-1]):
+        assert made.route(*there).nm == pytest.approx(way.nm, rel=0.015)
+
+
+@pytest.mark.slow
 def test_ships_from_a_river_into_a_canal_are_not_taken_out_to_sea():
     """Hamburg to Gothenburg: the Kiel Canal leaves the Elbe 40 nm before its sea end."""
     way = sea_distance("Hamburg", "Gothenburg")

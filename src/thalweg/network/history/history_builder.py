@@ -130,7 +130,7 @@ def build_history(
         np.append(junctions.lon, [port.lon for port in ports]),
     )
     ways = GlobeWays(chart)
-    finder = EndFinder(chart, tracks, places, ports, rules.radius)
+    finder = EndFinder(chart, tracks, places, ports)
     tested = lines_off_land(
         chart, tracks, occurrences, sailed.candidates, finder=finder, turning=turning,
         radius=rules.radius, ways=ways,

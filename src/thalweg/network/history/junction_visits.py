@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.types import FloatArray, IntArray
+from thalweg.chart.approaches import dense_line
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.history.junctions import Junctions
 from thalweg.network.history.voyage_tracks import (
@@ -19,6 +20,10 @@ from thalweg.network.history.voyage_tracks import (
     sphere_vectors,
 )
 
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
+
+OFF_LINE: Final = 2.0 * NAUTICAL_MILE  #: tracks so near to an approach are on it
 _SAMPLES_PER_RADIUS: Final = 2.0
 #: A voyage leaves or reaches the sea end of a port within one and a half times the length of the
 #: approach and this distance [m].
@@ -130,22 +135,59 @@ def _port_passages(
     voyage: IntArray,
     vectors: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return where every voyage is nearest to its start and to its goal at sea."""
+    """Return where every voyage is nearest to its start and to its goal at sea.
+
+    Where a ship leaves the approach before its sea end, and comes nearer to that end later, the
+    place is the last on the line of the approach.
+    """
     where = port_vectors(ports)
     reach = 1.5 * np.array([port.approach_m for port in ports]) + _HARBOUR
     begin, end = tracks.along[tracks.ptr[:-1]], tracks.along[tracks.ptr[1:] - 1]
     middle = 0.5 * (begin + end)
     visits = []
-    for port, outer, inner in (
-        (tracks.start, begin, np.minimum(begin + reach[tracks.start], middle)),
-        (tracks.goal, np.maximum(end - reach[tracks.goal], middle), end),
+    for port, outer, inner, is_start in (
+        (tracks.start, begin, np.minimum(begin + reach[tracks.start], middle), True),
+        (tracks.goal, np.maximum(end - reach[tracks.goal], middle), end, False),
     ):
         near = np.flatnonzero((along >= outer[voyage]) & (along <= inner[voyage]))
         away = np.sum((vectors[near] - where[port[voyage[near]]]) ** 2, axis=1)
         order = near[np.lexsort((away, voyage[near]))]
         first = np.unique(voyage[order], return_index=True)[1]
-        visits.append(_nearest_between(tracks, along[order[first]], outer, inner, where[port]))
+        found = _nearest_between(tracks, along[order[first]], outer, inner, where[port])
+        apart = np.linalg.norm(tracks.vectors_at(found) - where[port], axis=1)
+        for number in np.unique(port[apart > OFF_LINE]).tolist():
+            on_line = _ApproachLine.of_port(ports[number])
+            if on_line is None:
+                continue
+            for row in np.flatnonzero((apart > OFF_LINE) & (port == number)).tolist():
+                samples = near[voyage[near] == row]
+                places = along[samples[on_line.has(vectors[samples])]]
+                if len(places) and not on_line.has(tracks.vectors_at(found[row : row + 1]))[0]:
+                    found[row] = places.max() if is_start else places.min()
+        visits.append(found)
     return visits[0], visits[1]
+
+
+@dataclass(frozen=True, eq=False)
+class _ApproachLine:
+    """Positions along the approach of a port, as a tree of vectors."""
+
+    tree: cKDTree
+
+    @classmethod
+    def of_port(cls, port: HistoryPort) -> _ApproachLine | None:
+        """Return the line of a port; None where it has none."""
+        from scipy.spatial import cKDTree
+
+        if len(port.places) < 3:  # a berth and its position at sea
+            return None
+        line = dense_line(port.places[1:])
+        return cls(cKDTree(sphere_vectors(line[:, 0], line[:, 1])))
+
+    def has(self, vectors: FloatArray) -> BoolArray:
+        """Return which of some vectors (n, 3) are on the line."""
+        away, _ = self.tree.query(vectors, distance_upper_bound=OFF_LINE)
+        return np.isfinite(away)
 
 
 def _nearest_between(

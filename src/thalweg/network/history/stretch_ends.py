@@ -12,13 +12,12 @@ from thalweg.chart.approaches import dense_line
 from thalweg.core.geodesy import distance, geocentric_positions
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.network.history.junction_visits import ArcOccurrences
+from thalweg.network.history.junction_visits import OFF_LINE, ArcOccurrences
 from thalweg.network.history.voyage_tracks import HistoryPort, VoyageTracks
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
-_OFF_LINE: Final = 2.0 * NAUTICAL_MILE  # tracks so near to an approach are on it
 _MOVED: Final = 3.0 * NAUTICAL_MILE  # to water, where the coastline does not show the river
 
 
@@ -42,8 +41,8 @@ class EndFinder:
     """Finds where stretches of tracks begin and end.
 
     A ship that turns into a canal does not come near the sea end of the approach. Where a track is
-    on the line of the approach, and farther from its sea end than the radius of a junction, the
-    stretch begins there, and so much of the approach is sailed as lies before.
+    on the line of the approach, and not near its sea end, the stretch begins there, and so much of
+    the approach is sailed as lies before.
 
     Parameters
     ----------
@@ -51,14 +50,12 @@ class EndFinder:
     tracks : VoyageTracks
     places : Positions of the nodes [deg], (lat, lon): junctions, then ports.
     ports : The ports.
-    radius : Radius of a junction [m].
     """
 
     chart: Chart
     tracks: VoyageTracks
     places: tuple[FloatArray, FloatArray]
     ports: Sequence[HistoryPort]
-    radius: float
 
     @property
     def node_approach(self) -> FloatArray:
@@ -74,7 +71,7 @@ class EndFinder:
         along = np.stack([stretches.begin, stretches.end], axis=1)
         track = geocentric_positions(self.tracks.vectors_at(along.ravel()))
         track_lat, track_lon = (np.asarray(part).reshape(along.shape) for part in track)
-        far = (approach > 0.0) & (distance(lat, lon, track_lat, track_lon) > self.radius)
+        far = (approach > 0.0) & (distance(lat, lon, track_lat, track_lon) > OFF_LINE)
         for row, side in np.argwhere(far).tolist():
             found = self._left_early(
                 int(nodes[row, side]), float(track_lat[row, side]), float(track_lon[row, side])
@@ -94,7 +91,7 @@ class EndFinder:
         line = dense_line(port.places[1:])
         apart = np.asarray(distance(lat, lon, line[:, 0], line[:, 1]))
         nearest = int(np.argmin(apart))
-        if apart[nearest] > _OFF_LINE:
+        if apart[nearest] > OFF_LINE:
             return None
         water = self.chart.nearest_navigable(lat, lon, largest=_MOVED)
         if water is None:
