@@ -18,6 +18,9 @@ from thalweg.studies.season_tables import (
 from thalweg.studies.study_parts import read_parts
 
 
+VOYAGE = {"ship": "gunnerus", "voyage": {"start": "A", "goal": "B"}}
+
+
 def departures(count: int, step_h: float = 12.0) -> list[str]:
     times = pd.date_range("2026-01-01", periods=count, freq=pd.Timedelta(hours=step_h))
     return [time.strftime("%Y-%m-%dT%H:%M:%SZ") for time in times]
@@ -98,7 +101,7 @@ def test_accuracies_and_single_departures_are_no_choices():
 def test_ctrl_c_keeps_the_finished_voyages_of_a_chunk(tmp_path, monkeypatch):
     pytest.importorskip("pyarrow", reason="the extra 'studies' is not installed")
     departs = departures(5)
-    study = Study.from_dict({"voyage": {"start": "A", "goal": "B"}, "axes": {"depart": departs}})
+    study = Study.from_dict(VOYAGE | {"axes": {"depart": departs}})
 
     def stopped(rows, folder):
         if rows[0].labels["depart"] == departs[3]:
@@ -114,7 +117,7 @@ def test_ctrl_c_keeps_the_finished_voyages_of_a_chunk(tmp_path, monkeypatch):
 def test_long_chunks_are_kept_in_parts(tmp_path, monkeypatch):
     """Each row that takes long is on disk before the next one begins."""
     pytest.importorskip("pyarrow", reason="the extra 'studies' is not installed")
-    study = Study.from_dict({"voyage": {"start": "A", "goal": "B"}, "axes": {"seed": [1, 2, 3]}})
+    study = Study.from_dict(VOYAGE | {"axes": {"seed": [1, 2, 3]}})
     kept = []
 
     def planned(rows, folder):
@@ -131,9 +134,7 @@ def test_long_chunks_are_kept_in_parts(tmp_path, monkeypatch):
 @pytest.mark.parametrize("workers, longest", [(0, 20), (2, 3), (8, 1)])
 def test_short_studies_are_cut_for_all_processes(tmp_path, monkeypatch, workers, longest):
     pytest.importorskip("pyarrow", reason="the extra 'studies' is not installed")
-    study = Study.from_dict(
-        {"voyage": {"start": "A", "goal": "B"}, "axes": {"seed": list(range(20))}}
-    )
+    study = Study.from_dict(VOYAGE | {"axes": {"seed": list(range(20))}})
     lengths = []
 
     def noted(chunks, *_):
@@ -149,7 +150,7 @@ def test_percentiles_by_month_are_those_of_the_departures(tmp_path, monkeypatch)
     """A made year of 730 departures: known quantiles, best month and confidence interval."""
     pytest.importorskip("pyarrow", reason="the extra 'studies' is not installed")
     depart = {"from": "2026-01-01", "to": "2026-12-31", "step_h": 12}
-    study = Study.from_dict({"voyage": {"start": "A", "goal": "B"}, "axes": {"depart": depart}})
+    study = Study.from_dict(VOYAGE | {"axes": {"depart": depart}})
     draw = np.random.default_rng(5).gamma(4.0, 1.0, study.size)
     months = pd.to_datetime([row.labels["depart"] for row in study.rows()]).month.to_numpy()
     hours = np.where(months == 5, 20.0, 24.0) + draw

@@ -189,6 +189,17 @@ def test_a_made_year_gives_its_best_month(folder, tmp_path):
     assert summary.voyages["time_h"].notna().all()
 
 
+def test_a_ship_that_all_rows_share_and_that_is_wrong_stops_the_study(folder, tmp_path):
+    with pytest.raises(InputError, match="hopper-dredgr"):
+        run_study(base(folder, ship="hopper-dredgr"), tmp_path / "out")
+    several = base(
+        folder, ship=None,
+        axes={"ship": ["hopper-dredger", "hopper-dredgr"], "depart": ["2026-03-01T00:00Z"]},
+    )  # fmt: skip
+    state = run_study(several, tmp_path / "several")
+    assert (state.done, state.refused) == (2, 1)
+
+
 @pytest.mark.slow
 def test_a_study_goes_on_and_grows(folder, tmp_path):
     small = base(folder, axes={"depart": ["2026-03-01T00:00Z", "2026-03-02T00:00Z"]})

@@ -212,7 +212,7 @@ def _wave_model(
     if not isinstance(value, str):
         return partial(wind_sea_layer, fetch=value), (
             "where unknown, waves are those that the local wind raises over its fetch to the "
-            f"coast of {value.name} (Carter 1982, 24 h, at most 500 km)"
+            f"coast of {value.name} (Carter 1982, 24 h, at most 500 km), without any swell"
         )
     if value == FETCH_LIMITED:
         raise InputError(

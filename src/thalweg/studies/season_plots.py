@@ -11,6 +11,7 @@ import pandas as pd
 
 from thalweg.core.file_writing import save_figure
 
+_BY_MONTH: Final = {"time_h": "passage [h]", "fuel_t": "fuel [t]", "sick_percent": "sick [%]"}
 _MONTHS: Final = tuple(calendar.month_abbr)[1:]
 
 
@@ -43,11 +44,17 @@ def draw_heat_map(table: pd.DataFrame, figure_name: str, path: Path) -> Path:
 
 
 def draw_months(table: pd.DataFrame, path: Path) -> Path:
-    """Draw the median time by month with its quantiles, and the share without a route."""
+    """Draw medians by month with their quantiles, and the share without a route.
+
+    Time, fuel and the share of people who get sick, as far as they are known.
+    """
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(8.0, 4.5), layout="constrained")
-    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
+    shown = [name for name in _BY_MONTH if f"{name}_p50" in table]
+    figure = Figure(figsize=(8.0, 2.0 + 2.2 * len(shown)), layout="constrained")
+    *panels, bottom = figure.subplots(
+        len(shown) + 1, 1, sharex=True, height_ratios=[*(3 for _ in shown), 1]
+    )
     others = [
         name
         for name in table.columns[: list(table.columns).index("month")]
@@ -56,18 +63,20 @@ def draw_months(table: pd.DataFrame, path: Path) -> Path:
     groups = table.groupby(others, dropna=False) if others else [((), table)]
     for key, group in groups:
         label = ", ".join(map(str, key if isinstance(key, tuple) else (key,)))
-        (line,) = top.plot(group["month"], group["time_h_p50"], marker="o", label=label)
-        if "time_h_p10" in group:
-            low, high = group["time_h_p10"].astype(float), group["time_h_p90"].astype(float)
-            top.fill_between(group["month"], low, high, alpha=0.15, color=line.get_color())
-        bottom.plot(group["month"], 100.0 * group["without_route"], color=line.get_color())
-    top.set_ylabel("passage [h]\nmedian, 10 to 90 %")
+        share = 100.0 * group["without_route"]
+        (line,) = bottom.plot(group["month"], share, label=label)
+        for name, panel in zip(shown, panels):
+            middle, low, high = (group[f"{name}_p{q}"].astype(float) for q in (50, 10, 90))
+            panel.plot(group["month"], middle, marker="o", color=line.get_color(), label=label)
+            panel.fill_between(group["month"], low, high, alpha=0.15, color=line.get_color())
+    for name, panel in zip(shown, panels):
+        panel.set_ylabel(f"{_BY_MONTH[name]}\nmedian, 10 to 90 %")
     bottom.set_ylabel("without\nroute [%]")
     bottom.set_ylim(0.0, 100.0)
     bottom.set_xticks(range(1, 13), _MONTHS)
     if others:
-        top.legend(fontsize="small")
-    for axes in (top, bottom):
+        (panels[0] if panels else bottom).legend(fontsize="small")
+    for axes in (*panels, bottom):
         axes.grid(alpha=0.3)
     save_figure(figure, path, dpi=120)
     return path

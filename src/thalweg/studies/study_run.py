@@ -22,8 +22,8 @@ from typing import Any
 
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import make_folder, taken_lock
-from thalweg.studies.row_runner import run_rows
-from thalweg.studies.study import Study, StudyRow
+from thalweg.studies.row_runner import run_rows, ship_of_request
+from thalweg.studies.study import Study, StudyRow, canonical_json
 from thalweg.studies.study_parts import read_parts, require_parquet, write_part, write_study
 
 LOCK_FILE = "lock"  #: of a folder in which a study runs
@@ -145,8 +145,9 @@ def _run_missing(
 ) -> StudyProgress:
     """Run the rows without a result by some workers, or a scheduler, in chunks."""
     workers, scheduler, chunk = how
-    write_study(study, folder)
     rows = list({row.id: row for row in study.rows()}.values())
+    _check_single_ship(study, rows)
+    write_study(study, folder)
     known = set(read_parts(folder, ["id"])["id"])
     missing = [row for row in rows if row.id not in known]
     processes = workers if scheduler is None else _CLUSTER
@@ -166,6 +167,14 @@ def _run_missing(
         if progress is not None:
             progress(state)
     return state
+
+
+def _check_single_ship(study: Study, rows: list[StudyRow]) -> None:
+    """Raise the error of a ship that all rows share; one of several is a refusal of its rows."""
+    names = ("ship", "load_factor", "limits", "charges")
+    ships = {canonical_json([row.request.get(name) for name in names]) for row in rows}
+    if len(ships) == 1:
+        ship_of_request(rows[0].request, str(study.folder))
 
 
 def _results(

@@ -316,14 +316,17 @@ def _refusals(frame: pd.DataFrame, usable: pd.Series) -> pd.DataFrame:
 
 
 def _best_months(table: pd.DataFrame, by: list[str]) -> pd.DataFrame:
-    """Return the month with the least median of each of `_LEAST_IS_BEST`, by the other axes."""
+    """Return the month with the least median of each of `_LEAST_IS_BEST`, by the other axes.
+
+    A figure that is the same in all months has none.
+    """
     if "month" not in table or table["month"].nunique() < 2:
         return pd.DataFrame()
     others, found = [name for name in by if name != "month"], []
     for figure in (name for name in _LEAST_IS_BEST if f"{name}_p50" in table):
         known = table.dropna(subset=[f"{figure}_p50"])
         for key, group in known.groupby(others, dropna=False) if others else [((), known)]:
-            if len(group):
+            if np.ptp(group[f"{figure}_p50"].to_numpy(float)) > 0.0:
                 best = group.iloc[int(np.argmin(group[f"{figure}_p50"].to_numpy(float)))]
                 labels = dict(zip(others, key if isinstance(key, tuple) else (key,)))
                 value = float(best[f"{figure}_p50"])

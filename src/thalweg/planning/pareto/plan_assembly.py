@@ -277,6 +277,11 @@ def _notes(
     context, best = trade_off.context, ordered[0].route
     notes = [end.note for end in ends if end.note] + list(context.needs.notes)
     notes += [f"{LIMIT_EXCEEDED}: {v}." for v in best.violations[:5]]
+    if trade_off.objective.name == "comfort" and not any(item.value for item in ordered):
+        notes.append(
+            "Nobody gets sick on any route: the sea has no waves here, so that the objective does "
+            "not choose. Least time or fuel does."
+        )
     notes += route_warnings(context, best)
     notes += control_area_notes(context.chart, [item.route for item in ordered])
     notes += lane_detour_notes(context.chart, [explored[0].alternative.network])
