@@ -153,7 +153,9 @@ class Seaways:
                 for place in self._pulled(chart, off_land, part)]  # fmt: skip
 
     def _pulled(self, chart: Chart, off_land: Chart, part: FloatArray) -> list[Position]:
-        """Return a stretch between canals after string pulling."""
+        """Return a stretch between canals after string pulling, the same in both directions."""
+        if tuple(part[0]) > tuple(part[-1]):  # string pulling depends on the direction
+            return self._pulled(chart, off_land, part[::-1])[::-1]
         if self.shoals is None or len(part) < 3:
             return _pulled(chart, off_land, part)
         shoals = self.shoals
