@@ -394,6 +394,7 @@ def approach_row(
     if fairway is not None:
         row["quality"] = "by hand"
         row["source"] += f"; from the fairway {fairway.name} on: {fairway.source}"
+    line = line[np.append(True, (np.diff(line, axis=0) != 0.0).any(axis=1))]
     row["line"] = written(line)
     row["half_width_nm"] = f"{half_width(charts, line):.2f}"
     return row

@@ -182,6 +182,7 @@ def test_lines_are_continuous_and_of_moderate_length():
         line = np.array(approach.line)
         legs = distance(line[:-1, 0], line[:-1, 1], line[1:, 0], line[1:, 1])
         assert legs.max(initial=0.0) < LONGEST_LEG, approach.port
+        assert legs.min(initial=100.0) > 10.0, approach.port  # no position twice
         assert approach.length < 750.0 * NAUTICAL_MILE, approach.port  # Manaus
     sized = [PORT_APPROACHES.of(port) for port in SIZED]
     lengths = [approach.length / NAUTICAL_MILE for approach in sized if approach]

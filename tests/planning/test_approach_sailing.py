@@ -19,7 +19,7 @@ from thalweg.planning.request.voyage_endpoints import (
     resolve_places,
     without_approach,
 )
-from thalweg.route import RouteFileOptions
+from thalweg.route import RouteFileOptions, Track
 from thalweg.route.canal_legs import approach_speed
 from thalweg.route.formats.csv_format import write_csv
 from thalweg.route.formats.file_route import file_route
@@ -297,3 +297,17 @@ def test_degrees_with_letters_are_not_called_swapped():
     ends = resolve_places("5.03N 61.604E", (), "3.7645S 43.47E", chart())
     assert [round(end.lat, 3) for end in ends] == [5.03, -3.764]
     assert len(resolve_places("4.1,52.0", (), "-10.0,60.0", chart())) == 2  # the goal is no port
+
+
+def test_a_position_of_an_approach_given_twice_takes_no_time():
+    line = np.array(PORT_APPROACHES.of(PORTS.lookup("DEWVN")).line)
+    twice = np.insert(line, 2, line[2], axis=0)
+    once, again = (
+        thalweg.evaluate(
+            Track(*track.T, 0.0, setting=np.zeros(len(track) - 1, int)),
+            ship=ship(), sea=Sea.calm(), chart=chart(),
+        )
+        for track in (line, twice)
+    )  # fmt: skip
+    assert again.feasible
+    assert again.time_h == pytest.approx(once.time_h, rel=1e-9)

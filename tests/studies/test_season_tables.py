@@ -17,7 +17,6 @@ from thalweg.studies.season_tables import (
 )
 from thalweg.studies.study_parts import read_parts
 
-
 VOYAGE = {"ship": "gunnerus", "voyage": {"start": "A", "goal": "B"}}
 
 

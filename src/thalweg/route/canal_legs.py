@@ -161,7 +161,8 @@ def _with_approach_legs(legs: CanalLegs, track: Track, chart: Chart, ship: Ship)
     if (part >= 0).any():
         line = np.stack([track.lat, track.lon], axis=1)
         along[list(joints_to_canals(chart.canals, chart.approaches, part, line))] = True
-    found = np.flatnonzero(along & (legs.number < 0))
+    has_length = (np.diff(track.lat) != 0.0) | (np.diff(track.lon) != 0.0)  # else it has no speed
+    found = np.flatnonzero(along & (legs.number < 0) & has_length)
     if not len(found):
         return legs
     more = [
