@@ -265,6 +265,18 @@ def test_refinement_avoids_land():
     assert route.fuel_t < 0.9 * start.fuel_t
 
 
+def test_an_ordered_speed_is_kept_where_settings_are_held():
+    lat, lon = np.array([0.0, 0.6, 0.0]), np.array([0.0, 1.0, 2.0])
+    middle = len(BULKER.speeds) // 2
+    bent = Track(lat, lon, 0.0, setting=np.full(2, middle))
+    start = evaluate(bent, ship=BULKER, sea=Sea.calm(), chart=OPEN)
+    later = 2.0 * start.arrive
+    held = refined(start, objective="fuel", arrive_by=later, hold_settings=True)
+    assert set(held.track.setting.tolist()) == {middle}
+    assert held.distance_nm == pytest.approx(120.0 * 1.00112, rel=1e-3)  # the straight line
+    assert refined(start, objective="fuel", arrive_by=later).fuel_t < 0.9 * held.fuel_t
+
+
 def test_time_lost_to_weather_is_not_used():
     """Waves over the limit come to the second half after 8.3 hours: no slower there than that."""
     ship = Ship.from_dict({**BULKER.data, "limits": {"max_significant_wave_height_m": 4.0}})

@@ -11,16 +11,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from operator import itemgetter
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart import Chart
 from thalweg.chart.passage_crossings import legs_through, names_passed
-from thalweg.chart.passages import Passage
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.geodesy import distance
 from thalweg.core.interrupt import SearchInterrupted
 from thalweg.core.limits import NETWORK_STEPS, TIGHTENING
 from thalweg.core.objective import Objective
@@ -37,6 +35,7 @@ from thalweg.planning.approach_sailing import (
     plan_along_approaches,
     shared_line,
 )
+from thalweg.planning.indicators.passage_ways import way_by_passage
 from thalweg.planning.network_selection.route_alternatives import RouteAlternative
 from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.pareto.exploration import fastest_in_known_water, network_pareto_front
@@ -58,6 +57,7 @@ from thalweg.planning.report.lane_report import lane_detour_notes, routes_within
 from thalweg.planning.request.offing_choice import chart_off_land, chosen_offing
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route, Track
+from thalweg.route.refinement.track_geometry import course_changes
 from thalweg.ship.comfort.onboard_motions import required_motions
 
 STOPPED: Final = "Stopped"  #: first word of notes after Ctrl-C
@@ -66,7 +66,8 @@ _WEIGHTED: Final = ("time", "fuel", "comfort", "encounters")
 #: Offings of the route farther off land, tried in turn: at least [nm], and times the voyage's own.
 _WIDER_OFFINGS: Final = ((4.0, 2.0), (3.0, 1.5), (2.0, 1.25))
 _DETOUR: Final = 0.35  # ways that are longer by this share of the shortest are left out
-_REACH: Final = 12.0 * NAUTICAL_MILE  # from nodes to the ends of the line of a passage
+_LONGER: Final = 1.5  # times the time of the fastest, without a time of arrival
+_BACK: Final = np.radians(120.0)  # larger turns in a passage lead back out of it
 _ISLAND_WAYS, _PASSAGE_WAYS, _ROUNDS = 3, 5, 3  # rounds of string pulling
 
 
@@ -142,22 +143,9 @@ def candidate_routes(
         if not search.stopped:
             search.try_alternative(other)
     search.notes += lane_detour_notes(search.context.chart, [first.network])
-    kept, note = routes_within_lanes(search.context.chart, search.routes)
+    in_time = [route for route in search.routes if search.is_in_time(route.arrive - route.depart)]
+    kept, note = routes_within_lanes(search.context.chart, in_time)
     return kept, [*search.notes, *note]
-
-
-class _PassageWay(NamedTuple):
-    """A way by a passage.
-
-    Attributes
-    ----------
-    length : [m].
-    before, after : Latitudes and longitudes [deg] to its narrowest point, and from there.
-    """
-
-    length: float
-    before: tuple[FloatArray, ...]
-    after: tuple[FloatArray, ...]
 
 
 class _Candidates:
@@ -175,6 +163,12 @@ class _Candidates:
     @property
     def stopped(self) -> bool:
         return self.trade_off.interrupt_guard.stopped()
+
+    def is_in_time(self, seconds: float) -> bool:
+        """Return whether a way takes at most half as much again as the fastest, if none is set."""
+        fastest = self.best["time"]
+        longest = _LONGER * (fastest.arrive - fastest.depart)
+        return self.context.voyage.arrive_by is not None or not seconds > longest
 
     def fastest(self, alternative: RouteAlternative) -> RouteAlternative:
         """Add the fastest route of an alternative; return it without water that has no data."""
@@ -237,7 +231,8 @@ class _Candidates:
         own = with_objective(self.trade_off, objective)
         horizon = extend_horizon(own, network, self.paths)
         front = network_pareto_front(own, network, horizon.frozen, horizon.latest)
-        points = sorted(front.points, key=lambda point: point.time)
+        points = [point for point in front.points if self.is_in_time(point.time)]
+        points.sort(key=lambda point: point.time)
         if not points:
             why = " and ".join(front.refused) or "too late for the period of the data"
             raise NoRouteError(
@@ -247,7 +242,8 @@ class _Candidates:
                 reasons=front.refused,
             )
         middle = knee(*(np.array([getattr(p, at) for p in points]) for at in ("time", "cost")))
-        chosen = [front.cheapest] if len(points) < 3 else [front.cheapest, points[middle]]
+        cheapest = min(points, key=lambda point: point.cost)
+        chosen = [cheapest] if len(points) < 3 else [cheapest, points[middle]]
         tracks = [(track_from_front_point(network, point), point.time) for point in chosen]
         scored = (scored_with_fewer_turns(own, track, time) for track, time in tracks)
         refined = objective.name == "fuel" and may_leave_nodes(own)
@@ -303,7 +299,7 @@ class _Candidates:
         trees = self._trees(network)
         longest = (1.0 + _DETOUR) * trees[0].distance[network.meta.goal]
         others = [passage for passage in chart.passages if passage.name not in passed]
-        ways = [self._way_by(network, passage, trees) for passage in others]
+        ways = [way_by_passage(chart, network, passage, trees) for passage in others]
         found = sorted((way for way in ways if way and way.length <= longest), key=itemgetter(0))
         cost = self._weights(network).leg_cost
         for way in found[:_PASSAGE_WAYS]:
@@ -312,45 +308,8 @@ class _Candidates:
                 for line in (way.before, way.after)
             ]
             lat, lon = (np.concatenate([parts[0][k], parts[1][k][1:]]) for k in (0, 1))
-            yield self._at_full_speed(lat, lon)
-
-    def _way_by(
-        self, network: Network, passage: Passage, trees: tuple[ShortestPathTree, ShortestPathTree]
-    ) -> _PassageWay | None:
-        """Return the shortest way by the line of a passage; None where no node is near its ends."""
-        chart, (lat, lon) = self.context.chart, passage.positions
-        reach = max(_REACH, 2.0 * network.meta.spacing_m)
-        near = []  # of each end of the line: nodes with a clear leg to it, and its length
-        for at in (0, -1):
-            away = np.asarray(distance(network.lat, network.lon, lat[at], lon[at]))
-            rows = np.flatnonzero(away <= reach)
-            ends = np.full(len(rows), lat[at]), np.full(len(rows), lon[at])
-            if len(rows):
-                blocked = chart.legs_blocked(network.lat[rows], network.lon[rows], *ends)
-                rows = rows[~np.asarray(blocked)]
-            if not len(rows):
-                return None
-            near.append((rows, away[rows]))
-        found = []
-        for (first, to_line), (last, from_line), step in (
-            (near[0], near[1], 1),
-            (near[1], near[0], -1),
-        ):
-            before, after = trees[0].distance[first] + to_line, trees[1].distance[last] + from_line
-            a, b = int(np.argmin(before)), int(np.argmin(after))
-            length = float(before[a] + passage.length + after[b])
-            found.append((length, int(first[a]), int(last[b]), step))
-        length, first_node, last_node, step = min(found)
-        line = lat[::step], lon[::step]
-        shore = chart.coastline.shore_distance(*line, cap=NAUTICAL_MILE)
-        middle = 1 + int(np.argmin(shore[1:-1])) if len(lat) > 2 else 1
-        paths = trees[0].path(first_node), trees[1].path(last_node)[::-1]
-        places = network.lat, network.lon
-        return _PassageWay(
-            length,
-            tuple(np.append(x[paths[0]], y[: middle + 1]) for x, y in zip(places, line)),
-            tuple(np.append(y[middle:], x[paths[1]]) for x, y in zip(places, line)),
-        )
+            if abs(course_changes(lat, lon)[len(parts[0][0]) - 2]) < _BACK:  # else not through it
+                yield self._at_full_speed(lat, lon)
 
     def _trees(self, network: Network) -> tuple[ShortestPathTree, ShortestPathTree]:
         """Return the trees of shortest paths from the start and to the goal."""

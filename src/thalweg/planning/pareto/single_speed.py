@@ -87,6 +87,7 @@ def refined_in_open_water(
         objective=objective.name,
         arrive_by=min(context.latest_arrival, latest, context.data_end),
         terms=objective.terms,
+        hold_settings=len(trade_off.settings) == 1,
     )
 
 

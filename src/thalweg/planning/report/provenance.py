@@ -6,9 +6,13 @@ import dataclasses
 import math
 from typing import Any
 
+import numpy as np
+
 from thalweg.chart import Chart
+from thalweg.core.geodesy import format_position
 from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.time import format_time
+from thalweg.core.units import HOUR, KNOT
 from thalweg.network import Network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.approach_report import turn_back_notes_of_route
@@ -23,6 +27,7 @@ from thalweg.sea import Sea
 from thalweg.sea.inspection import data_gaps
 from thalweg.ship import Ship
 
+_LEAST_KEPT, _SHORTEST_SLOW = 0.25, 1.0  # of the ordered speed; [h]
 #: Years between which a departure needs no warning: the reanalysis ERA5 begins in 1940.
 _FIRST_YEAR, _LAST_YEAR = "1940", "2100"
 
@@ -44,10 +49,30 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     notes += ice_warnings(route, context.sea)
     notes += data_gap_warnings(context.sea, route)
     notes += [text for text in route.assumptions if text.startswith(OUT_OF_RANGE)]
+    notes += slow_speed_warnings(route)
     notes += lane_notes(context.chart, route)
     if context.needs.limits.depth_checked:
         return notes
     return notes + depth_notes(context.chart, route, context.ship, context.min_ukc)
+
+
+def slow_speed_warnings(route: Route) -> list[str]:
+    """Return a warning where wind and waves leave little of the ordered speed through water."""
+    ordered = np.asarray(route.legs["ordered_speed"], float)[route.samples["leg"]]
+    kept = np.asarray(route.samples["speed_through_water"], float) / ordered
+    time = np.asarray(route.samples["time"], float)
+    slow = np.flatnonzero((kept[:-1] < _LEAST_KEPT) & (ordered[:-1] > 0.0))
+    hours = float(np.sum(np.diff(time)[slow])) / HOUR
+    if hours < _SHORTEST_SLOW:
+        return []
+    k = int(slow[np.argmin(kept[slow])])
+    place = format_position(float(route.samples["lat"][k]), float(route.samples["lon"][k]))
+    return [
+        f"The ship makes less than a quarter of the ordered speed for {hours:.1f} h, at least "
+        f"{float(route.samples['speed_through_water'][k]) / KNOT:.1f} kn at {place}: methods of "
+        "speed loss are not made for that. Check the ship file, limit wind and waves, or give the "
+        "ship a resistance and an engine."
+    ]
 
 
 def given_route_warnings(
@@ -62,6 +87,7 @@ def given_route_warnings(
     min_ukc : Required under the keel [m]; None: by the ship file.
     """
     notes = year_warnings(route) + ice_warnings(route, sea) + data_gap_warnings(sea, route)
+    notes += slow_speed_warnings(route)
     if route.min_ukc_m is not None:
         return notes
     clearance = ship.min_under_keel_clearance if min_ukc is None else min_ukc

@@ -38,10 +38,12 @@ class CostEvaluator:
     ----------
     evaluator : Its departure is the origin of times.
     per_second : Additional price of a second of the voyage; compared costs include it.
+    holds_settings : Whether legs keep the speed settings that they have.
     """
 
     evaluator: Evaluator
     per_second: float
+    holds_settings: bool = False
 
     by_length = True  # costs are counted from the start of a track, not from the origin
     chooses_settings = True

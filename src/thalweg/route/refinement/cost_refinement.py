@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -64,6 +65,7 @@ def refine_cost(
     terms: FuelTerms | None = None,
     fields: GridFields | None = None,
     thin: bool = True,
+    hold_settings: bool = False,
 ) -> Route:
     """Return a route past the same obstacles that costs less and arrives no later.
 
@@ -85,6 +87,8 @@ def refine_cost(
         The sea frozen around the route, if it is used for several calls.
     thin : bool
         Remove waypoints that make no difference (up to five more evaluations).
+    hold_settings : bool
+        Whether the ship keeps the speed settings of the route, which has one.
 
     Returns
     -------
@@ -139,7 +143,7 @@ def refine_cost(
         )
 
     def evaluator_of(track: Track, step: Tightening) -> CostEvaluator:
-        return make_cost_evaluator(
+        evaluator = make_cost_evaluator(
             ship=ship,
             table=conditions.table,
             fuel=fuel,
@@ -149,6 +153,7 @@ def refine_cost(
             track=track,
             prices=prices,
         )
+        return replace(evaluator, holds_settings=hold_settings)
 
     best = _best_attempt(scored, latest, evaluator_of, score, value)
     if not thin:

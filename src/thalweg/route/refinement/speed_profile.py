@@ -47,7 +47,7 @@ def choose_speeds(
     Returns
     -------
     line : With one more waypoint if a setting changes within a leg. At the fastest settings if even
-        those are late.
+        those are late. The given line where the evaluator holds settings.
     per_second : Cost of the next second saved (the slope of cost over time); 0 if all legs are at
         their cheapest setting.
 
@@ -59,6 +59,8 @@ def choose_speeds(
     are taken in the order of the cost saved per second, the last one on a part of its leg. Times
     of passage depend on the choice, so it is repeated.
     """
+    if evaluator.holds_settings:
+        return line, 0.0
     budget, slope = latest, 0.0
     base = line
     rounds = _MAX_ROUNDS // 2 if whole else _MAX_ROUNDS
