@@ -346,5 +346,7 @@ def test_champions_and_differences_in_words():
     words = difference_in_words(calm, fast)
     assert words == "+30 min, 12 % sick instead of 30 %, +8 nm"
     assert difference_in_words(fast, fast) == "nearly the same figures"
-    close = calm | {"sick_percent": 29.4}  # in a table both are 29 or 30 %
+    close = calm | {"sick_percent": 29.6}  # in a table both are 30 %
     assert "sick_percent" not in champions([fast | other, close | other])
+    nearly = [calm | other | {"sick_percent": value} for value in (8.8, 7.9)]
+    assert champions(nearly)["sick_percent"] == 1  # 9 and 8 % in a table

@@ -46,7 +46,7 @@ def zone(west, south, east, north, **properties):
     return {"type": "Feature", "properties": {"kind": "eca", **properties}, "geometry": geometry}
 
 
-def refined(route, ship=BULKER, sea=None, chart=OPEN, **more):
+def refined(route, ship=BULKER, sea=None, chart=OPEN, held=False, **more):
     return refine_cost(
         route,
         RefinementConditions(
@@ -55,6 +55,7 @@ def refined(route, ship=BULKER, sea=None, chart=OPEN, **more):
             chart=chart,
             table=ship.tabulate(),
             limits=FREE,
+            holds_settings=held,
         ),
         fuel=ship.tabulate_fuel(),
         **more,
@@ -271,7 +272,7 @@ def test_an_ordered_speed_is_kept_where_settings_are_held():
     bent = Track(lat, lon, 0.0, setting=np.full(2, middle))
     start = evaluate(bent, ship=BULKER, sea=Sea.calm(), chart=OPEN)
     later = 2.0 * start.arrive
-    held = refined(start, objective="fuel", arrive_by=later, hold_settings=True)
+    held = refined(start, objective="fuel", arrive_by=later, held=True)
     assert set(held.track.setting.tolist()) == {middle}
     assert held.distance_nm == pytest.approx(120.0 * 1.00112, rel=1e-3)  # the straight line
     assert refined(start, objective="fuel", arrive_by=later).fuel_t < 0.9 * held.fuel_t

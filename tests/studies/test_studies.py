@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -21,7 +22,8 @@ pytest.importorskip("pyarrow", reason="the extra 'studies' is not installed")
 from thalweg.cli.main import main
 from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
-from thalweg.studies import Study, run_study, study_rows, study_run, summarise_study
+from thalweg.planning.request.voyage_endpoints import NOT_REACHED
+from thalweg.studies import Study, row_runner, run_study, study_rows, study_run, summarise_study
 from thalweg.studies.row_runner import run_rows, ship_of_request
 from thalweg.studies.study_axes import axis_values
 from thalweg.studies.study_parts import read_parts
@@ -187,6 +189,15 @@ def test_a_made_year_gives_its_best_month(folder, tmp_path):
     }  # fmt: skip
     assert summary.voyages["depart"].tolist() == sorted(rows["depart"])
     assert summary.voyages["time_h"].notna().all()
+
+
+def test_a_voyage_that_ends_short_of_its_port_is_a_refusal(folder, monkeypatch):
+    note = f"{NOT_REACHED} B, GB, where the waves are not known."
+    short = SimpleNamespace(cancelled=False, notes=("Some note.", note))
+    monkeypatch.setattr(row_runner, "_planned", lambda *_: short)
+    study = base(folder, axes={"depart": ["2026-03-01T00:00Z"]})
+    (row,) = row_runner.run_rows(study.rows(), str(folder))
+    assert row["refusal"] == "CoverageError" and "Does not reach B" in row["reason"]
 
 
 def test_a_ship_that_all_rows_share_and_that_is_wrong_stops_the_study(folder, tmp_path):

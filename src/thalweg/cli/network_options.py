@@ -104,9 +104,9 @@ def layered_request(arguments: argparse.Namespace) -> dict[str, Any] | None:
     more = {name: value for name, value in more.items() if value is not None}
     if not stated and not more:
         return None
-    if arguments.network not in ("auto", "layered"):
+    if arguments.network != "layered":
         raise InputError(
-            f"Options of layered networks are given with --network {arguments.network}.",
+            f"Options of layered networks were given with --network {arguments.network}.",
             "--layers, --fan, --layer-offset, --near-coast, --contain and --within shape the "
             "network 'layered'.",
             "Give --network layered, or leave them out.",

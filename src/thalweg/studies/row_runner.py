@@ -12,12 +12,13 @@ import numpy as np
 
 import thalweg
 from thalweg.chart import Chart
-from thalweg.core.errors import InputError, ThalwegError
+from thalweg.core.errors import CoverageError, InputError, ThalwegError
 from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Plan, Voyage, plan
 from thalweg.planning.report.filled_weather import has_fills, wave_shares
 from thalweg.planning.request.filled_sea import filled_in_turns
+from thalweg.planning.request.voyage_endpoints import NOT_REACHED
 from thalweg.planning.request.voyage_surroundings import chart_of_entries, ship_of_entries
 from thalweg.route import Route, Track, evaluate, read_track
 from thalweg.route.indicator_columns import INDICATORS, indicator_value
@@ -122,6 +123,9 @@ def _figures(request: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     answer = _planned(voyage, ship, sea, chart, request)
     if answer.cancelled:  # Ctrl-C: the best plan so far is no result of this row
         raise KeyboardInterrupt
+    short = next((note for note in answer.notes if note.startswith(NOT_REACHED)), None)
+    if short is not None:
+        raise CoverageError(short, "A row of a study is a whole voyage.", "Add data, or a fill.")
     figures = _route_figures(answer.best, sea)
     objective = answer.voyage.objective
     networks = answer.provenance.get("networks", [])

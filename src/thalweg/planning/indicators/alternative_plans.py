@@ -243,7 +243,7 @@ def alternative_plans(
         [note for note in route_warnings(context, one) if not note.startswith(NEAREST_LAND)]
         for one in chosen
     ]  # the nearest land of each is a key figure
-    notes = notes_of_routes(notes, warnings)
+    notes = notes_of_routes([*(end.note for end in ends if end.note), *notes], warnings)
     latest = context.latest_arrival
     slack = [(latest - one.arrive) / HOUR if math.isfinite(latest) else None for one in chosen]
     return AlternativePlans(

@@ -210,6 +210,8 @@ class _Candidates:
             if name == "comfort":
                 required_motions(self.context.ship)  # a note, where she has no places
             return
+        if name == "comfort" and key_figure(self.best["time"], name) == 0.0:  # flat calm
+            return
         tracks = self._front(network, Objective.of(name, currency=self.currency))
         self.best[name] = self._scored(tracks[0])
         self.routes.append(self.best[name])

@@ -99,9 +99,11 @@ def champions(values: Sequence[dict[str, float]]) -> dict[str, int]:
             continue
         signed = column if figure.best == "least" else -column
         equal = _EQUAL * max(float(np.abs(column).max()), 1e-12)
-        equal = max(equal, 10.0**-figure.digits)  # no table shows less
-        if np.ptp(column) > equal:  # of equal ones the fastest
-            near = np.flatnonzero(signed <= signed.min() + (equal if name != "time" else 0.0))
+        shown = np.round(signed, figure.digits)  # as in the table
+        if np.ptp(column) > equal and np.ptp(shown) > 0.0:  # of equal ones the fastest
+            near = signed <= signed.min() + equal
+            near |= shown == shown[np.argmin(signed)]
+            near = np.flatnonzero(near if name != "time" else signed <= signed.min())
             times = np.array([one["time"] for one in values])
             found[name] = int(near[np.argmin(times[near])])
     return found

@@ -82,12 +82,12 @@ def refined_in_open_water(
             context.table,
             trade_off.limits,
             context.min_ukc,
+            holds_settings=len(trade_off.settings) == 1,
         ),
         fuel=trade_off.consumption,
         objective=objective.name,
         arrive_by=min(context.latest_arrival, latest, context.data_end),
         terms=objective.terms,
-        hold_settings=len(trade_off.settings) == 1,
     )
 
 

@@ -76,7 +76,7 @@ def closed_passage_notes(context: PlanningContext, route: Route) -> list[str]:
     for passage in context.chart.closed_passages:
         why = "" if passage in avoided else size_restriction(passage, context.ship)
         if why and _is_near(route, passage) and saved_length(route, passage) >= _LEAST_SAVED:
-            notes.append(f"Passage closed: {why} (open it with open = {passage.name!r}).")
+            notes.append(f"Passage closed: {why} (--open {passage.name!r} opens it).")
     return notes
 
 

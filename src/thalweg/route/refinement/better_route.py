@@ -72,6 +72,8 @@ class RefinementConditions:
         Limits along the route (`thalweg.core.limits.Limits`).
     min_ukc : float or None
         As for `evaluate`.
+    holds_settings : bool
+        Whether the ship keeps the speed settings of the route where speeds would be chosen.
     """
 
     ship: Ship
@@ -80,6 +82,7 @@ class RefinementConditions:
     table: PerformanceTable | TableArrays
     limits: Limits
     min_ukc: float | None = 0.0
+    holds_settings: bool = False
 
 
 def better_route(

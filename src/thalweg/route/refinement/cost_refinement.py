@@ -65,7 +65,6 @@ def refine_cost(
     terms: FuelTerms | None = None,
     fields: GridFields | None = None,
     thin: bool = True,
-    hold_settings: bool = False,
 ) -> Route:
     """Return a route past the same obstacles that costs less and arrives no later.
 
@@ -87,8 +86,6 @@ def refine_cost(
         The sea frozen around the route, if it is used for several calls.
     thin : bool
         Remove waypoints that make no difference (up to five more evaluations).
-    hold_settings : bool
-        Whether the ship keeps the speed settings of the route, which has one.
 
     Returns
     -------
@@ -153,7 +150,7 @@ def refine_cost(
             track=track,
             prices=prices,
         )
-        return replace(evaluator, holds_settings=hold_settings)
+        return replace(evaluator, holds_settings=conditions.holds_settings)
 
     best = _best_attempt(scored, latest, evaluator_of, score, value)
     if not thin:
