@@ -324,6 +324,17 @@ def test_alternatives_say_why_there_is_no_route_of_least_motion_sickness(chart):
     assert all("sickness" not in one for choice in found.choices for one in choice.best_in)
 
 
+@pytest.mark.slow
+def test_a_ship_whose_speed_depends_on_wind_only_has_a_route_of_least_sickness(chart):
+    """Her speed loss reads no direction and period of waves; her motions do."""
+    hull = DATA["hull"] | {"type": "general_cargo"}
+    kwon = Ship.from_dict(DATA | {"hull": hull, "models": {"speed_loss": "kwon_2008"}})
+    voyage = Voyage(start=(65.0, 0.0), goal=(65.0, 1.0), depart=DEPART, offing_nm=0.0)
+    found = alternative_plans(voyage, ship=kwon, sea=_sea().filled(wind=0.0), chart=chart)
+    assert not any("No route for comfort" in note for note in found.notes)
+    assert any("least motion sickness" in one.best_in for one in found.choices)
+
+
 def test_waits_of_alternatives_are_in_words(ship):
     """A ship without a hotel load waits free of fuel, which the words state."""
     track = Track.from_positions([(65.0, 0.0), (65.0, 0.5), (65.0, 1.0)], depart=DEPART)

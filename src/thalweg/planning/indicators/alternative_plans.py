@@ -48,6 +48,7 @@ from thalweg.route.formats import remove_route_files
 from thalweg.route.indicator_columns import indicator_value
 from thalweg.sea import Sea
 from thalweg.ship import Ship
+from thalweg.ship.condition_variables import WAVES
 
 _MOST: Final = 5  # routes
 _INSHORE, _OFFSHORE = 50.0, 15.0  # share of the length near land above and below which [%]
@@ -233,7 +234,7 @@ def alternative_plans(
     assert not isinstance(network, HistoryCorridor)  # refused above
     choice = NetworkChoice(network, resolution, voyage.layered)
     context, ends = voyage_context(
-        _request(voyage, ship), ship, with_wind_speed(ship, sea), chart, choice
+        _request(voyage, ship, sea), ship, with_wind_speed(ship, sea), chart, choice
     )
     context = replace(context, report_progress=progress or context.report_progress)
     routes, notes = berth_to_berth_candidates(context, ends)
@@ -291,17 +292,17 @@ def _check_request(
         )
 
 
-def _request(voyage: Voyage, ship: Ship) -> Voyage:
+def _request(voyage: Voyage, ship: Ship, sea: Sea) -> Voyage:
     """Return the voyage with an objective of which all settings of the ship are searched."""
-    by = voyage.arrive if voyage.arrive_by is None else voyage.arrive_by
+    moves = bool(ship.file.places) and sea.variables >= WAVES  # a limit that needs these waves
     request = replace(
         voyage,
         objective="weighted",
         weights={"time": 1.0, "fuel": 1.0},
-        at_most={},
+        at_most={"sick_percent": 100.0} if moves else {},
         at_least={},
         arrive=None,
-        arrive_by=by,
+        arrive_by=voyage.arrive if voyage.arrive_by is None else voyage.arrive_by,
     )
     try:
         priced_objective(request, ship)
