@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.chart.passages import find_passages
 from thalweg.core.errors import NoRouteError
 from thalweg.network import check_network, lattice, shortest_path
 from thalweg.network.network_concatenation import CanalLink, concatenate_networks
@@ -12,6 +13,7 @@ from thalweg.planning.request.chart_restrictions import (
     exclude_closed_canals,
     exclude_ice_latitudes,
 )
+from thalweg.planning.request.offing_choice import size_restriction
 from thalweg.planning.request.voyage_endpoints import Endpoint
 
 SHIP = Ship.simple(speed_kn=12.0, draught_m=5.0)
@@ -145,3 +147,18 @@ def test_a_missing_route_without_canals_is_reported():
     )
     with pytest.raises(NoRouteError):
         plan(voyage, ship=SHIP, sea=Sea.calm(), chart=chart, resolution=30_000.0)
+
+
+@pytest.mark.parametrize(("height", "closed"), [(None, set()), (39.0, set()), (45.0, {"kiel"})])
+def test_canals_and_passages_under_lower_bridges_are_closed(height, closed):
+    """The bridges of the Kiel Canal leave 40 m, that of Naeroysund 41 m."""
+    hull = {"draught_m": 5.0, "length_overall_m": 110.0, "breadth_m": 16.0}
+    hull |= {} if height is None else {"air_draught_m": height}
+    ship = Ship.from_dict({"name": "x", "hull": hull, "speeds_kn": [12.0]})
+    voyage = Voyage(start=ELBE, goal=GDANSK, depart="2026-03-01")
+    ends = [Endpoint("a", *ELBE, 0.0), Endpoint("b", *GDANSK, 0.0)]
+    left, _ = exclude_closed_canals(CHART, voyage, ship, ends)
+    names = {"kiel", "suez", "panama"}
+    assert names - {canal.name for canal in left.canals} == closed
+    (bridge,) = find_passages(["Naeroysund"])
+    assert bool(size_restriction(bridge, ship)) == (height == 45.0)

@@ -50,7 +50,7 @@ class Canal:
     source : Sources of the figures, with dates.
     tariff : Dues by the size of the ship; it counts as long as ``fee`` is its mean.
     fee_basis : How the fee of a ship was found.
-    max_length : Largest length allowed [m].
+    max_length, max_air_draught : Largest length and height above water allowed [m].
     long_ship_limit : Length [m] from which on a smaller draught [m] is allowed, and that draught.
 
     Raises
@@ -69,6 +69,7 @@ class Canal:
     tariff: CanalTariff | None = None
     fee_basis: str = ""
     max_length: float = np.inf
+    max_air_draught: float = np.inf
     long_ship_limit: tuple[float, float] = (np.inf, np.inf)
 
     if not TYPE_CHECKING:
@@ -117,6 +118,7 @@ class Canal:
         draught: float | None = None,
         beam: float | None = None,
         length: float | None = None,
+        air_draught: float | None = None,
     ) -> str:
         """Return why a ship of these sizes [m] may not pass, as text; empty if it may."""
         is_long = length is not None and length > self.long_ship_limit[0]
@@ -126,6 +128,7 @@ class Canal:
             ("draught", draught, deepest),
             ("beam", beam, self.max_beam),
             ("length", length, self.max_length),
+            ("air draught", air_draught, self.max_air_draught),
         ):
             if value is not None and value > limit:
                 reasons.append(f"its {what} of {value:g} m is over the {limit:g} m allowed")
@@ -146,6 +149,7 @@ def _read_canals() -> tuple[Canal, ...]:
             max_draught=row["max_draught_m"],
             max_beam=np.inf if row["max_beam_m"] is None else row["max_beam_m"],
             max_length=row.get("max_length_m", np.inf),
+            max_air_draught=row["max_air_draught_m"],
             long_ship_limit=tuple(row.get("long_ship_limit_m", (np.inf, np.inf))),
             source=row["source"],
             tariff=(

@@ -266,6 +266,11 @@ class Ship:
         return self.file.hull.length_m
 
     @property
+    def air_draught(self) -> float | None:
+        """Height of the highest point above the water [m]; None if the ship file gives none."""
+        return self.file.hull.air_draught_m
+
+    @property
     def min_under_keel_clearance(self) -> float:
         """Least under-keel clearance of the ship file [m]; 0 if it gives none."""
         return self.file.limits.min_under_keel_clearance_m

@@ -46,7 +46,9 @@ def exclude_closed_canals(
     notes, closed = [], []
     for canal in chart.canals:
         draught = float(ship.draught) or None
-        why = canal.transit_restriction(draught=draught, beam=beam, length=ship.length)
+        why = canal.transit_restriction(
+            draught=draught, beam=beam, length=ship.length, air_draught=ship.air_draught
+        )
         if not why and currency and canal.fee > 0.0:
             why = f"{canal.title}: its dues are in USD, the prices in {currency}"
         if why:

@@ -85,7 +85,10 @@ def restrict_passages(chart: Chart, voyage: Voyage, ship: Ship, offing: float) -
 def size_restriction(passage: Passage, ship: Ship) -> str:
     """Return why a passage is closed to a ship of this size, as text; empty if it is open."""
     return passage.ship_restriction(
-        draught=float(ship.draught) or None, beam=ship.breadth, length=ship.length
+        draught=float(ship.draught) or None,
+        beam=ship.breadth,
+        length=ship.length,
+        air_draught=ship.air_draught,
     )
 
 

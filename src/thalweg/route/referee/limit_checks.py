@@ -159,7 +159,10 @@ def canal_violations(
     found = []
     for leg in pieces.canals.legs:
         why = pieces.canals.of(leg).transit_restriction(
-            draught=world.ship.draught, beam=beam, length=world.ship.length
+            draught=world.ship.draught,
+            beam=beam,
+            length=world.ship.length,
+            air_draught=world.ship.air_draught,
         )
         if why:
             place = (float(pieces.track.lat[leg]), float(pieces.track.lon[leg]))

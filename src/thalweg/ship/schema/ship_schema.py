@@ -82,6 +82,7 @@ class HullSection(Section):
     draught_m: Draught | None = None
     draught_fore_m: Draught | None = None
     draught_aft_m: Draught | None = None
+    air_draught_m: Annotated[Number, Field(gt=0.0, le=120.0)] | None = None
     displacement_m3: Volume | None = None
     displacement_t: Volume | None = None
     deadweight_t: Volume | None = None
