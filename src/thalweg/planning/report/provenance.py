@@ -59,17 +59,17 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
 def slow_speed_warnings(route: Route) -> list[str]:
     """Return a warning where wind and waves leave little of the ordered speed through water."""
     ordered = np.asarray(route.legs["ordered_speed"], float)[route.samples["leg"]]
-    kept = np.asarray(route.samples["speed_through_water"], float) / ordered
+    made = np.asarray(route.samples["speed_through_water"], float)
     time = np.asarray(route.samples["time"], float)
-    slow = np.flatnonzero((kept[:-1] < _LEAST_KEPT) & (ordered[:-1] > 0.0))
+    slow = np.flatnonzero(made[:-1] < _LEAST_KEPT * ordered[:-1])
     hours = float(np.sum(np.diff(time)[slow])) / HOUR
     if hours < _SHORTEST_SLOW:
         return []
-    k = int(slow[np.argmin(kept[slow])])
+    k = int(slow[np.argmin(made[slow])])
     place = format_position(float(route.samples["lat"][k]), float(route.samples["lon"][k]))
     return [
-        f"The ship makes less than a quarter of the ordered speed for {hours:.1f} h, at least "
-        f"{float(route.samples['speed_through_water'][k]) / KNOT:.1f} kn at {place}: methods of "
+        f"The ship makes less than a quarter of the ordered speed for {hours:.1f} h, down "
+        f"to {made[k] / KNOT:.1f} kn at {place}: methods of "
         "speed loss are not made for that. Check the ship file, limit wind and waves, or give the "
         "ship a resistance and an engine."
     ]
