@@ -8,8 +8,10 @@ import pytest
 import thalweg
 from thalweg.cli.main import main
 from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.geodesy import densify, distance
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.sea_distance import sea_distance
+from thalweg.planning.seaways import world_chart
 
 # Distances [nm] as tables commonly quote them, to about 1 %: New York to Colombo is quoted from NGA
 # Publication 151 (Distances Between Ports, 11th edition); the others are from general knowledge.
@@ -166,7 +168,8 @@ def test_command(capsys):
 @pytest.mark.slow
 def test_with_a_draught_shallow_canals_are_closed_and_shoals_avoided_or_named():
     plain = sea_distance("USNYC", "USBOS")
-    assert plain.canals == ("Cape Cod Canal",) and plain.nm < 260.0 and not plain.notes
+    assert plain.canals == ("Cape Cod Canal",) and plain.nm < 260.0
+    assert not any("less water" in note for note in plain.notes)
     deep = sea_distance("USNYC", "USBOS", draught_m=12.0)
     assert deep.canals == ()
     assert deep.nm > sea_distance("USNYC", "USBOS", avoid=["cape-cod"]).nm
@@ -175,6 +178,46 @@ def test_with_a_draught_shallow_canals_are_closed_and_shoals_avoided_or_named():
     for wrong in (0.0, -1.0, 40.0, float("nan"), "deep"):
         with pytest.raises(InputError, match="draught"):
             sea_distance("USNYC", "USBOS", draught_m=wrong)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("start", "goal"),
+    [("Naples", "Palermo"), ("Santos", "Buenos Aires"), ("Valparaiso", "Auckland")],
+)
+def test_ways_past_capes_keep_off_land_where_there_is_room(start, goal):
+    """They passed Capri at 0.28 nm, and capes of Brazil and of the Chatham Islands at 0.04."""
+    way = sea_distance(start, goal)
+    assert not any("nearer to land" in note for note in way.notes)
+    chart, (first, last) = world_chart(), (way.line[0], way.line[-1])
+    lat, lon, _ = densify(*np.array(way.line).T, 500.0)
+    far = np.minimum(distance(lat, lon, *first), distance(lat, lon, *last)) > 40.0 * NAUTICAL_MILE
+    shore = chart.coastline.shore_distance(lat[far], lon[far], cap=5000.0)
+    assert shore.min() > 1.9 * NAUTICAL_MILE
+
+
+@pytest.mark.slow
+def test_what_is_nearer_to_land_than_required_is_stated():
+    way = sea_distance("St. Petersburg, RU", "Gdansk")
+    note = next(note for note in way.notes if "nearer to land than 2 nm" in note)
+    assert "nm off at 59" in note  # between the islands off Tallinn
+
+
+@pytest.mark.slow
+def test_without_a_draught_ways_keep_off_reefs():
+    """Houston to Brindisi led through the Florida Keys, Helsinki to Riga over 5 m in Moonsund."""
+    keys = sea_distance("Houston", "Brindisi")
+    lat, lon, _ = densify(*np.array(keys.line).T, 2000.0)
+    assert not np.any((lat > 24.85) & (lat < 25.3) & (lon > -81.3) & (lon < -80.5))
+    assert sea_distance("Helsinki", "Riga").nm == pytest.approx(284.0, rel=0.03)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("code", ["USLO9", "YERAI"])
+def test_terminals_in_open_water_have_no_turn_at_their_end(code):
+    """Their approach is one position: the turn there was looked up beyond the ends of the way."""
+    assert sea_distance("GDSTG", code).nm > 1000.0
+    assert sea_distance(code, "GDSTG").nm == pytest.approx(sea_distance("GDSTG", code).nm)
 
 
 @pytest.mark.slow

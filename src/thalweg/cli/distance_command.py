@@ -76,6 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
     place_positions([arguments.start, arguments.goal, *arguments.via])  # refuses unknown ports
     from thalweg.planning.sea_distance import (
         SMALL_CANALS,
+        USUAL_DEPTH,
         may_be_shorter_for_small_ships,
         sea_distance,
     )
@@ -102,7 +103,10 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         _print_distance(way, arguments.speed, days)
         if arguments.draught is None:
-            print("  shoals and draught were not considered: give --draught for a ship")
+            print(
+                f"  keeps off water shallower than {USUAL_DEPTH:g} m; draught was not considered: "
+                "give --draught for a ship"
+            )
         if not (arguments.open or arguments.via) and may_be_shorter_for_small_ships(way):
             _print_small_ships(way, find(open=("all",)))
     return SUCCESS

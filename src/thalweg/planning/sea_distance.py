@@ -14,7 +14,8 @@ from thalweg.chart import Chart
 from thalweg.chart.approaches import MAX_APPROACH_SPEED, line_between, line_length
 from thalweg.chart.canal_parts import part_number_of_legs, passages_of_parts
 from thalweg.chart.depth.global_depth import NAME
-from thalweg.chart.depth.shoals import EXCESS
+from thalweg.chart.depth.shoals import DRAUGHTS, EXCESS, Shoals
+from thalweg.chart.depth.shoals_of_draught import shoals_of_draught
 from thalweg.chart.offing import check_offing
 from thalweg.chart.passage_crossings import names_passed
 from thalweg.core.errors import InputError, NoRouteError
@@ -42,6 +43,11 @@ DEFAULT_OFFING_NM: Final = 2.0
 LEAST_SHORTER: Final = 0.05  #: share by which a way is clearly shorter
 _LONGEST_WITH_HINT: Final = 500.0  # [nm]
 _DEEPEST_DRAUGHT: Final = 30.0  # [m]
+#: Ways without a draught keep off water shallower than this where they can [m].
+USUAL_DEPTH: Final = 5.0
+LEAST_DEPTH: Final = (
+    2.5  #: ... and have a note where they do not keep off water shallower than this [m]
+)
 
 
 @dataclass(frozen=True)
@@ -162,8 +168,9 @@ def sea_distance(
         less only where the graph has no water so far from land.
     draught_m : float, optional
         Draught [m], 0 to 30: canals and passages that are too shallow are closed, and miles in
-        water shallower than one and a half draughts count more, as in plans. By default neither
-        counts. The graph is coarse near shoals: a note states what is left of them.
+        water shallower than one and a half draughts count more, as in plans. By default no draught
+        closes them, and miles in water shallower than 5 m count more. The graph is coarse near
+        shoals: a note states what is left of them.
     chart : Chart, optional
         By default the GSHHG coastline at resolution "i".
 
@@ -213,6 +220,8 @@ def _way_over_seas(
     if draught is not None:
         seas = _seas_for_draught(seas, draught, ends)
     ends = with_chosen_ways(ends, lambda: seas, draught=draught or 0.0)
+    if draught is None:
+        seas = replace(seas, shoals=_usual_shoals(chart, ends))
     notes = tuple(end.note for end in ends if end.note)
     first, last = ends[0].approach, ends[-1].approach
     if len(ends) == 2 and first and last:
@@ -222,10 +231,10 @@ def _way_over_seas(
             along = ((f"{first.port.label} to {last.port.label}", length),)
             titles = _canals_entered(chart, line)
             return SeaDistance(ends[0].name, ends[-1].name, length, titles, (), along, line, notes)
-    parts = [seas.path(a, b, offing=offing) for a, b in itertools.pairwise(ends)]
-    path = [parts[0][0], *(place for part in parts for place in part[1:])]
+    path = _path_by(seas, ends, offing)
     length, canals = path_length_and_canals(chart, path)
-    notes += _shoal_notes(seas, path)
+    notes += _shoal_notes(seas, path, draught)
+    notes += seas.near_land_notes(path, ends, offing=offing)
     approaches = tuple((a.label, a.length) for a in (first, last) if a is not None)
     line = (
         *(first.line[:-1] if first else ()),
@@ -283,8 +292,6 @@ def _canals_entered(chart: Chart, line: Sequence[Position]) -> tuple[str, ...]:
 
 def _seas_for_draught(seas: Seaways, draught: float, ends: Sequence[Endpoint]) -> Seaways:
     """Return the seaways for a draught [m]: what plans close and where a mile counts more."""
-    from thalweg.planning.request.shoal_choice import shoals_of_draught
-
     if not (is_number(draught) and 0.0 < draught <= _DEEPEST_DRAUGHT):
         raise InputError(
             f"The draught is {shortened_repr(draught)} m.",
@@ -304,19 +311,37 @@ def _seas_for_draught(seas: Seaways, draught: float, ends: Sequence[Endpoint]) -
     return replace(seas, shoals=shoals)
 
 
-def _shoal_notes(seas: Seaways, path: Sequence[Position]) -> tuple[str, ...]:
-    """Return how many miles of a way have less water than the draught, as a note."""
+def _path_by(seas: Seaways, ends: Sequence[Endpoint], offing: float) -> list[Position]:
+    """Return the shortest way by several places; offing [m]."""
+    parts = [seas.path(a, b, offing=offing) for a, b in itertools.pairwise(ends)]
+    return [parts[0][0], *(place for part in parts for place in part[1:])]
+
+
+def _usual_shoals(chart: Chart, ends: Sequence[Endpoint]) -> Shoals:
+    """Return reefs and flats that ways keep off where no draught is given."""
+    harbours = [(end.lat, end.lon) for end in ends]
+    return shoals_of_draught(chart, USUAL_DEPTH / DRAUGHTS, LEAST_DEPTH, harbours)
+
+
+def _shoal_miles(seas: Seaways, path: Sequence[Position]) -> float:
+    """Return how many miles of a way have less water than required."""
     if seas.shoals is None or len(path) < 2:
-        return ()
+        return 0.0
     way = np.array(path, float)
-    lat, lon, _ = densify(way[:, 0], way[:, 1], NAUTICAL_MILE)
+    lat, lon, leg = densify(way[:, 0], way[:, 1], NAUTICAL_MILE)
     legs = lat[:-1], lon[:-1], lat[1:], lon[1:]
-    in_canals = np.asarray(seas.chart.canal_of_legs(*legs)) >= 0
-    shallow = (seas.shoals.excess(*legs) > EXCESS[0]) & ~in_canals
-    miles = float(np.sum(distance(*legs)[shallow])) / NAUTICAL_MILE
+    counted = np.asarray(seas.chart.canal_of_legs(*way[:-1].T, *way[1:].T))[leg] < 0
+    shallow = (seas.shoals.excess(*legs) > EXCESS[0]) & counted
+    return float(np.sum(distance(*legs)[shallow])) / NAUTICAL_MILE
+
+
+def _shoal_notes(seas: Seaways, path: Sequence[Position], draught: float | None) -> tuple[str, ...]:
+    """Return how many miles of a way have less water than the draught, as a note."""
+    miles = _shoal_miles(seas, path)
     if miles < 1.0:
         return ()
+    depth = "the draught" if draught is not None else f"{LEAST_DEPTH:g} m"
     return (
-        f"{miles:.0f} nm of the way have less water than the draught, by the {NAME}: this graph of "
+        f"{miles:.0f} nm of the way have less water than {depth}, by the {NAME}: this graph of "
         "all seas is coarse near shoals, and a plan may find a longer way round.",
     )

@@ -10,14 +10,27 @@ from typing import Final
 import numpy as np
 
 from thalweg.chart import Chart
-from thalweg.chart.canals import exclude_canals
-from thalweg.chart.depth.shoals import Shoals
+from thalweg.chart.canals import Canal, exclude_canals
+from thalweg.chart.depth.shoals import CONTOURS, Shoals
 from thalweg.chart.offing import disc_at, required_offing
 from thalweg.chart.passages import find_passages, split_avoided
-from thalweg.core.geodesy import Position, distance, wrap_longitude
-from thalweg.core.types import FloatArray
+from thalweg.core.geodesy import (
+    Position,
+    densify,
+    distance,
+    format_position,
+    geocentric_positions,
+    geocentric_unit_vectors,
+    numbered_parts,
+)
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.network.alternatives.path_shortening import LegCost, leg_lengths, string_pull_path
+from thalweg.network.alternatives.path_shortening import (
+    PolylineCoordinates,
+    leg_lengths,
+    string_pull_path,
+    total_cost,
+)
 from thalweg.network.global_grid.endpoint_attachment import LinePlaces
 from thalweg.network.global_grid.sea_graph import (
     ICE_LATITUDES,
@@ -25,14 +38,16 @@ from thalweg.network.global_grid.sea_graph import (
     outside_ice,
     path_length,
 )
-from thalweg.network.global_grid.sea_graph_cache import sea_graph
+from thalweg.network.global_grid.sea_graph_cache import edge_excess, sea_graph
 from thalweg.planning.request.voyage_endpoints import Endpoint
 
 _ROUNDS: Final = 4  # passes of string pulling; each may double the waypoints of a corner
 #: A way off land that is longer than the one along the coast by more than this has bends.
 _MOST_LONGER: Final = 1.01
 _NEAR_LAND: Final = 3.0  # what a mile nearer to land than required counts more, beside the graph
-_SHARES: Final = (np.arange(9) + 0.5) / 9.0  # of a leg, where its distance from land is looked up
+_MOST_PLACES: Final = 64  # of a leg, where its distance from land is looked up
+_STEP: Final = 0.25 * NAUTICAL_MILE  # at which the distance from land is looked up for a note
+_TOLERANCE: Final = 0.1 * NAUTICAL_MILE
 _BEND: Final = 6.0 * NAUTICAL_MILE
 
 
@@ -123,7 +138,8 @@ class Seaways:
         """What the graph may not use, and its shoals."""
         canals = self.chart.canals
         closed = [k for k, canal in enumerate(canals) if canal.name in self.canals]
-        return GraphClosures(closed, find_passages(self.passages), self.shoals)
+        excess = None if self.shoals is None else edge_excess(self.chart, self.shoals)
+        return GraphClosures(closed, find_passages(self.passages), self.shoals, excess)
 
     def path(self, start: Endpoint, goal: Endpoint, *, offing: float) -> list[Position]:
         """Return the waypoints of the shortest way between two end points.
@@ -144,28 +160,126 @@ class Seaways:
         path = self.graph_path(start, goal)
         if outside_ice(*ends):
             chart = chart.within(*ICE_LATITUDES, -180.0, 180.0)
-        discs = [disc_at(chart.coastline, end) for end in ends]
-        off_land = chart.with_offing(offing, discs=discs)
+        off_land = _off_land(chart, ends, offing)
         lat, lon = np.array(path).T
         canal = chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:])
         ends_of_canals = np.flatnonzero(np.asarray(canal) >= 0) + 1
         return [place for part in np.split(np.array(path), ends_of_canals)
                 for place in self._pulled(chart, off_land, part)]  # fmt: skip
 
+    def near_land_notes(
+        self, path: Sequence[Position], ends: Sequence[Endpoint], *, offing: float
+    ) -> tuple[str, ...]:
+        """Return where a way is nearer to land than the offing [m] outside passages, as a note."""
+        if len(path) < 2:
+            return ()
+        off_land = _off_land(self._open_chart, [(end.lat, end.lon) for end in ends], offing)
+        way = np.array(path)
+        lat, lon, leg = densify(way[:, 0], way[:, 1], _STEP)
+        lat, lon = lat[1:], lon[1:]
+        shore = np.asarray(off_land.coastline.shore_distance(lat, lon, cap=offing))
+        at_sea = np.asarray(self.chart.canal_of_legs(*way[:-1].T, *way[1:].T))[leg] < 0
+        near = at_sea & (shore < required_offing(off_land.offing_arrays, lat, lon) - _TOLERANCE)
+        miles = float(near.sum()) * _STEP / NAUTICAL_MILE
+        if miles < 1.0:
+            return ()
+        at = int(np.argmin(np.where(near, shore, np.inf)))
+        return (
+            f"{miles:.0f} nm of the way are nearer to land than {offing / NAUTICAL_MILE:g} nm, the "
+            f"nearest {shore[at] / NAUTICAL_MILE:.1f} nm off at {format_position(lat[at], lon[at])}"
+            ": see the chart whether there is room.",
+        )
+
     def _pulled(self, chart: Chart, off_land: Chart, part: FloatArray) -> list[Position]:
         """Return a stretch between canals after string pulling, the same in both directions."""
         if tuple(part[0]) > tuple(part[-1]):  # string pulling depends on the direction
             return self._pulled(chart, off_land, part[::-1])[::-1]
-        if self.shoals is None or len(part) < 3:
-            return _pulled(chart, off_land, part)
-        shoals = self.shoals
-        off_land_cost = _cost_off_land(off_land)
+        if len(part) < 3:
+            return _places(*part.T)
+        clear = _ClearWater(off_land, self.shoals)
+        if self.shoals is not None and self.shoals.contour > CONTOURS[0]:  # wide, and graded
+            return _places(*string_pull_path(chart, *part.T, leg_cost=clear.cost, rounds=_ROUNDS))
+        found = clear.moved(chart, string_pull_path(clear, *part.T, rounds=_ROUNDS))
+        along = string_pull_path(chart, *part.T, rounds=_ROUNDS)
+        if _length(found) > _MOST_LONGER * _length(along) + _BEND:
+            found = min(found, clear.moved(chart, along), key=clear.cost_of)
+        return _places(*found)
 
-        def cost(*leg: FloatArray) -> FloatArray:
-            return np.asarray(off_land_cost(*leg) + leg_lengths(*leg) * shoals.excess(*leg))
 
-        lat, lon = string_pull_path(chart, *part.T, leg_cost=cost, rounds=_ROUNDS)
-        return _places(lat, lon)
+@dataclass(frozen=True)
+class _ClearWater:
+    """Water off land and off shoals, and what a way costs that leaves it."""
+
+    off_land: Chart
+    shoals: Shoals | None
+
+    @property
+    def canals(self) -> Sequence[Canal]:
+        return self.off_land.canals
+
+    def canal_of_legs(self, *ends: FloatArray) -> IntArray:
+        return np.asarray(self.off_land.canal_of_legs(*ends))
+
+    def legs_blocked(self, *ends: FloatArray) -> BoolArray:
+        """Return which legs are too near to land, or lead over shoals."""
+        blocked = np.asarray(self.off_land.legs_blocked(*ends))
+        return blocked if self.shoals is None else blocked | (self.shoals.excess(*ends) > 0.0)
+
+    def moved(self, chart: Chart, line: PolylineCoordinates) -> PolylineCoordinates:
+        """Return a way whose legs near land and over shoals are moved as far as costs fall."""
+        lat, lon = line
+        near = self.legs_blocked(lat[:-1], lon[:-1], lat[1:], lon[1:])
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], near.astype(int), [0]]))).reshape(-1, 2)
+        first = np.maximum(edges[:, 0] - 1, np.append(0, edges[:-1, 1]))  # with the leg before ...
+        last = np.minimum(edges[:, 1] + 1, np.append(first[1:], len(lat) - 1))  # ... and after it
+        found = _places(lat, lon)
+        for begin, end in reversed(list(zip(first.tolist(), last.tolist()))):
+            part = slice(begin, end + 1)
+            y, x = string_pull_path(chart, lat[part], lon[part], leg_cost=self.cost, rounds=_ROUNDS)
+            found[part] = _places(*string_pull_path(chart, y, x, leg_cost=self.cost, rounds=0))
+        lat, lon = np.array(found).T
+        return lat, lon
+
+    def cost_of(self, line: PolylineCoordinates) -> float:
+        """Return the cost of a way."""
+        return total_cost(line, self.cost)
+
+    def cost(
+        self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
+    ) -> FloatArray:
+        """Return the length of legs [m], more near land and over shoals."""
+        length = leg_lengths(lat1, lon1, lat2, lon2)
+        cost = length.copy()
+        near = np.flatnonzero(self.off_land.legs_blocked(lat1, lon1, lat2, lon2))
+        ends = (x[near] for x in (lat1, lon1, lat2, lon2))
+        cost[near] += _NEAR_LAND * self._near_land(length[near], *ends)
+        if self.shoals is not None:
+            cost += length * self.shoals.excess(lat1, lon1, lat2, lon2)
+        return np.asarray(cost)
+
+    def _near_land(
+        self,
+        length: FloatArray,
+        lat1: FloatArray,
+        lon1: FloatArray,
+        lat2: FloatArray,
+        lon2: FloatArray,
+    ) -> FloatArray:
+        """Return for how long [m] legs are nearer to land than required, those that are so."""
+        offing = self.off_land.offing.distance
+        count = np.clip(np.ceil(2.0 * length / max(offing, 1.0)), 1, _MOST_PLACES)
+        leg, part = numbered_parts(count)
+        share = (part + 0.5) / count[leg]
+        one, other = (
+            geocentric_unit_vectors(lat1, lon1)[leg],
+            geocentric_unit_vectors(lat2, lon2)[leg],
+        )
+        lat, lon = geocentric_positions(one + share[:, None] * (other - one))  # on the chord
+        shore = np.asarray(self.off_land.coastline.shore_distance(lat, lon, cap=offing))
+        near = shore < required_offing(self.off_land.offing_arrays, lat, lon)
+        beside = np.bincount(leg, near, minlength=len(length)) / count * length
+        # a leg past a cape between two places is near it for so long at least
+        return np.asarray(np.maximum(beside, np.minimum(offing, length)))
 
 
 @lru_cache(maxsize=1)
@@ -179,41 +293,13 @@ def small_passages(chart: Chart) -> set[str]:
     return {passage.name for passage in chart.passages if passage.use == "small_or_local"}
 
 
-def _pulled(chart: Chart, off_land: Chart, path: FloatArray) -> list[Position]:
-    """Return a stretch between canals (n, 2) [deg] after string pulling, off land where it can.
-
-    Legs of the graph nearer to land than the offing are moved off it as far as costs fall. Where
-    bends of the graph are left, the way along the coast is taken.
-    """
-    if len(path) < 3:
-        return [(float(lat), float(lon)) for lat, lon in path]
-    along = _places(*string_pull_path(chart, *path.T, rounds=_ROUNDS))
-    lat, lon = string_pull_path(off_land, *path.T, rounds=_ROUNDS)
-    near = np.asarray(off_land.legs_blocked(lat[:-1], lon[:-1], lat[1:], lon[1:]))
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], near.astype(int), [0]]))).reshape(-1, 2)
-    first = np.maximum(edges[:, 0] - 1, np.append(0, edges[:-1, 1]))  # with the leg before ...
-    last = np.minimum(edges[:, 1] + 1, np.append(first[1:], len(lat) - 1))  # ... and after it
-    found, cost = _places(lat, lon), _cost_off_land(off_land)
-    for begin, end in reversed(list(zip(first.tolist(), last.tolist()))):
-        part = slice(begin, end + 1)
-        y, x = string_pull_path(chart, lat[part], lon[part], leg_cost=cost, rounds=_ROUNDS)
-        found[part] = _places(*string_pull_path(chart, y, x, leg_cost=cost, rounds=0))
-    return found if path_length(found) <= _MOST_LONGER * path_length(along) + _BEND else along
+def _off_land(chart: Chart, ends: Sequence[Position], offing: float) -> Chart:
+    """Return a chart with an offing [m], less round the ends."""
+    return chart.with_offing(offing, discs=[disc_at(chart.coastline, end) for end in ends])
 
 
-def _cost_off_land(off_land: Chart) -> LegCost:
-    """Return the cost of legs: their length, more where they are nearer to land than required."""
-    arrays, coastline = off_land.offing_arrays, off_land.coastline
-
-    def cost(lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray) -> FloatArray:
-        lat = lat1[:, None] + _SHARES * (lat2 - lat1)[:, None]
-        lon = wrap_longitude(lon1[:, None] + _SHARES * wrap_longitude(lon2 - lon1)[:, None])
-        shore = coastline.shore_distance(lat, lon, cap=off_land.offing.distance).ravel()
-        near = shore < required_offing(arrays, lat.ravel(), np.asarray(lon).ravel())
-        share = near.reshape(lat.shape).mean(axis=1)
-        return np.asarray(leg_lengths(lat1, lon1, lat2, lon2) * (1.0 + _NEAR_LAND * share))
-
-    return cost
+def _length(line: PolylineCoordinates) -> float:
+    return path_length(_places(*line))
 
 
 def _places(lat: FloatArray, lon: FloatArray) -> list[Position]:

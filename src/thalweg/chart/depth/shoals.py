@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable
-from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
-from typing import Final
+from dataclasses import dataclass, field, replace
+from functools import cache, cached_property, lru_cache
+from typing import Any, Final, TypeAlias
 
 import numpy as np
+import shapely
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.chart.depth.global_depth import global_depth_codes
@@ -33,10 +34,11 @@ CONTOURS: Final = (5.0, 10.0, 20.0, 30.0, 40.0, 50.0)  #: depth contours [m]
 DRAUGHTS: Final = 1.5  #: depth of the contour over the draught, at least
 EXCESS: Final = (0.5, 19.0)  #: excess of a mile at the required depth, and at half of it
 _LINE_STEP: Final = 2.0 * NAUTICAL_MILE
-#: Points of the grid so near to a channel, or to a harbour, are changed [m].
+#: Points of the grid so near to a channel are changed [m].
 _MARGIN: Final = 4.0 * NAUTICAL_MILE
-_HARBOUR: Final = 8.0 * NAUTICAL_MILE
+HARBOUR: Final = 8.0 * NAUTICAL_MILE  #: ... as those so near to a harbour [m]
 _GENTLE: Final = 3.0  # contours: where the next point is deeper, the slope is steep
+GridPoints: TypeAlias = tuple[NDArray[np.int64], NDArray[np.int64]]  #: rows and columns
 _TILES: Final = 10  # tiles farther away than this are not told apart
 
 
@@ -100,6 +102,11 @@ class Shoals:
         shoal_excesses(self.arrays, *(x.flatten() for x in ends), found)
         return found.reshape(ends[0].shape)
 
+    @cached_property
+    def elsewhere(self) -> Shoals:
+        """The shoal water without harbours, the same for all voyages of a draught."""
+        return replace(self, harbours=())
+
     def text(self) -> str:
         """Return everything as text, for a fingerprint."""
         lines = hashlib.sha256(repr((self.channels, self.harbours)).encode()).hexdigest()[:16]
@@ -108,19 +115,44 @@ class Shoals:
 
 @lru_cache(maxsize=4)
 def _arrays(shoals: Shoals) -> ShoalArrays:
+    if shoals.harbours:
+        return _with_harbours(_arrays_without_harbours(shoals.elsewhere), shoals)
+    return _arrays_without_harbours(shoals)
+
+
+@lru_cache(maxsize=2)
+def _arrays_without_harbours(shoals: Shoals) -> ShoalArrays:
     code = global_depth_codes().copy()
-    deep = np.uint8(min(np.ceil(shoals.contour) + 1.0, 255.0))
+    deep = _deep_code(shoals)
     _shoal_inside(code, SHOAL_AREAS)
     code[_beside_shoals(code, shoals)] = deep
-    for place in shoals.harbours:
-        _deepen_near(code, (place,), _HARBOUR, deep)
-    # a named area beside a harbour stays shoal, one with a harbour in it does not
-    ends = np.array(shoals.harbours).reshape(-1, 2)
-    _shoal_inside(code, [area for area in SHOAL_AREAS if not area.contains(*ends.T).any()])
+    _shoal_inside(code, SHOAL_AREAS)
     for channel in shoals.channels:
-        _deepen_near(code, channel, _MARGIN, deep)
+        _deepen(code, _points_near(channel, _MARGIN), deep)
     depths = np.array([shoals.contour, shoals.least])
     return ShoalArrays(code, _free_tiles((code > 0) & (code < deep)), depths, np.array(EXCESS))
+
+
+def _with_harbours(arrays: ShoalArrays, shoals: Shoals) -> ShoalArrays:
+    """Return arrays with deep water round harbours; its tiles still count as having shoals.
+
+    A named area beside a harbour stays shoal, one with a harbour in it does not.
+    """
+    code = arrays.code.copy()
+    ends = np.array(shoals.harbours).reshape(-1, 2)
+    areas = [_widened(area) for area in SHOAL_AREAS if not area.contains(*ends.T).any()]
+    for place in shoals.harbours:
+        row, column = _points_near((place,), HARBOUR)
+        lat, lon = row / POINTS_OF_DEGREE - 90.0, column / POINTS_OF_DEGREE - 180.0
+        shoal = np.zeros(len(row), bool)
+        for area in areas:
+            shoal |= shapely.contains_xy(area, lon, lat)
+        _deepen(code, (row[~shoal], column[~shoal]), _deep_code(shoals))
+    return arrays._replace(code=code)
+
+
+def _deep_code(shoals: Shoals) -> np.uint8:
+    return np.uint8(min(np.ceil(shoals.contour) + 1.0, 255.0))
 
 
 def _shoal_inside(code: NDArray[np.uint8], areas: Iterable[ShoalArea]) -> None:
@@ -129,11 +161,8 @@ def _shoal_inside(code: NDArray[np.uint8], areas: Iterable[ShoalArea]) -> None:
         code[row, column] = np.minimum(code[row, column], np.uint8(area.depth + 1.0))
 
 
-def _deepen_near(
-    code: NDArray[np.uint8], line: tuple[Position, ...], margin: float, deep: np.uint8
-) -> None:
-    row, column = _points_near(line, margin)
-    code[row, column] = np.maximum(code[row, column], deep)
+def _deepen(code: NDArray[np.uint8], points: GridPoints, deep: np.uint8) -> None:
+    code[points] = np.maximum(code[points], deep)
 
 
 def _beside_shoals(code: NDArray[np.uint8], shoals: Shoals) -> NDArray[np.bool_]:
@@ -151,11 +180,9 @@ def _beside_shoals(code: NDArray[np.uint8], shoals: Shoals) -> NDArray[np.bool_]
     return gentle & (least < shoals.least + 1.0)
 
 
-def _points_inside(area: ShoalArea) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _points_inside(area: ShoalArea) -> GridPoints:
     """Return rows and columns of the points of the grid inside an area, or nearly."""
-    import shapely
-
-    wide = area.polygon.buffer(0.5 / POINTS_OF_DEGREE)
+    wide = _widened(area)
     west, south, east, north = (int(edge * POINTS_OF_DEGREE) for edge in wide.bounds)
     y, x = np.mgrid[south - 1 : north + 2, west - 1 : east + 2]
     inside = shapely.contains_xy(wide, x / POINTS_OF_DEGREE, y / POINTS_OF_DEGREE)
@@ -163,9 +190,12 @@ def _points_inside(area: ShoalArea) -> tuple[NDArray[np.int64], NDArray[np.int64
     return y[inside] + 90 * POINTS_OF_DEGREE, (x[inside] + columns // 2) % columns
 
 
-def _points_near(
-    line: tuple[Position, ...], margin: float
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+@cache
+def _widened(area: ShoalArea) -> Any:
+    return area.polygon.buffer(0.5 / POINTS_OF_DEGREE)
+
+
+def _points_near(line: tuple[Position, ...], margin: float) -> GridPoints:
     """Return rows and columns of the points of the grid near a line [m]."""
     vertices = np.array(line, float)
     lat, lon = vertices.T

@@ -15,6 +15,8 @@ from thalweg.kernels.geometry.cube_sphere import latitude_longitude, unit_vector
 DEGREE: Final = pi / 180.0
 PIECE: Final = DEGREE / 60.0  # 1 nm, of the geocentric angle [rad]
 STRETCH: Final = 1.0 * DEGREE  # so long stretches are straight in latitude and longitude [rad]
+SHORT: Final = 1.0  # so long legs bend from the line that is straight in degrees by less than ...
+BULGE: Final = 0.02  # ... this, below 80 degrees of latitude [deg]
 POINTS_OF_DEGREE: Final = 10  # of the grid
 POINTS_OF_TILE: Final = 5  # of the grid, along the side of a tile
 TILES_OF_DEGREE: Final = 2
@@ -138,11 +140,25 @@ def leg_shoal_excess(shoals, lat1, lon1, lat2, lon2):
     return total / stretches
 
 
+@inlined_by_numba
+def _is_free_at_once(shoals, lat1, lon1, lat2, lon2):
+    """Return whether there is no shoal water along a short leg, without trigonometry."""
+    rise, turn = lat2 - lat1, (lon2 - lon1 + 180.0) % 360.0 - 180.0
+    widest = max(abs(rise), abs(turn))
+    if not (widest <= SHORT and abs(lat1) <= 80.0):
+        return False
+    tiles = _free_tiles(shoals, lat1 + 0.5 * rise, lon1 + 0.5 * turn)
+    return 0.5 * widest + BULGE < (tiles - 1.0) / TILES_OF_DEGREE
+
+
 @allocation_free
 def shoal_excesses(shoals, lat1, lon1, lat2, lon2, excess):
     """Fill ``excess`` with the mean excess of a mile along many legs [deg]."""
     for k in range(len(excess)):
-        excess[k] = leg_shoal_excess(shoals, lat1[k], lon1[k], lat2[k], lon2[k])
+        if _is_free_at_once(shoals, lat1[k], lon1[k], lat2[k], lon2[k]):
+            excess[k] = 0.0
+        else:
+            excess[k] = leg_shoal_excess(shoals, lat1[k], lon1[k], lat2[k], lon2[k])
 
 
 @allocation_free

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.assembly import measured_pairs
 
 if TYPE_CHECKING:
-    from thalweg.chart import Chart
+    from thalweg.chart.canals import Canal
 
 #: Cost of legs (lat1, lon1, lat2, lon2) [deg]; by default their length [m].
 LegCost: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray]
@@ -35,11 +35,25 @@ _MOVE_DIRECTIONS: Final = np.radians(np.arange(0.0, 360.0, 45.0))
 _MIN_GAIN: Final = 1e-5  # the iteration stops at a smaller relative gain
 
 
+class LegTests(Protocol):
+    """What string pulling asks of a chart."""
+
+    @property
+    def canals(self) -> Sequence[Canal]:
+        """The canals, whose legs are not changed."""
+
+    def canal_of_legs(self, *ends: Any) -> Any:
+        """Return the number of the canal that each leg leads through, -1 at sea."""
+
+    def legs_blocked(self, *ends: Any) -> Any:
+        """Return which legs may not be sailed."""
+
+
 @dataclass(frozen=True)
 class _LegRules:
     """Tests and costs of legs."""
 
-    chart: Chart
+    chart: LegTests
     cost: LegCost
     sides: PassingSides | None
 
@@ -72,7 +86,7 @@ class _LegRules:
 
 
 def string_pull_path(
-    chart: Chart,
+    chart: LegTests,
     lat: FloatArray,
     lon: FloatArray,
     *,

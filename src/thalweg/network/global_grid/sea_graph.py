@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from thalweg.chart.depth.shoals import HARBOUR
 from thalweg.chart.offing import closing_line
 from thalweg.chart.passages import Passage
 from thalweg.core.errors import NoRouteError
@@ -54,6 +55,7 @@ NEAR_LAND_FACTOR: Final = 1.5
 ICE_LATITUDES: Final = (-60.0, 72.0)
 _ICE_MARGIN: Final = 1.0  # ends this near to a limit count as beyond it [deg]
 _IN_ICE: Final = -2  # among the canals of edges
+_ROUND_HARBOUR: Final = HARBOUR + 12.0 * NAUTICAL_MILE  # with the cells of the grid of depth
 _LONGEST_EDGE: Final = 250e3  # of edges across a passage, between two coasts [m]
 
 
@@ -66,11 +68,13 @@ class GraphClosures:
     canals : Canals of the chart that are closed, by number.
     passages : Passages that are closed in the chart but not in the graph.
     shoals : Shoal water, in which a mile counts more.
+    excess : By how much it does on each edge of the graph (`SeaGraph.shoal_excess`).
     """
 
     canals: Sequence[int] = ()
     passages: Sequence[Passage] = ()
     shoals: Shoals | None = None
+    excess: FloatArray | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,7 +126,7 @@ class SeaGraph:
             for place, what in ((start, "start"), (goal, "goal"))
         ]
         weight = self._weights(sea, (start, goal), closures)
-        lat, lon, nodes, _ = self._shortest(ends, weight, closures.shoals)
+        lat, lon, nodes, _ = self._shortest(ends, weight, closures)
         return list(zip(lat[nodes].tolist(), lon[nodes].tolist()))
 
     def path_between_lines(
@@ -155,7 +159,7 @@ class SeaGraph:
         first, last = ((float(line.lat[0]), float(line.lon[0])) for line in (start, goal))
         weight = self._weights(sea, (first, last), closures)
         direct = line_to_line_pairs(sea, start, goal)
-        lat, lon, nodes, begins = self._shortest(ends, weight, closures.shoals, direct=direct)
+        lat, lon, nodes, begins = self._shortest(ends, weight, closures, direct=direct)
         of_start = (nodes >= begins[0]) & (nodes < begins[1])
         left = int(np.flatnonzero(of_start)[-1])
         met = int(np.flatnonzero(nodes >= begins[1])[0])
@@ -174,7 +178,7 @@ class SeaGraph:
         self,
         ends: Sequence[Attachment],
         weight: FloatArray,
-        shoals: Shoals | None,
+        closures: GraphClosures,
         *,
         direct: tuple[IntArray, IntArray] | None = None,
     ) -> tuple[FloatArray, FloatArray, IntArray, tuple[int, int]]:
@@ -203,10 +207,10 @@ class SeaGraph:
             heads, tails = first + direct[0], second + direct[1]
             links.append(measured_pairs(lat, lon, heads.astype(np.int32), tails.astype(np.int32)))
         joints = concatenate_pairs(links)
-        if shoals is not None:
-            weight *= 1.0 + self._shoal_excess(shoals)
+        if closures.shoals is not None and closures.excess is not None:
+            weight *= 1.0 + closures.excess
             a, b = joints.first, joints.second
-            excess = shoals.excess(lat[a], lon[a], lat[b], lon[b])
+            excess = closures.shoals.excess(lat[a], lon[a], lat[b], lon[b])
             joints = replace(joints, length=joints.length * (1.0 + excess))
         indptr, target, weight = self._with_links(joints, len(lat), weight)
         known, parent = np.empty(len(lat)), np.empty(len(lat), np.int64)
@@ -225,15 +229,28 @@ class SeaGraph:
             nodes.append(int(parent[nodes[-1]]))
         return lat, lon, np.array(nodes[::-1], np.int64), (first, second)
 
-    def _shoal_excess(self, shoals: Shoals) -> FloatArray:
+    def shoal_excess(self, shoals: Shoals) -> FloatArray:
         """Return by how much a mile counts more on each edge; 0 in canals."""
-        lat, lon = self.waters.lat, self.waters.lon
-        at_sea = np.flatnonzero(self.canal < 0)
-        tail = np.repeat(np.arange(len(lat)), np.diff(self.indptr))[at_sea]
-        head = self.target[at_sea]
         excess = np.zeros(len(self.target))
-        excess[at_sea] = shoals.excess(lat[tail], lon[tail], lat[head], lon[head])
+        at_sea = np.flatnonzero(self.canal < 0)
+        excess[at_sea] = self._excess_of(shoals, at_sea)
         return excess
+
+    def shoal_excess_round_harbours(self, shoals: Shoals, elsewhere: FloatArray) -> FloatArray:
+        """Return `shoal_excess` of shoals with harbours, given the one without these."""
+        excess = elsewhere.copy()
+        tail = np.repeat(np.arange(len(self.waters.lat)), np.diff(self.indptr))
+        for place in geocentric_unit_vectors(*np.array(shoals.harbours).T):
+            away = np.arccos(np.clip(self.waters.vectors @ place, -1.0, 1.0)) * MEAN_RADIUS
+            near = np.flatnonzero((away[tail] - self.weight < _ROUND_HARBOUR) & (self.canal < 0))
+            excess[near] = self._excess_of(shoals, near)
+        return excess
+
+    def _excess_of(self, shoals: Shoals, edges: IntArray) -> FloatArray:
+        lat, lon = self.waters.lat, self.waters.lon
+        tail = np.repeat(np.arange(len(lat)), np.diff(self.indptr))[edges]
+        head = self.target[edges]
+        return shoals.excess(lat[tail], lon[tail], lat[head], lon[head])
 
     def _weight_without(
         self, chart: Chart, closed: Sequence[int], passages: Sequence[Passage]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from thalweg.chart.depth.shoals import CONTOURS
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.file_writing import replacing_file
 from thalweg.network.global_grid.endpoint_attachment import ConnectedWaters
@@ -26,6 +27,8 @@ from thalweg.network.global_grid.sea_graph import (
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.chart.depth.shoals import Shoals
+    from thalweg.core.types import FloatArray
 
 _FORMAT: Final = 5  # increase when the arrays or their construction change
 
@@ -37,6 +40,27 @@ def sea_graph(chart: Chart) -> SeaGraph:
     ----------
     chart : Zones, depth, the area and the offing of the chart are not used.
     """
+    return _load_or_make(_request(chart))
+
+
+def edge_excess(chart: Chart, shoals: Shoals) -> FloatArray:
+    """Return by how much a mile counts more on each edge of the graph of a chart.
+
+    Those for water shallower than the first contour, which count where no draught is given, are
+    kept on disk.
+
+    Parameters
+    ----------
+    chart : As of `sea_graph`.
+
+    Returns
+    -------
+    ndarray : 0 or more, float64 (E,); not to be changed.
+    """
+    return _excess(_request(chart), shoals)
+
+
+def _request(chart: Chart) -> _GraphRequest:
     bare = type(chart)(
         chart.coastline,
         canals=chart.canals,
@@ -46,7 +70,7 @@ def sea_graph(chart: Chart) -> SeaGraph:
     lines = [(passage.name, passage.line) for passage in chart.passages]
     facts = (FORMAT, _FORMAT, bare.fingerprint(), RESOLUTION, OFFING, NEAR_LAND_FACTOR, lines)
     name = hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
-    return _load_or_make(_GraphRequest(bare, cache_folder("globe") / f"sea-{name}.npz"))
+    return _GraphRequest(bare, cache_folder("globe") / f"sea-{name}.npz")
 
 
 @dataclass(frozen=True)
@@ -72,6 +96,33 @@ def _load_or_make(request: _GraphRequest) -> SeaGraph:
     with contextlib.suppress(OSError):
         _save_graph(request.path, graph)
     return graph
+
+
+@lru_cache(maxsize=2)
+def _excess(request: _GraphRequest, shoals: Shoals) -> FloatArray:
+    graph = _load_or_make(request)
+    elsewhere = _excess_elsewhere(request, shoals.elsewhere)
+    if not shoals.harbours:
+        return elsewhere
+    return graph.shoal_excess_round_harbours(shoals, elsewhere)
+
+
+@lru_cache(maxsize=2)
+def _excess_elsewhere(request: _GraphRequest, shoals: Shoals) -> FloatArray:
+    graph = _load_or_make(request)
+    if shoals.contour > CONTOURS[0]:  # as many as there are draughts
+        return graph.shoal_excess(shoals)
+    facts = _FORMAT, shoals.text(), hashlib.sha256(shoals.arrays.code.tobytes()).hexdigest()
+    layer = hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
+    path = request.path.with_name(f"{request.path.stem}-shoals-{layer}.npy")
+    with contextlib.suppress(OSError, ValueError, EOFError):
+        excess = np.load(path, allow_pickle=False)
+        if excess.shape == graph.target.shape and excess.dtype == np.float64:
+            return np.asarray(excess)
+    excess = graph.shoal_excess(shoals)
+    with contextlib.suppress(OSError), replacing_file(path) as file:
+        np.save(file, excess, allow_pickle=False)
+    return excess
 
 
 def _load_graph(path: Path) -> SeaGraph:

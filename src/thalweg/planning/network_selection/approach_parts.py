@@ -13,6 +13,7 @@ from thalweg.chart.approach_choices import LEAST_OFF_LAND
 from thalweg.chart.approaches import dense_line, line_part
 from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.chart.depth.shoals import EXCESS, Shoals
+from thalweg.chart.depth.shoals_of_draught import shoals_of_draught
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import Position, distance, format_position_minutes
 from thalweg.core.types import FloatArray
@@ -173,8 +174,6 @@ def _has_shoals(
 
 
 def _shoals(seas: Seaways, harbours: Sequence[Position], draught: float) -> Shoals:
-    from thalweg.planning.request.shoal_choice import shoals_of_draught
-
     return shoals_of_draught(seas.chart, draught, draught, harbours)
 
 

@@ -27,7 +27,8 @@ def turn_back_notes(lat: FloatArray, lon: FloatArray, ends: Iterable[int]) -> li
     Parameters
     ----------
     lat, lon : float64 array (n,) of the whole way [deg].
-    ends : Which of its waypoints are ends of approaches, 1 to n - 2.
+    ends : Which of its waypoints are ends of approaches. The first and the last waypoint, which
+        terminals in open water have as the end of their approach, have no turn.
     """
     turns = np.abs(course_changes(lat, lon))
     return [
@@ -36,7 +37,7 @@ def turn_back_notes(lat: FloatArray, lon: FloatArray, ends: Iterable[int]) -> li
         "may be longer than need be. Plan from or to a position on the side of the way onwards, if "
         "the chart allows it."
         for at in ends
-        if turns[at - 1] > _SHARP
+        if 1 <= at <= len(turns) and turns[at - 1] > _SHARP
     ]
 
 
