@@ -6,14 +6,22 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Final, TypeVar
 
+from thalweg.chart.canals import Canal
+from thalweg.chart.passages import Passage
 from thalweg.core.errors import NoPathError, NoRouteError
 from thalweg.core.geodesy import distance
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels.codes import DEPTH, REASONS
+from thalweg.planning.closed_ways import closed_way_error
 from thalweg.planning.planning_context import PlanningContext
-from thalweg.planning.request.offing_choice import chart_off_land, offing_note
+from thalweg.planning.request.offing_choice import (
+    chart_off_land,
+    offing_note,
+    size_restriction,
+)
 from thalweg.planning.request.shoal_choice import close_shoals
 from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.seaways import Seaways
 
 Planned = TypeVar("Planned")
 
@@ -85,6 +93,10 @@ def plan_off_land(
             return run(replace(context, chart=chart, needs=needs))
         except NoRouteError as error:
             nearer = isinstance(error, NoPathError) or REASONS[DEPTH] in error.reasons
+            if refusal is None and isinstance(error, NoPathError):
+                refusal = _closed_way(context, ends)
+                if refusal is not None:
+                    raise refusal from error
             refusal = refusal or error
             if not nearer:
                 break
@@ -96,3 +108,20 @@ def plan_off_land(
             )
     assert refusal is not None  # the loop returned otherwise
     raise refusal
+
+
+def _closed_way(context: PlanningContext, ends: Sequence[Endpoint]) -> NoRouteError | None:
+    """Return an error that names what is closed to the ship on the only way; None if nothing is."""
+    ship = context.ship
+
+    def restriction(closed: Passage | Canal) -> str:
+        if isinstance(closed, Passage):
+            return size_restriction(closed, ship)
+        return closed.transit_restriction(
+            draught=float(ship.draught) or None,
+            beam=ship.breadth,
+            length=ship.length,
+            air_draught=ship.air_draught,
+        )
+
+    return closed_way_error(Seaways.of_ship_chart(context.chart), ends, restriction)

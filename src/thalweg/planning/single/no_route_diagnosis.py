@@ -234,6 +234,10 @@ _ADVICE_SHALLOW = (
     "Load less (--load-factor), require less clearance (--ukc), or use data that include a higher "
     "tide."
 )
+_ADVICE_ENDED = (
+    "Add a longer forecast, depart earlier, or sail faster. A plan of least time (--objective "
+    "time) may still arrive in time: its last step is not bound to the network of this search."
+)
 _ADVICE = {
     codes.DEPTH: "Load less (--load-factor), require less clearance (--ukc), or allow waiting for "
     "the tide.",
@@ -251,7 +255,7 @@ _OF_ANY_COAST = (codes.LAND, codes.OFFING, codes.NO_GO, codes.OUTSIDE_PERIOD)
 
 
 def _advice(reasons: dict[str, int], ended: bool) -> str:
-    later = "Add a longer forecast, or depart earlier." if ended else ""
+    later = _ADVICE_ENDED if ended else ""
     counts = {
         code: reasons.get(codes.REASONS[code], 0)
         for code in codes.REASONS
@@ -260,7 +264,7 @@ def _advice(reasons: dict[str, int], ended: bool) -> str:
     code = max(counts, key=lambda c: counts[c])
     if counts[code]:
         advice = _ADVICE.get(code, "Change the limits or the area.")
-        return f"{later} If that does not help: {advice}" if later else advice
+        return later or advice
     if later:
         return later
     if reasons.get(codes.REASONS[codes.OFFING]):

@@ -1,0 +1,35 @@
+"""Refusals that name the passage or canal that is closed on the only way."""
+
+import pytest
+
+from thalweg import Sea, Ship, Voyage, plan
+from thalweg.core.errors import NoPathError
+from thalweg.planning.closed_ways import closed_way_error
+from thalweg.planning.request.voyage_endpoints import resolve_places
+from thalweg.planning.sea_distance import sea_distance
+from thalweg.planning.seaways import Seaways, world_chart
+
+pytestmark = pytest.mark.slow
+
+
+def test_a_distance_names_the_passage_that_is_too_shallow():
+    with pytest.raises(NoPathError, match=r"Kerch Strait: the draught of 9.5 m is over the 8 m"):
+        sea_distance("Istanbul", "Mariupol", draught_m=9.5)
+    assert sea_distance("Istanbul", "Mariupol", draught_m=7.5).nm == pytest.approx(545.0, rel=0.02)
+
+
+def test_a_passage_that_was_avoided_is_named_as_closed():
+    with pytest.raises(NoPathError, match="Kerch Strait, which is closed here") as refused:
+        sea_distance("Istanbul", "Mariupol", avoid=["Kerch"])
+    assert refused.value.details["closed"] == ["Kerch Strait"]
+
+
+def test_a_plan_names_it_before_other_distances_from_land_are_tried():
+    voyage = Voyage(start="Istanbul", goal="Mariupol", depart="2026-06-01T00:00Z")
+    with pytest.raises(NoPathError, match=r"Kerch Strait: the draught of 9.5 m"):
+        plan(voyage, ship=Ship.load("handysize-bulker"), sea=Sea.calm())
+
+
+def test_where_there_is_a_way_nothing_is_named():
+    ends = resolve_places("Istanbul", (), "Odesa", world_chart())
+    assert closed_way_error(Seaways.of_chart(world_chart(), ()), ends, lambda _: "") is None
