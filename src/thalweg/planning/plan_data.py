@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.file_writing import write_text
+from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.objective import Objective
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, NAUTICAL_MILE
@@ -179,11 +180,11 @@ class PlanData:
             "objective": self.voyage.objective,
             "objective_unit": self.unit,
             "routes": [route_dict(route, self.voyage.objective) for route in self.routes],
-            "lower_bound": _finite_or_none(self.lower_bound),
+            "lower_bound": finite_or_none(self.lower_bound),
             "lower_bound_kind": self.proof.kind,
-            "lower_bound_certain": _finite_or_none(self.proof.certain),
-            "gap": _finite_or_none(self.gap),
-            "solver_total": _finite_or_none(self.solver_total),
+            "lower_bound_certain": finite_or_none(self.proof.certain),
+            "gap": finite_or_none(self.gap),
+            "solver_total": finite_or_none(self.solver_total),
             "rejections": dict(self.rejections),
             "notes": list(self.notes),
             **more,
@@ -210,18 +211,18 @@ def route_dict(route: Route, objective: str) -> dict[str, Any]:
         "objective": objective,
         "depart": format_time(route.depart),
         "arrive": format_time(route.arrive),
-        "time_h": _finite_or_none(route.time_h),
-        "distance_nm": _finite_or_none(route.distance_nm),
-        "fuel_t": _finite_or_none(route.fuel_t),
-        "energy_mwh": _finite_or_none(route.energy_mwh),
-        "co2_t": _finite_or_none(route.co2_t),
-        route.cost_name: _finite_or_none(route.cost),
+        "time_h": finite_or_none(route.time_h),
+        "distance_nm": finite_or_none(route.distance_nm),
+        "fuel_t": finite_or_none(route.fuel_t),
+        "energy_mwh": finite_or_none(route.energy_mwh),
+        "co2_t": finite_or_none(route.co2_t),
+        route.cost_name: finite_or_none(route.cost),
         **route.pricing_dict(),
         "engine_order": route.engine_order,
-        "fuel_eca_t": _finite_or_none(route.fuel_eca_t),
-        "waiting_h": _finite_or_none(route.waiting_h),
-        "min_ukc_m": _finite_or_none(route.min_ukc_m),
-        "referee_tolerance_h": _finite_or_none(route.tolerance_s / HOUR),
+        "fuel_eca_t": finite_or_none(route.fuel_eca_t),
+        "waiting_h": finite_or_none(route.waiting_h),
+        "min_ukc_m": finite_or_none(route.min_ukc_m),
+        "referee_tolerance_h": finite_or_none(route.tolerance_s / HOUR),
         "feasible": route.feasible,
         "violations": [violation.as_dict() for violation in route.violations],
         "indicators": route.indicators,
@@ -232,7 +233,3 @@ def route_dict(route: Route, objective: str) -> dict[str, Any]:
 def in_objective_unit(value: float, objective: str) -> float:
     """Convert seconds or metres to the unit of an objective."""
     return value / (NAUTICAL_MILE if objective == "distance" else HOUR)
-
-
-def _finite_or_none(value: float | None) -> float | None:
-    return None if value is None or not np.isfinite(value) else float(value)

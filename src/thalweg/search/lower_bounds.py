@@ -58,11 +58,6 @@ class LowerBound:
     kappa: float = 1.0
     path: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
 
-    @property
-    def value_s(self) -> float:
-        """The value, by its usual unit [s]."""
-        return self.value
-
 
 def direction_factor(gap: float, current_ratio: float = 0.0) -> float:
     """Return the least ratio of a path in open water to the shortest path on the network.

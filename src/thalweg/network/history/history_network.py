@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -11,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.chart.canals import CANALS
+from thalweg.chart.port_names import normalised_port_name
 from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError, NoRouteError, unknown_name_error
 from thalweg.core.geodesy import Position
@@ -161,7 +161,7 @@ class HistoryNetwork:
         InputError
             If the network does not have this port, or several of this name.
         """
-        found = self._by_name.get(_plain(place), []) or self._by_other_name(place)
+        found = self._by_name.get(normalised_port_name(place), []) or self._by_other_name(place)
         if len(found) == 1:
             return found[0]
         if not found:
@@ -344,8 +344,8 @@ class HistoryNetwork:
             port = PORTS.lookup(place)
         except InputError:
             return []
-        return self._by_name.get(_plain(port.locode), []) or self._by_name.get(
-            _plain(port.label), []
+        return self._by_name.get(normalised_port_name(port.locode), []) or self._by_name.get(
+            normalised_port_name(port.label), []
         )
 
     @cached_property
@@ -373,7 +373,11 @@ class HistoryNetwork:
         found: dict[str, list[int]] = {}
         for number, port in enumerate(self.ports):
             node = self.nodes.first_port + number
-            names = {_plain(port.name), _plain(port.name.rpartition(",")[0]), _plain(port.locode)}
+            names = {
+                normalised_port_name(port.name),
+                normalised_port_name(port.name.rpartition(",")[0]),
+                normalised_port_name(port.locode),
+            }
             for name in names - {""}:
                 found.setdefault(name, []).append(node)
         return found
@@ -389,7 +393,3 @@ def no_arcs_text(month: int | None, draught: float | None) -> str:
 def _what_to_leave_out(month: int | None, draught: float | None) -> str:
     given = [name for name, one in (("month", month), ("draught", draught)) if one is not None]
     return f"Leave out the {' or the '.join(given)}, or b" if given else "B"
-
-
-def _plain(name: str) -> str:
-    return re.sub(r"[^a-z0-9]+", " ", name.casefold()).strip()

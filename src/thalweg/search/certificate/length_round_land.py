@@ -21,12 +21,12 @@ from thalweg.chart.basemap import ring_bounds
 from thalweg.chart.coast.coast_index_builder import build_index, empty_index
 from thalweg.chart.coast.leg_tests import point_status
 from thalweg.chart.rings import Rings
-from thalweg.core.geodesy import distance, inverse
+from thalweg.core.geodesy import distance, inverse, unit_vectors
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.kernels.codes import OK
 from thalweg.kernels.geometry.coast_index import CoastArrays, leg_codes
 from thalweg.search.certificate.barrier_mesh import BarrierLink
-from thalweg.search.certificate.positions_in_reach import SPHERE, Reach, sphere_directions
+from thalweg.search.certificate.positions_in_reach import SPHERE, Reach
 from thalweg.search.search_problem import ROUNDING_FACTOR
 
 if TYPE_CHECKING:
@@ -134,7 +134,7 @@ def _frames(lat: FloatArray, lon: FloatArray) -> FloatArray:
     """Return unit vectors up, east and north, (3, n, 3)."""
     lam = np.radians(lon)
     east = np.stack([-np.sin(lam), np.cos(lam), np.zeros_like(lam)], -1)
-    up = sphere_directions(lat, lon)
+    up = unit_vectors(lat, lon)
     return np.stack([up, east, np.cross(up, east)])
 
 

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from thalweg.core.geodesy import distance
+from thalweg.core.geodesy import distance, unit_vectors
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.search.certificate.barrier_mesh import BarrierLink
 
@@ -46,7 +46,7 @@ class Reach:
         ellipse on a sphere: ``cos m = (cos d1 + cos d2) / (2 cos(c / 2)) >= cos(known / 2)``.
         """
         whole = (self.middle - 180.0, -_LARGEST_LATITUDE, self.middle + 180.0, _LARGEST_LATITUDE)
-        centre = sphere_directions(*np.array([self.start, self.goal]).T).sum(axis=0)
+        centre = unit_vectors(*np.array([self.start, self.goal]).T).sum(axis=0)
         half = 0.5 * self.known / SPHERE
         lat = math.atan2(centre[2], math.hypot(centre[0], centre[1]))
         if half + abs(lat) >= math.radians(_LARGEST_LATITUDE) - math.radians(_BOX_MARGIN):
@@ -59,13 +59,7 @@ class Reach:
 
     def has(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
         """Return which positions may be passed, by lower bounds of lengths."""
-        there = sphere_directions(lat, lon)
-        ends = sphere_directions(*np.array([self.start, self.goal]).T)
+        there = unit_vectors(lat, lon)
+        ends = unit_vectors(*np.array([self.start, self.goal]).T)
         angles = np.arccos(np.clip(there @ ends.T, -1.0, 1.0)).sum(axis=1)
         return np.asarray(SPHERE * angles <= self.known)
-
-
-def sphere_directions(lat: FloatArray, lon: FloatArray) -> FloatArray:
-    """Return the directions of positions [deg] from the centre of a sphere, (n, 3)."""
-    phi, lam = np.radians(lat), np.radians(lon)
-    return np.stack([np.cos(phi) * np.cos(lam), np.cos(phi) * np.sin(lam), np.sin(phi)], -1)
