@@ -18,7 +18,7 @@ from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import PlotContext, Proof
 from thalweg.planning.plan_front import BaselineComparison, ParetoFront
 from thalweg.planning.planning_context import PlanningContext
-from thalweg.planning.report.approach_report import turn_back_notes_of_route
+from thalweg.planning.report.approach_report import port_depth_note, turn_back_notes_of_route
 from thalweg.planning.report.provenance import provenance
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import priced_objective
@@ -141,12 +141,8 @@ class ApproachSailing:
                 f"{self.speed / KNOT:.1f} kn, line {approach.quality}): counted in all totals; "
                 "weather, tide and depth are not considered there."
             )
-            if draught > approach.max_draught:
-                found.append(
-                    f"The World Port Index gives {approach.max_draught:g} m as the largest draught "
-                    f"in {approach.port.label}; the ship draws {draught:.1f} m."
-                )
-        return tuple(found)
+            found.append(port_depth_note(approach, draught))
+        return tuple(filter(None, found))
 
     def _duration(self, approach: PortApproach | None) -> float:
         """Return the time of an approach [s]."""

@@ -22,6 +22,7 @@ from thalweg.planning.request.offing_choice import (
 from thalweg.planning.request.shoal_choice import close_shoals
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways
+from thalweg.planning.sill_choice import open_sills
 
 Planned = TypeVar("Planned")
 
@@ -83,7 +84,8 @@ def plan_off_land(
             chart, note = close_shoals(chart, ends)
             if not note:
                 continue
-            notes.append(note)
+            chart, reopened = open_sills(chart, ends)
+            notes += [reopened, note] if reopened else [note]
             was_closed = True
         elif was_closed:
             notes.append(_OPENED)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Final
+from typing import Final, TypeAlias
 
 import numpy as np
 
@@ -49,6 +49,10 @@ _MOST_PLACES: Final = 64  # of a leg, where its distance from land is looked up
 _STEP: Final = 0.25 * NAUTICAL_MILE  # at which the distance from land is looked up for a note
 _TOLERANCE: Final = 0.1 * NAUTICAL_MILE
 _BEND: Final = 6.0 * NAUTICAL_MILE
+
+
+#: Which legs (lat1, lon1, lat2, lon2) [deg] something is true of.
+LegTest: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], BoolArray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,15 +120,27 @@ class Seaways:
     def _open_chart(self) -> Chart:
         return self.chart.without_passages(*self.passages) if self.passages else self.chart
 
-    def graph_path(self, start: Endpoint, goal: Endpoint) -> list[Position]:
+    def graph_path(
+        self, start: Endpoint, goal: Endpoint, *, blocked: LegTest | None = None
+    ) -> list[Position]:
         """Return the waypoints of the shortest way over the graph, without string pulling.
+
+        Parameters
+        ----------
+        blocked : Which legs over shoals may not be sailed.
 
         Raises
         ------
         NoRouteError : If there is no way.
         """
         places = (start.lat, start.lon), (goal.lat, goal.lon)
-        return sea_graph(self.chart).path(self._open_chart, *places, self._closures)
+        graph, closures = sea_graph(self.chart), self._closures
+        if blocked is not None and closures.excess is not None:
+            excess = closures.excess.copy()
+            shoal = np.flatnonzero(excess > 0.0)
+            excess[shoal[blocked(*graph.ends_of_edges(shoal))]] = np.inf
+            closures = replace(closures, excess=excess)
+        return graph.path(self._open_chart, *places, closures)
 
     def path_between_lines(
         self, start: LinePlaces, goal: LinePlaces

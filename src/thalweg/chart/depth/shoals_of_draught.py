@@ -1,9 +1,18 @@
-"""Shoal water for a draught, with the channels of narrow passages that the depth layer lacks."""
+"""Shoal water for a draught, with the channels that the depth layer lacks.
+
+These are the lines of narrow passages and of passages with a largest draught, and the table
+``data/deep_channels.csv``: name, largest draught, source, line. The table has routes of deep ships
+in which the layer has sills that are not there.
+"""
 
 from __future__ import annotations
 
+import csv
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -20,6 +29,28 @@ _STEP: Final = 1.0 * NAUTICAL_MILE
 _NARROW: Final = 3.0 * NAUTICAL_MILE  # half width of passages that the depth layer does not show
 
 
+@dataclass(frozen=True)
+class DeepChannel:
+    """A route of deep ships that the depth layer shows too shallow; largest draught [m]."""
+
+    name: str
+    max_draught: float
+    line: tuple[Position, ...]
+    source: str
+
+
+@cache
+def deep_channels() -> tuple[DeepChannel, ...]:
+    """Return the table of deep channels."""
+    text = resources.files("thalweg.chart").joinpath("data/deep_channels.csv").read_text("utf-8")
+    found = []
+    for row in csv.DictReader(text.splitlines()):
+        places = [[float(x) for x in place.split()] for place in row["line"].split(";")]
+        line = tuple((lat, lon) for lat, lon in places)
+        found.append(DeepChannel(row["name"], float(row["max_draught_m"]), line, row["source"]))
+    return tuple(found)
+
+
 def shoals_of_draught(
     chart: Chart, draught: float, least: float, harbours: Sequence[Position]
 ) -> Shoals:
@@ -33,8 +64,9 @@ def shoals_of_draught(
     harbours : (lat, lon) [deg]: round them the layer does not count.
     """
     contour = safety_contour(draught)
-    lines = tuple(line for passage in chart.passages for line in _channels(chart, passage))
-    return Shoals(contour, min(least, 0.9 * contour), lines, tuple(harbours))
+    lines = [line for passage in chart.passages for line in _channels(chart, passage)]
+    lines += [channel.line for channel in deep_channels() if draught <= channel.max_draught]
+    return Shoals(contour, min(least, 0.9 * contour), tuple(lines), tuple(harbours))
 
 
 def _channels(chart: Chart, passage: Passage) -> list[tuple[Position, ...]]:
@@ -43,10 +75,12 @@ def _channels(chart: Chart, passage: Passage) -> list[tuple[Position, ...]]:
     Its line is the widest way between coasts and may lead over banks far from land. It counts as a
     whole where the passage has a largest draught, else near land, where the layer shows no channel.
     """
-    if passage.use == "never" or passage.half_width >= _NARROW:
+    if passage.use == "never":
         return []
     if passage.max_draught < math.inf:
         return [passage.line]
+    if passage.half_width >= _NARROW:
+        return []
     lat, lon, _ = densify(*passage.positions, _STEP)
     near = np.asarray(chart.coastline.shore_distance(lat, lon, cap=2.0 * _NARROW)) < _NARROW
     starts = np.flatnonzero(near & ~np.append(False, near[:-1]))

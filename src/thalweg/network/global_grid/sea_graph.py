@@ -247,10 +247,16 @@ class SeaGraph:
         return excess
 
     def _excess_of(self, shoals: Shoals, edges: IntArray) -> FloatArray:
+        return shoals.excess(*self.ends_of_edges(edges))
+
+    def ends_of_edges(
+        self, edges: IntArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Return latitudes and longitudes [deg] of the tails and heads of edges."""
         lat, lon = self.waters.lat, self.waters.lon
         tail = np.repeat(np.arange(len(lat)), np.diff(self.indptr))[edges]
         head = self.target[edges]
-        return shoals.excess(lat[tail], lon[tail], lat[head], lon[head])
+        return lat[tail], lon[tail], lat[head], lon[head]
 
     def _weight_without(
         self, chart: Chart, closed: Sequence[int], passages: Sequence[Passage]

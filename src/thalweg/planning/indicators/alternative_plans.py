@@ -24,6 +24,7 @@ from thalweg.planning.indicators.route_differences import line_at_shares, lines_
 from thalweg.planning.indicators.route_figures import (
     COMPARED_FIGURES,
     all_figures,
+    best_of_all,
     champions,
     compared_values,
     difference_in_words,
@@ -52,6 +53,8 @@ from thalweg.ship.condition_variables import WAVES
 
 _MOST: Final = 5  # routes
 _INSHORE, _OFFSHORE = 50.0, 15.0  # share of the length near land above and below which [%]
+#: Their best routes are always chosen, also where they sail the way of a faster one.
+_MAIN_FIGURES: Final = ("time", "fuel", "cost", "sick_percent")
 _SLOWER: Final = 0.05  # routes on the same way differ where one takes this share longer
 
 
@@ -249,7 +252,7 @@ def alternative_plans(
     slack = [(latest - one.arrive) / HOUR if math.isfinite(latest) else None for one in chosen]
     return AlternativePlans(
         voyage,
-        _named(chosen, context.chart),
+        _named(chosen, kept, context.chart),
         tuple(slack),
         tuple(notes),
         (ends[0].true_name, ends[-1].true_name),
@@ -333,9 +336,10 @@ def _chosen(routes: Sequence[Route], most: int) -> list[Route]:
     best = champions(values)
     order = list(dict.fromkeys([best.get("time", 0), *best.values()]))
     lines = [line_at_shares(route) for route in routes]
+    main = [best[name] for name in _MAIN_FIGURES if name in best]
     found: list[int] = []
-    for same_way_too in (False, True):
-        for k in order:
+    for same_way_too, among in ((True, main), (False, order), (True, order)):
+        for k in among:
             if len(found) == most or k in found:
                 continue
             apart = all(lines_differ(lines[k], lines[j]) for j in found)
@@ -351,10 +355,15 @@ def _chosen(routes: Sequence[Route], most: int) -> list[Route]:
     return [route for k, route in enumerate(chosen) if k in good]  # each is best in something
 
 
-def _named(chosen: Sequence[Route], chart: Chart) -> tuple[RouteChoice, ...]:
-    """Return the chosen routes with names, what each is best in, and differences in words."""
+def _named(
+    chosen: Sequence[Route], candidates: Sequence[Route], chart: Chart
+) -> tuple[RouteChoice, ...]:
+    """Return the chosen routes with names, what each is best in, and differences in words.
+
+    None is called best in what a candidate that was not chosen is better in.
+    """
     values = [compared_values(route) for route in chosen]
-    best = champions(values)
+    best = best_of_all(values, [compared_values(route) for route in candidates])
     passes = [_passes(route, chart) for route in chosen]
     common = set.intersection(*(set(names) for names in passes))
     labels = [

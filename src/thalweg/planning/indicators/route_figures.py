@@ -109,6 +109,28 @@ def champions(values: Sequence[dict[str, float]]) -> dict[str, int]:
     return found
 
 
+def best_of_all(
+    values: Sequence[dict[str, float]], candidates: Sequence[dict[str, float]]
+) -> dict[str, int]:
+    """Return `champions` of some routes, in what no other candidate is clearly better in.
+
+    Parameters
+    ----------
+    values, candidates : Compared figures of the routes, and of these and all others.
+    """
+    best = champions(values)
+    for name, at in list(best.items()):
+        every = np.array([one[name] for one in candidates])
+        signed = every if COMPARED_FIGURES[name].best == "least" else -every
+        own = values[at][name] * (1.0 if COMPARED_FIGURES[name].best == "least" else -1.0)
+        digits = COMPARED_FIGURES[name].digits
+        equal = _EQUAL * max(float(np.nanmax(np.abs(every))), 1e-12)
+        least = float(np.nanmin(signed))
+        if own > least + equal and round(own, digits) > round(least, digits):
+            del best[name]
+    return best
+
+
 def difference_in_words(values: dict[str, float], reference: dict[str, float]) -> str:
     """Return how a route differs from another, such as ``+31 min, -60 % sick``."""
     words = []

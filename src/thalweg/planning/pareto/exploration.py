@@ -162,7 +162,7 @@ def _fastest_alone(trade_off: TradeOffContext) -> Route | None:
     context = trade_off.context
     if len(trade_off.ends) > 2:
         return None
-    by_time = replace(context.voyage, objective="time", arrive_by=None)
+    by_time = replace(context.voyage, objective="time", weights={}, arrive_by=None)
     depart = context.voyage.earliest_departure
     free = replace(context, voyage=by_time)
     start, goal = trade_off.ends

@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from thalweg.chart.approaches import PortApproach
 from thalweg.core.geodesy import format_position
 from thalweg.core.types import FloatArray
 from thalweg.route import Route
@@ -15,7 +16,19 @@ from thalweg.route.refinement.track_geometry import course_changes
 from thalweg.route.route_tables import LEG_KINDS
 
 TURNS_BACK: Final = "Turns back"  #: a note on such a way begins so
+PORT_TOO_SHALLOW: Final = "The port is too shallow"  #: a note on such a port begins so
 _SHARP: Final = math.radians(120.0)
+
+
+def port_depth_note(approach: PortApproach, draught: float) -> str:
+    """Return a note on a port that is too shallow for a draught [m]; empty where it is not."""
+    if not draught > approach.max_draught:
+        return ""
+    return (
+        f"{PORT_TOO_SHALLOW}: the World Port Index gives {approach.max_draught:g} m as the largest "
+        f"draught in {approach.port.label}; the ship draws {draught:.1f} m. Load less, or ask the "
+        "port."
+    )
 
 
 def turn_back_notes(lat: FloatArray, lon: FloatArray, ends: Iterable[int]) -> list[str]:

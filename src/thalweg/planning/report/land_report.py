@@ -23,6 +23,7 @@ _LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE  # closed passages that save less are 
 _FARTHEST: Final = 120.0 * NAUTICAL_MILE  # nor are those farther from the route
 NEAREST_LAND: Final = "Nearest land"  #: a note on it begins so
 PASSES: Final = "Passes "  #: one on a named passage
+PASSAGE_CLOSED: Final = "Passage closed"  #: a note on one that is closed to a ship begins so
 _NEAR: Final = 30.0 * NAUTICAL_MILE  # land farther from the route is not mentioned
 
 
@@ -76,7 +77,7 @@ def closed_passage_notes(context: PlanningContext, route: Route) -> list[str]:
     for passage in context.chart.closed_passages:
         why = "" if passage in avoided else size_restriction(passage, context.ship)
         if why and _is_near(route, passage) and saved_length(route, passage) >= _LEAST_SAVED:
-            notes.append(f"Passage closed: {why} (--open {passage.name!r} opens it).")
+            notes.append(f"{PASSAGE_CLOSED}: {why} (--open {passage.name!r} opens it).")
     return notes
 
 

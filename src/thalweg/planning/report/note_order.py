@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Final
 
-from thalweg.planning.report.approach_report import TURNS_BACK
+from thalweg.planning.report.approach_report import PORT_TOO_SHALLOW, TURNS_BACK
 from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
 from thalweg.planning.report.ice_report import REACHES_ICE
-from thalweg.planning.report.land_report import PASSES
+from thalweg.planning.report.land_report import PASSAGE_CLOSED, PASSES
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, LANE_DETOUR
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
 from thalweg.planning.request.voyage_endpoints import CHECK_POSITION, NOT_REACHED
@@ -18,6 +18,7 @@ LIMIT_EXCEEDED: Final = "The referee finds a limit exceeded"  #: a note on a lim
 #: First words of notes that no summary may leave out, the most dangerous first.
 _FIRST: Final = (
     NOT_REACHED,
+    PORT_TOO_SHALLOW,
     LIMIT_EXCEEDED,
     REACHES_ICE,
     CHECK_POSITION,
@@ -28,6 +29,7 @@ _FIRST: Final = (
     TURNS_BACK,
     INSHORE_USED,
     LANE_DETOUR,
+    PASSAGE_CLOSED,
     OUT_OF_RANGE,
 )
 

@@ -272,7 +272,7 @@ def _late_arrival_error(
 ) -> NoRouteError:  # fmt: skip
     """Return the error for a missed latest arrival; raises where there is no route at all."""
     unrestricted = replace(
-        context, voyage=replace(context.voyage, arrive_by=None, objective="time")
+        context, voyage=replace(context.voyage, arrive_by=None, objective="time", weights={})
     )
     _, result = _search(unrestricted, network, limits, window, ends, seas)
     return late_arrival_error(
