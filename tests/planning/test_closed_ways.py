@@ -4,7 +4,7 @@ import pytest
 
 from thalweg import Sea, Ship, Voyage, plan
 from thalweg.core.errors import NoPathError
-from thalweg.planning.closed_ways import closed_way_error
+from thalweg.planning.network_selection.closed_ways import closed_way_error
 from thalweg.planning.request.voyage_endpoints import resolve_places
 from thalweg.planning.sea_distance import sea_distance
 from thalweg.planning.seaways import Seaways, world_chart

@@ -12,7 +12,8 @@ from thalweg.core.errors import NoPathError, NoRouteError
 from thalweg.core.geodesy import distance
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels.codes import DEPTH, REASONS
-from thalweg.planning.closed_ways import closed_way_error
+from thalweg.planning.network_selection.closed_ways import closed_way_error
+from thalweg.planning.network_selection.sill_choice import open_sills
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.offing_choice import (
     chart_off_land,
@@ -22,7 +23,6 @@ from thalweg.planning.request.offing_choice import (
 from thalweg.planning.request.shoal_choice import close_shoals
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways
-from thalweg.planning.sill_choice import open_sills
 
 Planned = TypeVar("Planned")
 

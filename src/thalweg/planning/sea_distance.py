@@ -25,7 +25,7 @@ from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position, densify, distance
 from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
-from thalweg.planning.closed_ways import closed_way_error
+from thalweg.planning.network_selection.closed_ways import closed_way_error
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.report.approach_report import port_depth_note, turn_back_notes
 from thalweg.planning.request.voyage_endpoints import (

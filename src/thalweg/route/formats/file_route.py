@@ -145,7 +145,7 @@ def _cut(route: Route, vertices: FileVertices) -> _CutRoute:
         "under_keel_clearance": _least_clearance(route, samples, leg, wait),
     }
     sailed, begun = _spent_shares(route, leaving_place), at - start[leg] > 1e-3
-    for name in set(route.legs) - set(_NO_SUMS):
+    for name in (one for one in route.legs if one not in _NO_SUMS):
         values, kind = route.legs[name], name.partition(":")[0]
         if kind in GREATEST_ON_LEGS or kind in LEAST_ON_LEGS:
             extreme = np.minimum if kind in LEAST_ON_LEGS else np.maximum
