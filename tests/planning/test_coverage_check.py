@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from thalweg import Chart, InputError, Sea, Ship, Voyage, plan
 from thalweg.core.errors import OutsideAreaError
@@ -154,3 +155,20 @@ def test_a_port_near_its_water_keeps_its_name_and_a_far_one_does_not():
         "To reach it, add data."
     )
     assert danger_first(["Check the depth: 9 m", far.note])[0] == far.note
+
+
+@pytest.mark.parametrize(("year", "held"), [(2026, True), (2027, False)])
+def test_weather_that_a_ship_does_not_read_is_stated(year, held, tmp_path):
+    """A voyage a year after the data was 'calm or not known' without a note."""
+    times = np.array(["2026-01-01", "2026-01-05"], "datetime64[ns]")
+    lat, lon = np.array([50.0, 52.0]), np.array([1.0, 5.0])
+    waves = xr.DataArray(
+        np.full((2, 2, 2), 2.0), {"time": times, "lat": lat, "lon": lon}, ("time", "lat", "lon"),
+        attrs={"standard_name": "sea_surface_wave_significant_height", "units": "m"},
+    )  # fmt: skip
+    xr.Dataset({"hs": waves}).to_netcdf(tmp_path / "waves.nc")
+    sea = Sea.open(tmp_path / "waves.nc")
+    voyage = Voyage(start=(50.5, 1.5), goal=(50.5, 2.5), depart=f"{year}-01-01T06:00Z")
+    found = plan(voyage, ship=SHIP, sea=sea, chart=WATER, resolution=5000.0, proof=0.0)
+    note = next(note for note in found.notes if note.startswith("Weather is not considered"))
+    assert ("not at the departure" in note) is not held

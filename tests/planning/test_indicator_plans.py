@@ -14,6 +14,8 @@ from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.objective import Objective
 from thalweg.planning import Voyage, alternative_plans, indicator_front, plan
 from thalweg.planning.indicators.route_figures import (
+    COMPARED_FIGURES,
+    best_of_all,
     champions,
     difference_in_words,
     waiting_in_words,
@@ -361,3 +363,29 @@ def test_champions_and_differences_in_words():
     assert "sick_percent" not in champions([fast | other, close | other])
     nearly = [calm | other | {"sick_percent": value} for value in (8.8, 7.9)]
     assert champions(nearly)["sick_percent"] == 1  # 9 and 8 % in a table
+
+
+@pytest.mark.slow
+def test_least_fuel_is_that_of_the_plan_also_on_the_way_of_the_fastest(ship, chart):
+    """With time to spare all places went to other waters: 'least fuel' was the fastest route."""
+    voyage = _voyage(arrive_by=DEPART + 8 * 3600.0)
+    found = alternative_plans(voyage, ship=ship, sea=_sea(), chart=chart)
+    least = next(one for one in found.choices if "least fuel" in one.best_in)
+    alone = plan(replace(voyage, objective="fuel"), ship=ship, sea=_sea(), chart=chart, proof=0.0)
+    assert least.route.fuel_t <= 1.05 * alone.routes[-1].fuel_t
+
+
+def test_none_is_called_best_in_what_another_candidate_is_better_in():
+    values = [{name: 1.0 for name in COMPARED_FIGURES} for _ in range(3)]
+    values[0] |= {"time": 9.8, "fuel": 1.46}
+    values[1] |= {"time": 10.4, "fuel": 1.6}
+    values[2] |= {"time": 13.8, "fuel": 0.5}
+    assert best_of_all(values[:2], values) == {"time": 0}
+    assert best_of_all(values, values) == {"time": 0, "fuel": 2}
+
+
+@pytest.mark.slow
+def test_an_arrival_that_is_too_early_is_refused_with_the_earliest_one(ship, chart):
+    with pytest.raises(NoRouteError, match="earliest arrival is"):
+        voyage = _voyage(arrive_by=DEPART + 3600.0)
+        alternative_plans(voyage, ship=ship, sea=_sea(), chart=chart)

@@ -10,6 +10,7 @@ from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
 from thalweg.planning.report.ice_report import REACHES_ICE
 from thalweg.planning.report.land_report import PASSAGE_CLOSED, PASSES
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, LANE_DETOUR
+from thalweg.planning.request.coverage_check import UNREAD
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
 from thalweg.planning.request.voyage_endpoints import CHECK_POSITION, NOT_REACHED
 from thalweg.route.referee.route_assembly import OUT_OF_RANGE
@@ -30,6 +31,7 @@ _FIRST: Final = (
     INSHORE_USED,
     LANE_DETOUR,
     PASSAGE_CLOSED,
+    UNREAD,
     OUT_OF_RANGE,
 )
 

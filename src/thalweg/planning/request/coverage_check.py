@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Sequence, Set
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +32,7 @@ from thalweg.sea.doubtful_values import doubts_of_files
 from thalweg.sea.fill_policies import MAX_NEAREST, filled_distance, nearest_fills
 from thalweg.ship import Ship
 
+UNREAD: Final = "Weather is not considered"  #: a note on data that a ship does not read begins so
 _DIRECTIONS = ("sea_surface_wave_to_direction_east", "sea_surface_wave_to_direction_north")
 #: Period that is checked where the data have no end [s].
 _MAX_PERIOD = 20 * 24 * HOUR
@@ -89,7 +91,10 @@ def endpoints_within_coverage(
 def doubts_of_voyage(
     voyage: Voyage, sea: Sea, ends: Sequence[Endpoint], needs: Requirements
 ) -> tuple[str, ...]:
-    """Return warnings of wave data between the ends of a voyage that look like another unit's.
+    """Return warnings of data that are not read, and of wave data that look like another unit's.
+
+    Not read are data that the speed of the ship does not depend on, and of these it is said where
+    they do not hold at the departure.
 
     Parameters
     ----------
@@ -97,8 +102,9 @@ def doubts_of_voyage(
     needs : Required variables; there is no warning of data that are not needed.
     """
     wanted = {standard_names.CHANNEL_VARIABLES[channel] for channel in needs.channels}
+    unread = _notes_of_unread(voyage.earliest_departure, sea, wanted)
     if not wanted.intersection((standard_names.WAVE_HEIGHT, *_DIRECTIONS)):
-        return ()
+        return unread
     first = voyage.earliest_departure
     lat = np.array([end.lat for end in ends])
     lon = unwrap_longitude([end.lon for end in ends])
@@ -106,7 +112,24 @@ def doubts_of_voyage(
     columns = np.linspace(lon.min() - 1.0, lon.max() + 1.0, _DOUBT_ROWS)
     y, x = np.meshgrid(rows, columns)
     times = np.linspace(first, min(needs.data_end, first + _DOUBT_PERIOD), 4)
-    return doubts_of_files(sea.layers, times, y.ravel(), wrap_longitude(x.ravel()))
+    return (*unread, *doubts_of_files(sea.layers, times, y.ravel(), wrap_longitude(x.ravel())))
+
+
+def _notes_of_unread(depart: float, sea: Sea, wanted: Set[str]) -> tuple[str, ...]:
+    """Return a note where a sea has wind or waves and the speed of the ship depends on neither."""
+    weather = {"wind": standard_names.EASTWARD_WIND, "waves": standard_names.WAVE_HEIGHT}
+    given = {word: name for word, name in weather.items() if name in sea.variables}
+    if not given or wanted & set(given.values()):
+        return ()
+    periods = [sea.period_of([name]) for name in given.values()]
+    words = " and ".join(given)
+    note = f"{UNREAD}: the data have {words}, and the speed of this ship does not depend on them."
+    if not any(first <= depart <= last for first, last in periods):
+        first, last = periods[0]
+        note += (
+            f" They hold from {format_time(first)} to {format_time(last)}, not at the departure."
+        )
+    return (note,)
 
 
 class _CoverageProbe:
