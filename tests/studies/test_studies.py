@@ -221,6 +221,11 @@ def test_a_study_goes_on_and_grows(folder, tmp_path):
     state = run_study(larger, tmp_path / "out")
     assert (state.new, state.done, state.total) == (1, 3, 3)
     assert len(study_rows(tmp_path / "out")) == 3
+    other = base(folder, axes={"depart": ["2026-04-01T00:00Z"]})
+    kept = (tmp_path / "out" / "study.json").read_text()
+    with pytest.raises(InputError, match="holds 3 results of another study"):
+        run_study(other, tmp_path / "out")
+    assert (tmp_path / "out" / "study.json").read_text() == kept
 
 
 @pytest.mark.slow

@@ -227,8 +227,8 @@ def _wave_model(
         )
     if value == "head_seas":
         return head_seas_layer, (
-            "where their direction or period is unknown, waves come from ahead on every course, "
-            "with the peak period of a fully developed sea of their height"
+            "where their direction is unknown, waves come from ahead on every course; where their "
+            "period is, they have the peak period of a fully developed sea of their height"
         )
     raise InputError(
         f"waves cannot be filled with {value!r}.",

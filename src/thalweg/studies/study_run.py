@@ -103,8 +103,8 @@ def run_study(
     Raises
     ------
     InputError
-        If the folder cannot be written or another process runs a study there, or pyarrow or
-        distributed is not installed.
+        If the folder cannot be written, holds results of another study only, or another process
+        runs a study there; or pyarrow or distributed is not installed.
     """
     require_parquet()
     if chunk < 1 or workers < 0:
@@ -147,8 +147,15 @@ def _run_missing(
     workers, scheduler, chunk = how
     rows = list({row.id: row for row in study.rows()}.values())
     _check_single_ship(study, rows)
-    write_study(study, folder)
     known = set(read_parts(folder, ["id"])["id"])
+    if known and known.isdisjoint(row.id for row in rows):
+        raise InputError(
+            f"The folder {str(folder)!r} holds {len(known)} results of another study.",
+            "None of them is a row of this study, and the summary would hide them.",
+            "Give another folder, or remove this one.",
+            field="out",
+        )
+    write_study(study, folder)
     missing = [row for row in rows if row.id not in known]
     processes = workers if scheduler is None else _CLUSTER
     if processes:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from os import PathLike
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -32,6 +32,10 @@ from thalweg.planning.voyage_parts import Place
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+
+#: By how much distances from the berth of a port count more: a terminal beside a small port mostly
+#: belongs to the large one.
+_WEIGHT_OF_SIZE: Final = {"large": 1.0, "medium": 1.25, "small": 1.75}
 
 
 def history_from_tracks(
@@ -72,8 +76,8 @@ def history_from_tracks(
     report = progress or (lambda text: None)
     report("finding port calls and voyages")
     if ports is None:
-        known, places = _index_ports(chart)
-        port_calls = find_port_calls(fleet, places, calls)
+        known, places = world_port_places(chart)
+        port_calls = find_port_calls(fleet, places, calls, weights=size_weights(known))
         at_sea = {
             k: _at_sea(chart, known[k], places[k]) for k in np.unique(port_calls.port).tolist()
         }
@@ -195,7 +199,7 @@ def history_port(port: Port, chart: Chart) -> HistoryPort:
     return HistoryPort(port.label, port.locode, end.lat, end.lon, length, places)
 
 
-def _index_ports(chart: Chart) -> tuple[list[Port], list[tuple[Position, ...]]]:
+def world_port_places(chart: Chart) -> tuple[list[Port], list[tuple[Position, ...]]]:
     """Return the ports of the World Port Index with their berths and approaches."""
     ports = list(PORTS.all)
     places = []
@@ -203,6 +207,11 @@ def _index_ports(chart: Chart) -> tuple[list[Port], list[tuple[Position, ...]]]:
         approach = None if chart.approaches is None else chart.approaches.of(port)
         places.append(((port.lat, port.lon), *(approach.line if approach else ())))
     return ports, places
+
+
+def size_weights(ports: Sequence[Port]) -> list[float]:
+    """Return by how much distances from the berths of ports count more."""
+    return [_WEIGHT_OF_SIZE.get(port.size, 2.0) for port in ports]
 
 
 def _at_sea(chart: Chart, port: Port, places: Sequence[Position]) -> HistoryPort | None:

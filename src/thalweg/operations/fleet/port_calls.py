@@ -24,6 +24,7 @@ from thalweg.operations.fleet.fleet_tracks import FleetTracks
 #: A single position near a port is a call where the positions before and after are this far [s].
 _SPARSE: Final = 6.0 * HOUR
 _PLACE_SPACING: Final = 1.0 * NAUTICAL_MILE
+_BERTH: Final = 1.0 * NAUTICAL_MILE  # berths of a port lie about so far from its position
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,11 @@ class PortCalls:
 
 
 def find_port_calls(
-    fleet: FleetTracks, places: Sequence[Sequence[Position]], rules: PortCallRules | None = None
+    fleet: FleetTracks,
+    places: Sequence[Sequence[Position]],
+    rules: PortCallRules | None = None,
+    *,
+    weights: Sequence[float] | None = None,
 ) -> PortCalls:
     """Return the calls of ships at ports.
 
@@ -86,6 +91,8 @@ def find_port_calls(
     ----------
     places : sequence of sequence of (lat, lon)
         Of every port: its berth and the line of its approach [deg].
+    weights : sequence of float, optional
+        Of every port, see `ports_of_positions`.
 
     Returns
     -------
@@ -112,7 +119,7 @@ def find_port_calls(
     edge = np.setdiff1d(np.concatenate([fleet.ptr[:-1], fleet.ptr[1:] - 1]), single)
     first, last = np.append(first, edge), np.append(last, edge)
     where = np.concatenate([middle, vectors[single], vectors[edge]])
-    port = _nearest_ports(where, places, rules.reach)
+    port = ports_of_positions(where, places, rules.reach, weights)
     order = np.flatnonzero(port >= 0)
     order = order[np.lexsort((last[order], first[order]))]
     ship = np.searchsorted(fleet.ptr, first[order], side="right") - 1
@@ -133,10 +140,24 @@ def _means(vectors: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
     return np.add.reduceat(vectors, ends, axis=0)[::2] / (last - first)[:, None]
 
 
-def _nearest_ports(
-    vectors: FloatArray, places: Sequence[Sequence[Position]], reach: float
+def ports_of_positions(
+    vectors: FloatArray,
+    places: Sequence[Sequence[Position]],
+    reach: float,
+    weights: Sequence[float] | None = None,
 ) -> IntArray:
-    """Return the port nearest to each position within reach, -1 for none."""
+    """Return the port of each position, -1 for none.
+
+    Of the ports whose berth or approach is within reach it is the one whose berth is nearest: ships
+    at a terminal by a river lie on the approaches of all ports farther up.
+
+    Parameters
+    ----------
+    vectors : Of `ellipsoid_vectors`, (n, 3) [m].
+    places : Of every port: its berth and the line of its approach [deg].
+    reach : [m].
+    weights : By which distances from the berth of each port are multiplied; by default 1.
+    """
     from scipy.spatial import cKDTree
 
     lat, lon, owner = [], [], []
@@ -147,13 +168,19 @@ def _nearest_ports(
         lat.append(y)
         lon.append(x)
         owner.append(np.full(len(y), number))
+    found = np.full(len(vectors), -1, np.int64)
     if not lat or not len(vectors):
-        return np.full(len(vectors), -1, np.int64)
+        return found
     tree = cKDTree(ellipsoid_vectors(np.concatenate(lat), np.concatenate(lon)))
-    away, near = tree.query(vectors, distance_upper_bound=reach)
-    known = np.isfinite(away)
-    of = np.append(np.concatenate(owner), -1)
-    return np.where(known, of[np.where(known, near, -1)], -1).astype(np.int64)
+    berths = ellipsoid_vectors(*np.array([line[0] for line in places], float).T)
+    factor = np.ones(len(places)) if weights is None else np.asarray(weights, float)
+    of = np.concatenate(owner)
+    for k, near in enumerate(tree.query_ball_point(vectors, reach)):
+        if near:
+            ports = np.unique(of[near])
+            away = np.linalg.norm(berths[ports] - vectors[k], axis=1) + _BERTH
+            found[k] = ports[int(np.argmin(factor[ports] * away))]
+    return found
 
 
 def _merged(calls: PortCalls) -> PortCalls:
