@@ -53,6 +53,10 @@ def test_an_ordinary_ship_is_not_unusual():
             {"hull": {"block_coefficient": None, "displacement_m3": 2000.0}},
             "a block coefficient of 0.105; 0.3 to 0.95",
         ),
+        (
+            {"hull": {"block_coefficient": 0.78}, "speeds_kn": [14, 28]},  # km/h
+            "28 kn on a length of 142.5 m is a Froude number of 0.39; 0.05 to 0.33",
+        ),
         ({"speeds_kn": [60]}, "60 kn on a length of 142.5 m is a Froude number of 0.83"),
         (
             {"engine": {"reference_power_kw": 50_000}},
@@ -77,6 +81,8 @@ def test_unusual_numbers_are_named_with_the_usual_range(sections, text):
         ({"hull": {"breadth_m": 175.0}}, "hull.breadth_m"),
         ({"hull": {"draught_m": 36.0, "breadth_m": 23.0}}, "hull.draught_m"),
         ({"engine": {"sfoc_g_per_kwh": 0.185}}, "engine.sfoc_g_per_kwh"),
+        ({"engine": {"reference_power_kw": 8.5}}, "engine.reference_power_kw"),  # MW
+        ({"engine": {"reference_power_kw": 8.5e6}}, "engine.reference_power_kw"),  # W
     ],
 )
 def test_impossible_numbers_are_refused(sections, key):

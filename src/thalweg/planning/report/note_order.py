@@ -14,6 +14,7 @@ from thalweg.planning.request.coverage_check import UNREAD
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
 from thalweg.planning.request.voyage_endpoints import CHECK_POSITION, NOT_REACHED
 from thalweg.route.referee.route_assembly import OUT_OF_RANGE
+from thalweg.ship.schema.unusual_numbers import UNUSUAL
 
 LIMIT_EXCEEDED: Final = "The referee finds a limit exceeded"  #: a note on a limit begins so
 #: First words of notes that no summary may leave out, the most dangerous first.
@@ -32,6 +33,7 @@ _FIRST: Final = (
     LANE_DETOUR,
     PASSAGE_CLOSED,
     UNREAD,
+    UNUSUAL,
     OUT_OF_RANGE,
 )
 

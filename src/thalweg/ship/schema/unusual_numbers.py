@@ -13,6 +13,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.units import DAY, HOUR, KNOT, TONNE
 from thalweg.ship.schema.ship_schema import ShipFile
 
+UNUSUAL: Final = "Unusual ship"  #: a warning begins so
 _GRAVITY: Final = 9.81  # [m/s2]
 _LONGEST: Final = 460.0  #: [m]; no longer ship was ever in service
 _LENGTH_TO_BREADTH: Final = (2.5, 12.0)
@@ -22,6 +23,9 @@ _FROUDE: Final = (0.05, 0.5)  #: of the highest speed
 _SPECIFIC: Final = (120.0, 400.0)  #: [g/kWh]
 _FUEL_TO_POWER: Final = (0.75, 1.35)  #: of fuel a day to power times specific consumption
 _ADMIRALTY: Final = (40.0, 2000.0)  #: displacement [t]^(2/3) speed [kn]^3 / power [kW]
+_WRONG_UNIT: Final = 10.0  #: so far outside that range a power is in another unit
+_FULL: Final = 0.7  #: block coefficient of full ships ...
+_FROUDE_OF_FULL: Final = (0.05, 0.33)  #: ... and the Froude numbers of their highest speed
 _LEAST_SPECIFIC: Final = 60.0  #: [g/kWh]; no fuel with carbon holds as much energy
 _DEEPEST: Final = 1.5  #: draught as a share of the breadth
 _COMMON_SPECIFIC: Final = 190.0  #: [g/kWh] where a power is estimated from fuel
@@ -52,6 +56,7 @@ def check_possible_numbers(file: ShipFile) -> None:
             "Correct hull.breadth_m or hull.length_m; are they swapped?",
             key="hull.breadth_m",
         )
+    _check_unit_of_power(file)
     engine = file.engine
     curve = [("sfoc_curve_g_per_kwh", value) for value in engine.sfoc_curve_g_per_kwh]
     for key, value in [("sfoc_g_per_kwh", engine.sfoc_g_per_kwh), *curve]:
@@ -62,6 +67,23 @@ def check_possible_numbers(file: ShipFile) -> None:
                 f"Correct engine.{key}.",
                 key=f"engine.{key}",
             )
+
+
+def _check_unit_of_power(file: ShipFile) -> None:
+    """Raise `InputError` for a power that is thousands of times too small or large for a ship."""
+    volume, engine = _volume(file), file.engine
+    power, speed = engine.reference_power_kw, engine.reference_speed_kn
+    if not (volume and power and speed):
+        return
+    displacement = _SEA_WATER * volume
+    work = displacement ** (2.0 / 3.0) * speed**3
+    if not _ADMIRALTY[0] / _WRONG_UNIT < work / power < _ADMIRALTY[1] * _WRONG_UNIT:
+        raise InputError(
+            f"engine.reference_power_kw is {power:g} kW for {displacement:.4g} t at {speed:g} kn.",
+            f"Ships of this size need {work / _ADMIRALTY[1]:.3g} to {work / _ADMIRALTY[0]:.3g} kW.",
+            "Give kilowatts, not megawatts or watts; or correct the speed or the hull.",
+            key="engine.reference_power_kw",
+        )
 
 
 def unusual_numbers(file: ShipFile) -> list[str]:
@@ -120,7 +142,9 @@ def _of_speed(file: ShipFile) -> list[str]:
         return []
     froude = max(speeds) * KNOT / math.sqrt(_GRAVITY * length)
     words = f"{max(speeds):g} kn on a length of {length:g} m is a Froude number of {{value:.2g}}"
-    return _outside(froude, _FROUDE, words)
+    block = file.hull.block_coefficient
+    usual = _FROUDE_OF_FULL if block is not None and block >= _FULL else _FROUDE
+    return _outside(froude, usual, words)
 
 
 def _of_fuel(file: ShipFile) -> list[str]:
@@ -168,7 +192,7 @@ def _outside(value: float, usual: tuple[float, float], words: str) -> list[str]:
     """Return a warning if a value is outside the usual range, else nothing."""
     if usual[0] <= value <= usual[1]:
         return []
-    return [f"Unusual ship: {words.format(value=value)}; {_words(usual)} is usual. Check both."]
+    return [f"{UNUSUAL}: {words.format(value=value)}; {_words(usual)} is usual. Check both."]
 
 
 def _words(usual: tuple[float, float]) -> str:
