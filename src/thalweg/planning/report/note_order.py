@@ -7,6 +7,7 @@ from typing import Final
 
 from thalweg.planning.report.approach_report import PORT_TOO_SHALLOW, TURNS_BACK
 from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
+from thalweg.planning.report.given_route_report import NEAR_LAND
 from thalweg.planning.report.ice_report import REACHES_ICE
 from thalweg.planning.report.land_report import PASSAGE_CLOSED, PASSES
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, LANE_DETOUR
@@ -26,6 +27,7 @@ _FIRST: Final = (
     CHECK_POSITION,
     CHECK_DEPTH,
     CROSSES_SHOAL,
+    NEAR_LAND,
     AGAINST_TRAFFIC,
     NO_OFFING_ROUTE,
     TURNS_BACK,

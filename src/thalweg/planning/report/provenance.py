@@ -17,6 +17,7 @@ from thalweg.network import Network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.approach_report import turn_back_notes_of_route
 from thalweg.planning.report.depth_report import depth_notes
+from thalweg.planning.report.given_route_report import given_route_notes
 from thalweg.planning.report.ice_report import ice_warnings
 from thalweg.planning.report.land_report import land_notes
 from thalweg.planning.report.lane_report import lane_notes
@@ -78,7 +79,9 @@ def slow_speed_warnings(route: Route) -> list[str]:
 def given_route_warnings(
     route: Route, *, chart: Chart, sea: Sea, ship: Ship, min_ukc: float | None
 ) -> list[str]:
-    """Return the warnings about a route from a file: its year, ice, gaps of data, depth and shoals.
+    """Return the warnings about a route from a file, as those about the routes of a plan.
+
+    These are on its year, ice, gaps of data, land, passages, traffic lanes, depth and shoals.
 
     Parameters
     ----------
@@ -87,7 +90,7 @@ def given_route_warnings(
     min_ukc : Required under the keel [m]; None: by the ship file.
     """
     notes = year_warnings(route) + ice_warnings(route, sea) + data_gap_warnings(sea, route)
-    notes += slow_speed_warnings(route)
+    notes += slow_speed_warnings(route) + given_route_notes(route, chart=chart, ship=ship)
     if route.min_ukc_m is not None:
         return notes
     clearance = ship.min_under_keel_clearance if min_ukc is None else min_ukc

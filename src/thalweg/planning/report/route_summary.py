@@ -169,6 +169,11 @@ def weather_text(route: Route, sea: Sea | None) -> str:
             at = int(np.nanargmax(values))
             digits = 0 if word == "wind" else 1
             return f"strongest {word} {values[at]:.{digits}f} kn, {_place(route, at)}"
+    known = [values for values in (waves, wind, current) if values is not None]
+    if len(known) == 3 and all(np.isfinite(values).all() for values in known):
+        return "calm: no wind, waves or currents"
+    if known and not any(np.isfinite(values).any() for values in known):
+        return "not known: the data have no values on the way at that time"
     return "calm or not known: no wind, waves or currents in the data"
 
 

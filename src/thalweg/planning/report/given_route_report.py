@@ -1,0 +1,83 @@
+"""What a route from a file does near land, in passages and in traffic lanes, in words."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from thalweg.chart import Chart
+from thalweg.chart.zones.traffic_schemes import SMALL, lanes_of_schemes
+from thalweg.core.geodesy import format_position
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.report.land_report import PASSAGE_CLOSED, passages_used, time_of_passing
+from thalweg.planning.report.lane_report import lane_notes
+from thalweg.planning.request.offing_choice import (
+    chart_off_land,
+    default_offing,
+    size_restriction,
+)
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.route import Route
+from thalweg.route.referee.land_clearance import offing_breaches
+from thalweg.route.route_tables import LEG_KINDS
+from thalweg.ship import Ship
+
+NEAR_LAND: Final = "Nearer to land than usual"  #: a note on such legs begins so
+_ROUND_PORTS: Final = 40.0 * NAUTICAL_MILE  # legs to and from ends near land, in rivers and bays
+
+
+def given_route_notes(route: Route, *, chart: Chart, ship: Ship) -> list[str]:
+    """Return notes on a route from a file that plans keep to by themselves.
+
+    Parameters
+    ----------
+    route : The evaluated route.
+    chart : On charts other than those of the world's coasts there are no notes.
+
+    Returns
+    -------
+    list of str : On the place nearest to land, passages that are closed to the ship, and traffic.
+    """
+    lat, lon = np.asarray(route.track.lat, float), np.asarray(route.track.lon, float)
+    if not chart.passages or len(lat) < 2:
+        return []
+    notes = _near_land(route, chart, ship)
+    for passage in passages_used(chart, route):
+        why = size_restriction(passage, ship)
+        notes += [f"{PASSAGE_CLOSED}: the route leads through {why}."] if why else []
+    if not chart.zones.lanes:
+        ends = [(float(lat[k]), float(lon[k])) for k in (0, -1)]
+        lanes = lanes_of_schemes(ends, inshore=ship.length is None or ship.length >= SMALL)
+        chart = replace(chart, zones=replace(chart.zones, lanes=lanes))
+    return notes + lane_notes(chart, route)
+
+
+def _near_land(route: Route, chart: Chart, ship: Ship) -> list[str]:
+    """Return a note on the place nearest to land that a plan would have kept off, not in ports."""
+    offing = default_offing(ship)
+    track = route.track
+    ends = [Endpoint("", float(track.lat[k]), float(track.lon[k]), 0.0) for k in (0, -1)]
+    shore = chart.coastline.shore_distance(
+        np.array([end.lat for end in ends]), np.array([end.lon for end in ends]), cap=offing
+    )
+    near = [end for end, away in zip(ends, np.asarray(shore)) if away < offing]
+    off_land = chart_off_land(chart, near or ends[:1], offing)
+    if near:
+        off_land = chart_off_land(
+            chart, [near[0], near[-1]], offing, near_ends=_ROUND_PORTS, near_least=0.0
+        )
+    kind = np.asarray(route.legs.get("leg_kind", np.zeros(len(route.legs["length"]))))
+    in_approach = kind == LEG_KINDS.index("approach")
+    breaches = [at for at, _ in offing_breaches(off_land, track) if not in_approach[at.leg]]
+    if not breaches:
+        return []
+    worst = min(breaches, key=lambda at: at.distance)
+    more = f" On {len(breaches)} legs in all." if len(breaches) > 1 else ""
+    return [
+        f"{NEAR_LAND}: {worst.distance / NAUTICAL_MILE:.1f} nm off at "
+        f"{format_position(worst.lat, worst.lon)}"
+        f"{time_of_passing(route, worst.leg, worst.lat, worst.lon)}; plans keep "
+        f"{offing / NAUTICAL_MILE:g} nm for a ship of this size, outside ports and passages.{more}"
+    ]

@@ -1,0 +1,54 @@
+"""What the evaluation of a route from a file states about land, passages and traffic."""
+
+import numpy as np
+import pytest
+
+from thalweg import Chart, Sea, Ship, evaluate
+from thalweg.planning.report.given_route_report import given_route_notes
+from thalweg.planning.report.note_order import count_of_dangers
+
+SHIP = Ship.load("handysize-bulker")
+
+
+@pytest.fixture(scope="module")
+def chart():
+    return Chart.gshhg("i")
+
+
+def notes_of(places, chart, ship=SHIP):
+    route = evaluate(
+        places, ship=ship, sea=Sea.calm(), chart=chart, depart="2026-06-01T00:00Z", speed_kn=12
+    )
+    return given_route_notes(route, chart=chart, ship=ship)
+
+
+def test_a_leg_near_a_cape_is_stated_with_place_time_and_the_usual_distance(chart):
+    first, *_ = notes_of([(38.30, -9.60), (38.775, -9.515), (39.30, -9.70)], chart)
+    assert first.startswith("Nearer to land than usual: 0.8 nm off at 38.7")
+    assert "passed at 2026-06-01T02" in first and "plans keep 2 nm" in first
+    small = notes_of([(38.30, -9.60), (38.775, -9.515), (39.30, -9.70)], chart,
+                     Ship.simple(speed_kn=8.0, draught_m=2.0))  # fmt: skip
+    assert not any(note.startswith("Nearer to land") for note in small)
+
+
+def test_a_leg_against_the_traffic_of_dover_strait_is_stated(chart):
+    french_side = [(51.20, 2.00), (51.00, 1.67), (50.87, 1.47), (50.65, 1.20)]
+    notes = notes_of(french_side, chart)
+    assert any(note.startswith("Runs against the traffic of Dover Strait") for note in notes)
+    back = notes_of(french_side[::-1], chart)
+    assert not any(note.startswith("Runs against") for note in back)
+
+
+def test_a_passage_that_is_closed_to_the_ship_is_stated(chart):
+    line = [(44.80, 36.50), (45.10, 36.50), (45.22, 36.50), (45.33, 36.60), (45.60, 36.70)]
+    notes = notes_of(line, chart)
+    (note,) = [note for note in notes if note.startswith("Passage closed")]
+    assert "Kerch Strait: the draught of 9.5 m is over the 8 m" in note
+    assert count_of_dangers(notes) >= 2
+
+
+def test_routes_in_open_sea_and_on_other_charts_have_none(chart):
+    ocean = [(45.0, -20.0), (46.0, -25.0)]
+    assert notes_of(ocean, chart) == []
+    assert notes_of(ocean, Chart.open_water(40.0, 50.0, -30.0, -10.0)) == []
+    assert np.isfinite(SHIP.draught)
