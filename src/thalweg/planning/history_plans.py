@@ -15,6 +15,7 @@ from thalweg.core.time import to_datetime64
 from thalweg.network.history.history_corridor import HistoryCorridor
 from thalweg.network.history.history_network import HistoryNetwork
 from thalweg.network.history.history_route import HistoryRoute
+from thalweg.network.history.junction_corners import line_without_corners
 from thalweg.planning.plan import Plan
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, lane_notes
 from thalweg.planning.report.route_summary import canals_passed
@@ -214,8 +215,9 @@ def usual_against_optimal(
     )
     start, goal = history.line[0], history.line[-1]
     best = plan_one(replace(voyage, start=start, goal=goal))
+    line = line_without_corners(network, history, chart.legs_blocked)
     usual = evaluate(
-        list(history.line), ship=with_order(ship, voyage), sea=sea, chart=chart,
+        line, ship=with_order(ship, voyage), sea=sea, chart=chart,
         depart=voyage.earliest_departure, speed_kn=voyage.speed_kn, strict=False,
     )  # fmt: skip
     sailed = chart if best.plot_context is None else best.plot_context.chart
