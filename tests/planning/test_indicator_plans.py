@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from tests.planning.test_comfort_plans import DATA, DEPART, _sea
+from tests.planning.test_comfort_plans import DATA, DEPART, PERIOD, _sea
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.objective import Objective
@@ -26,6 +26,7 @@ from thalweg.planning.pareto.weighted_sums import (
     key_figure_notes,
     normalised_objective,
 )
+from thalweg.planning.report.filled_weather import filled_waves_note
 from thalweg.route import Track, evaluate
 from thalweg.route.refinement.track_geometry import course_changes
 from thalweg.sea import Sea
@@ -389,3 +390,30 @@ def test_an_arrival_that_is_too_early_is_refused_with_the_earliest_one(ship, cha
     with pytest.raises(NoRouteError, match="earliest arrival is"):
         voyage = _voyage(arrive_by=DEPART + 3600.0)
         alternative_plans(voyage, ship=ship, sea=_sea(), chart=chart)
+
+
+def _half_known_sea():
+    """Waves as they are, but unknown east of 0.5 E."""
+    functions = {
+        "sea_surface_wave_significant_height": lambda t, lat, lon: (
+            np.where(np.asarray(lon) < 0.5, 1.0, np.nan) + 0.0 * t
+        ),
+        PERIOD: lambda t, lat, lon: 8.0,
+        "sea_surface_wave_from_direction": lambda t, lat, lon: 0.0,
+        "eastward_wind": lambda t, lat, lon: 0.0,
+        "northward_wind": lambda t, lat, lon: 0.0,
+    }
+    return Sea.from_functions(functions, time_step=1800.0)
+
+
+def test_the_share_of_filled_waves_is_stated_for_each_route(ship):
+    known = evaluate([(65.0, 0.0), (65.0, 0.5)], ship=ship, sea=_sea(), depart=DEPART)
+    assert filled_waves_note([known], _sea()) == ""
+    filled = _half_known_sea().filled(waves=1.5)
+    routes = [
+        evaluate(line, ship=ship, sea=filled, depart=DEPART)
+        for line in ([(65.0, 0.0), (65.0, 1.0)], [(65.0, 0.0), (65.0, 0.4)])
+    ]
+    note = filled_waves_note(routes, filled)
+    assert note.startswith("Waves are filled, not of the data") and "2: 0 %" in note
+    assert 45.0 < float(note.partition("1: ")[2].partition(" ")[0]) < 55.0

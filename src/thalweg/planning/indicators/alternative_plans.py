@@ -30,6 +30,7 @@ from thalweg.planning.indicators.route_figures import (
 )
 from thalweg.planning.pareto.limited_plan import IndicatorLimit
 from thalweg.planning.planner import voyage_context
+from thalweg.planning.report.filled_weather import filled_waves_note
 from thalweg.planning.report.land_report import NEAREST_LAND
 from thalweg.planning.report.note_order import notes_of_routes
 from thalweg.planning.report.provenance import route_warnings
@@ -213,6 +214,8 @@ def alternative_plans(
         [note for note in route_warnings(context, one) if not note.startswith(NEAREST_LAND)]
         for one in chosen
     ]  # the nearest land of each is a key figure
+    filled = filled_waves_note(chosen, context.sea)
+    notes += [filled] if filled else []
     notes = notes_of_routes([*(end.note for end in ends if end.note), *notes], warnings)
     latest = context.latest_arrival
     slack = [(latest - one.arrive) / HOUR if math.isfinite(latest) else None for one in chosen]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from thalweg.route import Route
     from thalweg.sea import Sea
 
+FILLED: Final = "Waves are filled"  #: a note on such routes begins so
 _WAVES: Final = "sea_surface_wave_significant_height"
 
 
@@ -78,3 +80,22 @@ def wave_shares(route: Route, sea: Sea | None, height: FloatArray) -> WaveShares
         filled = waves_are_filled(sea, time, np.asarray(samples["lat"]), np.asarray(samples["lon"]))
     which = at_sea & ~known, at_sea & known & filled, kinds == LEG_KINDS.index("approach")
     return WaveShares(*(100.0 * float(step[one].sum() / max(step.sum(), 1.0)) for one in which))
+
+
+def filled_waves_note(routes: Sequence[Route], sea: Sea) -> str:
+    """Return on how much of each of some routes the waves are filled; empty where on none."""
+    if sea.members or not has_fills(sea) or _WAVES not in sea.variables:
+        return ""
+    shares = []
+    for route in routes:
+        samples = route.samples
+        time = np.where(np.isfinite(samples["time"]), samples["time"], route.depart)
+        height = sea.sample([_WAVES], time, samples["lat"], samples["lon"])[_WAVES]
+        shares.append(wave_shares(route, sea, np.asarray(height)).filled)
+    if max(shares, default=0.0) < 0.5:
+        return ""
+    each = ", ".join(f"{number}: {share:.0f} %" for number, share in enumerate(shares, start=1))
+    return (
+        f"{FILLED}, not of the data, on this share of each route: {each}. Compare motions and "
+        "sickness of the routes with that in mind."
+    )

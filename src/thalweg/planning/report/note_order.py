@@ -7,6 +7,7 @@ from typing import Final
 
 from thalweg.planning.report.approach_report import PORT_TOO_SHALLOW, TURNS_BACK
 from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
+from thalweg.planning.report.filled_weather import FILLED
 from thalweg.planning.report.given_route_report import NEAR_LAND
 from thalweg.planning.report.ice_report import REACHES_ICE
 from thalweg.planning.report.land_report import PASSAGE_CLOSED, PASSES
@@ -34,6 +35,7 @@ _FIRST: Final = (
     INSHORE_USED,
     LANE_DETOUR,
     PASSAGE_CLOSED,
+    FILLED,
     UNREAD,
     UNUSUAL,
     OUT_OF_RANGE,
