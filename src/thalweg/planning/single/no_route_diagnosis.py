@@ -235,8 +235,8 @@ _ADVICE_SHALLOW = (
     "tide."
 )
 _ADVICE_ENDED = (
-    "Add a longer forecast, depart earlier, or sail faster. A plan of least time (--objective "
-    "time) may still arrive in time: its last step is not bound to the network of this search."
+    "Add a longer forecast, or depart earlier. If this was not for the least time, such a plan may "
+    "still arrive in time: its last step is not bound to the network of this search."
 )
 _ADVICE = {
     codes.DEPTH: "Load less (--load-factor), require less clearance (--ukc), or allow waiting for "
