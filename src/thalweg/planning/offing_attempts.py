@@ -6,8 +6,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Final, TypeVar
 
-from thalweg.chart.canals import Canal
-from thalweg.chart.passages import Passage
 from thalweg.core.errors import NoPathError, NoRouteError
 from thalweg.core.geodesy import distance
 from thalweg.core.units import NAUTICAL_MILE
@@ -18,7 +16,6 @@ from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.offing_choice import (
     chart_off_land,
     offing_note,
-    size_restriction,
 )
 from thalweg.planning.request.shoal_choice import close_shoals
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -115,15 +112,11 @@ def plan_off_land(
 def _closed_way(context: PlanningContext, ends: Sequence[Endpoint]) -> NoRouteError | None:
     """Return an error that names what is closed to the ship on the only way; None if nothing is."""
     ship = context.ship
-
-    def restriction(closed: Passage | Canal) -> str:
-        if isinstance(closed, Passage):
-            return size_restriction(closed, ship)
-        return closed.transit_restriction(
-            draught=float(ship.draught) or None,
-            beam=ship.breadth,
-            length=ship.length,
-            air_draught=ship.air_draught,
-        )
-
-    return closed_way_error(Seaways.of_ship_chart(context.chart), ends, restriction)
+    return closed_way_error(
+        Seaways.of_ship_chart(context.chart),
+        ends,
+        draught=float(ship.draught) or None,
+        beam=ship.breadth,
+        length=ship.length,
+        air_draught=ship.air_draught,
+    )

@@ -6,7 +6,6 @@ import contextlib
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -14,13 +13,11 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.chart.approaches import MAX_APPROACH_SPEED, line_between, line_length
 from thalweg.chart.canal_parts import part_number_of_legs, passages_of_parts
-from thalweg.chart.canals import Canal
 from thalweg.chart.depth.global_depth import NAME
 from thalweg.chart.depth.shoals import DRAUGHTS, EXCESS, Shoals
 from thalweg.chart.depth.shoals_of_draught import shoals_of_draught
 from thalweg.chart.offing import check_offing
 from thalweg.chart.passage_crossings import names_passed
-from thalweg.chart.passages import Passage
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position, densify, distance
 from thalweg.core.given_numbers import is_number, shortened_repr
@@ -240,7 +237,7 @@ def _way_over_seas(
     try:
         path = _path_by(seas, ends, offing)
     except NoRouteError as error:
-        named = closed_way_error(seas, ends, partial(_restriction, draught=draught))
+        named = closed_way_error(seas, ends, draught=draught, length=0.0)
         raise named or error from None
     length, canals = path_length_and_canals(chart, path)
     notes += _shoal_notes(seas, path, draught)
@@ -319,13 +316,6 @@ def _seas_for_draught(seas: Seaways, draught: float, ends: Sequence[Endpoint]) -
         seas.chart, float(draught), float(draught), [(e.lat, e.lon) for e in ends]
     )
     return replace(seas, shoals=shoals)
-
-
-def _restriction(closed: Passage | Canal, *, draught: float | None) -> str:
-    """Return why a passage or canal is closed to a draught [m], as text; empty if it is not."""
-    if isinstance(closed, Passage):
-        return "" if draught is None else closed.ship_restriction(draught=draught, length=0.0)
-    return closed.transit_restriction(draught=draught)
 
 
 def _path_by(seas: Seaways, ends: Sequence[Endpoint], offing: float) -> list[Position]:

@@ -124,9 +124,9 @@ def _arrays(shoals: Shoals) -> ShoalArrays:
 def _arrays_without_harbours(shoals: Shoals) -> ShoalArrays:
     code = global_depth_codes().copy()
     deep = _deep_code(shoals)
-    _shoal_inside(code, SHOAL_AREAS)
+    _shoal_inside(code, SHOAL_AREAS)  # so that the points beside the areas are found ...
     code[_beside_shoals(code, shoals)] = deep
-    _shoal_inside(code, SHOAL_AREAS)
+    _shoal_inside(code, SHOAL_AREAS)  # ... and those in them do not become deeper by that
     for channel in shoals.channels:
         _deepen(code, _points_near(channel, _MARGIN), deep)
     depths = np.array([shoals.contour, shoals.least])

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from thalweg.chart.depth.shoals import Shoals, safety_contour
-from thalweg.chart.passages import Passage
+from thalweg.chart.passages import Passage, read_line
 from thalweg.core.geodesy import Position, densify
 from thalweg.core.units import NAUTICAL_MILE
 
@@ -45,8 +45,7 @@ def deep_channels() -> tuple[DeepChannel, ...]:
     text = resources.files("thalweg.chart").joinpath("data/deep_channels.csv").read_text("utf-8")
     found = []
     for row in csv.DictReader(text.splitlines()):
-        places = [[float(x) for x in place.split()] for place in row["line"].split(";")]
-        line = tuple((lat, lon) for lat, lon in places)
+        line = read_line(row["line"])
         found.append(DeepChannel(row["name"], float(row["max_draught_m"]), line, row["source"]))
     return tuple(found)
 

@@ -68,7 +68,7 @@ class GraphClosures:
     canals : Canals of the chart that are closed, by number.
     passages : Passages that are closed in the chart but not in the graph.
     shoals : Shoal water, in which a mile counts more.
-    excess : By how much it does on each edge of the graph (`SeaGraph.shoal_excess`).
+    excess : By how much it does on each edge of the graph, where known (`SeaGraph.shoal_excess`).
     """
 
     canals: Sequence[int] = ()
@@ -207,8 +207,9 @@ class SeaGraph:
             heads, tails = first + direct[0], second + direct[1]
             links.append(measured_pairs(lat, lon, heads.astype(np.int32), tails.astype(np.int32)))
         joints = concatenate_pairs(links)
-        if closures.shoals is not None and closures.excess is not None:
-            weight *= 1.0 + closures.excess
+        if closures.shoals is not None:
+            more = closures.excess
+            weight *= 1.0 + (self.shoal_excess(closures.shoals) if more is None else more)
             a, b = joints.first, joints.second
             excess = closures.shoals.excess(lat[a], lon[a], lat[b], lon[b])
             joints = replace(joints, length=joints.length * (1.0 + excess))

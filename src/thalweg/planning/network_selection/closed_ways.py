@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -16,7 +17,13 @@ from thalweg.planning.seaways import Seaways, world_chart
 
 
 def closed_way_error(
-    seas: Seaways, ends: Sequence[Endpoint], restriction: Callable[[Passage | Canal], str]
+    seas: Seaways,
+    ends: Sequence[Endpoint],
+    *,
+    draught: float | None = None,
+    beam: float | None = None,
+    length: float | None = None,
+    air_draught: float | None = None,
 ) -> NoPathError | None:
     """Return an error that names what is closed on the only way, or None if that is not the reason.
 
@@ -24,9 +31,11 @@ def closed_way_error(
     ----------
     seas : The seaways that the voyage may use.
     ends : With via points between them.
-    restriction : Why a passage or canal is closed to the ship, as text; empty if it is closed for
-        another reason.
+    draught, beam, length, air_draught : Of the ship [m]; None where unknown.
     """
+    restriction = partial(
+        _restriction, draught=draught, beam=beam, length=length, air_draught=air_draught
+    )
     for start, goal in pairwise(ends):
         if _has_way(seas, start, goal):
             continue
@@ -66,6 +75,13 @@ def _closed_on_the_way(seas: Seaways, start: Endpoint, goal: Endpoint) -> list[P
     canals = {one.name for one in seas.chart.canals} - set(seas.canals)
     used = [world.canals[k] for k in canal[canal >= 0].tolist()]
     return found + [one for one in used if one.name not in canals]
+
+
+def _restriction(closed: Passage | Canal, **dimensions: float | None) -> str:
+    """Return why a passage or canal is closed to a ship, as text; empty if it fits."""
+    if isinstance(closed, Passage):
+        return closed.ship_restriction(**dimensions)
+    return closed.transit_restriction(**dimensions)
 
 
 def _sentence(closed: Passage | Canal, why: str) -> str:

@@ -107,10 +107,10 @@ def _crossed(
 
 
 def _in_named_area(legs: Sequence[tuple[Position, Position]], depth: float) -> bool:
-    lines = shapely.multilinestrings(
-        [shapely.LineString([(lon, lat) for lat, lon in leg]) for leg in legs]
-    )
-    return any(area.depth < depth and area.polygon.intersects(lines) for area in SHOAL_AREAS)
+    areas = [area.polygon for area in SHOAL_AREAS if area.depth < depth]
+    lat, lon = np.moveaxis(np.array(legs, float), 2, 0)
+    ends = lat[:, 0], lon[:, 0], lat[:, 1], lon[:, 1]
+    return bool(areas) and bool(_crossed(shapely.STRtree(areas), *ends).any())
 
 
 def _along(leg: tuple[Position, Position]) -> list[Position]:

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from thalweg.chart import Chart
-from thalweg.chart.zones.traffic_schemes import SMALL, lanes_of_schemes
 from thalweg.core.geodesy import format_position
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.report.land_report import PASSAGE_CLOSED, passages_used, time_of_passing
 from thalweg.planning.report.lane_report import lane_notes
+from thalweg.planning.request.lane_choice import chart_with_schemes
 from thalweg.planning.request.offing_choice import (
     chart_off_land,
     default_offing,
@@ -48,9 +47,7 @@ def given_route_notes(route: Route, *, chart: Chart, ship: Ship) -> list[str]:
         why = size_restriction(passage, ship)
         notes += [f"{PASSAGE_CLOSED}: the route leads through {why}."] if why else []
     if not chart.zones.lanes:
-        ends = [(float(lat[k]), float(lon[k])) for k in (0, -1)]
-        lanes = lanes_of_schemes(ends, inshore=ship.length is None or ship.length >= SMALL)
-        chart = replace(chart, zones=replace(chart.zones, lanes=lanes))
+        chart = chart_with_schemes(chart, ship, [(float(lat[k]), float(lon[k])) for k in (0, -1)])
     return notes + lane_notes(chart, route)
 
 
@@ -63,11 +60,9 @@ def _near_land(route: Route, chart: Chart, ship: Ship) -> list[str]:
         np.array([end.lat for end in ends]), np.array([end.lon for end in ends]), cap=offing
     )
     near = [end for end, away in zip(ends, np.asarray(shore)) if away < offing]
-    off_land = chart_off_land(chart, near or ends[:1], offing)
-    if near:
-        off_land = chart_off_land(
-            chart, [near[0], near[-1]], offing, near_ends=_ROUND_PORTS, near_least=0.0
-        )
+    off_land = chart_off_land(
+        chart, near or ends[:1], offing, near_ends=_ROUND_PORTS if near else 0.0
+    )
     kind = np.asarray(route.legs.get("leg_kind", np.zeros(len(route.legs["length"]))))
     in_approach = kind == LEG_KINDS.index("approach")
     breaches = [at for at, _ in offing_breaches(off_land, track) if not in_approach[at.leg]]
