@@ -22,6 +22,7 @@ from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position, densify, distance
 from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
+from thalweg.network.global_grid.sea_graph import path_length
 from thalweg.planning.network_selection.closed_ways import closed_way_error
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.report.approach_report import port_depth_note, turn_back_notes
@@ -41,6 +42,7 @@ from thalweg.planning.voyage_parts import Place
 SMALL_CANALS: Final = ("corinth",)
 #: Distance from land that ways keep outside passages, where they can [nm].
 DEFAULT_OFFING_NM: Final = 2.0
+_CLEARLY_LONGER: Final = 1.05
 LEAST_SHORTER: Final = 0.05  #: share by which a way is clearly shorter
 _LONGEST_WITH_HINT: Final = 500.0  # [nm]
 _DEEPEST_DRAUGHT: Final = 30.0  # [m]
@@ -241,6 +243,8 @@ def _way_over_seas(
         raise named or error from None
     length, canals = path_length_and_canals(chart, path)
     notes += _shoal_notes(seas, path, draught)
+    if draught is not None:
+        notes += _detour_notes(seas, ends, length, offing)
     notes += seas.near_land_notes(path, ends, offing=offing)
     approaches = tuple((a.label, a.length) for a in (first, last) if a is not None)
     line = (
@@ -340,6 +344,24 @@ def _shoal_miles(seas: Seaways, path: Sequence[Position]) -> float:
     counted = np.asarray(seas.chart.canal_of_legs(*way[:-1].T, *way[1:].T))[leg] < 0
     shallow = (seas.shoals.excess(*legs) > EXCESS[0]) & counted
     return float(np.sum(distance(*legs)[shallow])) / NAUTICAL_MILE
+
+
+def _detour_notes(
+    seas: Seaways, ends: Sequence[Endpoint], length: float, offing: float
+) -> tuple[str, ...]:
+    """Return how much longer shoals make a way of some length [m], as a note."""
+    without = replace(seas, shoals=None)
+    over = sum(path_length(without.graph_path(a, b)) for a, b in itertools.pairwise(ends))
+    if _CLEARLY_LONGER * over >= length:
+        return ()
+    direct, _ = path_length_and_canals(seas.chart, _path_by(without, ends, offing))
+    longer = (length - direct) / NAUTICAL_MILE
+    if _CLEARLY_LONGER * direct >= length or longer < 1.0:
+        return ()
+    return (
+        f"Keeps off shoal water by the {NAME}, which is coarse: the shortest way for this draught "
+        f"is {longer:.0f} nm shorter, over that water. See the chart.",
+    )
 
 
 def _shoal_notes(seas: Seaways, path: Sequence[Position], draught: float | None) -> tuple[str, ...]:

@@ -173,15 +173,32 @@ class Seaways:
         if float(distance(*ends[0], *ends[1])) < 1.0:
             return [ends[0]]
         chart = self._open_chart
-        path = self.graph_path(start, goal)
         if outside_ice(*ends):
             chart = chart.within(*ICE_LATITUDES, -180.0, 180.0)
         off_land = _off_land(chart, ends, offing)
-        lat, lon = np.array(path).T
-        canal = chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:])
-        ends_of_canals = np.flatnonzero(np.asarray(canal) >= 0) + 1
-        return [place for part in np.split(np.array(path), ends_of_canals)
-                for place in self._pulled(chart, off_land, part)]  # fmt: skip
+        found = [
+            [place for part in _between_canals(chart, path)
+             for place in self._pulled(chart, off_land, part)]
+            for path in self._candidates(start, goal)
+        ]  # fmt: skip
+        clear = _ClearWater(off_land, self.shoals)
+        return min(found, key=lambda way: clear.cost_of(_line(way))) if len(found) > 1 else found[0]
+
+    def _candidates(self, start: Endpoint, goal: Endpoint) -> list[list[Position]]:
+        """Return the way over the graph, and the one without shoals where that is shorter.
+
+        The edges of the graph are long beside shoals: a way past one may cost less than they do.
+        """
+        found = [self.graph_path(start, goal)]
+        if self._has_wide_shoals:
+            without = replace(self, shoals=None).graph_path(start, goal)
+            if _MOST_LONGER * path_length(without) < path_length(found[0]):
+                found.append(without)
+        return found
+
+    @property
+    def _has_wide_shoals(self) -> bool:
+        return self.shoals is not None and self.shoals.contour > CONTOURS[0]
 
     def near_land_notes(
         self, path: Sequence[Position], ends: Sequence[Endpoint], *, offing: float
@@ -213,7 +230,7 @@ class Seaways:
         if len(part) < 3:
             return _places(*part.T)
         clear = _ClearWater(off_land, self.shoals)
-        if self.shoals is not None and self.shoals.contour > CONTOURS[0]:  # wide, and graded
+        if self._has_wide_shoals:
             return _places(*string_pull_path(chart, *part.T, leg_cost=clear.cost, rounds=_ROUNDS))
         found = clear.moved(chart, string_pull_path(clear, *part.T, rounds=_ROUNDS))
         along = string_pull_path(chart, *part.T, rounds=_ROUNDS)
@@ -312,6 +329,18 @@ def small_passages(chart: Chart) -> set[str]:
 def _off_land(chart: Chart, ends: Sequence[Position], offing: float) -> Chart:
     """Return a chart with an offing [m], less round the ends."""
     return chart.with_offing(offing, discs=[disc_at(chart.coastline, end) for end in ends])
+
+
+def _between_canals(chart: Chart, path: Sequence[Position]) -> list[FloatArray]:
+    """Return the positions of a way before, between and after the canals, (N, 2) [deg]."""
+    lat, lon = _line(path)
+    canal = np.asarray(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:]))
+    return np.split(np.array(path), np.flatnonzero(canal >= 0) + 1)
+
+
+def _line(path: Sequence[Position]) -> PolylineCoordinates:
+    lat, lon = np.array(path).T
+    return lat, lon
 
 
 def _length(line: PolylineCoordinates) -> float:
