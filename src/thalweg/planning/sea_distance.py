@@ -43,6 +43,9 @@ SMALL_CANALS: Final = ("corinth",)
 #: Distance from land that ways keep outside passages, where they can [nm].
 DEFAULT_OFFING_NM: Final = 2.0
 _CLEARLY_LONGER: Final = 1.05
+#: Ways so much longer than the straight line, up to so long [m], may miss a channel.
+_ROUNDABOUT: Final = 2.5
+_LONGEST_STRAIGHT: Final = 100.0 * NAUTICAL_MILE
 LEAST_SHORTER: Final = 0.05  #: share by which a way is clearly shorter
 _LONGEST_WITH_HINT: Final = 500.0  # [nm]
 _DEEPEST_DRAUGHT: Final = 30.0  # [m]
@@ -259,7 +262,7 @@ def _way_over_seas(
     straits = names_passed(chart.coastline, chart.passages, lat, lon)
     joints = [len(first.line) - 1] if first else []
     joints += [len(line) - len(last.line)] if last else []
-    notes += tuple(turn_back_notes(lat, lon, joints))
+    notes += tuple(turn_back_notes(lat, lon, joints)) + _roundabout_notes(line, total)
     return SeaDistance(ends[0].name, ends[-1].name, total, canals, straits, approaches, line, notes)
 
 
@@ -361,6 +364,18 @@ def _detour_notes(
     return (
         f"Keeps off shoal water by the {NAME}, which is coarse: the shortest way for this draught "
         f"is {longer:.0f} nm shorter, over that water. See the chart.",
+    )
+
+
+def _roundabout_notes(line: Sequence[Position], length: float) -> tuple[str, ...]:
+    """Return a note on a way [m] much longer than the straight line between its ends."""
+    straight = float(distance(*line[0], *line[-1]))
+    if straight > _LONGEST_STRAIGHT or length < _ROUNDABOUT * straight:
+        return ()
+    return (
+        f"{length / NAUTICAL_MILE:.0f} nm by sea for {straight / NAUTICAL_MILE:.0f} nm in a "
+        "straight line: narrow channels that are not in the table of passages are closed. See on "
+        "the chart whether there is one.",
     )
 
 

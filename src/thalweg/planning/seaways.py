@@ -41,7 +41,7 @@ from thalweg.network.global_grid.sea_graph import (
 from thalweg.network.global_grid.sea_graph_cache import edge_excess, sea_graph
 from thalweg.planning.request.voyage_endpoints import Endpoint
 
-_ROUNDS: Final = 4  # passes of string pulling; each may double the waypoints of a corner
+_ROUNDS: Final = 2  # passes of string pulling; each may double the waypoints of a corner
 #: A way off land that is longer than the one along the coast by more than this has bends.
 _MOST_LONGER: Final = 1.01
 _NEAR_LAND: Final = 3.0  # what a mile nearer to land than required counts more, beside the graph
