@@ -6,6 +6,7 @@ import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 from thalweg.chart import Chart
 from thalweg.core.errors import NoRouteError
@@ -22,6 +23,7 @@ MAX_FRONT_NODES = 3_000
 #: Alternatives longer than this multiple of the shortest are left out.
 MAX_LENGTH_RATIO = 1.8
 _COAST_LEVELS = 2
+OPEN_SEA: Final = "open sea"  #: name of the alternative without canals
 
 
 @dataclass(frozen=True)
@@ -101,7 +103,7 @@ def _route_alternative(
         for choice, (a, b) in zip(choices, itertools.pairwise(ends))
     ]
     network = concatenate_networks([one for one, _ in found], [None] * (len(found) - 1))
-    name = " and ".join(canals_used(network, chart)) or "open sea"
+    name = " and ".join(canals_used(network, chart)) or OPEN_SEA
     return RouteAlternative(name, network, found[0][1] if len(found) == 1 else None)
 
 

@@ -13,7 +13,11 @@ from thalweg.core.interrupt import SearchInterrupted
 from thalweg.kernels import codes
 from thalweg.network import Network, eca_fractions
 from thalweg.planning.frozen_sea import FrozenSea
-from thalweg.planning.network_selection.route_alternatives import RouteAlternative
+from thalweg.planning.network_selection.route_alternatives import (
+    OPEN_SEA,
+    RouteAlternative,
+    canals_used,
+)
 from thalweg.planning.pareto.edge_costs import edge_costs
 from thalweg.planning.pareto.search_horizon import SearchHorizon, extend_horizon
 from thalweg.planning.pareto.trade_off_context import (
@@ -25,6 +29,7 @@ from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.single.route_candidates import refine_track, track_from_result
 from thalweg.planning.single.stretch import isochrones, plan_stretch
+from thalweg.planning.single.stretch_result import StretchResult
 from thalweg.planning.single.weather_gaps import (
     MAX_GAPS,
     check_times_known,
@@ -93,7 +98,14 @@ def fastest_in_known_water(
     NoRouteError : If no route arrives in time; with the earliest arrival if there is a route.
     """
     context = trade_off.context
-    horizon, fastest = _fastest_route(trade_off, alternative)
+    try:
+        horizon, fastest = _fastest_route(trade_off, alternative)
+    except NoRouteError as error:
+        other = _on_network_of_least_time(trade_off, alternative) if _is_late(error) else None
+        if other is None:
+            raise
+        alternative = other
+        horizon, fastest = _fastest_route(trade_off, alternative)
     new = gaps = data_gaps_on_route(fastest)
     while new and len(gaps) <= MAX_GAPS:
         alternative = without_unknown_water(context, alternative, new)
@@ -145,7 +157,8 @@ def _fastest_route(
     if first.arrive <= latest:
         return horizon, route
     if not (route.feasible and route.arrive <= latest + 1.0):
-        alone = _fastest_alone(trade_off)
+        stretch = _least_time_stretch(trade_off)
+        alone = None if stretch is None else stretch.route
         earliest = min([first.arrive, *(r.arrive for r in (route, alone) if r and r.feasible)])
         if alone is None or earliest > latest + 1.0:
             raise late_arrival_error(latest, earliest, approach=context.approach_times[1])
@@ -154,8 +167,8 @@ def _fastest_route(
     return replace(horizon, latest=first.arrive + 1.0), route
 
 
-def _fastest_alone(trade_off: TradeOffContext) -> Route | None:
-    """Return the route of the plan by least time, which is refined further; None with via points.
+def _least_time_stretch(trade_off: TradeOffContext) -> StretchResult | None:
+    """Return the plan by least time, which is refined further; None with via points.
 
     A latest arrival is refused only if that plan does not keep it either.
     """
@@ -166,7 +179,31 @@ def _fastest_alone(trade_off: TradeOffContext) -> Route | None:
     depart = context.voyage.earliest_departure
     free = replace(context, voyage=by_time)
     start, goal = trade_off.ends
-    return plan_stretch(free, start, goal, (depart, depart)).route
+    return plan_stretch(free, start, goal, (depart, depart))
+
+
+def _is_late(error: NoRouteError) -> bool:
+    """Return whether there is no route because the data end."""
+    return "data_end" in error.details
+
+
+def _on_network_of_least_time(
+    trade_off: TradeOffContext, alternative: RouteAlternative
+) -> RouteAlternative | None:
+    """Return an alternative on the network of the plan by least time.
+
+    Its paths may arrive before the data end where those of the network of a front do not. None
+    where that plan does not arrive either, or uses other canals.
+    """
+    try:
+        stretch = _least_time_stretch(trade_off)
+    except NoRouteError:
+        return None
+    if stretch is None or not stretch.route.feasible:
+        return None
+    canals = " and ".join(canals_used(stretch.network, trade_off.context.chart))
+    same = (canals or OPEN_SEA) == alternative.name
+    return replace(alternative, network=stretch.network, lattices=None) if same else None
 
 
 def network_pareto_front(

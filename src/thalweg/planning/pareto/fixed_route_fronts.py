@@ -19,6 +19,7 @@ from thalweg.network import (
     fixed_route,
 )
 from thalweg.planning.network_selection.network_builder import LatticeBetween
+from thalweg.planning.network_selection.route_alternatives import OPEN_SEA
 from thalweg.planning.pareto.exploration import network_pareto_front
 from thalweg.planning.pareto.front_points import track_from_front_point
 from thalweg.planning.pareto.search_horizon import extend_horizon
@@ -101,7 +102,7 @@ def _speed_optimised(trade_off: TradeOffContext, path: AlternativePath) -> list[
     found = network_pareto_front(
         trade_off, network, horizon.frozen, horizon.latest, refined=trade_off.is_refined
     )
-    name = " and ".join(path.canals) or "open sea"
+    name = " and ".join(path.canals) or OPEN_SEA
     return [
         TrackCandidate(
             track_from_front_point(network, point), "alternative path", name, point.time, point.cost

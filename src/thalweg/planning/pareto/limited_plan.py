@@ -11,6 +11,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.objective import OBJECTIVE_NAMES, Objective
+from thalweg.planning.network_selection.route_alternatives import OPEN_SEA
 from thalweg.planning.plan import Plan
 from thalweg.planning.plan_front import ParetoFront
 from thalweg.planning.voyage import Voyage
@@ -218,7 +219,7 @@ def _assembled(
         more = value - free
         note += f" They cost {more:.4g} {objective.unit}".rstrip()
         note += f" more than the best route without them, which breaks {broken}."
-    way = source.front.ways[k] if source.front is not None else "open sea"
+    way = source.front.ways[k] if source.front is not None else OPEN_SEA
     front = found.front
     if front is not None:
         front = ParetoFront(

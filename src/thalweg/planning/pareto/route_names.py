@@ -17,6 +17,7 @@ from thalweg.core.geodesy import distance, format_position, inverse, wrap_longit
 from thalweg.core.types import FloatArray
 from thalweg.network import Network
 from thalweg.network.alternatives.homotopy import obstacles
+from thalweg.planning.network_selection.route_alternatives import OPEN_SEA
 from thalweg.route import Route
 
 _MIN_RELATIVE_SIZE = 0.01  # least width of land that counts, over the distance of the ends
@@ -67,7 +68,7 @@ def route_labels(
         members = [k for k, name in enumerate(alternatives) if name == one]
         labels = _homotopy_labels([routes[k] for k in members], networks.get(one, default), chart)
         for k, label in zip(members, labels):
-            replaces = one == "open sea" and label
+            replaces = one == OPEN_SEA and label
             names[k] = label if replaces else ", ".join(filter(None, (one, label)))
     return tuple(names)
 
