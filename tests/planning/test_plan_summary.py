@@ -9,6 +9,7 @@ from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.chart.canals import Canal
 from thalweg.core.geodesy import format_position_minutes, parse_position
 from thalweg.core.time import duration_text, utc_text
+from thalweg.planning.plan_front import ParetoFront
 from thalweg.planning.report.filled_weather import wave_shares
 from thalweg.planning.report.note_order import notes_of_routes
 from thalweg.planning.report.plan_summary import (
@@ -266,3 +267,15 @@ def test_a_year_without_weather_is_noted(year, words):
 
     notes = year_warnings(SimpleNamespace(depart=parse_time(f"{year}-06-01")))
     assert [word for word in words if word in notes[0]] == words and len(notes) == len(words)
+
+
+def test_the_summary_of_a_front_states_how_far_its_other_routes_may_be(answer):
+    certain = np.array([[0.0, 1e4], [0.9, 0.9]])
+    front = ParetoFront("fuel", "t", np.array([1.0]), ("fastest",), ("open sea",), certain=certain)
+    of_front = replace(
+        with_bound(answer, 0.976), voyage=replace(answer.voyage, objective="front"), front=front
+    )
+    text = "at most 2.4 % from the best possible in time; in fuel, over the front: at most 10.0 %"
+    assert quality_text(of_front) == text
+    weak = replace(front, values=np.array([2.0]))
+    assert quality_text(replace(of_front, front=weak)).endswith("little known (weak bound)")

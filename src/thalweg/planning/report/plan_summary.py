@@ -148,7 +148,17 @@ def quality_text(plan: PlanData) -> str:
     if plan.gap > _WEAK:
         least = math.floor(100.0 * (1.0 - plan.gap) + 1e-9)
         return f"{early}little known (weak bound): the best possible is at least {least} % of this"
-    return f"{early}at most {_percent(plan.gap)} % from the best possible"
+    return f"{early}at most {_percent(plan.gap)} % from the best possible{_quality_of_front(plan)}"
+
+
+def _quality_of_front(plan: PlanData) -> str:
+    """Return how far the other routes of a front can be from the best possible, if asked for."""
+    if plan.voyage.objective != "front" or plan.front is None:
+        return ""
+    gaps = [gap for gap in plan.front.gaps(plan.routes) if gap is not None]
+    known = bool(gaps) and max(gaps) <= _WEAK
+    largest = f"at most {_percent(max(gaps))} %" if known else "little known (weak bound)"
+    return f" in time; in {plan.front.criterion}, over the front: {largest}"
 
 
 def _percent(share: float) -> str:
