@@ -37,6 +37,7 @@ _KIND = (
 WITH_DUES = "with the time, dues and fuel of canals, or the way round them"
 _MOST_PRICES = 8
 _LEAST_GAIN = 1e-5  # share of the greatest value, below which the lines add nothing
+UNTIL_DATA_END = "for arrivals until the data end"  #: part of the kind of a bound
 _AFTER = 1e-9  # share of a time, to its next point
 
 
@@ -71,12 +72,15 @@ def certified_front(
     ordered : The front, with routes within the limits or not.
     """
     context, routes = trade_off.context, [item.route for item in ordered]
-    allowed = (context.latest_arrival - context.voyage.earliest_departure) / HOUR
+    latest = min(context.latest_arrival, context.data_end)  # later routes meet unknown sea
+    allowed = (latest - context.voyage.earliest_departure) / HOUR
     current, kind = strongest_current_of_plan(trade_off, explored, routes)
     ways = least_ways(trade_off, [*routes, *(one.fastest for one in explored)], current)
     points = certain_front(trade_off, ways, current)
     if len(ways) > 1 and passes_counted_canal(trade_off, routes):
         kind = f"{kind}; {WITH_DUES}"
+    if context.data_end < context.latest_arrival:
+        kind = f"{kind}; {UNTIL_DATA_END}"
     if kept_out(context.chart, routes):
         kind = f"{kind}; for routes {KEEPING_OUT}"
     if trade_off.interrupt_guard.stopped() or not context.proof_seconds:
