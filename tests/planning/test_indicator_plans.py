@@ -5,6 +5,7 @@ import math
 from dataclasses import replace
 from functools import partial
 
+import matplotlib.image
 import numpy as np
 import pytest
 
@@ -284,7 +285,8 @@ def test_alternatives_differ_and_each_is_best_in_something(ship, chart, tmp_path
     files = found.write(tmp_path)
     rows = (tmp_path / "alternatives.csv").read_text().splitlines()
     assert len(rows) == 1 + len(found.choices) and "sick_percent:bridge" in rows[0]
-    assert {"alternatives.json", "alternative_1.rtz"} <= {path.name for path in files}
+    assert {"alternatives.json", "map.png", "alternative_1.rtz"} <= {path.name for path in files}
+    assert matplotlib.image.imread(tmp_path / "map.png").std() > 0.05  # not an empty picture
     assert json.loads((tmp_path / "alternatives.json").read_text())["alternatives"]
     (tmp_path / "alternative_5.rtz").write_text("of an earlier plan")
     replace(found, choices=found.choices[:2], slack_h=found.slack_h[:2]).write(tmp_path)

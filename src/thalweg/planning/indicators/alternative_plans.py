@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -66,6 +66,7 @@ class AlternativePlans:
     notes : What was assumed, and which candidates could not be found.
     ends : Names of start and goal.
     cancelled : Whether Ctrl-C ended the search for candidates.
+    chart : That of the map; None for none.
     """
 
     voyage: Voyage
@@ -74,6 +75,7 @@ class AlternativePlans:
     notes: tuple[str, ...]
     ends: tuple[str, str]
     cancelled: bool = False
+    chart: Chart | None = field(default=None, repr=False, compare=False)
 
     def rows(self) -> list[dict[str, Any]]:
         """Return one row for each route.
@@ -111,7 +113,7 @@ class AlternativePlans:
         }
 
     def write(self, folder: str | Path, options: RouteFileOptions | None = None) -> list[Path]:
-        """Write alternatives.json, alternatives.csv and the route files of each.
+        """Write alternatives.json, alternatives.csv, map.png and the route files of each.
 
         Parameters
         ----------
@@ -133,6 +135,13 @@ class AlternativePlans:
         table: list[list[Any]] = [names, *([row.get(name) for name in names] for row in rows)]
         write_csv_rows(folder / "alternatives.csv", table)
         files = [folder / "alternatives.json", folder / "alternatives.csv"]
+        if self.chart is not None:
+            from thalweg.planning.plots.alternatives_map import draw_alternatives_map
+
+            names = [one.name for one in self.choices]
+            routes = [one.route for one in self.choices]
+            files.append(folder / "map.png")
+            draw_alternatives_map(routes, names, self.chart, self.ends, files[-1])
         for number, one in enumerate(self.choices, start=1):
             files += write_route_files(one.route, folder, f"alternative_{number}", options)
         for number in range(len(self.choices) + 1, _MOST + 1):
@@ -226,6 +235,7 @@ def alternative_plans(
         tuple(notes),
         (ends[0].true_name, ends[-1].true_name),
         any(note.startswith(STOPPED) for note in notes),
+        context.chart,
     )
 
 

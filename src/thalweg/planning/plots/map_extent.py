@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from thalweg.core.geodesy import METRES_PER_DEGREE, unwrap_longitude, wrap_longitude
 from thalweg.core.units import NAUTICAL_MILE
+
+if TYPE_CHECKING:
+    from thalweg.route import Route
 
 MERCATOR_LIMIT = 75.0  #: Beyond this latitude degrees have the scale of the middle of the map [deg]
 _STEPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0)  # of graticules
@@ -24,6 +28,30 @@ class MapExtent:
     north: float
     west: float
     east: float
+
+    @classmethod
+    def of_routes(cls, routes: Sequence[Route]) -> MapExtent:
+        """Return the area round routes, with a margin and not much longer than wide."""
+        lat = np.concatenate([route.samples["lat"] for route in routes])
+        lon = np.concatenate([unwrap_longitude(route.samples["lon"]) for route in routes])
+        high, wide = np.ptp(lat), np.ptp(lon) * math.cos(math.radians(float(np.mean(lat))))
+        margin = 0.12 * max(high, wide, 1e-3)
+        stretch = math.cos(math.radians(min(80.0, float(np.max(np.abs(lat))))))
+        grow = max(0.0, 0.42 * max(wide, high) - high) / 2
+        widen = max(0.0, 0.6 * high - wide) / 2
+        side_margin = min((margin + widen) / stretch, max(0.0, 0.5 * (359.0 - float(np.ptp(lon)))))
+        return cls(
+            max(-89.9, float(lat.min()) - margin - grow),
+            min(89.9, float(lat.max()) + margin + grow),
+            float(lon.min()) - side_margin,
+            float(lon.max()) + side_margin,
+        )
+
+    def figure_size(self) -> tuple[float, float]:
+        """Return the width and height of a figure with one map [inch]."""
+        shape = self.height / (self.east - self.west)
+        width = min(10.0, 9.0 / shape + 1.6)
+        return width, max(3.6, (width - 1.6) * shape + 0.9)
 
     @property
     def is_mercator(self) -> bool:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thalweg.core.file_writing import new_figure, save_figure
-from thalweg.core.geodesy import unwrap_longitude, wrap_longitude
+from thalweg.core.geodesy import wrap_longitude
 from thalweg.core.time import duration_text, utc_text
 from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.plots.map_extent import MapExtent
@@ -51,11 +51,8 @@ def draw_map(plan: PlanData, path: str | Path | None = None, *, beside: Route | 
         default that of the comparison of a front.
     """
     beside = beside or _weather_blind(plan)
-    box = _map_extent(plan, beside)
-    shape = box.height / (box.east - box.west)
-    width = min(10.0, 9.0 / shape + 1.6)
-    height = max(3.6, (width - 1.6) * shape + 0.9)
-    figure = new_figure(width, height)
+    box = MapExtent.of_routes([*plan.routes, *([] if beside is None else [beside])])
+    figure = new_figure(*box.figure_size())
     axes = figure.add_subplot()
     axes.set_facecolor(_SEA)
     box.set_up(axes)
@@ -86,24 +83,6 @@ def _label_of_reference(plan: PlanData) -> str:
     met = [samples[name] for name in (_WAVES, *_WIND, *_CURRENT) if name in samples]
     weather = any(np.nanmax(np.abs(values), initial=0.0) > 0.0 for values in met)
     return "route that ignores the weather" if weather else "shortest route"
-
-
-def _map_extent(plan: PlanData, beside: Route | None) -> MapExtent:
-    routes = [*plan.routes, *([] if beside is None else [beside])]
-    lat = np.concatenate([route.samples["lat"] for route in routes])
-    lon = np.concatenate([unwrap_longitude(route.samples["lon"]) for route in routes])
-    high, wide = np.ptp(lat), np.ptp(lon) * math.cos(math.radians(float(np.mean(lat))))
-    margin = 0.12 * max(high, wide, 1e-3)
-    stretch = math.cos(math.radians(min(80.0, float(np.max(np.abs(lat))))))
-    grow = max(0.0, 0.42 * max(wide, high) - high) / 2
-    widen = max(0.0, 0.6 * high - wide) / 2
-    side_margin = min((margin + widen) / stretch, max(0.0, 0.5 * (359.0 - float(np.ptp(lon)))))
-    return MapExtent(
-        max(-89.9, float(lat.min()) - margin - grow),
-        min(89.9, float(lat.max()) + margin + grow),
-        float(lon.min()) - side_margin,
-        float(lon.max()) + side_margin,
-    )
 
 
 def _draw_sea(figure: Any, axes: Any, plan: PlanData, context: PlotContext, box: MapExtent) -> None:
