@@ -28,6 +28,7 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.alternatives.path_shortening import (
     PolylineCoordinates,
     leg_lengths,
+    move_waypoints,
     string_pull_path,
     total_cost,
 )
@@ -45,6 +46,7 @@ _ROUNDS: Final = 2  # passes of string pulling; each may double the waypoints of
 #: A way off land that is longer than the one along the coast by more than this has bends.
 _MOST_LONGER: Final = 1.01
 _NEAR_LAND: Final = 3.0  # what a mile nearer to land than required counts more, beside the graph
+_FINE_LEG: Final = 12.0 * NAUTICAL_MILE  # of ways moved off capes
 _MOST_PLACES: Final = 64  # of a leg, where its distance from land is looked up
 _STEP: Final = 0.25 * NAUTICAL_MILE  # at which the distance from land is looked up for a note
 _TOLERANCE: Final = 0.1 * NAUTICAL_MILE
@@ -231,7 +233,8 @@ class Seaways:
             return _places(*part.T)
         clear = _ClearWater(off_land, self.shoals)
         if self._has_wide_shoals:
-            return _places(*string_pull_path(chart, *part.T, leg_cost=clear.cost, rounds=_ROUNDS))
+            line = string_pull_path(chart, *part.T, leg_cost=clear.cost, rounds=_ROUNDS)
+            return _places(*clear.moved(chart, line, off_shoals=False))
         found = clear.moved(chart, string_pull_path(clear, *part.T, rounds=_ROUNDS))
         along = string_pull_path(chart, *part.T, rounds=_ROUNDS)
         if _length(found) > _MOST_LONGER * _length(along) + _BEND:
@@ -258,10 +261,18 @@ class _ClearWater:
         blocked = np.asarray(self.off_land.legs_blocked(*ends))
         return blocked if self.shoals is None else blocked | (self.shoals.excess(*ends) > 0.0)
 
-    def moved(self, chart: Chart, line: PolylineCoordinates) -> PolylineCoordinates:
-        """Return a way whose legs near land and over shoals are moved as far as costs fall."""
+    def moved(
+        self, chart: Chart, line: PolylineCoordinates, *, off_shoals: bool = True
+    ) -> PolylineCoordinates:
+        """Return a way whose legs near land and over shoals are moved as far as costs fall.
+
+        Parameters
+        ----------
+        off_shoals : Whether legs over shoals are moved that are not near land.
+        """
         lat, lon = line
-        near = self.legs_blocked(lat[:-1], lon[:-1], lat[1:], lon[1:])
+        blocked = self.legs_blocked if off_shoals else self.off_land.legs_blocked
+        near = np.asarray(blocked(lat[:-1], lon[:-1], lat[1:], lon[1:]))
         edges = np.flatnonzero(np.diff(np.concatenate([[0], near.astype(int), [0]]))).reshape(-1, 2)
         first = np.maximum(edges[:, 0] - 1, np.append(0, edges[:-1, 1]))  # with the leg before ...
         last = np.minimum(edges[:, 1] + 1, np.append(first[1:], len(lat) - 1))  # ... and after it
@@ -269,6 +280,8 @@ class _ClearWater:
         for begin, end in reversed(list(zip(first.tolist(), last.tolist()))):
             part = slice(begin, end + 1)
             y, x = string_pull_path(chart, lat[part], lon[part], leg_cost=self.cost, rounds=_ROUNDS)
+            if np.any(blocked(y[:-1], x[:-1], y[1:], x[1:])):
+                y, x = move_waypoints(chart, y, x, leg_cost=self.cost, longest_leg=_FINE_LEG)
             found[part] = _places(*string_pull_path(chart, y, x, leg_cost=self.cost, rounds=0))
         lat, lon = np.array(found).T
         return lat, lon

@@ -281,10 +281,32 @@ def _cut_is_better(
     return fine
 
 
-def _move_waypoints(rules: _LegRules, line: PolylineCoordinates) -> PolylineCoordinates:
+def move_waypoints(
+    chart: LegTests, lat: FloatArray, lon: FloatArray, *, leg_cost: LegCost, longest_leg: float
+) -> PolylineCoordinates:
+    """Return a path whose waypoints, and new ones between them, are moved to where it costs less.
+
+    Parameters
+    ----------
+    chart : Tests the legs; there are no canals on the path.
+    lat, lon : Path of allowed legs [deg].
+    leg_cost : Cost of legs.
+    longest_leg : Legs are split to this [m], and waypoints are moved by no more at once.
+
+    Returns
+    -------
+    lat, lon : The path [deg].
+    """
+    rules = _LegRules(chart, leg_cost, None)
+    return _move_waypoints(rules, (lat, geodesy.wrap_longitude(lon)), longest_leg)
+
+
+def _move_waypoints(
+    rules: _LegRules, line: PolylineCoordinates, longest_leg: float = _LONGEST_LEG
+) -> PolylineCoordinates:
     """Split a line into short legs and move its waypoints to where it costs less."""
-    lat, lon, _ = geodesy.densify(*line, _LONGEST_LEG)
-    for step in _STEP_LENGTHS:
+    lat, lon, _ = geodesy.densify(*line, longest_leg)
+    for step in (one for one in _STEP_LENGTHS if one <= longest_leg):
         for _ in range(_MAX_SWEEPS):
             gained = sum(_move_some(rules, lat, lon, step, odd) for odd in (1, 2))
             if gained <= _MIN_GAIN * total_cost((lat, lon), rules.cost):
