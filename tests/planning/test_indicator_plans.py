@@ -99,6 +99,8 @@ def test_weights_are_over_the_range_of_the_single_optima():
         ({"objective": "weighted", "weights": {"fuel": -1.0}}, "zero or more"),
         ({"at_most": {"sick": 1.0}}, "sick"),
         ({"at_least": {"workable_percent": "much"}}, "number"),
+        ({"at_least": {"workable_percent": 120.0}}, "per cent, 0 to 100"),
+        ({"at_most": {"sick_percent:mess": -4.0}}, "per cent, 0 to 100"),
     ],
 )
 def test_requests_that_are_not_possible_are_refused(given, text):
@@ -366,6 +368,8 @@ def test_champions_and_differences_in_words():
     assert "sick_percent" not in champions([fast | other, close | other])
     nearly = [calm | other | {"sick_percent": value} for value in (8.8, 7.9)]
     assert champions(nearly)["sick_percent"] == 1  # 9 and 8 % in a table
+    work = [calm | other | {"time": t, "workable_percent": w} for t, w in ((7, 99.06), (8, 100.0))]
+    assert champions(work)["workable_percent"] == 1  # what is missing to 100 % counts
 
 
 @pytest.mark.slow

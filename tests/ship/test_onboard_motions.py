@@ -91,6 +91,7 @@ def test_a_ship_without_places_has_no_comfort():
     "change, words",
     [
         ({"places": {"mast": 80.0}}, "off the ship"),
+        ({"places": {"mast": 22.0}}, "off the ship"),  # of 33.9 m
         ({"tasks": {"crane": {"place": "deck", "max_pitch_deg": 2.0}}}, "place for the task"),
         ({"places": {}, "tasks": {"crane": {"place": "deck"}}}, "tasks but no places"),
     ],

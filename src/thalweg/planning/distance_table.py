@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 MOST_PORTS: Final = 4_000  #: in one table
+_MORE: Final = "(more)"  # fields beyond the columns
 _NAMES: Final = ("port", "name", "locode", "unlocode")
 
 
@@ -198,8 +199,8 @@ def read_places(path: str | PathLike[str]) -> list[tuple[str, Place]]:
     try:
         with open(path, encoding="utf-8-sig", newline="") as file:
             rows = [
-                {str(k).strip().lower(): str(v or "").strip() for k, v in row.items() if k}
-                for row in csv.DictReader(file)
+                {str(k).strip().lower(): v for k, v in row.items()}
+                for row in csv.DictReader(file, restkey=_MORE)
             ]
     except (OSError, ValueError, csv.Error) as error:
         raise InputError(
@@ -213,7 +214,17 @@ def read_places(path: str | PathLike[str]) -> list[tuple[str, Place]]:
             f"It is a CSV file with one of the columns {', '.join(_NAMES)}, and maybe lat and lon.",
             "Add a first line with these names.",
         )
-    return [_place_of_row(row, number) for number, row in enumerate(rows, start=2)]
+    found = []
+    for number, row in enumerate(rows, start=2):
+        more = row.pop(_MORE, None)
+        if more:
+            raise InputError(
+                f"Line {number} of the ports has more fields than the first line: {more[0]!r}.",
+                "A name with a comma stands in quotation marks.",
+                f'Write "{next(iter(row.values()))},{more[0]}", if that is one name.',
+            )
+        found.append(_place_of_row({k: str(v or "").strip() for k, v in row.items()}, number))
+    return found
 
 
 def _place_of_row(row: Mapping[str, str], number: int) -> tuple[str, Place]:

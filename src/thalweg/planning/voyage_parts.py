@@ -322,6 +322,13 @@ def _checked_indicator(kind: str, name: str, value: Any, known: Any) -> float:
             "Correct it.",
             field=kind,
         )
+    if kind != "weights" and known[plain][0] == "%" and not 0.0 <= number <= 100.0:
+        raise InputError(
+            f"{kind} of {name} is {shortened_repr(value)}.",
+            "It is a share in per cent, 0 to 100.",
+            "Correct it.",
+            field=kind,
+        )
     return number
 
 

@@ -139,8 +139,6 @@ _RANGES: Final = {
     "depth": ("--water-depth", 12_000.0, True),
 }
 
-_STEEPEST: Final = 0.1  # 2 pi Hs / (g Tp^2) above which no sea is; steep ones have 0.07
-
 
 def _weather(arguments: argparse.Namespace) -> dict[str, float]:
     given = {
@@ -189,14 +187,16 @@ def _check_steepness(height: float | None, period: float | None) -> None:
     """Refuse waves that break: no sea is so steep."""
     if not height or period is None:
         return
+    from thalweg.ship.methods.seakeeping.wave_spectra import STEEPEST
+
     per_metre = 2.0 * math.pi / (GRAVITY * period**2)
-    if height * per_metre > _STEEPEST:
+    if height * per_metre > STEEPEST:
         raise InputError(
             f"Waves of {height:g} m with a peak period of {period:g} s have a steepness of "
             f"{height * per_metre:.2f}.",
-            f"Seas have up to about 0.07 (2 pi Hs / (g Tp^2)): {_STEEPEST / per_metre:.1f} m at "
+            f"Seas have up to about 0.07 (2 pi Hs / (g Tp^2)): {STEEPEST / per_metre:.1f} m at "
             f"this period is the most that is taken, and {height:g} m need "
-            f"{math.sqrt(height * per_metre / _STEEPEST) * period:.1f} s or more.",
+            f"{math.sqrt(height * per_metre / STEEPEST) * period:.1f} s or more.",
             "Correct --hs or --tp.",
             option="--tp",
         )

@@ -50,6 +50,7 @@ _OF_PLACES: Final = (
 )  # fmt: skip
 _LEAST_WAIT_H: Final = 0.1
 _EQUAL: Final = 1e-2  # figures that differ by less than this share are the same
+_EQUAL_POINTS: Final = 0.5  # ... as are those in per cent of the time, by so many points
 _WORTH_WORDS: Final = 0.03  # smaller differences are not put into words ...
 _WORTH_WORDS_OF_TIME: Final = 0.005  # ... but those of time are
 _IN_WORDS: Final = ("time", "sick_percent", "fuel", "encounters", "distance")
@@ -98,7 +99,7 @@ def champions(values: Sequence[dict[str, float]]) -> dict[str, int]:
         if not np.isfinite(column).all():
             continue
         signed = column if figure.best == "least" else -column
-        equal = _EQUAL * max(float(np.abs(column).max()), 1e-12)
+        equal = _tolerance(name, column)
         shown = np.round(signed, figure.digits)  # as in the table
         if np.ptp(column) > equal and np.ptp(shown) > 0.0:  # of equal ones the fastest
             near = signed <= signed.min() + equal
@@ -107,6 +108,13 @@ def champions(values: Sequence[dict[str, float]]) -> dict[str, int]:
             times = np.array([one["time"] for one in values])
             found[name] = int(near[np.argmin(times[near])])
     return found
+
+
+def _tolerance(name: str, values: np.ndarray) -> float:
+    """Return by how much values of a figure differ that are the same."""
+    if name == "workable_percent":  # what is missing to 100 % counts
+        return _EQUAL_POINTS
+    return _EQUAL * max(float(np.nanmax(np.abs(values))), 1e-12)
 
 
 def best_of_all(
@@ -124,7 +132,7 @@ def best_of_all(
         signed = every if COMPARED_FIGURES[name].best == "least" else -every
         own = values[at][name] * (1.0 if COMPARED_FIGURES[name].best == "least" else -1.0)
         digits = COMPARED_FIGURES[name].digits
-        equal = _EQUAL * max(float(np.nanmax(np.abs(every))), 1e-12)
+        equal = _tolerance(name, every)
         least = float(np.nanmin(signed))
         if own > least + equal and round(own, digits) > round(least, digits):
             del best[name]

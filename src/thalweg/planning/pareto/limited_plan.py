@@ -245,6 +245,7 @@ def _no_route_within(plans: list[Plan], limits: tuple[IndicatorLimit, ...]) -> N
         f"Of {len(routes)} routes found, the one nearest to that has {got}."
         if got
         else "No route was found.",
-        "Relax the limit, allow more time, or change the departure.",
+        "Relax the limit, allow more time, or change the departure; "
+        "'thalweg alternatives' compares other ways.",
         reasons={},
     )

@@ -22,6 +22,8 @@ _PIECE: Final = 20.0 * NAUTICAL_MILE  # routes are split so to find where a pass
 _LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE  # closed passages that save less are not mentioned
 _FARTHEST: Final = 120.0 * NAUTICAL_MILE  # nor are those farther from the route
 NEAREST_LAND: Final = "Nearest land"  #: a note on it begins so
+CLOSE_TO_LAND: Final = "Close to land"  #: ... or so, where it is nearer than `_CLOSE`
+_CLOSE: Final = 0.25 * NAUTICAL_MILE
 PASSES: Final = "Passes "  #: one on a named passage
 PASSAGE_CLOSED: Final = "Passage closed"  #: a note on one that is closed to a ship begins so
 _NEAR: Final = 30.0 * NAUTICAL_MILE  # land farther from the route is not mentioned
@@ -38,8 +40,9 @@ def land_notes(context: PlanningContext, route: Route) -> list[str]:
     nearest = least_land_clearance(context.chart, route.track)
     if nearest is not None and nearest.distance < _NEAR:
         place = format_position(nearest.lat, nearest.lon)
+        what = CLOSE_TO_LAND if nearest.distance < _CLOSE else NEAREST_LAND
         notes.append(
-            f"{NEAREST_LAND}: {nearest.distance / NAUTICAL_MILE:.1f} nm off, from {place}"
+            f"{what}: {nearest.distance / NAUTICAL_MILE:.1f} nm off, from {place}"
             f"{time_of_passing(route, nearest.leg, nearest.lat, nearest.lon)}."
         )
     for passage in passages_used(context.chart, route):

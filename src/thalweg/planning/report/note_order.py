@@ -10,8 +10,9 @@ from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
 from thalweg.planning.report.filled_weather import FILLED
 from thalweg.planning.report.given_route_report import NEAR_LAND
 from thalweg.planning.report.ice_report import REACHES_ICE
-from thalweg.planning.report.land_report import PASSAGE_CLOSED, PASSES
+from thalweg.planning.report.land_report import CLOSE_TO_LAND, PASSAGE_CLOSED, PASSES
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, LANE_DETOUR
+from thalweg.planning.report.wave_report import TOO_STEEP
 from thalweg.planning.request.coverage_check import UNREAD
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
 from thalweg.planning.request.voyage_endpoints import CHECK_POSITION, NOT_REACHED
@@ -24,11 +25,13 @@ _FIRST: Final = (
     NOT_REACHED,
     PORT_TOO_SHALLOW,
     LIMIT_EXCEEDED,
+    TOO_STEEP,
     REACHES_ICE,
     CHECK_POSITION,
     CHECK_DEPTH,
     CROSSES_SHOAL,
     NEAR_LAND,
+    CLOSE_TO_LAND,
     AGAINST_TRAFFIC,
     NO_OFFING_ROUTE,
     TURNS_BACK,

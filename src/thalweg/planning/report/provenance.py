@@ -21,6 +21,7 @@ from thalweg.planning.report.given_route_report import given_route_notes
 from thalweg.planning.report.ice_report import ice_warnings
 from thalweg.planning.report.land_report import land_notes
 from thalweg.planning.report.lane_report import lane_notes
+from thalweg.planning.report.wave_report import steep_wave_warnings
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
 from thalweg.route.referee.route_assembly import OUT_OF_RANGE
@@ -28,6 +29,7 @@ from thalweg.sea import Sea
 from thalweg.sea.inspection import data_gaps
 from thalweg.ship import Ship
 
+_LEAST_WAIT_H = 0.1  # waits that a note is given of
 _LEAST_KEPT, _SHORTEST_SLOW = 0.25, 1.0  # of the ordered speed; [h]
 #: Years between which a departure needs no warning: the reanalysis ERA5 begins in 1940.
 _FIRST_YEAR, _LAST_YEAR = "1940", "2100"
@@ -50,8 +52,8 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     notes += ice_warnings(route, context.sea)
     notes += data_gap_warnings(context.sea, route)
     notes += [text for text in route.assumptions if text.startswith(OUT_OF_RANGE)]
-    notes += slow_speed_warnings(route)
-    notes += lane_notes(context.chart, route)
+    notes += slow_speed_warnings(route) + steep_wave_warnings(route, context.sea)
+    notes += waiting_without_fuel(route) + lane_notes(context.chart, route)
     if context.needs.limits.depth_checked:
         return notes
     return notes + depth_notes(context.chart, route, context.ship, context.min_ukc)
@@ -76,6 +78,18 @@ def slow_speed_warnings(route: Route) -> list[str]:
     ]
 
 
+def waiting_without_fuel(route: Route) -> list[str]:
+    """Return a note where a route waits and the ship takes no fuel while she does."""
+    if not route.waiting_h > _LEAST_WAIT_H or route.fuel_t is None:
+        return []
+    if np.sum(route.legs["waiting_fuel"]) > 0.0:
+        return []
+    return [
+        f"Waiting takes no fuel on {route.waiting_h:.1f} h: the ship file has no hotel load. Give "
+        "it, or plan without waits (--no-wait)."
+    ]
+
+
 def given_route_warnings(
     route: Route, *, chart: Chart, sea: Sea, ship: Ship, min_ukc: float | None
 ) -> list[str]:
@@ -90,7 +104,8 @@ def given_route_warnings(
     min_ukc : Required under the keel [m]; None: by the ship file.
     """
     notes = year_warnings(route) + ice_warnings(route, sea) + data_gap_warnings(sea, route)
-    notes += slow_speed_warnings(route) + given_route_notes(route, chart=chart, ship=ship)
+    notes += slow_speed_warnings(route) + steep_wave_warnings(route, sea)
+    notes += given_route_notes(route, chart=chart, ship=ship)
     if route.min_ukc_m is not None:
         return notes
     clearance = ship.min_under_keel_clearance if min_ukc is None else min_ukc

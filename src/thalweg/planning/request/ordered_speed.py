@@ -10,7 +10,7 @@ from thalweg.planning.voyage import Voyage
 from thalweg.ship import Ship
 from thalweg.ship.held_speed import with_held_power, with_held_speed
 
-_SAME_SPEED_KN = 0.05  #: an ordered speed this near to a setting is that setting
+_SAME_SPEED_KN = 1e-6  #: an ordered speed this near to a setting is that setting
 
 
 def with_ordered_speed(ship: Ship, speed_kn: float | None) -> Ship:

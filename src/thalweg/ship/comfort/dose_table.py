@@ -14,6 +14,7 @@ from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY
 from thalweg.kernels import codes
 from thalweg.ship.comfort.onboard_motions import OnboardMotions, required_motions
+from thalweg.ship.methods.seakeeping.wave_spectra import STEEPEST
 from thalweg.ship.tables.performance_table import PerformanceTable
 from thalweg.ship.tables.table_parts import TablePart
 from thalweg.ship.tables.tabulate import table_error
@@ -28,7 +29,6 @@ _AXES: Final = (codes.AXIS_WAVE_HEIGHT, codes.AXIS_WAVE_ANGLE, codes.AXIS_WAVE_P
 _SAMPLES: Final = 500
 _SAMPLED_HEIGHTS: Final = (0.2, 8.0)
 _SAMPLED_PERIODS: Final = (3.0, 20.0)
-_STEEPEST: Final = 0.1  # significant height over the length of the peak waves
 _STILL: Final = {"wind_speed": 0.0, "wind_angle": 0.0, "depth": 1e4}
 
 
@@ -84,7 +84,7 @@ def sampled_conditions(count: int, seed: int) -> dict[str, FloatArray]:
     draw = np.random.default_rng(seed)
     height = draw.uniform(*_SAMPLED_HEIGHTS, count)
     angle, period = draw.uniform(0.0, math.pi, count), draw.uniform(*_SAMPLED_PERIODS, count)
-    possible = height <= _STEEPEST * GRAVITY * period**2 / (2.0 * math.pi)
+    possible = height <= STEEPEST * GRAVITY * period**2 / (2.0 * math.pi)
     found = {"wave_height": height, "wave_angle": angle, "wave_period": period}
     return {name: values[possible] for name, values in found.items()}
 

@@ -12,6 +12,7 @@ _LENGTH_WORDS: Final = {
     "length_waterline_m": "waterline",
     "length_over_surface_m": "surface under water",
 }
+_ABOARD: Final = 0.55  #: share of the length from midship to the ends, with a bow or a stern
 _LENGTH_RATIO_RANGE: Final = (0.75, 1.3)  #: shares of the length between perpendiculars
 _LARGEST_SURFACE_RATIO: Final = 1.5  #: most wetted surface, as a share of that of a box
 
@@ -114,7 +115,7 @@ def check_aboard(what: str, forward: float, length: float, *, remedy: str, key: 
     what : Beginning of the message, such as "A limit is set".
     remedy, key : What to correct, and its key in the ship file.
     """
-    if abs(forward) > 0.75 * length:
+    if abs(forward) > _ABOARD * length:
         raise InputError(
             f"{what} {forward:g} m ahead of midship, off the ship.",
             f"Half of its length is {0.5 * length:g} m; abaft midship is negative.",

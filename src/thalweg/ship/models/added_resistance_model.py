@@ -232,17 +232,22 @@ def _fujiwara(hull: Hull, kind: str) -> WindResistance:
 _BLENDERMANN_TYPES: Final = {
     **{"container": "container_loaded", "lng": "lng_tanker", "gas": "lng_tanker"},
     **{"tanker": "tanker_loaded", "vehicle": "car_carrier", "car carrier": "car_carrier"},
-    **{"cruise": "cruise", "ferry": "ferry", "ro-pax": "ferry", "passenger": "ferry"},
+    **{"cruise": "cruise", "ferry": "ferry", "ro pax": "ferry", "passenger": "ferry"},
     **{"supply": "offshore_supply", "offshore": "offshore_supply", "research": "research"},
 }
+
+_CARGO_WORDS: Final = ("cargo", "bulk", "carrier", "coaster", "dry", "multi", "reefer", "dredg")
 
 
 def _with_blendermann_type(hull: Hull) -> tuple[Hull, str]:
     """Blendermann's type of ship from ``hull.type``; a cargo ship when it is not given."""
-    given = str(hull.values.get("type", "")).casefold().replace("_", " ")
+    given = str(hull.values.get("type", "")).casefold().replace("_", " ").replace("-", " ")
     kinds = (kind for word, kind in _BLENDERMANN_TYPES.items() if word in given)
-    kind = next(kinds, "cargo_loaded")
+    kind = next(kinds, "")
     why = f"from hull.type {given!r}" if given else "no hull.type given"
+    if given and not kind and not any(word in given for word in _CARGO_WORDS):
+        why = f"hull.type {given!r} names no known type"
+    kind = kind or "cargo_loaded"
     return hull.with_estimates(Estimate("models.wind_type", kind, why)), kind
 
 

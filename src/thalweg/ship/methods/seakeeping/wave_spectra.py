@@ -14,6 +14,8 @@ from thalweg.ship.methods.array_conversion import as_float_array
 #: Panels of the quadrature in units of the peak frequency, and points in each.
 PANEL_EDGES: Final = (0.35, 0.75, 1.0, 1.3, 2.0, 4.0, 8.0)
 POINTS_PER_PANEL: Final = 8
+#: 2 pi Hs / (g Tp^2) above which no sea is; steep ones have 0.07.
+STEEPEST: Final = 0.1
 
 
 def _panel_rule() -> tuple[FloatArray, FloatArray]:

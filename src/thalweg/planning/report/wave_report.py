@@ -1,0 +1,42 @@
+"""Waves on a route that are steeper than waves of the sea can be: their data are wrong."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+
+from thalweg.core.geodesy import format_position
+from thalweg.core.units import GRAVITY
+from thalweg.route import Route
+from thalweg.sea import Sea
+from thalweg.sea.standard_names import WAVE_HEIGHT, WAVE_PERIOD
+from thalweg.ship.methods.seakeeping.wave_spectra import STEEPEST
+
+TOO_STEEP: Final = "The waves are too steep"  #: a note on such waves begins so
+_LEAST_HEIGHT: Final = 0.3  # [m]; lower ones move no ship
+
+
+def steep_wave_warnings(route: Route, sea: Sea) -> list[str]:
+    """Return a warning where the waves on a route are steeper than any sea.
+
+    The steepness is 2 pi H_s / (g T_p^2), in deep water. Seas have up to 0.07.
+    """
+    if not {WAVE_HEIGHT, WAVE_PERIOD} <= sea.variables or not math.isfinite(route.arrive):
+        return []
+    where = (np.asarray(route.samples[name], float) for name in ("time", "lat", "lon"))
+    waves = sea.sample([WAVE_HEIGHT, WAVE_PERIOD], *where)
+    height, period = waves[WAVE_HEIGHT], waves[WAVE_PERIOD]
+    length = GRAVITY * period**2 / (2.0 * math.pi)
+    steepness = np.divide(height, length, out=np.zeros(len(height)), where=length > 0.0)
+    steep = (height >= _LEAST_HEIGHT) & (steepness > STEEPEST)
+    if not steep.any():
+        return []
+    k = int(np.argmax(np.where(steep, steepness, 0.0)))
+    place = format_position(float(route.samples["lat"][k]), float(route.samples["lon"][k]))
+    return [
+        f"{TOO_STEEP}: {height[k]:.1f} m with a peak period of {period[k]:.1f} s at {place} have a "
+        f"steepness of {steepness[k]:.2f}, and seas have up to 0.07. Check the wave period in the "
+        "data: motions, sickness and resistance in these waves are not predictions."
+    ]
