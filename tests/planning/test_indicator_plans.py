@@ -99,8 +99,8 @@ def test_weights_are_over_the_range_of_the_single_optima():
         ({"objective": "weighted", "weights": {"fuel": -1.0}}, "zero or more"),
         ({"at_most": {"sick": 1.0}}, "sick"),
         ({"at_least": {"workable_percent": "much"}}, "number"),
-        ({"at_least": {"workable_percent": 120.0}}, "per cent, 0 to 100"),
-        ({"at_most": {"sick_percent:mess": -4.0}}, "per cent, 0 to 100"),
+        ({"at_least": {"workable_percent": 120.0}}, "in per cent, 0 to 100"),
+        ({"at_most": {"sick_percent:mess": -4.0}}, "in per cent, 0 to 100"),
     ],
 )
 def test_requests_that_are_not_possible_are_refused(given, text):

@@ -308,24 +308,17 @@ class IndicatorRequest:
 def _checked_indicator(kind: str, name: str, value: Any, known: Any) -> float:
     plain = name if kind == "weights" else name.partition(":")[0]
     if plain not in known:
-        raise unknown_name_error(
-            "key figure of a weighted sum" if kind == "weights" else "indicator",
-            plain,
-            known,
-            field=kind,
-        )
-    number = to_number(value)
-    if not (math.isfinite(number) and (kind != "weights" or number >= 0.0)):
+        what = "key figure of a weighted sum" if kind == "weights" else "indicator"
+        raise unknown_name_error(what, plain, known, field=kind)
+    number, highest, range_ = to_number(value), math.inf, ""
+    if kind == "weights":
+        range_ = " of zero or more"
+    elif known[plain][0] == "%":
+        highest, range_ = 100.0, " in per cent, 0 to 100"
+    if not (math.isfinite(number) and (not range_ or 0.0 <= number <= highest)):
         raise InputError(
             f"{kind} of {name} is {shortened_repr(value)}.",
-            "It is a number" + (" of zero or more." if kind == "weights" else "."),
-            "Correct it.",
-            field=kind,
-        )
-    if kind != "weights" and known[plain][0] == "%" and not 0.0 <= number <= 100.0:
-        raise InputError(
-            f"{kind} of {name} is {shortened_repr(value)}.",
-            "It is a share in per cent, 0 to 100.",
+            f"It is a number{range_}.",
             "Correct it.",
             field=kind,
         )
