@@ -5,7 +5,8 @@ import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.planning.report.note_order import danger_first
-from thalweg.planning.report.wave_report import TOO_STEEP
+from thalweg.planning.report.wave_report import TOO_STEEP, comfort_turn_notes
+from thalweg.route import Track, evaluate
 from thalweg.sea.standard_names import WAVE_HEIGHT, WAVE_PERIOD
 
 WAVE_FROM = "sea_surface_wave_from_direction"
@@ -36,3 +37,15 @@ def test_plans_warn_of_waves_steeper_than_any_sea(height, period, steep):
         value = height / (9.80665 * period**2 / (2.0 * np.pi))
         assert f"a steepness of {value:.2f}" in warned[0]
         assert danger_first(["Passes A.", *warned])[0] == warned[0]
+
+
+@pytest.mark.parametrize(("swing", "noted"), [(1.0, True), (0.1, False)])
+def test_many_sharp_turns_for_comfort_are_stated(swing, noted):
+    lat = 51.0 + 0.1 * np.arange(6)
+    lon = 2.0 + swing * 0.1 * (np.arange(6) % 2)
+    track = Track(lat, lon, depart=0.0, wait=np.zeros(6), setting=np.zeros(5, int))
+    route = evaluate(track, ship=Ship.simple(speed_kn=8.0), sea=Sea.calm())
+    notes = comfort_turn_notes(route)
+    assert bool(notes) == noted
+    if noted:
+        assert notes[0].startswith("Turns 4 times by more than 60 degrees")

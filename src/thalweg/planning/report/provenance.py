@@ -21,7 +21,7 @@ from thalweg.planning.report.given_route_report import given_route_notes
 from thalweg.planning.report.ice_report import ice_warnings
 from thalweg.planning.report.land_report import land_notes
 from thalweg.planning.report.lane_report import lane_notes
-from thalweg.planning.report.wave_report import steep_wave_warnings
+from thalweg.planning.report.wave_report import comfort_turn_notes, steep_wave_warnings
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
 from thalweg.route.referee.route_assembly import OUT_OF_RANGE
@@ -53,6 +53,8 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     notes += data_gap_warnings(context.sea, route)
     notes += [text for text in route.assumptions if text.startswith(OUT_OF_RANGE)]
     notes += slow_speed_warnings(route) + steep_wave_warnings(route, context.sea)
+    if context.voyage.objective == "comfort":
+        notes += comfort_turn_notes(route)
     notes += waiting_without_fuel(route) + lane_notes(context.chart, route)
     if context.needs.limits.depth_checked:
         return notes
