@@ -13,3 +13,12 @@ def test_the_bound_of_a_straight_voyage_in_calm_water_is_tight_and_not_above_it(
     chart = Chart.open_water().with_depth(lambda lat, lon: 4000.0 + 0.0 * lat)
     found = plan(voyage, ship=ship, sea=Sea.calm(), chart=chart, proof=0.0)
     assert 0.0 <= found.gap < 5e-3  # Plan.gap is an error where a bound is above the plan
+
+
+@pytest.mark.parametrize("name", ["kvlcc2", "gunnerus-2019"])
+def test_the_bound_of_least_fuel_in_calm_water_is_tight_and_not_above_it(name):
+    voyage = Voyage(start=(45.0, -30.0), goal=(46.0, -27.0), depart="2026-03-01T00:00Z",
+                    objective="fuel")  # fmt: skip
+    ship = Ship.load(name)
+    found = plan(voyage, ship=ship, sea=Sea.calm(), chart=Chart.open_water(), proof=0.0)
+    assert 0.0 <= found.gap < 5e-3

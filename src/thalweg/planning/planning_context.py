@@ -15,6 +15,8 @@ from thalweg.planning.request.requirements import Requirements, required_under_k
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, Track, evaluate
 from thalweg.sea import Sea
+from thalweg.sea.fill_policies import CALM_VALUES
+from thalweg.sea.models.function_layer import constant_values
 from thalweg.ship import PerformanceTable, Ship, TableError, TablePart
 from thalweg.ship.fuel_prices import FuelTerms
 
@@ -107,6 +109,11 @@ class PlanningContext:
     def data_end(self) -> float:
         """Last time that the data cover [s since 1970]; may be infinite."""
         return self.needs.data_end
+
+    @property
+    def sea_is_calm(self) -> bool:
+        """Whether the sea is known to have no wind, waves and currents anywhere."""
+        return all(constant_values(layer) == CALM_VALUES for layer in self.sea.layers)
 
     @property
     def min_ukc(self) -> float:

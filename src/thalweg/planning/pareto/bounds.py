@@ -223,7 +223,7 @@ def least_ways(
             ]
             shortest = max(least for ratio, least in of_way if ratio == 1.0)
             corners = corners_of_lengths(min(max(inside - part, 0.0), shortest), of_way)
-            value = sum(_value_of_canal(trade_off, canal, current) for canal in passed)
+            value = sum(_value_of_canal(trade_off, canal) for canal in passed)
             hours = sum(canal.transit_time for canal in passed) / HOUR
             ways.append(LeastWay(tuple(corners), hours, value))
     return tuple(ways)
@@ -242,7 +242,7 @@ def passes_counted_canal(trade_off: TradeOffContext, routes: Sequence[Route]) ->
     return any(one.name in counted for route in routes for one in canals_passed(route, chart))
 
 
-def _value_of_canal(trade_off: TradeOffContext, canal: Canal, current: float) -> float:
+def _value_of_canal(trade_off: TradeOffContext, canal: Canal) -> float:
     """Return the least value of the passage of a canal: dues, time and fuel."""
     prices, zones = trade_off.objective.prices, trade_off.context.chart.zones
     value = prices.dues * canal.fee + prices.time * canal.transit_time
@@ -250,7 +250,7 @@ def _value_of_canal(trade_off: TradeOffContext, canal: Canal, current: float) ->
         return value
     inside = float(zones.eca_fraction(*canal.ends[0], *canal.ends[1]))
     price = inside * prices.inside + (1.0 - inside) * prices.outside
-    rate = float(trade_off.slowness_and_rates(current)[1].min())
+    rate = trade_off.least_rate_in_canals
     return value + trade_off.least_zone_factor * price * rate * canal.transit_time
 
 

@@ -21,6 +21,7 @@ from thalweg.planning.network_selection.route_alternatives import RouteAlternati
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import PricedObjective
+from thalweg.planning.single.certified_bound import TABLE_MARGIN
 from thalweg.route import Route, Track
 from thalweg.route.refinement.better_route import penalty_excess
 from thalweg.search import NetworkFront, SearchResult, table_bounds
@@ -118,9 +119,30 @@ class TradeOffContext:
         ----------
         current : No current is stronger [m/s].
         """
+        if self._is_as_in_calm_water:
+            calm = calm_water_consumption(
+                self.context.ship, self.objective.prices.consumption, self.objective.prices.mix
+            )[self.settings]
+            made = np.asarray(self.context.ship.speeds, float)[self.settings]
+            if np.isfinite(calm).all():
+                return (1.0 - TABLE_MARGIN) / made, (1.0 - TABLE_MARGIN) * calm
         rates = np.maximum(table_bounds(self.consumption.kernel_arrays(), np.fmin), 0.0)
         speed = [self.context.ship.top_speed(int(s)) or math.inf for s in self.settings]
         return 1.0 / (np.array(speed, float) + current), rates[self.settings]
+
+    @property
+    def least_rate_in_canals(self) -> float:
+        """The least consumption in a second in canals, of all settings: that of calm water."""
+        prices = self.objective.prices
+        rates = calm_water_consumption(self.context.ship, prices.consumption, prices.mix)
+        known = rates[np.isfinite(rates)]
+        return (1.0 - TABLE_MARGIN) * float(known.min()) if known.size else 0.0
+
+    @property
+    def _is_as_in_calm_water(self) -> bool:
+        """Whether the ship makes the speed in calm, deep water everywhere, and no other."""
+        on_depth = "depth" in self.context.table.axes | self.consumption.axes
+        return self.context.sea_is_calm and not on_depth and self.context.ship.speed_field is None
 
     def worth_of_canals(self, current: float = 0.0) -> dict[str, float]:
         """Return the length at sea [m] that costs as much as the dues of a canal, by name.

@@ -19,8 +19,6 @@ from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.route_summary import canals_passed
 from thalweg.route import Route
 from thalweg.sea import Sea
-from thalweg.sea.fill_policies import CALM_VALUES
-from thalweg.sea.models.function_layer import constant_values
 from thalweg.search import LowerBound
 from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier
@@ -298,7 +296,7 @@ def _passage(context: PlanningContext, route: Route) -> PassageToBound:
     top, field = context.ship.top_speed(context.setting), context.ship.speed_field
     if field is not None:
         top = math.nan
-    elif _is_calm(context.sea):  # the table has following wind and seas, too
+    elif context.sea_is_calm:  # the table has following wind and seas, too
         top = float(context.ship.speeds[context.setting])
     ship = ShipInBarrier(
         context.table.kernel_arrays(),
@@ -312,12 +310,6 @@ def _passage(context: PlanningContext, route: Route) -> PassageToBound:
         depart=route.depart, known=route.time_h * HOUR,
         kept_out=kept_out(context.chart, [route]),
     )  # fmt: skip
-
-
-def _is_calm(sea: Sea) -> bool:
-    """Return whether a sea is known to have no wind, waves and currents anywhere."""
-    values = [constant_values(layer) for layer in sea.layers]
-    return all(one == CALM_VALUES for one in values)
 
 
 def _still_water(context: PlanningContext, route: Route) -> PassageToBound:
