@@ -51,6 +51,16 @@ def test_the_network_answers_routes(files, capsys):
     assert "confidence high" in capsys.readouterr().out
 
 
+def test_months_without_tracks_are_named(files, capsys):
+    net, ports = str(files / "net.json"), str(files / "ports.csv")
+    assert main(["history", "route", net, "Alpha", "Bravo", "--month", "12"]) == 0
+    text = capsys.readouterr().out
+    assert "note: No voyages were seen in December: the tracks have voyages in March and" in text
+    words = ["distances", ports, "--network", f"history:{net}", "--month", "12", "--json"]
+    assert main([*words, "--quiet"]) == 0
+    assert "No voyages were seen in December" in json.loads(capsys.readouterr().out)["notes"][0]
+
+
 def test_a_summary_is_printed_as_json(files, capsys, tmp_path):
     code = main(
         [

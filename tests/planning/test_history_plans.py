@@ -15,7 +15,7 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.history.history_builder import HistoryRules, build_history
 from thalweg.network.history.history_corridor import HistoryCorridor
 from thalweg.network.history.history_file import write_history
-from thalweg.network.history.history_network import no_arcs_text
+from thalweg.network.history.history_route import no_arcs_text
 from thalweg.network.history.voyage_tracks import HistoryPort
 from thalweg.operations.examples.synthetic_fleet import (
     SyntheticFleet,
@@ -67,6 +67,7 @@ def test_the_plan_stays_in_the_usual_water(network, inside):
     straight, usual = distance(*WEST, *EAST) / NM, network.route("West", "East").nm
     assert 1.005 * straight < route.distance_nm <= usual * 1.001
     assert any("stays in the water that ships usually use" in note for note in inside.notes)
+    assert inside.notes[0].startswith("No voyages were seen in January")  # but in November
 
 
 def test_ports_without_tracks_are_named(network):
@@ -125,7 +126,10 @@ def test_usual_against_optimal_is_the_saving_of_the_straight_way(network):
     saving = 100.0 * (1.0 - row["optimal"] / row["usual"])
     assert row["saving_percent"] == pytest.approx(saving, abs=0.01) and saving > 1.0
     assert found.to_dict()["voyages"] == 9
-    assert found.ways == ((), ()) and found.notes == ()  # open water without schemes
+    assert found.ways == ((), ())  # open water without schemes
+    [note] = found.notes  # the tracks are of November, the voyage is in January
+    assert note.startswith("No voyages were seen in January: the tracks have voyages in November")
+    assert row["usual"] == pytest.approx(network.route("West", "East", month=1).nm, rel=1e-3)
 
 
 @pytest.mark.slow

@@ -18,6 +18,7 @@ from thalweg.core.geodesy import check_position
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.history.history_network import HistoryNetwork
+from thalweg.network.history.season_masks import month_notes
 from thalweg.planning.sea_distance import DEFAULT_OFFING_NM, SMALL_CANALS, sea_distance
 from thalweg.planning.voyage_parts import Place
 
@@ -177,7 +178,7 @@ def usual_distance_table(
             + ", ".join(doubtful)
             + "."
         )
-    return DistanceTable(names, length, tuple(notes))
+    return DistanceTable(names, length, (*month_notes(network.months_seen, month), *notes))
 
 
 def read_places(path: str | PathLike[str]) -> list[tuple[str, Place]]:

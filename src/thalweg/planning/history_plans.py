@@ -15,7 +15,7 @@ from thalweg.core.time import to_datetime64
 from thalweg.network.history.history_corridor import HistoryCorridor
 from thalweg.network.history.history_network import HistoryNetwork
 from thalweg.network.history.history_route import HistoryRoute
-from thalweg.network.history.junction_corners import line_without_corners
+from thalweg.network.history.season_masks import month_notes
 from thalweg.planning.plan import Plan
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, lane_notes
 from thalweg.planning.report.route_summary import canals_passed
@@ -77,7 +77,8 @@ def plan_in_corridor(request: CorridorRequest, draught: float | None) -> Plan:
             raise
         refusal = str(error)
     if inside is not None:
-        inside = replace(inside, notes=(*inside.notes, *_unknown_ports(request)))
+        unknown = month_notes(corridor.network.months_seen, corridor.month)
+        inside = replace(inside, notes=(*unknown, *inside.notes, *_unknown_ports(request)))
     if corridor.gain is None:
         assert inside is not None  # refused above otherwise
         return _with_note(inside, "The route stays in the water that ships usually use.")
@@ -136,7 +137,8 @@ class UsualAgainstOptimal:
     ways : (tuple of str, tuple of str)
         Canals and named passages of the usual and of the optimal route.
     notes : tuple of str
-        Traffic rules that the usual route does not keep, and the optimal one does.
+        Of the usual route: that no voyages were seen in the month; traffic rules that it does not
+        keep, and the optimal one does.
     """
 
     usual: Route
@@ -215,15 +217,14 @@ def usual_against_optimal(
     )
     start, goal = history.line[0], history.line[-1]
     best = plan_one(replace(voyage, start=start, goal=goal))
-    line = line_without_corners(network, history, chart.legs_blocked)
     usual = evaluate(
-        line, ship=with_order(ship, voyage), sea=sea, chart=chart,
+        history.line, ship=with_order(ship, voyage), sea=sea, chart=chart,
         depart=voyage.earliest_departure, speed_kn=voyage.speed_kn, strict=False,
     )  # fmt: skip
     sailed = chart if best.plot_context is None else best.plot_context.chart
     broken = [note for note in lane_notes(sailed, usual) if note.startswith(_BREAKS_RULES)]
     ways = _passes(usual, chart), _passes(best.best, chart)
-    return UsualAgainstOptimal(usual, best.best, history, ways, tuple(broken))
+    return UsualAgainstOptimal(usual, best.best, history, ways, (*history.notes, *broken))
 
 
 def _passes(route: Route, chart: Chart) -> tuple[str, ...]:

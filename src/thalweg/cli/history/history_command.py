@@ -209,6 +209,8 @@ def _print_route(route: HistoryRoute) -> None:
         print(f"  {100.0 * route.eca_share:.0f} % of the length in emission control areas")
     if route.passes:
         print(f"  passes: {', '.join(route.passes)}")
+    for note in route.notes:
+        print(f"  note: {note}")
 
 
 def _compare(arguments: argparse.Namespace) -> int:

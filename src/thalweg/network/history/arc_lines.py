@@ -33,7 +33,8 @@ class ArcLines:
 
     Parameters
     ----------
-    ptr : The waypoints of arc a are ``ptr[a]:ptr[a + 1]``, its two nodes included, (A + 1,).
+    ptr : The waypoints of arc a are ``ptr[a]:ptr[a + 1]``, from where its voyage passes the first
+        node to where it passes the second, (A + 1,).
     lat, lon : Waypoints [deg].
     """
 
@@ -71,6 +72,22 @@ class ArcLines:
         """
         part = slice(int(self.ptr[arc]), int(self.ptr[arc + 1]))
         return self.lat[part], self.lon[part]
+
+    def take(self, index: IntArray) -> ArcLines:
+        """Return some of the lines.
+
+        Parameters
+        ----------
+        index : Which of them, (k,); a line may be taken more than once.
+
+        Returns
+        -------
+        ArcLines : In the order of the index.
+        """
+        count = np.diff(self.ptr)[index]
+        ptr = np.concatenate([[0], np.cumsum(count)]).astype(np.int64)
+        at = np.arange(ptr[-1]) + np.repeat(self.ptr[index] - ptr[:-1], count)
+        return ArcLines(ptr, self.lat[at], self.lon[at])
 
     @cached_property
     def legs(self) -> IntArray:
@@ -239,7 +256,7 @@ def lines_off_land(
     bad = np.zeros(count, bool)
     bad[blocked.arc_of_leg[blocked.blocked(chart)]] = True
     for arc in np.flatnonzero(bad).tolist():
-        lines[arc], repaired[arc] = _repaired(chart, lines[arc], ways)
+        lines[arc], repaired[arc] = repaired_line(chart, lines[arc], ways)
     arcs = np.array([arc for arc, line in enumerate(lines) if line], np.int64)
     return LinesOffLand(
         ArcLines.of_lists([lines[arc] for arc in arcs]), arcs, source[arcs], repaired[arcs]
@@ -276,7 +293,9 @@ def _drawn(
     return ArcLines(ptr, lat, lon)
 
 
-def _repaired(chart: Chart, line: list[Position], ways: GlobeWays) -> tuple[list[Position], float]:
+def repaired_line(
+    chart: Chart, line: list[Position], ways: GlobeWays
+) -> tuple[list[Position], float]:
     """Return a line whose blocked legs are ways over the globe, and their share; [] for none."""
     lat, lon = np.array(line).T
     wet = np.asarray(chart.is_navigable(lat, lon))

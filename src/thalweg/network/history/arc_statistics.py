@@ -75,7 +75,8 @@ def arcs_of_occurrences(
     """Return the arcs of stretches of tracks.
 
     Stretches between the same two nodes, in the same direction, are divided into ways: tracks
-    within twice the radius, or 5 % of the length, of the medoid of a way belong to it. Ways of
+    within a quarter of the length of the middle of a way belong to it (at least half the radius,
+    at most twice the radius or 5 % of the length). Ways of
     fewer than ``least`` voyages are outliers where there is another between the two nodes.
 
     Parameters
@@ -99,7 +100,7 @@ def arcs_of_occurrences(
     ptr = np.searchsorted(arc[inside], np.arange(len(tail) + 1))
     candidates = _candidates(tracks, occurrences.take(inside), shape[inside], ptr)
     candidates = np.where(candidates >= 0, inside[candidates], -1)
-    evidence = _evidence(tracks, occurrences, inside, ptr, tail)
+    evidence = _evidence(tracks, occurrences, inside, ptr)
     tube = _tubes(shape, inside, ptr, candidates[:, 0])
     return FoundArcs(tail, head, evidence, candidates, tube, int(len(occurrences) - kept))
 
@@ -120,7 +121,7 @@ def _ways(
             pair[left], return_index=True, return_inverse=True, return_counts=True
         )
         centre = shape[left[first + count // 2]]
-        reach = np.maximum(2.0 * radius, _SPREAD * length[left[first + count // 2]])
+        reach = _reach(length[left[first + count // 2]], radius)
         for _ in range(_ROUNDS):
             near = _largest_distance(shape[left], centre, group) <= reach[group]
             size = np.maximum(np.bincount(group, near, minlength=len(first)), 1.0)
@@ -132,6 +133,14 @@ def _ways(
         way[left[near]] = number
         left = left[~near]
     return way
+
+
+def _reach(length: FloatArray, radius: float) -> FloatArray:
+    """Return how far tracks of one way may be from its middle [m].
+
+    A quarter of the length, from half the radius to twice the radius; or 5 % of a great length.
+    """
+    return np.maximum(_SPREAD * length, np.clip(0.25 * length, 0.5 * radius, 2.0 * radius))
 
 
 def _largest_distance(shape: Float32Array, centre: FloatArray, group: IntArray) -> FloatArray:
@@ -196,19 +205,16 @@ def _evidence(
     occurrences: ArcOccurrences,
     inside: IntArray,
     ptr: IntArray,
-    tail: IntArray,
 ) -> ArcEvidence:
     """Return what was seen on arcs; ``inside[ptr[a]:ptr[a + 1]]`` are the stretches of arc a."""
     one = occurrences.take(inside)
     time = tracks.values_at(tracks.under_way, one.end)
     time -= tracks.values_at(tracks.under_way, one.begin)
-    month = _months(tracks, occurrences)
+    month = _months(tracks, occurrences.begin, occurrences.end)
     count = np.diff(ptr)
     arc = np.repeat(np.arange(len(count)), count)
     seen = np.zeros((len(count), MONTHS), np.int64)
     np.add.at(seen, (arc, month[inside]), 1)
-    leaving = np.zeros((int(occurrences.tail.max(initial=0)) + 1, MONTHS), np.int64)
-    np.add.at(leaving, (occurrences.tail, month), 1)
     draught, size = (column[one.voyage] for column in (tracks.ships.draught, tracks.ships.length))
     ends = (10.0, 90.0, 100.0)
     return ArcEvidence(
@@ -216,16 +222,22 @@ def _evidence(
         group_percentiles(one.end - one.begin, ptr, PERCENTILES),
         group_percentiles(time, ptr, PERCENTILES),
         seen,
-        open_months(seen, leaving[tail]),
+        open_months(seen, _voyages_by_month(tracks)),
         group_percentiles(draught, ptr, ends),
         group_percentiles(size, ptr, ends),
         np.bincount(arc[np.isfinite(draught)], minlength=len(count)),
     )
 
 
-def _months(tracks: VoyageTracks, occurrences: ArcOccurrences) -> IntArray:
+def _voyages_by_month(tracks: VoyageTracks) -> IntArray:
+    """Return how many voyages there are in each month (12,), by their middles."""
+    begin, end = tracks.along[tracks.ptr[:-1]], tracks.along[tracks.ptr[1:] - 1]
+    return np.bincount(_months(tracks, begin, end), minlength=MONTHS)
+
+
+def _months(tracks: VoyageTracks, begin: FloatArray, end: FloatArray) -> IntArray:
     """Return the month of the middle of every stretch, 0 for January."""
-    time = tracks.values_at(tracks.time, 0.5 * (occurrences.begin + occurrences.end))
+    time = tracks.values_at(tracks.time, 0.5 * (begin + end))
     moments = time.astype("datetime64[s]").astype("datetime64[M]")
     return np.asarray(moments.astype(np.int64) % MONTHS)
 

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from thalweg.core import geodesy
+from thalweg.core.geodesy import distance
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels.network.static_paths import static_astar
 from thalweg.network.history.arc_statistics import SHARES
 from thalweg.network.history.history_network import HistoryArcs
+from thalweg.network.history.route_lines import attached_line
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
 
 LANES: Final = 5  #: nodes across the corridor
 _TUBE_SPACING: Final = 5.0 * NAUTICAL_MILE
+_NEAR_ENDS: Final = 1.5  # radii of a junction that the leg to its middle replaces
+_AT_NODE: Final = 0.1 * NAUTICAL_MILE  # lines that end so near to a node lead to it
 _LEAST_HALF_WIDTH: Final = 2.0 * NAUTICAL_MILE
 
 
@@ -36,6 +40,8 @@ class CorridorWays:
     ends : (int, int)
         Nodes of start and goal.
     weight : What arcs count in the choice of the way [m], (A,).
+    junctions : The first nodes, at which lines end where their voyages passed.
+    radius : Radius of a junction [m].
     """
 
     places: tuple[FloatArray, FloatArray]
@@ -43,6 +49,8 @@ class CorridorWays:
     kept: IntArray
     ends: tuple[int, int]
     weight: FloatArray = field(repr=False)
+    junctions: int = 0
+    radius: float = 0.0
 
     def shortest(self) -> float:
         """Return the least weight from start to goal [m]."""
@@ -51,10 +59,15 @@ class CorridorWays:
 
     def line(self, arc: int) -> tuple[FloatArray, FloatArray]:
         """Return the waypoints of an arc [deg], from node to node."""
-        lat, lon = (values.copy() for values in self.arcs.lines.of(arc))
-        for at, node in ((0, self.arcs.tail[arc]), (-1, self.arcs.head[arc])):
-            lat[at], lon[at] = self.places[0][node], self.places[1][node]
-        return lat, lon
+        lat, lon = self.arcs.lines.of(arc)
+        most = min(_NEAR_ENDS * self.radius, 0.25 * float(self.arcs.lines.lengths[arc]))
+        ends, margins = [], np.zeros(2)
+        for k, node in enumerate((int(self.arcs.tail[arc]), int(self.arcs.head[arc]))):
+            place = float(self.places[0][node]), float(self.places[1][node])
+            ends.append(place)
+            if node < self.junctions and distance(lat[-k], lon[-k], *place) > _AT_NODE:
+                margins[k] = most
+        return attached_line((lat, lon), (ends[0], ends[1]), margins)
 
     def lanes(self, arc: int, spacing: float) -> tuple[FloatArray, FloatArray]:
         """Return positions across an arc at its stations.

@@ -23,6 +23,7 @@ from thalweg.network.history.history_network import (
 from thalweg.network.history.junction_visits import arc_occurrences
 from thalweg.network.history.junctions import CorridorLine, Junctions, find_junctions
 from thalweg.network.history.missing_arcs import connected_arcs
+from thalweg.network.history.sailed_lines import LineRules, lines_as_sailed
 from thalweg.network.history.stretch_ends import EndFinder
 from thalweg.network.history.turning_points import turning_points
 from thalweg.network.history.voyage_tracks import HistoryPort, VoyageTracks
@@ -136,12 +137,18 @@ def build_history(
         radius=rules.radius, ways=ways,
     )  # fmt: skip
     approach = finder.ends(occurrences.take(tested.source)).approach
+    canals = {canal.name for canal in chart.canals}
+    fixed = np.array([*(name in canals for name in junctions.names), *([True] * len(ports))])
+    tested = lines_as_sailed(
+        chart, tracks, occurrences, tested, finder=finder, fixed=fixed,
+        rules=LineRules(rules.radius, rules.tolerance), ways=ways,
+    )  # fmt: skip
     arcs = _sailed_arcs(chart, sailed, tested, approach)
     report("connecting the network")
     nodes = HistoryNodes(*places, (*junctions.names, *([""] * len(ports))), tuple(ports))
     used = range(nodes.first_port, len(nodes))
     arcs, alone = connected_arcs(
-        chart, arcs, places, used, ways, node_approach=finder.node_approach
+        chart, arcs, places, used, ways, node_approach=finder.node_approach, radius=rules.radius
     )
     notes = [f"{ports[k - nodes.first_port].name} cannot be reached by sea."
              for k in alone if k >= nodes.first_port]  # fmt: skip

@@ -29,7 +29,8 @@ from thalweg.network.history.corridor_ways import (
     arcs_between,
     strip_polygons,
 )
-from thalweg.network.history.history_network import HistoryNetwork, no_arcs_text
+from thalweg.network.history.history_network import HistoryNetwork
+from thalweg.network.history.history_route import no_arcs_text
 from thalweg.network.history.missing_arcs import globe_arcs, joined_arcs
 from thalweg.network.history.voyage_tracks import sphere_vectors
 from thalweg.network.network import Graph, Network, NetworkMeta, Stations
@@ -136,7 +137,10 @@ class HistoryCorridor:
                 no_arcs_text(self.month, self.draught),
                 "Plan on another network, or build the history network with more tracks.",
             )
-        return CorridorWays((lat, lon), arcs, kept, (ends[0], ends[1]), weight)
+        return CorridorWays(
+            (lat, lon), arcs, kept, (ends[0], ends[1]), weight, network.nodes.first_port,
+            network.radius,
+        )  # fmt: skip
 
     def network_between(
         self, chart: Chart, start: Position, goal: Position, *, spacing: float | None = None

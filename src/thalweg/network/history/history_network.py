@@ -9,26 +9,30 @@ from typing import Any, Final
 
 import numpy as np
 
+from thalweg.chart.approaches import line_length
 from thalweg.chart.canals import CANALS
 from thalweg.chart.port_names import normalised_port_name
 from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError, NoRouteError, unknown_name_error
-from thalweg.core.geodesy import Position
-from thalweg.core.types import FloatArray, IntArray
-from thalweg.kernels.network.static_paths import static_astar
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.network.history.arc_lines import ArcLines
+from thalweg.network.history.arc_search import ArcGraph
 from thalweg.network.history.arc_statistics import ArcEvidence
-from thalweg.network.history.history_route import HistoryRoute
-from thalweg.network.history.season_masks import LEAST_SAMPLES
+from thalweg.network.history.arc_weights import (
+    GLOBE_FACTOR,
+    REVERSED_FACTOR,
+    doubt_factors,
+    longer_if_repaired,
+)
+from thalweg.network.history.history_route import HistoryRoute, no_arcs_text, what_to_leave_out
+from thalweg.network.history.route_lines import following_arcs, joined_line
+from thalweg.network.history.season_masks import LEAST_SAMPLES, month_notes
 from thalweg.network.history.voyage_tracks import HistoryPort
 
 #: How an arc is known: sailed in this direction, sailed in the other direction only, or a shortest
 #: way over the globe where no track is known.
 ARC_KINDS: Final = ("sailed", "reversed", "globe")
 SAILED, REVERSED, GLOBE = range(3)
-#: Arcs of fewer voyages, and arcs of other kinds, count this many times their length in the
-#: choice of the way.
-_DOUBT: Final = {"few": 1.25, "reversed": 1.5, "globe": 2.0}
 _DRAUGHT_MARGIN: Final = 1.05  # a ship may be deeper than the deepest that was seen by this factor
 
 
@@ -94,13 +98,8 @@ class HistoryArcs:
 
     @cached_property
     def length(self) -> FloatArray:
-        """Usual length (A,) [m]: the median of the voyages; of the line where it was not sailed.
-
-        Of lines that were repaired the longer of both, because tracks with gaps cut over land.
-        """
-        median, line = self.evidence.length[:, 1], self.lines.lengths
-        repaired = np.where(self.repaired > 0.0, np.fmax(median, line), median)
-        return np.where(np.isfinite(median), repaired, line)
+        """Length of the line of each arc (A,) [m], which is that of a voyage in the middle."""
+        return self.lines.lengths
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,14 +185,17 @@ class HistoryNetwork:
         """Return the usual route between two ports.
 
         The way of least length over the arcs; arcs of few voyages count 1.25 times their length,
-        arcs sailed in the other direction only 1.5 times, and ways over the globe twice.
+        arcs sailed in the other direction only 1.5 times, and ways over the globe twice. Arcs of
+        the last two kinds are used only where the way over sailed arcs is more than one and a half
+        times as long, or none leads there.
 
         Parameters
         ----------
         start, goal : str
             Ports of the network.
         month : int, optional
-            1 to 12: arcs that are closed in this month are not used. By default all are.
+            1 to 12: arcs that are closed in this month are not used; none are in a month without
+            any voyage in the tracks. By default all are used.
         draught : float, optional
             [m]. Arcs on which at least ten draughts are known and all are smaller are not used.
 
@@ -220,7 +222,7 @@ class HistoryNetwork:
             raise NoRouteError(
                 f"The history network has no route from {start} to {goal}.",
                 no_arcs_text(month, draught),
-                f"{_what_to_leave_out(month, draught)}uild the network with more tracks.",
+                f"{what_to_leave_out(month, draught)}uild the network with more tracks.",
             )
         return self.route_along(ends, arcs, month=month)
 
@@ -239,21 +241,23 @@ class HistoryNetwork:
         float64 ndarray (A,)
             [m].
         """
-        weight = self._weights.copy()
         evidence = self.arcs.evidence
-        if month is not None:
-            if not 1 <= month <= 12:
-                raise InputError(
-                    f"The month is {month!r}.", "Months are 1 to 12.", "Give one of them."
-                )
-            weight[~evidence.open_in[:, month - 1]] = np.inf
+        if month is not None and not 1 <= month <= 12:
+            raise InputError(f"The month is {month!r}.", "Months are 1 to 12.", "Give one of them.")
+        seen = month if month is not None and self.months_seen[month - 1] else None
+        weight = self._weights_in(seen).copy()
+        if seen is not None:
+            weight[~evidence.open_in[:, seen - 1]] = np.inf
         if draught is not None:
             known = evidence.draughts_known >= LEAST_SAMPLES
             weight[known & (_DRAUGHT_MARGIN * evidence.draught[:, 2] < draught)] = np.inf
         return weight
 
     def path(self, start: int, goal: int, weight: FloatArray) -> list[int]:
-        """Return the arcs of the shortest way between two nodes; empty if there is none.
+        """Return the arcs of the usual way between two nodes; empty if there is none.
+
+        It is the one of least weight, and has only arcs that were sailed in their direction unless
+        that is more than one and a half times as long.
 
         Parameters
         ----------
@@ -267,22 +271,9 @@ class HistoryNetwork:
         list of int
             Arcs in order.
         """
-        order, indptr = self._by_tail
-        count = len(self.nodes)
-        known, parent = np.empty(count), np.empty(count, np.int64)
-        by_tail = weight[order]
-        static_astar(indptr, self._heads, by_tail, np.zeros(count), start, goal, known, parent)
-        arcs: list[int] = []
-        node = goal
-        while node != start:
-            before = int(parent[node])
-            if before < 0 or not np.isfinite(known[node]):
-                return []
-            leaving = slice(int(indptr[before]), int(indptr[before + 1]))
-            cost = np.where(self._heads[leaving] == node, by_tail[leaving], np.inf)
-            arcs.append(int(order[leaving][np.argmin(cost)]))
-            node = before
-        return arcs[::-1]
+        return self._graph.path_by_sailed_arcs(
+            (start, goal), weight, self.arcs.kind == SAILED, self.lengths, 2.0 * self.radius
+        )
 
     def route_along(
         self, ends: tuple[int, int], arcs: Sequence[int], *, month: int | None = None
@@ -304,31 +295,29 @@ class HistoryNetwork:
         """
         index = np.array(arcs)
         of, evidence = self.arcs, self.arcs.evidence
-        length = of.length[index]
+        length = self.lengths[index]
         sailed = of.kind[index] == SAILED
         total = float(length.sum())
         approaches = float(of.approach[arcs[0], 0] + of.approach[arcs[-1], 1])
         unknown = np.where(of.kind[index] == GLOBE, 1.0, of.repaired[index])
         start, goal = (self.ports[node - self.nodes.first_port] for node in ends)
-        line: list[Position] = []
-        for arc in arcs:
-            lat, lon = of.lines.of(arc)
-            places = list(zip(lat.tolist(), lon.tolist()))
-            line += places if not line else places[1:]
+        at_junction = of.head[index[:-1]] < self.nodes.first_port
+        line = tuple(joined_line(of.lines, index, at_junction, self.radius))
         names = self._names_passed([int(of.tail[index[0]]), *of.head[index].tolist()])
         p10, p50, p90 = np.where(sailed[:, None], evidence.duration[index], np.nan).sum(axis=0)
         return HistoryRoute(
             start,
             goal,
             tuple(arcs),
-            total + approaches,
+            line_length(line) + approaches + float((length - of.length[index]).sum()),
             (float(p10), float(p50), float(p90)),
             int(np.where(sailed, evidence.count[index], 0).min()),
             float((unknown * length).sum() / total),
             float((of.eca_share[index] * length).sum() / total),
-            tuple(line),
+            line,
             names,
             None if month is None else int(evidence.months[index, month - 1].min()),
+            month_notes(self.months_seen, month),
         )
 
     def _names_passed(self, nodes: Sequence[int]) -> tuple[str, ...]:
@@ -349,24 +338,52 @@ class HistoryNetwork:
         )
 
     @cached_property
-    def _weights(self) -> FloatArray:
+    def lengths(self) -> FloatArray:
+        """Length of each arc (A,) [m]: of its line, or of the voyages where it meets a canal.
+
+        The line leads straight from one end of a canal to the other, and ships may turn into it
+        before its end. Of lines that were repaired the longer of both counts.
+        """
+        arcs, canals = self.arcs, {canal.name for canal in CANALS}
+        at_canal = np.array([name in canals for name in self.nodes.names], bool)
+        meets = at_canal[arcs.tail] | at_canal[arcs.head]
+        return np.where(meets, longer_if_repaired(arcs.evidence, arcs.length, arcs.repaired),
+                        arcs.length)  # fmt: skip
+
+    def _weights_in(self, month: int | None) -> FloatArray:
+        """Return what arcs count by length, kind, and voyages in a month (None: in all), (A,)."""
+        if month not in self._known_weights:
+            arcs, evidence = self.arcs, self.arcs.evidence
+            factor = doubt_factors(
+                (arcs.tail, arcs.head),
+                evidence.count if month is None else evidence.months[:, month - 1],
+                self.lengths,
+                following_arcs(arcs.tail, arcs.head, self._at_port),
+                few=evidence.count < self.least,
+                slack=2.0 * self.radius,
+            )
+            factor[arcs.kind == REVERSED] = REVERSED_FACTOR
+            factor[arcs.kind == GLOBE] = GLOBE_FACTOR
+            self._known_weights[month] = self.lengths * factor + arcs.approach.sum(axis=1)
+        return self._known_weights[month]
+
+    @cached_property
+    def _known_weights(self) -> dict[int | None, FloatArray]:
+        return {}
+
+    @cached_property
+    def _at_port(self) -> BoolArray:
+        return np.arange(len(self.nodes)) >= self.nodes.first_port
+
+    @cached_property
+    def months_seen(self) -> BoolArray:
+        """Whether any voyage was seen in each month, on any arc, (12,)."""
+        return np.asarray(self.arcs.evidence.months.sum(axis=0) > 0)
+
+    @cached_property
+    def _graph(self) -> ArcGraph:
         arcs = self.arcs
-        few = arcs.evidence.count < self.least
-        factor = np.where(few, _DOUBT["few"], 1.0)
-        factor[arcs.kind == REVERSED] = _DOUBT["reversed"]
-        factor[arcs.kind == GLOBE] = _DOUBT["globe"]
-        return arcs.length * factor + arcs.approach.sum(axis=1)
-
-    @cached_property
-    def _by_tail(self) -> tuple[IntArray, IntArray]:
-        """Return the arcs in order of their tails, and where those of each node begin."""
-        order = np.argsort(self.arcs.tail, kind="stable")
-        indptr = np.searchsorted(self.arcs.tail[order], np.arange(len(self.nodes) + 1))
-        return order, indptr.astype(np.int64)
-
-    @cached_property
-    def _heads(self) -> np.ndarray:
-        return self.arcs.head[self._by_tail[0]].astype(np.int32)
+        return ArcGraph.of_arcs(arcs.tail, arcs.head, arcs.lines, self._at_port)
 
     @cached_property
     def _by_name(self) -> dict[str, list[int]]:
@@ -381,15 +398,3 @@ class HistoryNetwork:
             for name in names - {""}:
                 found.setdefault(name, []).append(node)
         return found
-
-
-def no_arcs_text(month: int | None, draught: float | None) -> str:
-    """Return that no open arcs join two places, in the month and for the draught [m] in use."""
-    limits = [] if month is None else [f"open in month {month}"]
-    limits += [] if draught is None else [f"deep enough for a draught of {draught:g} m"]
-    return f"No arcs join them that are {' and '.join(limits)}." if limits else "No arcs join them."
-
-
-def _what_to_leave_out(month: int | None, draught: float | None) -> str:
-    given = [name for name, one in (("month", month), ("draught", draught)) if one is not None]
-    return f"Leave out the {' or the '.join(given)}, or b" if given else "B"

@@ -26,7 +26,7 @@ class HistoryRoute:
     arcs : tuple of int
         Arcs of the network, in order.
     length : float
-        Usual length with the approaches of both ports [m].
+        Length of the line with the approaches of both ports [m].
     duration : (float, float, float)
         Sums of p10, p50 and p90 of the time under way on the arcs [s], without approaches; NaN
         where an arc was not sailed.
@@ -43,6 +43,8 @@ class HistoryRoute:
         Corridors and canals, in order.
     voyages_in_month : int, optional
         Least number of voyages of its arcs in the month of the request; None without a month.
+    notes : tuple of str
+        That no voyages were seen in the month of the request.
     """
 
     start: HistoryPort
@@ -56,6 +58,7 @@ class HistoryRoute:
     line: tuple[Position, ...]
     passes: tuple[str, ...]
     voyages_in_month: int | None = None
+    notes: tuple[str, ...] = ()
 
     @property
     def nm(self) -> float:
@@ -102,5 +105,19 @@ class HistoryRoute:
             "share_without_tracks": self.globe_share,
             "eca_share": None if np.isnan(self.eca_share) else self.eca_share,
             "passes": list(self.passes),
+            "notes": list(self.notes),
             "line": [list(place) for place in self.line],
         }
+
+
+def no_arcs_text(month: int | None, draught: float | None) -> str:
+    """Return that no open arcs join two places, in the month and for the draught [m] in use."""
+    limits = [] if month is None else [f"open in month {month}"]
+    limits += [] if draught is None else [f"deep enough for a draught of {draught:g} m"]
+    return f"No arcs join them that are {' and '.join(limits)}." if limits else "No arcs join them."
+
+
+def what_to_leave_out(month: int | None, draught: float | None) -> str:
+    """Return the begin of an advice: to leave out the limits in use, or b[uild another network]."""
+    given = [name for name, one in (("month", month), ("draught", draught)) if one is not None]
+    return f"Leave out the {' or the '.join(given)}, or b" if given else "B"

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
 OFF_LINE: Final = 2.0 * NAUTICAL_MILE  #: tracks so near to an approach are on it
-_SAMPLES_PER_RADIUS: Final = 2.0
+_SAMPLES_PER_RADIUS: Final = 5.0
 #: A voyage leaves or reaches the sea end of a port within one and a half times the length of the
 #: approach and this distance [m].
 _HARBOUR: Final = 20.0 * NAUTICAL_MILE
@@ -219,7 +219,30 @@ def _junction_visits(
     run = np.cumsum(~(follows & same)) - 1
     order = near[np.lexsort((away[near], run))]
     best = order[np.unique(run, return_index=True)[1]]
-    return _Visits(voyage[best], along[best], node[best].astype(np.int64), away[best])
+    places = sphere_vectors(junctions.lat, junctions.lon)[node[best]]
+    passed = _nearest_around(along, voyage, vectors, best, places)
+    return _Visits(voyage[best], passed, node[best].astype(np.int64), away[best])
+
+
+def _nearest_around(
+    along: FloatArray, voyage: IntArray, vectors: FloatArray, best: IntArray, places: FloatArray
+) -> FloatArray:
+    """Return where tracks are nearest to places (m, 3), from their nearest samples.
+
+    The square of the distance from a place is a parabola along a straight track. Its least is at
+    most half the spacing from the nearest sample; so neighbouring visits keep their order.
+    """
+    sides = []
+    for step in (-1, 1):
+        beside = np.clip(best + step, 0, len(along) - 1)
+        sides.append(np.where(voyage[beside] == voyage[best], beside, best))
+    before, after = sides
+    low, middle, high = (np.sum((vectors[k] - places) ** 2, axis=1) for k in (before, best, after))
+    spacing = 0.5 * (along[after] - along[before])
+    bend = low - 2.0 * middle + high
+    inner = (before != best) & (after != best) & (bend > 0.0)
+    shift = np.where(inner, 0.5 * (low - high) / np.where(bend > 0.0, bend, 1.0), 0.0)
+    return np.asarray(along[best] + np.clip(shift, -0.5, 0.5) * spacing)
 
 
 def _between_visits(visits: _Visits, order: IntArray) -> ArcOccurrences:

@@ -39,12 +39,14 @@ def connected_arcs(
     ways: GlobeWays,
     *,
     node_approach: FloatArray,
+    radius: float,
 ) -> tuple[HistoryArcs, list[int]]:
     """Return arcs over which every node in use reaches every other.
 
     First arcs that join parts in one direction only are added in the other direction, and those
-    of ten voyages or more from whose end the way back is more than 1.5 times as long; their
-    evidence is that of the arc, their kind "reversed". Then parts that no track joins are joined to
+    of ten voyages or more from whose end the way back is more than 1.5 times as long, and longer
+    by more than twice the radius; their evidence is that of the arc, their kind "reversed". Then
+    parts that no track joins are joined to
     the nearest other part by the shortest way by sea, both ways, of the kind "globe".
 
     Parameters
@@ -53,6 +55,7 @@ def connected_arcs(
     places : Positions of the nodes [deg], (lat, lon).
     used : Nodes that must be connected, such as ports, beside those of the arcs.
     node_approach : Length of the approach of every node [m]; 0 at junctions.
+    radius : Radius of a junction [m]: nearer than twice this no place is told from another.
 
     Returns
     -------
@@ -61,7 +64,9 @@ def connected_arcs(
     """
     count = len(places[0])
     part = strongly_connected_parts(count, arcs.tail, arcs.head)
-    far_round = (arcs.evidence.count >= LEAST_SAMPLES) & _returns_far_round(count, arcs)
+    far_round = (arcs.evidence.count >= LEAST_SAMPLES) & _returns_far_round(
+        count, arcs, 2.0 * radius
+    )
     lacking = (part[arcs.tail] != part[arcs.head]) | far_round
     one_way = np.flatnonzero(lacking)
     arcs = joined_arcs([arcs, _reversed(arcs, one_way)])
@@ -72,8 +77,11 @@ def connected_arcs(
     return joined_arcs([arcs, globe_arcs(chart, both, node_approach)]), alone
 
 
-def _returns_far_round(count: int, arcs: HistoryArcs) -> BoolArray:
-    """Return whether the way back along the arcs is more than `_FAR_ROUND` times the arc, (A,)."""
+def _returns_far_round(count: int, arcs: HistoryArcs, least: float) -> BoolArray:
+    """Return whether the way back along the arcs is much longer than the arc, (A,).
+
+    That is more than `_FAR_ROUND` times, and by more than a length [m].
+    """
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import dijkstra
 
@@ -88,7 +96,7 @@ def _returns_far_round(count: int, arcs: HistoryArcs) -> BoolArray:
         if not len(heads):
             continue
         own = np.isin(arcs.head, heads)
-        most = _FAR_ROUND * length[own]
+        most = np.maximum(_FAR_ROUND * length[own], length[own] + least)
         back = dijkstra(graph, indices=heads, limit=float(most.max()))
         far[own] = back[np.searchsorted(heads, arcs.head[own]), arcs.tail[own]] > most
     return far

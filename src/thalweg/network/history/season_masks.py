@@ -9,23 +9,27 @@ import numpy as np
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 
 MONTHS: Final = 12
+_NAMES: Final = (
+    "January", "February", "March", "April", "May", "June", "July", "August", "September",
+    "October", "November", "December",
+)  # fmt: skip
 LEAST_SAMPLES: Final = 10  #: a season of an arc with fewer voyages in all is not believed
 _FEW: Final = 0.1  # of the voyages expected in a month with even use: so few may be stray
 _CHANCE: Final = 0.01  # of seeing so few ships in these months though the arc is open
 
 
-def open_months(seen: IntArray, leaving: IntArray) -> BoolArray:
+def open_months(seen: IntArray, voyages: IntArray) -> BoolArray:
     """Return in which months arcs are open.
 
     With even use an arc with n voyages has ``e = n w`` of them in months with the share w of all
-    ships that leave its first node. It is closed in consecutive months with at most a tenth of e in
-    each, if n is at least `LEAST_SAMPLES` and the chance of so few is below 1 % (Poisson with the
-    mean e of all these months together; so e is at least 4.6).
+    voyages of the tracks: so months without any voyage close no arc. It is closed in consecutive
+    months with at most a tenth of e in each, if n is at least `LEAST_SAMPLES` and the chance of so
+    few is below 1 % (Poisson with the mean e of all these months together; so e is at least 4.6).
 
     Parameters
     ----------
     seen : Voyages on each arc by month, (A, 12).
-    leaving : Voyages that left its first node by month, on any arc, (A, 12).
+    voyages : All voyages of the tracks by month, (12,) or (A, 12).
 
     Returns
     -------
@@ -34,10 +38,28 @@ def open_months(seen: IntArray, leaving: IntArray) -> BoolArray:
     from scipy.special import pdtr
 
     total = seen.sum(axis=1, keepdims=True)
-    expected = total * leaving / np.maximum(leaving.sum(axis=1, keepdims=True), 1)
+    expected = total * voyages / np.maximum(voyages.sum(axis=-1, keepdims=True), 1)
     few = (seen <= _FEW * expected) & (total >= LEAST_SAMPLES)
     chance = pdtr(_sums_of_runs(seen, few), np.maximum(_sums_of_runs(expected, few), 1e-9))
-    return np.asarray(~(few & (chance < _CHANCE)))
+    return np.asarray(~(few & (chance < _CHANCE)) | (np.asarray(voyages) == 0))
+
+
+def month_notes(seen: BoolArray, month: int | None) -> tuple[str, ...]:
+    """Return a note if no voyage was seen in a month.
+
+    Parameters
+    ----------
+    seen : Whether there are any voyages in each month, (12,).
+    month : 1 to 12, or None.
+    """
+    if month is None or seen[month - 1] or not seen.any():
+        return ()
+    names = [_NAMES[k] for k in np.flatnonzero(seen).tolist()]
+    known = names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+    return (
+        f"No voyages were seen in {_NAMES[month - 1]}: the tracks have voyages in {known} only. "
+        "All ways that were sailed in any month are taken as open.",
+    )
 
 
 def _sums_of_runs(value: FloatArray | IntArray, inside: BoolArray) -> FloatArray:

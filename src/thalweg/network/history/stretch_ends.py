@@ -77,8 +77,26 @@ class EndFinder:
                 int(nodes[row, side]), float(track_lat[row, side]), float(track_lon[row, side])
             )
             if found is not None:
-                lat[row, side], lon[row, side], approach[row, side] = found
+                lat[row, side], lon[row, side] = found[:2]
+                sailed = self._from_berth(stretches.take(np.array([row])), side)
+                approach[row, side] = min(found[2], sailed)
         return StretchEnds(lat, lon, approach)
+
+    def _from_berth(self, stretch: ArcOccurrences, side: int) -> float:
+        """Return the length between a berth and one end of a stretch (1,), by its track [m].
+
+        It is infinite where the voyage did not begin, or end, at the port of that end.
+        """
+        tracks, voyage = self.tracks, int(stretch.voyage[0])
+        port = int(stretch.head[0] if side else stretch.tail[0]) - (
+            len(self.places[0]) - len(self.ports)
+        )
+        if port != int((tracks.goal if side else tracks.start)[voyage]):
+            return np.inf
+        stop = int(tracks.ptr[voyage + 1]) - 1 if side else int(tracks.ptr[voyage])
+        sailed = abs(float((stretch.end if side else stretch.begin)[0] - tracks.along[stop]))
+        berth = self.ports[port].places[0]
+        return sailed + float(distance(tracks.lat[stop], tracks.lon[stop], *berth))
 
     def _left_early(self, node: int, lat: float, lon: float) -> tuple[float, float, float] | None:
         """Return the water where a track leaves an approach, and the length of it from the berth.

@@ -42,6 +42,31 @@ def turning_points(tracks: VoyageTracks, tolerance: float) -> BoolArray:
     return keep
 
 
+def stretch_turning_points(
+    tracks: VoyageTracks, begin: FloatArray, end: FloatArray, tolerance: float
+) -> BoolArray:
+    """Return the positions that are needed to keep some stretches of tracks within a tolerance.
+
+    Parameters
+    ----------
+    tracks : Tracks of voyages, n positions.
+    begin, end : Where stretches begin and end, as `VoyageTracks.along` [m], (m,).
+    tolerance : Greatest distance of a position from the simplified stretch [m].
+
+    Returns
+    -------
+    bool ndarray (n,) : The turning points of the stretches, and the positions next to their ends.
+    """
+    keep = np.zeros(len(tracks.lat), bool)
+    first = np.searchsorted(tracks.along, begin)
+    last = np.searchsorted(tracks.along, end, side="right") - 1
+    some = last >= first
+    first, last = first[some], last[some]
+    keep[first] = keep[last] = True
+    _divide(tracks.vectors, first, last, tolerance, keep)
+    return keep
+
+
 def _divide(
     vectors: FloatArray, first: IntArray, last: IntArray, tolerance: float, keep: BoolArray
 ) -> None:
