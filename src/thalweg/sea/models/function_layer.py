@@ -183,11 +183,6 @@ def constant_layer(values: Mapping[str, float], label: str) -> FormulaLayer:
     return FormulaLayer(frozenset(values), evaluate, label, time_step=0.0, facts=facts)
 
 
-def constant_values(layer: object) -> Mapping[str, float] | None:
-    """Return the values [SI] of a `constant_layer` by canonical name; None for other layers."""
-    return layer.facts.get("values") if isinstance(layer, FormulaLayer) else None
-
-
 def layer_of_functions(
     functions: Mapping[str, FieldFunction],
     *,
