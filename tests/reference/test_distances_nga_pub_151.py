@@ -92,11 +92,12 @@ def test_median_and_spread(errors):
 def test_largest_error_and_its_cause(errors):
     """Recife to Bridgetown and Vladivostok to Yokohama are quoted longer than 2 nm off land.
 
-    Shanghai to Kobe is 1.8 % longer here.
+    Shanghai to Kobe and Manila to Hong Kong keep 2 nm off I-shima and the Dangan islands here.
     """
     assert np.abs(errors).max() < 3.0
     worst = {PUBLISHED[k][:2] for k in np.flatnonzero(np.abs(errors) > 2.1)}
-    assert worst <= {("Recife", "Bridgetown"), ("Vladivostok", "Yokohama")}
+    round_islands = {("Shanghai", "Kobe"), ("Manila", "Hong Kong")}
+    assert worst <= {("Recife", "Bridgetown"), ("Vladivostok", "Yokohama")} | round_islands
 
 
 @pytest.mark.slow
