@@ -9,8 +9,8 @@ from thalweg import Chart, Sea, Ship, Voyage
 from thalweg.planning.network_selection.network_builder import build_network
 from thalweg.planning.pareto.exploration import fastest_in_known_water
 from thalweg.planning.pareto.trade_off_planner import with_trade_off
-from thalweg.planning.planner import voyage_context
 from thalweg.planning.request.network_choice import NetworkChoice
+from thalweg.planning.voyage_context import voyage_context
 
 DEPART = np.datetime64("2023-11-14T00:00", "ns")
 

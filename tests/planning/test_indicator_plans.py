@@ -21,6 +21,7 @@ from thalweg.planning.indicators.route_figures import (
     difference_in_words,
     waiting_in_words,
 )
+from thalweg.planning.pareto.limited_plan import plan_within_limits
 from thalweg.planning.pareto.weighted_sums import (
     KeyFigureRange,
     key_figure,
@@ -246,6 +247,21 @@ def test_limits_of_totals_are_kept_at_the_least_cost(ship):
         _plan(ship, objective="time", at_most={"sick_percent": 0.1})
     with pytest.raises(InputError, match="not known on this voyage"):
         _plan(ship, objective="time", at_most={"encounters": 5.0})
+
+
+@pytest.mark.slow
+def test_where_no_front_keeps_a_limit_routes_by_other_ways_do(ship):
+    """A plan was refused although alternatives of the same voyage kept the limit."""
+    free = _plan(ship, objective="time")
+    limit = 0.8 * free.best.indicators["places"]["mess"]["sick_percent"]
+    other = _plan(ship, objective="time", at_most={"sick_percent": limit}).best
+    voyage = _voyage(objective="time", at_most={"sick_percent": limit})
+    found = plan_within_limits(voyage, lambda _: free, lambda: [free.best, other])
+    assert found.best is other
+    assert found.objective_value == other.time_h > free.best.time_h
+    assert found.lower_bound <= free.best.time_h
+    with pytest.raises(NoRouteError, match="No route was found"):
+        plan_within_limits(voyage, lambda _: free, lambda: [free.best])
 
 
 @pytest.mark.slow

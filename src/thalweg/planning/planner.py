@@ -23,49 +23,36 @@ from thalweg.planning.approach_sailing import (
     plan_along_approaches,
     shared_line,
 )
-from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import PlotContext, Proof, in_objective_unit
-from thalweg.planning.planning_context import PlanningContext, ShipTables, performance_table_of
+from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.lane_report import lane_detour_notes
 from thalweg.planning.report.provenance import (
     network_summary,
     provenance,
     route_warnings,
 )
-from thalweg.planning.report.zone_report import margin_notes
-from thalweg.planning.request.chart_restrictions import (
-    add_emission_control_areas,
-    exclude_closed_canals,
-    exclude_ice_latitudes,
-)
 from thalweg.planning.request.coverage_check import (
     check_argument_types,
-    doubts_of_voyage,
-    endpoints_within_coverage,
 )
 from thalweg.planning.request.early_checks import check_request
-from thalweg.planning.request.lane_choice import add_traffic_schemes
 from thalweg.planning.request.network_choice import (
     NetworkBuilder,
     NetworkChoice,
     history_corridor,
 )
-from thalweg.planning.request.offing_choice import chosen_offing, restrict_passages
-from thalweg.planning.request.ordered_speed import ordered_setting, with_order
-from thalweg.planning.request.requirements import derive_requirements
-from thalweg.planning.request.shoal_choice import add_shoals
+from thalweg.planning.request.offing_choice import chosen_offing
+from thalweg.planning.request.ordered_speed import with_order
 from thalweg.planning.request.voyage_endpoints import (
     Endpoint,
-    resolve_places,
 )
 from thalweg.planning.request.voyage_objective import with_voyage_prices
-from thalweg.planning.seaways import Seaways
 from thalweg.planning.single.certified_bound import certified_total
 from thalweg.planning.single.stretch import plan_stretch
 from thalweg.planning.single.stretch_result import StretchResult
 from thalweg.planning.voyage import Voyage
+from thalweg.planning.voyage_context import ends_by_ways, voyage_context
 from thalweg.route import Route, with_wind_speed
 from thalweg.route import join as join_routes
 from thalweg.sea import Sea
@@ -139,11 +126,12 @@ def plan(
     ship = with_voyage_prices(ship, voyage)
     if voyage.min_ukc_m is not None:
         ship = ship.with_clearance(voyage.min_ukc_m)
-    replan: _Replan = partial(
-        plan, network=network, resolution=resolution, proof=proof, progress=progress
-    )
+    options: dict[str, Any] = {"network": network, "resolution": resolution, "progress": progress}
+    replan: _Replan = partial(plan, proof=proof, **options)
     if voyage.has_indicator_limits:
-        return _plan_within_limits(voyage, ship, sea, chart, replan)
+        from thalweg.planning.indicators.limited_voyage import plan_limited_voyage
+
+        return plan_limited_voyage(voyage, ship, sea, chart, replan, **options)
     if voyage.arrive is not None:
         return _plan_arrival(voyage, ship, sea, chart, replan)
     ship = with_order(ship, voyage)
@@ -171,22 +159,6 @@ def _plan_arrival(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, replan: _R
 
     check_request(voyage, ship, with_wind_speed(ship, sea))
     return plan_arrival(ArrivalRequest(voyage, ship, sea, chart, plan_at_speed))
-
-
-def _plan_within_limits(
-    voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, replan: _Replan
-) -> Plan:
-    """Return the plan of a voyage with limits of indicators over the whole route."""
-    from thalweg.planning.pareto.limited_plan import plan_within_limits
-
-    if sea.members:
-        raise InputError(
-            "Indicators of the whole route are limited, in an ensemble forecast.",
-            "Such limits are for one forecast.",
-            "Leave out at_most and at_least, or give one member.",
-            field="at_most",
-        )
-    return plan_within_limits(voyage, partial(replan, ship=ship, sea=sea, chart=chart))
 
 
 def _plan_members(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, replan: _Replan) -> Plan:
@@ -221,7 +193,7 @@ def _plan_in_usual_water(
     def plan_one(open_water: Chart, builder: Any) -> Plan:
         return replan(voyage, ship=ship, sea=sea, chart=open_water, network=builder)
 
-    ends = _ends_by_ways(voyage, ship, chart)[0]
+    ends = ends_by_ways(voyage, ship, chart)[0]
     request = CorridorRequest(voyage, corridor, chart, ends, plan_one)
     return plan_in_corridor(request, ship.draught)
 
@@ -272,48 +244,6 @@ def _plan_at_sea(context: PlanningContext, ends: list[Endpoint]) -> Plan:
     routes = [stretch.route for stretch in stretches]
     bound = certified_total(context, routes, window, seconds=seconds)
     return _assemble_plan(context, ends, stretches, bound)
-
-
-def voyage_context(
-    voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, choice: NetworkChoice
-) -> tuple[PlanningContext, list[Endpoint]]:
-    """Return the context of a voyage and its end points, after all checks of the request."""
-    if choice.layered is not None:
-        choice.layered.shapes(len(voyage.via) + 1)  # refuses lists of another length
-    check_request(voyage, ship, sea)
-    ends, chart, notes = _ends_by_ways(voyage, ship, chart)
-    chart, shoal_notes = add_shoals(chart, voyage, ship, sea, ends)
-    notes += shoal_notes
-    chart = add_traffic_schemes(chart, voyage, ship, ends)
-    notes += margin_notes(chart)
-    chart, more = add_emission_control_areas(exclude_ice_latitudes(chart, ends), voyage, ship)
-    needs = derive_requirements(voyage, ship=ship, sea=sea, chart=chart)
-    ends = endpoints_within_coverage(
-        ends, voyage=voyage, ship=ship, sea=sea, chart=chart, needs=needs
-    )
-    context = PlanningContext(
-        voyage=voyage,
-        ship=ship,
-        sea=sea,
-        chart=chart,
-        needs=replace(
-            needs, notes=(*notes, *more, *doubts_of_voyage(voyage, sea, ends, needs), *needs.notes)
-        ),
-        tables=ShipTables(performance_table_of(ship), ordered_setting(ship, voyage.speed_kn)),
-        choice=choice,
-    )
-    return context, ends
-
-
-def _ends_by_ways(
-    voyage: Voyage, ship: Ship, chart: Chart
-) -> tuple[list[Endpoint], Chart, list[str]]:
-    """Return the ends by the ways from their berths, the chart open to the ship, and notes."""
-    ends = resolve_places(voyage.start, voyage.via, voyage.goal, chart)
-    chart, notes = exclude_closed_canals(chart, voyage, ship, ends)
-    chart = restrict_passages(chart, voyage, ship, chosen_offing(voyage, ship))
-    seas = partial(Seaways.of_ship_chart, chart)
-    return with_chosen_ways(ends, seas, draught=float(ship.draught)), chart, notes
 
 
 def _plan_stretches(context: PlanningContext, ends: list[Endpoint]) -> list[StretchResult]:

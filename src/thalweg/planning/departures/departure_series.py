@@ -34,7 +34,6 @@ from thalweg.planning.departures.network_figures import (
 from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
 from thalweg.planning.network_selection.network_builder import build_network
 from thalweg.planning.offing_attempts import plan_off_land
-from thalweg.planning.planner import voyage_context
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.network_choice import NetworkBuilder, NetworkChoice
 from thalweg.planning.request.offing_choice import chosen_offing
@@ -43,6 +42,7 @@ from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import with_voyage_prices
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.voyage import Voyage
+from thalweg.planning.voyage_context import voyage_context
 from thalweg.route import Route, with_wind_speed
 from thalweg.sea import Sea
 from thalweg.search import ShipOnNetwork, earliest_arrival

@@ -29,7 +29,6 @@ from thalweg.planning.indicators.route_figures import (
     compared_values,
 )
 from thalweg.planning.pareto.limited_plan import IndicatorLimit
-from thalweg.planning.planner import voyage_context
 from thalweg.planning.report.filled_weather import filled_waves_note
 from thalweg.planning.report.land_report import NEAREST_LAND
 from thalweg.planning.report.note_order import notes_of_routes
@@ -43,6 +42,7 @@ from thalweg.planning.request.network_choice import (
 from thalweg.planning.request.ordered_speed import with_order
 from thalweg.planning.request.voyage_objective import priced_objective, with_voyage_prices
 from thalweg.planning.voyage import Voyage
+from thalweg.planning.voyage_context import voyage_context
 from thalweg.route import Route, RouteFileOptions, with_wind_speed, write_route_files
 from thalweg.route.formats import remove_route_files
 from thalweg.sea import Sea

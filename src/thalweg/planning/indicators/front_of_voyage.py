@@ -10,7 +10,6 @@ from thalweg.chart.coast.gshhg import usual_resolution
 from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.pareto.indicator_front import IndicatorFront, search_indicator_front
 from thalweg.planning.pareto.trade_off_planner import with_trade_off
-from thalweg.planning.planner import voyage_context
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.coverage_check import check_argument_types
 from thalweg.planning.request.network_choice import NetworkBuilder, NetworkChoice
@@ -18,6 +17,7 @@ from thalweg.planning.request.offing_choice import chosen_offing
 from thalweg.planning.request.ordered_speed import with_order
 from thalweg.planning.request.voyage_objective import with_voyage_prices
 from thalweg.planning.voyage import Voyage
+from thalweg.planning.voyage_context import voyage_context
 from thalweg.route import with_wind_speed
 from thalweg.sea import Sea
 from thalweg.ship import Ship

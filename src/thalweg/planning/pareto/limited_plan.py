@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -95,13 +95,18 @@ class IndicatorLimit:
         return f"{words} ({name})" if words else name
 
 
-def plan_within_limits(voyage: Voyage, plan_one: Callable[[Voyage], Plan]) -> Plan:
+def plan_within_limits(
+    voyage: Voyage,
+    plan_one: Callable[[Voyage], Plan],
+    other_routes: Callable[[], Sequence[Route]] = tuple,
+) -> Plan:
     """Plan a voyage whose route keeps limits of indicators.
 
     Parameters
     ----------
     voyage : With ``at_most`` or ``at_least``.
     plan_one : Plans a voyage without such limits.
+    other_routes : Routes of the voyage by other ways, called where no plan keeps the limits.
 
     Returns
     -------
@@ -117,7 +122,8 @@ def plan_within_limits(voyage: Voyage, plan_one: Callable[[Voyage], Plan]) -> Pl
     -----
     Without the limits first. If that route breaks one, the key figure that lowers the indicator is
     added to the objective with a growing weight (Lagrangian relaxation), and all routes of these
-    fronts are candidates. The bound of the plan without limits holds for every route.
+    fronts are candidates. Where none keeps the limits, routes by other ways are. The bound of the
+    plan without limits holds for every route.
     """
     limits = IndicatorLimit.of_voyage(voyage)
     free = replace(voyage, at_most={}, at_least={})
@@ -146,7 +152,11 @@ def plan_within_limits(voyage: Voyage, plan_one: Callable[[Voyage], Plan]) -> Pl
         if route.feasible and _kept(route, limits)
     ]
     if not candidates:
-        raise _no_route_within(plans, limits)
+        others = [one for one in other_routes() if one.feasible and _kept(one, limits)]
+        if not others:
+            raise _no_route_within(plans, limits)
+        plans.append(replace(found, routes=tuple(others), front=None))
+        candidates = [(objective.value(route), len(plans) - 1, k) for k, route in enumerate(others)]
     value, number, k = min(candidates)
     return _assembled(voyage, found, plans[number], (k, value), limits)
 
@@ -245,7 +255,6 @@ def _no_route_within(plans: list[Plan], limits: tuple[IndicatorLimit, ...]) -> N
         f"Of {len(routes)} routes found, the one nearest to that has {got}."
         if got
         else "No route was found.",
-        "Relax the limit, allow more time, or change the departure; "
-        "'thalweg alternatives' compares other ways.",
+        "Relax the limit, allow more time, or change the departure.",
         reasons={},
     )

@@ -140,9 +140,10 @@ class TradeOffContext:
 
     @property
     def _is_as_in_calm_water(self) -> bool:
-        """Whether the ship makes the speed in calm, deep water everywhere, and no other."""
-        on_depth = "depth" in self.context.table.axes | self.consumption.axes
-        return self.context.sea_is_calm and not on_depth and self.context.ship.speed_field is None
+        """Whether a ship with tables of weather makes the speed in calm, deep water everywhere."""
+        axes = self.context.table.axes | self.consumption.axes
+        no_field = self.context.ship.speed_field is None
+        return bool(axes) and "depth" not in axes and no_field and self.context.sea_is_calm
 
     def worth_of_canals(self, current: float = 0.0) -> dict[str, float]:
         """Return the length at sea [m] that costs as much as the dues of a canal, by name.
