@@ -184,7 +184,7 @@ class Seaways:
             for path in self._candidates(start, goal)
         ]  # fmt: skip
         clear = _ClearWater(off_land, self.shoals)
-        return min(found, key=lambda way: clear.cost_of(_line(way))) if len(found) > 1 else found[0]
+        return min(found, key=clear.cost_with_canals) if len(found) > 1 else found[0]
 
     def _candidates(self, start: Endpoint, goal: Endpoint) -> list[list[Position]]:
         """Return the way over the graph, and the one without shoals where that is shorter.
@@ -289,6 +289,13 @@ class _ClearWater:
     def cost_of(self, line: PolylineCoordinates) -> float:
         """Return the cost of a way."""
         return total_cost(line, self.cost)
+
+    def cost_with_canals(self, way: Sequence[Position]) -> float:
+        """Return the cost of a way in which canals count as long as they are."""
+        parts = [part for part in _between_canals(self.off_land, way) if len(part) > 1]
+        length, _ = path_length_and_canals(self.off_land, way)
+        at_sea = sum(path_length(_places(*part.T)) for part in parts)
+        return sum(self.cost_of((part[:, 0], part[:, 1])) for part in parts) + length - at_sea
 
     def cost(
         self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
