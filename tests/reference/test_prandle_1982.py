@@ -6,7 +6,7 @@ boundary conditions, and values worked out independently of this code.
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from thalweg.core.errors import InputError
@@ -59,6 +59,8 @@ def test_profile_solves_the_equation_of_motion(column):
     """i (f +- w) R = G + E R'': the difference between two heights loses the unknown slope G."""
     z = np.linspace(0.1, 0.9, 9) * column.depth
     for sign, alpha, part in zip((1.0, -1.0), column.rotations, (0, 1)):
+        # near the inertial frequency the profile is so even that its differences are rounding
+        assume(abs(alpha) * column.depth > 0.05)
         step = 1e-3 * min(1.0 / abs(alpha), column.depth)
         below, here, above = (tidal_profile(z + d, column)[part] for d in (-step, 0.0, step))
         curvature = (below - 2.0 * here + above) / step**2
