@@ -10,6 +10,7 @@ from thalweg.chart import Chart
 from thalweg.chart.approaches import line_length
 from thalweg.core.errors import NoRouteError
 from thalweg.network.history.history_builder import HistoryRules, build_history
+from thalweg.network.history.season_masks import open_months, voyages_of_regions
 from thalweg.network.history.voyage_tracks import HistoryPort
 from thalweg.planning.distance_table import usual_distance_table
 
@@ -119,3 +120,15 @@ def test_a_file_of_closed_months_without_tracks_is_read_the_same(network):
         replace(network, arcs=replace(network.arcs, evidence=blocked)).route(
             "West", "East", month=6
         )
+
+
+def test_the_season_of_a_region_says_nothing_of_another_one():
+    """Tracks of January here and of July elsewhere closed the arcs here in July."""
+    tail, head = np.repeat([0, 2], 40), np.repeat([1, 3], 40)
+    months = np.repeat([0, 6], 40)
+    by_node = voyages_of_regions((tail, head), np.arange(80), months)
+    assert by_node.sum(axis=1).tolist() == [40, 40, 40, 40]
+    seen = np.zeros((2, 12), int)
+    seen[0, 0] = seen[1, 6] = 40
+    assert open_months(seen, by_node[[0, 2]]).all()
+    assert not open_months(seen, by_node[[0, 2]].sum(axis=0))[0, 6]

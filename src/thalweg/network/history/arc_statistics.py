@@ -9,7 +9,7 @@ import numpy as np
 
 from thalweg.core.types import BoolArray, Float32Array, FloatArray, IntArray
 from thalweg.network.history.junction_visits import ArcOccurrences
-from thalweg.network.history.season_masks import MONTHS, open_months
+from thalweg.network.history.season_masks import MONTHS, open_months, voyages_of_regions
 from thalweg.network.history.voyage_tracks import VoyageTracks
 
 #: Where along an arc tracks are compared, as shares of its length.
@@ -100,7 +100,7 @@ def arcs_of_occurrences(
     ptr = np.searchsorted(arc[inside], np.arange(len(tail) + 1))
     candidates = _candidates(tracks, occurrences.take(inside), shape[inside], ptr)
     candidates = np.where(candidates >= 0, inside[candidates], -1)
-    evidence = _evidence(tracks, occurrences, inside, ptr)
+    evidence = _evidence(tracks, occurrences, inside, ptr, tail)
     tube = _tubes(shape, inside, ptr, candidates[:, 0])
     return FoundArcs(tail, head, evidence, candidates, tube, int(len(occurrences) - kept))
 
@@ -205,6 +205,7 @@ def _evidence(
     occurrences: ArcOccurrences,
     inside: IntArray,
     ptr: IntArray,
+    tail: IntArray,
 ) -> ArcEvidence:
     """Return what was seen on arcs; ``inside[ptr[a]:ptr[a + 1]]`` are the stretches of arc a."""
     one = occurrences.take(inside)
@@ -222,17 +223,18 @@ def _evidence(
         group_percentiles(one.end - one.begin, ptr, PERCENTILES),
         group_percentiles(time, ptr, PERCENTILES),
         seen,
-        open_months(seen, _voyages_by_month(tracks)),
+        open_months(seen, _voyages_by_month(tracks, occurrences)[tail]),
         group_percentiles(draught, ptr, ends),
         group_percentiles(size, ptr, ends),
         np.bincount(arc[np.isfinite(draught)], minlength=len(count)),
     )
 
 
-def _voyages_by_month(tracks: VoyageTracks) -> IntArray:
-    """Return how many voyages there are in each month (12,), by their middles."""
+def _voyages_by_month(tracks: VoyageTracks, occurrences: ArcOccurrences) -> IntArray:
+    """Return the voyages by month in the region of every node (N, 12), by their middles."""
     begin, end = tracks.along[tracks.ptr[:-1]], tracks.along[tracks.ptr[1:] - 1]
-    return np.bincount(_months(tracks, begin, end), minlength=MONTHS)
+    ends = occurrences.tail, occurrences.head
+    return voyages_of_regions(ends, occurrences.voyage, _months(tracks, begin, end))
 
 
 def _months(tracks: VoyageTracks, begin: FloatArray, end: FloatArray) -> IntArray:

@@ -55,7 +55,7 @@ def connected_arcs(
     places : Positions of the nodes [deg], (lat, lon).
     used : Nodes that must be connected, such as ports, beside those of the arcs.
     node_approach : Length of the approach of every node [m]; 0 at junctions.
-    radius : Radius of a junction [m]: nearer than twice this no place is told from another.
+    radius : Radius of a junction [m]: nearer than twice this places are not distinguished.
 
     Returns
     -------

@@ -22,14 +22,15 @@ def open_months(seen: IntArray, voyages: IntArray) -> BoolArray:
     """Return in which months arcs are open.
 
     With even use an arc with n voyages has ``e = n w`` of them in months with the share w of all
-    voyages of the tracks: so months without any voyage close no arc. It is closed in consecutive
-    months with at most a tenth of e in each, if n is at least `LEAST_SAMPLES` and the chance of so
-    few is below 1 % (Poisson with the mean e of all these months together; so e is at least 4.6).
+    voyages of its region: so months without any voyage there close no arc. It is closed in
+    consecutive months with at most a tenth of e in each, if n is at least `LEAST_SAMPLES` and the
+    chance of so few is below 1 % (Poisson with the mean e of all these months together; so e is at
+    least 4.6).
 
     Parameters
     ----------
     seen : Voyages on each arc by month, (A, 12).
-    voyages : All voyages of the tracks by month, (12,) or (A, 12).
+    voyages : All voyages by month, (12,), or of the region of each arc, (A, 12).
 
     Returns
     -------
@@ -42,6 +43,32 @@ def open_months(seen: IntArray, voyages: IntArray) -> BoolArray:
     few = (seen <= _FEW * expected) & (total >= LEAST_SAMPLES)
     chance = pdtr(_sums_of_runs(seen, few), np.maximum(_sums_of_runs(expected, few), 1e-9))
     return np.asarray(~(few & (chance < _CHANCE)) | (np.asarray(voyages) == 0))
+
+
+def voyages_of_regions(
+    ends: tuple[IntArray, IntArray], voyage: IntArray, month_of_voyage: IntArray
+) -> IntArray:
+    """Return how many voyages there are by month in the region of every node, (N, 12).
+
+    A region has the nodes that tracks join: nothing is known of its seasons from other regions.
+
+    Parameters
+    ----------
+    ends : Nodes of stretches of tracks, from and to, (m,) each.
+    voyage : Their voyages, (m,).
+    month_of_voyage : 0 for January, of all voyages.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    tail, head = ends
+    count = int(max(tail.max(initial=-1), head.max(initial=-1))) + 1
+    joined = coo_array((np.ones(len(tail), np.int8), (tail, head)), shape=(count, count))
+    regions, region = connected_components(joined, directed=False)
+    known, first = np.unique(voyage, return_index=True)
+    found = np.zeros((regions, MONTHS), np.int64)
+    np.add.at(found, (region[tail[first]], month_of_voyage[known]), 1)
+    return np.asarray(found[region])
 
 
 def month_notes(seen: BoolArray, month: int | None) -> tuple[str, ...]:

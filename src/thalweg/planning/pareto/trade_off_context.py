@@ -120,9 +120,7 @@ class TradeOffContext:
         current : No current is stronger [m/s].
         """
         if self._is_as_in_calm_water:
-            calm = calm_water_consumption(
-                self.context.ship, self.objective.prices.consumption, self.objective.prices.mix
-            )[self.settings]
+            calm = self._calm_rates[self.settings]
             made = np.asarray(self.context.ship.speeds, float)[self.settings]
             if np.isfinite(calm).all():
                 return (1.0 - TABLE_MARGIN) / made, (1.0 - TABLE_MARGIN) * calm
@@ -130,12 +128,16 @@ class TradeOffContext:
         speed = [self.context.ship.top_speed(int(s)) or math.inf for s in self.settings]
         return 1.0 / (np.array(speed, float) + current), rates[self.settings]
 
+    @cached_property
+    def _calm_rates(self) -> FloatArray:
+        """Consumption in a second in calm, deep water at every setting of the ship."""
+        prices = self.objective.prices
+        return calm_water_consumption(self.context.ship, prices.consumption, prices.mix)
+
     @property
     def least_rate_in_canals(self) -> float:
         """The least consumption in a second in canals, of all settings: that of calm water."""
-        prices = self.objective.prices
-        rates = calm_water_consumption(self.context.ship, prices.consumption, prices.mix)
-        known = rates[np.isfinite(rates)]
+        known = self._calm_rates[np.isfinite(self._calm_rates)]
         return (1.0 - TABLE_MARGIN) * float(known.min()) if known.size else 0.0
 
     @property
@@ -171,9 +173,7 @@ class TradeOffContext:
     def calm_water_cost_rates(self) -> FloatArray:
         """Cost of a second in calm water at each of `settings`; infinite if unknown."""
         prices = self.objective.prices
-        rates = calm_water_consumption(self.context.ship, prices.consumption, prices.mix)
-        rates = rates[self.settings]
-        cost = prices.outside * rates + prices.time
+        cost = prices.outside * self._calm_rates[self.settings] + prices.time
         return np.where(np.isfinite(cost), cost, np.inf)
 
 

@@ -8,12 +8,11 @@ from typing import Final
 import numpy as np
 
 from thalweg.core.geodesy import format_position
-from thalweg.core.units import GRAVITY
 from thalweg.route import Route
 from thalweg.route.refinement.track_geometry import course_changes
 from thalweg.sea import Sea
 from thalweg.sea.standard_names import WAVE_HEIGHT, WAVE_PERIOD
-from thalweg.ship.methods.seakeeping.wave_spectra import STEEPEST
+from thalweg.ship.methods.seakeeping.wave_spectra import STEEPEST, wave_steepness
 
 TOO_STEEP: Final = "The waves are too steep"  #: a note on such waves begins so
 _SHARP: Final = 60.0  # turns that a master asks about [deg] ...
@@ -24,16 +23,16 @@ _LEAST_HEIGHT: Final = 0.3  # [m]; lower ones move no ship
 def steep_wave_warnings(route: Route, sea: Sea) -> list[str]:
     """Return a warning where the waves on a route are steeper than any sea.
 
-    The steepness is 2 pi H_s / (g T_p^2), in deep water. Seas have up to 0.07.
+    Seas have a steepness of up to 0.07 (`wave_steepness`).
     """
     if not {WAVE_HEIGHT, WAVE_PERIOD} <= sea.variables or not math.isfinite(route.arrive):
         return []
     where = (np.asarray(route.samples[name], float) for name in ("time", "lat", "lon"))
     waves = sea.sample([WAVE_HEIGHT, WAVE_PERIOD], *where)
     height, period = waves[WAVE_HEIGHT], waves[WAVE_PERIOD]
-    length = GRAVITY * period**2 / (2.0 * math.pi)
-    steepness = np.divide(height, length, out=np.zeros(len(height)), where=length > 0.0)
-    steep = (height >= _LEAST_HEIGHT) & (steepness > STEEPEST)
+    with np.errstate(divide="ignore", invalid="ignore"):  # no period, and no waves: not steep
+        steepness = wave_steepness(height, period)
+    steep = (height >= _LEAST_HEIGHT) & np.isfinite(steepness) & (steepness > STEEPEST)
     if not steep.any():
         return []
     k = int(np.argmax(np.where(steep, steepness, 0.0)))

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from thalweg.core.types import FloatArray
-from thalweg.core.units import GRAVITY
 from thalweg.kernels import codes
 from thalweg.ship.comfort.onboard_motions import OnboardMotions, required_motions
-from thalweg.ship.methods.seakeeping.wave_spectra import STEEPEST
+from thalweg.ship.methods.seakeeping.wave_spectra import STEEPEST, wave_steepness
 from thalweg.ship.tables.performance_table import PerformanceTable
 from thalweg.ship.tables.table_parts import TablePart
 from thalweg.ship.tables.tabulate import table_error
@@ -84,7 +83,7 @@ def sampled_conditions(count: int, seed: int) -> dict[str, FloatArray]:
     draw = np.random.default_rng(seed)
     height = draw.uniform(*_SAMPLED_HEIGHTS, count)
     angle, period = draw.uniform(0.0, math.pi, count), draw.uniform(*_SAMPLED_PERIODS, count)
-    possible = height <= STEEPEST * GRAVITY * period**2 / (2.0 * math.pi)
+    possible = wave_steepness(height, period) <= STEEPEST
     found = {"wave_height": height, "wave_angle": angle, "wave_period": period}
     return {name: values[possible] for name, values in found.items()}
 

@@ -18,6 +18,17 @@ POINTS_PER_PANEL: Final = 8
 STEEPEST: Final = 0.1
 
 
+def wave_steepness(height: ArrayLike, period: ArrayLike) -> FloatArray:
+    """Return the steepness 2 pi H_s / (g T_p^2) of waves in deep water.
+
+    Parameters
+    ----------
+    height : Significant height [m].
+    period : Peak period, above 0 [s].
+    """
+    return as_float_array(height) * 2.0 * np.pi / (GRAVITY * as_float_array(period) ** 2)
+
+
 def _panel_rule() -> tuple[FloatArray, FloatArray]:
     nodes, weights = np.polynomial.legendre.leggauss(POINTS_PER_PANEL)
     low, high = np.array(PANEL_EDGES[:-1]), np.array(PANEL_EDGES[1:])
