@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from thalweg.chart import Chart
-from thalweg.chart.offing import OffingDisc
+from thalweg.chart.offing import OffingDisc, chart_with_offing, disc_at
 from thalweg.chart.passages import PASSAGES, Passage, find_passages
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import densify, direct, distance
@@ -132,6 +132,16 @@ def test_a_closed_passage_is_not_crossed_at_any_offing(world):
         closed = free.without_passages("Gibraltar")
         assert NO_GO in closed.leg_status(*legs)
     assert float(distance(*west, *east)) > 0.0
+
+
+def test_a_closed_narrow_passage_is_not_crossed_where_a_voyage_ends_beside_it(world):
+    """A disc round the end lets ships come nearer to land; the line across stays closed."""
+    leg = (1.1842, 103.9741, 1.2743, 104.1666)
+    disc = disc_at(world.coastline, leg[:2], radius=20.0 * NM)
+    near = chart_with_offing(world, 2.0 * NM, discs=(disc,))
+    assert not near.legs_blocked(*leg)
+    closed = near.without_passages("Singapore Main Strait")
+    assert closed.leg_status(*leg) == NO_GO
 
 
 def test_closing_lines_run_from_land_to_land(world):

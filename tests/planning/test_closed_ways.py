@@ -18,6 +18,11 @@ def test_a_distance_names_the_passage_that_is_too_shallow():
     assert sea_distance("Istanbul", "Mariupol", draught_m=7.5).nm == pytest.approx(545.0, rel=0.02)
 
 
+def test_a_port_between_closed_passages_has_no_way_out():
+    with pytest.raises(NoPathError, match=r"Malacca-Singapore west: the draught of 20.8 m is over"):
+        sea_distance("Singapore", "Ras Tanura", draught_m=20.8)
+
+
 def test_a_passage_that_was_avoided_is_named_as_closed():
     with pytest.raises(NoPathError, match="Kerch Strait, which is closed here") as refused:
         sea_distance("Istanbul", "Mariupol", avoid=["Kerch"])

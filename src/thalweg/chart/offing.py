@@ -170,19 +170,37 @@ def offing_arrays(
     ----------
     coastline : Its distances along the passages are those that are required there.
     passages : Open passages.
-    closed : Passages that no leg crosses; those much narrower than the offing need no line across.
+    closed : Passages that no leg crosses; those that the offing closes need no line across.
     """
-    wide = tuple(p for p in closed if _MARGIN * p.half_width >= offing.distance)
-    gate = _gates(coastline, wide)
     if offing.distance <= 0.0:
-        return NO_OFFING._replace(gate=gate)
+        return NO_OFFING._replace(gate=_gates(coastline, tuple(closed)))
     discs = (*offing.discs, *offing.canal_discs)
     disc = np.zeros((len(discs), 6))
     for row, one in zip(disc, discs):
         row[:3] = geocentric_unit_vectors(np.array([one.lat]), np.array([one.lon]))[0]
         row[3:] = one.least, one.radius, GROWTH
-    box, ptr, segment = _corridors(coastline, offing.distance, tuple(passages))
-    return OffingArrays(float(offing.distance), disc, box, ptr, segment, gate)
+    corridors = _corridors(coastline, offing.distance, tuple(passages))
+    arrays = OffingArrays(float(offing.distance), disc, *corridors, NO_OFFING.gate)
+    crossed = tuple(one for one in closed if not _closed_by_offing(coastline, arrays, one))
+    return arrays._replace(gate=_gates(coastline, crossed))
+
+
+def _closed_by_offing(coastline: Coastline, arrays: OffingArrays, passage: Passage) -> bool:
+    """Return whether all water on the line across a passage is too near to land for any ship."""
+    if _MARGIN * passage.half_width >= arrays.distance:
+        return False
+    lat, lon, shore = _water_across(coastline, passage, arrays.distance)
+    return bool(np.all(shore < required_offing(arrays, lat, lon)))
+
+
+@lru_cache(maxsize=1024)
+def _water_across(
+    coastline: Coastline, passage: Passage, cap: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return positions [deg] on the line across a passage and their distances from land [m]."""
+    ends = np.array(closing_line(coastline, passage))
+    lat, lon, _ = densify(ends[:, 0], ends[:, 1], _SAMPLE)
+    return lat, lon, coastline.shore_distance(lat, lon, cap=cap)
 
 
 def sea_room(

@@ -13,19 +13,24 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.chart.approaches import MAX_APPROACH_SPEED, line_between, line_length
 from thalweg.chart.canal_parts import part_number_of_legs, passages_of_parts
-from thalweg.chart.depth.global_depth import NAME
-from thalweg.chart.depth.shoals import DRAUGHTS, EXCESS, Shoals
+from thalweg.chart.depth.shoals import DRAUGHTS, Shoals
 from thalweg.chart.depth.shoals_of_draught import shoals_of_draught
 from thalweg.chart.offing import check_offing
 from thalweg.chart.passage_crossings import names_passed
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.geodesy import Position, densify, distance
+from thalweg.core.geodesy import Position, distance
 from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
 from thalweg.network.global_grid.sea_graph import path_length
 from thalweg.planning.network_selection.closed_ways import closed_way_error
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.report.approach_report import port_depth_note, turn_back_notes
+from thalweg.planning.report.distance_report import (
+    LEAST_DEPTH,
+    roundabout_notes,
+    shoal_detour_notes,
+    shoal_notes,
+)
 from thalweg.planning.request.voyage_endpoints import (
     Endpoint,
     resolve_places,
@@ -42,18 +47,11 @@ from thalweg.planning.voyage_parts import Place
 SMALL_CANALS: Final = ("corinth",)
 #: Distance from land that ways keep outside passages, where they can [nm].
 DEFAULT_OFFING_NM: Final = 2.0
-_CLEARLY_LONGER: Final = 1.05
-#: Ways so much longer than the straight line, up to so long [m], may miss a channel.
-_ROUNDABOUT: Final = 2.5
-_LONGEST_STRAIGHT: Final = 100.0 * NAUTICAL_MILE
 LEAST_SHORTER: Final = 0.05  #: share by which a way is clearly shorter
 _LONGEST_WITH_HINT: Final = 500.0  # [nm]
 _DEEPEST_DRAUGHT: Final = 30.0  # [m]
 #: Ways without a draught keep off water shallower than this where they can [m].
 USUAL_DEPTH: Final = 5.0
-LEAST_DEPTH: Final = (
-    2.5  #: ... and have a note where they do not keep off water shallower than this [m]
-)
 
 
 @dataclass(frozen=True)
@@ -245,9 +243,15 @@ def _way_over_seas(
         named = closed_way_error(seas, ends, draught=draught, length=0.0)
         raise named or error from None
     length, canals = path_length_and_canals(chart, path)
-    notes += _shoal_notes(seas, path, draught)
+    notes += shoal_notes(seas, path, draught)
     if draught is not None:
-        notes += _detour_notes(seas, ends, length, offing)
+        without = replace(seas, shoals=None)
+        legs = tuple(itertools.pairwise(ends))
+        notes += shoal_detour_notes(
+            length,
+            sum(path_length(without.graph_path(*leg)) for leg in legs),
+            lambda: path_length_and_canals(chart, _path_by(without, ends, offing))[0],
+        )
     notes += seas.near_land_notes(path, ends, offing=offing)
     approaches = tuple((a.label, a.length) for a in (first, last) if a is not None)
     line = (
@@ -262,7 +266,7 @@ def _way_over_seas(
     straits = names_passed(chart.coastline, chart.passages, lat, lon)
     joints = [len(first.line) - 1] if first else []
     joints += [len(line) - len(last.line)] if last else []
-    notes += tuple(turn_back_notes(lat, lon, joints)) + _roundabout_notes(line, total)
+    notes += tuple(turn_back_notes(lat, lon, joints)) + roundabout_notes(line, total)
     return SeaDistance(ends[0].name, ends[-1].name, total, canals, straits, approaches, line, notes)
 
 
@@ -335,57 +339,3 @@ def _usual_shoals(chart: Chart, ends: Sequence[Endpoint]) -> Shoals:
     """Return reefs and flats that ways keep off where no draught is given."""
     harbours = [(end.lat, end.lon) for end in ends]
     return shoals_of_draught(chart, USUAL_DEPTH / DRAUGHTS, LEAST_DEPTH, harbours)
-
-
-def _shoal_miles(seas: Seaways, path: Sequence[Position]) -> float:
-    """Return how many miles of a way have less water than required."""
-    if seas.shoals is None or len(path) < 2:
-        return 0.0
-    way = np.array(path, float)
-    lat, lon, leg = densify(way[:, 0], way[:, 1], NAUTICAL_MILE)
-    legs = lat[:-1], lon[:-1], lat[1:], lon[1:]
-    counted = np.asarray(seas.chart.canal_of_legs(*way[:-1].T, *way[1:].T))[leg] < 0
-    shallow = (seas.shoals.excess(*legs) > EXCESS[0]) & counted
-    return float(np.sum(distance(*legs)[shallow])) / NAUTICAL_MILE
-
-
-def _detour_notes(
-    seas: Seaways, ends: Sequence[Endpoint], length: float, offing: float
-) -> tuple[str, ...]:
-    """Return how much longer shoals make a way of some length [m], as a note."""
-    without = replace(seas, shoals=None)
-    over = sum(path_length(without.graph_path(a, b)) for a, b in itertools.pairwise(ends))
-    if _CLEARLY_LONGER * over >= length:
-        return ()
-    direct, _ = path_length_and_canals(seas.chart, _path_by(without, ends, offing))
-    longer = (length - direct) / NAUTICAL_MILE
-    if _CLEARLY_LONGER * direct >= length or longer < 1.0:
-        return ()
-    return (
-        f"Keeps off shoal water by the {NAME}, which is coarse: the shortest way for this draught "
-        f"is {longer:.0f} nm shorter, over that water. See the chart.",
-    )
-
-
-def _roundabout_notes(line: Sequence[Position], length: float) -> tuple[str, ...]:
-    """Return a note on a way [m] much longer than the straight line between its ends."""
-    straight = float(distance(*line[0], *line[-1]))
-    if straight > _LONGEST_STRAIGHT or length < _ROUNDABOUT * straight:
-        return ()
-    return (
-        f"{length / NAUTICAL_MILE:.0f} nm by sea for {straight / NAUTICAL_MILE:.0f} nm in a "
-        "straight line: narrow channels that are not in the table of passages are closed. See on "
-        "the chart whether there is one.",
-    )
-
-
-def _shoal_notes(seas: Seaways, path: Sequence[Position], draught: float | None) -> tuple[str, ...]:
-    """Return how many miles of a way have less water than the draught, as a note."""
-    miles = _shoal_miles(seas, path)
-    if miles < 1.0:
-        return ()
-    depth = "the draught" if draught is not None else f"{LEAST_DEPTH:g} m"
-    return (
-        f"{miles:.0f} nm of the way have less water than {depth}, by the {NAME}: this graph of "
-        "all seas is coarse near shoals, and a plan may find a longer way round.",
-    )

@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from thalweg.planning.report.provenance import LEAST_WAIT_H, waits_without_fuel
 from thalweg.route import Route
 from thalweg.route.indicator_columns import INDICATORS, indicator_value, named_columns
 
@@ -48,7 +49,6 @@ COMPARED_FIGURES: Final = {
 _OF_PLACES: Final = (
     "comfort", "sick_percent", "worst_hour_percent", "max_acceleration", "uncomfortable_percent"
 )  # fmt: skip
-_LEAST_WAIT_H: Final = 0.1
 _EQUAL: Final = 1e-2  # figures that differ by less than this share are the same
 _EQUAL_POINTS: Final = 0.5  # ... as are those in per cent of the time, by so many points
 _WORTH_WORDS: Final = 0.03  # smaller differences are not put into words ...
@@ -168,10 +168,10 @@ def difference_in_words(values: dict[str, float], reference: dict[str, float]) -
 
 def waiting_in_words(route: Route) -> str:
     """Return how long a route waits, such as ``; 4.4 h of it waiting``; empty below 6 minutes."""
-    if not route.waiting_h > _LEAST_WAIT_H:
+    if not route.waiting_h > LEAST_WAIT_H:
         return ""
-    none = route.fuel_t is not None and np.sum(route.legs["waiting_fuel"]) == 0.0
-    free = ", which takes no fuel (no hotel load in the ship file)" if none else ""
+    free = ", which takes no fuel (no hotel load in the ship file)"
+    free = free if waits_without_fuel(route) else ""
     return f"; {_duration(route.waiting_h)} of it waiting{free}"
 
 

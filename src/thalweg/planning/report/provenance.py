@@ -29,7 +29,7 @@ from thalweg.sea import Sea
 from thalweg.sea.inspection import data_gaps
 from thalweg.ship import Ship
 
-_LEAST_WAIT_H = 0.1  # waits that a note is given of
+LEAST_WAIT_H = 0.1  #: shorter waits are not spoken of
 _LEAST_KEPT, _SHORTEST_SLOW = 0.25, 1.0  # of the ordered speed; [h]
 #: Years between which a departure needs no warning: the reanalysis ERA5 begins in 1940.
 _FIRST_YEAR, _LAST_YEAR = "1940", "2100"
@@ -55,7 +55,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     notes += slow_speed_warnings(route) + steep_wave_warnings(route, context.sea)
     if context.voyage.objective == "comfort":
         notes += comfort_turn_notes(route)
-    notes += waiting_without_fuel(route) + lane_notes(context.chart, route)
+    notes += waiting_notes(route) + lane_notes(context.chart, route)
     if context.needs.limits.depth_checked:
         return notes
     return notes + depth_notes(context.chart, route, context.ship, context.min_ukc)
@@ -80,11 +80,16 @@ def slow_speed_warnings(route: Route) -> list[str]:
     ]
 
 
-def waiting_without_fuel(route: Route) -> list[str]:
+def waits_without_fuel(route: Route) -> bool:
+    """Return whether a route waits 6 minutes or more and the ship is known to take no fuel then."""
+    if not route.waiting_h > LEAST_WAIT_H or route.fuel_t is None:
+        return False
+    return bool(np.sum(route.legs["waiting_fuel"]) == 0.0)
+
+
+def waiting_notes(route: Route) -> list[str]:
     """Return a note where a route waits and the ship takes no fuel while she does."""
-    if not route.waiting_h > _LEAST_WAIT_H or route.fuel_t is None:
-        return []
-    if np.sum(route.legs["waiting_fuel"]) > 0.0:
+    if not waits_without_fuel(route):
         return []
     return [
         f"Waiting takes no fuel on {route.waiting_h:.1f} h: the ship file has no hotel load. Give "
