@@ -156,3 +156,16 @@ def test_profiles_have_times_in_utc_and_state_that_no_depth_is_known(lagoon):
     assert profile.axes[-1].get_xlabel() == "UTC, departure 1998-08-30 05:10"
     assert "30 Aug 06:00" in [tick.get_text() for tick in profile.axes[-1].get_xticklabels()]
     assert "not known" in profile.axes[-1].texts[0].get_text()
+
+
+@pytest.mark.slow
+def test_shoal_water_that_a_plan_keeps_off_is_drawn():
+    voyage = Voyage(start=(-15.0, 146.0), goal=(-13.0, 147.2), depart="2026-01-01")
+    deep = Ship.simple(speed_kn=12.0, draught_m=9.0)
+    figure = draw_map(plan(voyage, ship=deep, sea=Sea.calm()))
+    axes = figure.axes[0]
+    assert "shoal water kept off" in [text.get_text() for text in axes.get_legend().get_texts()]
+    osprey_reef = (146.6, -13.9)
+    drawn = [path for one in axes.collections for path in one.get_paths() if one.zorder == 1.5]
+    assert any(path.contains_point(osprey_reef) for path in drawn)
+    assert not any(path.contains_point((147.0, -14.5)) for path in drawn)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 _LAND, _SHORE, _STORM = "#e2d6b5", "#6f6650", "#4a148c"
 _NO_GO, _PENALTY, _CONTROL, _LANE = "#c62828", "#ef6c00", "#00796b", "#ad1457"
+_SHOAL, _SHOAL_EDGE, _SHOAL_LABEL = "#9cc3d5", "#5f93ab", "shoal water kept off"
 _LEAST_CELLS, _OPENING = 4, 0.15  # of enclosed water; part of its outline that may be open
 _ARROWS = 15.0  # height of maps [deg] from which on arrows of lanes would cover them
 _DOTS = 4_000.0  # details of land smaller than the width of the map over this are not drawn
@@ -109,8 +110,35 @@ def draw_zones(axes: Any, chart: Chart, box: MapExtent) -> list[tuple[str, float
             for turn in (-360.0, 0.0, 360.0):
                 style = {"fc": "none", "ec": colour, "hatch": hatch, "lw": 0.9, "zorder": 4}
                 axes.add_patch(_patch(shape, turn, **style))
+    _draw_closed_shoals(axes, chart, box)
     _draw_lanes(axes, chart, box)
     return _draw_control_areas(axes, chart, box)
+
+
+def _draw_closed_shoals(axes: Any, chart: Chart, box: MapExtent) -> None:
+    """Draw the shoal water that the plan kept off, by depth layer and named areas."""
+    import shapely
+    from matplotlib.collections import PathCollection
+
+    closed = chart.zones.closed_shoals
+    if closed is None:
+        return
+    whole = shapely.union_all(closed.shapes)
+    outlines = []
+    for turn in (-360.0, 0.0, 360.0):
+        part = shapely.clip_by_rect(whole, box.west - turn, box.south, box.east - turn, box.north)
+        pieces = shapely.get_parts(part)
+        outlines += [_outline(one, turn) for one in pieces if one.geom_type == "Polygon"]
+    if outlines:
+        style: dict[str, Any] = {
+            "fc": _SHOAL,
+            "ec": _SHOAL_EDGE,
+            "alpha": 0.45,
+            "lw": 0.6,
+            "zorder": 1.5,
+        }
+        axes.add_collection(PathCollection(outlines, **style), autolim=False)
+        axes.fill([], [], label=_SHOAL_LABEL, **style)  # for the legend
 
 
 def _draw_lanes(axes: Any, chart: Chart, box: MapExtent) -> None:
