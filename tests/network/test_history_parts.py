@@ -127,7 +127,7 @@ def test_the_medoid_is_the_track_in_the_middle_and_far_ways_are_apart():
     zero = np.zeros(len(lines), int)
     found = arcs_of_occurrences(
         tracks, ArcOccurrences(np.arange(len(lines)), zero, zero + 1, begin, end),
-        radius=10 * NM, least=3,
+        radius=10 * NM, least=3, first_port=9,
     )  # fmt: skip
     assert found.evidence.count.tolist() == [5, 3]
     assert found.outliers == 1

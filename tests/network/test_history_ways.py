@@ -6,8 +6,7 @@ import pytest
 from thalweg.chart.approaches import line_length
 from thalweg.core.geodesy import distance
 from thalweg.network.history.arc_lines import ArcLines
-from thalweg.network.history.arc_search import ArcGraph
-from thalweg.network.history.arc_weights import doubt_factors
+from thalweg.network.history.arc_search import ArcGraph, doubt_factors
 from thalweg.network.history.route_lines import attached_line, following_arcs, joined_line
 
 NM = 1852.0

@@ -9,6 +9,7 @@ import pytest
 
 from thalweg.chart import Chart
 from thalweg.chart.approaches import line_length
+from thalweg.chart.ports import PORTS as PORTS_OF_INDEX
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import distance
 from thalweg.core.units import HOUR, NAUTICAL_MILE
@@ -23,6 +24,7 @@ from thalweg.operations.examples.synthetic_fleet import (
     synthetic_fleet,
 )
 from thalweg.operations.fleet import history_from_tracks, read_fleet
+from thalweg.operations.fleet.history_from_tracks import history_port, read_history_ports
 from thalweg.operations.fleet.port_calls import find_port_calls, voyages_between_calls
 from thalweg.planning.distance_table import usual_distance_table
 
@@ -87,12 +89,13 @@ def test_a_month_without_voyages_lowers_the_confidence(network):
     assert "no voyage in this month" in unseen.reason and "no voyage" not in august.reason
 
 
-def test_seasons_are_honoured_and_without_a_month_the_shortest_way_is_taken(network):
+def test_seasons_are_honoured_and_without_a_month_the_way_of_most_voyages_is_taken(network):
     middle = {month: _latitude_at(network.route("Alpha", "Bravo", month=month), -25.0)
               for month in range(1, 13)}  # fmt: skip
     for month, lat in middle.items():
         assert lat == pytest.approx(52.0 if month in SUMMER.months else 48.0, abs=0.1)
-    assert network.route("alpha, xx", "XXBRA").length < WINTER.length * 0.99  # the summer's
+    both = [network.route("Alpha", "Bravo", month=month) for month in (1, 7)]
+    assert network.route("alpha, xx", "XXBRA").voyages == max(way.voyages for way in both)
 
 
 def test_outliers_do_not_make_the_usual_way(network, messages):
@@ -236,6 +239,21 @@ def test_ships_that_leave_an_approach_early_do_not_sail_to_its_sea_end():
     table = usual_distance_table(names, made)
     assert table.length[0, 1] == pytest.approx(out.length, rel=0.01)
     assert not any("doubtful" in note for note in table.notes)
+    [joined] = table.notes
+    assert "No voyage sailed the whole way" in joined
+    assert "Charlie to Echo" in joined and "Delta" not in joined
+
+
+@pytest.mark.slow
+def test_a_berth_on_the_land_of_the_chart_leads_to_sea_by_the_approach_of_its_port(tmp_path):
+    """The quays of Klaipeda are on land, and the nearest water is the lagoon behind them."""
+    (tmp_path / "ports.csv").write_text("name,lat,lon\nQuay,55.69,21.125\nRoads,55.71,20.95\n")
+    chart = Chart.gshhg("i")
+    quay, roads = read_history_ports(tmp_path / "ports.csv", chart)
+    index = history_port(PORTS_OF_INDEX.lookup("LTKLJ"), chart)
+    assert (quay.lat, quay.lon) == (index.lat, index.lon) and quay.name == "Quay"
+    assert index.approach_m < quay.approach_m < index.approach_m + 2.0 * NAUTICAL_MILE
+    assert (roads.lat, roads.lon, roads.approach_m) == (55.71, 20.95, 0.0)
 
 
 def test_corridors_are_junctions_with_names(fleet):

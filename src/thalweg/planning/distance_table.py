@@ -158,24 +158,32 @@ def usual_distance_table(
     nodes = [network.port_node(name) for name in ports]
     weight = network.weights(month=month, draught=draught)
     length = np.zeros((len(ports), len(ports)))
-    notes, doubtful = [], []
+    notes: list[str] = []
+    doubtful: list[str] = []
+    joined: list[str] = []
     for i, start in enumerate(nodes):
         for j, goal in enumerate(nodes):
             if start == goal:
                 continue
-            arcs = network.path(start, goal, weight)
+            arcs = network.usual_way(start, goal, weight, month=month)
             if not arcs:
                 notes.append(f"No way from {names[i]} to {names[j]}.")
                 length[i, j] = math.nan
                 continue
             route = network.route_along((start, goal), arcs, month=month)
             length[i, j] = route.length
-            if route.confidence in ("low", "none"):
+            if route.whole <= 0:
+                joined.append(f"{names[i]} to {names[j]}")
+            elif route.confidence in ("low", "none"):
                 doubtful.append(f"{names[i]} to {names[j]}")
     if doubtful:
         notes.append(
-            "Few voyages or none on the way, so that the distance is doubtful: "
-            + ", ".join(doubtful)
+            "Few voyages on the way, so that the distance is doubtful: " + ", ".join(doubtful) + "."
+        )
+    if joined:
+        notes.append(
+            "No voyage sailed the whole way; the distance is that of parts of other voyages: "
+            + ", ".join(joined)
             + "."
         )
     return DistanceTable(names, length, (*month_notes(network.months_seen, month), *notes))

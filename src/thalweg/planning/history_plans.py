@@ -84,7 +84,8 @@ def plan_in_corridor(request: CorridorRequest, draught: float | None) -> Plan:
         return _with_note(inside, "The route stays in the water that ships usually use.")
     free = request.plan_one(request.chart, "auto")
     if inside is None:
-        return _with_note(free, f"No route in the water that ships usually use: {refusal}")
+        why = f"No route in the water that ships usually use: {refusal}"
+        return replace(free, notes=(why, *free.notes))
     value, least = inside.objective_value, free.objective_value
     gain = 1.0 - least / value if value > 0.0 else 0.0
     words = f"{100.0 * gain:.2f} % of the {request.voyage.objective}"

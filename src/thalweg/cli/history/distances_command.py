@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from typing import Any
 
 from thalweg.cli import option_values
@@ -85,6 +86,9 @@ def run(arguments: argparse.Namespace) -> int:
         print(table.to_csv(), end="")
     else:
         print(f"wrote {arguments.out}")
+    if not arguments.json:
+        for note in table.notes:
+            print(f"note: {note}", file=sys.stderr)
     return SUCCESS
 
 

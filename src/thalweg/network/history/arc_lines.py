@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import Position, distance, geocentric_positions
@@ -166,6 +167,18 @@ class LinesOffLand:
     arc: IntArray
     source: IntArray
     repaired: FloatArray
+
+    def take(self, index: NDArray[np.int64] | NDArray[np.bool_]) -> LinesOffLand:
+        """Return some of the lines.
+
+        Parameters
+        ----------
+        index : Which of them.
+        """
+        number = np.arange(len(self.arc))[index]
+        return LinesOffLand(
+            self.lines.take(number), self.arc[number], self.source[number], self.repaired[number]
+        )
 
 
 class GlobeWays:

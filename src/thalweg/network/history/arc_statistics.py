@@ -19,6 +19,7 @@ CANDIDATES: Final = 4  #: tracks of an arc that may become its line, the medoid 
 _TUBE: Final = (5.0, 95.0)
 _VARIANTS: Final = 4  # ways between two nodes that are distinguished
 _SPREAD: Final = 0.05  # tracks of one way are this near to its medoid, as a share of the length
+_SPREAD_OF_WHOLE: Final = 0.03  # the same of whole voyages
 _ROUNDS: Final = 2
 
 
@@ -70,13 +71,14 @@ class FoundArcs:
 
 
 def arcs_of_occurrences(
-    tracks: VoyageTracks, occurrences: ArcOccurrences, *, radius: float, least: int
+    tracks: VoyageTracks, occurrences: ArcOccurrences, *, radius: float, least: int, first_port: int
 ) -> FoundArcs:
     """Return the arcs of stretches of tracks.
 
     Stretches between the same two nodes, in the same direction, are divided into ways: tracks
     within a quarter of the length of the middle of a way belong to it (at least half the radius,
-    at most twice the radius or 5 % of the length). Ways of
+    at most twice the radius or 5 % of the length). Those from port to port are whole voyages: half
+    of the radius or 3 % of the length, so that lanes side by side are ways of their own. Ways of
     fewer than ``least`` voyages are outliers where there is another between the two nodes.
 
     Parameters
@@ -84,6 +86,7 @@ def arcs_of_occurrences(
     occurrences : Stretches, m in total.
     radius : Radius of a junction [m].
     least : Voyages that make a way believed.
+    first_port : Node of the first port; junctions come before.
 
     Returns
     -------
@@ -93,20 +96,21 @@ def arcs_of_occurrences(
     shape = np.stack([tracks.vectors_at(begin + share * step) for share in SHARES], axis=1).astype(
         np.float32
     )
-    way = _ways(occurrences, shape, step, radius)
-    arc, tail, head, kept = _arcs(occurrences, way, least)
+    whole = (occurrences.tail >= first_port) & (occurrences.head >= first_port)
+    way = _ways(occurrences, shape, step, _Reach(radius, whole))
+    arc, tail, head = _arcs(occurrences, way, least)
     inside = np.flatnonzero(arc >= 0)
     inside = inside[np.argsort(arc[inside], kind="stable")]
     ptr = np.searchsorted(arc[inside], np.arange(len(tail) + 1))
-    candidates = _candidates(tracks, occurrences.take(inside), shape[inside], ptr)
+    candidates = _candidates(tracks, occurrences.take(inside), shape[inside], ptr, whole[inside])
     candidates = np.where(candidates >= 0, inside[candidates], -1)
     evidence = _evidence(tracks, occurrences, inside, ptr, tail)
     tube = _tubes(shape, inside, ptr, candidates[:, 0])
-    return FoundArcs(tail, head, evidence, candidates, tube, int(len(occurrences) - kept))
+    return FoundArcs(tail, head, evidence, candidates, tube, int((arc[~whole] < 0).sum()))
 
 
 def _ways(
-    occurrences: ArcOccurrences, shape: Float32Array, length: FloatArray, radius: float
+    occurrences: ArcOccurrences, shape: Float32Array, length: FloatArray, reach_of: _Reach
 ) -> IntArray:
     """Return the way of every stretch among those of its two nodes: 0, 1, ...; -1 for none."""
     way = np.full(len(occurrences), -1, np.int64)
@@ -120,8 +124,8 @@ def _ways(
         _, first, group, count = np.unique(
             pair[left], return_index=True, return_inverse=True, return_counts=True
         )
-        centre = shape[left[first + count // 2]]
-        reach = _reach(length[left[first + count // 2]], radius)
+        middle = left[first + count // 2]
+        centre, reach = shape[middle], reach_of(middle, length)
         for _ in range(_ROUNDS):
             near = _largest_distance(shape[left], centre, group) <= reach[group]
             size = np.maximum(np.bincount(group, near, minlength=len(first)), 1.0)
@@ -135,12 +139,24 @@ def _ways(
     return way
 
 
-def _reach(length: FloatArray, radius: float) -> FloatArray:
-    """Return how far tracks of one way may be from its middle [m].
+@dataclass(frozen=True, eq=False)
+class _Reach:
+    """How far tracks of one way may be from its middle.
 
-    A quarter of the length, from half the radius to twice the radius; or 5 % of a great length.
+    Of stretches between junctions a quarter of the length, from half the radius to twice the
+    radius, or 5 % of a great length: they pass junctions far from each other. Of whole voyages half
+    the radius, or 3 % of a great length.
     """
-    return np.maximum(_SPREAD * length, np.clip(0.25 * length, 0.5 * radius, 2.0 * radius))
+
+    radius: float
+    whole: BoolArray
+
+    def __call__(self, some: IntArray, length: FloatArray) -> FloatArray:
+        """Return it for some stretches [m]; the lengths are of all."""
+        of, radius = length[some], self.radius
+        parts = np.maximum(_SPREAD * of, np.clip(0.25 * of, 0.5 * radius, 2.0 * radius))
+        whole = np.maximum(_SPREAD_OF_WHOLE * of, np.clip(0.25 * of, 0.25 * radius, 0.5 * radius))
+        return np.where(self.whole[some], whole, parts)
 
 
 def _largest_distance(shape: Float32Array, centre: FloatArray, group: IntArray) -> FloatArray:
@@ -154,8 +170,8 @@ def _largest_distance(shape: Float32Array, centre: FloatArray, group: IntArray) 
 
 def _arcs(
     occurrences: ArcOccurrences, way: IntArray, least: int
-) -> tuple[IntArray, IntArray, IntArray, int]:
-    """Return the arc of every stretch (-1: outlier), tails and heads, and how many have one."""
+) -> tuple[IntArray, IntArray, IntArray]:
+    """Return the arc of every stretch (-1: outlier), and tails and heads of the arcs."""
     known = np.flatnonzero(way >= 0)
     keys = np.stack([occurrences.tail[known], occurrences.head[known], way[known]], axis=1)
     table, number, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
@@ -173,15 +189,20 @@ def _arcs(
     new[order] = np.arange(len(order))
     arc = np.full(len(occurrences), -1, np.int64)
     arc[known] = new[number]
-    return arc, table[order, 0], table[order, 1], int((arc >= 0).sum())
+    return arc, table[order, 0], table[order, 1]
 
 
 def _candidates(
-    tracks: VoyageTracks, occurrences: ArcOccurrences, shape: Float32Array, ptr: IntArray
+    tracks: VoyageTracks,
+    occurrences: ArcOccurrences,
+    shape: Float32Array,
+    ptr: IntArray,
+    whole: BoolArray,
 ) -> IntArray:
     """Return the stretches of every arc nearest to its mean, in order; -1 where there are fewer.
 
-    Stretches with gaps count as farther away: by how much of them is not observed.
+    Stretches with gaps count as farther away: by how much of them is not observed; whole voyages by
+    how much their length differs from the median.
     """
     count = np.diff(ptr)
     arc = np.repeat(np.arange(len(count)), count)
@@ -190,6 +211,9 @@ def _candidates(
     for k in range(shape.shape[1]):
         score += np.sum((shape[:, k] - mean[arc, k]) ** 2, axis=1)
     score = np.sqrt(score / shape.shape[1])
+    length = occurrences.end - occurrences.begin
+    median = group_percentiles(length, ptr, (50.0,))[arc, 0]
+    score += np.where(whole, np.abs(length - median), 0.0)
     unseen = tracks.values_at(tracks.unobserved, occurrences.end)
     unseen -= tracks.values_at(tracks.unobserved, occurrences.begin)
     order = np.lexsort((score + unseen, arc))

@@ -13,7 +13,7 @@ from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels.network.static_paths import static_astar
 from thalweg.network.history.arc_statistics import SHARES
-from thalweg.network.history.history_network import HistoryArcs
+from thalweg.network.history.history_arcs import HistoryArcs
 from thalweg.network.history.route_lines import attached_line
 
 if TYPE_CHECKING:

@@ -14,12 +14,8 @@ from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.history.arc_lines import GlobeWays, LinesOffLand, lines_off_land
 from thalweg.network.history.arc_statistics import ArcEvidence, FoundArcs, arcs_of_occurrences
-from thalweg.network.history.history_network import (
-    SAILED,
-    HistoryArcs,
-    HistoryNetwork,
-    HistoryNodes,
-)
+from thalweg.network.history.history_arcs import SAILED, HistoryArcs, HistoryNodes
+from thalweg.network.history.history_network import HistoryNetwork
 from thalweg.network.history.junction_visits import arc_occurrences
 from thalweg.network.history.junctions import CorridorLine, Junctions, find_junctions
 from thalweg.network.history.missing_arcs import connected_arcs
@@ -27,11 +23,14 @@ from thalweg.network.history.sailed_lines import LineRules, lines_as_sailed
 from thalweg.network.history.stretch_ends import EndFinder
 from thalweg.network.history.turning_points import turning_points
 from thalweg.network.history.voyage_tracks import HistoryPort, VoyageTracks
+from thalweg.network.history.whole_voyages import VoyagePairs, with_whole_voyages
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 _LEAST_RADIUS: Final = 0.1 * NAUTICAL_MILE
+_MOSTLY: Final = 0.5  # whole voyages with more of their line over land have no arc
+_LARGEST_RADIUS: Final = 100.0 * NAUTICAL_MILE
 
 
 @dataclass(frozen=True)
@@ -54,11 +53,13 @@ class HistoryRules:
     least: int = 3
 
     def __post_init__(self) -> None:
-        good = np.isfinite(self.radius) and self.radius >= _LEAST_RADIUS
+        good = _LEAST_RADIUS <= self.radius <= _LARGEST_RADIUS
         if not (good and 0.0 < self.tolerance <= self.radius and self.least >= 1):
             raise InputError(
-                f"The rules of the history network are {self}.",
-                "The radius is at least 0.1 nm, the tolerance above 0 and at most the radius, and "
+                f"The radius of junctions is {self.radius / NAUTICAL_MILE:g} nm, the tolerance "
+                f"{self.tolerance / NAUTICAL_MILE:g} nm and the least number of voyages "
+                f"{self.least}.",
+                "The radius is 0.1 to 100 nm, the tolerance above 0 and at most the radius, and "
                 "the least number of voyages at least 1.",
                 "Correct them.",
             )
@@ -78,7 +79,8 @@ def build_history(
     Nodes are the ports, the ends of canals, the corridors, and clusters of turning points. Every
     track is divided where it passes a node. Of the parts between the same two nodes in the same
     direction the medoid is the line of the arc; its counts, percentiles of length and time, months
-    and sizes of ships are those of all parts. Every leg of every line is tested against land.
+    and sizes of ships are those of all parts. Whole voyages between the same two ports are arcs as
+    well. Every leg of every line is tested against land.
 
     Parameters
     ----------
@@ -124,7 +126,12 @@ def build_history(
     )
     report("dividing the tracks at the junctions")
     occurrences = arc_occurrences(tracks, junctions, ports, radius=rules.radius)
-    sailed = arcs_of_occurrences(tracks, occurrences, radius=rules.radius, least=rules.least)
+    canals = {canal.name for canal in chart.canals}
+    at_canal = np.array([name in canals for name in junctions.names], bool)
+    occurrences, pairs = with_whole_voyages(tracks, occurrences, len(junctions), at_canal)
+    sailed = arcs_of_occurrences(
+        tracks, occurrences, radius=rules.radius, least=rules.least, first_port=len(junctions)
+    )
     report("testing the arcs against land")
     places = (
         np.append(junctions.lat, [port.lat for port in ports]),
@@ -137,13 +144,14 @@ def build_history(
         radius=rules.radius, ways=ways,
     )  # fmt: skip
     approach = finder.ends(occurrences.take(tested.source)).approach
-    canals = {canal.name for canal in chart.canals}
-    fixed = np.array([*(name in canals for name in junctions.names), *([True] * len(ports))])
+    fixed = np.append(at_canal, np.ones(len(ports), bool))
     tested = lines_as_sailed(
         chart, tracks, occurrences, tested, finder=finder, fixed=fixed,
         rules=LineRules(rules.radius, rules.tolerance), ways=ways,
     )  # fmt: skip
-    arcs = _sailed_arcs(chart, sailed, tested, approach)
+    at_port = sailed.tail >= len(junctions), sailed.head >= len(junctions)
+    lost = (at_port[0] & at_port[1])[tested.arc] & (tested.repaired > _MOSTLY)  # as in canals
+    arcs = _sailed_arcs(chart, sailed, tested.take(~lost), approach[~lost])
     report("connecting the network")
     nodes = HistoryNodes(*places, (*junctions.names, *([""] * len(ports))), tuple(ports))
     used = range(nodes.first_port, len(nodes))
@@ -153,7 +161,7 @@ def build_history(
     notes = [f"{ports[k - nodes.first_port].name} cannot be reached by sea."
              for k in alone if k >= nodes.first_port]  # fmt: skip
     summary = _summary(tracks, sailed, tested, junctions) | {"notes": notes}
-    return _without_unused(HistoryNetwork(nodes, arcs, rules.radius, rules.least, summary))
+    return _without_unused(HistoryNetwork(nodes, arcs, rules.radius, rules.least, summary, pairs))
 
 
 def _sailed_arcs(
@@ -205,4 +213,6 @@ def _without_unused(network: HistoryNetwork) -> HistoryNetwork:
         number[arcs.tail], number[arcs.head], arcs.kind, arcs.lines, arcs.evidence, arcs.tube,
         arcs.eca_share, arcs.repaired, arcs.approach,
     )  # fmt: skip
-    return HistoryNetwork(left, new, network.radius, network.least, network.summary)
+    of = network.pairs
+    pairs = VoyagePairs(number[of.tail], number[of.head], of.count, of.duration)
+    return HistoryNetwork(left, new, network.radius, network.least, network.summary, pairs)

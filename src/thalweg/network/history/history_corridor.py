@@ -129,7 +129,9 @@ class HistoryCorridor:
         if links:
             more = globe_arcs(chart, links, np.zeros(len(lat)))
             arcs, weight = joined_arcs([arcs, more]), np.append(weight, more.length)
-        kept = arcs_between(len(lat), arcs, weight, (ends[0], ends[1]), self.longest)
+        kept = self._whole_voyages(ends[0], ends[1], weight)
+        if not len(kept):
+            kept = arcs_between(len(lat), arcs, weight, (ends[0], ends[1]), self.longest)
         if not len(kept):
             raise NoPathError(
                 f"The history network has no way from {format_position(*start)} to "
@@ -141,6 +143,17 @@ class HistoryCorridor:
             (lat, lon), arcs, kept, (ends[0], ends[1]), weight, network.nodes.first_port,
             network.radius,
         )  # fmt: skip
+
+    def _whole_voyages(self, start: int, goal: int, weight: FloatArray) -> IntArray:
+        """Return the arcs of whole voyages between two nodes that are not too long."""
+        network = self.network
+        count, length = network.arcs.evidence.count, network.lengths
+        known = [arc for arc in network.whole_ways(start, goal, weight)
+                 if count[arc] >= network.least]  # fmt: skip
+        if not known:
+            return np.empty(0, np.int64)
+        most = self.longest * length[network.usual_way(start, goal, weight, month=self.month)[0]]
+        return np.array([arc for arc in known if length[arc] <= most], np.int64)
 
     def network_between(
         self, chart: Chart, start: Position, goal: Position, *, spacing: float | None = None

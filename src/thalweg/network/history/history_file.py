@@ -14,14 +14,11 @@ from thalweg.core.file_writing import replacing_file
 from thalweg.core.types import FloatArray
 from thalweg.network.history.arc_lines import ArcLines
 from thalweg.network.history.arc_statistics import SHARES, ArcEvidence
-from thalweg.network.history.history_network import (
-    ARC_KINDS,
-    HistoryArcs,
-    HistoryNetwork,
-    HistoryNodes,
-)
+from thalweg.network.history.history_arcs import ARC_KINDS, HistoryArcs, HistoryNodes
+from thalweg.network.history.history_network import HistoryNetwork
 from thalweg.network.history.stretch_ends import ends_at_nodes
 from thalweg.network.history.voyage_tracks import HistoryPort
+from thalweg.network.history.whole_voyages import VoyagePairs
 
 FORMAT: Final = "thalweg history network"
 VERSION: Final = 1
@@ -64,6 +61,13 @@ def write_history(network: HistoryNetwork, path: str | PathLike[str]) -> None:
             for port in nodes.ports
         ],
         "arcs": [_arc_to_dict(arcs, arc) for arc in range(len(arcs))],
+        "voyages": [
+            {"from": tail, "to": head, "voyages": count, "duration_s": _rounded(time, _METRES)}
+            for tail, head, count, time in zip(
+                network.pairs.tail.tolist(), network.pairs.head.tolist(),
+                network.pairs.count.tolist(), network.pairs.duration,
+            )
+        ],
     }  # fmt: skip
     text = json.dumps(data, allow_nan=False, ensure_ascii=False, separators=(",", ":"))
     with replacing_file(path) as file:
@@ -185,8 +189,16 @@ def _network_of(data: dict[str, Any]) -> HistoryNetwork:
         np.where(np.isnan(given), approach, given),
     )
     return HistoryNetwork(
-        nodes, arcs, float(data["radius_m"]), int(data["least_voyages"]), dict(data["summary"])
+        nodes, arcs, float(data["radius_m"]), int(data["least_voyages"]), dict(data["summary"]),
+        _pairs_of(data.get("voyages", [])),
+    )  # fmt: skip
+
+
+def _pairs_of(rows: list[dict[str, Any]]) -> VoyagePairs:
+    tail, head, count = (
+        np.array([row[name] for row in rows], np.int64) for name in ("from", "to", "voyages")
     )
+    return VoyagePairs(tail, head, count, _table(rows, "duration_s", [None] * 3))
 
 
 def _check(network: HistoryNetwork) -> None:

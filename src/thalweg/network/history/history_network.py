@@ -11,95 +11,39 @@ import numpy as np
 
 from thalweg.chart.approaches import line_length
 from thalweg.chart.canals import CANALS
-from thalweg.chart.port_names import normalised_port_name
-from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError, NoRouteError, unknown_name_error
-from thalweg.core.types import BoolArray, FloatArray, IntArray
-from thalweg.network.history.arc_lines import ArcLines
-from thalweg.network.history.arc_search import ArcGraph
-from thalweg.network.history.arc_statistics import ArcEvidence
-from thalweg.network.history.arc_weights import (
+from thalweg.core.geodesy import Position, densify, distance
+from thalweg.core.types import BoolArray, FloatArray
+from thalweg.network.history.arc_search import (
     GLOBE_FACTOR,
     REVERSED_FACTOR,
+    ArcGraph,
     doubt_factors,
     longer_if_repaired,
 )
-from thalweg.network.history.history_route import HistoryRoute, no_arcs_text, what_to_leave_out
+from thalweg.network.history.history_arcs import (
+    ARC_KINDS,
+    GLOBE,
+    REVERSED,
+    SAILED,
+    HistoryArcs,
+    HistoryNodes,
+)
+from thalweg.network.history.history_route import (
+    HistoryRoute,
+    check_month_and_draught,
+    no_arcs_text,
+    what_to_leave_out,
+)
 from thalweg.network.history.route_lines import following_arcs, joined_line
 from thalweg.network.history.season_masks import LEAST_SAMPLES, month_notes
-from thalweg.network.history.voyage_tracks import HistoryPort
+from thalweg.network.history.voyage_tracks import HistoryPort, PortNames
+from thalweg.network.history.whole_voyages import VoyagePairs, WholeWays
 
-#: How an arc is known: sailed in this direction, sailed in the other direction only, or a shortest
-#: way over the globe where no track is known.
-ARC_KINDS: Final = ("sailed", "reversed", "globe")
-SAILED, REVERSED, GLOBE = range(3)
+#: A way over arcs of several voyages is usual up to this multiple of the way of few voyages, or of
+#: the way back.
+_HARDLY_LONGER: Final = 1.1
 _DRAUGHT_MARGIN: Final = 1.05  # a ship may be deeper than the deepest that was seen by this factor
-
-
-@dataclass(frozen=True, eq=False)
-class HistoryNodes:
-    """Nodes: junctions first, then ports.
-
-    Parameters
-    ----------
-    lat, lon : Positions [deg], (N,).
-    names : Names of corridors and canals; empty for clusters of turning points and for ports.
-    ports : The last nodes.
-    """
-
-    lat: FloatArray
-    lon: FloatArray
-    names: tuple[str, ...]
-    ports: tuple[HistoryPort, ...]
-
-    def __len__(self) -> int:
-        return len(self.lat)
-
-    @property
-    def approach(self) -> FloatArray:
-        """Length of the approach of every node [m], (N,); 0 at junctions."""
-        return np.append(np.zeros(self.first_port), [port.approach_m for port in self.ports])
-
-    @property
-    def first_port(self) -> int:
-        """Node of the first port."""
-        return len(self.lat) - len(self.ports)
-
-
-@dataclass(frozen=True, eq=False)
-class HistoryArcs:
-    """Directed arcs, A in total.
-
-    Parameters
-    ----------
-    tail, head : Nodes, (A,).
-    kind : Index in `ARC_KINDS`, (A,).
-    lines : The line of every arc.
-    evidence : What was seen.
-    tube : p5 and p95 of the distance of tracks to starboard of the line [m], (A, 9, 2).
-    eca_share, repaired : Shares of the line inside emission control areas (NaN: unknown), and of
-        ways over the globe in place of tracks over land, (A,).
-    approach : Length from the berth of a port to the first place of the line, and from the last one
-        to a berth [m], (A, 2); 0 at junctions.
-    """
-
-    tail: IntArray
-    head: IntArray
-    kind: IntArray
-    lines: ArcLines
-    evidence: ArcEvidence
-    tube: FloatArray
-    eca_share: FloatArray
-    repaired: FloatArray
-    approach: FloatArray
-
-    def __len__(self) -> int:
-        return len(self.tail)
-
-    @cached_property
-    def length(self) -> FloatArray:
-        """Length of the line of each arc (A,) [m], which is that of a voyage in the middle."""
-        return self.lines.lengths
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,6 +62,8 @@ class HistoryNetwork:
         Arcs with fewer voyages count as longer when a route is chosen.
     summary : dict
         How it was made: counts of voyages, positions, outliers, repaired arcs; period; notes.
+    pairs : VoyagePairs
+        Pairs of ports between which ships sailed.
     """
 
     nodes: HistoryNodes
@@ -125,6 +71,7 @@ class HistoryNetwork:
     radius: float
     least: int
     summary: dict[str, Any] = field(default_factory=dict)
+    pairs: VoyagePairs = field(default_factory=VoyagePairs.none)
 
     @property
     def ports(self) -> tuple[HistoryPort, ...]:
@@ -160,14 +107,14 @@ class HistoryNetwork:
         InputError
             If the network does not have this port, or several of this name.
         """
-        found = self._by_name.get(normalised_port_name(place), []) or self._by_other_name(place)
+        found = self._port_names.find(place)
         if len(found) == 1:
-            return found[0]
+            return self.nodes.first_port + found[0]
         if not found:
             raise unknown_name_error(
                 "port of the history network", place, [port.name for port in self.ports]
             )
-        names = ", ".join(self.ports[k - self.nodes.first_port].name for k in found)
+        names = ", ".join(self.ports[k].name for k in found)
         raise InputError(
             f"The name {place!r} fits several ports of the history network.",
             f"They are {names}.",
@@ -184,10 +131,12 @@ class HistoryNetwork:
     ) -> HistoryRoute:
         """Return the usual route between two ports.
 
-        The way of least length over the arcs; arcs of few voyages count 1.25 times their length,
-        arcs sailed in the other direction only 1.5 times, and ways over the globe twice. Arcs of
-        the last two kinds are used only where the way over sailed arcs is more than one and a half
-        times as long, or none leads there.
+        The way of most voyages that sailed from the one to the other, in the month if any did then.
+        Where fewer did than make a way believed, the way of least length over the arcs of other
+        voyages, unless it is more than a tenth longer than theirs or than the way back; arcs of few
+        voyages count 1.25 times their length, arcs sailed in the other direction only 1.5 times,
+        and ways over the globe twice. Arcs of the last two kinds are used only where the way over
+        sailed arcs is more than one and a half times as long, or none leads there.
 
         Parameters
         ----------
@@ -217,7 +166,8 @@ class HistoryNetwork:
                 "A route joins two ports.",
                 "Give two different ports.",
             )
-        arcs = self.path(*ends, self.weights(month=month, draught=draught))
+        weight = self.weights(month=month, draught=draught)
+        arcs = self.usual_way(*ends, weight, month=month)
         if not arcs:
             raise NoRouteError(
                 f"The history network has no route from {start} to {goal}.",
@@ -242,8 +192,7 @@ class HistoryNetwork:
             [m].
         """
         evidence = self.arcs.evidence
-        if month is not None and not 1 <= month <= 12:
-            raise InputError(f"The month is {month!r}.", "Months are 1 to 12.", "Give one of them.")
+        check_month_and_draught(month, draught)
         seen = month if month is not None and self.months_seen[month - 1] else None
         weight = self._weights_in(seen).copy()
         if seen is not None:
@@ -253,8 +202,57 @@ class HistoryNetwork:
             weight[known & (_DRAUGHT_MARGIN * evidence.draught[:, 2] < draught)] = np.inf
         return weight
 
+    def usual_way(
+        self, start: int, goal: int, weight: FloatArray, *, month: int | None = None
+    ) -> list[int]:
+        """Return the arcs of the usual way between two ports; empty if there is none.
+
+        Parameters
+        ----------
+        start, goal : int
+            Nodes of the ports.
+        weight : ndarray (A,)
+            Of every arc (`weights`).
+        month : int, optional
+            1 to 12: the way of most voyages in it.
+
+        Returns
+        -------
+        list of int
+            One arc of whole voyages, or several arcs in order.
+        """
+        whole = self._whole.open_ways((start, goal), weight, SAILED, month)
+        count = self.arcs.evidence.count
+        believed = [arc for arc in whole if count[arc] >= self.least]
+        if believed:
+            return believed[:1]
+        path = self.path(start, goal, weight)
+        other = whole or self._whole.open_ways((start, goal), weight, REVERSED, month)
+        if not other:
+            return path
+        most = _HARDLY_LONGER * self.lengths[other[0]]
+        sailed = bool(path) and bool((self.arcs.kind[path] == SAILED).all())
+        return path if sailed and self.lengths[path].sum() <= most else other[:1]
+
+    def whole_ways(self, start: int, goal: int, weight: FloatArray) -> list[int]:
+        """Return the open arcs of voyages that sailed from one port to another without a call.
+
+        Parameters
+        ----------
+        start, goal : int
+            Nodes; there are none between others than ports.
+        weight : ndarray (A,)
+            Of every arc, inf for those that are closed.
+
+        Returns
+        -------
+        list of int
+            Arcs, that of most voyages first.
+        """
+        return self._whole.open_ways((start, goal), weight, SAILED)
+
     def path(self, start: int, goal: int, weight: FloatArray) -> list[int]:
-        """Return the arcs of the usual way between two nodes; empty if there is none.
+        """Return the arcs of the shortest way between two nodes; empty if there is none.
 
         It is the one of least weight, and has only arcs that were sailed in their direction unless
         that is more than one and a half times as long.
@@ -293,8 +291,7 @@ class HistoryNetwork:
         -------
         HistoryRoute
         """
-        index = np.array(arcs)
-        of, evidence = self.arcs, self.arcs.evidence
+        index, of, evidence = np.array(arcs), self.arcs, self.arcs.evidence
         length = self.lengths[index]
         sailed = of.kind[index] == SAILED
         total = float(length.sum())
@@ -303,8 +300,17 @@ class HistoryNetwork:
         start, goal = (self.ports[node - self.nodes.first_port] for node in ends)
         at_junction = of.head[index[:-1]] < self.nodes.first_port
         line = tuple(joined_line(of.lines, index, at_junction, self.radius))
-        names = self._names_passed([int(of.tail[index[0]]), *of.head[index].tolist()])
+        nodes = [int(of.tail[index[0]]), *of.head[index].tolist()]
         p10, p50, p90 = np.where(sailed[:, None], evidence.duration[index], np.nan).sum(axis=0)
+        is_whole = len(arcs) == 1 and ends in self._whole.between
+        names = self._names_passed(self._named_beside(line) if is_whole else nodes)
+        whole = int(evidence.count[arcs[0]])
+        if not is_whole:
+            whole, duration = self.pairs.of(*ends)
+            if whole >= LEAST_SAMPLES:
+                p10, p50, p90 = duration
+        elif not sailed[0]:
+            whole = 0 if of.kind[arcs[0]] == GLOBE else -whole
         return HistoryRoute(
             start,
             goal,
@@ -318,7 +324,17 @@ class HistoryNetwork:
             names,
             None if month is None else int(evidence.months[index, month - 1].min()),
             month_notes(self.months_seen, month),
+            whole,
         )
+
+    def _named_beside(self, line: Sequence[Position]) -> list[int]:
+        """Return the named junctions within the radius of a line, in the order along it."""
+        places = np.array(line)
+        lat, lon, _ = densify(places[:, 0], places[:, 1], 0.25 * self.radius)
+        named = [k for k, name in enumerate(self.nodes.names) if name]
+        away = {k: distance(self.nodes.lat[k], self.nodes.lon[k], lat, lon) for k in named}
+        near = [k for k in named if away[k].min() <= self.radius]
+        return sorted(near, key=lambda k: int(np.argmin(away[k])))
 
     def _names_passed(self, nodes: Sequence[int]) -> tuple[str, ...]:
         """Return the corridors and canals of a way; of a canal it has both ends in turn."""
@@ -326,16 +342,6 @@ class HistoryNetwork:
         after = [*names[1:], ""]
         passed = [name for name, then in zip(names, after) if name == then or name not in canals]
         return tuple(dict.fromkeys(name for name in passed if name))
-
-    def _by_other_name(self, place: str) -> list[int]:
-        """Return the node of a port that the World Port Index has under another name."""
-        try:
-            port = PORTS.lookup(place)
-        except InputError:
-            return []
-        return self._by_name.get(normalised_port_name(port.locode), []) or self._by_name.get(
-            normalised_port_name(port.label), []
-        )
 
     @cached_property
     def lengths(self) -> FloatArray:
@@ -372,13 +378,17 @@ class HistoryNetwork:
         return {}
 
     @cached_property
+    def _whole(self) -> WholeWays:
+        return WholeWays.of_arcs(self.arcs, self.nodes.first_port)
+
+    @cached_property
     def _at_port(self) -> BoolArray:
         return np.arange(len(self.nodes)) >= self.nodes.first_port
 
     @cached_property
     def months_seen(self) -> BoolArray:
         """Whether any voyage was seen in each month, on any arc, (12,)."""
-        return np.asarray(self.arcs.evidence.months.sum(axis=0) > 0)
+        return np.asarray(self.arcs.evidence.months.any(axis=0))
 
     @cached_property
     def _graph(self) -> ArcGraph:
@@ -386,15 +396,5 @@ class HistoryNetwork:
         return ArcGraph.of_arcs(arcs.tail, arcs.head, arcs.lines, self._at_port)
 
     @cached_property
-    def _by_name(self) -> dict[str, list[int]]:
-        found: dict[str, list[int]] = {}
-        for number, port in enumerate(self.ports):
-            node = self.nodes.first_port + number
-            names = {
-                normalised_port_name(port.name),
-                normalised_port_name(port.name.rpartition(",")[0]),
-                normalised_port_name(port.locode),
-            }
-            for name in names - {""}:
-                found.setdefault(name, []).append(node)
-        return found
+    def _port_names(self) -> PortNames:
+        return PortNames.of_ports(self.ports)

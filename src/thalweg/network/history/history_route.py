@@ -7,12 +7,16 @@ from typing import Any, Final
 
 import numpy as np
 
-from thalweg.core.geodesy import Position
+from thalweg.chart.approaches import line_length
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import Position, distance
 from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.network.history.season_masks import LEAST_SAMPLES
 from thalweg.network.history.voyage_tracks import HistoryPort
 
+_DEEPEST: Final = 30.0  # draught [m]
 _FEW: Final = 3  # voyages below which the confidence is low
+_ROUNDABOUT: Final = 1.5  # times the straight line: a way that nobody sailed whole is doubtful
 _MUCH: Final = 0.05  # share of the length without tracks above which the confidence is low
 
 
@@ -28,8 +32,8 @@ class HistoryRoute:
     length : float
         Length of the line with the approaches of both ports [m].
     duration : (float, float, float)
-        Sums of p10, p50 and p90 of the time under way on the arcs [s], without approaches; NaN
-        where an arc was not sailed.
+        p10, p50 and p90 of the time under way [s], without approaches: of whole voyages; sums over
+        the arcs where fewer than ten sailed the whole way; NaN where an arc was not sailed.
     voyages : int
         Least number of voyages of its arcs; 0 with arcs that were not sailed in this direction.
     globe_share : float
@@ -45,6 +49,9 @@ class HistoryRoute:
         Least number of voyages of its arcs in the month of the request; None without a month.
     notes : tuple of str
         That no voyages were seen in the month of the request.
+    whole : int
+        Voyages that sailed from the start to the goal without a call between, on this way if it is
+        one arc; less than 0: so many in the other direction, whose line this is.
     """
 
     start: HistoryPort
@@ -59,6 +66,7 @@ class HistoryRoute:
     passes: tuple[str, ...]
     voyages_in_month: int | None = None
     notes: tuple[str, ...] = ()
+    whole: int = 0
 
     @property
     def nm(self) -> float:
@@ -72,17 +80,37 @@ class HistoryRoute:
             return "none"
         if self.globe_share > _MUCH or self.voyages < _FEW:
             return "low"
-        return "high" if self.voyages >= LEAST_SAMPLES and self.voyages_in_month != 0 else "medium"
+        if self.whole <= 0 and self._times_straight > _ROUNDABOUT:
+            return "low"
+        many = min(self.voyages, self.whole) >= LEAST_SAMPLES
+        return "high" if many and self.voyages_in_month != 0 else "medium"
 
     @property
     def reason(self) -> str:
         """Why the route is known so well or so little, in words."""
-        reasons = [f"at least {self.voyages} voyages on every arc with tracks"]
+        if self.whole < 0:
+            reasons = [f"{-self.whole} voyages in the other direction, and few or none in this one"]
+        elif len(self.arcs) == 1 and self.whole > 0:
+            reasons = [f"{self.whole} voyages on this way"]
+        else:
+            sailed = f"{self.whole} voyages" if self.whole else "no voyage"
+            reasons = [
+                f"at least {self.voyages} voyages on every arc with tracks",
+                f"{sailed} from the one port to the other",
+            ]
+            if not self.whole and self._times_straight > _ROUNDABOUT:
+                reasons.append(f"{self._times_straight:.1f} times the straight line")
         if self.globe_share > 0.0:
             reasons.append(f"{100.0 * self.globe_share:.0f} % of the length without tracks")
         if self.voyages_in_month == 0:
             reasons.append("no voyage in this month on some of them")
         return ", ".join(reasons)
+
+    @property
+    def _times_straight(self) -> float:
+        """The length of the line in lengths of the straight line between its ends."""
+        straight = float(distance(*self.line[0], *self.line[-1]))
+        return line_length(self.line) / max(straight, 1.0)
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data for JSON.
@@ -101,6 +129,7 @@ class HistoryRoute:
             "voyages": self.voyages,
             "confidence": self.confidence,
             "reason": self.reason,
+            "voyages_of_whole_way": max(self.whole, 0),
             "voyages_in_month": self.voyages_in_month,
             "share_without_tracks": self.globe_share,
             "eca_share": None if np.isnan(self.eca_share) else self.eca_share,
@@ -108,6 +137,18 @@ class HistoryRoute:
             "notes": list(self.notes),
             "line": [list(place) for place in self.line],
         }
+
+
+def check_month_and_draught(month: int | None, draught: float | None) -> None:
+    """Raise `InputError` for a month or a draught [m] that is not possible."""
+    if month is not None and not 1 <= month <= 12:
+        raise InputError(f"The month is {month!r}.", "Months are 1 to 12.", "Give one of them.")
+    if draught is not None and not 0.0 < draught <= _DEEPEST:
+        raise InputError(
+            f"The draught is {draught!r} m.",
+            f"Draughts are above 0 and at most {_DEEPEST:g} m.",
+            "Correct it, or leave it out.",
+        )
 
 
 def no_arcs_text(month: int | None, draught: float | None) -> str:

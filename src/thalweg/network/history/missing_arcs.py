@@ -13,7 +13,7 @@ from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.network.global_grid.sea_graph import path_length
 from thalweg.network.history.arc_lines import ArcLines, GlobeWays
 from thalweg.network.history.arc_statistics import ArcEvidence
-from thalweg.network.history.history_network import (
+from thalweg.network.history.history_arcs import (
     GLOBE,
     REVERSED,
     SAILED,
@@ -45,7 +45,8 @@ def connected_arcs(
 
     First arcs that join parts in one direction only are added in the other direction, and those
     of ten voyages or more from whose end the way back is more than 1.5 times as long, and longer
-    by more than twice the radius; their evidence is that of the arc, their kind "reversed". Then
+    by more than twice the radius, and those between two ports of which no arc leads back; their
+    evidence is that of the arc, their kind "reversed". Then
     parts that no track joins are joined to
     the nearest other part by the shortest way by sea, both ways, of the kind "globe".
 
@@ -68,6 +69,9 @@ def connected_arcs(
         count, arcs, 2.0 * radius
     )
     lacking = (part[arcs.tail] != part[arcs.head]) | far_round
+    lacking |= _without_way_back(count, arcs) & np.isin(
+        [arcs.tail, arcs.head], np.asarray(used)
+    ).all(axis=0)
     one_way = np.flatnonzero(lacking)
     arcs = joined_arcs([arcs, _reversed(arcs, one_way)])
     nodes = np.union1d(np.union1d(arcs.tail, arcs.head), np.asarray(used, np.int64))
@@ -100,6 +104,11 @@ def _returns_far_round(count: int, arcs: HistoryArcs, least: float) -> BoolArray
         back = dijkstra(graph, indices=heads, limit=float(most.max()))
         far[own] = back[np.searchsorted(heads, arcs.head[own]), arcs.tail[own]] > most
     return far
+
+
+def _without_way_back(count: int, arcs: HistoryArcs) -> BoolArray:
+    """Return which arcs have no arc from their head to their tail, (A,)."""
+    return ~np.isin(arcs.tail * count + arcs.head, arcs.head * count + arcs.tail)
 
 
 def globe_arcs(

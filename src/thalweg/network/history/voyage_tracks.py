@@ -1,4 +1,4 @@
-"""Tracks of voyages between ports as arrays, and positions along them."""
+"""Ports and tracks of voyages between them as arrays, and positions along these."""
 
 from __future__ import annotations
 
@@ -9,9 +9,14 @@ from typing import Final
 
 import numpy as np
 
-from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING, MEAN_RADIUS, Position
+from thalweg.chart.port_names import normalised_port_name
+from thalweg.chart.ports import PORTS
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING, MEAN_RADIUS, Position, distance
 from thalweg.core.types import BoolArray, FloatArray, IntArray
+from thalweg.core.units import NAUTICAL_MILE
 
+_BESIDE: Final = 8.0 * NAUTICAL_MILE  # a port of the index so near to a sea end is the same
 _BETWEEN_VOYAGES: Final = 1000.0  # by how much `along` grows from one voyage to the next [m]
 _AXIS_RATIO_SQUARED: Final = (1.0 - FLATTENING) ** 2
 
@@ -79,6 +84,51 @@ class HistoryPort:
     lon: float
     approach_m: float = 0.0
     places: tuple[Position, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class PortNames:
+    """The names of the ports of a history network.
+
+    Parameters
+    ----------
+    ports : The ports, P in total.
+    by_name : Numbers of ports by normalised name, name without the country, and UN/LOCODE.
+    """
+
+    ports: tuple[HistoryPort, ...]
+    by_name: dict[str, list[int]]
+
+    @classmethod
+    def of_ports(cls, ports: Sequence[HistoryPort]) -> PortNames:
+        """Return the names of some ports."""
+        found: dict[str, list[int]] = {}
+        for number, port in enumerate(ports):
+            names = (port.name, port.name.rpartition(",")[0], port.locode)
+            for name in {normalised_port_name(name) for name in names} - {""}:
+                found.setdefault(name, []).append(number)
+        return cls(tuple(ports), found)
+
+    def find(self, place: str) -> list[int]:
+        """Return the numbers of the ports of a name.
+
+        Parameters
+        ----------
+        place : UN/LOCODE, or the name with or without the country; or the name of a port of the
+            World Port Index that has another name here, or lies beside a port of the network.
+        """
+        if found := self.by_name.get(normalised_port_name(place), []):
+            return found
+        try:
+            port = PORTS.lookup(place)
+        except InputError:
+            return []
+        for name in (port.locode, port.label):
+            if found := self.by_name.get(normalised_port_name(name), []):
+                return found
+        away = [float(distance(port.lat, port.lon, one.lat, one.lon)) for one in self.ports]
+        nearest = int(np.argmin(away)) if away else 0
+        return [nearest] if away and away[nearest] <= _BESIDE else []
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from os import PathLike
@@ -12,7 +13,7 @@ import numpy as np
 from thalweg.chart.geojson_polygons import read_features
 from thalweg.chart.ports import PORTS, Port
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import Position, check_position, format_position
+from thalweg.core.geodesy import Position, check_position, distance, format_position
 from thalweg.core.types import IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.history.history_builder import HistoryRules, build_history
@@ -33,6 +34,7 @@ from thalweg.planning.voyage_parts import Place
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
+_BESIDE: Final = 5.0 * NAUTICAL_MILE  # a berth so near to a port of the index is at it
 #: By how much distances from the berth of a port count more: a terminal beside a small port mostly
 #: belongs to the large one.
 _WEIGHT_OF_SIZE: Final = {"large": 1.0, "medium": 1.25, "small": 1.75}
@@ -221,6 +223,18 @@ def _at_sea(chart: Chart, port: Port, places: Sequence[Position]) -> HistoryPort
         return None
 
 
+def _port_beside(place: Position, chart: Chart) -> Port | None:
+    """Return the nearest port with an approach that is beside a berth, or None."""
+    near = [
+        (float(distance(*place, port.lat, port.lon)), port)
+        for port in PORTS.all
+        if abs(port.lat - place[0]) < 1.0 and chart.approaches is not None
+        and chart.approaches.of(port) is not None
+    ]  # fmt: skip
+    least, nearest = min(near, key=lambda pair: pair[0], default=(math.inf, None))
+    return nearest if least <= _BESIDE else None
+
+
 def _numbers(count: int, kept: Sequence[int]) -> IntArray:
     """Return the new number of every port, -1 for those that are not kept."""
     number = np.full(count, -1, np.int64)
@@ -229,9 +243,22 @@ def _numbers(count: int, kept: Sequence[int]) -> IntArray:
 
 
 def _history_port_at(name: str, place: Place, chart: Chart) -> HistoryPort:
-    """Return a named port, or the water nearest to a position under a name."""
+    """Return a named port, or a position under a name.
+
+    A berth on the land of the chart leads to the sea by the approach of the port beside it; where
+    there is none, the port is the nearest water.
+    """
     if isinstance(place, str):
         return history_port(PORTS.lookup(place), chart)
+    if not bool(np.asarray(chart.is_navigable(*place))):
+        beside = _port_beside(place, chart)
+        if beside is not None:
+            index = history_port(beside, chart)
+            away = float(distance(*place, beside.lat, beside.lon))
+            return replace(
+                index, name=name, locode="", approach_m=index.approach_m + away,
+                places=(place, *index.places),
+            )  # fmt: skip
     water = chart.nearest_navigable(*place, largest=MAX_SNAP_PORT)
     if water is None:
         raise InputError(
