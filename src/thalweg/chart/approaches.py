@@ -54,6 +54,7 @@ class PortApproach:
         Least distance from the charted part of the line to land [m]; NaN if none is charted.
     quality : "computed", "by hand" or "checked" (by hand and compared with a source).
     max_draught, max_length : Of ships, in the World Port Index [m]; NaN where unknown.
+    draught_source : Of the draught, where the table ``data/port_draughts.csv`` replaces the index.
     way : By which channel or to which canal, where it is not the main way ("by Fedjeosen").
     canal : Name of the canal that the line leads to, or empty.
     way_draught : Largest draught of ships that use this way [m]; inf without a limit.
@@ -68,6 +69,7 @@ class PortApproach:
     source: str
     max_draught: float = float("nan")
     max_length: float = float("nan")
+    draught_source: str = ""
     way: str = ""
     canal: str = ""
     way_draught: float = math.inf
@@ -256,7 +258,22 @@ class PortApproaches:
         packed = resources.files("thalweg.chart") / "data/port_approaches.csv.gz"
         rows = csv.DictReader(gzip.decompress(packed.read_bytes()).decode().splitlines())
         named = ((by_key.get((r["unlocode"], r["name"], r["country_code"])), r) for r in rows)
-        return {port: row for port, row in named if port is not None}
+        rows_by_port = {port: row for port, row in named if port is not None}
+        for row in rows_by_port.values():
+            row |= self._draughts.get(row["unlocode"], {})
+        return rows_by_port
+
+    @cached_property
+    def _draughts(self) -> dict[str, dict[str, str]]:
+        """Largest draughts that replace those of the World Port Index, by UN/LOCODE."""
+        table = resources.files("thalweg.chart") / "data/port_draughts.csv"
+        return {
+            row["unlocode"]: {
+                "max_draught_m": row["max_draught_m"],
+                "draught_source": row["source"],
+            }
+            for row in csv.DictReader(table.read_text("utf-8").splitlines())
+        }
 
 
 def line_between(
@@ -392,6 +409,7 @@ def _approach_of(port: Port, row: dict[str, str]) -> PortApproach:
         row["source"],
         float(row.get("max_draught_m") or "nan"),
         float(row.get("max_length_m") or "nan"),
+        row.get("draught_source", ""),
     )
 
 

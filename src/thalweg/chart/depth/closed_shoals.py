@@ -34,7 +34,8 @@ DegreeBox: TypeAlias = tuple[float, float, float, float]
 WORLD_BOX: Final[DegreeBox] = (-90.0, 90.0, -180.0, 180.0)
 _MARGIN: Final = 2.0  # of the layer: less than required by so much, and by a share, is closed [m]
 _SHARE: Final = 0.2
-_CHANNEL: Final = 4.0 * NAUTICAL_MILE  # on both sides of a channel
+_CHANNEL: Final = 4.0 * NAUTICAL_MILE  # on both sides of a channel, for shoals of the layer
+_CHANNEL_IN_AREA: Final = 1.5 * NAUTICAL_MILE  # ... and for named areas, drawn beside channels
 _LEAST_AREA: Final = 1e-4  # smaller shoals of the layer are left out [square degrees]
 _TOLERANCE: Final = 0.005  # of the outlines [deg]
 _DEGREE: Final = 60.0 * NAUTICAL_MILE
@@ -63,7 +64,7 @@ class ClosedShoals:
     ----------
     depth : Water with less than this by the layer, or in named areas, is closed [m].
     channels : tuple of tuple of (lat, lon)
-        Lines within 4 nautical miles of which water is open [deg].
+        Lines within 4 nautical miles of which water is open, in named areas 1.5 [deg].
     discs : tuple of (lat, lon, radius)
         Discs in which water is open [deg, m]; named areas with a centre inside are open.
     box : South, north, west and east [deg] of the shoals of the layer that count.
@@ -117,7 +118,6 @@ def closed_water_index(closed: ClosedShoals, no_go: tuple[Any, ...], cells: int)
 @lru_cache(maxsize=4)
 def _closed_shapes(closed: ClosedShoals) -> tuple[Any, ...]:
     import shapely
-    import shapely.affinity
 
     if closed.depth <= 0.0:
         return ()
@@ -127,17 +127,30 @@ def _closed_shapes(closed: ClosedShoals) -> tuple[Any, ...]:
         for area in SHOAL_AREAS
         if area.depth < closed.depth and not area.contains(*ends.T).any()
     ]
-    shapes = np.array([*_outlines_of_layer(closed.depth, closed.box), *named], object)
-    open_water = [_disc(*disc) for disc in closed.discs]
-    open_water += [_corridor(line) for line in closed.channels]
+    discs = [_disc(*disc) for disc in closed.discs]
+    shapes = []
+    for closed_here, reach in (
+        (_outlines_of_layer(closed.depth, closed.box), _CHANNEL),
+        (named, _CHANNEL_IN_AREA),
+    ):
+        channels = [_corridor(line, reach) for line in closed.channels]
+        shapes += [_without(np.array(closed_here, object), [*discs, *channels])]
+    parts = shapely.get_parts(np.concatenate(shapes))
+    return tuple(parts[shapely.area(parts) > _LEAST_AREA])
+
+
+def _without(shapes: NDArray[np.object_], open_water: list[Any]) -> NDArray[np.object_]:
+    """Return shapes without the parts that are in open water."""
+    import shapely
+    import shapely.affinity
+
     tree = shapely.STRtree(shapes)
     for area in open_water:
         for turn in _TURNS:
             there = shapely.affinity.translate(area, turn)
             cut = tree.query(there)
             shapes[cut] = shapely.difference(shapes[cut], there)
-    parts = shapely.get_parts(shapes)
-    return tuple(parts[shapely.area(parts) > _LEAST_AREA])
+    return shapes
 
 
 @lru_cache(maxsize=8)
@@ -192,7 +205,7 @@ def _disc(lat: float, lon: float, radius: float) -> Any:
 
 
 @lru_cache(maxsize=1024)
-def _corridor(line: tuple[Position, ...]) -> Any:
+def _corridor(line: tuple[Position, ...], reach: float) -> Any:
     import shapely
     import shapely.affinity
 
@@ -200,6 +213,6 @@ def _corridor(line: tuple[Position, ...]) -> Any:
     lon = np.degrees(np.unwrap(np.radians(lon)))
     stretch = max(float(np.cos(np.radians(lat.mean()))), 0.01)
     wide = shapely.LineString(np.stack([lon * stretch, lat], axis=-1)).buffer(
-        _CHANNEL / _DEGREE, quad_segs=4
+        reach / _DEGREE, quad_segs=4
     )
     return shapely.affinity.scale(wide, 1.0 / stretch, 1.0, origin=(0.0, 0.0))

@@ -24,9 +24,14 @@ def port_depth_note(approach: PortApproach, draught: float) -> str:
     """Return a note on a port that is too shallow for a draught [m]; empty where it is not."""
     if not draught > approach.max_draught:
         return ""
+    source, place = approach.draught_source, approach.port.label
+    largest = (
+        f"the largest draught in {place} is {approach.max_draught:g} m ({source})"
+        if source
+        else f"the World Port Index gives {approach.max_draught:g} m as the largest draught in {place}"
+    )
     return (
-        f"{PORT_TOO_SHALLOW}: the World Port Index gives {approach.max_draught:g} m as the largest "
-        f"draught in {approach.port.label}; the ship draws {draught:.1f} m. Load less, or ask the "
+        f"{PORT_TOO_SHALLOW}: {largest}; the ship draws {draught:.1f} m. Load less, or ask the "
         "port."
     )
 
