@@ -27,6 +27,7 @@ from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.report.approach_report import port_depth_note, turn_back_notes
 from thalweg.planning.report.distance_report import (
     LEAST_DEPTH,
+    closed_passage_notes,
     roundabout_notes,
     shoal_detour_notes,
     shoal_notes,
@@ -221,6 +222,7 @@ def _way_over_seas(
 ) -> SeaDistance:
     """Return the shortest way with some passages for small ships open; offing and draught [m]."""
     seas = Seaways.of_chart(chart, closed, opened=opened)
+    avoided = seas.passages
     if draught is not None:
         seas = _seas_for_draught(seas, draught, ends)
     ends = with_chosen_ways(ends, lambda: seas, draught=draught or 0.0)
@@ -245,6 +247,7 @@ def _way_over_seas(
     length, canals = path_length_and_canals(chart, path)
     notes += shoal_notes(seas, path, draught)
     if draught is not None:
+        notes += closed_passage_notes(seas, ends, draught, avoided)
         without = replace(seas, shoals=None)
         legs = tuple(itertools.pairwise(ends))
         notes += shoal_detour_notes(
