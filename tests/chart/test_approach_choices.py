@@ -101,7 +101,7 @@ def test_legs_along_branches_are_recognised():
 @pytest.mark.parametrize(
     ("name", "by", "position", "miles"),
     [
-        ("Surabaya", "by the Surabaya West Access Channel", (-7.068, 112.658), 15.1),
+        ("Surabaya", "by the Eastern Channel of Surabaya", (-7.190, 112.802), 5.8),
         ("Fukuyama", "by Bisan Seto from Fukuyama", (34.310, 133.643), 21.6),
         ("Matsuyama", "by Aki Nada from Matsuyama", (33.903, 132.614), 15.5),
         ("Hiroshima", "by Aki Nada from Hiroshima Bay", (34.034, 132.560), 41.8),

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.approach_branches import approach_branches
+from thalweg.chart.port_draughts import port_draughts
 from thalweg.chart.ports import PORTS, Port
 from thalweg.core.geodesy import METRES_PER_DEGREE, Position, distance
 from thalweg.core.types import FloatArray
@@ -54,7 +55,7 @@ class PortApproach:
         Least distance from the charted part of the line to land [m]; NaN if none is charted.
     quality : "computed", "by hand" or "checked" (by hand and compared with a source).
     max_draught, max_length : Of ships, in the World Port Index [m]; NaN where unknown.
-    draught_source : Of the draught, where the table ``data/port_draughts.csv`` replaces the index.
+    draught_source : Of the draught, where `thalweg.chart.port_draughts` replaces the index.
     way : By which channel or to which canal, where it is not the main way ("by Fedjeosen").
     canal : Name of the canal that the line leads to, or empty.
     way_draught : Largest draught of ships that use this way [m]; inf without a limit.
@@ -254,26 +255,11 @@ class PortApproaches:
     @cached_property
     def _rows(self) -> dict[Port, dict[str, str]]:
         """The rows of the table by port."""
-        by_key = {_key(port): port for port in PORTS.all}
+        by_key = {(p.locode, p.name, p.country_code): p for p in PORTS.all}
         packed = resources.files("thalweg.chart") / "data/port_approaches.csv.gz"
         rows = csv.DictReader(gzip.decompress(packed.read_bytes()).decode().splitlines())
         named = ((by_key.get((r["unlocode"], r["name"], r["country_code"])), r) for r in rows)
-        rows_by_port = {port: row for port, row in named if port is not None}
-        for row in rows_by_port.values():
-            row |= self._draughts.get(row["unlocode"], {})
-        return rows_by_port
-
-    @cached_property
-    def _draughts(self) -> dict[str, dict[str, str]]:
-        """Largest draughts that replace those of the World Port Index, by UN/LOCODE."""
-        table = resources.files("thalweg.chart") / "data/port_draughts.csv"
-        return {
-            row["unlocode"]: {
-                "max_draught_m": row["max_draught_m"],
-                "draught_source": row["source"],
-            }
-            for row in csv.DictReader(table.read_text("utf-8").splitlines())
-        }
+        return {port: row for port, row in named if port is not None}
 
 
 def line_between(
@@ -395,12 +381,9 @@ def _cell(lat: float, lon: float) -> tuple[int, int]:
     return int(lat // _CELL), int(lon // _CELL) % _TURN
 
 
-def _key(port: Port) -> tuple[str, str, str]:
-    return port.locode, port.name, port.country_code
-
-
 def _approach_of(port: Port, row: dict[str, str]) -> PortApproach:
     pairs = (pair.split(",") for pair in row["line"].split())
+    row = row | port_draughts().get(row["unlocode"], {})
     return PortApproach(
         port,
         tuple((float(lat), float(lon)) for lat, lon in pairs),

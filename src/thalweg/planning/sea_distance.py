@@ -27,7 +27,7 @@ from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.report.approach_report import port_depth_note, turn_back_notes
 from thalweg.planning.report.distance_report import (
     LEAST_DEPTH,
-    closed_passage_notes,
+    passages_closed_to_draught_notes,
     roundabout_notes,
     shoal_detour_notes,
     shoal_notes,
@@ -247,7 +247,7 @@ def _way_over_seas(
     length, canals = path_length_and_canals(chart, path)
     notes += shoal_notes(seas, path, draught)
     if draught is not None:
-        notes += closed_passage_notes(seas, ends, draught, avoided)
+        notes += passages_closed_to_draught_notes(seas, ends, draught, avoided)
         without = replace(seas, shoals=None)
         legs = tuple(itertools.pairwise(ends))
         notes += shoal_detour_notes(

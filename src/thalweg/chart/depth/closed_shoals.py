@@ -34,8 +34,8 @@ DegreeBox: TypeAlias = tuple[float, float, float, float]
 WORLD_BOX: Final[DegreeBox] = (-90.0, 90.0, -180.0, 180.0)
 _MARGIN: Final = 2.0  # of the layer: less than required by so much, and by a share, is closed [m]
 _SHARE: Final = 0.2
-_CHANNEL: Final = 4.0 * NAUTICAL_MILE  # on both sides of a channel, for shoals of the layer
-_CHANNEL_IN_AREA: Final = 1.5 * NAUTICAL_MILE  # ... and for named areas, drawn beside channels
+_CHANNEL: Final = 4.0 * NAUTICAL_MILE  # on both sides of a channel
+_CHANNEL_IN_REEFS: Final = 1.5 * NAUTICAL_MILE  # ... where named areas of reefs are beside it
 _LEAST_AREA: Final = 1e-4  # smaller shoals of the layer are left out [square degrees]
 _TOLERANCE: Final = 0.005  # of the outlines [deg]
 _DEGREE: Final = 60.0 * NAUTICAL_MILE
@@ -64,7 +64,7 @@ class ClosedShoals:
     ----------
     depth : Water with less than this by the layer, or in named areas, is closed [m].
     channels : tuple of tuple of (lat, lon)
-        Lines within 4 nautical miles of which water is open, in named areas 1.5 [deg].
+        Lines within 4 nautical miles of which water is open, in named reefs 1.5 [deg].
     discs : tuple of (lat, lon, radius)
         Discs in which water is open [deg, m]; named areas with a centre inside are open.
     box : South, north, west and east [deg] of the shoals of the layer that count.
@@ -123,15 +123,17 @@ def _closed_shapes(closed: ClosedShoals) -> tuple[Any, ...]:
         return ()
     ends = np.array([disc[:2] for disc in closed.discs]).reshape(-1, 2)
     named = [
-        area.polygon
+        area
         for area in SHOAL_AREAS
         if area.depth < closed.depth and not area.contains(*ends.T).any()
     ]
+    banks = [area.polygon for area in named if area.depth > 0.0]
+    reefs = [area.polygon for area in named if area.depth <= 0.0]
     discs = [_disc(*disc) for disc in closed.discs]
     shapes = []
     for closed_here, reach in (
-        (_outlines_of_layer(closed.depth, closed.box), _CHANNEL),
-        (named, _CHANNEL_IN_AREA),
+        ([*_outlines_of_layer(closed.depth, closed.box), *banks], _CHANNEL),
+        (reefs, _CHANNEL_IN_REEFS),
     ):
         channels = [_corridor(line, reach) for line in closed.channels]
         shapes += [_without(np.array(closed_here, object), [*discs, *channels])]

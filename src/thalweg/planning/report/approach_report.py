@@ -25,10 +25,11 @@ def port_depth_note(approach: PortApproach, draught: float) -> str:
     if not draught > approach.max_draught:
         return ""
     source, place = approach.draught_source, approach.port.label
+    limit = f"{approach.max_draught:g} m"
     largest = (
-        f"the largest draught in {place} is {approach.max_draught:g} m ({source})"
+        f"the largest draught in {place} is {limit} ({source})"
         if source
-        else f"the World Port Index gives {approach.max_draught:g} m as the largest draught in {place}"
+        else f"the World Port Index gives {limit} as the largest draught in {place}"
     )
     return (
         f"{PORT_TOO_SHALLOW}: {largest}; the ship draws {draught:.1f} m. Load less, or ask the "

@@ -15,13 +15,13 @@ from thalweg.chart.passage_crossings import passages_crossed
 from thalweg.core.geodesy import Position, densify, distance
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.global_grid.sea_graph import path_length
-from thalweg.planning.report.land_report import PASSAGE_CLOSED
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways
 
 #: Ways without a draught have a note where they do not keep off water shallower than this [m].
 LEAST_DEPTH: Final = 2.5
 _CLEARLY_LONGER: Final = 1.05
+PASSAGE_CLOSED: Final = "Passage closed"  #: a note on passages that are closed begins so
 #: Closed passages are named that save so much of the way, and at least so much [m].
 _LEAST_SHARE: Final = 0.02
 _LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE
@@ -72,7 +72,7 @@ def shoal_detour_notes(
     )
 
 
-def closed_passage_notes(
+def passages_closed_to_draught_notes(
     seas: Seaways, ends: Sequence[Endpoint], draught: float, avoided: Sequence[str]
 ) -> tuple[str, ...]:
     """Return a note on passages closed to a draught that would make a way clearly shorter.

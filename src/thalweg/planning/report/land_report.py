@@ -14,6 +14,7 @@ from thalweg.core.geodesy import densify, distance, format_position
 from thalweg.core.time import format_time
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.distance_report import PASSAGE_CLOSED
 from thalweg.planning.request.offing_choice import size_restriction
 from thalweg.route import Route
 from thalweg.route.referee.land_clearance import least_land_clearance
@@ -25,7 +26,6 @@ NEAREST_LAND: Final = "Nearest land"  #: a note on it begins so
 CLOSE_TO_LAND: Final = "Close to land"  #: ... or so, where it is nearer than `_CLOSE`
 _CLOSE: Final = 0.25 * NAUTICAL_MILE
 PASSES: Final = "Passes "  #: one on a named passage
-PASSAGE_CLOSED: Final = "Passage closed"  #: a note on one that is closed to a ship begins so
 _NEAR: Final = 30.0 * NAUTICAL_MILE  # land farther from the route is not mentioned
 
 

@@ -7,10 +7,11 @@ from typing import Final
 
 from thalweg.planning.report.approach_report import PORT_TOO_SHALLOW, TURNS_BACK
 from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
+from thalweg.planning.report.distance_report import PASSAGE_CLOSED
 from thalweg.planning.report.filled_weather import FILLED
 from thalweg.planning.report.given_route_report import NEAR_LAND
 from thalweg.planning.report.ice_report import REACHES_ICE
-from thalweg.planning.report.land_report import CLOSE_TO_LAND, PASSAGE_CLOSED, PASSES
+from thalweg.planning.report.land_report import CLOSE_TO_LAND, PASSES
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, LANE_DETOUR
 from thalweg.planning.report.wave_report import TOO_STEEP
 from thalweg.planning.request.coverage_check import UNREAD

@@ -1,0 +1,21 @@
+"""Largest draughts of ports where those of the World Port Index do not hold.
+
+The table is ``data/port_draughts.csv``: UN/LOCODE, largest draught, source. An empty draught means
+that the index gives that of another part of the port and none is known for the whole.
+"""
+
+from __future__ import annotations
+
+import csv
+from functools import cache
+from importlib import resources
+
+
+@cache
+def port_draughts() -> dict[str, dict[str, str]]:
+    """Return the columns that replace those of the table of approaches, by UN/LOCODE."""
+    table = resources.files("thalweg.chart") / "data/port_draughts.csv"
+    return {
+        row["unlocode"]: {"max_draught_m": row["max_draught_m"], "draught_source": row["source"]}
+        for row in csv.DictReader(table.read_text("utf-8").splitlines())
+    }

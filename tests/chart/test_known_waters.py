@@ -1,0 +1,113 @@
+"""Lines of straits and approaches in waters whose channels are known, off reefs and banks."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thalweg.chart.approaches import PORT_APPROACHES, dense_line
+from thalweg.chart.depth.closed_shoals import ClosedShoals
+from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
+from thalweg.chart.passages import find_passages
+from thalweg.chart.ports import PORTS
+from thalweg.core.geodesy import densify, distance
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.report.approach_report import port_depth_note
+
+
+def approach(name):
+    return PORT_APPROACHES.of(PORTS.find(name))
+
+
+def least_miles(line, place):
+    lat, lon, _ = densify(*np.array(line, float).T, 0.1 * NAUTICAL_MILE)
+    return float(distance(*place, lat, lon).min()) / NAUTICAL_MILE
+
+
+def test_kvarken_takes_the_ships_of_kokkola_and_vastra_kvarken_does_not():
+    kvarken, western = find_passages(["Kvarken", "Vastra Kvarken"])
+    assert kvarken.ship_restriction(draught=12.9, length=230.0) == ""
+    assert "draught of 6 m" in western.ship_restriction(draught=6.0, length=100.0)
+    assert "ships below 120 m" in western.ship_restriction(draught=4.5, length=140.0)
+
+
+# Positions: mid-channel between land of GSHHG h; channels by general knowledge.
+@pytest.mark.parametrize("port", ["Montreal", "Quebec", "Trois Rivieres", "Sorel"])
+@pytest.mark.parametrize(
+    ("place", "within"),
+    [
+        ((47.850, -69.800), 0.5),  # north of Ile aux Lievres
+        ((47.472, -70.198), 0.5),  # off Cap aux Oies
+        ((47.435, -70.385), 0.5),  # Passage de l'Ile aux Coudres
+        ((47.080, -70.695), 0.5),  # Traverse du Nord
+        ((46.888, -70.926), 0.5),  # south of Ile d'Orleans
+    ],
+)
+def test_approaches_in_the_st_lawrence_follow_the_ship_channel(port, place, within):
+    assert least_miles(approach(port).line, place) < within
+    assert least_miles(approach(port).line, (47.50, -70.10)) > 2.0  # the old straight leg
+
+
+def test_the_inner_route_keeps_off_reefs_and_passes_the_adolphus_channel():
+    (route,) = find_passages(["Inner Route"])
+    assert least_miles(route.line, (-10.672, 142.605)) < 0.5  # Adolphus Channel
+    davie, corbett, tydeman = (-13.98, 144.43), (-13.98, 144.13), (-13.98, 144.51)
+    assert min(least_miles(route.line, reef) for reef in (davie, corbett, tydeman)) > 2.5
+    assert least_miles(route.line, (-13.50, 143.78)) < 0.5  # east of Morris Island
+    lat, lon, _ = densify(*route.positions, 0.2 * NAUTICAL_MILE)
+    (reefs,) = (area for area in SHOAL_AREAS if "Corbett" in area.name)
+    assert not reefs.contains(lat, lon).any()
+
+
+def test_named_reefs_stay_closed_two_miles_beside_a_channel():
+    (area,) = (area for area in SHOAL_AREAS if area.name == "Serrana bank")
+    line = ((14.10, -80.275), (14.60, -80.275))
+    closed = ClosedShoals(9.0, (line,), box=(14.0, 15.0, -81.0, -79.0))
+    beside = -80.275 + np.array([1.0, 2.0]) / 60.0 / np.cos(np.radians(14.35))
+    assert area.contains(np.full(2, 14.35), beside).all()
+    assert closed.contains(np.full(2, 14.35), beside).tolist() == [False, True]
+
+
+def test_manila_bay_has_its_two_channels_and_its_shoal():
+    for name, islet in (
+        ("Manila Bay: South Channel", (14.3075, 120.6285)),  # El Fraile
+        ("Manila Bay: North Channel", (14.377, 120.520)),  # La Monja
+    ):
+        (channel,) = find_passages([name])
+        assert least_miles(channel.line, islet) > 1.0
+        assert least_miles(channel.line, (14.45, 120.733)) > 1.5  # San Nicolas Shoals
+    assert any(area.contains(14.45, 120.74) for area in SHOAL_AREAS)
+
+
+def test_kolkata_follows_the_bends_of_the_hooghly():
+    # 232 km from Sandheads, 10 miles beyond the end of this line; a straighter line had 103.5 nm
+    assert 110.0 < approach("Kolkata").length / NAUTICAL_MILE < 125.0
+
+
+@pytest.mark.parametrize(
+    ("port", "draught"),
+    [("Port Hedland", 18.5), ("Yanbu", 20.0), ("Dampier", 18.0), ("Abidjan", 12.0)],
+)
+def test_great_ports_are_not_called_too_shallow_for_the_ships_they_take(port, draught):
+    assert port_depth_note(approach(port), draught) == ""
+
+
+@pytest.mark.parametrize(
+    ("port", "draught", "largest"),
+    [("Montreal", 12.0, "11.3 m"), ("Surabaya", 13.0, "12 m"), ("Port Hedland", 20.5, "19.5 m")],
+)
+def test_largest_draughts_of_the_table_are_named_with_their_source(port, draught, largest):
+    note = port_depth_note(approach(port), draught)
+    assert largest in note and "general knowledge, unchecked" in note
+    assert "World Port Index" not in note
+
+
+def test_the_index_is_the_source_of_other_ports():
+    assert "the World Port Index gives 17.5 m" in port_depth_note(approach("Richards Bay"), 18.0)
+
+
+def test_surabaya_is_reached_by_its_western_channel():
+    line = dense_line(approach("Surabaya").line)
+    assert distance(-7.068, 112.658, line[:, 0], line[:, 1]).min() < 0.5 * NAUTICAL_MILE
+    (east,) = find_passages(["Surabaya: Eastern Channel"])
+    assert east.ship_restriction(draught=8.0, length=150.0)

@@ -1,0 +1,108 @@
+"""Ways by sea through straits with limits: the deep one is taken, and no shallower one instead."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thalweg import Sea, Ship, Voyage, plan
+from thalweg.core.geodesy import densify, distance
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.report.distance_report import PASSAGE_CLOSED
+from thalweg.planning.sea_distance import sea_distance
+
+pytestmark = pytest.mark.slow
+
+
+def track(route):
+    lat, lon = np.asarray(route.track.lat, float), np.asarray(route.track.lon, float)
+    return densify(lat, lon, 0.2 * NAUTICAL_MILE)[:2]
+
+
+def miles_from(place, lat, lon):
+    return float(distance(*place, lat, lon).min()) / NAUTICAL_MILE
+
+
+def calm_plan(start, goal, ship, **more):
+    voyage = Voyage(start=start, goal=goal, depart="2026-07-01T00:00Z", **more)
+    return plan(voyage, ship=ship, sea=Sea.calm(), proof=0.0)
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "draught"),
+    [
+        ("Oulu", "Gavle", 10.0),
+        ("Lulea", "Stockholm", 10.0),
+        ("Lulea", "Gothenburg", 9.5),
+        ("Kokkola", "Rotterdam", 13.0),
+    ],
+)
+def test_ships_of_the_bothnian_bay_pass_kvarken(start, goal, draught):
+    found = sea_distance(start, goal, draught_m=draught)
+    assert "Kvarken (Norra)" in found.straits
+    line = densify(*np.array(found.line).T, NAUTICAL_MILE)[:2]
+    assert miles_from((63.78, 20.72), *line) > 5.0  # Vastra Kvarken
+
+
+def test_a_plan_through_kvarken_keeps_its_offing():
+    found = calm_plan("Lulea", "Gavle", Ship.load("handysize-bulker"))
+    assert any(note.startswith("Keeps 2 nm off land") for note in found.notes)
+    assert miles_from((63.817, 20.867), *track(found.best)) > 5.0  # shoals of 5.9 m
+
+
+@pytest.mark.parametrize("draught", [8.0, 11.5, 13.0])
+def test_deep_ships_do_not_reach_surabaya_through_madura_strait(draught):
+    found = sea_distance("Surabaya", "Singapore", draught_m=draught)
+    assert found.nm == pytest.approx(765.0, abs=10.0)  # 940 by the east
+    shallow = [note for note in found.notes if note.startswith("The port is too shallow")]
+    assert len(shallow) == (draught > 12.0)
+
+
+def test_small_ships_use_the_eastern_channel_of_surabaya():
+    assert sea_distance("Surabaya", "Probolinggo", draught_m=5.0).nm < 60.0
+    assert sea_distance("Surabaya", "Probolinggo", draught_m=8.0).nm > 150.0
+
+
+def test_the_inner_route_is_sailed_off_the_reefs_of_princess_charlotte_bay():
+    ship = Ship.simple(14.0, 9.5, length_m=180.0)
+    found = calm_plan("Cairns", (-10.53, 142.0), ship, objective="distance")
+    lat, lon = track(found.best)
+    for reef in ((-13.98, 144.43), (-13.98, 144.51), (-13.97, 144.13)):  # Davie, Tydeman, Corbett
+        assert miles_from(reef, lat, lon) > 2.0
+    assert miles_from((-10.672, 142.605), lat, lon) < 1.5  # Adolphus Channel
+
+
+def test_manila_is_left_between_its_islands():
+    lat, lon = track(calm_plan("Manila", "Davao", Ship.load("handysize-bulker")).best)
+    assert miles_from((14.3075, 120.6285), lat, lon) > 1.2  # El Fraile
+    assert miles_from((14.45, 120.745), lat, lon) > 1.5  # San Nicolas Shoals
+    assert miles_from((14.343, 120.635), lat, lon) < 1.0
+
+
+def test_ships_out_of_the_bohai_keep_south_of_the_separation_line():
+    found = calm_plan("Qinhuangdao", "Shanghai", Ship.load("handysize-bulker"))
+    lat, lon = track(found.best)
+    assert miles_from((38.727, 121.137), lat, lon) > 10.0  # Laotieshan Jiao; 2.0 nm before
+    assert any("Laotieshan Channel" in note for note in found.notes)
+
+
+def test_buenos_aires_to_montevideo_does_not_turn_back():
+    found = sea_distance("Buenos Aires", "Montevideo", draught_m=9.5)
+    assert 118.0 < found.nm < 128.0  # 147 by the end of the Plate channel
+    assert not any("Turns back" in note for note in found.notes)
+
+
+def test_bonifacio_is_open_to_medium_ships():
+    found = sea_distance("Barcelona, ES", "Naples")
+    assert "Bonifacio" in found.straits
+    assert found.nm == pytest.approx(555.0, rel=0.015)  # as tables give it
+    assert sea_distance("Barcelona, ES", "Naples", avoid=["Bonifacio"]).nm > 590.0
+
+
+def test_a_distance_names_passages_that_its_draught_closes():
+    closed = sea_distance("Lulea", "Gothenburg", draught_m=9.5)
+    (note,) = (note for note in closed.notes if note.startswith(PASSAGE_CLOSED))
+    assert "Oresund: the draught of 9.5 m is over the 7.7 m allowed" in note
+    assert "126 nm shorter" in note
+    through = sea_distance("Lulea", "Gothenburg", draught_m=7.0)
+    assert not any(note.startswith(PASSAGE_CLOSED) for note in through.notes)
