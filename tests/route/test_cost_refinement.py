@@ -318,7 +318,7 @@ def test_the_knapsack_against_all_choices(legs, count, share, random):
         cost += portion * (costs[leg, slower] - costs[leg, setting[leg]])
     assert time <= room + 1e-9
     for choice in itertools.product(range(count), repeat=legs):
-        if times[rows, choice].sum() <= room + 1e-12:
+        if times[rows, choice].sum() <= room - 1e-12:  # surely in time, whatever is rounded
             assert cost <= costs[rows, choice].sum() + 1e-9
 
 
