@@ -225,7 +225,10 @@ def usual_against_optimal(
     sailed = chart if best.plot_context is None else best.plot_context.chart
     broken = [note for note in lane_notes(sailed, usual) if note.startswith(_BREAKS_RULES)]
     ways = _passes(usual, chart), _passes(best.best, chart)
-    return UsualAgainstOptimal(usual, best.best, history, ways, (*history.notes, *broken))
+    notes = [*history.notes, *broken]
+    if ship.draught:
+        notes.append(f"Ways closed to the draught of the ship, {ship.draught:.1f} m, are left out.")
+    return UsualAgainstOptimal(usual, best.best, history, ways, tuple(notes))
 
 
 def _passes(route: Route, chart: Chart) -> tuple[str, ...]:

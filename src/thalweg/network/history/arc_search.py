@@ -12,7 +12,6 @@ from thalweg.core.geodesy import distance
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.network.static_paths import static_astar
 from thalweg.network.history.arc_lines import ArcLines
-from thalweg.network.history.arc_statistics import ArcEvidence
 from thalweg.network.history.route_lines import following_arcs
 
 #: Arcs sailed in the other direction only, and ways over the globe, count this many times their
@@ -162,15 +161,3 @@ def doubt_factors(
     through = np.zeros(len(pairs), np.int64)
     np.maximum.at(through, found[near], np.minimum(count[before], count[after])[near])
     return np.where(_FIFTH * count < through[number], _STRAY, factor)
-
-
-def longer_if_repaired(evidence: ArcEvidence, line: FloatArray, repaired: FloatArray) -> FloatArray:
-    """Return the median lengths of the voyages on arcs, (A,) [m]; of the line where none is known.
-
-    Parameters
-    ----------
-    line : Lengths of the lines [m], (A,); of lines that were repaired the longer of both counts.
-    repaired : Share of every line that is no track, (A,).
-    """
-    median = np.where(np.isfinite(evidence.length[:, 1]), evidence.length[:, 1], line)
-    return np.where(repaired > 0.0, np.maximum(median, line), median)

@@ -235,7 +235,7 @@ def _evidence(
     one = occurrences.take(inside)
     time = tracks.values_at(tracks.under_way, one.end)
     time -= tracks.values_at(tracks.under_way, one.begin)
-    month = _months(tracks, occurrences.begin, occurrences.end)
+    month = voyage_months(tracks, occurrences.begin, occurrences.end)
     count = np.diff(ptr)
     arc = np.repeat(np.arange(len(count)), count)
     seen = np.zeros((len(count), MONTHS), np.int64)
@@ -258,11 +258,16 @@ def _voyages_by_month(tracks: VoyageTracks, occurrences: ArcOccurrences) -> IntA
     """Return the voyages by month in the region of every node (N, 12), by their middles."""
     begin, end = tracks.along[tracks.ptr[:-1]], tracks.along[tracks.ptr[1:] - 1]
     ends = occurrences.tail, occurrences.head
-    return voyages_of_regions(ends, occurrences.voyage, _months(tracks, begin, end))
+    return voyages_of_regions(ends, occurrences.voyage, voyage_months(tracks, begin, end))
 
 
-def _months(tracks: VoyageTracks, begin: FloatArray, end: FloatArray) -> IntArray:
-    """Return the month of the middle of every stretch, 0 for January."""
+def voyage_months(tracks: VoyageTracks, begin: FloatArray, end: FloatArray) -> IntArray:
+    """Return the month of the middle of every stretch, 0 for January.
+
+    Parameters
+    ----------
+    begin, end : As `VoyageTracks.along` [m], (m,).
+    """
     time = tracks.values_at(tracks.time, 0.5 * (begin + end))
     moments = time.astype("datetime64[s]").astype("datetime64[M]")
     return np.asarray(moments.astype(np.int64) % MONTHS)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -14,7 +14,7 @@ from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.history.arc_lines import GlobeWays, LinesOffLand, lines_off_land
 from thalweg.network.history.arc_statistics import ArcEvidence, FoundArcs, arcs_of_occurrences
-from thalweg.network.history.history_arcs import SAILED, HistoryArcs, HistoryNodes
+from thalweg.network.history.history_arcs import MOSTLY, SAILED, HistoryArcs, HistoryNodes
 from thalweg.network.history.history_network import HistoryNetwork
 from thalweg.network.history.junction_visits import arc_occurrences
 from thalweg.network.history.junctions import CorridorLine, Junctions, find_junctions
@@ -23,13 +23,12 @@ from thalweg.network.history.sailed_lines import LineRules, lines_as_sailed
 from thalweg.network.history.stretch_ends import EndFinder
 from thalweg.network.history.turning_points import turning_points
 from thalweg.network.history.voyage_tracks import HistoryPort, VoyageTracks
-from thalweg.network.history.whole_voyages import VoyagePairs, with_whole_voyages
+from thalweg.network.history.whole_voyages import with_whole_voyages
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 _LEAST_RADIUS: Final = 0.1 * NAUTICAL_MILE
-_MOSTLY: Final = 0.5  # whole voyages with more of their line over land have no arc
 _LARGEST_RADIUS: Final = 100.0 * NAUTICAL_MILE
 
 
@@ -125,10 +124,10 @@ def build_history(
         chart, tracks, turning, radius=rules.radius, least=rules.least, corridors=corridors
     )
     report("dividing the tracks at the junctions")
-    occurrences = arc_occurrences(tracks, junctions, ports, radius=rules.radius)
-    canals = {canal.name for canal in chart.canals}
-    at_canal = np.array([name in canals for name in junctions.names], bool)
-    occurrences, pairs = with_whole_voyages(tracks, occurrences, len(junctions), at_canal)
+    occurrences, by_canal = arc_occurrences(tracks, junctions, ports, radius=rules.radius)
+    occurrences, pairs = with_whole_voyages(
+        tracks, occurrences, len(junctions), by_canal, least=rules.least
+    )
     sailed = arcs_of_occurrences(
         tracks, occurrences, radius=rules.radius, least=rules.least, first_port=len(junctions)
     )
@@ -144,13 +143,14 @@ def build_history(
         radius=rules.radius, ways=ways,
     )  # fmt: skip
     approach = finder.ends(occurrences.take(tested.source)).approach
-    fixed = np.append(at_canal, np.ones(len(ports), bool))
+    number = np.arange(len(junctions) + len(ports))
+    fixed = (number < junctions.canal_ends) | (number >= len(junctions))
     tested = lines_as_sailed(
         chart, tracks, occurrences, tested, finder=finder, fixed=fixed,
         rules=LineRules(rules.radius, rules.tolerance), ways=ways,
     )  # fmt: skip
     at_port = sailed.tail >= len(junctions), sailed.head >= len(junctions)
-    lost = (at_port[0] & at_port[1])[tested.arc] & (tested.repaired > _MOSTLY)  # as in canals
+    lost = (at_port[0] & at_port[1])[tested.arc] & (tested.repaired > MOSTLY)  # as in canals
     arcs = _sailed_arcs(chart, sailed, tested.take(~lost), approach[~lost])
     report("connecting the network")
     nodes = HistoryNodes(*places, (*junctions.names, *([""] * len(ports))), tuple(ports))
@@ -214,5 +214,5 @@ def _without_unused(network: HistoryNetwork) -> HistoryNetwork:
         arcs.eca_share, arcs.repaired, arcs.approach,
     )  # fmt: skip
     of = network.pairs
-    pairs = VoyagePairs(number[of.tail], number[of.head], of.count, of.duration)
+    pairs = replace(of, tail=number[of.tail], head=number[of.head])
     return HistoryNetwork(left, new, network.radius, network.least, network.summary, pairs)

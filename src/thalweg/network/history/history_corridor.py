@@ -29,6 +29,7 @@ from thalweg.network.history.corridor_ways import (
     arcs_between,
     strip_polygons,
 )
+from thalweg.network.history.history_arcs import canal_arcs
 from thalweg.network.history.history_network import HistoryNetwork
 from thalweg.network.history.history_route import no_arcs_text
 from thalweg.network.history.missing_arcs import globe_arcs, joined_arcs
@@ -47,6 +48,7 @@ _LEAST_SPACING: Final = 5.0 * NAUTICAL_MILE
 _PIECES_PER_EDGE: Final = 2  # pieces in which every edge is sampled
 _TOUCH: Final = 1e-5  # by which parts of the tube overlap [deg]
 _AT_END: Final = 10.0  # of a canal [m]
+_SELDOM: Final = 0.2  # of the voyages of the usual way: other ways of fewer are left out
 _APPROACH_WIDTH: Final = 1.0 * NAUTICAL_MILE
 
 
@@ -105,7 +107,12 @@ class HistoryCorridor:
         network = self.network
         lat, lon = network.nodes.lat.copy(), network.nodes.lon.copy()
         arcs, weight = network.arcs, network.weights(month=self.month, draught=self.draught)
-        ends, links = [], []
+        open_here = {canal.name for canal in chart.canals}
+        for canal in canal_arcs(network.nodes, arcs).tolist():
+            if network.nodes.names[arcs.tail[canal]] not in open_here:
+                weight[canal] = np.inf
+        ends: list[int] = []
+        links = []
         vectors = sphere_vectors(lat, lon)
         ways = GlobeWays(chart)
         for place, outward in ((start, True), (goal, False)):
@@ -126,6 +133,8 @@ class HistoryCorridor:
                 if way is not None:
                     links.append((ends[-1], node, way) if outward else (node, ends[-1], way[::-1]))
             lat, lon = np.append(lat, place[0]), np.append(lon, place[1])
+        if max(ends) < len(network.nodes):
+            network.whole.check_draught(network.nodes, (ends[0], ends[1]), self.draught, weight)
         if links:
             more = globe_arcs(chart, links, np.zeros(len(lat)))
             arcs, weight = joined_arcs([arcs, more]), np.append(weight, more.length)
@@ -146,14 +155,16 @@ class HistoryCorridor:
 
     def _whole_voyages(self, start: int, goal: int, weight: FloatArray) -> IntArray:
         """Return the arcs of whole voyages between two nodes that are not too long."""
-        network = self.network
-        count, length = network.arcs.evidence.count, network.lengths
-        known = [arc for arc in network.whole_ways(start, goal, weight)
-                 if count[arc] >= network.least]  # fmt: skip
-        if not known:
+        network, evidence = self.network, self.network.arcs.evidence
+        whole = network.whole_ways(start, goal, weight)
+        usual = network.usual_way(start, goal, weight, month=self.month) if whole else []
+        if len(usual) != 1 or usual[0] not in whole:
             return np.empty(0, np.int64)
-        most = self.longest * length[network.usual_way(start, goal, weight, month=self.month)[0]]
-        return np.array([arc for arc in known if length[arc] <= most], np.int64)
+        seen = evidence.count if self.month is None else evidence.months[:, self.month - 1]
+        seen = seen if seen[usual[0]] > 0 else evidence.count
+        length, least = network.lengths, max(1.0, _SELDOM * float(seen[usual[0]]))
+        most = self.longest * length[usual[0]]
+        return np.array([arc for arc in whole if length[arc] <= most and seen[arc] >= least])
 
     def network_between(
         self, chart: Chart, start: Position, goal: Position, *, spacing: float | None = None

@@ -61,11 +61,13 @@ def write_history(network: HistoryNetwork, path: str | PathLike[str]) -> None:
             for port in nodes.ports
         ],
         "arcs": [_arc_to_dict(arcs, arc) for arc in range(len(arcs))],
-        "voyages": [
-            {"from": tail, "to": head, "voyages": count, "duration_s": _rounded(time, _METRES)}
-            for tail, head, count, time in zip(
+        "canal_voyages": [
+            {"from": tail, "to": head, "voyages": count, "months": months,
+             "duration_s": _rounded(time, _METRES)}
+            for tail, head, count, months, time in zip(
                 network.pairs.tail.tolist(), network.pairs.head.tolist(),
-                network.pairs.count.tolist(), network.pairs.duration,
+                network.pairs.count.tolist(), network.pairs.months.tolist(),
+                network.pairs.duration,
             )
         ],
     }  # fmt: skip
@@ -190,7 +192,7 @@ def _network_of(data: dict[str, Any]) -> HistoryNetwork:
     )
     return HistoryNetwork(
         nodes, arcs, float(data["radius_m"]), int(data["least_voyages"]), dict(data["summary"]),
-        _pairs_of(data.get("voyages", [])),
+        _pairs_of(data.get("canal_voyages", [])),
     )  # fmt: skip
 
 
@@ -198,7 +200,8 @@ def _pairs_of(rows: list[dict[str, Any]]) -> VoyagePairs:
     tail, head, count = (
         np.array([row[name] for row in rows], np.int64) for name in ("from", "to", "voyages")
     )
-    return VoyagePairs(tail, head, count, _table(rows, "duration_s", [None] * 3))
+    months = np.array([row["months"] for row in rows], np.int64).reshape(-1, 12)
+    return VoyagePairs(tail, head, count, _table(rows, "duration_s", [None] * 3), months)
 
 
 def _check(network: HistoryNetwork) -> None:

@@ -3,31 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 
 from thalweg.chart.approaches import line_length
-from thalweg.chart.canals import CANALS
 from thalweg.core.errors import InputError, NoRouteError, unknown_name_error
-from thalweg.core.geodesy import Position, densify, distance
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.network.history.arc_search import (
     GLOBE_FACTOR,
     REVERSED_FACTOR,
     ArcGraph,
     doubt_factors,
-    longer_if_repaired,
 )
 from thalweg.network.history.history_arcs import (
     ARC_KINDS,
     GLOBE,
+    MOSTLY,
     REVERSED,
     SAILED,
     HistoryArcs,
     HistoryNodes,
+    canal_arcs,
+    named_beside,
+    names_passed,
+    usual_lengths,
 )
 from thalweg.network.history.history_route import (
     HistoryRoute,
@@ -38,7 +40,7 @@ from thalweg.network.history.history_route import (
 from thalweg.network.history.route_lines import following_arcs, joined_line
 from thalweg.network.history.season_masks import LEAST_SAMPLES, month_notes
 from thalweg.network.history.voyage_tracks import HistoryPort, PortNames
-from thalweg.network.history.whole_voyages import VoyagePairs, WholeWays
+from thalweg.network.history.whole_voyages import CanalWays, VoyagePairs, WholeWays
 
 #: A way over arcs of several voyages is usual up to this multiple of the way of few voyages, or of
 #: the way back.
@@ -63,7 +65,7 @@ class HistoryNetwork:
     summary : dict
         How it was made: counts of voyages, positions, outliers, repaired arcs; period; notes.
     pairs : VoyagePairs
-        Pairs of ports between which ships sailed.
+        Pairs of ports between which ships sailed through a canal.
     """
 
     nodes: HistoryNodes
@@ -79,12 +81,11 @@ class HistoryNetwork:
         return self.nodes.ports
 
     def arcs_by_kind(self) -> dict[str, int]:
-        """Return how many arcs are sailed, reversed, and ways over the globe.
+        """Return how many arcs there are of each of `ARC_KINDS`.
 
         Returns
         -------
         dict of str to int
-            By the names of `ARC_KINDS`.
         """
         counts = np.bincount(self.arcs.kind, minlength=len(ARC_KINDS)).tolist()
         return dict(zip(ARC_KINDS, counts))
@@ -131,12 +132,13 @@ class HistoryNetwork:
     ) -> HistoryRoute:
         """Return the usual route between two ports.
 
-        The way of most voyages that sailed from the one to the other, in the month if any did then.
-        Where fewer did than make a way believed, the way of least length over the arcs of other
-        voyages, unless it is more than a tenth longer than theirs or than the way back; arcs of few
-        voyages count 1.25 times their length, arcs sailed in the other direction only 1.5 times,
-        and ways over the globe twice. Arcs of the last two kinds are used only where the way over
-        sailed arcs is more than one and a half times as long, or none leads there.
+        The way of most voyages that sailed from the one to the other, in the month if any did then;
+        through a canal, over the arcs that lead there. Where fewer did than make a way believed,
+        the way of least length over the arcs of other voyages, unless it is more than a tenth
+        longer than theirs or than the way back; arcs of few voyages count 1.25 times their length,
+        arcs sailed in the other direction only 1.5 times, and ways over the globe twice. Arcs of
+        the last two kinds are used only where the way over sailed arcs is more than one and a half
+        times as long, or none leads there.
 
         Parameters
         ----------
@@ -167,6 +169,7 @@ class HistoryNetwork:
                 "Give two different ports.",
             )
         weight = self.weights(month=month, draught=draught)
+        self.whole.check_draught(self.nodes, ends, draught, weight)
         arcs = self.usual_way(*ends, weight, month=month)
         if not arcs:
             raise NoRouteError(
@@ -174,7 +177,9 @@ class HistoryNetwork:
                 no_arcs_text(month, draught),
                 f"{what_to_leave_out(month, draught)}uild the network with more tracks.",
             )
-        return self.route_along(ends, arcs, month=month)
+        found = self.route_along(ends, arcs, month=month)
+        beside = "" if found.whole > 0 else self.whole.note_beside(self.nodes, ends, self.least)
+        return replace(found, notes=(*found.notes, beside)) if beside else found
 
     def weights(self, *, month: int | None = None, draught: float | None = None) -> FloatArray:
         """Return what arcs count in the choice of the way; inf for those that are closed.
@@ -219,15 +224,21 @@ class HistoryNetwork:
         Returns
         -------
         list of int
-            One arc of whole voyages, or several arcs in order.
         """
-        whole = self._whole.open_ways((start, goal), weight, SAILED, month)
+        whole = self.whole.open_ways((start, goal), weight, SAILED, month)
         count = self.arcs.evidence.count
         believed = [arc for arc in whole if count[arc] >= self.least]
+        by_canal = self.pairs.voyages(start, goal, month)
+        if by_canal[1] >= self.least and (
+            not believed or by_canal > self.whole.voyages(believed[0], month)
+        ):
+            path = self._by_canal.shortest((start, goal), weight)
+            if path:
+                return path
         if believed:
             return believed[:1]
         path = self.path(start, goal, weight)
-        other = whole or self._whole.open_ways((start, goal), weight, REVERSED, month)
+        other = whole or self.whole.open_ways((start, goal), weight, REVERSED, month)
         if not other:
             return path
         most = _HARDLY_LONGER * self.lengths[other[0]]
@@ -249,7 +260,7 @@ class HistoryNetwork:
         list of int
             Arcs, that of most voyages first.
         """
-        return self._whole.open_ways((start, goal), weight, SAILED)
+        return self.whole.open_ways((start, goal), weight, SAILED)
 
     def path(self, start: int, goal: int, weight: FloatArray) -> list[int]:
         """Return the arcs of the shortest way between two nodes; empty if there is none.
@@ -302,12 +313,18 @@ class HistoryNetwork:
         line = tuple(joined_line(of.lines, index, at_junction, self.radius))
         nodes = [int(of.tail[index[0]]), *of.head[index].tolist()]
         p10, p50, p90 = np.where(sailed[:, None], evidence.duration[index], np.nan).sum(axis=0)
-        is_whole = len(arcs) == 1 and ends in self._whole.between
-        names = self._names_passed(self._named_beside(line) if is_whole else nodes)
+        is_whole = len(arcs) == 1 and ends in self.whole.between
+        names = names_passed(
+            self.nodes, named_beside(self.nodes, line, self.radius) if is_whole else nodes
+        )
         whole = int(evidence.count[arcs[0]])
         if not is_whole:
-            whole, duration = self.pairs.of(*ends)
-            if whole >= LEAST_SAMPLES:
+            whole, duration = (
+                self.pairs.of(*ends)
+                if set(arcs) & set(canal_arcs(self.nodes, of).tolist())
+                else (0, None)
+            )
+            if duration is not None and whole >= LEAST_SAMPLES:
                 p10, p50, p90 = duration
         elif not sailed[0]:
             whole = 0 if of.kind[arcs[0]] == GLOBE else -whole
@@ -327,34 +344,10 @@ class HistoryNetwork:
             whole,
         )
 
-    def _named_beside(self, line: Sequence[Position]) -> list[int]:
-        """Return the named junctions within the radius of a line, in the order along it."""
-        places = np.array(line)
-        lat, lon, _ = densify(places[:, 0], places[:, 1], 0.25 * self.radius)
-        named = [k for k, name in enumerate(self.nodes.names) if name]
-        away = {k: distance(self.nodes.lat[k], self.nodes.lon[k], lat, lon) for k in named}
-        near = [k for k in named if away[k].min() <= self.radius]
-        return sorted(near, key=lambda k: int(np.argmin(away[k])))
-
-    def _names_passed(self, nodes: Sequence[int]) -> tuple[str, ...]:
-        """Return the corridors and canals of a way; of a canal it has both ends in turn."""
-        names, canals = [self.nodes.names[node] for node in nodes], {c.name for c in CANALS}
-        after = [*names[1:], ""]
-        passed = [name for name, then in zip(names, after) if name == then or name not in canals]
-        return tuple(dict.fromkeys(name for name in passed if name))
-
     @cached_property
     def lengths(self) -> FloatArray:
-        """Length of each arc (A,) [m]: of its line, or of the voyages where it meets a canal.
-
-        The line leads straight from one end of a canal to the other, and ships may turn into it
-        before its end. Of lines that were repaired the longer of both counts.
-        """
-        arcs, canals = self.arcs, {canal.name for canal in CANALS}
-        at_canal = np.array([name in canals for name in self.nodes.names], bool)
-        meets = at_canal[arcs.tail] | at_canal[arcs.head]
-        return np.where(meets, longer_if_repaired(arcs.evidence, arcs.length, arcs.repaired),
-                        arcs.length)  # fmt: skip
+        """Usual length of each arc (A,) [m] (`usual_lengths`)."""
+        return usual_lengths(self.nodes, self.arcs, self.radius)
 
     def _weights_in(self, month: int | None) -> FloatArray:
         """Return what arcs count by length, kind, and voyages in a month (None: in all), (A,)."""
@@ -369,7 +362,7 @@ class HistoryNetwork:
                 slack=2.0 * self.radius,
             )
             factor[arcs.kind == REVERSED] = REVERSED_FACTOR
-            factor[arcs.kind == GLOBE] = GLOBE_FACTOR
+            factor[(arcs.kind == GLOBE) | (arcs.repaired > MOSTLY)] = GLOBE_FACTOR
             self._known_weights[month] = self.lengths * factor + arcs.approach.sum(axis=1)
         return self._known_weights[month]
 
@@ -378,7 +371,14 @@ class HistoryNetwork:
         return {}
 
     @cached_property
-    def _whole(self) -> WholeWays:
+    def _by_canal(self) -> CanalWays:
+        canal = canal_arcs(self.nodes, self.arcs)
+        enough = self.arcs.evidence.count[canal] >= self.least
+        return CanalWays(self.arcs, canal[enough], self.path)
+
+    @cached_property
+    def whole(self) -> WholeWays:
+        """The arcs from port to port."""
         return WholeWays.of_arcs(self.arcs, self.nodes.first_port)
 
     @cached_property

@@ -78,12 +78,10 @@ class HistoryRoute:
         """How well the route is known: "high", "medium", "low" or "none"."""
         if self.globe_share > 0.5:
             return "none"
-        if self.globe_share > _MUCH or self.voyages < _FEW:
+        least = min(self.voyages, self.whole)
+        if self.globe_share > _MUCH or least < _FEW:
             return "low"
-        if self.whole <= 0 and self._times_straight > _ROUNDABOUT:
-            return "low"
-        many = min(self.voyages, self.whole) >= LEAST_SAMPLES
-        return "high" if many and self.voyages_in_month != 0 else "medium"
+        return "high" if least >= LEAST_SAMPLES and self.voyages_in_month != 0 else "medium"
 
     @property
     def reason(self) -> str:
@@ -93,7 +91,7 @@ class HistoryRoute:
         elif len(self.arcs) == 1 and self.whole > 0:
             reasons = [f"{self.whole} voyages on this way"]
         else:
-            sailed = f"{self.whole} voyages" if self.whole else "no voyage"
+            sailed = f"{self.whole} voyages by this canal" if self.whole else "no voyage"
             reasons = [
                 f"at least {self.voyages} voyages on every arc with tracks",
                 f"{sailed} from the one port to the other",

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.approaches import dense_line
+from thalweg.core.geodesy import distance
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.history.junctions import Junctions
@@ -28,6 +29,8 @@ _SAMPLES_PER_RADIUS: Final = 5.0
 #: A voyage leaves or reaches the sea end of a port within one and a half times the length of the
 #: approach and this distance [m].
 _HARBOUR: Final = 20.0 * NAUTICAL_MILE
+_WINDING: Final = 1.6  # a canal is at most so many times as long as the line between its ends
+_BESIDE: Final = 1.0  # [m]
 _FINE, _FINE_SAMPLES = 5.0 * NAUTICAL_MILE, 101  # ports are passed where tracks are nearest to them
 
 
@@ -77,7 +80,7 @@ class _Visits:
 
 def arc_occurrences(
     tracks: VoyageTracks, junctions: Junctions, ports: Sequence[HistoryPort], *, radius: float
-) -> ArcOccurrences:
+) -> tuple[ArcOccurrences, BoolArray]:
     """Return the stretches of all tracks between the nodes that they pass.
 
     A track passes a junction where it is nearest to it within the radius, or where it crosses its
@@ -90,12 +93,18 @@ def arc_occurrences(
 
     Returns
     -------
-    ArcOccurrences : In order of voyages and along them; without stretches from a node to itself.
+    stretches : In order of voyages and along them; without stretches from a node to itself.
+    by_canal : Which voyages pass a canal, (V,).
     """
     along, voyage = _samples(tracks, radius / _SAMPLES_PER_RADIUS)
     vectors = tracks.vectors_at(along)
     start, goal = _port_passages(tracks, ports, along, voyage, vectors)
     visits = _junction_visits(junctions, along, voyage, vectors, radius)
+    transits = _transits(junctions, visits)
+    of, entered, left = transits
+    np.minimum.at(start, of, entered - _BESIDE)  # ports beside a canal are left before it
+    np.maximum.at(goal, of, left + _BESIDE)
+    visits = _outside_canals(visits, transits)
     crossings = junctions.crossings
     crossed_by = np.searchsorted(tracks.along[tracks.ptr[:-1]], crossings.along, side="right") - 1
     count, every = len(tracks), np.arange(len(tracks))
@@ -115,7 +124,35 @@ def arc_occurrences(
     )
     order = np.lexsort((merged.along, rank, merged.voyage))
     order = order[inside[order]]
-    return _between_visits(merged, order)
+    by_canal = np.zeros(count, bool)
+    by_canal[of] = True
+    return _between_visits(merged, order), by_canal
+
+
+def _transits(junctions: Junctions, visits: _Visits) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Return the passages of canals: voyages, and where they pass the one and the other end."""
+    at = np.flatnonzero(visits.node < junctions.canal_ends)
+    at = at[np.lexsort((visits.along[at], visits.voyage[at]))]
+    before, after = at[:-1], at[1:]
+    one, other = visits.node[before], visits.node[after]
+    whole = np.asarray(distance(junctions.lat[one], junctions.lon[one], junctions.lat[other],
+                                junctions.lon[other]))  # fmt: skip
+    sailed = visits.along[after] - visits.along[before]
+    through = (visits.voyage[before] == visits.voyage[after]) & (one != other)
+    through &= (one // 2 == other // 2) & (sailed <= _WINDING * whole)
+    return (
+        visits.voyage[before][through],
+        visits.along[before][through],
+        visits.along[after][through],
+    )
+
+
+def _outside_canals(visits: _Visits, transits: tuple[IntArray, FloatArray, FloatArray]) -> _Visits:
+    """Return the visits without those of junctions between both ends of a canal."""
+    keep = np.ones(len(visits.voyage), bool)
+    for voyage, entered, left in zip(*transits):
+        keep &= ~((visits.voyage == voyage) & (visits.along > entered) & (visits.along < left))
+    return _Visits(*(getattr(visits, column.name)[keep] for column in fields(_Visits)))
 
 
 def _samples(tracks: VoyageTracks, spacing: float) -> tuple[FloatArray, IntArray]:

@@ -59,12 +59,15 @@ class Junctions:
     lat, lon : Positions [deg], (J,).
     names : Name of the corridor or canal of each junction; empty for clusters of turning points.
     crossings : Where tracks cross the corridors.
+    canal_ends : How many of the first junctions are ends of canals; junctions 2k and 2k + 1 are
+        those of one canal.
     """
 
     lat: FloatArray
     lon: FloatArray
     names: tuple[str, ...]
     crossings: CorridorCrossings
+    canal_ends: int = 0
 
     def __len__(self) -> int:
         return len(self.lat)
@@ -122,6 +125,7 @@ def find_junctions(
         np.append(np.array(lon), cluster_lon),
         tuple(names),
         crossings,
+        len(ends),
     )
 
 

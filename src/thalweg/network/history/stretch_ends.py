@@ -18,6 +18,7 @@ from thalweg.network.history.voyage_tracks import HistoryPort, VoyageTracks
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
+_SHORT: Final = 0.5 * NAUTICAL_MILE
 _MOVED: Final = 3.0 * NAUTICAL_MILE  # to water, where the coastline does not show the river
 
 
@@ -41,8 +42,8 @@ class EndFinder:
     """Finds where stretches of tracks begin and end.
 
     A ship that turns into a canal does not come near the sea end of the approach. Where a track is
-    on the line of the approach, and not near its sea end, the stretch begins there, and so much of
-    the approach is sailed as lies before.
+    on the line of the approach, and not near its sea end, or farther from it than the stretch is
+    long, the stretch begins there, and so much of the approach is sailed as lies before.
 
     Parameters
     ----------
@@ -71,7 +72,9 @@ class EndFinder:
         along = np.stack([stretches.begin, stretches.end], axis=1)
         track = geocentric_positions(self.tracks.vectors_at(along.ravel()))
         track_lat, track_lon = (np.asarray(part).reshape(along.shape) for part in track)
-        far = (approach > 0.0) & (distance(lat, lon, track_lat, track_lon) > OFF_LINE)
+        apart = distance(lat, lon, track_lat, track_lon)
+        short = np.maximum(stretches.end - stretches.begin, _SHORT)[:, None]  # as before a canal
+        far = (approach > 0.0) & (apart > np.minimum(OFF_LINE, short))
         for row, side in np.argwhere(far).tolist():
             found = self._left_early(
                 int(nodes[row, side]), float(track_lat[row, side]), float(track_lon[row, side])

@@ -22,6 +22,8 @@ from thalweg.network.history.voyage_tracks import (
 from thalweg.operations.fleet.fleet_tracks import FleetTracks
 
 #: A single position near a port is a call where the positions before and after are this far [s].
+_LONG: Final = 3.0 * HOUR  # of an interval beside a call, in which a ship may lie in port
+_INTERVALS: Final = 3  # of a voyage from which its speed is known
 _SPARSE: Final = 6.0 * HOUR
 _PLACE_SPACING: Final = 1.0 * NAUTICAL_MILE
 _BERTH: Final = 1.0 * NAUTICAL_MILE  # berths of a port lie about so far from its position
@@ -215,6 +217,7 @@ def voyages_between_calls(fleet: FleetTracks, calls: PortCalls) -> VoyageTracks:
     keep[edges - count] = True
     keep[edges - 1] = True
     moving = np.where(calls.stopped, 0.0, np.append(np.diff(fleet.time), 0.0))
+    moving = _without_time_in_port(fleet, moving, first, last)
     sailed = np.concatenate([[0.0], np.cumsum(moving)[:-1]])
     index, voyage = index[keep], voyage[keep]
     ptr = np.searchsorted(voyage, np.arange(len(at) + 1)).astype(np.int64)
@@ -231,3 +234,25 @@ def voyages_between_calls(fleet: FleetTracks, calls: PortCalls) -> VoyageTracks:
         calls.port[at + 1],
         TrackShips(draught, length),
     )
+
+
+def _without_time_in_port(
+    fleet: FleetTracks, moving: FloatArray, first: IntArray, last: IntArray
+) -> FloatArray:
+    """Return times of intervals without time in port in the long ones beside calls.
+
+    Between a position in port and the next one a day later lies some of the stay. Such an interval,
+    and the last one of a voyage, takes no longer than at the mean speed of those between.
+    """
+    vectors = ellipsoid_vectors(fleet.lat, fleet.lon)
+    step = np.append(lengths_between(vectors[:-1], vectors[1:]), 0.0)
+    length, time = (np.concatenate([[0.0], np.cumsum(part)]) for part in (step, moving))
+    inner = last - first >= _INTERVALS
+    low, high = first[inner] + 1, last[inner] - 1
+    speed = (length[high] - length[low]) / np.maximum(time[high] - time[low], 1.0)
+    found = moving.copy()
+    for at in (first[inner], high):
+        least = step[at] / np.maximum(speed, 0.1)
+        long = (moving[at] > _LONG) & (speed > 0.0)
+        found[at] = np.where(long, np.minimum(moving[at], least), moving[at])
+    return found
