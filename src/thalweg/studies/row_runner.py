@@ -190,14 +190,24 @@ def _route_figures(route: Route, sea: Sea) -> dict[str, Any]:
         if name not in _NAMED_OTHERWISE:
             figures[name] = finite_or_none(indicator_value(route, name))
     figures["first_violation"] = str(route.violations[0]) if route.violations else None
-    for column, variables in _EXTREMES.items():
-        parts = [route.samples[name] for name in variables if name in route.samples]
-        size = np.hypot(*parts) if len(parts) == 2 else parts[0] if parts else np.array([])
-        figures[column] = finite_or_none(float(size.max())) if size.size else None
+    figures |= worst_weather(route.samples)
     height = route.samples.get(_WAVE_HEIGHT)
     if height is not None and has_fills(sea):
         figures["waves_filled_percent"] = wave_shares(route, sea, np.asarray(height)).filled
     return figures
+
+
+def worst_weather(samples: Mapping[str, Any]) -> dict[str, float | None]:
+    """Return the greatest values of samples of a route; those that are not known do not count.
+
+    On the approaches of ports no weather is known.
+    """
+    found: dict[str, float | None] = {}
+    for column, variables in _EXTREMES.items():
+        parts = [samples[name] for name in variables if name in samples]
+        size = np.hypot(*parts) if len(parts) == 2 else parts[0] if parts else np.array([])
+        found[column] = None if np.isnan(size).all() else float(np.nanmax(size))
+    return found
 
 
 def _weather_blind(

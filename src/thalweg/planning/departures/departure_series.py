@@ -27,10 +27,10 @@ from thalweg.planning.approach_sailing import ApproachSailing, shared_line
 from thalweg.planning.departures.network_figures import (
     ApproachFigures,
     LandAlongLegs,
-    SailedPath,
     approach_figures,
     figures_of_paths,
 )
+from thalweg.planning.departures.path_points import SailedPath
 from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
 from thalweg.planning.network_selection.network_builder import build_network
 from thalweg.planning.offing_attempts import plan_off_land

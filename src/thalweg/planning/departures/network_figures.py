@@ -10,23 +10,21 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.chart import Chart
-from thalweg.core.errors import InputError
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray, IntArray
-from thalweg.core.units import HOUR, NAUTICAL_MILE, TONNE
-from thalweg.network import Network
+from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.network.assembly import measured_pairs
 from thalweg.network.short_legs import positions_on_short_legs
 from thalweg.planning.approach_sailing import ApproachSailing
+from thalweg.planning.departures.path_consumption import consumed_by_paths, consumed_by_route
+from thalweg.planning.departures.path_points import PathPoints, SailedPath, points_of_paths
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.filled_weather import has_fills, waves_are_filled
-from thalweg.route import Track
 from thalweg.route.indicator_columns import (
     INSHORE_DISTANCE,
     LAND_DISTANCE_CAP,
     PERCENT_PER_DOSE,
 )
-from thalweg.search.timed_path import TimedPath
 from thalweg.ship import Ship
 from thalweg.ship.comfort.onboard_motions import onboard_motions
 from thalweg.ship.condition_variables import (
@@ -38,65 +36,11 @@ from thalweg.ship.condition_variables import (
     WAVE_PERIOD,
 )
 from thalweg.ship.conditions import Conditions
-from thalweg.ship.consumption import consumption_table
 
-_PIECE: Final = 4.0 * NAUTICAL_MILE  #: longest piece of a leg at whose middle rates are taken
 _SHORE_SPACING: Final = 0.5 * NAUTICAL_MILE  #: between points whose distance to land is taken
 _BLOCK: Final = 400  # points whose motions are computed together: their spectra fit in the cache
-_LEAST_WAIT: Final = 1.0  # [s]
 _WAVES: Final = (WAVE_HEIGHT, WAVE_PERIOD, WAVE_EAST, WAVE_NORTH)
 _WIND: Final = (EASTWARD_WIND, NORTHWARD_WIND)
-
-
-@dataclass(frozen=True, eq=False)
-class SailedPath:
-    """A path on networks with its times, from berth to berth.
-
-    Attributes
-    ----------
-    depart, arrive : [s since 1970-01-01T00:00Z], approaches of ports included.
-    lat, lon : float64 array (n,) of the nodes [deg].
-    reach, leave : float64 array (n,)
-        Arrival at and departure from each node [s since 1970-01-01T00:00Z].
-    """
-
-    depart: float
-    arrive: float
-    lat: FloatArray
-    lon: FloatArray
-    reach: FloatArray
-    leave: FloatArray
-
-    @classmethod
-    def of_paths(
-        cls,
-        depart: float,
-        arrive: float,
-        networks: Sequence[Network],
-        paths: Sequence[TimedPath],
-    ) -> SailedPath:
-        """Return the path of several that follow each other."""
-        lat: list[FloatArray] = []
-        lon: list[FloatArray] = []
-        reach: list[FloatArray] = []
-        leave: list[FloatArray] = []
-        for number, (network, one) in enumerate(zip(networks, paths)):
-            new = slice(1 if number else 0, None)
-            lat.append(network.stations.lat[one.nodes][new])
-            lon.append(network.stations.lon[one.nodes][new])
-            if number:  # waits at the waypoint count to the section that begins there
-                leave[-1][-1] = one.node_depart[0]
-            reach.append(one.node_arrive[new])
-            leave.append(one.node_depart[new].copy())
-        return cls(depart, arrive, *(np.concatenate(part) for part in (lat, lon, reach, leave)))
-
-    def track(self, setting: int) -> Track:
-        """Return the path as a track at one speed setting."""
-        wait = np.maximum(self.leave - self.reach, 0.0)
-        wait[-1] = 0.0
-        wait[wait < _LEAST_WAIT] = 0.0
-        settings = np.full(len(self.lat) - 1, setting)
-        return Track(self.lat, self.lon, float(self.reach[0]), wait, settings)
 
 
 @dataclass(frozen=True)
@@ -107,18 +51,19 @@ class ApproachFigures:
     ----------
     outward_s, inward_s : Time [s].
     length : [m].
-    fuel : [kg]; NaN if unknown.
+    consumed : As `consumed_by_route`; empty without approaches.
     """
 
     outward_s: float
     inward_s: float
     length: float
-    fuel: float
+    consumed: Mapping[str, float]
 
 
 def approach_figures(sailing: ApproachSailing, context: PlanningContext) -> ApproachFigures:
     """Return the figures of the approaches at both ends; there is no weather in them."""
-    times, length, fuel = [], 0.0, 0.0
+    times, length = [], 0.0
+    consumed: dict[str, float] = {}
     for approach in (sailing.outward, sailing.inward):
         if approach is None or approach.length <= 1.0:
             times.append(0.0)
@@ -126,8 +71,9 @@ def approach_figures(sailing: ApproachSailing, context: PlanningContext) -> Appr
         route = sailing.sail(approach.line, context.voyage.earliest_departure, context)
         times.append(route.time_h * HOUR)
         length += route.distance_nm * NAUTICAL_MILE
-        fuel += math.nan if route.fuel_t is None else route.fuel_t * TONNE
-    return ApproachFigures(times[0], times[1], length, fuel)
+        for name, value in consumed_by_route(route).items():
+            consumed[name] = consumed.get(name, 0.0) + value
+    return ApproachFigures(times[0], times[1], length, consumed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,24 +138,23 @@ def figures_of_paths(
     Returns
     -------
     list of dict
-        ``arrive``, ``time_h``, ``waiting_h``, ``distance_nm``, ``fuel_t``, ``comfort`` [m2/s3] and
-        ``sick_percent`` at the first place of the ship, ``inshore_nm``, ``inshore_percent``,
-        ``inshore_h``, ``land_distance_nm`` (approaches left out),
+        ``arrive``, ``time_h``, ``waiting_h``, ``distance_nm``, ``fuel_t``, ``fuel_eca_t``,
+        ``co2_t``, ``cost_...`` with ``currency``, ``comfort`` [m2/s3] and ``sick_percent`` at the
+        first place of the ship, ``inshore_nm``, ``inshore_percent``, ``inshore_h``,
+        ``land_distance_nm`` (approaches left out),
         ``max_significant_wave_height_m``, ``max_wind_speed_ms``, and of a sea with fills
         ``waves_filled_percent``, the share of the way where waves are filled; None where unknown.
         ``feasible`` is true: the network keeps the limits.
     """
     if not paths:
         return []
-    at = _points_of(paths)
+    at = points_of_paths(paths)
     names = [n for n in (*_WAVES, *_WIND) if context.sea.provides(n)]
     names += [n for n in sorted(context.ship.needs) if n not in names and context.sea.provides(n)]
     sampled = context.sea.sample(names, at.time, at.lat, at.lon) if names else {}
     conditions = Conditions.from_sea(sampled, heading=at.course)
-    waits = np.array([float(np.sum(np.maximum(p.leave - p.reach, 0.0)[:-1])) for p in paths])
-    waits[waits < _LEAST_WAIT] = 0.0
-    fuel = at.sums(_fuel_rate(context, conditions, at), at.seconds)
-    fuel = fuel + waits * float(context.ship.waiting_fuel_rate) if waits.any() else fuel
+    waits = np.bincount(at.waits.path, at.waits.seconds, len(paths))
+    consumed = consumed_by_paths(context, conditions, at)
     dose = at.sums(_dose_rate(context.ship, conditions, at), at.seconds)
     dose = np.where(waits > 0.0, math.nan, dose)  # motions of a ship that waits are not computed
     near, clearance = land.along(at.lat_of_legs, at.lon_of_legs)
@@ -218,7 +163,7 @@ def figures_of_paths(
     columns = {
         "waiting_h": waits / HOUR,
         "distance_nm": (length + approaches.length) / NAUTICAL_MILE,
-        "fuel_t": (fuel + approaches.fuel) / TONNE,
+        **{name: own + approaches.consumed.get(name, 0.0) for name, own in consumed.items()},
         "comfort": dose,
         "sick_percent": np.minimum(PERCENT_PER_DOSE * np.sqrt(dose), 100.0),
         "inshore_nm": inshore[0] / NAUTICAL_MILE,
@@ -231,7 +176,7 @@ def figures_of_paths(
     if WAVE_HEIGHT in sampled and has_fills(context.sea):
         filled = waves_are_filled(context.sea, at.time, at.lat, at.lon)
         columns["waves_filled_percent"] = 100.0 * at.sums(filled.astype(float), at.length) / length
-    rows = []
+    rows, currency = [], context.ship.fuel_terms.currency or "USD"
     for number, path in enumerate(paths):
         row: dict[str, Any] = {
             "arrive": format_time(path.arrive),
@@ -239,42 +184,8 @@ def figures_of_paths(
         }
         values = {name: float(column[number]) for name, column in columns.items()}
         row |= {name: value if math.isfinite(value) else None for name, value in values.items()}
-        rows.append(row | {"feasible": True})
+        rows.append(row | {"currency": currency, "feasible": True})
     return rows
-
-
-@dataclass(frozen=True, eq=False)
-class _PathPoints:
-    """The middles of the pieces of all legs of many paths.
-
-    Attributes
-    ----------
-    path : The path that each point is of, ascending.
-    count : Number of paths.
-    lat, lon : [deg]; time : [s since 1970-01-01T00:00Z]; course : Of the leg [rad].
-    seconds, length : Of the piece [s, m].
-    path_of_legs : The path that each leg is of, ascending.
-    lat_of_legs, lon_of_legs : float64 array (legs, 2) of their ends [deg].
-    weights_of_legs : Their lengths [m] and times [s].
-    """
-
-    path: IntArray
-    count: int
-    lat: FloatArray
-    lon: FloatArray
-    time: FloatArray
-    course: FloatArray
-    seconds: FloatArray
-    length: FloatArray
-    path_of_legs: IntArray
-    lat_of_legs: FloatArray
-    lon_of_legs: FloatArray
-    weights_of_legs: tuple[FloatArray, FloatArray]
-
-    def sums(self, rate: FloatArray, weight: FloatArray) -> FloatArray:
-        """Return the sum over the points of each path; NaN where one is unknown."""
-        total = np.bincount(self.path, weights=rate * weight, minlength=self.count)
-        return np.asarray(total, np.float64)
 
 
 def _greatest(path: IntArray, values: FloatArray | None, count: int) -> FloatArray:
@@ -289,42 +200,7 @@ def _wind_speed(sampled: Mapping[str, FloatArray]) -> FloatArray | None:
     return np.hypot(*(sampled[name] for name in _WIND)) if known else None
 
 
-def _points_of(paths: Sequence[SailedPath]) -> _PathPoints:
-    sizes = np.array([len(path.lat) for path in paths])
-    lat = np.concatenate([path.lat for path in paths])
-    lon = np.concatenate([path.lon for path in paths])
-    leave = np.concatenate([path.leave for path in paths])
-    reach = np.concatenate([path.reach for path in paths])
-    owner = np.repeat(np.arange(len(paths)), sizes)
-    first = np.flatnonzero(np.diff(owner) == 0).astype(np.int32)
-    pairs = measured_pairs(lat, lon, first, first + np.int32(1))
-    pieces = np.maximum(1, np.ceil(pairs.length / _PIECE)).astype(np.int64)
-    leg = np.repeat(np.arange(len(first)), pieces)
-    rank = np.arange(len(leg)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    share = (rank + 0.5) / pieces[leg]
-    begin, end = first[leg], first[leg] + 1
-    there = positions_on_short_legs(lat, lon, begin, end, pairs.length[leg], share)
-    took = reach[first + 1] - leave[first]
-    return _PathPoints(
-        owner[begin], len(paths), *there, leave[begin] + share * took[leg],
-        pairs.course[leg].astype(np.float64), (took / pieces)[leg], (pairs.length / pieces)[leg],
-        owner[first], np.stack([lat[first], lat[first + 1]], axis=1),
-        np.stack([lon[first], lon[first + 1]], axis=1), (pairs.length, took),
-    )  # fmt: skip
-
-
-def _fuel_rate(context: PlanningContext, conditions: Conditions, at: _PathPoints) -> FloatArray:
-    """Return the fuel rate [kg/s] at points; NaN where it is unknown."""
-    try:
-        table = consumption_table(context.ship, "fuel")
-    except InputError:
-        return np.full(len(at.lat), math.nan)
-    if not table.axes <= set(conditions):
-        return np.full(len(at.lat), math.nan)
-    return np.broadcast_to(table.lookup(conditions, context.setting), at.lat.shape)
-
-
-def _dose_rate(ship: Ship, conditions: Conditions, at: _PathPoints) -> FloatArray:
+def _dose_rate(ship: Ship, conditions: Conditions, at: PathPoints) -> FloatArray:
     """Return the squared weighted acceleration [m2/s4] at the first place; NaN if unknown."""
     own = onboard_motions(ship)
     rate = np.full(len(at.lat), math.nan)
