@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -31,6 +31,7 @@ from thalweg.network.shortest_paths import shortest_path
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
+OTHER_WAYS: Final = "Ways on other sides of land"  #: a note on what is not searched begins so
 _CLEARLY_LONGER = 0.02  # share by which a shortest path is longer than another way
 _WIDEST_SPACING = 8.0 * NAUTICAL_MILE  # of the lattice on which turning points are found
 
@@ -90,13 +91,24 @@ def layered_section(
         near_coast=None if wanted.near_coast_nm is None else wanted.near_coast_nm * NAUTICAL_MILE,
         numbering=numbering,
     )  # fmt: skip
+    others = _one_way_note(chart, start, goal)
     if shape is not None:
-        return network
+        return replace(network, meta=replace(network.meta, notes=(*others, *network.meta.notes)))
     straits = (note for place in wanted.contain if (note := narrow_strait_note(chart, place)))
     missed = missed_straits_note(chart, network, (start, goal))
     choice = (*_choice_notes(places, shapes, wanted), *_longer_note(network, shortest))
-    notes = (*choice, *straits, *missed, *network.meta.notes)
+    notes = (*others, *choice, *straits, *missed, *network.meta.notes)
     return replace(network, meta=replace(network.meta, notes=notes))
+
+
+def _one_way_note(chart: Chart, start: Position, goal: Position) -> list[str]:
+    """Return a note that routes lead one way round land, where land is across the direct line."""
+    if not np.any(chart.legs_blocked(*start, *goal)):
+        return []
+    return [
+        f"{OTHER_WAYS} may be more sheltered or as short, and the layered network does not search "
+        "them: run 'thalweg alternatives', or give waypoints (via)."
+    ]
 
 
 def _close_enough(shape: SectionShape, length: float, spacing: float | None) -> SectionShape:

@@ -36,7 +36,10 @@ from thalweg.planning.approach_sailing import (
     shared_line,
 )
 from thalweg.planning.indicators.passage_ways import way_by_passage
-from thalweg.planning.network_selection.route_alternatives import RouteAlternative
+from thalweg.planning.network_selection.route_alternatives import (
+    RouteAlternative,
+    network_of_all_ways,
+)
 from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.pareto.exploration import fastest_in_known_water, network_pareto_front
 from thalweg.planning.pareto.front_points import track_from_front_point
@@ -127,12 +130,13 @@ def candidate_routes(
     """
     search = _Candidates(trade_off)
     first = search.fastest(alternatives[0])
+    all_ways = network_of_all_ways(alternatives[0], search.context.chart, trade_off.ends)
     steps: list[tuple[str, Iterator[Track]]] = [
         (f"for {name}", search.of_least(first.network, name)) for name in _OBJECTIVES
     ]
     steps += [
         ("of a weighted sum", search.of_weighted_sum(first.network)),
-        ("round islands", search.round_islands(first.network)),
+        ("round islands", search.round_islands(all_ways)),
         ("farther off land", search.farther_off_land(first.network)),
         ("by passages", search.by_passages(first.network)),
         ("round passages", search.round_passages(first.network)),

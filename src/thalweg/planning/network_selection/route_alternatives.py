@@ -78,6 +78,31 @@ def find_route_alternatives(
     return list(alternatives.values())
 
 
+def network_of_all_ways(
+    alternative: RouteAlternative, chart: Chart, ends: Sequence[Endpoint]
+) -> Network:
+    """Return a network with the ways round large islands that the one of an alternative lacks.
+
+    A small network may cover only the water along the shortest path, and a layered one leads
+    round land on one side only.
+
+    Parameters
+    ----------
+    alternative : Its own network is returned where it has all ways, and with via points.
+    """
+    lattices, own = alternative.lattices, alternative.network
+    if lattices is None and len(ends) == 2 and own.meta.kind == "layered":
+        start, goal = ends
+        lattices = LatticeBetween(chart, (start.lat, start.lon), (goal.lat, goal.lon))
+    if lattices is None:
+        return own
+    try:
+        wide = lattices.network(coast_levels=0)
+    except NoRouteError:  # straits narrower than the spacing
+        return own
+    return own if wide.n_nodes <= MAX_FRONT_NODES and own.meta.kind != "layered" else wide
+
+
 def canals_used(network: Network, chart: Chart) -> tuple[str, ...]:
     """Return the names of the canals on the shortest path over a network."""
     _, path = shortest_path(network, network.meta.start, network.meta.goal)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Final
 
+from thalweg.network.layered.sections_round_land import OTHER_WAYS
 from thalweg.planning.report.approach_report import PORT_TOO_SHALLOW, TURNS_BACK
 from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
 from thalweg.planning.report.distance_report import PASSAGE_CLOSED
@@ -39,6 +40,7 @@ _FIRST: Final = (
     INSHORE_USED,
     LANE_DETOUR,
     PASSAGE_CLOSED,
+    OTHER_WAYS,
     FILLED,
     UNREAD,
     UNUSUAL,
