@@ -49,7 +49,9 @@ SMALL_CANALS: Final = ("corinth",)
 #: Distance from land that ways keep outside passages, where they can [nm].
 DEFAULT_OFFING_NM: Final = 2.0
 LEAST_SHORTER: Final = 0.05  #: share by which a way is clearly shorter
-_LONGEST_WITH_HINT: Final = 500.0  # [nm]
+_SHORT_WAY: Final = 500.0 * NAUTICAL_MILE  # small passages may shorten it wherever they are
+_NEAR_END: Final = 150.0 * NAUTICAL_MILE  # else they are so near an end ...
+_NEAR_DIRECT: Final = 1.02  # ... or their detour from the direct line is at most this
 _DEEPEST_DRAUGHT: Final = 30.0  # [m]
 #: Ways without a draught keep off water shallower than this where they can [m].
 USUAL_DEPTH: Final = 5.0
@@ -278,18 +280,23 @@ def may_be_shorter_for_small_ships(way: SeaDistance, chart: Chart | None = None)
 
     Parameters
     ----------
-    way : A way up to 500 nm; longer ones are not looked at.
+    way : For one over 500 nm the passage is within 150 nm of an end or near the direct line.
     chart : Chart, optional
         By default the GSHHG coastline at resolution "i".
     """
-    if len(way.line) < 2 or way.nm > _LONGEST_WITH_HINT:
+    if len(way.line) < 2:
         return False
     chart = world_chart() if chart is None else chart
     ends = np.array([way.line[0], way.line[-1]])
+    direct = float(distance(*ends[0], *ends[1]))
     for name in small_passages(chart):
         place = next(p.line[len(p.line) // 2] for p in chart.passages if p.name == name)
-        by = np.asarray(distance(ends[:, 0], ends[:, 1], *place)).sum()
-        if name not in way.straits and by < (1.0 - LEAST_SHORTER) * way.length:
+        parts = np.asarray(distance(ends[:, 0], ends[:, 1], *place))
+        near = way.length <= _SHORT_WAY or parts.min() <= _NEAR_END
+        near = near or parts.sum() <= _NEAR_DIRECT * direct
+        if name in way.straits or not near:
+            continue
+        if parts.sum() < (1.0 - LEAST_SHORTER) * way.length:
             return True
     return False
 

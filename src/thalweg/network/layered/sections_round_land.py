@@ -97,7 +97,7 @@ def layered_section(
     straits = (note for place in wanted.contain if (note := narrow_strait_note(chart, place)))
     missed = missed_straits_note(chart, network, (start, goal))
     choice = (*_choice_notes(places, shapes, wanted), *_longer_note(network, shortest))
-    notes = (*others, *choice, *straits, *missed, *network.meta.notes)
+    notes = (*choice, *others, *straits, *missed, *network.meta.notes)
     return replace(network, meta=replace(network.meta, notes=notes))
 
 
