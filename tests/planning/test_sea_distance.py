@@ -239,3 +239,14 @@ def test_the_command_states_the_way_of_small_ships(capsys):
     assert text.startswith("Narvik, NO to Harstad, NO: 48 nm") and "shorter than" not in text
     assert main(["distance", "Rotterdam", "Hamburg", "--quiet"]) == 0
     assert "shorter than" not in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_the_way_of_small_ships_is_stated_for_long_ways_by_a_passage_near_an_end(capsys):
+    """Over 500 nm: 818 nm round Chiloe, and silence where little is gained."""
+    assert main(["distance", "Puerto Montt", "Valparaiso", "--quiet"]) == 0
+    text = capsys.readouterr().out
+    assert "Valparaiso, CL: 818 nm" in text
+    assert "ships shorter than 120 m: 624 nm by Chacao (--open all)" in text
+    assert main(["distance", "Rotterdam", "New York", "--quiet"]) == 0
+    assert "shorter than" not in capsys.readouterr().out

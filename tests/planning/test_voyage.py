@@ -46,6 +46,12 @@ def test_files_that_are_no_voyage(tmp_path, text):
         Voyage.load(tmp_path / "v.yaml")
 
 
+@pytest.mark.parametrize("data", [5, None, True])
+def test_data_that_are_no_voyage(data):
+    with pytest.raises(InputError, match=r"The voyage is .* start, goal and a departure"):
+        Voyage.from_dict(data)
+
+
 def test_missing_file():
     with pytest.raises(InputError, match="does not exist"):
         Voyage.load("nowhere.yaml")

@@ -128,6 +128,10 @@ def test_faults_are_named(tmp_path, change, message):
         ({"loading": {"load_factor": 1.2}, "speeds_kn": [10]}, "load_factor"),
         ({"table": {"speed_kn": [9, 10], "fuel_t_per_day": [4]}}, "fuel_t_per_day has another"),
         ({"engine": 7, "speeds_kn": [10]}, "'engine' holds 7"),
+        ({"places": [{"name": "bridge", "ahead_m": 45}]}, "list of 1.*such as {bridge: 45.0, mess"),
+        ({"places": 45.0}, "'places' holds 45.0. It holds names with distances ahead of midship"),
+        ({"places": None}, "'places' has no value. It holds names with distances"),
+        ({"tasks": [{"place": "mess"}]}, "'tasks' holds a list of 1. It holds names with keys"),
     ],
 )
 def test_incomplete_ships_are_refused(extra, missing):

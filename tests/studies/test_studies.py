@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import signal
 import subprocess
@@ -134,6 +135,15 @@ def test_a_draw_of_one_entry_does_not_depend_on_the_others():
 def test_wrong_studies(changes, words):
     with pytest.raises(InputError, match=words):
         Study.from_dict({"voyage": {"start": "A", "goal": "B"}} | changes)
+
+
+@pytest.mark.parametrize(
+    "changes", [{"network": math.nan}, {"axes": {"speed_kn": [12.0, math.inf]}}]
+)
+def test_values_of_a_study_are_finite(changes):
+    study = Study.from_dict({"voyage": {"start": "A", "goal": "B"}} | changes)
+    with pytest.raises(InputError, match=r"is \.nan or \.inf"):
+        study.rows()
 
 
 NO_GO = {

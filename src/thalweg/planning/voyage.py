@@ -11,6 +11,7 @@ from typing import Any, Final
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.file_reading import read_text_file
 from thalweg.core.file_writing import write_text
+from thalweg.core.given_numbers import shortened_repr
 from thalweg.core.time import format_time
 from thalweg.planning.voyage_parts import (
     IndicatorRequest,
@@ -213,6 +214,13 @@ class Voyage(IndicatorRequest, SearchRequest, VoyagePrices, Schedule, Itinerary)
         InputError
             For unknown entries (with near matches), and for values that are not possible.
         """
+        if not isinstance(data, Mapping):
+            raise InputError(
+                f"The voyage is {shortened_repr(data)}.",
+                "It holds entries with values, at least start, goal and a departure.",
+                "Write {start: Rotterdam, goal: Lisbon, depart: 2026-01-01T06:00Z}, for example.",
+                field="voyage",
+            )
         for key in data:
             if key not in _ENTRIES:
                 raise unknown_name_error("voyage entry", str(key), _ENTRIES, field=str(key))

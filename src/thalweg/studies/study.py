@@ -292,8 +292,13 @@ def load_study(path: str | Path) -> Study:
 
 
 def canonical_json(value: Any) -> str:
-    """Return JSON that is the same for equal data."""
-    return json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    """Return JSON that is the same for equal data; `InputError` for NaN and infinity."""
+    try:
+        return json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    except ValueError:
+        raise InputError(
+            "A value of the study is .nan or .inf.", "Values are finite.", "Correct it."
+        ) from None
 
 
 def _row(base: Mapping[str, Any], chosen: Mapping[str, Any], compare: Sequence[str]) -> StudyRow:

@@ -13,6 +13,17 @@ from pydantic.fields import FieldInfo
 from thalweg.core.errors import InputError, close_matches, nearest_names, unknown_name_error
 
 _UNKNOWN_KEY = ("extra_forbidden", "invalid_key")
+#: Sections whose keys are names of the user's own: what they hold, and an example.
+_BY_NAME = {
+    "places": (
+        "names with distances ahead of midship [m], abaft negative",
+        "{bridge: 45.0, mess: -20.0}",
+    ),
+    "tasks": (
+        "names with keys of their own",
+        "{deck work: {place: mess, max_vertical_acceleration_m_s2: 0.5}}",
+    ),
+}
 _OUT_OF_RANGE = ("greater_than", "greater_than_equal", "less_than_equal")
 
 
@@ -73,6 +84,8 @@ def _unknown_key_error(
 def _not_a_section_error(
     schema: type[BaseModel], keys: Sequence[str], value: Any, source: str
 ) -> InputError:
+    if keys and keys[0] in _BY_NAME and len(keys) == 1:
+        return _not_names_error(keys[0], f"holds {_abbreviated(value)}")
     known = ", ".join(_section_class(schema, keys).model_fields)
     if not keys:
         return InputError(
@@ -88,6 +101,16 @@ def _not_a_section_error(
     )
 
 
+def _not_names_error(section: str, what: str) -> InputError:
+    wanted, example = _BY_NAME[section]
+    return InputError(
+        f"'{section}' {what}.",
+        f"It holds {wanted}, such as {example}.",
+        "Write it so, without dashes, or leave it out.",
+        key=section,
+    )
+
+
 def _wrong_value_error(where: str, value: Any, wanted: str) -> InputError:
     return InputError(
         f"'{where}' is {_abbreviated(value)}.",
@@ -98,6 +121,8 @@ def _wrong_value_error(where: str, value: Any, wanted: str) -> InputError:
 
 
 def _no_value_error(schema: type[BaseModel], keys: Sequence[str]) -> InputError:
+    if len(keys) == 1 and keys[0] in _BY_NAME:
+        return _not_names_error(keys[0], "has no value")
     wanted = _range_words(schema, keys)
     return InputError(
         f"'{'.'.join(keys)}' has no value.",
