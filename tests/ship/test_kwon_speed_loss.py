@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from thalweg.core.errors import InputError
+from thalweg.ship import Ship
 from thalweg.ship.methods.speed_loss import (
     GREATEST_LOSS,
     beaufort_number,
@@ -13,6 +14,7 @@ from thalweg.ship.methods.speed_loss import (
     kwon_speed_coefficient,
     kwon_speed_loss,
 )
+from thalweg.ship.ship_assumptions import stated_assumptions
 
 winds = st.floats(0.0, 60.0)
 angles = st.floats(0.0, np.pi)
@@ -38,6 +40,43 @@ def test_the_loss_is_a_share_and_greatest_from_ahead(wind, angle, block, volume,
     loss = _loss(wind, angle, block, volume, loading=loading)
     assert 0.0 <= loss <= GREATEST_LOSS
     assert loss <= _loss(wind, 0.0, block, volume, loading=loading) + 1e-12
+
+
+def _ship(kind, **models) -> Ship:
+    return Ship.from_dict(
+        {
+            "name": "x",
+            "speeds_kn": [10, 17],
+            "hull": {
+                "type": kind, "length_between_perpendiculars_m": 140.0, "breadth_m": 22.0,
+                "draught_m": 6.0, "block_coefficient": 0.62, "displacement_m3": 11458.0,
+            },
+            "models": {"speed_loss": "kwon_2008", **models},
+        }
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("kind", "given_form", "form", "noted"),
+    [
+        ("Container ship", {}, "container", False),
+        ("container ship", {"kwon_ship_type": "other"}, "other", False),
+        ("bulk carrier", {}, "other", False),
+        ("ro-ro cargo ship", {}, "other", True),
+        ("ro-ro cargo ship", {"kwon_ship_type": "other"}, "other", False),
+        ("ro-ro cargo ship", {"kwon_ship_type": "container"}, "container", False),
+        ("tanker", {"kwon_ship_type": "container"}, "container", True),
+    ],
+)
+def test_the_form_follows_the_type_of_the_ship_and_a_misfit_is_noted(kind, given_form, form, noted):
+    ship = _ship(kind, **given_form)
+    assert ship.model.loss.ship_type == form
+    notes = stated_assumptions(ship)
+    assert len(notes) == int(noted), notes
+    if noted:
+        assert f"Kwon's form '{form}' is used for a {kind}" in notes[0]
+        assert "falls by 30 % by the form 'other'" in notes[0]
+        assert "6 % by 'container'" in notes[0]
 
 
 def test_one_weather_for_many_speeds_is_that_weather_for_each():

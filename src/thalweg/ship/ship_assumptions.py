@@ -2,10 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from thalweg.ship.conditions import Conditions
 from thalweg.ship.hull.estimate import method_assumptions
+from thalweg.ship.methods.speed_loss import ShipType
+from thalweg.ship.models.known_speed_model import KwonSpeedLoss
 from thalweg.ship.schema.unusual_numbers import unusual_numbers
 from thalweg.ship.ship import Ship
 
+KWON_FORM: Final = "Kwon's form"  #: a note on the form of his speed loss begins so
+_FINE_SHIPS: Final = (
+    *("ro-ro", "roro", "ropax", "ferry", "passenger", "cruise", "vehicle", "car carrier"),
+    *("refrigerated", "reefer"),
+)
+_FULL_SHIPS: Final = ("bulk", "tanker")
+_BEAUFORT_5: Final = 9.35  # [m/s]
 _KEYS_OF_THE_EMPTY_SHIP = (
     "draught_empty_m",
     "speeds_empty_kn",
@@ -25,8 +40,40 @@ def stated_assumptions(ship: Ship) -> list[str]:
     charges = ship.fuel_terms.charges
     found = charges is not None and charges.share_source != "given"
     european = [f"Charges of the European Union: {charges.share_source}."] if found else []  # type: ignore[union-attr]
-    unusual = unusual_numbers(ship.file)
+    unusual = [*unusual_numbers(ship.file), *kwon_form_notes(ship)]
     return [*unusual, *method_assumptions(ship.estimated), *idle, *european]
+
+
+def kwon_form_notes(ship: Ship) -> list[str]:
+    """Return a note where the form of Kwon's speed loss does not fit the type of the ship.
+
+    Returns
+    -------
+    list of str : One text with the loss of both forms, or none.
+    """
+    loss, kind = getattr(ship.model, "loss", None), (ship.file.hull.type or "").casefold()
+    if not isinstance(loss, KwonSpeedLoss):
+        return []
+    fine = any(word in kind for word in _FINE_SHIPS)
+    full = any(word in kind for word in _FULL_SHIPS)
+    fits = not full if loss.ship_type == "container" else not fine
+    if fits or (fine and ship.file.models.gives("kwon_ship_type")):
+        return []
+    forms: tuple[ShipType, ...] = ("other", "container")
+    shares = {}
+    for form in forms:
+        own = replace(loss, ship_type=form)
+        ahead = Conditions(
+            wind_speed=_BEAUFORT_5, wind_angle=0.0, load_factor=ship.loading.load_factor
+        )
+        shares[form] = float(own.share(ahead, np.max(ship.speeds)))
+    other, container = (100.0 * shares[form] for form in forms)
+    return [
+        f"{KWON_FORM} {loss.ship_type!r} is used for a {kind}: in Beaufort 5 from ahead her "
+        f"highest speed falls by {other:.0f} % by the form 'other' (full ships) and "
+        f"{container:.0f} % by 'container' (fine ships). Give the one that suits her as "
+        "models.kwon_ship_type."
+    ]
 
 
 def load_factor_without_effect(ship: Ship) -> list[str]:

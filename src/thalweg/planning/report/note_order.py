@@ -20,6 +20,7 @@ from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
 from thalweg.planning.request.voyage_endpoints import CHECK_POSITION, NOT_REACHED
 from thalweg.route.referee.route_assembly import OUT_OF_RANGE
 from thalweg.ship.schema.unusual_numbers import UNUSUAL
+from thalweg.ship.ship_assumptions import KWON_FORM
 
 LIMIT_EXCEEDED: Final = "The referee finds a limit exceeded"  #: a note on a limit begins so
 #: First words of notes that no summary may leave out, the most dangerous first.
@@ -44,6 +45,7 @@ _FIRST: Final = (
     FILLED,
     UNREAD,
     UNUSUAL,
+    KWON_FORM,
     OUT_OF_RANGE,
 )
 

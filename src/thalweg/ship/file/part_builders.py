@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Final
+from typing import Final, Literal
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.units import KNOT, SEA_WATER_DENSITY, TONNE
@@ -192,9 +192,16 @@ def build_speed_loss(
         block_coefficient=block,
         loading=loading,
         sign="plus" if models.kwon_sign == "plus" else "printed",
-        ship_type=models.kwon_ship_type,
+        ship_type=_kwon_form_of(file),
         classes=models.kwon_classes,
     )
+
+
+def _kwon_form_of(file: ShipFile) -> Literal["other", "container"]:
+    """Return the form of Kwon's method that is given, else that of the type of the ship."""
+    if file.models.gives("kwon_ship_type"):
+        return file.models.kwon_ship_type
+    return "container" if "container" in (file.hull.type or "").casefold() else "other"
 
 
 def _rule_of_prestegardshus(models: ModelsSection) -> PrestegardshusSpeedLoss:
