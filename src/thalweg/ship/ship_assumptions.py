@@ -66,7 +66,7 @@ def kwon_form_notes(ship: Ship) -> list[str]:
         ahead = Conditions(
             wind_speed=_BEAUFORT_5, wind_angle=0.0, load_factor=ship.loading.load_factor
         )
-        shares[form] = float(own.share(ahead, np.max(ship.speeds)))
+        shares[form] = float(own.share(ahead, np.asarray(np.max(ship.speeds))))
     other, container = (100.0 * shares[form] for form in forms)
     return [
         f"{KWON_FORM} {loss.ship_type!r} is used for a {kind}: in Beaufort 5 from ahead her "

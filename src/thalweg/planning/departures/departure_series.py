@@ -41,6 +41,7 @@ from thalweg.planning.request.ordered_speed import with_order
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import with_voyage_prices
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
+from thalweg.planning.single.weather_stall import SearchedWater
 from thalweg.planning.voyage import Voyage
 from thalweg.planning.voyage_context import voyage_context
 from thalweg.route import Route, with_wind_speed
@@ -225,7 +226,10 @@ class DepartureSeries:
         return no_route_error(
             network, result, pair, depart=depart,
             last=last if last >= context.data_end else math.inf,
-            fields=section.frozen.stations, required=context.needs.limits.required_depth,
+            water=SearchedWater(
+                section.frozen.stations, context.needs.limits.required_depth, context.table,
+                context.setting,
+            ),
         )  # fmt: skip
 
     def _longest(self, horizon: float) -> float:

@@ -19,7 +19,7 @@ from thalweg.planning.network_selection.route_alternatives import (
     canals_used,
 )
 from thalweg.planning.pareto.edge_costs import edge_costs
-from thalweg.planning.pareto.search_horizon import SearchHorizon, extend_horizon
+from thalweg.planning.pareto.search_horizon import SearchHorizon, extend_horizon, searched_water
 from thalweg.planning.pareto.trade_off_context import (
     ExploredAlternative,
     TradeOffContext,
@@ -149,8 +149,7 @@ def _fastest_route(
             (trade_off.ends[0], trade_off.ends[-1]),
             depart=context.voyage.earliest_departure - context.approach_times[0],
             last=context.data_end,
-            fields=horizon.frozen.stations,
-            required=trade_off.limits.required_depth,
+            water=searched_water(trade_off, horizon),
         )
     track = track_from_result(alternative.network, first, horizon.setting)
     route, latest = refine_track(context, track, trade_off.limits), context.latest_arrival

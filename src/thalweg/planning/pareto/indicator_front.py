@@ -16,7 +16,12 @@ from thalweg.core.types import FloatArray
 from thalweg.network import Network
 from thalweg.planning.pareto.exploration import front_search
 from thalweg.planning.pareto.front_points import track_from_front_point
-from thalweg.planning.pareto.search_horizon import FastestPaths, SearchHorizon, extend_horizon
+from thalweg.planning.pareto.search_horizon import (
+    FastestPaths,
+    SearchHorizon,
+    extend_horizon,
+    searched_water,
+)
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
 from thalweg.planning.pareto.weighted_sums import key_figure, with_objective
 from thalweg.planning.single.no_route_diagnosis import no_route_error
@@ -168,8 +173,7 @@ class _WeightedSearches:
                 (ends[0], ends[-1]),
                 depart=self.trade_off.context.voyage.earliest_departure,
                 last=self.trade_off.context.data_end,
-                fields=horizon.frozen.stations,
-                required=self.trade_off.limits.required_depth,
+                water=searched_water(self.trade_off, horizon),
             )
         return horizon
 

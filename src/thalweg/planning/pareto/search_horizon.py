@@ -16,6 +16,7 @@ from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network, shortest_path
 from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
+from thalweg.planning.single.weather_stall import SearchedWater
 from thalweg.search import SearchResult, ShipOnNetwork, earliest_arrival
 
 #: Time of the slowest ship of interest over that in calm water ...
@@ -44,6 +45,16 @@ class SearchHorizon:
     first: SearchResult
     setting: int
     latest: float
+
+
+def searched_water(trade_off: TradeOffContext, horizon: SearchHorizon) -> SearchedWater:
+    """Return what the search of a period knew of the sea and the ship, for its refusal."""
+    return SearchedWater(
+        horizon.frozen.stations,
+        trade_off.limits.required_depth,
+        trade_off.context.table,
+        horizon.setting,
+    )
 
 
 class FastestPaths:

@@ -13,7 +13,7 @@ from thalweg.core.objective import KEY_FIGURES, Objective
 from thalweg.network import Network
 from thalweg.planning.pareto.exploration import network_pareto_front
 from thalweg.planning.pareto.front_points import track_from_front_point
-from thalweg.planning.pareto.search_horizon import FastestPaths, extend_horizon
+from thalweg.planning.pareto.search_horizon import FastestPaths, extend_horizon, searched_water
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
 from thalweg.planning.request.voyage_objective import PricedObjective
 from thalweg.planning.single.no_route_diagnosis import no_route_error
@@ -79,8 +79,7 @@ def best_route_on_network(
             (own.ends[0], own.ends[-1]),
             depart=own.context.voyage.earliest_departure,
             last=own.context.data_end,
-            fields=horizon.frozen.stations,
-            required=own.limits.required_depth,
+            water=searched_water(own, horizon),
         )
     front = network_pareto_front(own, network, horizon.frozen, horizon.latest)
     point = front.fastest if objective.name == "time" else front.cheapest

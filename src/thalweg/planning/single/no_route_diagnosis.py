@@ -16,6 +16,7 @@ from thalweg.network import Network
 from thalweg.network.shortest_paths import reversed_graph, shortest_path_tree
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.single.controlling_depth import find_controlling_depth
+from thalweg.planning.single.weather_stall import SearchedWater, weather_stall
 from thalweg.sea import StationFields, standard_names
 from thalweg.search import SearchResult
 
@@ -28,8 +29,7 @@ def no_route_error(
     depart: float,
     last: float,
     latest: float | None = None,
-    fields: StationFields | None = None,
-    required: float = -math.inf,
+    water: SearchedWater | None = None,
 ) -> NoRouteError:
     """Build the error for a search that did not reach its goal.
 
@@ -39,9 +39,9 @@ def no_route_error(
     depart : Earliest departure [s since 1970].
     last : End of the data [s since 1970]; may be infinite.
     latest : Latest departure of a window [s since 1970]; all departures in it were searched.
-    fields : The sea that was searched; with it and ``required`` the error states where the water is
-        too shallow at any tide, the greatest depth there and its time.
-    required : Required water depth [m].
+    water : The sea that was searched; with it the error states where the water is too shallow at
+        any tide, the greatest depth there and its time, and where the weather leaves the ship
+        little of her speed.
     """
     reasons = {**network.meta.rejected}
     for reason, count in result.refused.items():
@@ -56,7 +56,7 @@ def no_route_error(
             f"{found.left / NAUTICAL_MILE:.1f} nm short."
         )
         ended = found.arrival > last
-    deficit = None if fields is None else _depth_deficit(network, fields, required)
+    deficit = None if water is None else _depth_deficit(network, water.fields, water.required)
     if deficit is not None:
         return NoRouteError(
             f"No route from {ends[0].name} to {ends[1].name}: "
@@ -67,8 +67,16 @@ def no_route_error(
             nearest=nearest,
             missing_m=deficit.missing,
         )
-    if reasons.get(codes.REASONS[codes.NO_DATA]) and fields is not None:
-        reached += _unknown_beyond(network, -1 if found is None else found.node, fields)
+    stall = None
+    if water is not None:
+        node, time = (network.meta.start, depart) if found is None else (found.node, found.here)
+        stall = weather_stall(network, water, node, time)
+    if stall is not None:
+        reached = f"{stall} {reached}"
+        slow = reasons.pop(codes.REASONS[codes.CURRENT], 0)
+        reasons |= {_TOO_SLOW: slow} if slow else {}
+    elif reasons.get(codes.REASONS[codes.NO_DATA]) and water is not None:
+        reached += _unknown_beyond(network, -1 if found is None else found.node, water.fields)
     ended = ended and bool(reasons.get(codes.REASONS[codes.OUTSIDE_PERIOD]))
     within = f"arrives before the data end at {format_time(last)}" if ended else "keeps the limits"
     when = f"departing {format_time(depart)}"
@@ -77,7 +85,7 @@ def no_route_error(
     return NoRouteError(
         f"No route from {ends[0].name} to {ends[1].name} {within}, {when}.",
         reached,
-        _advice(reasons, ended),
+        _advice(reasons, ended) if stall is None else _ADVICE_STALL + (_LONGER if ended else ""),
         reasons=reasons,
         nearest=nearest,
         **({"data_end": format_time(last)} if ended else {}),
@@ -91,6 +99,7 @@ class _Reached(NamedTuple):
     ----------
     left : Length of that way [m], or of the geodesic where the network has none.
     arrival : At the goal, at the mean speed until then [s since 1970].
+    here : At this node [s since 1970].
     """
 
     node: int
@@ -98,6 +107,7 @@ class _Reached(NamedTuple):
     lon: float
     left: float
     arrival: float
+    here: float
 
 
 def _reached(
@@ -121,7 +131,7 @@ def _reached(
     here = float(result.node_arrival[node])
     sailed = float(distance(lat[start], lon[start], lat[node], lon[node])) if start >= 0 else 0.0
     arrival = here + (here - depart) * left / sailed if sailed > 0.0 else here
-    return _Reached(node, float(lat[node]), float(lon[node]), left, arrival)
+    return _Reached(node, float(lat[node]), float(lon[node]), left, arrival, here)
 
 
 def _unknown_beyond(network: Network, node: int, fields: StationFields) -> str:
@@ -234,6 +244,14 @@ _ADVICE_SHALLOW = (
     "Load less (--load-factor), require less clearance (--ukc), or use data that include a higher "
     "tide."
 )
+_TOO_SLOW = "current too strong for the speed that the weather leaves"
+_ADVICE_STALL = (
+    "Her speed loss in wind and waves is the cause. Depart at another time, or give "
+    "the ship limits (limits.max_significant_wave_height_m, limits.max_wind_speed_kn), so that "
+    "plans go round such weather or wait for it. If she keeps more speed in truth, choose another "
+    "models.speed_loss: kwon_2008 is for winds up to Beaufort 6, of large ships 8."
+)
+_LONGER = " Or add a longer forecast."
 _ADVICE_ENDED = (
     "Add a longer forecast, or depart earlier. If this was not for the least time, such a plan may "
     "still arrive in time: its last step is not bound to the network of this search."

@@ -41,6 +41,7 @@ from thalweg.planning.single.weather_gaps import (
     data_gaps_on_route,
     without_unknown_edges,
 )
+from thalweg.planning.single.weather_stall import SearchedWater
 from thalweg.route import Route
 from thalweg.route.refinement.better_route import penalty_excess
 from thalweg.route.route import Violation
@@ -255,7 +256,9 @@ def _search(
             depart=context.voyage.earliest_departure - context.approach_times[0],
             last=context.data_end if end >= context.data_end else math.inf,
             latest=context.voyage.latest_departure - context.approach_times[0],
-            fields=frozen.stations, required=limits.required_depth,
+            water=SearchedWater(
+                frozen.stations, limits.required_depth, context.table, context.setting
+            ),
         )  # fmt: skip
     return frozen, result
 
