@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 from thalweg.cli.main import build_parser, main
+from thalweg.cli.option_values import open_sea
 
 SHIP = """
 name: tester
@@ -299,3 +300,27 @@ def test_high_latitudes_give_a_warning(capsys, ship):
     )
     assert code == 0
     assert any("ice" in note for note in found["notes"])
+
+
+def test_a_value_that_is_no_number_gets_one_line_on_its_option(capsys):
+    assert main(["plan", "Dover", "Calais", "--ship", "gunnerus", "--calm", "--speed", "15kn"]) == 2
+    text = capsys.readouterr().err
+    assert "argument --speed: invalid float value: '15kn'." in text
+    assert "--speed KN: ordered speed through calm water [kn], also between" in text
+    assert "See thalweg plan --help." in text
+    assert "usage:" not in text and len(text.splitlines()) == 3
+
+
+def test_fills_of_vectors_have_a_form_on_the_command_line(currents, capsys):
+    arguments = ["plan", HERE, THERE, "--ship", "gunnerus", "--sea", currents, "--quiet"]
+    assert main([*arguments, "--fill", "wind=10"]) == 2
+    assert "Give both: --fill wind=10,0 on the command line" in capsys.readouterr().err
+    assert main([*arguments, "--fill", "wind=a,0"]) == 2
+    assert "wind=EAST,NORTH (towards, in m/s)" in capsys.readouterr().err
+    given = build_parser().parse_args([*arguments, "--fill", "wind=10,-2"])
+    given.progress = lambda text: None
+    time = np.datetime64("2026-01-01T06:00")
+    wind = open_sea(given).sample(
+        ["eastward_wind", "northward_wind"], time.astype("datetime64[s]").astype(float), 50.5, 2.0
+    )
+    assert (float(wind["eastward_wind"]), float(wind["northward_wind"])) == (10.0, -2.0)

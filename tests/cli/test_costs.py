@@ -12,6 +12,7 @@ from thalweg.cli.main import main
 from thalweg.cli.option_values import with_given_prices
 from thalweg.cli.options import add_price_options
 from thalweg.core.errors import InputError
+from thalweg.core.units import KNOT
 
 START, GOAL = (55.0, 4.0), (55.0, 5.0)  # in the North Sea, inside a control area
 BULKER = Ship.load("handysize-bulker")
@@ -176,3 +177,28 @@ def test_an_evaluated_route_is_printed_in_twelve_lines_at_most(capsys, track, tm
     assert any("fuel 300 USD/t and 468 in control areas (ship file)" in line for line in lines)
     assert main(["evaluate", track, *SHIP, *DEPART, "--verbose"]) == 0
     assert "55.000N   4.000E" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--eu-year", "1990"], "charges.year is 1990.\n  It is a year from 2024 to 2060."),
+        (["--ets-price", "1e7"], "charges.ets_price is 10000000.0."),
+        (["--eur-rate", "-1"], "charges.eur_rate is -1.0.\n  It is a number from 0 to 100,000."),
+    ],
+)
+def test_charges_of_plans_are_of_possible_sizes(capsys, options, words):
+    argv = ["plan", "Dover", "Calais", "--ship", "handysize-bulker", "--calm", *DEPART, *options]
+    assert main([*argv, "--quiet"]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_ordered_speeds_of_routes_end_at_100_knots():
+    """Of a ship by the cubic law, whose file sets no highest speed."""
+    hull = {"draught_m": 6.0}
+    fuel = {"reference_t_per_day": 30.0}
+    data = {"name": "x", "speeds_kn": [10, 17], "hull": hull, "fuel": fuel}
+    ship = Ship.from_dict(data | {"engine": {"reference_speed_kn": 17.0}})
+    assert ship.with_speeds([60.0 * KNOT]).speeds[0] == pytest.approx(60.0 * KNOT)
+    with pytest.raises(InputError, match="from 0 to 100 kn"):
+        ship.with_speeds([200.0 * KNOT])

@@ -11,10 +11,11 @@ from thalweg.core.errors import (
     InputError,
     MissingVariableError,
     NoRouteError,
+    OutsideAreaError,
     OutsidePeriodError,
     ThalwegError,
 )
-from thalweg.planning.request.voyage_endpoints import resolve_endpoint
+from thalweg.planning.request.voyage_endpoints import resolve_endpoint, resolve_places
 from thalweg.ship import ShipLimits
 
 DEPART = "2026-01-01T00:00Z"
@@ -182,6 +183,29 @@ def test_a_place_on_land_near_water_names_the_water_and_the_nearest_port():
 def test_swapped_latitude_and_longitude():
     with pytest.raises(InputError, match="swapped"):
         Voyage(start=(151.2, -33.9), goal=(50, 1), depart=DEPART)
+
+
+@pytest.mark.parametrize(
+    ("goal", "words"),
+    [
+        ((9.0, 42.0), "42, 9 is 42.0000N 9.0000E, near the other places. Are latitude and"),
+        ((-74.0, 40.6), "40.6, -74 is near Stapleton SI, US. Are latitude and longitude swapped"),
+        ((30.0, 60.0), "Are latitude and longitude swapped"),
+    ],
+)
+def test_a_place_on_land_says_where_its_swapped_degrees_are(goal, words):
+    with pytest.raises(InputError, match=words):
+        resolve_places((43.0, 8.5), [], goal, Chart.gshhg("i"))
+
+
+def test_a_place_outside_the_data_says_that_its_swapped_degrees_are_inside():
+    water = Chart.open_water()
+    wind = {"eastward_wind": lambda t, lat, lon: np.where(np.asarray(lat) > 50.0, 1.0, np.nan),
+            "northward_wind": lambda t, lat, lon: 0.0}  # fmt: skip
+    sea = Sea.from_functions(wind, time_step=3600.0).filled(waves=0.0)
+    voyage = Voyage(start=(55.0, 4.0), goal=(5.0, 55.0), depart=DEPART)
+    with pytest.raises(OutsideAreaError, match=r"55, 5 is .*, inside the data\. Are lat"):
+        plan(voyage, ship=Ship.load("handysize-bulker"), sea=sea, chart=water)
 
 
 @pytest.mark.parametrize("place", [(float("nan"), 1.0), (50.0,), "", None, (1, 2, 3)])

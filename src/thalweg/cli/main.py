@@ -11,7 +11,7 @@ import re
 import sys
 import warnings
 from collections.abc import Sequence
-from typing import NoReturn
+from typing import Final, NoReturn
 
 from thalweg.cli import (
     demo_command,
@@ -58,6 +58,9 @@ _COMMANDS = (
 )
 
 
+_SHORT_USAGE: Final = 160  # characters
+
+
 class Parser(argparse.ArgumentParser):
     """A parser that raises `InputError` for a command line that it cannot read."""
 
@@ -74,9 +77,23 @@ class Parser(argparse.ArgumentParser):
         words = _suggestions(self, message)
         raise InputError(
             f"The command line is not understood: {message}.",
-            " ".join(self.format_usage().split()),
+            _short_usage(self, message),
             (f"Did you mean {' or '.join(words)}? " if words else "") + f"See {self.prog} --help.",
         )
+
+
+def _short_usage(parser: argparse.ArgumentParser, message: str) -> str:
+    """Return what the option of a message is for, else the usage if it is short, else nothing."""
+    named = re.match(r"argument ([^:]*):", message)
+    if named:
+        options = named[1].split("/")
+        for action in parser._actions:
+            if set(options) & set(action.option_strings):
+                value = action.metavar if isinstance(action.metavar, str) else ""
+                text = str(action.help or "").partition(";")[0] % vars(action)
+                return f"{options[-1]} {value}: {text}.".replace(" :", ":")
+    usage = " ".join(parser.format_usage().split())
+    return usage if len(usage) <= _SHORT_USAGE else ""
 
 
 def _suggestions(parser: argparse.ArgumentParser, message: str) -> list[str]:

@@ -15,6 +15,7 @@ from thalweg.core.units import DAY, HOUR, NAUTICAL_MILE
 if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.core.geodesy import Position
+    from thalweg.planning.request.filled_sea import FillValue
     from thalweg.route import RouteFileOptions
     from thalweg.sea import Sea
     from thalweg.ship import Ship
@@ -130,7 +131,7 @@ def _check_ensemble_choice(sea: Sea, arguments: argparse.Namespace) -> Sea:
     return sea
 
 
-def _parse_fill_policy(text: str) -> tuple[str, float | str]:
+def _parse_fill_policy(text: str) -> tuple[str, FillValue]:
     name, _, value = text.partition("=")
     try:
         if name not in FILLABLE:
@@ -139,11 +140,15 @@ def _parse_fill_policy(text: str) -> tuple[str, float | str]:
             value in ("wind", "head_seas", "fetch_limited") or value.startswith("coastal_shelter")
         )
         is_text = of_waves or value.startswith("nearest:")
+        east, comma, north = value.partition(",")
+        if comma and name in ("currents", "wind"):
+            return name, (float(east), float(north))
         return name, value if is_text else float(value)
     except ValueError:
         raise InputError(
             f"--fill {text} is not understood.",
-            f"It is one of {', '.join(f'{n}=0' for n in FILLABLE)}, waves=wind, waves=head_seas, "
+            f"It is one of {', '.join(f'{n}=0' for n in FILLABLE)}, currents=EAST,NORTH, "
+            "wind=EAST,NORTH (towards, in m/s), waves=wind, waves=head_seas, "
             "waves=coastal_shelter, waves=fetch_limited, or NAME=nearest:NM.",
             "Give the value in this form.",
         ) from None
@@ -235,9 +240,13 @@ def with_held_order(ship: Ship, arguments: argparse.Namespace) -> Ship:
 
 def _european_charges(arguments: argparse.Namespace) -> EuropeanCharges | None:
     """Return the charges of the European Union that the options give."""
+    from thalweg.planning.request.voyage_surroundings import check_charges
     from thalweg.ship.methods.engine.european_charges import EuropeanCharges
 
     share, allowance, euro = arguments.eu_share, arguments.ets_price, arguments.eur_rate
+    check_charges(
+        {"ets_price": allowance or 0.0, "eur_rate": euro or 0.0, "year": arguments.eu_year}
+    )
     if allowance is None and euro is None:
         return None
     prices = allowance or 0.0, euro or 0.0, arguments.eu_year

@@ -281,8 +281,9 @@ def fill_values(policy: str, value: float | tuple[float, float] | str) -> dict[s
     if len(names) == 2 and number != 0.0:
         raise InputError(
             f"{policy}={number:g} has no direction.",
-            f"{policy} can be 0.0 or (east, north) in m/s.",
-            f"For example filled({policy}=({number:g}, 0.0)).",
+            f"{policy} can be 0, or its parts towards the east and the north in m/s.",
+            f"Give both: --fill {policy}={number:g},0 on the command line, "
+            f"filled({policy}=({number:g}, 0.0)) in Python.",
         )
     if policy == "waves":
         return {**{n: CALM_VALUES[n] for n in names}, nm.WAVE_HEIGHT: number}

@@ -17,7 +17,8 @@ from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, L
 from thalweg.planning.report.wave_report import TOO_STEEP
 from thalweg.planning.request.coverage_check import UNREAD
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
-from thalweg.planning.request.voyage_endpoints import CHECK_POSITION, NOT_REACHED
+from thalweg.planning.request.swapped_degrees import CHECK_POSITION
+from thalweg.planning.request.voyage_endpoints import NOT_REACHED
 from thalweg.route.referee.route_assembly import OUT_OF_RANGE
 from thalweg.ship.schema.unusual_numbers import UNUSUAL
 from thalweg.ship.ship_assumptions import KWON_FORM

@@ -239,8 +239,20 @@ def _moved_into_coverage(end: Endpoint, coverage_probe: _CoverageProbe, chart: C
             coverage_probe,
             lacking,
         ),
-        "Choose a place inside, or add data that cover this one.",
+        _swap_into_data(end, coverage_probe)
+        or "Choose a place inside, or add data that cover this one.",
         lacking=lacking,
+    )
+
+
+def _swap_into_data(end: Endpoint, coverage_probe: _CoverageProbe) -> str:
+    """Return a hint where the data cover the position with its degrees swapped; else empty."""
+    lat, lon = end.given_position or (end.lat, end.lon)
+    if end.is_port or abs(lon) > 90.0 or coverage_probe.missing(np.array([lon]), np.array([lat])):
+        return ""
+    return (
+        f"Latitude comes first: {lon:g}, {lat:g} is {format_position(lon, lat)}, inside the data. "
+        "Are latitude and longitude swapped?"
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from thalweg.sea.fill_policies import FETCH_LIMITED
 
@@ -12,8 +12,12 @@ if TYPE_CHECKING:
     from thalweg.sea import Sea
 
 
+#: Of a fill: a number, the parts of a vector (east, north) [m/s], or the name of a policy.
+FillValue: TypeAlias = float | tuple[float, float] | str
+
+
 def filled_in_turns(
-    sea: Sea, policies: Sequence[tuple[str, float | str]], chart: Chart | None = None
+    sea: Sea, policies: Sequence[tuple[str, FillValue]], chart: Chart | None = None
 ) -> Sea:
     """Return a sea filled with policies; of one quantity the first is tried first.
 

@@ -13,24 +13,25 @@ from thalweg.chart.approaches import PortApproach
 from thalweg.chart.ports import PORTS, Port
 from thalweg.core.errors import InputError, errors_about
 from thalweg.core.geodesy import (
-    Position,
     distance,
     format_position,
     format_position_minutes,
     parse_position,
 )
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.request.swapped_degrees import (
+    NEAR_PORT,
+    check_order_of_degrees,
+    errors_on_swapped_degrees,
+    swap_hint,
+    swap_notice,
+)
 from thalweg.planning.voyage_parts import Place
 
 #: Greatest distance that a position is moved [m]; coastlines are generalised.
 MAX_SNAP_POSITION = 2_000.0
 #: The same for ports without an approach [m]; harbours are on land at every resolution.
 MAX_SNAP_PORT = 60_000.0
-#: A position on land within this distance of a port is taken as that port [m].
-NEAR_PORT: Final = 10.0 * NAUTICAL_MILE
-_FAR_FROM_PORTS: Final = 60.0 * NAUTICAL_MILE
-_FAR_SHORTER: Final = 5.0  # times, where one end is swapped and the other is not
-CHECK_POSITION: Final = "Check the position"  #: a note on swapped degrees begins so
 NOT_REACHED: Final = "Does not reach"  #: a note on a port far from the end of the route begins so
 #: A port moved farther than this [m] is not reached: the end of the route has no port's name.
 _REACHED: Final = 2.0 * NAUTICAL_MILE
@@ -197,7 +198,7 @@ def _resolve_position(lat: float, lon: float, chart: Chart, what: str) -> Endpoi
     name = format_position(lat, lon)
     on_water = bool(chart.is_navigable(lat, lon))
     if on_water and chart.is_joined_to_sea(lat, lon):
-        return Endpoint(name, lat, lon, 0.0, notice=_swap_notice(lat, lon, chart))
+        return Endpoint(name, lat, lon, 0.0, notice=swap_notice(lat, lon, chart))
     near = (
         None if chart.approaches is None else chart.approaches.nearest(lat, lon, within=NEAR_PORT)
     )
@@ -229,7 +230,7 @@ def _snap_to_water(
             f"There is none within {MAX_SNAP_PORT / NAUTICAL_MILE:.0f} nm on this chart." + port,
             "Give that port by name, or a position at sea."
             if port
-            else _swap_hint(lat, lon, chart)
+            else swap_hint(lat, lon, chart)
             or "Choose another position, or a chart that covers it.",
         )
     near_lat, near_lon, moved = found
@@ -255,29 +256,6 @@ def _nearest_port_text(lat: float, lon: float, chart: Chart) -> str:
     )
 
 
-def _swap_hint(lat: float, lon: float, chart: Chart) -> str:
-    if abs(lon) <= 90.0 and bool(chart.is_navigable(lon, lat)):
-        return (
-            f"Latitude comes first: {lon:g}, {lat:g} is at sea. Are latitude and longitude swapped?"
-        )
-    return ""
-
-
-def _swap_notice(lat: float, lon: float, chart: Chart) -> str:
-    """Return a note where a position is far from ports, but the swapped one is near a port."""
-    ports = chart.approaches
-    if ports is None or abs(lon) > 90.0 or ports.nearest(lat, lon, within=_FAR_FROM_PORTS):
-        return ""
-    swapped = ports.nearest(lon, lat, within=NEAR_PORT)
-    if swapped is None:
-        return ""
-    return (
-        f"{CHECK_POSITION}: {lat:g},{lon:g} is read as {format_position(lat, lon)}, more than "
-        f"{_FAR_FROM_PORTS / NAUTICAL_MILE:.0f} nm from any port. {format_position(lon, lat)} is "
-        f"{swapped[1] / NAUTICAL_MILE:.0f} nm from {swapped[0].label}: latitude comes first."
-    )
-
-
 def resolve_places(start: Place, via: Sequence[Place], goal: Place, chart: Chart) -> list[Endpoint]:
     """Resolve the places of a voyage in order to navigable water of a chart.
 
@@ -287,59 +265,19 @@ def resolve_places(start: Place, via: Sequence[Place], goal: Place, chart: Chart
         As of `resolve_endpoint`, if two places in succession are the same, or if latitude and
         longitude of the ends are swapped.
     """
-    _check_order_of_degrees(start, goal, chart)
+    check_order_of_degrees(start, goal, chart)
     places = [("start", "start", start)]
     places += [(f"via.{k}", f"via point {k + 1}", place) for k, place in enumerate(via)]
     ends = []
     for entry, what, place in [*places, ("goal", "goal", goal)]:
-        with errors_about(entry):
+        others = [start, *via, goal]
+        others.remove(place)
+        with errors_about(entry), errors_on_swapped_degrees(place, others, chart):
             ends.append(resolve_endpoint(place, chart, what))
     ends = [ends[0], *map(without_approach, ends[1:-1]), ends[-1]]
     for first, second in itertools.pairwise(ends):
         check_distinct(first, second)
     return ends
-
-
-def _check_order_of_degrees(start: Place, goal: Place, chart: Chart) -> None:
-    """Raise `InputError` if both ends are ports after swapping degrees, but not before.
-
-    Degrees with letters (5.0N 61.6E) are taken as they are.
-    """
-    if chart.approaches is None:
-        return
-    given = [_degrees_of(place) for place in (start, goal)]
-    swapped = [
-        position is not None and bare and bool(_swap_notice(*position, chart))
-        for position, bare in given
-    ]
-    others = [p for (p, _), is_swapped in zip(given, swapped) if not is_swapped]
-    at_ports = (p is None or chart.approaches.nearest(*p, within=NEAR_PORT) for p in others)
-    if not any(swapped) or not all(at_ports):
-        return
-    as_given = [(PORTS.lookup(str(q)).lat, PORTS.lookup(str(q)).lon) if p is None else p
-                for (p, _), q in zip(given, (start, goal))]  # fmt: skip
-    turned = [p[::-1] if is_swapped else p for p, is_swapped in zip(as_given, swapped)]
-    if not all(swapped) and not (
-        _FAR_SHORTER * float(distance(*turned[0], *turned[1]))
-        < float(distance(*as_given[0], *as_given[1]))
-    ):
-        return
-    wrong = [p for p, is_swapped in zip(as_given, swapped) if is_swapped]
-    read = " and ".join(format_position(*p) for p in wrong)
-    meant = " and ".join(format_position(*p[::-1]) for p in wrong)
-    raise InputError(
-        f"Latitude and longitude seem to be swapped: no port is near {read}.",
-        f"Latitude comes first, and a port is at {meant}.",
-        f"Give {meant}; or, if they are meant as they stand, write them with letters: {read}.",
-        field="start" if swapped[0] else "goal",
-    )
-
-
-def _degrees_of(place: Place) -> tuple[Position | None, bool]:
-    """Return the position that a place states, None for names, and whether it has no letters."""
-    if not isinstance(place, str):
-        return (float(place[0]), float(place[1])), True
-    return parse_position(place), not any(letter.isalpha() for letter in place)
 
 
 def without_approach(end: Endpoint) -> Endpoint:

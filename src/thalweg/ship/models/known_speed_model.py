@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Final, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,6 +23,8 @@ from thalweg.ship.models.prestegardshus_speed_loss import PrestegardshusSpeedLos
 from thalweg.ship.models.squat_model import SquatModel
 from thalweg.ship.tables.table_parts import TableError, TablePart
 from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, constant_part, tabulate_settings
+
+_HIGHEST: Final = 100.0 * KNOT  # ordered speed of a ship whose file sets no other [m/s]
 
 
 @dataclass(frozen=True)
@@ -215,9 +217,9 @@ class KnownSpeedModel:
         own_rows = (self.speeds_full, self.speeds_empty, self.fuel_rates, self.powers)
         rows, name = self.law.rows or own_rows, self.law.name
         own = interpolate_loading(load_factor, empty=rows[1], full=rows[0])
-        low, high = (own[0], own[-1]) if name == "table" else (0.0, np.inf)
+        low, high = (own[0], own[-1]) if name == "table" else (0.0, _HIGHEST)
         if name == "none":
-            high = own[-1] if len(own) > 1 else np.inf
+            high = own[-1] if len(own) > 1 else _HIGHEST
         possible = np.isfinite(speeds) & (speeds > 0)
         if not (possible & (speeds >= low * (1 - 1e-9)) & (speeds <= high * (1 + 1e-9))).all():
             raise _speed_out_of_range_error(speeds, low, high)
@@ -320,10 +322,9 @@ def _shape(conditions: Conditions, index: NDArray[np.intp]) -> tuple[int, ...]:
 
 def _speed_out_of_range_error(speeds: FloatArray, low: float, high: float) -> InputError:
     listed = ", ".join(f"{s / KNOT:g}" for s in speeds)
-    upper = f"{high / KNOT:g}" if np.isfinite(high) else "any"
     return InputError(
         f"The ship cannot be ordered to {listed} kn.",
-        f"Its calm-water speeds run from {low / KNOT:g} to {upper} kn.",
+        f"Its calm-water speeds run from {low / KNOT:g} to {high / KNOT:g} kn.",
         "Give speeds in that range.",
         value=listed,
     )
