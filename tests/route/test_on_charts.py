@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.route.planar import Plane, ship
 from thalweg.chart import Chart
 from thalweg.core.limits import Limits
-from thalweg.route import RefinementConditions, Track, better_route, evaluate
+from thalweg.route import RefinementConditions, Track, better_route, evaluate, read_track
 from thalweg.sea import Sea
 
 NO_LIMITS = Limits()
@@ -123,3 +123,20 @@ def test_smoothing_is_never_for_the_worse(seed, east, north, objective):
         assert better.distance_nm * 1.852 == pytest.approx(math.hypot(8, 1), rel=1e-5)
     assert better.track.positions[0] == scored.track.positions[0]
     assert better.track.positions[-1] == scored.track.positions[-1]
+
+
+def test_violations_name_the_legs_of_the_given_file(tmp_path):
+    """Rhumb lines are broken into geodesics; a leg that crosses land in several parts is one."""
+    island = [[10.0, 49.0], [30.0, 49.0], [30.0, 51.0], [10.0, 51.0], [10.0, 49.0]]
+    chart = Chart.from_geojson({"type": "Polygon", "coordinates": [island]})
+    path = tmp_path / "route.csv"
+    path.write_text("lat,lon,geometry\n55,0,RL\n53,1,RL\n52,5,RL\n50,35,RL\n40,40,RL\n")
+    track = read_track(path, depart="2026-01-01T00:00Z")
+    assert len(track) > 12 and track.leg_numbers.tolist() == sorted(track.leg_numbers.tolist())
+    assert set(track.leg_numbers.tolist()) == {1, 2, 3, 4}
+    route = evaluate(track, ship=ship(5.0), sea=Sea.calm(), chart=chart, strict=False)
+    assert [one.reason for one in route.violations] == ["land: leg 3"]
+    own = track.replaced(given_leg=None)
+    assert own.leg_numbers.tolist() == list(range(1, len(track)))
+    assert len(evaluate(own, ship=ship(5.0), sea=Sea.calm(), chart=chart).violations) > 3
+    assert track.kept([0, len(track) - 1]).leg_numbers.tolist() == [1]

@@ -91,6 +91,7 @@ def _divided(route: Route, longest: float) -> tuple[Track, np.ndarray]:
         np.concatenate(wait),
         None,  # type: ignore[arg-type]
         np.repeat(speeds, counts),
+        given_leg=np.repeat(track.leg_numbers, counts),
     )
     return divided, np.repeat(kinds == 0, counts)
 

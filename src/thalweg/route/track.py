@@ -19,7 +19,7 @@ from thalweg.core.types import FloatArray
 from thalweg.route.carried_extensions import NO_EXTENSIONS, CarriedExtensions
 
 TOP_SETTING = -1  #: the ship's highest speed setting, counted from the end as in Python
-_FIELDS = ("lat", "lon", "depart", "wait", "setting", "speed", "extensions")
+_FIELDS = ("lat", "lon", "depart", "wait", "setting", "speed", "extensions", "given_leg")
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +44,9 @@ class Track:
     extensions : CarriedExtensions, optional
         Extensions of other makers in the RTZ file that it was read from; RTZ files that are written
         of it have them too.
+    given_leg : array_like of int, shape (n - 1,), optional
+        The leg of the given route that each leg is a part of, from 1, where rhumb lines of a file
+        were broken into geodesics; results name it. None: each leg is its own.
 
     Raises
     ------
@@ -58,6 +61,7 @@ class Track:
     setting: NDArray[np.int64] = None  # type: ignore[assignment]
     speed: FloatArray = None  # type: ignore[assignment]
     extensions: CarriedExtensions = NO_EXTENSIONS
+    given_leg: NDArray[np.int64] | None = None
 
     def __post_init__(self) -> None:
         lat = float_array(self.lat, "latitudes").reshape(-1)
@@ -76,6 +80,9 @@ class Track:
         depart = parse_time(self.depart)
         fields = {"lat": lat, "lon": wrap_longitude(lon), "wait": wait, "setting": setting}
         fields["speed"] = speed
+        if self.given_leg is not None:
+            number = np.array(self.given_leg, dtype=np.int64)
+            object.__setattr__(self, "given_leg", number if number.shape == (count - 1,) else None)
         for name, values in fields.items():
             values.setflags(write=False)
             object.__setattr__(self, name, values)
@@ -134,6 +141,11 @@ class Track:
         return distance(self.lat[:-1], self.lon[:-1], self.lat[1:], self.lon[1:])
 
     @property
+    def leg_numbers(self) -> NDArray[np.int64]:
+        """Number of the leg of the given route that each leg is a part of, from 1."""
+        return np.arange(1, len(self)) if self.given_leg is None else self.given_leg
+
+    @property
     def positions(self) -> list[Position]:
         """The waypoints as (lat, lon) pairs [deg]."""
         return list(zip(self.lat.tolist(), self.lon.tolist()))
@@ -144,8 +156,8 @@ class Track:
         Parameters
         ----------
         **changes
-            By the names ``lat``, ``lon``, ``depart``, ``wait``, ``setting``, ``speed`` and
-            ``extensions``.
+            By the names ``lat``, ``lon``, ``depart``, ``wait``, ``setting``, ``speed``,
+            ``extensions`` and ``given_leg``.
 
         Returns
         -------
@@ -177,6 +189,7 @@ class Track:
             self.wait[index],
             self.setting[index[:-1]],
             self.speed[index[:-1]],
+            given_leg=None if self.given_leg is None else self.given_leg[index[:-1]],
         )
 
     def part(self, first: int, last: int, depart: float) -> Track:

@@ -70,7 +70,8 @@ def _near_land(route: Route, chart: Chart, ship: Ship) -> list[str]:
     if not breaches:
         return []
     worst = min(breaches, key=lambda at: at.distance)
-    more = f" On {len(breaches)} legs in all." if len(breaches) > 1 else ""
+    legs = {int(track.leg_numbers[at.leg]) for at in breaches}
+    more = f" On {len(legs)} legs in all." if len(legs) > 1 else ""
     return [
         f"{NEAR_LAND}: {worst.distance / NAUTICAL_MILE:.1f} nm off at "
         f"{format_position(worst.lat, worst.lon)}"

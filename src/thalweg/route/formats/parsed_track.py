@@ -36,6 +36,7 @@ class ParsedTrack:
     corridors : By leg, the cross-track limits to port and starboard [m]; NaN: none. Empty: none.
     route_name : Where the format requires that the file has this name.
     extensions : Of other makers.
+    leg_numbers : By leg, its number in the file, from 1; empty: legs are those of the file.
     """
 
     positions: list[Position]
@@ -46,6 +47,7 @@ class ParsedTrack:
     corridors: list[tuple[float, float]] = field(default_factory=list)
     route_name: str | None = None
     extensions: CarriedExtensions = NO_EXTENSIONS
+    leg_numbers: list[int] = field(default_factory=list)
 
     def all_notes(self, name: str) -> list[str]:
         """Return the notes of a file of a name."""
@@ -229,18 +231,24 @@ def _with_geodesics(parsed: ParsedTrack) -> ParsedTrack:
         for k, whole in zip([*leg.tolist(), len(orders) - 1], at_vertex.tolist())
     ]
     places = list(zip(lat.tolist(), lon.tolist()))
-    return replace(parsed, positions=places, orders=given, rhumb=[])
+    number = (leg + 1).tolist()
+    return replace(parsed, positions=places, orders=given, rhumb=[], leg_numbers=number)
 
 
 def _track(parsed: ParsedTrack, depart: float) -> Track:
     """Merge repeated positions: their waits add up, the last of their speeds holds."""
     orders = parsed.orders or [WaypointOrder()] * len(parsed.positions)
+    own = parsed.leg_numbers or list(range(1, len(orders)))
     merged: list[tuple[Position, WaypointOrder]] = []
-    for place, order in zip(parsed.positions, orders):
+    number: list[int] = []  # of the leg that begins at each waypoint
+    for place, order, leg in zip(parsed.positions, orders, [*own, 0]):
         if merged and merged[-1][0] == place:
             order = WaypointOrder(merged.pop()[1].wait + order.wait, order.speed)
+            number.pop()
         merged.append((place, order))
+        number.append(leg)
     lat, lon = np.array([place for place, _ in merged]).T
     wait = np.array([order.wait for _, order in merged])
     speed = np.array([order.speed for _, order in merged[:-1]])
-    return Track(lat, lon, depart, wait, speed=speed, extensions=parsed.extensions)
+    legs = np.array(number[:-1])
+    return Track(lat, lon, depart, wait, speed=speed, extensions=parsed.extensions, given_leg=legs)

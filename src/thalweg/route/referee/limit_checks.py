@@ -89,12 +89,16 @@ def land_violations(
     if len(approach):
         closed = chart.crosses_no_go_zone(*ends[:, approach])
         status[approach] = np.where(closed, codes.NO_GO, codes.OK)
+    number, told = track.leg_numbers, set[str]()
     for leg in np.flatnonzero(status != codes.OK):
         share = _first_closed(free, ends[:, leg])
         first_lat, first_lon, last_lat, last_lon = ends[:, leg]
         lat, lon = positions_along(first_lat, first_lon, last_lat, last_lon, share)
         reason = REASONS.get(int(status[leg]), REASONS[codes.LAND])
-        where = f"{reason}: leg {leg + 1}"
+        where = f"{reason}: leg {number[leg]}"
+        if where in told:  # a part of the same leg of the given route
+            continue
+        told.add(where)
         time = float(times[leg] + share * (ends_at[leg] - times[leg]))
         found.append(Violation(where, time, float(lat), float(lon)))
     return found
@@ -116,7 +120,7 @@ def _offing_violations(
     """Return the legs nearer to land than the offing, of those that are checked."""
     return [
         Violation(
-            f"{REASONS[codes.OFFING]}: leg {place.leg + 1}",
+            f"{REASONS[codes.OFFING]}: leg {track.leg_numbers[place.leg]}",
             float(times[place.leg]),
             place.lat,
             place.lon,
@@ -146,7 +150,9 @@ def lane_violations(
     for (leg, lane), sailed in sorted(against.items()):
         if sailed > _LANE_TOLERANCE:
             y, x = positions_along(lat[leg], lon[leg], lat[leg + 1], lon[leg + 1], 0.5)
-            reason = f"against the traffic lane {group.lanes[lane].name}: leg {leg + 1}"
+            reason = (
+                f"against the traffic lane {group.lanes[lane].name}: leg {track.leg_numbers[leg]}"
+            )
             found.append(Violation(reason, float(times[leg]), float(y), float(x)))
     return found
 
