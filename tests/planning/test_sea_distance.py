@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import thalweg
+from thalweg.cli.distance_command import names_in_list
 from thalweg.cli.main import main
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import densify, distance
@@ -250,3 +251,10 @@ def test_the_way_of_small_ships_is_stated_for_long_ways_by_a_passage_near_an_end
     assert "ships shorter than 120 m: 624 nm by Chacao (--open all)" in text
     assert main(["distance", "Rotterdam", "New York", "--quiet"]) == 0
     assert "shorter than" not in capsys.readouterr().out
+
+
+def test_lists_of_passages_keep_names_with_commas():
+    assert names_in_list("suez,panama") == ["suez", "panama"]
+    assert names_in_list("korea, western channel") == ["korea, western channel"]
+    assert names_in_list("Korea, western channel; suez") == ["Korea, western channel", "suez"]
+    assert names_in_list(" , ") == []

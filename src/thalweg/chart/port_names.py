@@ -40,6 +40,9 @@ _PORT_WORDS_AFTER: Final = (
 )
 #: A place name of fewer letters is not shortened further.
 _SHORTEST_PLACE: Final = 4
+#: A name of fewer letters is compared letter by letter.
+_SHORTEST_LOOSE: Final = 6
+_SAME_LETTERS: Final = str.maketrans("yj", "ii")
 #: A space for every ASCII character that is neither letter nor digit.
 _SPACES: Final = {code: " " for code in range(128) if not chr(code).isalnum()}
 
@@ -78,3 +81,25 @@ def written_names(name: str) -> tuple[str, ...]:
     if not bracket:
         return (name,)
     return tuple(n for n in (name, outside.strip(" -"), inside.strip(" )")) if n)
+
+
+def loose_port_names(normalised: str) -> tuple[str, ...]:
+    """Return forms of a normalised name that other spellings of it share; empty for short names.
+
+    Spaces do not count, nor whether a transliteration has y, j or i and one or two of them
+    ("kamchatskiy", "kamchatskii", "kamchatsky"). A name of several words is also that without an
+    adjective of a region behind it ("petropavlovsk kamchatskiy" is "petropavlovsk").
+    """
+    words = [_same_spelling(word) for word in normalised.split()]
+    forms = ["".join(words)]
+    if len(words) > 1 and words[-1].endswith("ski"):
+        forms.append("".join(words[:-1]))
+    return tuple(form for form in forms if len(form) >= _SHORTEST_LOOSE)
+
+
+def _same_spelling(word: str) -> str:
+    """Return a word with one spelling for letters that transliterations spell differently."""
+    plain = word.translate(_SAME_LETTERS)
+    while "ii" in plain:
+        plain = plain.replace("ii", "i")
+    return plain

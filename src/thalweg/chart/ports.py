@@ -16,7 +16,12 @@ from functools import cache, cached_property
 from importlib import resources
 from typing import Final
 
-from thalweg.chart.port_names import normalised_port_name, place_name, written_names
+from thalweg.chart.port_names import (
+    loose_port_names,
+    normalised_port_name,
+    place_name,
+    written_names,
+)
 from thalweg.core.errors import InputError, close_matches
 from thalweg.core.geodesy import Position, distance, format_position, parse_position
 from thalweg.core.units import NAUTICAL_MILE
@@ -153,7 +158,8 @@ class Ports:
         name the answer is the one that is clearly larger than all others (by `CLEARLY_LARGER`);
         without a country or region, ports that can be reached from the sea come before all others.
         A former or local name of the World Port Index counts only where no port has it as its own
-        name; if it belongs to a clearly larger port, the name is ambiguous.
+        name; if it belongs to a clearly larger port, the name is ambiguous. A name that no port
+        has is compared by its loose form (`loose_port_names`) where that is one port's alone.
 
         Raises
         ------
@@ -190,7 +196,30 @@ class Ports:
 
     def _with_name(self, name: str) -> dict[Port, bool]:
         normalised = normalised_port_name(name)
-        return self._by_name.get(normalised) or self._by_name.get(place_name(normalised)) or {}
+        return (
+            self._by_name.get(normalised)
+            or self._by_name.get(place_name(normalised))
+            or self._spelt_otherwise(normalised)
+        )
+
+    def _spelt_otherwise(self, normalised: str) -> dict[Port, bool]:
+        """Return the one port of which a name is another spelling; empty for none or several."""
+        if country_code_of(normalised):
+            return {}
+        for form in loose_port_names(normalised):
+            found = self._by_loose_name.get(form, {})
+            if len(_separate_ports(found)) == 1:
+                return found
+        return {}
+
+    @cached_property
+    def _by_loose_name(self) -> dict[str, dict[Port, bool]]:
+        """Ports by the loose form of their whole names (`loose_port_names`)."""
+        loose: dict[str, dict[Port, bool]] = defaultdict(dict)
+        for name, ports in self._by_name.items():
+            for form in loose_port_names(name)[:1]:
+                loose[form].update(ports)
+        return dict(loose)
 
     def _unknown(self, text: str) -> InputError:
         """Return the error of a name that no port has: a wrong country, a country, or a typo."""

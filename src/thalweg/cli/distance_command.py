@@ -39,7 +39,7 @@ def add_command(commands: Any) -> None:
         metavar="NAME",
         help="canal or passage that is not used, for example suez,panama or 'Pentland Firth'; all: "
         "all canals; none uses every canal (default: corinth, which is too small for most ships); "
-        "may be repeated",
+        "a list is separated by semicolons where a name has a comma; may be repeated",
     )
     parser.add_argument(
         "--open",
@@ -83,8 +83,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     avoid: tuple[str, ...] = SMALL_CANALS
     if arguments.avoid is not None:
-        names = [name.strip() for text in arguments.avoid for name in text.split(",")]
-        avoid = tuple(name for name in names if name and name != "none")
+        names = [name for text in arguments.avoid for name in names_in_list(text)]
+        avoid = tuple(name for name in names if name != "none")
     arguments.progress("finding the shortest way")
     find = partial(
         sea_distance,
@@ -110,6 +110,17 @@ def run(arguments: argparse.Namespace) -> int:
         if not (arguments.open or arguments.via) and may_be_shorter_for_small_ships(way):
             _print_small_ships(way, find(open=("all",)))
     return SUCCESS
+
+
+def names_in_list(text: str) -> list[str]:
+    """Return the names of canals and passages in a list: one name, or several by ; or else by ,."""
+    from thalweg.chart.passages import PASSAGES
+
+    whole = text.strip().casefold()
+    if any(passage.name.casefold() == whole for passage in PASSAGES):
+        return [text.strip()]
+    mark = ";" if ";" in text else ","
+    return [name for part in text.split(mark) if (name := part.strip())]
 
 
 def _print_small_ships(way: SeaDistance, small: SeaDistance) -> None:
