@@ -114,6 +114,7 @@ def test_a_draw_of_one_entry_does_not_depend_on_the_others():
     ("changes", "words"),
     [
         ({"axis": {}}, "entry of a study"),
+        ({"allowance_price": 80}, "belongs under annual. Write annual: {allowance_price: 80}"),
         ({"axes": {"spede_kn": [1]}}, "speed_kn"),
         ({"axes": {"speed_kn": []}}, "no values"),
         ({"axes": {"depart": {"from": "2026-02-01", "to": "2026-01-01", "step_h": 1}}}, "range"),

@@ -26,7 +26,8 @@ from thalweg.ship.performance_sheet import carbon_intensity_of
 if TYPE_CHECKING:
     import pandas as pd
 
-_ENTRIES: Final = {
+#: Entries of ``annual`` and their ranges.
+ANNUAL_ENTRIES: Final = {
     "port_h": (0.0, 8760.0),
     "year": (min(REDUCTION_PERCENT), max(REDUCTION_PERCENT)),
     "allowance_price": (0.0, 1e4),
@@ -55,15 +56,15 @@ def checked_annual(given: Any) -> dict[str, float]:
     InputError
         For other entries, or values out of range.
     """
-    if not isinstance(given, Mapping) or set(given) - set(_ENTRIES):
+    if not isinstance(given, Mapping) or set(given) - set(ANNUAL_ENTRIES):
         raise InputError(
             f"annual is {given!r}.",
-            f"It may have {', '.join(_ENTRIES)}.",
+            f"It may have {', '.join(ANNUAL_ENTRIES)}.",
             "Correct it, for example {port_h: 48, year: 2026}.",
             field="annual",
         )
     for name, value in given.items():
-        low, high = _ENTRIES[name]
+        low, high = ANNUAL_ENTRIES[name]
         if not is_number(value) or not low <= value <= high:
             raise InputError(
                 f"{name} of annual is {value!r}.",

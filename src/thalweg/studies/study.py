@@ -19,7 +19,7 @@ from thalweg.core.file_reading import read_text_file
 from thalweg.core.given_numbers import shortened_repr
 from thalweg.planning.request.voyage_surroundings import check_charges, check_limits
 from thalweg.planning.voyage import Voyage
-from thalweg.studies.annual_figures import checked_annual
+from thalweg.studies.annual_figures import ANNUAL_ENTRIES, checked_annual
 from thalweg.studies.study_axes import (
     MOST_ROWS,
     axis_values,
@@ -232,6 +232,13 @@ class Study:
                 "See the example in the documentation.",
             )
         for key in data:
+            if key in ANNUAL_ENTRIES:
+                raise InputError(
+                    f"{key} is an entry of the study itself.",
+                    "It belongs under annual.",
+                    f"Write annual: {{{key}: {data[key]}}}, with the other entries of annual.",
+                    field=str(key),
+                )
             if key not in _ENTRIES:
                 raise unknown_name_error("entry of a study", str(key), _ENTRIES, field=str(key))
         voyage = plain_data(data.get("voyage", {}))
