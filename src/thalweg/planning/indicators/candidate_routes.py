@@ -1,7 +1,8 @@
 """Candidates for alternatives of a voyage, all on the networks and the frozen sea of one trade-off.
 
 The key figures are minimised on one network in the weather. Ways round islands, by and round named
-passages and farther off land are its shortest paths, straightened as far as land allows, at the
+passages and farther off land are its shortest paths (round islands those of a network of all water
+between the ends), straightened as far as land allows, at the
 fastest route's speed. A mile in shoals, penalty zones and against lanes counts more in all of
 them, as in plans; ways that run farther against lanes than the fastest route are left out.
 """
