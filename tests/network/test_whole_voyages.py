@@ -13,7 +13,7 @@ import pytest
 from tests.network.test_history_parts import line_between, voyage_tracks
 from thalweg.chart import Chart
 from thalweg.chart.approaches import line_length
-from thalweg.core.errors import InputError
+from thalweg.core.errors import InputError, NoRouteError
 from thalweg.network.history.history_builder import HistoryRules, build_history
 from thalweg.network.history.history_corridor import HistoryCorridor
 from thalweg.network.history.history_file import read_history, write_history
@@ -23,7 +23,9 @@ from thalweg.planning.distance_table import usual_distance_table
 NM, HOUR = 1852.0, 3600.0
 WEST, MIDDLE, EAST, NORTH = (45.0, -20.0), (45.0, -16.0), (45.0, -12.0), (47.0, -20.0)
 PLACES = {"West": WEST, "Middle": MIDDLE, "East": EAST, "North": NORTH}
-PORTS = tuple(HistoryPort(name, "", *place) for name, place in PLACES.items())
+#: A pier without voyages has the sea end of West.
+PORTS = (HistoryPort("Pier", "", *WEST),
+         *(HistoryPort(name, "", *place) for name, place in PLACES.items()))  # fmt: skip
 BY_SOUTH = (WEST, (44.0, -18.0), (44.0, -14.0), EAST)
 LANE = (WEST, (45.2, -18.2), (45.2, -17.8), MIDDLE)
 BESIDE = (WEST, (45.32, -18.2), (45.32, -17.8), MIDDLE)  # 7 nm from the lane
@@ -48,8 +50,12 @@ def network():
             aside = random.normal(0.0, 0.01, 2)
             inner = [tuple(np.array(place) + aside) for place in way[1:-1]]
             lines.append(line_between(way[0], *inner, way[-1], spacing=random.uniform(1, 3) * NM))
-            ends.append((names.index(way[0]), names.index(way[-1])))
+            ends.append((1 + names.index(way[0]), 1 + names.index(way[-1])))
             speeds.append(speed)
+    for _ in range(4):  # known at the ends and half way only
+        lines.append(line_between(WEST, EAST, spacing=200 * NM))
+        ends.append((1, 3))
+        speeds.append(FAST)
     tracks = voyage_tracks(lines, speed=1.0)
     start, goal = np.array(ends).T
     slower = np.repeat(np.array(speeds), np.diff(tracks.ptr))
@@ -68,6 +74,25 @@ def test_the_usual_route_is_not_joined_from_voyages_with_a_call_between(network)
     assert found.duration[1] == pytest.approx(line_length(BY_SOUTH) / FAST, rel=0.01)
     assert (found.voyages, found.whole, found.confidence) == (12, 12, "high")
     assert found.reason == "12 voyages on this way"
+
+
+def test_voyages_with_wide_gaps_make_no_way(network):
+    ways = network.whole_ways(
+        network.port_node("West"), network.port_node("East"), network.weights()
+    )
+    assert network.arcs.evidence.count[ways].tolist() == [12]
+
+
+def test_where_nobody_sailed_voyages_of_a_port_beside_are_named(network):
+    [note] = network.route("Pier", "East").notes
+    assert "12 voyages sailed from West to East, which are within 20 nm" in note
+    assert network.route("West", "East").notes == ()
+
+
+def test_draughts_that_nobody_sailed_are_refused_with_the_deepest(network):
+    with pytest.raises(NoRouteError, match="its 12 voyages drew at most 10 m"):
+        network.route("West", "East", draught=14.0)
+    assert network.route("West", "East", draught=10.2).whole == 12
 
 
 def test_lanes_side_by_side_are_ways_of_their_own_with_their_own_times(network):

@@ -12,7 +12,7 @@ from thalweg.chart.approaches import line_length
 from thalweg.chart.ports import PORTS as PORTS_OF_INDEX
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import distance
-from thalweg.core.units import HOUR, NAUTICAL_MILE
+from thalweg.core.units import DAY, HOUR, NAUTICAL_MILE
 from thalweg.network.history.history_builder import HistoryRules, build_history
 from thalweg.network.history.history_file import read_history, write_history
 from thalweg.network.history.junctions import CorridorLine
@@ -261,6 +261,21 @@ def test_corridors_are_junctions_with_names(fleet):
     net = history_from_tracks(fleet, Chart.open_water(), ports=PORTS, corridors=[line])
     assert "Gate" in net.route("Alpha", "Bravo", month=1).passes
     assert "Gate" not in net.route("Alpha", "Bravo", month=7).passes
+
+
+def test_time_in_port_between_daily_positions_does_not_count_as_under_way():
+    """Twelve knots for four days, and most of a day in port before and after."""
+    lon = np.array([-20.0, -20.0, -19.0, -12.0, -5.0, 2.0, 3.0, 3.0])
+    table = pd.DataFrame({"mmsi": 1, "time": 1.7e9 + DAY * np.arange(len(lon)), "lat": 45.0,
+                          "lon": lon})  # fmt: skip
+    tracks = voyages_between_calls(
+        fleet := read_fleet([table]), find_port_calls(fleet, [[(45.0, -20.0)], [(45.0, 3.0)]])
+    )
+    assert (tracks.start.tolist(), tracks.goal.tolist()) == ([0], [1])
+    speed = float(distance(45.0, -19.0, 45.0, -12.0)) / DAY
+    sailed = float(tracks.steps.sum())
+    assert tracks.under_way[-1] == pytest.approx(sailed / speed, rel=1e-3)
+    assert tracks.under_way[-1] < 3.5 * DAY < tracks.time[-1] - tracks.time[0]
 
 
 def test_stops_at_sea_are_no_calls_and_do_not_count_as_time_under_way():

@@ -193,6 +193,27 @@ def test_ships_that_leave_an_approach_early_do_not_sail_to_its_end(ports):
 
 
 @pytest.mark.slow
+def test_the_way_of_most_voyages_is_taken_though_it_leads_through_a_canal():
+    by_canal = sea_distance("Hamburg", "Gothenburg")
+    round_skaw = sea_distance("Hamburg", "Gothenburg", avoid=["kiel"])
+    assert round_skaw.nm > 1.2 * by_canal.nm
+    ways = [SyntheticRoute(by_canal.line, share=2.0, speed_kn=10.0),
+            SyntheticRoute(round_skaw.line, share=1.0, speed_kn=18.0)]  # fmt: skip
+    back = [SyntheticRoute(way.line[::-1], share=way.share, speed_kn=way.speed_kn) for way in ways]
+    fleet = SyntheticFleet((*ways, *back), ships=8, interval_s=600.0)
+    messages = synthetic_fleet(fleet, start="2024-01-01", days=60, seed=5)
+    made = history_from_tracks(read_fleet([messages]), Chart.gshhg("i"))
+    found = made.route("Hamburg", "Gothenburg")
+    assert found.nm == pytest.approx(by_canal.nm, rel=0.02)
+    assert found.passes == ("kiel",) and "voyages by this canal" in found.reason
+    inner = found.duration[1] / 3600.0 * 10.0
+    assert found.nm - 90.0 < inner < found.nm  # without the approaches, at 10 kn
+    ends = made.port_node("Hamburg"), made.port_node("Gothenburg")
+    [other] = made.whole_ways(*ends, made.weights())
+    assert made.arcs.evidence.count[other] < found.whole
+
+
+@pytest.mark.slow
 def test_ships_from_a_river_into_a_canal_are_not_taken_out_to_sea():
     """Hamburg to Gothenburg: the Kiel Canal leaves the Elbe 40 nm before its sea end."""
     way = sea_distance("Hamburg", "Gothenburg")

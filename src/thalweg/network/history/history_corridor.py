@@ -115,9 +115,14 @@ class HistoryCorridor:
         links = []
         vectors = sphere_vectors(lat, lon)
         ways = GlobeWays(chart)
+        apart = [
+            np.sqrt(np.sum((vectors - sphere_vectors(*np.array([place]).T)) ** 2, axis=1))
+            for place in (start, goal)
+        ]
+        busiest = self._busiest_ports(*apart)
         for place, outward in ((start, True), (goal, False)):
-            away = np.sqrt(np.sum((vectors - sphere_vectors(*np.array([place]).T)) ** 2, axis=1))
-            nearest = int(np.argmin(away))
+            away = apart[0 if outward else 1]
+            nearest = int(np.argmin(away)) if busiest is None else busiest[0 if outward else 1]
             end_of_canal = any(
                 float(geodesy.distance(lat[nearest], lon[nearest], *end)) <= _AT_END
                 for canal in chart.canals
@@ -152,6 +157,26 @@ class HistoryCorridor:
             (lat, lon), arcs, kept, (ends[0], ends[1]), weight, network.nodes.first_port,
             network.radius,
         )  # fmt: skip
+
+    def _busiest_ports(self, *apart: FloatArray) -> tuple[int, int] | None:
+        """Return the ports at two places between which most ships sailed; None if none did.
+
+        Several ports may have one sea end, such as those on a river.
+
+        Parameters
+        ----------
+        *apart : Distances of all nodes from the two places [m].
+        """
+        network = self.network
+        first = network.nodes.first_port
+        near = [first + np.flatnonzero(away[first:] <= _AT_NODE) for away in apart]
+        count = {
+            (a, b): network.whole.count_between(a, b) + network.pairs.voyages(a, b, None)[1]
+            for a in near[0].tolist()
+            for b in near[1].tolist()
+        }
+        best = max(count, key=lambda pair: count[pair], default=None)
+        return best if best is not None and count[best] > 0 else None
 
     def _whole_voyages(self, start: int, goal: int, weight: FloatArray) -> IntArray:
         """Return the arcs of whole voyages between two nodes that are not too long."""

@@ -249,6 +249,11 @@ class WholeWays:
             f"{_BESIDE / NAUTICAL_MILE:.0f} nm: look up that pair."
         )
 
+    def count_between(self, start: int, goal: int) -> int:
+        """Return how many whole voyages there are from one port to another."""
+        arcs = self.between.get((start, goal), [])
+        return int(sum(self.evidence.count[arc] for arc in arcs if self.kind[arc] == SAILED))
+
     def voyages(self, arc: int, month: int | None) -> tuple[int, int]:
         """Return how many voyages an arc has in a month (0 without one), and in all."""
         in_month = 0 if month is None else int(self.evidence.months[arc, month - 1])
