@@ -248,7 +248,7 @@ def test_the_way_of_small_ships_is_stated_for_long_ways_by_a_passage_near_an_end
     assert main(["distance", "Puerto Montt", "Valparaiso", "--quiet"]) == 0
     text = capsys.readouterr().out
     assert "Valparaiso, CL: 818 nm" in text
-    assert "ships shorter than 120 m: 624 nm by Chacao (--open all)" in text
+    assert "ships shorter than 120 m: 625 nm by Chacao (--open all)" in text
     assert main(["distance", "Rotterdam", "New York", "--quiet"]) == 0
     assert "shorter than" not in capsys.readouterr().out
 
