@@ -149,9 +149,11 @@ def _transits(junctions: Junctions, visits: _Visits) -> tuple[IntArray, FloatArr
 
 def _outside_canals(visits: _Visits, transits: tuple[IntArray, FloatArray, FloatArray]) -> _Visits:
     """Return the visits without those of junctions between both ends of a canal."""
-    keep = np.ones(len(visits.voyage), bool)
-    for voyage, entered, left in zip(*transits):
-        keep &= ~((visits.voyage == voyage) & (visits.along > entered) & (visits.along < left))
+    _, entered, left = transits  # ascending, as distances sailed are over all voyages
+    if not len(entered):
+        return visits
+    last = np.maximum(np.searchsorted(entered, visits.along, side="left") - 1, 0)
+    keep = ~((visits.along > entered[last]) & (visits.along < left[last]))
     return _Visits(*(getattr(visits, column.name)[keep] for column in fields(_Visits)))
 
 
