@@ -112,7 +112,7 @@ def usual_lengths(nodes: HistoryNodes, arcs: HistoryArcs, radius: float) -> Floa
     return np.where(at_canal[arcs.tail] | at_canal[arcs.head], voyage, arcs.length)
 
 
-def names_passed(nodes: HistoryNodes, way: Sequence[int]) -> tuple[str, ...]:
+def names_on_way(nodes: HistoryNodes, way: Sequence[int]) -> tuple[str, ...]:
     """Return the corridors and canals of a way over nodes; of a canal it has both ends in turn."""
     names, canals = [nodes.names[node] for node in way], {canal.name for canal in CANALS}
     after = [*names[1:], ""]

@@ -28,7 +28,7 @@ from thalweg.network.history.history_arcs import (
     HistoryNodes,
     canal_arcs,
     named_beside,
-    names_passed,
+    names_on_way,
     usual_lengths,
 )
 from thalweg.network.history.history_route import (
@@ -314,7 +314,7 @@ class HistoryNetwork:
         nodes = [int(of.tail[index[0]]), *of.head[index].tolist()]
         p10, p50, p90 = np.where(sailed[:, None], evidence.duration[index], np.nan).sum(axis=0)
         is_whole = len(arcs) == 1 and ends in self.whole.between
-        names = names_passed(
+        names = names_on_way(
             self.nodes, named_beside(self.nodes, line, self.radius) if is_whole else nodes
         )
         whole = int(evidence.count[arcs[0]])
