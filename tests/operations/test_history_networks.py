@@ -9,9 +9,10 @@ import pytest
 
 from thalweg.chart import Chart
 from thalweg.chart.approaches import line_length
+from thalweg.chart.canals import CANALS
 from thalweg.chart.ports import PORTS as PORTS_OF_INDEX
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.geodesy import distance
+from thalweg.core.geodesy import densify, distance
 from thalweg.core.units import DAY, HOUR, NAUTICAL_MILE
 from thalweg.network.history.history_builder import HistoryRules, build_history
 from thalweg.network.history.history_file import read_history, write_history
@@ -25,7 +26,11 @@ from thalweg.operations.examples.synthetic_fleet import (
 )
 from thalweg.operations.fleet import history_from_tracks, read_fleet
 from thalweg.operations.fleet.history_from_tracks import history_port, read_history_ports
-from thalweg.operations.fleet.port_calls import find_port_calls, voyages_between_calls
+from thalweg.operations.fleet.port_calls import (
+    find_port_calls,
+    voyages_between_calls,
+    without_waits_at_canals,
+)
 from thalweg.planning.distance_table import usual_distance_table
 
 A, B, C = (50.0, -30.0), (50.0, -20.0), (44.0, -25.0)
@@ -276,6 +281,28 @@ def test_time_in_port_between_daily_positions_does_not_count_as_under_way():
     sailed = float(tracks.steps.sum())
     assert tracks.under_way[-1] == pytest.approx(sailed / speed, rel=1e-3)
     assert tracks.under_way[-1] < 3.5 * DAY < tracks.time[-1] - tracks.time[0]
+
+
+@pytest.mark.parametrize(("hours", "passes", "calls"), [(6, True, 2), (6, False, 3), (20, True, 3)])
+def test_waits_for_a_canal_are_no_calls(hours, passes, calls):
+    """A stop off Port Said, and on through the Suez Canal or back to the west."""
+    places = {"Alexandria": (31.25, 29.85), "Said": (31.40, 32.38), "Gulf": (28.6, 33.0)}
+    suez = next(canal for canal in CANALS if canal.name == "suez")
+    south = [suez.ends[0], suez.ends[1], places["Gulf"]]
+    onward = south if passes else [(31.6, 31.0), places["Alexandria"]]
+    way = [places["Alexandria"], (31.6, 31.0), places["Said"], *onward]
+    lat, lon, _ = densify(*np.array(way, float).T, 4_000.0)
+    stop = int(np.argmin(distance(lat, lon, *places["Said"])))
+    step = np.append(0.0, distance(lat[:-1], lon[:-1], lat[1:], lon[1:])) / 7.0
+    time = 1.7e9 + np.cumsum(step)
+    lat, lon = (np.insert(part, stop, [part[stop]] * 3) for part in (lat, lon))
+    time = np.insert(time, stop, time[stop] + np.arange(3.0))
+    time[stop + 1 :] += hours * HOUR
+    table = pd.DataFrame({"mmsi": 1, "time": time, "lat": lat, "lon": lon})
+    fleet = read_fleet([table])
+    found = find_port_calls(fleet, [[place] for place in places.values()])
+    assert found.port.tolist() == [0, 1, 2 if passes else 0]
+    assert len(without_waits_at_canals(fleet, found, CANALS).port) == (calls if passes else 3)
 
 
 def test_stops_at_sea_are_no_calls_and_do_not_count_as_time_under_way():

@@ -253,6 +253,11 @@ def lines_off_land(
     lines: list[list[Position]] = [[] for _ in range(count)]
     source = candidates[:, 0].copy()
     left = np.arange(count)
+    medoids = stretches.take(source)
+    for arc in np.flatnonzero(finder.through_canal(medoids)).tolist():
+        nodes = int(medoids.tail[arc]), int(medoids.head[arc])
+        lines[arc] = [(float(finder.places[0][k]), float(finder.places[1][k])) for k in nodes]
+    left = left[[not line for line in lines]]
     for k in range(CANDIDATES):
         left = left[candidates[left, k] >= 0]
         if not len(left):

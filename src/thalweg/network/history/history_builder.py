@@ -137,7 +137,7 @@ def build_history(
         np.append(junctions.lon, [port.lon for port in ports]),
     )
     ways = GlobeWays(chart)
-    finder = EndFinder(chart, tracks, places, ports)
+    finder = EndFinder(chart, tracks, places, ports, junctions.canal_ends)
     tested = lines_off_land(
         chart, tracks, occurrences, sailed.candidates, finder=finder, turning=turning,
         radius=rules.radius, ways=ways,
@@ -152,6 +152,7 @@ def build_history(
     at_port = sailed.tail >= len(junctions), sailed.head >= len(junctions)
     lost = (at_port[0] & at_port[1])[tested.arc] & (tested.repaired > MOSTLY)  # as in canals
     arcs = _sailed_arcs(chart, sailed, tested.take(~lost), approach[~lost])
+    pairs = pairs.with_arcs(sailed, tested.arc[lost])
     report("connecting the network")
     nodes = HistoryNodes(*places, (*junctions.names, *([""] * len(ports))), tuple(ports))
     used = range(nodes.first_port, len(nodes))

@@ -322,7 +322,7 @@ class HistoryNetwork:
             whole, duration = (
                 self.pairs.of(*ends)
                 if set(arcs) & set(canal_arcs(self.nodes, of).tolist())
-                else (0, None)
+                else (self.whole.count_between(*ends), None)
             )
             if duration is not None and whole >= LEAST_SAMPLES:
                 p10, p50, p90 = duration

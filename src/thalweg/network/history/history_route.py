@@ -91,7 +91,7 @@ class HistoryRoute:
         elif len(self.arcs) == 1 and self.whole > 0:
             reasons = [f"{self.whole} voyages on this way"]
         else:
-            sailed = f"{self.whole} voyages by this canal" if self.whole else "no voyage"
+            sailed = f"{self.whole} voyages" if self.whole else "no voyage"
             reasons = [
                 f"at least {self.voyages} voyages on every arc with tracks",
                 f"{sailed} from the one port to the other",

@@ -63,7 +63,7 @@ def lines_as_sailed(
     radius = rules.radius
     own = stretches.take(tested.source)
     drawn = _drawn(tracks, own, finder, fixed, radius, rules.tolerance / _FINER)
-    keep = tested.repaired <= 0.0
+    keep = (tested.repaired <= 0.0) & ~finder.through_canal(own)
     drawn, repaired = _off_land(chart, drawn, tested.lines.lengths, keep, ways)
     keep &= np.isfinite(repaired)
     voyages = np.bincount(stretches.tail * len(fixed) + stretches.head)  # of pairs of nodes

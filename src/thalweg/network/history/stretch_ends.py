@@ -10,7 +10,7 @@ import numpy as np
 
 from thalweg.chart.approaches import dense_line
 from thalweg.core.geodesy import distance, geocentric_positions
-from thalweg.core.types import FloatArray, IntArray
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.history.junction_visits import OFF_LINE, ArcOccurrences
 from thalweg.network.history.voyage_tracks import HistoryPort, VoyageTracks
@@ -51,12 +51,19 @@ class EndFinder:
     tracks : VoyageTracks
     places : Positions of the nodes [deg], (lat, lon): junctions, then ports.
     ports : The ports.
+    canal_ends : How many of the first nodes are ends of canals, two of each (`Junctions`).
     """
 
     chart: Chart
     tracks: VoyageTracks
     places: tuple[FloatArray, FloatArray]
     ports: Sequence[HistoryPort]
+    canal_ends: int = 0
+
+    def through_canal(self, stretches: ArcOccurrences) -> BoolArray:
+        """Return which stretches lead from one end of a canal to the other."""
+        tail, head = stretches.tail, stretches.head
+        return (np.maximum(tail, head) < self.canal_ends) & (tail // 2 == head // 2)
 
     @property
     def node_approach(self) -> FloatArray:

@@ -15,6 +15,7 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.history.arc_statistics import (
     PERCENTILES,
     ArcEvidence,
+    FoundArcs,
     group_percentiles,
     voyage_months,
 )
@@ -50,6 +51,26 @@ class VoyagePairs:
         """Return no pairs, as of files that do not have them."""
         nothing = np.empty(0, np.int64)
         return cls(nothing, nothing, nothing, np.empty((0, 3)), np.empty((0, MONTHS), np.int64))
+
+    def with_arcs(self, found: FoundArcs, arcs: IntArray) -> VoyagePairs:
+        """Return pairs with those of some arcs that have no line: most of it is in a canal.
+
+        Parameters
+        ----------
+        found : All arcs.
+        arcs : Which of them; of pairs that are known already none is added.
+        """
+        known = set(zip(self.tail.tolist(), self.head.tolist()))
+        ends = list(zip(found.tail[arcs].tolist(), found.head[arcs].tolist()))
+        first = {pair: k for k, pair in reversed(list(enumerate(ends))) if pair not in known}
+        new, evidence = arcs[sorted(first.values())], found.evidence
+        return VoyagePairs(
+            np.concatenate([self.tail, found.tail[new]]),
+            np.concatenate([self.head, found.head[new]]),
+            np.concatenate([self.count, evidence.count[new]]),
+            np.concatenate([self.duration, evidence.duration[new]]),
+            np.concatenate([self.months, evidence.months[new]]),
+        )
 
     def of(self, start: int, goal: int) -> tuple[int, FloatArray]:
         """Return how many voyages sailed between two ports, and their durations [s], (3,).

@@ -26,6 +26,7 @@ from thalweg.operations.fleet.port_calls import (
     PortCalls,
     find_port_calls,
     voyages_between_calls,
+    without_waits_at_canals,
 )
 from thalweg.planning.distance_table import read_places
 from thalweg.planning.request.voyage_endpoints import MAX_SNAP_PORT, resolve_port
@@ -94,6 +95,7 @@ def history_from_tracks(
     else:
         own, closed = list(ports), []
         port_calls = find_port_calls(fleet, [port.places for port in own], calls)
+    port_calls = without_waits_at_canals(fleet, port_calls, chart.canals)
     tracks = voyages_between_calls(fleet, port_calls)
     if not len(tracks):
         raise _no_voyage(fleet, port_calls, calls or PortCallRules(), of_index=ports is None)

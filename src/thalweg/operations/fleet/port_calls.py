@@ -8,8 +8,9 @@ from typing import Final
 
 import numpy as np
 
+from thalweg.chart.canals import Canal
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import Position, densify
+from thalweg.core.geodesy import Position, densify, distance
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
 from thalweg.network.history.arc_statistics import group_percentiles
@@ -22,6 +23,10 @@ from thalweg.network.history.voyage_tracks import (
 from thalweg.operations.fleet.fleet_tracks import FleetTracks
 
 #: A single position near a port is a call where the positions before and after are this far [s].
+#: Of a wait for a canal; distances of such a wait from its end, and of the ship from the other end.
+_LONGEST_WAIT: Final = 12.0 * HOUR
+_BESIDE_CANAL, _PASSED = 15.0 * NAUTICAL_MILE, 10.0 * NAUTICAL_MILE
+_SLOW_PASSAGE: Final = 4.0 * KNOT
 _LONG: Final = 3.0 * HOUR  # of an interval beside a call, in which a ship may lie in port
 _INTERVALS: Final = 3  # of a voyage from which its speed is known
 _SPARSE: Final = 6.0 * HOUR
@@ -195,6 +200,44 @@ def _merged(calls: PortCalls) -> PortCalls:
     last = np.maximum.accumulate(calls.last) if len(head) else calls.last
     return PortCalls(calls.ship[head], calls.port[head], calls.first[head], last[tail],
                      calls.stopped)  # fmt: skip
+
+
+def without_waits_at_canals(
+    fleet: FleetTracks, calls: PortCalls, canals: Sequence[Canal]
+) -> PortCalls:
+    """Return calls without short stops beside a canal that the ship passes just before or after.
+
+    Ships wait for convoys and locks near ports. A stop of less than 12 hours within 15 nm of one
+    end of a canal is such a wait if the ship passes the other end within the time of the passage
+    and 12 hours. The begin and the end of a track stay calls.
+
+    Parameters
+    ----------
+    canals : Of the chart.
+
+    Returns
+    -------
+    PortCalls : In the same order.
+    """
+    time = fleet.time[calls.last] - fleet.time[calls.first]
+    inside = (calls.first > fleet.ptr[calls.ship]) & (calls.last < fleet.ptr[calls.ship + 1] - 1)
+    short = (time < _LONGEST_WAIT) & inside
+    keep = np.ones(len(calls.ship), bool)
+    for canal in canals:
+        reach = canal.length / _SLOW_PASSAGE + _LONGEST_WAIT
+        for end, other in (canal.ends, canal.ends[::-1]):
+            away = distance(fleet.lat[calls.first], fleet.lon[calls.first], *end)
+            for call in np.flatnonzero(short & keep & (away <= _BESIDE_CANAL)).tolist():
+                begin, stop = fleet.ptr[calls.ship[call] : calls.ship[call] + 2]
+                moments = fleet.time[begin:stop]
+                low, high = np.searchsorted(moments, [
+                    fleet.time[calls.first[call]] - reach, fleet.time[calls.last[call]] + reach
+                ])  # fmt: skip
+                part = slice(begin + low, begin + high)
+                passed = distance(fleet.lat[part], fleet.lon[part], *other)
+                keep[call] = not bool((passed <= _PASSED).any())
+    return _merged(PortCalls(calls.ship[keep], calls.port[keep], calls.first[keep],
+                             calls.last[keep], calls.stopped))  # fmt: skip
 
 
 def voyages_between_calls(fleet: FleetTracks, calls: PortCalls) -> VoyageTracks:
