@@ -16,7 +16,7 @@ from thalweg.network.history.voyage_tracks import HistoryPort
 
 _DEEPEST: Final = 30.0  # draught [m]
 _FEW: Final = 3  # voyages below which the confidence is low
-_ROUNDABOUT: Final = 1.5  # times the straight line: a way that nobody sailed whole is doubtful
+_ROUNDABOUT: Final = 1.5  # times the straight line: a way that no ship sailed whole is doubtful
 _MUCH: Final = 0.05  # share of the length without tracks above which the confidence is low
 
 

@@ -79,10 +79,10 @@ class VoyagePairs:
         ----------
         start, goal : Nodes.
         """
-        found = np.flatnonzero((self.tail == start) & (self.head == goal))
-        if not len(found):
-            return 0, np.full(3, np.nan)
-        return int(self.count[found[0]]), self.duration[found[0]]
+        row = self._row(start, goal)
+        return (
+            (0, np.full(3, np.nan)) if row is None else (int(self.count[row]), self.duration[row])
+        )
 
     def voyages(self, start: int, goal: int, month: int | None) -> tuple[int, int]:
         """Return how many voyages sailed between two ports in a month, and in all.
@@ -92,11 +92,15 @@ class VoyagePairs:
         start, goal : Nodes.
         month : 1 to 12; None: the first number is 0.
         """
-        found = np.flatnonzero((self.tail == start) & (self.head == goal))
-        if not len(found):
+        row = self._row(start, goal)
+        if row is None:
             return 0, 0
-        in_month = 0 if month is None else int(self.months[found[0], month - 1])
-        return in_month, int(self.count[found[0]])
+        in_month = 0 if month is None else int(self.months[row, month - 1])
+        return in_month, int(self.count[row])
+
+    def _row(self, start: int, goal: int) -> int | None:
+        found = np.flatnonzero((self.tail == start) & (self.head == goal))
+        return int(found[0]) if len(found) else None
 
 
 def with_whole_voyages(
@@ -247,7 +251,7 @@ class WholeWays:
 
         Parameters
         ----------
-        ends : Nodes of two ports between which nobody sailed.
+        ends : Nodes of two ports between which no ship sailed.
         least : Fewest voyages.
         """
         near = [

@@ -89,16 +89,16 @@ def land_violations(
     if len(approach):
         closed = chart.crosses_no_go_zone(*ends[:, approach])
         status[approach] = np.where(closed, codes.NO_GO, codes.OK)
-    number, told = track.leg_numbers, set[str]()
+    number, listed = track.leg_numbers, set[str]()
     for leg in np.flatnonzero(status != codes.OK):
         share = _first_closed(free, ends[:, leg])
         first_lat, first_lon, last_lat, last_lon = ends[:, leg]
         lat, lon = positions_along(first_lat, first_lon, last_lat, last_lon, share)
         reason = REASONS.get(int(status[leg]), REASONS[codes.LAND])
         where = f"{reason}: leg {number[leg]}"
-        if where in told:  # a part of the same leg of the given route
+        if where in listed:  # a part of the same leg of the given route
             continue
-        told.add(where)
+        listed.add(where)
         time = float(times[leg] + share * (ends_at[leg] - times[leg]))
         found.append(Violation(where, time, float(lat), float(lon)))
     return found
