@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
@@ -15,10 +15,18 @@ from thalweg.core.types import BoolArray, FloatArray
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.chart.rings import Rings
     from thalweg.chart.zones.zone_set import Zones
 
 _OFFING_SHARE: Final = 0.98  # routes may be nearer to land than required by a small share
 _OUTLINE_PARTS: Final = 0.5  # of a cell: outlines of zones are great circles, split into these
+
+
+class LinePieces(NamedTuple):
+    """Straight pieces of lines: first and last latitudes and longitudes [deg], (2, pieces)."""
+
+    lat: FloatArray
+    lon: FloatArray
 
 
 def closed_cells(
@@ -46,8 +54,8 @@ def closed_cells(
     centres = _centres(lat, lon)
     kept = chart.offing_arrays.distance
     shore = np.asarray(chart.coastline.shore_distance(*centres, cap=max(1.0, kept)))
-    lines = chart.coastline.lines(lat[0], lat[-1], lon[0], lon[-1])
-    closed = (shore.reshape(shape) <= 0.0) & ~_touched(lines, lat, lon)
+    shores = _shore_pieces(chart.coastline.rings)
+    closed = (shore.reshape(shape) <= 0.0) & ~_touched(shores, lat, lon)
     closed |= _outside_area(chart, lat, lon)
     if kept > 0.0:
         near = np.flatnonzero(shore < kept)
@@ -59,11 +67,10 @@ def closed_cells(
         closed |= too_near.reshape(shape)
     if chart.zones.closed_shapes:
         inside = points_inside(chart.zones.closed_index, *centres).reshape(shape)
-        outlines = _zone_outlines(chart.zones.closed_shapes, lat[1] - lat[0])
-        closed |= inside & ~_touched(outlines, lat, lon)
+        closed |= inside & ~_touched(_zone_pieces(chart.zones.closed_shapes, lat, lon), lat, lon)
     if kept_out:
         inside = _inside_one_of(kept_out, *centres).reshape(shape)
-        closed |= inside & ~_touched(_zone_outlines(kept_out, lat[1] - lat[0]), lat, lon)
+        closed |= inside & ~_touched(_zone_pieces(kept_out, lat, lon), lat, lon)
     result: BoolArray = closed
     return result
 
@@ -82,8 +89,8 @@ def cells_inside(areas: Zones, lat: FloatArray, lon: FloatArray) -> BoolArray:
     """
     inside = areas.in_eca(*_centres(lat, lon)).reshape(lat.size - 1, lon.size - 1)
     rings = [area.rings for area in areas.eca]
-    lines = ((one.lat[a:b], one.lon[a:b]) for one in rings for a, b in pairwise(one.start))
-    result: BoolArray = np.asarray(inside & ~_touched(lines, lat, lon))
+    lines = [(one.lat[a:b], one.lon[a:b]) for one in rings for a, b in pairwise(one.start)]
+    result: BoolArray = np.asarray(inside & ~_touched(_pieces_of(lines), lat, lon))
     return result
 
 
@@ -111,37 +118,58 @@ def _inside_one_of(shapes: Sequence[Any], lat: FloatArray, lon: FloatArray) -> B
     return inside
 
 
-def _zone_outlines(
-    shapes: Sequence[Any], spacing: float
-) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Yield the outlines of polygons as close positions [deg] on great circles."""
-    for shape in shapes:
+def _shore_pieces(rings: Rings) -> LinePieces:
+    """Return the edges of outlines of land, but for those at which the data split land."""
+    ends = np.zeros(max(rings.lat.size - 1, 0), bool)
+    ends[rings.start[1:-1] - 1] = True
+    lat, lon = rings.lat, rings.lon
+    split = (lon[:-1] == lon[1:]) & (lon[:-1] % 180.0 == 0.0)
+    kept = np.flatnonzero(~ends & ~split)
+    return LinePieces(
+        np.stack([lat[:-1][kept], lat[1:][kept]]), np.stack([lon[:-1][kept], lon[1:][kept]])
+    )
+
+
+def _zone_pieces(shapes: Sequence[Any], lat: FloatArray, lon: FloatArray) -> LinePieces:
+    """Return short pieces of the outlines, on great circles, of the polygons near a mesh."""
+    import shapely
+
+    every = np.asarray(shapes, object)
+    west, south, east, north = shapely.bounds(every).reshape(-1, 4).T
+    bulge = 1.0 + 0.25 * (east - west)  # great circles leave the box of their ends
+    near = (south - bulge <= lat[-1]) & (north + bulge >= lat[0])
+    turns = np.array([-360.0, 0.0, 360.0])[:, None]
+    near &= ((west + turns <= lon[-1] + 1.0) & (east + turns >= lon[0] - 1.0)).any(axis=0)
+    step = max(_OUTLINE_PARTS * (lat[1] - lat[0]) * METRES_PER_DEGREE, 100.0)
+    lines = []
+    for shape in every[near]:
         for ring in (shape.exterior, *shape.interiors):
-            lon, lat = np.asarray(ring.coords, float)[:, :2].T
-            step = max(_OUTLINE_PARTS * spacing * METRES_PER_DEGREE, 100.0)
-            close_lat, close_lon, _ = densify(lat, lon, step)
-            yield close_lat, np.degrees(np.unwrap(np.radians(close_lon)))
+            ring_lon, ring_lat = np.asarray(ring.coords, float)[:, :2].T
+            close_lat, close_lon, _ = densify(ring_lat, ring_lon, step)
+            lines.append((close_lat, np.degrees(np.unwrap(np.radians(close_lon)))))
+    return _pieces_of(lines)
 
 
-def _touched(
-    lines: Iterable[tuple[FloatArray, FloatArray]], lat: FloatArray, lon: FloatArray
-) -> BoolArray:
-    """Return the cells that lines (lat, lon) [deg] pass through."""
+def _pieces_of(lines: Sequence[tuple[FloatArray, FloatArray]]) -> LinePieces:
+    """Return the pieces of lines (lat, lon) [deg]."""
+    if not lines:
+        return LinePieces(np.empty((2, 0)), np.empty((2, 0)))
+    lat, lon = (np.concatenate([line[side] for line in lines]) for side in (0, 1))
+    begins = np.ones(lat.size, bool)  # at all points but the last of each line
+    begins[np.cumsum([line[0].size for line in lines]) - 1] = False
+    first = np.flatnonzero(begins)
+    return LinePieces(
+        np.stack([lat[first], lat[first + 1]]), np.stack([lon[first], lon[first + 1]])
+    )
+
+
+def _touched(pieces: LinePieces, lat: FloatArray, lon: FloatArray) -> BoolArray:
+    """Return the cells that pieces of lines pass through."""
     cells = np.zeros((lat.size - 1, lon.size - 1), bool)
-    given = [(np.asarray(a, float), np.asarray(b, float)) for a, b in lines]
-    if not given:
-        return cells
-    all_y = (np.concatenate([a for a, _ in given]) - lat[0]) / (lat[1] - lat[0])
-    all_lon = np.concatenate([b for _, b in given])
-    last = np.cumsum([a.size for a, _ in given]) - 1
-    within = np.ones(all_y.size, bool)  # pieces begin at all points but the last of each line
-    within[last] = False
-    first = np.flatnonzero(within)
-    y = np.stack([all_y[first], all_y[first + 1]])
+    y = (pieces.lat - lat[0]) / (lat[1] - lat[0])
     for turn in (-360.0, 0.0, 360.0):
-        all_x = (all_lon + turn - lon[0]) / (lon[1] - lon[0])
-        x = np.stack([all_x[first], all_x[first + 1]])
-        near = np.ones(first.size, bool)
+        x = (pieces.lon + turn - lon[0]) / (lon[1] - lon[0])
+        near = np.ones(x.shape[1], bool)
         for places, count in ((y, cells.shape[0]), (x, cells.shape[1])):
             near &= (places.max(axis=0) >= -1.0) & (places.min(axis=0) <= count + 1.0)
         if near.any():

@@ -101,9 +101,10 @@ def length_round_land(
         return free
     tolerance = min(max(known / _METRES_OF_TOLERANCE, _LEAST_TOLERANCE), _MOST_TOLERANCE)
     best = free
+    near = _rings_within(chart.coastline.rings, reach)
     for level in range(_FINEST + 1):
         now = clock.perf_counter()
-        closed = _closed_shapes(chart, reach, _FINER**level * tolerance, kept_out)
+        closed = _closed_shapes(chart, near, reach, _FINER**level * tolerance, kept_out)
         found = _least_length(closed, reach, links, _FINER**level * tolerance, began + seconds)
         best = max(best, ROUNDING_FACTOR * found)
         ended = clock.perf_counter()
@@ -139,14 +140,21 @@ def _frames(lat: FloatArray, lon: FloatArray) -> FloatArray:
 
 
 def _closed_shapes(
-    chart: Chart, reach: Reach, tolerance: float, kept_out: Sequence[Any]
+    chart: Chart,
+    near: NDArray[np.int64],
+    reach: Reach,
+    tolerance: float,
+    kept_out: Sequence[Any],
 ) -> list[Any]:
-    """Return the polygons (x lon, y lat [deg]) within reach that are closed to a ship."""
+    """Return the polygons (x lon, y lat [deg]) within reach that are closed to a ship.
+
+    The land is that of the rings of the coastline with the numbers near.
+    """
     import shapely
 
     box = reach.box()  # land outside is left out: the length round less land is no longer
     west = reach.middle - 180.0
-    land = np.array(list(_land_polygons(chart.coastline.rings, reach, box, tolerance)), object)
+    land = np.array(list(_land_polygons(chart.coastline.rings, near, box, tolerance)), object)
     whole = np.where(shapely.is_valid(land), land, shapely.make_valid(land))
     # one polygon of all that the data cut at meridians, canals and narrows; no water inside it
     parts = shapely.get_parts(shapely.get_parts(shapely.union_all(whole)))
@@ -169,23 +177,38 @@ def _closed_shapes(
     return [shape for shape in found if not shape.is_empty]
 
 
-def _land_polygons(
-    rings: Rings, reach: Reach, box: tuple[float, ...], tolerance: float
-) -> Iterable[Any]:
-    """Yield the land in a box of outer rings that are large enough.
+def _rings_within(rings: Rings, reach: Reach) -> NDArray[np.int64]:
+    """Return the numbers of the rings with a corner within reach, or with few corners.
 
-    They have a corner within reach, or so few corners that these may be far away on both sides.
+    The few corners of a ring may be far away on both sides of what is within reach.
     """
+    if not len(rings):
+        return np.empty(0, np.int64)
+    box = reach.box()
+    south, north, _, _ = ring_bounds(rings)
+    counts = np.diff(rings.start)
+    some = np.flatnonzero((north > box[1]) & (south < box[3]))
+    start = np.cumsum(counts[some]) - counts[some]
+    corners = np.repeat(rings.start[some] - start, counts[some])
+    corners += np.arange(len(corners))
+    kept = counts[some] <= _FEW_CORNERS
+    if len(some):
+        has = reach.has(rings.lat[corners], rings.lon[corners])
+        kept |= np.logical_or.reduceat(has, start)
+    return some[kept]
+
+
+def _land_polygons(
+    rings: Rings, near: NDArray[np.int64], box: tuple[float, ...], tolerance: float
+) -> Iterable[Any]:
+    """Yield the land in a box of those outer rings of some that are large enough."""
     import shapely
 
-    if not len(rings):
+    if not len(near):
         return
     south, north, west, east = ring_bounds(rings)
     large = np.maximum(north - south, east - west) >= 4.0 * tolerance
-    within = np.logical_or.reduceat(reach.has(rings.lat, rings.lon), rings.start[:-1])
-    within |= np.diff(rings.start) <= _FEW_CORNERS
-    within &= (north > box[1]) & (south < box[3])
-    for number in np.flatnonzero(within & large):
+    for number in near[large[near]]:
         part = slice(rings.start[number], rings.start[number + 1])
         lat, lon = rings.lat[part], rings.lon[part]
         ring = np.stack([lon, lat], axis=1)
