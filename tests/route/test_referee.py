@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from tests.route.planar import EAST, NORTH, Plane, ship
 from thalweg.core.errors import CoverageError, InputError, MissingVariableError, OutsidePeriodError
@@ -181,6 +182,35 @@ def test_the_least_clearance_is_that_of_a_wait_over_low_water():
     assert route.feasible
     assert route.legs["under_keel_clearance"][0] == pytest.approx(2.0)
     assert route.min_ukc_m == pytest.approx(1.0, abs=0.15)  # sampled every five minutes
+
+
+@pytest.mark.parametrize(
+    ("wait", "allowed", "tolerance"),
+    [(8281.0, False, 0.1), (8325.0, False, 0.003), (8381.0, True, 0.0)],
+)
+def test_waves_above_the_limit_for_less_than_a_minute_are_found(wait, allowed, tolerance):
+    """Waves of 6 m end between 5 and 6 h at 0.40E and east of it; the limit opens at 5.3333 h.
+
+    Of the ship's wait of 8,356 s, 75 or 31 are missing: it meets 4.125 or 4.052 m at 0.40E, since
+    the waves fall by a metre in 600 s. Points an eighth of a cell apart once allowed the second.
+    """
+    lat, lon, time = np.arange(-3, 4) * 0.02, np.arange(-10, 61) * 0.02, np.arange(25) * 3600.0
+    height = np.interp(time, [5 * 3600.0, 6 * 3600.0], [6.0, 0.0])[:, None, None]
+    height = height * ((lon > 0.39) & (lon < 0.61)) * np.ones((1, lat.size, 1))
+    name = "sea_surface_wave_significant_height"
+    fields = {name: (("time", "latitude", "longitude"), height, {"standard_name": name})}
+    units = {"units": "seconds since 1970-01-01"}
+    places = {"latitude": lat, "longitude": lon, "time": ("time", time, units)}
+    sea = Sea.open(xr.decode_cf(xr.Dataset(fields, places)))
+    boat = Ship.simple(speed_kn=8.0, draught_m=5.0, max_wave_height_m=4.0)
+    there = float(distance(0.0, 0.0, 0.0, 0.4)) / (8.0 * KNOT)
+    start = 5.3333 * 3600.0 - there - 8356.0  # a wait of 8356 s reaches 0.40E as the limit opens
+    track = Track([0, 0, 0], [0, 0.2, 1.0], start, [0, wait, 0])
+    route = evaluate(track, ship=boat, sea=sea)
+    assert route.feasible is allowed
+    if not allowed:
+        (found,) = route.violations
+        assert found.value == pytest.approx(4.0 + (8356.0 - wait) / 600.0, abs=tolerance)
 
 
 def test_a_gap_is_reported_with_its_position():

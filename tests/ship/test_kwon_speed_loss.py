@@ -138,6 +138,8 @@ def test_printed_sign_would_push_a_full_ship_forward_and_is_clipped():
 
 def test_unknown_stays_unknown():
     assert np.isnan(_loss(np.nan, 0.0)) and np.isnan(_loss(5.0, np.nan))
+    assert np.isnan(_loss(12.0, np.nan, classes=True))  # was that of a following sea
+    assert _loss(12.0, 0.0, classes=True) > 0.1
     assert np.isnan(beaufort_number(np.nan, classes=True))
 
 

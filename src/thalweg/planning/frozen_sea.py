@@ -12,7 +12,7 @@ from thalweg.core.memory import machine_memory
 from thalweg.kernels import codes
 from thalweg.network import Network
 from thalweg.network.network import Stations
-from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.planning_context import PlanningContext, greatest_speed_of
 from thalweg.sea import StationFields
 
 #: Greatest size of frozen fields [bytes].
@@ -93,5 +93,4 @@ def _top_speed(context: PlanningContext, stations: StationFields) -> float:
     column = stations.channel_index[codes.SPEED_FIELD]
     if column >= 0:
         return float(np.nanmax(stations.values[:, :, column], initial=0.0))
-    top = context.ship.top_speed(context.setting)
-    return float(context.ship.speeds[context.setting] if top is None else top)
+    return greatest_speed_of(context.ship, context.table, context.setting)

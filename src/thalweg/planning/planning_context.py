@@ -142,6 +142,18 @@ class PlanningContext:
         )
 
 
+def greatest_speed_of(ship: Ship, table: PerformanceTable, setting: int) -> float:
+    """Return an upper bound of the speed through water at a setting [m/s].
+
+    That of the ship's model or, where it knows none, of its table; +inf where the speed is a field
+    of the sea without a known bound.
+    """
+    top = ship.top_speed(setting)
+    if top is None:
+        top = table.largest(setting) if ship.speed_field is None else math.inf
+    return float(top)
+
+
 def performance_table_of(ship: Ship) -> PerformanceTable:
     """Return the speed table of a ship; a placeholder where its speed is a field of the sea."""
     if ship.speed_field is None:

@@ -30,7 +30,7 @@ from thalweg.network.assembly import assemble, measured_pairs
 from thalweg.network.triangular_mesh.edge_sampling import sampled_on_triangle_sides
 from thalweg.operations.dredging.project_parts import Sites
 from thalweg.planning.frozen_sea import MEMORY_LIMIT
-from thalweg.planning.planning_context import performance_table_of
+from thalweg.planning.planning_context import greatest_speed_of, performance_table_of
 from thalweg.planning.request.requirements import (
     Requirements,
     derive_requirements,
@@ -141,9 +141,8 @@ class ProjectEnvironment:
             keel = self.min_ukc + self.sites.network.margin
             limits = limits.with_required_depth(ship.draught + keel)
         setting = len(ship.speeds) - 1
-        top = ship.top_speed(setting)
-        speed = float(ship.speeds[setting]) if top is None else top
-        return LoadedShip(ship, performance_table_of(ship), limits, setting, speed)
+        table = performance_table_of(ship)
+        return LoadedShip(ship, table, limits, setting, greatest_speed_of(ship, table, setting))
 
 
 def _voyage(sites: Sites, period: tuple[float, float]) -> Voyage:

@@ -24,6 +24,7 @@ from thalweg.planning.pareto.trade_off_context import (
     RefereedCandidate,
     TradeOffContext,
 )
+from thalweg.planning.planning_context import greatest_speed_of
 from thalweg.planning.single.certified_bound import KEEPING_OUT, TABLE_MARGIN, kept_out
 from thalweg.search import table_bounds
 from thalweg.search.certificate.barrier_domain import PassageToBound
@@ -148,7 +149,7 @@ def _cost_to_bound(trade_off: TradeOffContext, feasible: list[RefereedCandidate]
     table = trade_off.consumption.kernel_arrays()
     settings = np.asarray(trade_off.settings, np.int64)
     least = np.maximum(table_bounds(table, np.fmin), 0.0)[settings]
-    top = np.array([float(context.ship.top_speed(int(s)) or 0.0) for s in settings])
+    top = np.array([greatest_speed_of(context.ship, context.table, int(s)) for s in settings])
     priced = PricedShip(settings, table, least, top)
     ship = ShipInBarrier(
         context.table.kernel_arrays(),

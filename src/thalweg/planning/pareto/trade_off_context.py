@@ -18,7 +18,7 @@ from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.planning.frozen_sea import FrozenSea
 from thalweg.planning.network_selection.route_alternatives import RouteAlternative
-from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.planning_context import PlanningContext, greatest_speed_of
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import PricedObjective
 from thalweg.planning.single.certified_bound import TABLE_MARGIN
@@ -125,7 +125,8 @@ class TradeOffContext:
             if np.isfinite(calm).all():
                 return (1.0 - TABLE_MARGIN) / made, (1.0 - TABLE_MARGIN) * calm
         rates = np.maximum(table_bounds(self.consumption.kernel_arrays(), np.fmin), 0.0)
-        speed = [self.context.ship.top_speed(int(s)) or math.inf for s in self.settings]
+        ship, speeds = self.context.ship, self.context.table
+        speed = [greatest_speed_of(ship, speeds, int(s)) for s in self.settings]
         return 1.0 / (np.array(speed, float) + current), rates[self.settings]
 
     @cached_property

@@ -15,7 +15,7 @@ from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
-from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.planning_context import PlanningContext, greatest_speed_of
 from thalweg.planning.report.route_summary import canals_passed
 from thalweg.route import Route
 from thalweg.sea import Sea
@@ -293,7 +293,8 @@ def _kind(context: PlanningContext, route: Route, found: TimeCertificate) -> str
 
 
 def _passage(context: PlanningContext, route: Route) -> PassageToBound:
-    top, field = context.ship.top_speed(context.setting), context.ship.speed_field
+    top = greatest_speed_of(context.ship, context.table, context.setting)
+    field = context.ship.speed_field
     if field is not None:
         top = math.nan
     elif context.sea_is_calm:  # the table has following wind and seas, too
@@ -302,7 +303,7 @@ def _passage(context: PlanningContext, route: Route) -> PassageToBound:
         context.table.kernel_arrays(),
         context.setting,
         context.needs.limits.array,
-        float(context.table.largest(context.setting) if top is None else top),
+        top,
         field,
     )
     return PassageToBound(

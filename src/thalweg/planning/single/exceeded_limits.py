@@ -2,7 +2,8 @@
 
 The search checks depth, waves and wind at stations, so that a bank or a squall that is narrower
 than their distance is seen by the referee alone. Stricter limits do not help there: the edges that
-cross it are left out, and the stretch is searched again.
+cross it are left out, and the stretch is searched again. A bank of the sea data becomes the charted
+depth of the edges over it, since a rising tide may open them.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from thalweg.planning.single.weather_gaps import (
     SHORTEST_STEP,
     data_spacing,
     edges_where_all,
+    least_along_edges,
     near_edges,
 )
 from thalweg.route import Route
@@ -50,8 +52,9 @@ def without_exceeding_edges(
 ) -> Network:
     """Return a network without the edges that exceed a limit at the time of a violation.
 
-    Of edges over a bank of the sea data all are left out, of those in waves or wind the ones that
-    may pass through its place.
+    Of edges over a bank of the sea data all get the least depth along them, and where they have it
+    already, those at the violation are left out. Of edges in waves or wind, the ones that may pass
+    through its place are left out.
 
     Parameters
     ----------
@@ -61,24 +64,38 @@ def without_exceeding_edges(
 
     Returns
     -------
-    Network : The same one where no edge is left out.
+    Network : The same one where no edge is changed or left out.
     """
     keep = np.ones(network.n_edges, bool)
     sailed = np.isnan(network.edges.fixed_time)
     for place in places:
-        of_depth = place.reason == _DEPTH
+        if place.reason == _DEPTH and standard_names.BED_DEPTH in context.sea.variables:
+            shallower = _with_least_depths(context, network, place.time)
+            if shallower is not network:
+                return shallower
 
         def kept(lat: np.ndarray, lon: np.ndarray, place: Violation = place) -> np.ndarray:
             return _keeps_limit(context, place, lat, lon)
 
-        if of_depth and standard_names.BED_DEPTH in context.sea.variables:
-            spacing = data_spacing(context.sea, standard_names.BED_DEPTH)
-            rows = np.flatnonzero(keep & sailed)
-            step = max(spacing / SAMPLES_PER_CELL, SHORTEST_STEP)
-            keep[rows] = edges_where_all(network, rows, kept, step)
         rows = np.flatnonzero(keep & sailed & near_edges(network, place))
         keep[rows] = edges_where_all(network, rows, kept, SHORTEST_STEP)
     return network if keep.all() else network.with_some_edges(keep)
+
+
+def _with_least_depths(context: PlanningContext, network: Network, time: float) -> Network:
+    """Return a network whose edges are as deep as the bed along them; the same one if they are."""
+    name = standard_names.BED_DEPTH
+    rows = np.flatnonzero(np.isnan(network.edges.fixed_time))
+    step = max(data_spacing(context.sea, name) / SAMPLES_PER_CELL, SHORTEST_STEP)
+
+    def bed(lat: np.ndarray, lon: np.ndarray) -> np.ndarray:
+        return np.asarray(context.sea.sample([name], time, lat, lon)[name], float)
+
+    depth = network.edges.depth.copy()
+    depth[rows] = np.minimum(depth[rows], least_along_edges(network, rows, bed, step))
+    if np.array_equal(depth, network.edges.depth, equal_nan=True):
+        return network
+    return network.with_edges(depth=depth)
 
 
 def _keeps_limit(

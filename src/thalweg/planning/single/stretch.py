@@ -121,7 +121,7 @@ def plan_stretch(
             left = without_exceeding_edges(context, networks[finer], places)
             if left is not networks[finer]:
                 rounds, networks[finer] = rounds + 1, left
-                attempts.appendleft((finer, step))
+                attempts.extendleft(((finer, step), (finer, 0)))  # the limits themselves first
     assert stretch is not None  # raised above otherwise
     if not stretch.route.feasible:
         check_times_known(stretch.route, start, goal)

@@ -136,13 +136,38 @@ def edges_where_all(
     -------
     bool ndarray : One value for each of `rows`.
     """
+
+    def values(lat: np.ndarray, lon: np.ndarray) -> np.ndarray:
+        return np.where(suits(lat, lon), 1.0, 0.0)
+
+    return np.asarray(least_along_edges(network, rows, values, step) > 0.5)
+
+
+def least_along_edges(
+    network: Network,
+    rows: np.ndarray,
+    values: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    step: float,
+) -> np.ndarray:
+    """Return the least value along edges, of those that are known; +inf where none is.
+
+    Parameters
+    ----------
+    rows : The edges.
+    values : Returns the values at positions (lat, lon [deg]).
+    step : Distance of the samples [m].
+
+    Returns
+    -------
+    float64 ndarray : One value for each of `rows`.
+    """
     tails, target = network.tails(), network.graph.target
     low, high = np.minimum(tails, target)[rows], np.maximum(tails, target)[rows]
     _, one, both = np.unique(
         low.astype(np.int64) * network.n_nodes + high, return_index=True, return_inverse=True
     )
     rows = rows[one]  # there and back is the same water
-    good = np.ones(len(rows), bool)
+    least = np.full(len(rows), np.inf)
     count = np.ceil(network.edges.length[rows] / step).astype(np.int64) + 1
     cuts = np.searchsorted(np.cumsum(count), np.arange(0, count.sum(), _POINTS_AT_ONCE))
     for first, last in zip(cuts, [*cuts[1:], len(rows)]):
@@ -150,14 +175,13 @@ def edges_where_all(
         if not edge.size:
             continue
         part = np.repeat(np.arange(edge.size), number)
-        within = np.arange(part.size) - np.repeat(np.cumsum(number) - number, number)
-        share = within / (number[part] - 1)
+        start = np.cumsum(number) - number
+        share = (np.arange(part.size) - start[part]) / (number[part] - 1)
         lat, lon = network.stations.lat, network.stations.lon
         a, b = tails[edge][part], target[edge][part]
-        y, x = _between(lat[a], lon[a], lat[b], lon[b], share)
-        bad = np.bincount(part[~suits(y, x)], minlength=edge.size)
-        good[first:last] = bad == 0
-    return good[both]
+        there = _between(lat[a], lon[a], lat[b], lon[b], share)
+        least[first:last] = np.fmin(np.inf, np.fmin.reduceat(values(*there), start))
+    return least[both]
 
 
 def _between(
@@ -169,7 +193,7 @@ def _between(
 
 
 def data_spacing(sea: Sea, name: str) -> float:
-    """Return the least spacing [m] of the data of a variable; 10 km where it has none."""
+    """Return the least spacing [m] of the data of a variable; 1.2 km where it has none."""
     rows = [row.spacing_deg for row in sea.coverage() if row.variable == name]
     spacings = [spacing for spacing in rows if spacing]
-    return METRES_PER_DEGREE * min(spacings) if spacings else 10_000.0
+    return METRES_PER_DEGREE * min(spacings) if spacings else SAMPLES_PER_CELL * SHORTEST_STEP

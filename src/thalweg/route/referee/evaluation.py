@@ -113,8 +113,9 @@ def evaluate(
     difference is its ``tolerance_s``, with what jumps of the speed between two points can add.
     Without ``step``, pieces with jumps of the speed and those where it comes near zero are split
     further until the error is at most 1e-5 of the time. Limits are checked at up to 10,000 further
-    points; for a route that waits, the time between two of them is part of the tolerance, since its
-    waits may be too short by as much. Wind is relative to the moving water; angles of wind and
+    points, and where one may be exceeded between two of them, at parts of 1/512 of that interval;
+    for a route that waits for the tide, the longest time between two points is part of the
+    tolerance. Wind is relative to the moving water; angles of wind and
     waves are from the heading. A waiting ship burns the fuel of its hotel load and does not drift
     (it is at anchor); only its clearance is checked, and not at the first waypoint, where the ship
     is at its berth. If the sea has no current variables, still water is assumed, and the route

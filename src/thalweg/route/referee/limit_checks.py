@@ -55,7 +55,9 @@ def limit_violations(
     """
     reached = np.isfinite(time)
     found: list[Violation] = []
-    for reason, bad, values, limit in _limit_checks(world, sampled, depth, min_ukc):
+    for reason, excess, values, limit in _limit_checks(world, sampled, depth, min_ukc):
+        with np.errstate(invalid="ignore"):
+            bad = excess > _LIMIT_TOLERANCE
         for first, last in _stretches(bad & reached, points.leg):
             worst = first + int(np.argmax(np.abs(values[first:last] - limit)))
             found.append(_violation_at(reason, points, time, worst, float(values[worst]), limit))
@@ -239,25 +241,33 @@ def seaway_violations(
     ]
 
 
+def limit_excesses(
+    world: SailingEnvironment,
+    sampled: Mapping[str, FloatArray],
+    depth: FloatArray,
+    min_ukc: float | None,
+) -> list[FloatArray]:
+    """Return by how much each limit is exceeded, in its own unit; below 0 where it is kept."""
+    return [excess for _, excess, _, _ in _limit_checks(world, sampled, depth, min_ukc)]
+
+
 def _limit_checks(
     world: SailingEnvironment,
     sampled: Mapping[str, FloatArray],
     depth: FloatArray,
     min_ukc: float | None,
-) -> Iterator[tuple[str, BoolArray, FloatArray, float]]:
+) -> Iterator[tuple[str, FloatArray, FloatArray, float]]:
+    """Yield of every limit its name, by how much it is exceeded, what is limited, and the limit."""
     limits, draught = world.ship.limits, world.ship.draught
-    with np.errstate(invalid="ignore"):
-        if min_ukc is not None and world.has_depth:
-            clearance = depth - draught
-            yield REASONS[codes.DEPTH], clearance < min_ukc - _LIMIT_TOLERANCE, clearance, min_ukc
-        if math.isfinite(limits.wave_height):
-            height = sampled[WAVE_HEIGHT]
-            bad = height > limits.wave_height + _LIMIT_TOLERANCE
-            yield REASONS[codes.WAVE_HEIGHT], bad, height, limits.wave_height
-        if math.isfinite(limits.wind_speed):
-            wind = np.hypot(sampled[EASTWARD_WIND], sampled[NORTHWARD_WIND])
-            bad = wind > limits.wind_speed + _LIMIT_TOLERANCE
-            yield REASONS[codes.WIND_SPEED], bad, wind, limits.wind_speed
+    if min_ukc is not None and world.has_depth:
+        clearance = depth - draught
+        yield REASONS[codes.DEPTH], min_ukc - clearance, clearance, min_ukc
+    if math.isfinite(limits.wave_height):
+        height = sampled[WAVE_HEIGHT]
+        yield (REASONS[codes.WAVE_HEIGHT], height - limits.wave_height, height, limits.wave_height)
+    if math.isfinite(limits.wind_speed):
+        wind = np.hypot(sampled[EASTWARD_WIND], sampled[NORTHWARD_WIND])
+        yield REASONS[codes.WIND_SPEED], wind - limits.wind_speed, wind, limits.wind_speed
 
 
 def _data_gap_violations(

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thalweg.core.geodesy import numbered_parts
 from thalweg.core.types import FloatArray, IntArray
+from thalweg.route.referee.check_points import CheckedPoints, checked_points
 from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints
 from thalweg.route.referee.limit_checks import (
     canal_violations,
@@ -21,7 +21,7 @@ from thalweg.route.referee.limit_checks import (
 )
 from thalweg.route.referee.onboard_indicators import motion_indicators
 from thalweg.route.referee.pricing import ConsumptionRates, cost_breakdown
-from thalweg.route.referee.sailing import SailedTrack, data_spacings, sailing_state_along
+from thalweg.route.referee.sailing import SailedTrack, sailing_state_along
 from thalweg.route.referee.sailing_physics import (
     SailingEnvironment,
     SailingState,
@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 OUT_OF_RANGE = "The speed loss is used outside its range"  #: start of a note of a route
-MAX_CHECK_POINTS = 10_000  #: further points at which limits are checked (fewer on coarse data)
-CHECK_POINTS_PER_CELL = 8  #: of gridded data
 WAITING_NOT_ALLOWED = "waiting not allowed"
 _MAX_CHECK_INTERVAL = 300.0  # longest time between two checks of the depth while waiting [s]
 
@@ -61,8 +59,8 @@ def assemble_route(
     sampled_time = np.where(np.isfinite(time), time, pieces.track.depart)
     motion = sailing_state_along(world, pieces.canals, points, sampled_time)
     power, rate = _rates(world, pieces, points, time=sampled_time, motion=motion)
-    near, moments = _check_points(sailed, points, time)
-    violations, least = _check_limits(sailed, near, moments, min_ukc)
+    checked = checked_points(sailed, points, time, min_ukc)
+    violations, least = _check_limits(sailed, checked, min_ukc)
     violations += stoppage_violations(world, points, time, motion)
     violations += seaway_violations(world, points, time, motion)
     violations.sort(key=lambda item: item.time if math.isfinite(item.time) else math.inf)
@@ -78,7 +76,7 @@ def assemble_route(
     }
     spent = cost_breakdown(sailed, ConsumptionRates(rate[order], power[order]), terms)
     if np.any(pieces.track.wait) and world.has_depth:
-        tolerance += float(np.max(np.diff(moments), initial=0.0, where=np.diff(near.leg) == 0))
+        tolerance += checked.longest_interval()
     samples = _samples(sailed, points, time, motion=motion, rates=(power, rate))
     around, more = surroundings_columns(sailed, points, time, motion, min_ukc)
     columns, at_samples, notes = motion_indicators(sailed, points, time, motion)
@@ -108,13 +106,12 @@ def _leg_kinds(pieces: TrackPieces) -> FloatArray:
 
 
 def _check_limits(
-    sailed: SailedTrack, near: TrackPoints, moments: FloatArray, min_ukc: float | None
+    sailed: SailedTrack, checked: CheckedPoints, min_ukc: float | None
 ) -> tuple[list[Violation], FloatArray]:
     """Return the violations at close points, and the least clearance of every leg [m]."""
     world, track = sailed.world, sailed.pieces.track
-    sampled, depth = sample_sea_and_depth(
-        world, near, np.where(np.isfinite(moments), moments, track.depart)
-    )
+    near, moments, depth = checked.points, checked.moments, checked.depth
+    sampled = checked.sampled
     found = limit_violations(world, near, moments, sampled=sampled, depth=depth, min_ukc=min_ukc)
     waits = _wait_clearances(sailed)
     found += _wait_depth_violations(track, waits, min_ukc)
@@ -239,24 +236,6 @@ def _least_by_leg(leg: IntArray, values: FloatArray, time: FloatArray, count: in
     known = np.isfinite(values) & np.isfinite(time)
     np.minimum.at(least, leg[known], values[known])
     return np.where(np.isfinite(least), least, math.nan)
-
-
-def _check_points(
-    sailed: SailedTrack, points: TrackPoints, time: FloatArray
-) -> tuple[TrackPoints, FloatArray]:
-    """Return closely spaced points where limits are checked, and their times of passage."""
-    world, pieces = sailed.world, sailed.pieces
-    spacing = float(pieces.length.sum()) / MAX_CHECK_POINTS
-    spacing = max(spacing, min(data_spacings(world, 1.0 / CHECK_POINTS_PER_CELL), default=0.0))
-    count = np.maximum(np.ceil(pieces.length / max(spacing, 1e-3)).astype(np.int64), 1) + 1
-    leg, number = numbered_parts(count)
-    share = number / (count[leg] - 1)
-    near = pieces.points(leg, share * pieces.length[leg])
-    near = replace(near, charted=sailed.charted[pieces.containing(leg, near.along)])
-    key = pieces.order_key(points.leg, points.along)
-    moments = np.interp(pieces.order_key(leg, near.along), key, time)
-    sea = pieces.canals.number[leg] < 0
-    return near.part(sea), moments[sea]
 
 
 def _finite(values: FloatArray) -> FloatArray:

@@ -311,7 +311,8 @@ def _worst_beaufort_number(
 def _between_sectors(by_sector: FloatArray, angle: FloatArray, *, classes: bool) -> FloatArray:
     if classes:
         sector = np.searchsorted(_SECTOR_EDGES, angle, side="left")
-        return np.take_along_axis(by_sector, np.minimum(sector, 3)[None], axis=0)[0]
+        loss = np.take_along_axis(by_sector, np.minimum(sector, 3)[None], axis=0)[0]
+        return np.where(np.isnan(angle), np.nan, loss)
     place = np.interp(angle, SECTOR_MIDDLES, np.arange(4.0))
     # only the index of an unknown angle is made up: its value stays NaN through ``place`` below
     cell = np.minimum(np.nan_to_num(place).astype(np.intp), 2)

@@ -1,0 +1,119 @@
+"""Points of a sailed track at which limits are checked, closer where a limit is nearly reached."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from thalweg.core.geodesy import numbered_parts
+from thalweg.core.types import FloatArray, IntArray
+from thalweg.route.referee.leg_segments import TrackPoints
+from thalweg.route.referee.limit_checks import limit_excesses
+from thalweg.route.referee.sailing import SailedTrack, data_spacings
+from thalweg.route.referee.sailing_physics import sample_sea_and_depth
+
+MAX_CHECK_POINTS = 10_000  #: points at which limits are checked first (fewer on coarse data)
+CHECK_POINTS_PER_CELL = 8  #: of gridded data
+_PARTS: Final = 8  # of an interval in which a limit may be exceeded between two points
+_ROUNDS: Final = 3
+_MOST_DIVIDED: Final = 500  # intervals in a round
+
+
+@dataclass(frozen=True)
+class CheckedPoints:
+    """The sea at points of a track, in the order of sailing.
+
+    Attributes
+    ----------
+    points, moments : The points and their times of passage [s]; NaN where the ship does not get.
+    sampled : The sea there.
+    depth : Water depth there [m].
+    """
+
+    points: TrackPoints
+    moments: FloatArray
+    sampled: Mapping[str, FloatArray]
+    depth: FloatArray
+
+    def longest_interval(self) -> float:
+        """Return the longest time between two neighbours on a leg [s]."""
+        on_leg = np.diff(self.points.leg) == 0
+        return float(np.max(np.diff(self.moments), initial=0.0, where=on_leg))
+
+    def joined(self, other: CheckedPoints) -> CheckedPoints:
+        """Return these points and others in the order of sailing."""
+        leg = np.append(self.points.leg, other.points.leg)
+        order = np.lexsort((np.append(self.points.along, other.points.along), leg))
+        both = zip(vars(self.points).values(), vars(other.points).values(), strict=True)
+        return CheckedPoints(
+            TrackPoints(*(np.append(one, two)[order] for one, two in both)),
+            np.append(self.moments, other.moments)[order],
+            {k: np.append(v, other.sampled[k])[order] for k, v in self.sampled.items()},
+            np.append(self.depth, other.depth)[order],
+        )
+
+
+def checked_points(
+    sailed: SailedTrack, points: TrackPoints, time: FloatArray, min_ukc: float | None
+) -> CheckedPoints:
+    """Return closely spaced points where limits are checked.
+
+    Between two points at which all limits are kept, and beside which the sea changes so fast that
+    one may be exceeded between them, further points are looked at.
+
+    Parameters
+    ----------
+    points, time : Where and when the track was sailed, in order [s].
+    min_ukc : Least under-keel clearance [m]; None: depth is not checked.
+    """
+    world, pieces = sailed.world, sailed.pieces
+    spacing = float(pieces.length.sum()) / MAX_CHECK_POINTS
+    spacing = max(spacing, min(data_spacings(world, 1.0 / CHECK_POINTS_PER_CELL), default=0.0))
+    count = np.maximum(np.ceil(pieces.length / max(spacing, 1e-3)).astype(np.int64), 1) + 1
+    leg, number = numbered_parts(count)
+    passed = pieces.order_key(points.leg, points.along), time
+
+    def looked_at(leg: IntArray, along: FloatArray) -> CheckedPoints:
+        near = pieces.points(leg, along)
+        near = replace(near, charted=sailed.charted[pieces.containing(leg, near.along)])
+        moments = np.interp(pieces.order_key(leg, near.along), *passed)
+        at = np.where(np.isfinite(moments), moments, pieces.track.depart)
+        return CheckedPoints(near, moments, *sample_sea_and_depth(world, near, at))
+
+    at_sea = pieces.canals.number[leg] < 0
+    share = (number / (count[leg] - 1))[at_sea]
+    found = looked_at(leg[at_sea], share * pieces.length[leg[at_sea]])
+    for _ in range(_ROUNDS):
+        first = _doubtful_intervals(sailed, found, min_ukc)
+        if not len(first):
+            break
+        begin, end = found.points.along[first], found.points.along[first + 1]
+        shares = np.arange(1, _PARTS) / _PARTS
+        along = (begin[:, None] + (end - begin)[:, None] * shares).ravel()
+        found = found.joined(looked_at(np.repeat(found.points.leg[first], _PARTS - 1), along))
+    return found
+
+
+def _doubtful_intervals(
+    sailed: SailedTrack, checked: CheckedPoints, min_ukc: float | None
+) -> IntArray:
+    """Return the intervals, by their first points, in which a limit may be exceeded.
+
+    Both ends keep it, and the sea would exceed it if it changed once more as in this interval or in
+    the one before or after.
+    """
+    points = checked.points
+    between = (np.diff(points.leg) == 0) & np.isfinite(np.diff(checked.moments))
+    smooth = between & (points.charted[1:] == points.charted[:-1])  # each is the least of a piece
+    doubt = np.full(len(between), -np.inf)
+    for excess in limit_excesses(sailed.world, checked.sampled, checked.depth, min_ukc):
+        change = np.where(smooth, np.abs(np.diff(excess)), 0.0)
+        beside = np.fmax(np.append(0.0, change[:-1]), np.append(change[1:], 0.0))
+        change, high = np.fmax(change, beside), np.maximum(excess[:-1], excess[1:])
+        known = between & (high <= 0.0) & (change > 0.0)
+        doubt[known] = np.maximum(doubt[known], high[known] + change[known])
+    order = np.argsort(-doubt, kind="stable")[:_MOST_DIVIDED]
+    return np.sort(order[doubt[order] > 0.0])
