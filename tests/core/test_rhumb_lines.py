@@ -13,7 +13,7 @@ from thalweg.core.rhumb_lines import (
     direct_rhumb,
     inverse_rhumb,
     rhumb_cross_track,
-    rhumb_deviation,
+    rhumb_deviates,
     rhumb_pieces,
 )
 from thalweg.core.units import NAUTICAL_MILE
@@ -76,9 +76,9 @@ def test_quadrature_and_closed_form_agree(lat, lon, step):
 def test_a_great_circle_is_broken_until_rhumb_lines_keep_to_it():
     lat, lon = np.array([49.7, 40.4]), np.array([-6.5, -73.7])
     limit = 0.1 * NAUTICAL_MILE
-    assert float(rhumb_deviation(lat, lon)[0]) > 200 * NAUTICAL_MILE
+    assert rhumb_deviates(lat, lon, 200 * NAUTICAL_MILE).all()
     out_lat, out_lon, leg = densify_for_rhumb(lat, lon, limit)
-    assert rhumb_deviation(out_lat, out_lon).max() <= limit
+    assert not rhumb_deviates(out_lat, out_lon, limit).any()
     assert 30 < len(out_lat) < 70 and len(leg) == len(out_lat) - 1
     on = inverse_rhumb(out_lat[:-1], out_lon[:-1], out_lat[1:], out_lon[1:])[0].sum()
     assert on == pytest.approx(float(distance(lat[0], lon[0], lat[1], lon[1])), rel=1e-5)
@@ -93,7 +93,7 @@ def test_rhumb_lines_are_cut_until_geodesics_keep_to_them():
     sailed = distance(out_lat[:-1], out_lon[:-1], out_lat[1:], out_lon[1:]).sum()
     whole = inverse_rhumb(lat[:-1], lon[:-1], lat[1:], lon[1:])[0].sum()
     assert sailed == pytest.approx(whole, rel=1e-6)
-    assert rhumb_deviation(out_lat, out_lon).max() <= 20.0
+    assert not rhumb_deviates(out_lat, out_lon, 20.0).any()
     np.testing.assert_allclose(out_lat[np.searchsorted(leg, 1) :], 45.0, atol=1e-9)
 
 

@@ -369,8 +369,8 @@ def test_the_propeller_gives_the_required_thrust(force, inflow, pitch, area, bla
 @quick
 @given(speed=st.floats(0.5, 10.0), drag=st.floats(1e4, 1e6))
 def test_brake_power_exceeds_effective_power(speed, drag):
-    state = propulsion(
-        speed, drag, PROPELLER, wake_fraction=0.25, thrust_deduction=0.2, relative_rotative=1.0
-    )
+    hull = {"wake_fraction": 0.25, "thrust_deduction": 0.2, "relative_rotative": 1.0}
+    state = propulsion(speed, drag, PROPELLER, **hull)
     assert state.brake_power > state.effective_power
-    assert state.brake_power == pytest.approx(state.delivered_power / 0.99)
+    lossless = propulsion(speed, drag, PROPELLER, **hull, shaft_efficiency=1.0)
+    assert state.brake_power == pytest.approx(lossless.brake_power / 0.99)

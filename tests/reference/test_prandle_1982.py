@@ -120,7 +120,7 @@ def test_surface_ellipse_of_a_rectilinear_depth_mean():
 
 
 def test_scenarios_are_those_of_table_4_9():
-    assert [s.ellipticity for s in TIDAL_ELLIPSES.values()] == pytest.approx(
+    assert [s.cross_shore / s.alongshore for s in TIDAL_ELLIPSES.values()] == pytest.approx(
         [1 / 2, 1 / 4, 1 / 8, 1 / 16]
     )
     assert [s.alongshore for s in TIDAL_ELLIPSES.values()] == pytest.approx([0.7, 0.8, 0.9, 1.0])

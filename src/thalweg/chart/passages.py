@@ -152,15 +152,13 @@ class Passage:
         return f"{self.name}: {' and '.join(reasons)}" if reasons else ""
 
 
-def find_passages(names: Iterable[str], among: Sequence[Passage] | None = None) -> list[Passage]:
+def find_passages(names: Iterable[str]) -> list[Passage]:
     """Return the passages of these names; case, spaces and what is in brackets do not count.
 
     Parameters
     ----------
     names : iterable of str
         Names, or their beginnings where these are unique: "great belt".
-    among : sequence of Passage, optional
-        By default `PASSAGES`.
 
     Returns
     -------
@@ -172,8 +170,7 @@ def find_passages(names: Iterable[str], among: Sequence[Passage] | None = None) 
     InputError
         If a name is unknown; the message lists similar names.
     """
-    among = PASSAGES if among is None else among
-    return [_find_passage(str(name), among) for name in names]
+    return [_find_passage(str(name)) for name in names]
 
 
 def split_avoided(names: Sequence[str]) -> tuple[list[str], list[Passage]]:
@@ -198,16 +195,16 @@ def split_avoided(names: Sequence[str]) -> tuple[list[str], list[Passage]]:
     return canals, passages
 
 
-def _find_passage(name: str, among: Sequence[Passage]) -> Passage:
-    whole = [p for p in among if p.name.casefold() == name.strip().casefold()]
+def _find_passage(name: str) -> Passage:
+    whole = [p for p in PASSAGES if p.name.casefold() == name.strip().casefold()]
     if len(whole) == 1:
         return whole[0]
     wanted = _plain_name(name)
-    plain = [p for p in among if _plain_name(p.name) == wanted]
-    begins = [p for p in among if wanted and _plain_name(p.name).startswith(wanted)]
+    plain = [p for p in PASSAGES if _plain_name(p.name) == wanted]
+    begins = [p for p in PASSAGES if wanted and _plain_name(p.name).startswith(wanted)]
     found = plain or begins
     if len(found) != 1:
-        raise unknown_name_error("passage", name, [p.name for p in found or among])
+        raise unknown_name_error("passage", name, [p.name for p in found or PASSAGES])
     return found[0]
 
 

@@ -147,19 +147,18 @@ def _likeness(word: str, name: str) -> float:
     return difflib.SequenceMatcher(None, word.casefold(), name.casefold()).ratio()
 
 
-def nearest_names(word: str, known: Iterable[str], most: int = _MOST_NAMES) -> str:
+def nearest_names(word: str, known: Iterable[str]) -> str:
     """Return known names as a text: all of them, or the nearest in spelling if there are more.
 
     Parameters
     ----------
     word : The unknown name.
-    most : Greatest number of names that are listed.
     """
     names = sorted(known)
-    if len(names) <= most:
+    if len(names) <= _MOST_NAMES:
         return ", ".join(names)
-    nearest = sorted(names, key=lambda name: -_likeness(word, name))[:most]
-    return f"{', '.join(nearest)} and {len(names) - most} more"
+    nearest = sorted(names, key=lambda name: -_likeness(word, name))[:_MOST_NAMES]
+    return f"{', '.join(nearest)} and {len(names) - _MOST_NAMES} more"
 
 
 def unknown_name_error(

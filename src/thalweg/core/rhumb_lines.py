@@ -93,24 +93,6 @@ def direct_rhumb(
     return np.where(inside, end, math.nan), np.where(inside, turned, math.nan)
 
 
-def rhumb_deviation(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
-    """Return how far the rhumb line and the geodesic of each leg are apart.
-
-    Measured between positions at the same fractions of both, which is at least the cross-track
-    distance and in short legs equal to it.
-
-    Parameters
-    ----------
-    lat, lon : Vertices of a polyline [deg], (n,).
-
-    Returns
-    -------
-    ndarray (n - 1,) : Greatest distance in each leg [m].
-    """
-    lat, lon = np.asarray(lat, float), np.asarray(lon, float)
-    return _deviation(lat[:-1], lon[:-1], lat[1:], lon[1:])
-
-
 def rhumb_deviates(lat: ArrayLike, lon: ArrayLike, deviation: ArrayLike) -> BoolArray:
     r"""Return whether the rhumb line and the geodesic of each leg are further apart than a limit.
 
@@ -144,7 +126,11 @@ def rhumb_deviates(lat: ArrayLike, lon: ArrayLike, deviation: ArrayLike) -> Bool
 def _deviation(
     lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
 ) -> FloatArray:
-    """Return the deviations of legs (n,) with given ends; see `rhumb_deviation`."""
+    """Return how far the rhumb line and the geodesic of each leg (n,) are apart [m].
+
+    Measured between positions at the same fractions of both, which is at least the cross-track
+    distance and in short legs equal to it.
+    """
     start, end = (lat1[:, None], lon1[:, None]), (lat2[:, None], lon2[:, None])
     length, course, _ = inverse(*start, *end)
     straight = direct(*start, course, _FRACTIONS * length)

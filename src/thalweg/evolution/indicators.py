@@ -1,4 +1,4 @@
-"""Quality indicators of fronts: hypervolume and its ratios, coverage, distances, crowding.
+"""Quality indicators of fronts: hypervolume, coverage, distances, crowding.
 
 A front is an array (n, 2) of two objectives that are both minimised.
 """
@@ -54,29 +54,6 @@ def hypervolume(points: ArrayLike, reference: ArrayLike) -> float:
     front = front[(front < corner).all(axis=1)]
     ends = np.append(front[1:, 0], corner[0])
     return float(((ends - front[:, 0]) * (corner[1] - front[:, 1])).sum())
-
-
-def hypervolume_ratio(points: ArrayLike, *others: ArrayLike, reference: ArrayLike) -> float:
-    """Return the hypervolume of a front over that of its union with others (at most 1).
-
-    Parameters
-    ----------
-    points, *others : array_like, shape (n, 2)
-    reference : The largest values that count, (2,).
-
-    Raises
-    ------
-    InputError : If no point is below the reference.
-    """
-    union = np.concatenate([_checked(points), *(_checked(other) for other in others)])
-    union_volume = hypervolume(union, reference)
-    if union_volume <= 0.0:
-        raise InputError(
-            "No front has a point below the reference, so there is no hypervolume to compare.",
-            "The reference holds the worst values that count.",
-            "Choose a reference beyond the fronts.",
-        )
-    return hypervolume(points, reference) / union_volume
 
 
 def c_metric(first: ArrayLike, second: ArrayLike) -> float:

@@ -81,7 +81,6 @@ class DepthGrid:
         around = (len(self.lon) + 0.5) * wide > 360.0
         j0 = max(int(np.searchsorted(self.lat, south - step)) - 1, 0)
         j1 = min(int(np.searchsorted(self.lat, north + step)) + 1, len(self.lat))
-        first = float(self.lon[0])
         turns = [0.0] if around and east - west >= 360.0 else [360.0 * t for t in (-2, -1, 0, 1, 2)]
         ranges = []
         for turn in turns:
@@ -95,7 +94,7 @@ class DepthGrid:
         if j1 - j0 < 2 or not ranges:
             return None
         if around and (len(ranges) > 1 or len(turns) == 1):
-            return self._whole_circle(j0, j1, first, wide, step)
+            return self._whole_circle(j0, j1)
         i0, i1, _ = max(ranges, key=lambda r: r[1] - r[0])
         if i1 - i0 < 2:
             return None
@@ -103,7 +102,7 @@ class DepthGrid:
         return _on_equal_steps(self.lat[j0:j1], self.lon[i0:i1], values)
 
     def _whole_circle(
-        self, j0: int, j1: int, first: float, wide: float, step: float
+        self, j0: int, j1: int
     ) -> tuple[tuple[float, float, float, float], Float32Array]:
         """Return whole circles of latitude, the first meridian repeated at the end."""
         values = self.read(slice(j0, j1), slice(0, len(self.lon)))

@@ -48,17 +48,14 @@ class Estuary:
     chart : Depth below datum; no coastline except the edge of the domain.
     load, unload : (lat, lon)
         A dredging area at sea and a place behind the bank [deg].
-    gully_waypoints : tuple of (lat, lon)
-        The charted route from one to the other, through the gully [deg].
     bar : (lat, lon)
-        The shallowest place of that route [deg].
+        The shallowest place of the charted route from one to the other, through the gully [deg].
     """
 
     sea: Sea
     chart: Chart
     load: Position
     unload: Position
-    gully_waypoints: tuple[Position, ...]
     bar: Position
 
 
@@ -97,7 +94,6 @@ def synthetic_estuary(spacing_m: float = 300.0) -> Estuary:
         chart=chart,
         load=places[0],
         unload=places[-1],
-        gully_waypoints=places,
         bar=places[3],
     )
 

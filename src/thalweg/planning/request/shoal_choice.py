@@ -31,7 +31,6 @@ from thalweg.planning.voyage import Voyage
 from thalweg.sea import Sea, standard_names
 from thalweg.ship import Ship
 
-_STEP: Final = 1.0 * NAUTICAL_MILE
 #: Radii [m] of the open water round ends, where dredged channels lead through shoals.
 _RADII: Final = tuple(miles * NAUTICAL_MILE for miles in (8.0, 20.0, 45.0, 90.0))
 _LOOK_BEYOND: Final = 15.0 * NAUTICAL_MILE

@@ -44,7 +44,6 @@ def optimise_line_offsets(
     evaluator: PolylineEvaluator,
     *,
     rounds: int = 12,
-    tolerance: float = 1e-7,
 ) -> Polyline:
     """Return a line with its waypoints moved sideways to lower its cost.
 
@@ -52,7 +51,6 @@ def optimise_line_offsets(
     ----------
     line : One that can be sailed; any other is returned unchanged.
     rounds : Newton iterations at most.
-    tolerance : Relative gain below which the iteration ends.
 
     Returns
     -------
@@ -61,7 +59,7 @@ def optimise_line_offsets(
     tracks = SailedPolyline.of(line, evaluator)
     if not np.isfinite(tracks.value).all() or len(line) < 3:
         return line
-    return optimise_lateral_offsets(tracks, rounds=rounds, tolerance=tolerance).line
+    return optimise_lateral_offsets(tracks, rounds=rounds, tolerance=1e-7).line
 
 
 def search_line_positions(

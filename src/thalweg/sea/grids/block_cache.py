@@ -58,11 +58,6 @@ class BlockCache:
         self.blocks[key] = found
         return found
 
-    @property
-    def held_bytes(self) -> int:
-        """Bytes of the values that are held."""
-        return sum(v.nbytes for block in self.blocks.values() for v in block.values.values())
-
     def _window_with_margin(self, window: GridWindow) -> GridWindow:
         """Return a window with a margin, a quarter of its size."""
         nt, ny, nx = self.shape

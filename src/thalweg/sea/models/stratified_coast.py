@@ -40,11 +40,6 @@ class TidalEllipse:
     alongshore: float
     cross_shore: float
 
-    @property
-    def ellipticity(self) -> float:
-        """Minor over major axis [-]."""
-        return self.cross_shore / self.alongshore
-
 
 TIDAL_ELLIPSES: Final[dict[str, TidalEllipse]] = {
     "neap": TidalEllipse(0.7, 0.35),

@@ -49,15 +49,14 @@ class PropulsionState:
     thrust : Of all propellers [N].
     rate : Of the propellers [1/s].
     open_water_efficiency : eta_0.
-    effective_power, delivered_power, brake_power : ndarray
-        R V, power at the propellers, power of the engines [W].
+    effective_power, brake_power : ndarray
+        R V, power of the engines [W].
     """
 
     thrust: FloatArray
     rate: FloatArray
     open_water_efficiency: FloatArray
     effective_power: FloatArray
-    delivered_power: FloatArray
     brake_power: FloatArray
 
 
@@ -131,6 +130,5 @@ def propulsion(
         state.rate,
         state.efficiency,
         effective_power(velocity, drag),
-        np.asarray(delivered),
         np.asarray(delivered / losses),
     )
