@@ -15,6 +15,8 @@ from thalweg.cli.progress import ProgressMessages
 from thalweg.core.errors import InputError
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from thalweg.studies import StudyProgress
 
 
@@ -236,32 +238,41 @@ def _summary(arguments: argparse.Namespace) -> int:
         )
         print(summary.choices.round(2).to_string(index=False, na_rep="-"))
         print()
-    if not summary.fronts.empty and "method" in summary.fronts:
-        ratios = summary.fronts.groupby("method")["hypervolume_ratio"].median()
-        for method, ratio in ratios.sort_values(ascending=False).items():
-            print(f"median hypervolume ratio of {method}: {ratio:.4f}")
+    _print_fronts(summary.fronts)
     if not summary.fidelity.empty:
         print("Accuracy: gap_percent of the objective to the finest:")
         print(summary.fidelity.round(3).to_string(index=False, na_rep="-"))
-    if not summary.annual.empty:
-        print(
-            "In a year (cii in grams of CO2 per tonne and nautical mile, cost in the prices given):"
-        )
-        print(summary.annual.round(2).to_string(index=False, na_rep="-"))
-        if "cii" in summary.annual and summary.annual["cii"].isna().any():
-            print(
-                "cii -: the ship is below 5,000 GT, or the ship file has no hull.deadweight_t (or "
-                "hull.gross_tonnage, for some types), no type that the rating is for, or no carbon "
-                "of the fuel."
-            )
-        if "eu_ets_cost" in summary.annual and summary.annual["eu_ets_cost"].notna().any():
-            print("The costs (cost_...) do not include eu_ets_cost and fueleu_penalty.")
-        elif "eu_ets_cost" in summary.annual:
-            print(
-                "eu_ets_cost, fueleu_penalty -: no price, no share of the voyage in the European "
-                "Union is known, or the ship is below 5,000 GT."
-            )
+    _print_annual(summary.annual)
     for _, row in summary.refusals.head(5).iterrows():
         count = f"{row['voyages']} voyages" if row["voyages"] > 1 else "1 voyage"
         print(f"{count} without a route ({row['refusal']}): {row['reason']}")
     return SUCCESS
+
+
+def _print_fronts(fronts: pd.DataFrame) -> None:
+    """Print the median hypervolume ratio of each method, the greatest first."""
+    if not fronts.empty and "method" in fronts:
+        ratios = fronts.groupby("method")["hypervolume_ratio"].median()
+        for method, ratio in ratios.sort_values(ascending=False).items():
+            print(f"median hypervolume ratio of {method}: {ratio:.4f}")
+
+
+def _print_annual(annual: pd.DataFrame) -> None:
+    """Print the figures of a year, and what is missing in them."""
+    if annual.empty:
+        return
+    print("In a year (cii in grams of CO2 per tonne and nautical mile, cost in the prices given):")
+    print(annual.round(2).to_string(index=False, na_rep="-"))
+    if "cii" in annual and annual["cii"].isna().any():
+        print(
+            "cii -: the ship is below 5,000 GT, or the ship file has no hull.deadweight_t (or "
+            "hull.gross_tonnage, for some types), no type that the rating is for, or no carbon "
+            "of the fuel."
+        )
+    if "eu_ets_cost" in annual and annual["eu_ets_cost"].notna().any():
+        print("The costs (cost_...) do not include eu_ets_cost and fueleu_penalty.")
+    elif "eu_ets_cost" in annual:
+        print(
+            "eu_ets_cost, fueleu_penalty -: no price, no share of the voyage in the European "
+            "Union is known, or the ship is below 5,000 GT."
+        )
