@@ -19,6 +19,7 @@ from thalweg.planning.report.plan_summary import (
     summary_with_notes,
 )
 from thalweg.planning.report.route_summary import cost_text, prices_text, route_items, weather_text
+from thalweg.planning.request.shoal_choice import SHOALS_OPENED
 from thalweg.route import Violation
 from thalweg.route.route_tables import LEG_KINDS
 
@@ -89,6 +90,8 @@ def test_notes_on_danger_come_first_and_are_never_hidden(answer):
 def test_notes_of_several_routes():
     found = notes_of_routes(["a."], [["b.", "c.", "Crosses D."], ["b.", "Passes E (one)."]])
     assert found == ["Route 1: Crosses D.", "a.", "b.", "Route 2: Passes E (one)."]
+    found = notes_of_routes(["a.", f"{SHOALS_OPENED}: x."], [["Crosses D."], ["Crosses D."]])
+    assert found == [f"{SHOALS_OPENED}: x.", "Crosses D.", "a."]
 
 
 def with_bound(answer, certain, kind="certificate"):

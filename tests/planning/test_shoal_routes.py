@@ -55,7 +55,7 @@ def test_deep_ships_from_new_york_pass_outside_nantucket_shoals(goal):
     assert lat[np.abs(lon + 70.1) < 0.05].min() < 40.75  # not through Nantucket Sound
     assert off_nantucket > -69.4
     assert np.nanmin(coarse_depth(*open_part(found.best, 20.0))) > 17.0
-    assert any("Keeps out of water shallower than 20 m" in note for note in found.notes)
+    assert any("The route avoids water shallower than 20 m" in note for note in found.notes)
     assert not any("Check the depth" in note for note in found.notes)
 
 

@@ -229,7 +229,7 @@ def read_places(path: str | PathLike[str]) -> list[tuple[str, Place]]:
         if more:
             raise InputError(
                 f"Line {number} of the ports has more fields than the first line: {more[0]!r}.",
-                "A name with a comma stands in quotation marks.",
+                "Put a name that contains a comma in quotation marks.",
                 f'Write "{next(iter(row.values()))},{more[0]}", if that is one name.',
             )
         found.append(_place_of_row({k: str(v or "").strip() for k, v in row.items()}, number))

@@ -17,15 +17,14 @@ from thalweg.planning.request.offing_choice import (
     chart_off_land,
     offing_note,
 )
-from thalweg.planning.request.shoal_choice import close_shoals
+from thalweg.planning.request.shoal_choice import SHOALS_OPENED, close_shoals
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways
 
 Planned = TypeVar("Planned")
 
 _OPENED: Final = (
-    "Crosses shoal water where it must: no route was found with that closed. Check the depths "
-    "on the chart."
+    f"{SHOALS_OPENED}: no route was found that avoids it. Check the depths on the chart."
 )
 #: What is tried where no route exists: the share of the offing that is kept, and round the first
 #: and the last end a radius [m] within which a smaller share of it is enough.

@@ -222,7 +222,7 @@ class Seaways:
         return (
             f"{miles:.0f} nm of the way are nearer to land than {offing / NAUTICAL_MILE:g} nm, the "
             f"nearest {shore[at] / NAUTICAL_MILE:.1f} nm off at {format_position(lat[at], lon[at])}"
-            ": see the chart whether there is room.",
+            ": check on the chart that there is enough sea room.",
         )
 
     def _pulled(self, chart: Chart, off_land: Chart, part: FloatArray) -> list[Position]:

@@ -1,4 +1,4 @@
-"""Several layers read as one: for each variable the first layer that knows a value wins.
+"""Several layers read as one: for each variable the first layer that has a value is used.
 
 The layers of a `thalweg.sea.Sea` are in order of priority. Both components of a vector come from
 the same layer. A value that no layer knows is NaN.

@@ -85,7 +85,7 @@ def arcs_of_occurrences(
     ----------
     occurrences : Stretches, m in total.
     radius : Radius of a junction [m].
-    least : Voyages that make a way believed.
+    least : Least number of voyages for a route to be accepted.
     first_port : Node of the first port; junctions come before.
 
     Returns

@@ -122,7 +122,7 @@ def with_whole_voyages(
     stretches : From node to node, in order of voyages and along them.
     first_port : Node of the first port; junctions come before.
     by_canal : Which voyages pass a canal, (V,).
-    least : Voyages that make a way believed.
+    least : Least number of voyages for a route to be accepted.
 
     Returns
     -------

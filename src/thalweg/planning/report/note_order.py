@@ -17,6 +17,7 @@ from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, L
 from thalweg.planning.report.wave_report import TOO_STEEP
 from thalweg.planning.request.coverage_check import UNREAD
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
+from thalweg.planning.request.shoal_choice import SHOALS_OPENED
 from thalweg.planning.request.swapped_degrees import CHECK_POSITION
 from thalweg.planning.request.voyage_endpoints import NOT_REACHED
 from thalweg.route.referee.route_assembly import OUT_OF_RANGE
@@ -25,7 +26,7 @@ from thalweg.ship.ship_assumptions import KWON_FORM
 
 LIMIT_EXCEEDED: Final = "The referee finds a limit exceeded"  #: a note on a limit begins so
 #: First words of notes that no summary may leave out, the most dangerous first.
-_FIRST: Final = (
+_FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     NOT_REACHED,
     PORT_TOO_SHALLOW,
     LIMIT_EXCEEDED,
@@ -33,7 +34,7 @@ _FIRST: Final = (
     REACHES_ICE,
     CHECK_POSITION,
     CHECK_DEPTH,
-    CROSSES_SHOAL,
+    (CROSSES_SHOAL, SHOALS_OPENED),
     NEAR_LAND,
     CLOSE_TO_LAND,
     AGAINST_TRAFFIC,

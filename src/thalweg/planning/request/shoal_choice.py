@@ -31,6 +31,8 @@ from thalweg.planning.voyage import Voyage
 from thalweg.sea import Sea, standard_names
 from thalweg.ship import Ship
 
+#: A note that shoal water was opened again begins so.
+SHOALS_OPENED: Final = "The route crosses shoal water"
 #: Radii [m] of the open water round ends, where dredged channels lead through shoals.
 _RADII: Final = tuple(miles * NAUTICAL_MILE for miles in (8.0, 20.0, 45.0, 90.0))
 _LOOK_BEYOND: Final = 15.0 * NAUTICAL_MILE
@@ -68,9 +70,9 @@ def add_shoals(
     least = draught + required_under_keel_clearance(voyage, ship)
     shoals = shoals_of_draught(chart, draught, least, [(float(e.lat), float(e.lon)) for e in ends])
     note = (
-        f"Keeps out of water shallower than {shoals.contour:g} m where it can: a mile there counts "
-        f"up to 20 by the {NAME} and the named shoal areas; not near the ends and in narrow "
-        "passages."
+        f"The route avoids water shallower than {shoals.contour:g} m where possible: the search "
+        f"counts a mile there as up to 20 miles by the {NAME} and the named shoal areas; not near "
+        "the ends and in narrow passages."
     )
     return replace(chart, zones=replace(chart.zones, shoals=shoals)), [note]
 

@@ -56,10 +56,10 @@ _CELLS_OF_PATH = 800  # of functions, along the longer side
 _CELLS_OF_SPACING, _FEWEST_CELLS_OF_PATH = 10, 100
 _CONTRADICTED = (
     "no bound: in {sampling} the route of the plan would not be possible in its time, so that a "
-    "bound for that sea says nothing"
+    "bound for that sea is not valid"
 )
 _ENCLOSED = (
-    "no bound: the proof says {bound}, which the route of the plan undercuts; land or limits "
+    "no bound: the proof gives {bound}, but the route of the plan needs less; land or limits "
     "in the proof may enclose an end that the route leaves"
 )
 

@@ -1,4 +1,7 @@
-"""Checks of an order at the door: what the known facts of its ship and seas make impossible."""
+"""Checks of an order before it becomes a job: what is known to be impossible.
+
+The known facts are those of its ship and seas.
+"""
 
 from __future__ import annotations
 

@@ -165,7 +165,7 @@ class JobStore:
                     raise ServiceError(
                         409,
                         "The idempotency key was used for another request.",
-                        "A key stands for one request.",
+                        "Use each key for one request only.",
                         "Send another key, or none.",
                     )
                 return False

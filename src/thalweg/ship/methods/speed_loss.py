@@ -334,9 +334,9 @@ def prestegardshus_speed_factor(
 
     .. math:: r = 1 - 0.8 \, \frac{\theta/\pi + k}{2}
 
-    For comparison with that thesis only. The rule is at fault: in a flat calm, where the direction
+    For comparison with that thesis only. The rule is wrong: in a flat calm, where the direction
     of waves and wind has no meaning, it still takes up to 40 % of the speed for each of the two, so
-    that a ship heading into no waves and no wind makes 0.36 of her speed; and waves that follow
+    that a ship heading into no waves and no wind keeps 0.36 of its speed; and waves that follow
     cost as much as they would from ahead with half the height. ``consistent`` has
     :math:`r = 1 - 0.8\,k\,(1 + \theta/\pi)/2`, which takes nothing in a calm.
 
