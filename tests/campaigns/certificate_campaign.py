@@ -25,7 +25,7 @@ from tests.campaigns.plain_referee import arguments
 from thalweg import Chart, Sea
 from thalweg.core.limits import Limits
 from thalweg.kernels import codes
-from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
+from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier
 from thalweg.search.certificate.time_certificate import BarrierSearch
 from thalweg.ship import PerformanceTable, TableError, TablePart
@@ -202,7 +202,7 @@ def certified(world: World, sea: Sea, chart: Chart | None, known: float) -> list
     part = TablePart((), (), np.array([world.speed], np.float32))
     table = PerformanceTable((part,), np.array([world.speed]), "", TableError(0.0, 0.0, 0.0))
     ship = ShipInBarrier(table.kernel_arrays(), 0, Limits().array, float(np.float32(world.speed)))
-    passage = PassageToBound(
+    passage = StretchToBound(
         sea, chart, ship, (codes.CURRENT_EAST, codes.CURRENT_NORTH), tuple(world.start),
         tuple(world.goal), _DEPART, 1.01 * known,
     )  # fmt: skip

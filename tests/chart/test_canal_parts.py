@@ -8,9 +8,9 @@ import pytest
 from thalweg.chart.approaches import PORT_APPROACHES, place_along_line
 from thalweg.chart.canal_parts import (
     canal_part,
+    first_legs_of_transits,
     joints_to_canals,
     part_number_of_legs,
-    passages_of_parts,
     ways_through_canals,
 )
 from thalweg.chart.canals import CANALS, KIEL, PANAMA, SUEZ
@@ -46,7 +46,7 @@ def test_a_port_at_a_gate_has_a_way_through_the_canal(name, canal, end):
     )
     lat, lon = np.array(way.line, float).T
     number = part_number_of_legs(CANALS, lat, lon)
-    assert passages_of_parts(number).sum() == 1
+    assert first_legs_of_transits(number).sum() == 1
     length = distance(lat[:-1], lon[:-1], lat[1:], lon[1:])
     assert length[number >= 0].sum() == pytest.approx(way.through_length)
     joints = joints_to_canals(CANALS, PORT_APPROACHES, number, np.stack([lat, lon], axis=1))
@@ -77,7 +77,7 @@ def test_a_part_has_its_share_of_the_time_and_the_dues_once():
     assert first.length / first.transit_time == pytest.approx(canal.length / canal.transit_time)
     assert first.length / NAUTICAL_MILE == pytest.approx(22.9, abs=0.1)
     assert part_number_of_legs((canal,), *np.array(canal.path[1:4]).T).tolist() == [0, 0]
-    assert passages_of_parts(np.array([-1, 0, 0, -1, 0])).tolist() == [
+    assert first_legs_of_transits(np.array([-1, 0, 0, -1, 0])).tolist() == [
         False,
         True,
         False,

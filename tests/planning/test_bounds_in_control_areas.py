@@ -8,7 +8,7 @@ from thalweg.core.geodesy import distance
 from thalweg.core.limits import Limits
 from thalweg.planning.pareto.bounds import corners_of_lengths
 from thalweg.planning.plan_front import certain_at
-from thalweg.search.certificate.barrier_domain import PassageToBound
+from thalweg.search.certificate.barrier_domain import StretchToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier
 from thalweg.search.certificate.time_certificate import certify_priced_length
 from thalweg.ship import PerformanceTable, TableError, TablePart
@@ -98,7 +98,7 @@ def test_the_priced_length_counts_dearer_metres_and_the_way_round_them(zone, tru
     ship = ShipInBarrier(table.kernel_arrays(), 0, Limits().array, 1.0)
     chart = Chart.open_water(-0.5, 0.5, -0.5, 2.5).with_zones(zone)
     known = truth * 0.5 * LENGTH
-    passage = PassageToBound(Sea.calm(), chart, ship, (), START, GOAL, depart=0.0, known=known)
+    passage = StretchToBound(Sea.calm(), chart, ship, (), START, GOAL, depart=0.0, known=known)
     found = certify_priced_length(passage, 1.5, seconds=30.0, target=0.02)
     assert 0.98 * known <= found.value <= known
 

@@ -6,7 +6,7 @@ import pytest
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.geodesy import distance
 from thalweg.core.units import HOUR, KNOT
-from thalweg.planning.plots.stage_passages import stage_passage_times
+from thalweg.planning.plots.stage_passages import stage_arrival_times
 
 WATER = Chart.open_water(50.0, 52.0, 1.0, 4.0)
 SHIP = Ship.simple(speed_kn=8.0, draught_m=5.0)
@@ -38,12 +38,12 @@ def test_isochrones_of_a_stage_end_when_the_route_is_at_its_via_point():
     found = plan(voyage, ship=SHIP, sea=Sea.calm(), chart=WATER, resolution=6000.0)
     at_via = float(distance(51.0, 1.5, *via)) / (8.0 * KNOT) / HOUR
     place = np.array([51.0]), np.array([2.0])  # both stages pass within reach of it
-    there, back = stage_passage_times(found.plot_context, *place, np.asarray)
+    there, back = stage_arrival_times(found.plot_context, *place, np.asarray)
     hours = (np.concatenate([there, back]) - found.best.depart) / HOUR
     rest = float(distance(*via, 51.0, 2.0)) / (8.0 * KNOT) / HOUR
     first = float(distance(51.0, 1.5, 51.0, 2.0)) / (8.0 * KNOT) / HOUR
     assert hours == pytest.approx([first, at_via + rest], rel=0.02)
-    before, after = stage_passage_times(
+    before, after = stage_arrival_times(
         found.plot_context, np.array([51.0, 51.0]), np.array([3.1, 3.1]), np.asarray
     )
     assert np.isnan(before).all() and np.isfinite(after).all()  # the first ends at the via point

@@ -25,7 +25,7 @@ from thalweg.kernels import codes
 from thalweg.kernels.certificate.barrier_check import closed_throughout
 from thalweg.kernels.certificate.cell_conditions import TimeWindows
 from thalweg.sea import Sea
-from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
+from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.barrier_mesh import build_mesh
 from thalweg.search.certificate.closed_water import closed_cells
 from thalweg.search.certificate.departure_certificate import certify_departures
@@ -42,7 +42,7 @@ def box(west, south, east, north):
 
 def passage(known, *, chart=None, sea=None, ship=None, channels=()):
     ship = ship or ship_of_one_speed(SPEED)
-    return PassageToBound(sea or Sea.calm(), chart, ship, channels, *ENDS, depart=1e9, known=known)
+    return StretchToBound(sea or Sea.calm(), chart, ship, channels, *ENDS, depart=1e9, known=known)
 
 
 def test_cells_near_land_are_closed_by_the_offing_and_only_by_it():
@@ -196,7 +196,7 @@ def test_a_passage_near_a_pole_is_bounded_by_the_geodesic(current):
     length = float(distance(*ends[0], *ends[1]))
     sea = sea_of(lambda t, y, x: current + 0 * x, lambda t, y, x: 0 * x) if current else Sea.calm()
     channels = CURRENTS if current else ()
-    where = PassageToBound(
+    where = StretchToBound(
         sea, None, ship_of_one_speed(SPEED), channels, *ends, depart=1e9, known=1.1 * length / SPEED
     )
     found = certify_time(where, seconds=1.0)

@@ -15,7 +15,7 @@ from thalweg.kernels.certificate.barrier_check import closed_throughout
 from thalweg.kernels.certificate.cell_conditions import TimeWindows
 from thalweg.kernels.certificate.speed_ranges import widened_directions
 from thalweg.sea import Sea
-from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
+from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.barrier_mesh import build_mesh
 from thalweg.search.certificate.time_certificate import BarrierSearch, free_space_time
 
@@ -30,12 +30,12 @@ def jet(t, y, x):
     return JET * np.maximum(0.0, 1.0 - np.abs(y - START[0]) * DEGREE / WIDTH) + 0.0 * x
 
 
-def passage(lipschitz=None, known=LENGTH / (SPEED + JET), **more) -> PassageToBound:
+def passage(lipschitz=None, known=LENGTH / (SPEED + JET), **more) -> StretchToBound:
     sea = Sea.from_functions(
         {EAST: jet, NORTH: lambda t, y, x: 0.0 * x}, time_step=0.0, lipschitz=lipschitz
     )
     ship = ship_of_one_speed(SPEED)
-    return PassageToBound(sea, None, ship, CURRENTS, START, GOAL, 1e9, 1.1 * known, **more)
+    return StretchToBound(sea, None, ship, CURRENTS, START, GOAL, 1e9, 1.1 * known, **more)
 
 
 RATES = {EAST: (1.02 * JET / WIDTH, 0.0), NORTH: (0.0, 0.0)}
@@ -101,7 +101,7 @@ def test_a_limit_counts_with_the_margin_of_its_samples():
     channels = (codes.WAVE_HEIGHT_CHANNEL,)
     for low, is_open in ((0.3, False), (0.8, True)):
         sea = Sea.from_functions(waves, time_step=0.0)
-        where = PassageToBound(sea, None, ship, channels, START, GOAL, 1e9, LENGTH / SPEED)
+        where = StretchToBound(sea, None, ship, channels, START, GOAL, 1e9, LENGTH / SPEED)
         domain = BarrierDomain.around(where, 24)
         margins = np.zeros(codes.CHANNEL_COUNT)
         margins[codes.WAVE_HEIGHT_CHANNEL] = low

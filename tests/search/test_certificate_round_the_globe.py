@@ -8,7 +8,7 @@ from tests.search.test_time_certificate import bound, on_meshes, ship_of_one_spe
 from thalweg.chart import Chart
 from thalweg.core.geodesy import distance
 from thalweg.sea import Sea
-from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
+from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.linked_solutions import joined_edges
 
 START, GOAL = (0.0, -40.0), (0.0, 40.0)
@@ -24,9 +24,9 @@ def wall(north: float) -> Chart:
     return Chart.open_water(-90.0, 90.0, -180.0, 180.0).with_zones(feature)
 
 
-def passage(chart: Chart, known: float) -> PassageToBound:
+def passage(chart: Chart, known: float) -> StretchToBound:
     ship = ship_of_one_speed(1.0)
-    return PassageToBound(Sea.calm(), chart, ship, (), START, GOAL, depart=0.0, known=known)
+    return StretchToBound(Sea.calm(), chart, ship, (), START, GOAL, depart=0.0, known=known)
 
 
 def test_the_way_round_a_wall_that_reaches_near_the_pole_is_the_bound():
@@ -46,7 +46,7 @@ def test_a_way_over_the_pole_is_not_cut_off_by_the_edge_of_the_mesh():
     """A wall up to 80 N between ends at opposite meridians: the way is over the pole."""
     ends = (60.0, -90.0), (60.0, 90.0)
     best = float(distance(*ends[0], *ends[1]))
-    where = PassageToBound(
+    where = StretchToBound(
         Sea.calm(), wall(80.0), ship_of_one_speed(1.0), (), *ends, depart=0.0, known=1.01 * best
     )
     found = on_meshes(where, 60, 1)

@@ -17,7 +17,7 @@ from thalweg.kernels import codes
 from thalweg.kernels.certificate.cost_conditions import PricedShip
 from thalweg.planning.pareto.certified_costs import raised_by_lines
 from thalweg.sea import Sea
-from thalweg.search.certificate.barrier_domain import PassageToBound
+from thalweg.search.certificate.barrier_domain import StretchToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier
 from thalweg.search.certificate.cost_certificate import CostToBound, certify_costs
 from thalweg.ship import PerformanceTable, TableError, TablePart
@@ -36,7 +36,7 @@ def table(values):
 def cost_of(sea, known, *, chart=None, inside=1.0, channels=()):
     ship = ShipInBarrier(table(SPEEDS).kernel_arrays(), 2, Limits().array, float(SPEEDS.max()))
     priced = PricedShip(np.arange(3), table(FUEL).kernel_arrays(), FUEL, SPEEDS)
-    passage = PassageToBound(sea, chart, ship, channels, START, GOAL, depart=1e9, known=known)
+    passage = StretchToBound(sea, chart, ship, channels, START, GOAL, depart=1e9, known=known)
     return CostToBound(passage, priced, inside, 1.0, 0.0)
 
 

@@ -14,7 +14,7 @@ from thalweg.core.limits import Limits
 from thalweg.kernels import codes
 from thalweg.sea import Sea
 from thalweg.search.certificate import time_certificate
-from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
+from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier, metres_per_degree
 from thalweg.search.certificate.time_certificate import BarrierSearch, TimeCertificate
 from thalweg.ship import PerformanceTable, Ship, TableError, TablePart
@@ -40,13 +40,13 @@ def bound(
 ) -> TimeCertificate:
     ship = ship or ship_of_one_speed(SPEED)
     channels = CURRENTS if EAST in sea.variables else ()
-    passage = PassageToBound(
+    passage = StretchToBound(
         sea, chart, ship, channels, *ends, depart=1e9, known=known, kept_out=kept_out
     )
     return on_meshes(passage, cells, meshes)
 
 
-def on_meshes(passage: PassageToBound, cells: int = 120, meshes: int = 1) -> TimeCertificate:
+def on_meshes(passage: StretchToBound, cells: int = 120, meshes: int = 1) -> TimeCertificate:
     """Return the best bound of a number of meshes, whatever time they take."""
     search = BarrierSearch(passage, BarrierDomain.around(passage, cells), cells, 3e-4)
     found = [one for one in (search.refine() for _ in range(meshes)) if one is not None]
@@ -121,7 +121,7 @@ def test_a_jet_beside_the_way_is_bounded_from_below():
         lambda t, y, x: 0 * x,
     )
     ship, known = ship_of_one_speed(SPEED), 9.83 * 3600.0
-    passage = PassageToBound(
+    passage = StretchToBound(
         sea, None, ship, CURRENTS, (0.0, 0.0), (0.0, wide), depart=1e9, known=known
     )
     raster = BarrierDomain.around(passage, 400).raster
@@ -160,7 +160,7 @@ def test_a_limit_of_waves_closes_water_to_the_bound_as_to_the_ship():
     straight = float(distance(*ends[0], *ends[1])) / SPEED
     limited = ship_of_one_speed(SPEED, Limits(wave_height=5.0))
     passages = [
-        PassageToBound(sea, None, ship, (codes.WAVE_HEIGHT_CHANNEL,), *ends, 1e9, 1.4 * straight)
+        StretchToBound(sea, None, ship, (codes.WAVE_HEIGHT_CHANNEL,), *ends, 1e9, 1.4 * straight)
         for ship in (limited, ship_of_one_speed(SPEED))
     ]
     closed, free = (on_meshes(one) for one in passages)
@@ -182,7 +182,7 @@ def test_the_first_mesh_fits_into_the_time_for_it(monkeypatch, rate, most):
     limits = ShipInBarrier(ship.kernel_arrays(), 0, Limits().array, top)
     channels = (codes.WIND_EAST, codes.WIND_NORTH, codes.WAVE_HEIGHT_CHANNEL)
     best = float(distance(*START, *GOAL)) / top
-    calm = PassageToBound(Sea.calm(), None, limits, channels, START, GOAL, 1e9, 1.01 * best)
+    calm = StretchToBound(Sea.calm(), None, limits, channels, START, GOAL, 1e9, 1.01 * best)
     found = time_certificate.certify_time(calm, seconds=20.0)
     assert (0 < sizes[0] <= most) if most else not sizes
     assert 0.99 * best < found.value <= best
@@ -208,7 +208,7 @@ def test_no_ship_crosses_the_barrier_backwards_in_wind():
     length = float(distance(*ends[0], *ends[1]))
     names = {codes.WIND_EAST: "eastward_wind", codes.WIND_NORTH: "northward_wind"}
     barrier = ShipInBarrier(table.kernel_arrays(), setting, Limits().array, top)
-    passage = PassageToBound(sea, None, barrier, tuple(names), *ends, depart, 1.15 * length / top)
+    passage = StretchToBound(sea, None, barrier, tuple(names), *ends, depart, 1.15 * length / top)
     found = on_meshes(passage, cells=120)
     rate = _rates_at_random_points(found, ship=table, setting=setting, count=20_000)
     assert found.value > 0.99 * length / top

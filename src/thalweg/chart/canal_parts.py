@@ -176,7 +176,7 @@ def _is_inside(canal: Canal, here: float, there: float) -> bool:
     )
 
 
-def passages_of_parts(number: NDArray[np.int64]) -> NDArray[np.bool_]:
+def first_legs_of_transits(number: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Return the first leg of each passage of a part of a canal, by `part_number_of_legs`."""
     before = np.concatenate([[-1], number[:-1]])
     return np.asarray((number >= 0) & (number != before))

@@ -45,7 +45,7 @@ def compile_search() -> None:
 def compile_certificate() -> None:
     """Bound a passage in open water, to compile the kernels."""
     from thalweg.sea import Sea
-    from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
+    from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
     from thalweg.search.certificate.barrier_mesh import ShipInBarrier
     from thalweg.search.certificate.check_timing import USUAL_SECONDS_A_CELL
     from thalweg.search.certificate.time_certificate import BarrierSearch
@@ -57,7 +57,7 @@ def compile_certificate() -> None:
     length, _, _ = inverse(0.0, 0.0, 0.0, 1.0)
     waves = (codes.WIND_EAST, codes.WIND_NORTH, codes.WAVE_HEIGHT_CHANNEL)
     known = 1.1 * float(length) / top
-    passage = PassageToBound(Sea.calm(), None, ship, waves, (0.0, 0.0), (0.0, 1.0), 0.0, known)
+    passage = StretchToBound(Sea.calm(), None, ship, waves, (0.0, 0.0), (0.0, 1.0), 0.0, known)
     domain = BarrierDomain.around(passage, _CELLS)
     assert domain is not None  # the passage is short
     BarrierSearch(passage, domain, _CELLS, USUAL_SECONDS_A_CELL[1]).refine()

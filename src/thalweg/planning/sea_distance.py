@@ -12,7 +12,7 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.chart.approaches import MAX_APPROACH_SPEED, line_between, line_length
-from thalweg.chart.canal_parts import part_number_of_legs, passages_of_parts
+from thalweg.chart.canal_parts import first_legs_of_transits, part_number_of_legs
 from thalweg.chart.depth.shoals import DRAUGHTS, Shoals
 from thalweg.chart.depth.shoals_of_draught import shoals_of_draught
 from thalweg.chart.offing import check_offing
@@ -314,7 +314,7 @@ def _canals_entered(chart: Chart, line: Sequence[Position]) -> tuple[str, ...]:
     lat, lon = np.array(line, float).T
     part = part_number_of_legs(chart.canals, lat, lon)
     whole = np.asarray(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:]))
-    number = np.where(passages_of_parts(part), part, whole)
+    number = np.where(first_legs_of_transits(part), part, whole)
     return tuple(chart.canals[k].title for k in number[number >= 0].tolist())
 
 

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from thalweg.chart.approaches import MAX_APPROACH_SPEED
 from thalweg.chart.canal_parts import (
     canal_part,
+    first_legs_of_transits,
     joints_to_canals,
     part_number_of_legs,
-    passages_of_parts,
 )
 from thalweg.chart.canals import Canal, canals_with_dues
 from thalweg.core.errors import ThalwegError
@@ -180,7 +180,7 @@ def _with_canal_parts(legs: CanalLegs, track: Track) -> CanalLegs:
     """Return the legs with those along parts of canals, by ships that enter them on the way."""
     part = part_number_of_legs(legs.canals, track.lat, track.lon)
     part[legs.number >= 0] = -1
-    pays = passages_of_parts(part)
+    pays = first_legs_of_transits(part)
     found = np.flatnonzero(part >= 0)
     more = [
         _part_of_canal(legs.canals[part[k]], *track.positions[k : k + 2], pays=bool(pays[k]))

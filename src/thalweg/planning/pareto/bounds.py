@@ -308,12 +308,12 @@ def _lines_by_exits(trade_off: TradeOffContext) -> tuple[float, list[tuple[float
     exits = area_exits(chart.zones, chart.coastline, chart.canals)
     far = [np.asarray(distance(end.lat, end.lon, *exits)) - MARGIN_OF_EXITS for end in ends]
     far = [np.maximum(one, 0.0) for one in far]
-    dear = [
+    lengths_inside = [
         float(np.min(one, initial=math.inf)) if counts else 0.0
         for one, counts in zip(far, inside, strict=True)
     ]
     if all(inside) or not far[0].size:
-        return sum(dear), []
+        return sum(lengths_inside), []
     least, whole = (far[0] if inside[0] else far[1]), far[0] + far[1]
     hull = lower_hull(least, whole)
     hull = hull[: int(np.argmin(whole[hull])) + 1]
@@ -321,7 +321,7 @@ def _lines_by_exits(trade_off: TradeOffContext) -> tuple[float, list[tuple[float
     for a, b in itertools.pairwise(hull):
         slope = float((whole[a] - whole[b]) / (least[b] - least[a]))
         lines.append((1.0 + slope, float(whole[a] + slope * least[a])))
-    return sum(dear), lines
+    return sum(lengths_inside), lines
 
 
 def corners_of_lengths(

@@ -27,7 +27,7 @@ from thalweg.planning.pareto.trade_off_context import (
 from thalweg.planning.planning_context import greatest_speed_of
 from thalweg.planning.single.certified_bound import KEEPING_OUT, TABLE_MARGIN, kept_out
 from thalweg.search import table_bounds
-from thalweg.search.certificate.barrier_domain import PassageToBound
+from thalweg.search.certificate.barrier_domain import StretchToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier
 from thalweg.search.certificate.cost_certificate import CostToBound, certify_costs
 
@@ -160,7 +160,7 @@ def _cost_to_bound(trade_off: TradeOffContext, feasible: list[RefereedCandidate]
     routes = [item.route for item in feasible]
     lat, lon = routes[0].track.lat, routes[0].track.lon
     departures = [route.depart for route in routes]
-    passage = PassageToBound(
+    passage = StretchToBound(
         context.sea, context.chart, ship, context.needs.channels,
         (float(lat[0]), float(lon[0])), (float(lat[-1]), float(lon[-1])),
         depart=min(departures), known=max(route.time_h for route in routes) * HOUR,

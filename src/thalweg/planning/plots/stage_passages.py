@@ -18,7 +18,7 @@ _LEAST_NODES: Final = 4
 _LAT_MARGIN, _LON_MARGIN = 2.0, 4.0  # round the raster [deg]
 
 
-def stage_passage_times(
+def stage_arrival_times(
     context: PlotContext,
     lat: FloatArray,
     lon: FloatArray,

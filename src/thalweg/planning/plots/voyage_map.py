@@ -22,7 +22,7 @@ from thalweg.planning.plots.map_overlays import (
     place_labels,
     storm_track,
 )
-from thalweg.planning.plots.stage_passages import stage_passage_times
+from thalweg.planning.plots.stage_passages import stage_arrival_times
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData, PlotContext
@@ -87,7 +87,7 @@ def _label_of_reference(plan: PlanData) -> str:
 
 def _draw_sea(figure: Any, axes: Any, plan: PlanData, context: PlotContext, box: MapExtent) -> None:
     lat, lon = box.grid(240, 180)
-    stages = stage_passage_times(context, lat, lon, box.unwrapped)
+    stages = stage_arrival_times(context, lat, lon, box.unwrapped)
     reached = np.fmin.reduce([np.full(lat.shape, np.nan), *stages])
     moment = np.where(np.isfinite(reached), reached, plan.best.depart)
     on_water = _water_mask(context, moment, lat, wrap_longitude(lon))

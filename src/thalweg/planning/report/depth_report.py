@@ -54,11 +54,13 @@ def depth_notes(chart: Chart, route: Route, ship: Ship, clearance: float) -> lis
         if area.contains(lat, lon).any()
     ]
     depth = np.asarray(coarse_depth(lat, lon))
-    dredged = canal_legs(route.track, chart, ship)
-    judged = _judged(chart, route, lat, lon) & (dredged.number[leg] < 0)
-    in_canals = dredged.number[(dredged.number >= 0) & ~dredged.approach]
+    canal_or_approach = canal_legs(route.track, chart, ship)
+    judged = _judged(chart, route, lat, lon) & (canal_or_approach.number[leg] < 0)
+    in_canals = canal_or_approach.number[
+        (canal_or_approach.number >= 0) & ~canal_or_approach.approach
+    ]
     for k in np.unique(in_canals).tolist():
-        for end in dredged.canals[k].ends:
+        for end in canal_or_approach.canals[k].ends:
             judged &= np.asarray(distance(lat, lon, *end)) >= _ENDS
     shallow = (depth < required) & judged
     if shallow.any():

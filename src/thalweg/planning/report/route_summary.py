@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from thalweg.chart.canal_parts import part_number_of_legs, passages_of_parts
+from thalweg.chart.canal_parts import first_legs_of_transits, part_number_of_legs
 from thalweg.core.geodesy import format_position_minutes
 from thalweg.core.time import duration_text, utc_text
 from thalweg.core.units import HOUR, KNOT
@@ -83,7 +83,7 @@ def canals_passed(route: Route, chart: Chart | None) -> list[Canal]:
     number = np.array(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:]))
     if chart.approaches is not None:  # ports on canals, which are entered on the way
         part = part_number_of_legs(chart.canals, lat, lon)
-        number = np.where(passages_of_parts(part), part, number)
+        number = np.where(first_legs_of_transits(part), part, number)
     return [chart.canals[k] for k in number[number >= 0].tolist()]
 
 

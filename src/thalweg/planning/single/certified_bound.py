@@ -20,7 +20,7 @@ from thalweg.planning.report.route_summary import canals_passed
 from thalweg.route import Route
 from thalweg.sea import Sea
 from thalweg.search import LowerBound
-from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
+from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier
 from thalweg.search.certificate.departure_certificate import certify_departures
 from thalweg.search.certificate.raster_path import fast_path_on_raster
@@ -292,7 +292,7 @@ def _kind(context: PlanningContext, route: Route, found: TimeCertificate) -> str
     return text + (f", in {found.sampling}" if found.sampling else "")
 
 
-def _passage(context: PlanningContext, route: Route) -> PassageToBound:
+def _passage(context: PlanningContext, route: Route) -> StretchToBound:
     top = greatest_speed_of(context.ship, context.table, context.setting)
     field = context.ship.speed_field
     if field is not None:
@@ -306,21 +306,21 @@ def _passage(context: PlanningContext, route: Route) -> PassageToBound:
         top,
         field,
     )
-    return PassageToBound(
+    return StretchToBound(
         context.sea, context.chart, ship, context.needs.channels, *_ends(route),
         depart=route.depart, known=route.time_h * HOUR,
         kept_out=kept_out(context.chart, [route]),
     )  # fmt: skip
 
 
-def _still_water(context: PlanningContext, route: Route) -> PassageToBound:
+def _still_water(context: PlanningContext, route: Route) -> StretchToBound:
     """Return the stretch for a ship of 1 m/s in still water, whose time is the distance."""
     part = TablePart((), (), np.ones(1, np.float32))
     table = PerformanceTable((part,), np.ones(1), "", TableError(0.0, 0.0, 0.0))
     ship = ShipInBarrier(table.kernel_arrays(), 0, Limits().array, 1.0)
     length = float(route.legs["length"].sum())
     canals = tuple(replace(canal, transit_time=canal.length) for canal in context.chart.canals)
-    return PassageToBound(
+    return StretchToBound(
         Sea.calm(),
         replace(context.chart, canals=canals),
         ship,

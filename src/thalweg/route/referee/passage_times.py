@@ -26,7 +26,7 @@ _GAUSS_MATRIX = np.array([[0.25, 0.25 - math.sqrt(3.0) / 6.0], [0.25 + math.sqrt
 
 
 @dataclass
-class PassageTimes:
+class PieceTimes:
     """Times of passage of consecutive pieces, while they are solved.
 
     Attributes
@@ -61,7 +61,7 @@ def solve_passage_times(
     wait: FloatArray,
     depart: float,
     guess: FloatArray,
-) -> PassageTimes:
+) -> PieceTimes:
     r"""Solve the times of passage of each piece.
 
     Parameters
@@ -85,7 +85,7 @@ def solve_passage_times(
     by itself, and the iteration continues after it.
     """
     count = len(step)
-    passage = PassageTimes(
+    passage = PieceTimes(
         step,
         wait,
         np.empty(count + 1),
@@ -116,7 +116,7 @@ def solve_passage_times(
 
 
 def _iterate_pieces(
-    passage: PassageTimes, slowness_at: SlownessFunction, first: int, last: int
+    passage: PieceTimes, slowness_at: SlownessFunction, first: int, last: int
 ) -> int:
     """Iterate one stretch of pieces from its known start; return how many converged.
 

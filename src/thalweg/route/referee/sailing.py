@@ -11,7 +11,7 @@ from thalweg.core.geodesy import METRES_PER_DEGREE
 from thalweg.core.types import FloatArray
 from thalweg.route.canal_legs import CanalLegs
 from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints
-from thalweg.route.referee.passage_times import PassageTimes, solve_passage_times
+from thalweg.route.referee.passage_times import PieceTimes, solve_passage_times
 from thalweg.route.referee.sailing_physics import (
     SailingEnvironment,
     SailingState,
@@ -35,7 +35,7 @@ class SailedTrack:
     pieces: TrackPieces
     charted: FloatArray
     gauss: TrackPoints
-    passage: PassageTimes
+    passage: PieceTimes
 
     @property
     def arrive(self) -> float:

@@ -36,7 +36,7 @@ _GLOBE: Final = (-89.0, 89.0, -180.0, 180.0)  # south, north, west and east [deg
 
 
 @dataclass(frozen=True, eq=False)
-class PassageToBound:
+class StretchToBound:
     """A passage whose time is bounded from below.
 
     Attributes
@@ -106,7 +106,7 @@ class BarrierDomain:
 
     @classmethod
     def around(
-        cls, passage: PassageToBound, cells: int, *, fastest: float = 0.0
+        cls, passage: StretchToBound, cells: int, *, fastest: float = 0.0
     ) -> BarrierDomain | None:
         """Return the domain of a passage: round the globe where need be, in a uniform sea.
 
@@ -132,7 +132,7 @@ class BarrierDomain:
         return found
 
     @classmethod
-    def of_globe(cls, passage: PassageToBound, cells: int) -> BarrierDomain:
+    def of_globe(cls, passage: StretchToBound, cells: int) -> BarrierDomain:
         """Return the domain of all seas, for the bound of the geodesic alone: it has no mesh.
 
         Parameters
@@ -154,7 +154,7 @@ class BarrierDomain:
 
     @classmethod
     def _within_reach(
-        cls, passage: PassageToBound, cells: int, fastest: float
+        cls, passage: StretchToBound, cells: int, fastest: float
     ) -> BarrierDomain | None:
         """Return the domain that a ship can reach by its greatest speed over ground in it."""
         ship = passage.ship
@@ -226,7 +226,7 @@ def _strongest_current(raster: RasterArrays, margins: FloatArray) -> float:
     return known + float(margins[CURRENT_EAST])
 
 
-def _round_box(passage: PassageToBound) -> tuple[float, float, float, float]:
+def _round_box(passage: StretchToBound) -> tuple[float, float, float, float]:
     """Return a box all round the globe, but for the poles; its seam is far from the passage."""
     south, north = -_LARGEST_LATITUDE, _LARGEST_LATITUDE
     if passage.chart is not None:  # with some cells beyond, which are closed
@@ -238,7 +238,7 @@ def _round_box(passage: PassageToBound) -> tuple[float, float, float, float]:
 
 
 def _box_of_routes(
-    passage: PassageToBound, speed: float
+    passage: StretchToBound, speed: float
 ) -> tuple[float, float, float, float] | None:
     """Return a box round all positions from which start and goal are reached in the known time.
 

@@ -11,7 +11,7 @@ from thalweg.kernels.certificate.barrier_check import BarrierExcess, check_barri
 from thalweg.kernels.certificate.cell_conditions import TimeWindows
 from thalweg.kernels.leg.table_lookup import axes_needed
 from thalweg.search.certificate.arrival_barrier import no_kept_speeds
-from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
+from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.barrier_mesh import build_mesh
 
 #: Seconds that a first mesh takes for each of its cells, without and with tables of weather, for
@@ -23,7 +23,7 @@ _MOST_CELLS: Final = 400_000  # of a mesh on which cells are timed
 _CHECKS: Final = 1.2  # first checks of cells in a mesh, for each of its cells in the band or not
 
 
-def seconds_a_cell(passage: PassageToBound, domain: BarrierDomain) -> float:
+def seconds_a_cell(passage: StretchToBound, domain: BarrierDomain) -> float:
     """Return an estimate of the time of a first mesh for each of its cells [s].
 
     Parameters

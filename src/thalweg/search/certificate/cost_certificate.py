@@ -23,7 +23,7 @@ from thalweg.search.certificate.arrival_barrier import (
     correct_factors,
     nodes_of,
 )
-from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
+from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.barrier_mesh import (
     BarrierMesh,
     build_mesh,
@@ -57,7 +57,7 @@ class CostToBound:
     second : Price of a second under way or waiting.
     """
 
-    passage: PassageToBound
+    passage: StretchToBound
     ship: PricedShip
     inside: float
     outside: float
@@ -154,7 +154,7 @@ def _bytes_of_motions(cost: CostToBound, cells: int) -> int:
     return 8 * cells * len(cost.ship.settings) * (_sectors(cost) + COURSES)
 
 
-def _cropped(raster: RasterArrays, passage: PassageToBound, reach: float) -> RasterArrays:
+def _cropped(raster: RasterArrays, passage: StretchToBound, reach: float) -> RasterArrays:
     """Return the part of a raster that routes of a greatest length [m] may touch, and a little."""
     _, rows, columns, _ = raster.values.shape
     lat0, dlat, lon0, dlon = raster.corner

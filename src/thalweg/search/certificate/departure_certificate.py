@@ -8,7 +8,7 @@ import time as clock
 from dataclasses import dataclass, replace
 from typing import Final
 
-from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
+from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.check_timing import seconds_a_cell
 from thalweg.search.certificate.time_certificate import (
     BarrierSearch,
@@ -24,7 +24,7 @@ _SPLIT_FIRST: Final = 900.0  # pieces this long or longer [s] are divided before
 
 
 def certify_departures(
-    passage: PassageToBound, *, seconds: float, target: float = 0.005
+    passage: StretchToBound, *, seconds: float, target: float = 0.005
 ) -> TimeCertificate:
     """Bound the time of every route of a passage from below, whenever it departs.
 
@@ -80,7 +80,7 @@ class _Piece:
     detail : Cells and rate of the search.
     """
 
-    passage: PassageToBound
+    passage: StretchToBound
     domain: BarrierDomain
     detail: tuple[int, float]
     search: BarrierSearch
@@ -89,7 +89,7 @@ class _Piece:
     @classmethod
     def of(
         cls,
-        passage: PassageToBound,
+        passage: StretchToBound,
         domain: BarrierDomain,
         detail: tuple[int, float],
         best: TimeCertificate,

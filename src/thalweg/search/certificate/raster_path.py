@@ -12,7 +12,7 @@ from scipy import ndimage
 from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
 from thalweg.search.certificate.arrival_barrier import BarrierTask, first_arrivals
-from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
+from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.barrier_mesh import BarrierMesh, build_mesh
 
 _COURSES: Final = 72  # that the way back is looked for
@@ -21,7 +21,7 @@ _TOLERANCE: Final = 0.5  # of the positions that are kept [cells]
 
 
 def fast_path_on_raster(
-    passage: PassageToBound, cells: int
+    passage: StretchToBound, cells: int
 ) -> tuple[FloatArray, FloatArray] | None:
     """Return positions (lat, lon) [deg] of a fast way through the data themselves.
 
@@ -46,7 +46,7 @@ def fast_path_on_raster(
 
 
 def _way_back(
-    mesh: BarrierMesh, phi: FloatArray, passage: PassageToBound
+    mesh: BarrierMesh, phi: FloatArray, passage: StretchToBound
 ) -> tuple[FloatArray, FloatArray] | None:
     """Follow the earliest arrivals from the goal back to the start."""
     world = mesh.world

@@ -20,7 +20,7 @@ from thalweg.search.certificate.arrival_barrier import (
     find_barrier,
     finer_factors,
 )
-from thalweg.search.certificate.barrier_domain import BarrierDomain, PassageToBound
+from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.barrier_mesh import (
     BarrierLink,
     BarrierMesh,
@@ -86,7 +86,7 @@ class TimeCertificate:
 
 
 def certify_time(
-    passage: PassageToBound, *, seconds: float, target: float = 0.005
+    passage: StretchToBound, *, seconds: float, target: float = 0.005
 ) -> TimeCertificate:
     """Bound the time of every route of a passage from below.
 
@@ -125,7 +125,7 @@ def certify_time(
 
 
 def certify_priced_length(
-    passage: PassageToBound, price: float, *, seconds: float, target: float = 0.005
+    passage: StretchToBound, price: float, *, seconds: float, target: float = 0.005
 ) -> TimeCertificate | None:
     """Bound the length of every route from below, with dearer metres inside the control areas.
 
@@ -181,7 +181,7 @@ def _raised_by_barriers(
 
 
 def free_space_time(
-    passage: PassageToBound, domain: BarrierDomain, *, seconds: float = 0.0
+    passage: StretchToBound, domain: BarrierDomain, *, seconds: float = 0.0
 ) -> TimeCertificate:
     """Return the bound of the least length at the greatest speed over ground in a domain.
 
@@ -218,7 +218,7 @@ class BarrierSearch:
     expected_seconds : Estimate of the time that the next mesh takes; infinite when there is none.
     """
 
-    passage: PassageToBound
+    passage: StretchToBound
     domain: BarrierDomain
     cells: int
     rate: float
@@ -275,7 +275,7 @@ class _Level:
 
     @classmethod
     def on(
-        cls, mesh: BarrierMesh, passage: PassageToBound, fastest: float, coarser: _Level | None
+        cls, mesh: BarrierMesh, passage: StretchToBound, fastest: float, coarser: _Level | None
     ) -> _Level:
         """Begin with bounds from the geodesic, or from a mesh with cells twice as large."""
         from_start = mesh.least_times(*passage.start, fastest)
@@ -294,7 +294,7 @@ class _Level:
         """Return the cells that a faster route may touch."""
         return np.asarray(self.from_start + self.to_goal < self.known)
 
-    def certify(self, passage: PassageToBound) -> tuple[BarrierTask, CheckedBarrier | None]:
+    def certify(self, passage: StretchToBound) -> tuple[BarrierTask, CheckedBarrier | None]:
         """Find barriers from the goal and from the start; return the latter with its task."""
         back = find_barrier(
             self._task(passage.goal, passage.start, self.before[0], forward=False),
@@ -346,7 +346,7 @@ def _halved_cells(values: FloatArray) -> FloatArray:
     return np.repeat(np.repeat(values, 2, axis=0), 2, axis=1)
 
 
-def usual_rate(passage: PassageToBound) -> float:
+def usual_rate(passage: StretchToBound) -> float:
     """Return the time that a first mesh takes for each of its cells, for most ships [s]."""
     return USUAL_SECONDS_A_CELL[axes_needed(passage.ship.table) != 0]
 
@@ -357,7 +357,7 @@ def first_cells(seconds: float, rate: float) -> int:
     return int(min(max(affordable, _FEWEST_CELLS), _FIRST_CELLS))
 
 
-def _cells(passage: PassageToBound, seconds: float, rate: float) -> int:
+def _cells(passage: StretchToBound, seconds: float, rate: float) -> int:
     """Return the number of cells of the raster where the data are given by functions."""
     first = first_cells(seconds, rate)
     if rate > _MUCH_SLOWER * usual_rate(passage):

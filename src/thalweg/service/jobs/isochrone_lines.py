@@ -11,7 +11,7 @@ import numpy as np
 from thalweg.core.geodesy import wrap_longitude
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
-from thalweg.planning.plots.stage_passages import stage_passage_times
+from thalweg.planning.plots.stage_passages import stage_arrival_times
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData
@@ -35,7 +35,7 @@ def isochrone_lines(plan: PlanData) -> dict[str, Any] | None:
     if world is None or plan.front is not None or not math.isfinite(plan.best.time_h):
         return None
     lon, lat, unwrapped = _raster_around(plan)
-    stages = stage_passage_times(world, lat, lon, unwrapped)
+    stages = stage_arrival_times(world, lat, lon, unwrapped)
     on_water = world.chart.is_navigable(lat, wrap_longitude(lon))
     rasters = [np.where(on_water, (times - plan.best.depart) / HOUR, np.nan) for times in stages]
     rasters = [hours for hours in rasters if np.isfinite(hours).any()]
