@@ -15,10 +15,9 @@ from thalweg.chart.approaches import (
     PORT_APPROACHES,
     dense_line,
     line_between,
-    line_length,
 )
 from thalweg.chart.ports import PORTS
-from thalweg.core.geodesy import distance, positions_along
+from thalweg.core.geodesy import distance, line_length, positions_along
 from thalweg.core.units import NAUTICAL_MILE
 
 SIZED = [port for port in PORTS.all if port.size in ("large", "medium")]

@@ -1,5 +1,6 @@
 """Geodesy against published geodesics (Karney 2013; GeographicLib) and its own round trips."""
 
+import itertools
 import math
 
 import numpy as np
@@ -163,3 +164,17 @@ def test_geocentric_vectors_are_exact_at_the_antimeridian_and_the_poles() -> Non
     np.testing.assert_array_equal(east, west)
     poles = geodesy.geocentric_unit_vectors(np.array([90.0, 90.0]), np.array([0.0, 77.0]))
     np.testing.assert_array_equal(poles[0], poles[1])
+
+
+def test_longitude_difference_turns_by_less_than_half_the_globe():
+    assert geodesy.longitude_difference(-179.0, 179.0) == 2.0
+    assert geodesy.longitude_difference(179.0, -179.0) == -2.0
+    assert geodesy.longitude_difference(180.0, 0.0) == -180.0
+    assert geodesy.longitude_difference(np.array([10.0, 350.0]), -5.0).tolist() == [15.0, -5.0]
+
+
+def test_length_of_a_line():
+    line = ((50.0, -1.0), (50.5, 0.0), (51.0, 1.0))
+    legs = [float(geodesy.distance(*a, *b)) for a, b in itertools.pairwise(line)]
+    assert geodesy.line_length(line) == pytest.approx(sum(legs))
+    assert geodesy.line_length(line[:1]) == geodesy.line_length([]) == 0.0

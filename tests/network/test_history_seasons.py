@@ -7,8 +7,8 @@ import pytest
 
 from tests.network.test_history_parts import line_between, voyage_tracks
 from thalweg.chart import Chart
-from thalweg.chart.approaches import line_length
 from thalweg.core.errors import NoRouteError
+from thalweg.core.geodesy import line_length
 from thalweg.network.history.history_builder import HistoryRules, build_history
 from thalweg.network.history.season_masks import open_months, voyages_of_regions
 from thalweg.network.history.voyage_tracks import HistoryPort

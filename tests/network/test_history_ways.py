@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from thalweg.chart.approaches import line_length
-from thalweg.core.geodesy import distance
+from thalweg.core.geodesy import distance, line_length
 from thalweg.network.history.arc_lines import ArcLines
 from thalweg.network.history.arc_search import ArcGraph, doubt_factors
 from thalweg.network.history.route_lines import attached_line, following_arcs, joined_line

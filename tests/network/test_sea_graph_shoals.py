@@ -5,7 +5,10 @@ from dataclasses import replace
 import pytest
 
 from thalweg.chart.depth.shoals_of_draught import shoals_of_draught
-from thalweg.network.global_grid.sea_graph import GraphClosures, path_length
+from thalweg.core.geodesy import line_length
+from thalweg.network.global_grid.sea_graph import (
+    GraphClosures,
+)
 from thalweg.network.global_grid.sea_graph_cache import sea_graph
 from thalweg.planning.seaways import world_chart
 
@@ -21,4 +24,4 @@ def test_shoals_count_also_where_the_excess_of_the_edges_is_not_given():
     given = replace(without, excess=graph.shoal_excess(shoals))
     path = graph.path(chart, *ends, without)
     assert path == graph.path(chart, *ends, given)
-    assert path_length(path) > path_length(graph.path(chart, *ends)) + 1000.0
+    assert line_length(path) > line_length(graph.path(chart, *ends)) + 1000.0

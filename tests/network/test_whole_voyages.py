@@ -12,8 +12,8 @@ import pytest
 
 from tests.network.test_history_parts import line_between, voyage_tracks
 from thalweg.chart import Chart
-from thalweg.chart.approaches import line_length
 from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.geodesy import line_length
 from thalweg.network.history.history_builder import HistoryRules, build_history
 from thalweg.network.history.history_corridor import HistoryCorridor
 from thalweg.network.history.history_file import read_history, write_history

@@ -8,11 +8,10 @@ import pandas as pd
 import pytest
 
 from thalweg.chart import Chart
-from thalweg.chart.approaches import line_length
 from thalweg.chart.canals import CANALS
 from thalweg.chart.ports import PORTS as PORTS_OF_INDEX
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.geodesy import densify, distance
+from thalweg.core.geodesy import densify, distance, line_length
 from thalweg.core.units import DAY, HOUR, NAUTICAL_MILE
 from thalweg.network.history.history_builder import HistoryRules, build_history
 from thalweg.network.history.history_file import read_history, write_history

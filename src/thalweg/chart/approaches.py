@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from thalweg.chart.approach_branches import approach_branches
 from thalweg.chart.port_draughts import port_draughts
 from thalweg.chart.ports import PORTS, Port
-from thalweg.core.geodesy import METRES_PER_DEGREE, Position, distance
+from thalweg.core.geodesy import METRES_PER_DEGREE, Position, distance, line_length
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT, NAUTICAL_MILE
 
@@ -101,14 +101,6 @@ class PortApproach:
     def duration(self, speed: float) -> float:
         """Return the time along the line [s] at a speed [m/s], in a canal at that of the canal."""
         return (self.length - self.through_length) / speed + self.through_time
-
-
-def line_length(line: tuple[Position, ...]) -> float:
-    """Return the length of a line of positions (lat, lon) [deg] in metres."""
-    if len(line) < 2:
-        return 0.0
-    lat, lon = np.array(line, float).T
-    return float(np.sum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
 
 
 @dataclass(frozen=True)

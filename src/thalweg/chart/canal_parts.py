@@ -19,12 +19,11 @@ from thalweg.chart.approaches import (
     PortApproach,
     PortApproaches,
     dense_line,
-    line_length,
     line_part,
     place_along_line,
 )
 from thalweg.chart.canals import Canal
-from thalweg.core.geodesy import Position, distance
+from thalweg.core.geodesy import Position, distance, line_length
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 

@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.chart.canal_tariff import CanalTariff, known_gross_tonnage, tariff_kind
 from thalweg.core.errors import InputError, unknown_name_error
-from thalweg.core.geodesy import Position, distance
+from thalweg.core.geodesy import Position, distance, line_length
 from thalweg.core.units import HOUR
 from thalweg.deprecated_names import renamed_attributes
 
@@ -104,8 +104,7 @@ class Canal:
     @cached_property
     def length(self) -> float:
         """Length of the path [m]."""
-        lat, lon = np.array(self.path, float).T
-        return float(np.sum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
+        return line_length(self.path)
 
     @property
     def inner_line(self) -> tuple[Position, ...]:

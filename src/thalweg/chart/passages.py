@@ -23,7 +23,7 @@ import numpy as np
 
 from thalweg.chart.canals import CANALS, normalised_canal_name
 from thalweg.core.errors import InputError, unknown_name_error
-from thalweg.core.geodesy import Position, distance
+from thalweg.core.geodesy import Position, line_length
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 
@@ -100,8 +100,7 @@ class Passage:
     @cached_property
     def length(self) -> float:
         """Length of the line [m]."""
-        lat, lon = self.positions
-        return float(np.sum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
+        return line_length(self.line)
 
     @property
     def limits(self) -> str:

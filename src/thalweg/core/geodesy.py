@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Final, TypeAlias
+from collections.abc import Sequence
+from typing import Final, TypeAlias, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -42,6 +43,17 @@ def unwrap_longitude(lon: ArrayLike) -> FloatArray:
     The first longitude of every line is not changed; the others may leave [-180, 180).
     """
     return np.asarray(np.unwrap(np.asarray(lon, float), period=360.0))
+
+
+@overload
+def longitude_difference(a: float, b: float) -> float: ...
+@overload
+def longitude_difference(a: FloatArray, b: FloatArray | float) -> FloatArray: ...
+@overload
+def longitude_difference(a: float, b: FloatArray) -> FloatArray: ...
+def longitude_difference(a: FloatArray | float, b: FloatArray | float) -> FloatArray | float:
+    """Return how far longitudes a are east of longitudes b [deg], in [-180, 180)."""
+    return (a - b + 180.0) % 360.0 - 180.0
 
 
 def unit_vectors(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
@@ -177,6 +189,14 @@ def distance(lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike)
     ndarray : Lengths [m], of the broadcast shape.
     """
     return inverse(lat1, lon1, lat2, lon2)[0]
+
+
+def line_length(line: Sequence[Position]) -> float:
+    """Return the length of the geodesics along positions (lat, lon) [m]; 0 for less than two."""
+    if len(line) < 2:
+        return 0.0
+    lat, lon = np.array(line, float).T
+    return float(np.sum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
 
 
 def direct(
@@ -363,29 +383,14 @@ def parse_position(text: str) -> Position | None:
 
 
 def format_position(lat: float, lon: float) -> str:
-    """Return a position as text, such as ``52.0000N 4.1000E``.
-
-    Parameters
-    ----------
-    lat, lon : Position [deg].
-
-    Returns
-    -------
-    str : Latitude and longitude to four decimals, with hemispheres.
-    """
+    """Return a position [deg] as text to four decimals, such as ``52.0000N 4.1000E``."""
     return f"{abs(lat):.4f}{'N' if lat >= 0 else 'S'} {abs(lon):.4f}{'E' if lon >= 0 else 'W'}"
 
 
 def format_position_minutes(lat: float, lon: float) -> str:
-    """Return a position in degrees and decimal minutes, such as ``51 57.3N 004 02.1E``.
+    """Return a position in degrees and tenths of minutes, such as ``51 57.3N 004 02.1E``.
 
-    Parameters
-    ----------
-    lat, lon : Position [deg].
-
-    Returns
-    -------
-    str : Latitude and longitude to a tenth of a minute; `parse_position` reads it.
+    `parse_position` reads it.
     """
     north, east = round(abs(lat) * 600.0), round(abs(lon) * 600.0)
     return (

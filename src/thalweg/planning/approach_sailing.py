@@ -9,9 +9,12 @@ from functools import cache, partial
 
 import numpy as np
 
-from thalweg.chart.approaches import PortApproach, line_between, line_length
+from thalweg.chart.approaches import (
+    PortApproach,
+    line_between,
+)
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.geodesy import Position, distance
+from thalweg.core.geodesy import Position, distance, line_length
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
 from thalweg.planning.plan import Plan

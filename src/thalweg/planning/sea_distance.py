@@ -11,17 +11,19 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.chart import Chart
-from thalweg.chart.approaches import MAX_APPROACH_SPEED, line_between, line_length
+from thalweg.chart.approaches import (
+    MAX_APPROACH_SPEED,
+    line_between,
+)
 from thalweg.chart.canal_parts import first_legs_of_transits, part_number_of_legs
 from thalweg.chart.depth.shoals import DRAUGHTS, Shoals
 from thalweg.chart.depth.shoals_of_draught import shoals_of_draught
 from thalweg.chart.offing import check_offing
 from thalweg.chart.passage_crossings import names_passed
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.geodesy import Position, distance
+from thalweg.core.geodesy import Position, distance, line_length
 from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
-from thalweg.network.global_grid.sea_graph import path_length
 from thalweg.planning.network_selection.closed_ways import closed_way_error
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.report.approach_report import port_depth_note, turn_back_notes
@@ -254,7 +256,7 @@ def _way_over_seas(
         legs = tuple(itertools.pairwise(ends))
         notes += shoal_detour_notes(
             length,
-            sum(path_length(without.graph_path(*leg)) for leg in legs),
+            sum(line_length(without.graph_path(*leg)) for leg in legs),
             lambda: path_length_and_canals(chart, _path_by(without, ends, offing))[0],
         )
     notes += seas.near_land_notes(path, ends, offing=offing)

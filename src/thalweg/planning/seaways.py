@@ -21,6 +21,7 @@ from thalweg.core.geodesy import (
     format_position,
     geocentric_positions,
     geocentric_unit_vectors,
+    line_length,
     numbered_parts,
 )
 from thalweg.core.types import BoolArray, FloatArray, IntArray
@@ -37,7 +38,6 @@ from thalweg.network.global_grid.sea_graph import (
     ICE_LATITUDES,
     GraphClosures,
     outside_ice,
-    path_length,
 )
 from thalweg.network.global_grid.sea_graph_cache import edge_excess, sea_graph
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -194,7 +194,7 @@ class Seaways:
         found = [self.graph_path(start, goal)]
         if self._has_wide_shoals:
             without = replace(self, shoals=None).graph_path(start, goal)
-            if _MOST_LONGER * path_length(without) < path_length(found[0]):
+            if _MOST_LONGER * line_length(without) < line_length(found[0]):
                 found.append(without)
         return found
 
@@ -294,7 +294,7 @@ class _ClearWater:
         """Return the cost of a way in which canals count as long as they are."""
         parts = [part for part in _between_canals(self.off_land, way) if len(part) > 1]
         length, _ = path_length_and_canals(self.off_land, way)
-        at_sea = sum(path_length(_places(*part.T)) for part in parts)
+        at_sea = sum(line_length(_places(*part.T)) for part in parts)
         return sum(self.cost_of((part[:, 0], part[:, 1])) for part in parts) + length - at_sea
 
     def cost(
@@ -364,7 +364,7 @@ def _line(path: Sequence[Position]) -> PolylineCoordinates:
 
 
 def _length(line: PolylineCoordinates) -> float:
-    return path_length(_places(*line))
+    return line_length(_places(*line))
 
 
 def _places(lat: FloatArray, lon: FloatArray) -> list[Position]:
@@ -377,7 +377,7 @@ def path_length_and_canals(chart: Chart, path: Sequence[Position]) -> tuple[floa
         return 0.0, ()
     lat, lon = np.array(path).T
     canal = np.asarray(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:]))
-    length = path_length(path)
+    length = line_length(path)
     for leg in np.flatnonzero(canal >= 0).tolist():
-        length += chart.canals[canal[leg]].length - path_length(path[leg : leg + 2])
+        length += chart.canals[canal[leg]].length - line_length(path[leg : leg + 2])
     return length, tuple(chart.canals[k].title for k in canal[canal >= 0])

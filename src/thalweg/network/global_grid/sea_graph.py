@@ -20,7 +20,6 @@ from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import (
     MEAN_RADIUS,
     Position,
-    distance,
     format_position,
     geocentric_unit_vectors,
 )
@@ -374,9 +373,3 @@ def _grown(waters: ConnectedWaters, lat: FloatArray, lon: FloatArray) -> Connect
         np.append(waters.size, np.zeros(more, np.int64)),
         waters.reach,
     )
-
-
-def path_length(line: Sequence[Position]) -> float:
-    """Return the length of the geodesics along positions [m]."""
-    lat, lon = np.array(line, float).T
-    return float(np.sum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))

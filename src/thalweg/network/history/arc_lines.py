@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import NoRouteError
-from thalweg.core.geodesy import Position, distance, geocentric_positions
+from thalweg.core.geodesy import Position, distance, geocentric_positions, line_length
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.network.alternatives.path_shortening import string_pull_path
-from thalweg.network.global_grid.sea_graph import path_length
 from thalweg.network.global_grid.sea_graph_cache import sea_graph
 from thalweg.network.history.arc_statistics import CANDIDATES
 from thalweg.network.history.junction_visits import ArcOccurrences
@@ -330,6 +329,6 @@ def repaired_line(
         way = ways.between(kept[k], kept[k + 1])
         if way is None:
             return [], 0.0
-        added += path_length(way)
+        added += line_length(way)
         found += way[1:]
-    return found, added / max(path_length(found), 1e-9)
+    return found, added / max(line_length(found), 1e-9)

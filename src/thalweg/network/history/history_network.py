@@ -9,8 +9,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from thalweg.chart.approaches import line_length
 from thalweg.core.errors import InputError, NoRouteError, unknown_name_error
+from thalweg.core.geodesy import line_length
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.network.history.arc_search import (
     GLOBE_FACTOR,

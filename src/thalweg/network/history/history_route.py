@@ -7,9 +7,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from thalweg.chart.approaches import line_length
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import Position, distance
+from thalweg.core.geodesy import Position, distance, line_length
 from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.network.history.season_masks import LEAST_SAMPLES
 from thalweg.network.history.voyage_tracks import HistoryPort

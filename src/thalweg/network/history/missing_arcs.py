@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from thalweg.core.geodesy import Position
+from thalweg.core.geodesy import Position, line_length
 from thalweg.core.types import BoolArray, FloatArray, IntArray
-from thalweg.network.global_grid.sea_graph import path_length
 from thalweg.network.history.arc_lines import ArcLines, GlobeWays
 from thalweg.network.history.arc_statistics import ArcEvidence
 from thalweg.network.history.history_arcs import (
@@ -198,8 +197,8 @@ def _ways_between_parts(
             row, column = np.unravel_index(flat, near.shape)
             a, b = int(own[row]), int(inside[other[row, column]])
             way = ways.between(_place(places, a), _place(places, b))
-            if way is not None and (best is None or path_length(way) < best[0]):
-                best = path_length(way), a, b, way
+            if way is not None and (best is None or line_length(way) < best[0]):
+                best = line_length(way), a, b, way
         if best is None:
             alone += own.tolist()
             continue

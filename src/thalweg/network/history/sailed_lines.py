@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from thalweg.core.geodesy import Position, distance, geocentric_positions
+from thalweg.core.geodesy import Position, distance, geocentric_positions, line_length
 from thalweg.core.types import BoolArray, FloatArray, IntArray
-from thalweg.network.global_grid.sea_graph import path_length
 from thalweg.network.history.arc_lines import ArcLines, GlobeWays, LinesOffLand, repaired_line
 from thalweg.network.history.junction_visits import ArcOccurrences
 from thalweg.network.history.route_lines import following_arcs, moved_to_each_other
@@ -97,7 +96,7 @@ def _off_land(
     for arc in np.flatnonzero(bad & some).tolist():
         lat, lon = lines.of(arc)
         line, part = repaired_line(chart, list(zip(lat.tolist(), lon.tolist())), ways)
-        if line and path_length(line) < longest[arc]:
+        if line and line_length(line) < longest[arc]:
             found[arc], share[arc] = line, part
     if not found:
         return lines, share

@@ -175,9 +175,7 @@ def _chosen_sections(
         if len(way) == 2:
             raise
     ends, shapes = zip(*_divided(chart, way, wanted, numbering))
-    lat, lon = np.array(way, float).T
-    length = float(np.sum(geodesy.distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
-    return [start, *ends], list(shapes), length
+    return [start, *ends], list(shapes), geodesy.line_length(way)
 
 
 def _divided(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import Position, densify, direct, distance, inverse
+from thalweg.core.geodesy import Position, densify, direct, inverse, line_length
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import DAY, HOUR, KNOT
@@ -45,8 +45,7 @@ class SyntheticRoute:
     @property
     def length(self) -> float:
         """Length of its geodesics [m]."""
-        lat, lon = np.array(self.line, float).T
-        return float(np.sum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
+        return line_length(self.line)
 
 
 @dataclass(frozen=True)

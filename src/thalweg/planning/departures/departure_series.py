@@ -19,7 +19,7 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
-from thalweg.core.geodesy import distance
+from thalweg.core.geodesy import line_length
 from thalweg.core.time import format_time, to_datetime64
 from thalweg.core.units import HOUR
 from thalweg.network import Network, fixed_route
@@ -234,8 +234,7 @@ class DepartureSeries:
 
     def _longest(self, horizon: float) -> float:
         """Return the longest path that is searched [s]."""
-        lat, lon = np.array([(end.lat, end.lon) for end in self.ends]).T
-        way = float(distance(lat[:-1], lon[:-1], lat[1:], lon[1:]).sum())
+        way = line_length([(end.lat, end.lon) for end in self.ends])
         usual = way / float(self.context.ship.speeds[self.context.setting])
         return horizon * usual + (HOUR if horizon == _HORIZONS[0] else _TWO_TIDES)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.core.errors import NoRouteError
-from thalweg.core.geodesy import Position, distance
+from thalweg.core.geodesy import Position, distance, line_length
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network import (
     Network,
@@ -100,8 +100,7 @@ class LatticeBetween:
         """Return the number of coast levels of the lattice of default resolution."""
         length = self._distance
         if self._path is not None:
-            lat, lon = np.array(self._path, float).T
-            length = float(np.sum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
+            length = line_length(self._path)
         return default_coast_levels(self.chart, default_spacing(length))
 
     def _built(self, spacing: float | None, coast_levels: int | None) -> Network:

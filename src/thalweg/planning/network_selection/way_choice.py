@@ -9,9 +9,11 @@ from dataclasses import dataclass, replace
 from itertools import product
 from typing import Final
 
-from thalweg.chart.approaches import line_between, line_length
+from thalweg.chart.approaches import (
+    line_between,
+)
 from thalweg.core.errors import NoRouteError
-from thalweg.core.geodesy import distance
+from thalweg.core.geodesy import distance, line_length
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.network_selection.approach_parts import ends_left_early
 from thalweg.planning.request.voyage_endpoints import Endpoint

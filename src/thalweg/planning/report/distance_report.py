@@ -12,9 +12,8 @@ import numpy as np
 from thalweg.chart.depth.global_depth import NAME
 from thalweg.chart.depth.shoals import EXCESS
 from thalweg.chart.passage_crossings import passages_crossed
-from thalweg.core.geodesy import Position, densify, distance
+from thalweg.core.geodesy import Position, densify, distance, line_length
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.network.global_grid.sea_graph import path_length
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways
 
@@ -89,8 +88,8 @@ def passages_closed_to_draught_notes(
     opened = replace(seas, passages=tuple(avoided))
     legs = list(pairwise(ends))
     paths = [opened.graph_path(*leg) for leg in legs]
-    length = sum(path_length(seas.graph_path(*leg)) for leg in legs)
-    saved = length - sum(path_length(path) for path in paths)
+    length = sum(line_length(seas.graph_path(*leg)) for leg in legs)
+    saved = length - sum(line_length(path) for path in paths)
     if saved < max(_LEAST_SAVED, _LEAST_SHARE * length):
         return ()
     lat, lon = np.array(list(chain.from_iterable(paths))).T
