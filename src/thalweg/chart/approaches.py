@@ -25,7 +25,13 @@ from numpy.typing import NDArray
 from thalweg.chart.approach_branches import approach_branches
 from thalweg.chart.port_draughts import port_draughts
 from thalweg.chart.ports import PORTS, Port
-from thalweg.core.geodesy import METRES_PER_DEGREE, Position, distance, line_length
+from thalweg.core.geodesy import (
+    METRES_PER_DEGREE,
+    Position,
+    distance,
+    line_length,
+    longitude_difference,
+)
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT, NAUTICAL_MILE
 
@@ -182,8 +188,8 @@ class PortApproaches:
             return {}
         a_lat, a_lon, b_lat, b_lon, start, line = (column[near] for column in self._segments)
         scale = np.cos(np.radians(lat))
-        bx, by = _wrapped(b_lon - a_lon) * scale, b_lat - a_lat
-        px, py = _wrapped(lon - a_lon) * scale, lat - a_lat
+        bx, by = longitude_difference(b_lon, a_lon) * scale, b_lat - a_lat
+        px, py = longitude_difference(lon, a_lon) * scale, lat - a_lat
         share = np.clip((px * bx + py * by) / np.maximum(bx**2 + by**2, 1e-18), 0.0, 1.0)
         apart = np.hypot(px - share * bx, py - share * by) * METRES_PER_DEGREE
         along = start + share * np.hypot(bx, by) * METRES_PER_DEGREE
@@ -212,7 +218,7 @@ class PortApproaches:
     def _segments_by_cell(self) -> dict[tuple[int, int], NDArray[np.int64]]:
         """The segments in each cell, and in those within a few hundred metres."""
         a_lat, a_lon, b_lat, b_lon = self._segments[:4]
-        b_lon = a_lon + _wrapped(b_lon - a_lon)
+        b_lon = a_lon + longitude_difference(b_lon, a_lon)
         low, high = (
             np.floor(edge / _CELL).astype(np.int64)
             for edge in (np.minimum(a_lat, b_lat) - 0.01, np.maximum(a_lat, b_lat) + 0.01)
@@ -305,7 +311,7 @@ def _close_pairs(
 
 def _metres_apart(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return distances [m] of places (lat, lon, ...) [deg] near each other."""
-    east = _wrapped(a[..., 1] - b[..., 1]) * np.cos(np.radians(a[..., 0]))
+    east = longitude_difference(a[..., 1], b[..., 1]) * np.cos(np.radians(a[..., 0]))
     return np.asarray(np.hypot(a[..., 0] - b[..., 0], east) * METRES_PER_DEGREE)
 
 
@@ -323,7 +329,7 @@ def line_part(line: tuple[Position, ...], along: float) -> list[Position]:
         length = _metres(a, b)
         if sailed + length >= along - 1.0:
             share = (along - sailed) / length if length > 0.0 else 0.0
-            turn = float(_wrapped(np.array(b[1] - a[1])))
+            turn = longitude_difference(b[1], a[1])
             part.append((a[0] + share * (b[0] - a[0]), a[1] + share * turn))
             break
         part.append(b)
@@ -337,8 +343,8 @@ def place_along_line(line: tuple[Position, ...], place: Position) -> float | Non
     for a, b in itertools.pairwise(line):
         length = _metres(a, b)
         scale = math.cos(math.radians(a[0]))
-        bx, by = float(_wrapped(np.array(b[1] - a[1]))) * scale, b[0] - a[0]
-        px, py = float(_wrapped(np.array(place[1] - a[1]))) * scale, place[0] - a[0]
+        bx, by = longitude_difference(b[1], a[1]) * scale, b[0] - a[0]
+        px, py = longitude_difference(place[1], a[1]) * scale, place[0] - a[0]
         share = min(max((px * bx + py * by) / max(bx**2 + by**2, 1e-18), 0.0), 1.0)
         apart = math.hypot(px - share * bx, py - share * by) * METRES_PER_DEGREE
         if apart <= nearest:
@@ -352,7 +358,7 @@ def dense_line(line: tuple[Position, ...]) -> FloatArray:
     rows, sailed = [(*line[0], 0.0)], 0.0
     for a, b in itertools.pairwise(line):
         length = _metres(a, b)
-        turn = float(_wrapped(np.array(b[1] - a[1])))
+        turn = longitude_difference(b[1], a[1])
         for share in np.linspace(0.0, 1.0, int(length / _JOINT_SPACING) + 2)[1:]:
             place = (a[0] + share * (b[0] - a[0]), a[1] + share * turn, sailed + share * length)
             rows.append(place)
@@ -362,11 +368,6 @@ def dense_line(line: tuple[Position, ...]) -> FloatArray:
 
 def _metres(a: Position, b: Position) -> float:
     return float(distance(*a, *b))
-
-
-def _wrapped(degrees: FloatArray) -> FloatArray:
-    """Return differences of longitude in -180 to 180 degrees."""
-    return np.asarray((degrees + 180.0) % 360.0 - 180.0)
 
 
 def _cell(lat: float, lon: float) -> tuple[int, int]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from thalweg.chart.coast.coastline import Coastline
 from thalweg.chart.offing import closing_line
 from thalweg.chart.passages import Passage
-from thalweg.core.geodesy import Position, densify
+from thalweg.core.geodesy import Position, densify, longitude_difference
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 
@@ -76,9 +76,9 @@ def _is_near(passage: Passage, lat: FloatArray, lon: FloatArray) -> bool:
     inside = (lat >= y.min() - margin) & (lat <= y.max() + margin)
     if not inside.any():
         return False
-    turned = (x - x[0] + 180.0) % 360.0 - 180.0
+    turned = longitude_difference(x, x[0])
     wide = margin / max(float(np.cos(np.radians(np.abs(y).max()))), 0.1)
-    east = (lon[inside] - x[0] + 180.0) % 360.0 - 180.0
+    east = longitude_difference(lon[inside], x[0])
     return bool(((east >= turned.min() - wide) & (east <= turned.max() + wide)).any())
 
 
@@ -124,8 +124,8 @@ def _pieces_across(
     The second array has the share of each piece before the crossing.
     """
     shift = np.cos(np.radians(a[0]))
-    px, py = ((lon - a[1] + 180.0) % 360.0 - 180.0) * shift, lat - a[0]
-    qx, qy = ((b[1] - a[1] + 180.0) % 360.0 - 180.0) * shift, b[0] - a[0]
+    px, py = longitude_difference(lon, a[1]) * shift, lat - a[0]
+    qx, qy = longitude_difference(b[1], a[1]) * shift, b[0] - a[0]
     side = qx * py - qy * px  # on which side of a-b each position is
     ex, ey = np.diff(px, axis=0), np.diff(py, axis=0)
     start = ex * (0.0 - py[:-1]) - ey * (0.0 - px[:-1])

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from thalweg.core.errors import InputError
+from thalweg.core.geodesy import longitude_difference
 from thalweg.route.route import Route
 from thalweg.route.track import Track
 
@@ -87,7 +88,7 @@ def _summed_by_name(parts: Sequence[Mapping[str, float]]) -> dict[str, float]:
 
 def _check_consecutive(before: Route, after: Route) -> None:
     a, b = before.track, after.track
-    turn = abs((a.lon[-1] - b.lon[0] + 180.0) % 360.0 - 180.0)
+    turn = abs(longitude_difference(a.lon[-1], b.lon[0]))
     if (
         abs(a.lat[-1] - b.lat[0]) > _POSITION_TOLERANCE
         or turn > _POSITION_TOLERANCE

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import new_figure, save_figure
+from thalweg.core.geodesy import longitude_difference
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
@@ -281,7 +282,7 @@ def _draw_coastline(axis: Any, lines: Sequence[CoastlinePart], area: BoundingBox
     for lat, lon in lines:
         if lat.size < 2 or (np.ptp(lat) < smallest and np.ptp(lon) < smallest):
             continue
-        lon = (lon - middle + 180.0) % 360.0 - 180.0 + middle
+        lon = longitude_difference(lon, middle) + middle
         cuts = np.flatnonzero(np.abs(np.diff(lon)) > 180.0) + 1
         parts += np.split(np.column_stack([lon, lat]), cuts)
     axis.add_collection(LineCollection(parts, colors="#6b7280", linewidths=0.6), autolim=False)

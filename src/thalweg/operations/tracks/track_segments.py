@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import inverse
+from thalweg.core.geodesy import inverse, longitude_difference
 from thalweg.core.types import FloatArray
 from thalweg.operations.tracks.activities import SAILING_EMPTY, SAILING_FULL, Activity
 from thalweg.operations.tracks.track_cleaning import TrackLog
@@ -144,6 +144,6 @@ def _midpoints(
     middle = 0.5 * (log.time[first] + log.time[last])
     right = np.clip(np.searchsorted(log.time, middle), 1, len(log) - 1)
     share = (middle - log.time[right - 1]) / (log.time[right] - log.time[right - 1])
-    east = (log.lon[right] - log.lon[right - 1] + 180.0) % 360.0 - 180.0
+    east = longitude_difference(log.lon[right], log.lon[right - 1])
     lat = log.lat[right - 1] + share * (log.lat[right] - log.lat[right - 1])
     return lat, np.asarray(log.lon[right - 1] + share * east)

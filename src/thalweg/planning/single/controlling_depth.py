@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from thalweg.core.geodesy import longitude_difference
 from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import BED_DEPTH, WATER_LEVEL
 from thalweg.network import Network
@@ -83,7 +84,7 @@ def _detour_measure(network: Network, tails: np.ndarray, heads: np.ndarray) -> F
     lon = 0.5 * (network.stations.lon[tails] + network.stations.lon[heads])
     away = np.zeros(len(lat))
     for end in (network.meta.start, network.meta.goal):
-        east = (lon - network.stations.lon[end] + 180.0) % 360.0 - 180.0
+        east = longitude_difference(lon, network.stations.lon[end])
         away += np.hypot(lat - network.stations.lat[end], east * np.cos(np.radians(lat)))
     return away
 

@@ -13,7 +13,13 @@ from functools import cache
 
 import numpy as np
 
-from thalweg.core.geodesy import METRES_PER_DEGREE, rough_lengths, unwrap_longitude, wrap_longitude
+from thalweg.core.geodesy import (
+    METRES_PER_DEGREE,
+    longitude_difference,
+    rough_lengths,
+    unwrap_longitude,
+    wrap_longitude,
+)
 from thalweg.core.types import FloatArray
 from thalweg.route.referee.evaluation import resolve_settings
 from thalweg.route.referee.leg_segments import TrackPoints, cut_into_pieces
@@ -202,7 +208,7 @@ class _BentLine:
         """Return a track with its crossings as waypoints, without those very near to them."""
         lon = unwrap_longitude(track.lon)
         total = float(rough_lengths(track.lat, lon).sum())
-        crossing_lon = [lon[c.leg] + _turn(c.lon - lon[c.leg]) for c in crossings]
+        crossing_lon = [lon[c.leg] + longitude_difference(c.lon, lon[c.leg]) for c in crossings]
         rows: list[tuple[float, float, int, int]] = [(track.lat[0], lon[0], track.setting[0], -1)]
         for k in range(len(track) - 1):
             for number, crossing in enumerate(crossings):
@@ -312,7 +318,7 @@ class _BentLine:
     def _with_crossing_at(self, number: int, lat: float, lon: float) -> _BentLine:
         """Return the line with a crossing moved; the points beside it follow in proportion."""
         place = self.places[number]
-        north, east = lat - self.lat[place], _turn(lon - self.lon[place])
+        north, east = lat - self.lat[place], longitude_difference(lon, self.lon[place])
         share = self._followed_shares(place)
         return replace(self, lat=self.lat + share * north, lon=self.lon + share * east)
 
@@ -336,11 +342,7 @@ def _may_gain(loss: Callable[[FloatArray], float], unit: FloatArray) -> bool:
     return gain > _LEAST_GAIN
 
 
-def _turn(degrees: float) -> float:
-    return (degrees + 180.0) % 360.0 - 180.0
-
-
 def _distance(one: tuple[float, float], other: tuple[float, float]) -> float:
     north = one[0] - other[0]
-    east = _turn(one[1] - other[1]) * math.cos(math.radians(one[0]))
+    east = longitude_difference(one[1], other[1]) * math.cos(math.radians(one[0]))
     return math.hypot(north, east) * METRES_PER_DEGREE

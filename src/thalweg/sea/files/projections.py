@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import DatasetError
-from thalweg.core.geodesy import local_axes
+from thalweg.core.geodesy import local_axes, longitude_difference
 from thalweg.core.types import FloatArray
 from thalweg.sea.files.variable_aliases import naming_of
 
@@ -111,7 +111,7 @@ def meridian_angle(crs: Any, x: FloatArray, y: FloatArray) -> FloatArray:
     """
     lat, lon = to_degrees(crs, x, y)
     lat2, lon2 = to_degrees(crs, x + 100.0, y)
-    return np.arctan2(lat2 - lat, ((lon2 - lon + 180.0) % 360.0 - 180.0) * np.cos(np.radians(lat)))
+    return np.arctan2(lat2 - lat, longitude_difference(lon2, lon) * np.cos(np.radians(lat)))
 
 
 def grid_angle(lat: FloatArray, lon: FloatArray) -> FloatArray:

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import DatasetError
+from thalweg.core.geodesy import longitude_difference
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry import field_sampling
 from thalweg.sea.files import coordinates as co
@@ -324,7 +325,7 @@ def _face_centres(mesh: MeshTopology) -> tuple[FloatArray, FloatArray]:
     number = used.sum(axis=1)
     corner = np.maximum(mesh.faces, 0)
     first = mesh.lon[corner[:, :1]]
-    offset = (mesh.lon[corner] - first + 180.0) % 360.0 - 180.0
+    offset = longitude_difference(mesh.lon[corner], first)
     lat = np.where(used, mesh.lat[corner], 0.0).sum(axis=1) / number
     lon = first[:, 0] + np.where(used, offset, 0.0).sum(axis=1) / number
     return lat, lon
@@ -335,7 +336,7 @@ def _face_averaging(mesh: MeshTopology, lat: FloatArray, lon: FloatArray) -> Fac
     node = mesh.faces[row, column]
     order = np.argsort(node, kind="stable")
     face, node = row[order].astype(np.int64), node[order]
-    east = (lon[face] - mesh.lon[node] + 180.0) % 360.0 - 180.0
+    east = longitude_difference(lon[face], mesh.lon[node])
     distance = np.hypot(east * np.cos(np.radians(mesh.lat[node])), lat[face] - mesh.lat[node])
     start = np.concatenate([[0], np.cumsum(np.bincount(node, minlength=mesh.lat.size))])
     return FaceAveraging(start.astype(np.int64), face, 1.0 / np.maximum(distance, 1e-12))

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.core.bounding_box import EDGE_TOLERANCE, BoundingBox
+from thalweg.core.geodesy import longitude_difference
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry import field_sampling
 from thalweg.kernels.geometry.field_sampling import TriangleBins
@@ -54,7 +55,7 @@ class TriangleGrid:
         """Square root of twice the median area of triangles [deg of latitude]."""
         a, b, c = (self.triangles[:, k] for k in range(3))
         shrink = np.cos(np.radians(self.lat[a]))
-        x1, x2 = (_wrap(self.lon[k] - self.lon[a]) * shrink for k in (b, c))
+        x1, x2 = (longitude_difference(self.lon[k], self.lon[a]) * shrink for k in (b, c))
         y1, y2 = self.lat[b] - self.lat[a], self.lat[c] - self.lat[a]
         twice = np.abs(x1 * y2 - x2 * y1)
         return float(np.sqrt(np.nanmedian(twice))) if np.isfinite(twice).any() else 0.0
@@ -122,7 +123,7 @@ def make_triangle_bins(
     """Sort triangles into bins; those with unknown corners or around a pole are omitted."""
     x, y = plane.of(lat[triangles], lon[triangles])
     if plane.pole == 0:
-        x = x[:, :1] + _wrap(x - x[:, :1])
+        x = x[:, :1] + longitude_difference(x, x[:, :1])
     whole = np.isfinite(x).all(axis=1) & np.isfinite(y).all(axis=1)
     whole &= (x.max(axis=1) - x.min(axis=1)) < 180.0
     if not whole.any():  # a single degenerate triangle contains no point
@@ -175,10 +176,6 @@ def _repeat_across_seam(
         np.concatenate([y, y[right], y[left]]),
         np.concatenate([corners, corners[right], corners[left]]),
     )
-
-
-def _wrap(lon: FloatArray) -> FloatArray:
-    return (lon + 180.0) % 360.0 - 180.0
 
 
 def _narrowest_range(lon: FloatArray) -> tuple[float, float]:

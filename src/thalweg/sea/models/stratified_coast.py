@@ -16,7 +16,7 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from thalweg.core.errors import InputError, unknown_name_error
-from thalweg.core.geodesy import MEAN_RADIUS
+from thalweg.core.geodesy import MEAN_RADIUS, longitude_difference
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
@@ -185,5 +185,5 @@ def _distance_from_coast(
 ) -> FloatArray:
     """Return the distance [m] from the coast along the onshore axis; negative at sea."""
     north = np.radians(lat - coast[0])
-    east = np.radians((lon - coast[1] + 180.0) % 360.0 - 180.0) * np.cos(np.radians(coast[0]))
+    east = np.radians(longitude_difference(lon, coast[1])) * np.cos(np.radians(coast[0]))
     return np.asarray(MEAN_RADIUS * (east * onshore.real + north * onshore.imag))

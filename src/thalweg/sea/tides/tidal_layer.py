@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.errors import InputError
+from thalweg.core.geodesy import longitude_difference
 from thalweg.core.types import ComplexArray, FloatArray
 from thalweg.sea import standard_names as nm
 from thalweg.sea.coverage import Coverage
@@ -285,7 +286,7 @@ def _triangulated_grid(lat: FloatArray, lon: FloatArray) -> TriangleGrid:
         if not (np.isfinite(lat).all() and np.isfinite(lon).all()):
             raise ValueError
         centre = float(np.cos(np.radians(lat.mean())))
-        east = (lon - lon[0] + 180.0) % 360.0 - 180.0
+        east = longitude_difference(lon, lon[0])
         triangles = Delaunay(np.column_stack([east * centre, lat])).simplices
     except (QhullError, ValueError):
         raise InputError(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from thalweg.core.geodesy import direct, distance
+from thalweg.core.geodesy import direct, distance, longitude_difference
 from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH, SPEED_FIELD
 from thalweg.kernels.leg.raster_sampling import RasterArrays
@@ -233,7 +233,7 @@ def _round_box(passage: StretchToBound) -> tuple[float, float, float, float]:
         south = max(south, passage.chart.area.south - _BEYOND_GLOBE)
         north = min(north, passage.chart.area.north + _BEYOND_GLOBE)
     start, goal = passage.start[1], passage.goal[1]
-    seam = start + 0.5 * ((goal - start + 180.0) % 360.0 - 180.0) - 180.0
+    seam = start + 0.5 * longitude_difference(goal, start) - 180.0
     return south, north, seam, seam + 360.0
 
 
@@ -259,8 +259,8 @@ def _box_of_routes(
         inside = middle + np.asarray(distance(lat, lon, *goal)) < total
         near, far = np.where(inside, middle, near), np.where(inside, far, middle)
     lat, lon = direct(start[0], start[1], courses, far)[:2]
-    turned = (np.asarray(lon) - start[1] + 180.0) % 360.0 - 180.0
-    toward_goal = (goal[1] - start[1] + 180.0) % 360.0 - 180.0
+    turned = longitude_difference(np.asarray(lon), start[1])
+    toward_goal = longitude_difference(goal[1], start[1])
     height = max(float(lat.max()), start[0], goal[0]) - min(float(lat.min()), start[0], goal[0])
     width = max(float(turned.max()), toward_goal, 0.0) - min(float(turned.min()), toward_goal, 0.0)
     margin = 0.04 * max(height, width) + 1e-3

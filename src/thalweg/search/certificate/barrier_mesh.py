@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thalweg.core.ellipsoid import ECCENTRICITY_SQUARED, EQUATORIAL_RADIUS
-from thalweg.core.geodesy import distance
+from thalweg.core.geodesy import distance, longitude_difference
 from thalweg.core.types import FloatArray
 from thalweg.kernels.certificate.cell_conditions import BarrierWorld
 from thalweg.kernels.codes import CHANNEL_COUNT, CURRENT_EAST, CURRENT_NORTH
@@ -245,7 +245,7 @@ def plane_at_source(
     j, i = mesh.cell_of(lat, lon)
     rows, columns = _block(j, mesh.shape[0]), _block(i, mesh.shape[1])
     north = (mesh.lat[rows] - lat) * mesh.world.metres_north[j]
-    east = ((mesh.lon[columns] - lon + 180.0) % 360.0 - 180.0) * mesh.world.metres_east[j]
+    east = longitude_difference(mesh.lon[columns], lon) * mesh.world.metres_east[j]
     along = north[:, None] * math.cos(course) + east[None, :] * math.sin(course)
     across = east[None, :] * math.cos(course) - north[:, None] * math.sin(course)
     height = (mesh.lat[1] - mesh.lat[0]) * mesh.world.metres_north[j]

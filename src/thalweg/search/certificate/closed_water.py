@@ -10,7 +10,7 @@ import numpy as np
 
 from thalweg.chart.offing import required_offing
 from thalweg.chart.zones.leg_fractions import points_inside
-from thalweg.core.geodesy import METRES_PER_DEGREE, densify
+from thalweg.core.geodesy import METRES_PER_DEGREE, densify, longitude_difference
 from thalweg.core.types import BoolArray, FloatArray
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ def _inside_one_of(shapes: Sequence[Any], lat: FloatArray, lon: FloatArray) -> B
     inside = np.zeros(lat.size, bool)
     for shape in shapes:
         middle = 0.5 * (shape.bounds[0] + shape.bounds[2])
-        inside |= shapely.contains_xy(shape, (lon - middle + 180.0) % 360.0 - 180.0 + middle, lat)
+        inside |= shapely.contains_xy(shape, longitude_difference(lon, middle) + middle, lat)
     return inside
 
 

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from thalweg.core.geodesy import distance, unit_vectors
+from thalweg.core.geodesy import distance, longitude_difference, unit_vectors
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.search.certificate.barrier_mesh import BarrierLink
 
@@ -36,7 +36,7 @@ class Reach:
     @property
     def middle(self) -> float:
         """Longitude between start and goal [deg]."""
-        east = (self.goal[1] - self.start[1] + 180.0) % 360.0 - 180.0
+        east = longitude_difference(self.goal[1], self.start[1])
         return self.start[1] + 0.5 * east
 
     def box(self) -> tuple[float, float, float, float]:

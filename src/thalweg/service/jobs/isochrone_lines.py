@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from thalweg.core.geodesy import wrap_longitude
+from thalweg.core.geodesy import longitude_difference, wrap_longitude
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.planning.plots.stage_passages import stage_arrival_times
@@ -59,7 +59,7 @@ def _raster_around(
     middle = float(np.median(np.degrees(np.unwrap(np.radians(samples["lon"])))))
 
     def unwrapped(lon: FloatArray) -> FloatArray:
-        return np.asarray((np.asarray(lon, float) - middle + 180.0) % 360.0 - 180.0 + middle)
+        return longitude_difference(np.asarray(lon, float), middle) + middle
 
     route_lon, route_lat = unwrapped(samples["lon"]), samples["lat"]
     margin = _MARGIN * max(float(np.ptp(route_lon)), float(np.ptp(route_lat)), 0.05)
