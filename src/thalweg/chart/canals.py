@@ -123,17 +123,30 @@ class Canal:
         is_long = length is not None and length > self.long_ship_limit[0]
         deepest = min(self.max_draught, self.long_ship_limit[1] if is_long else np.inf)
         reasons = []
-        for what, value, limit in (
-            ("draught", draught, deepest),
-            ("beam", beam, self.max_beam),
-            ("length", length, self.max_length),
-            ("air draught", air_draught, self.max_air_draught),
-        ):
-            if value is not None and value > limit:
-                reasons.append(f"its {what} of {value:g} m is over the {limit:g} m allowed")
-                if what == "draught" and is_long:
-                    reasons[-1] += f" above {self.long_ship_limit[0]:g} m of length"
+        sizes = (draught, beam, length, air_draught)
+        limits = (deepest, self.max_beam, self.max_length, self.max_air_draught)
+        for what, over in sizes_over_limits(sizes, limits):
+            reasons.append(f"its {what} of {over}")
+            if what == "draught" and is_long:
+                reasons[-1] += f" above {self.long_ship_limit[0]:g} m of length"
         return f"{self.title}: " + " and ".join(reasons) if reasons else ""
+
+
+def sizes_over_limits(
+    sizes: Sequence[float | None], limits: Sequence[float]
+) -> list[tuple[str, str]]:
+    """Return the sizes of a ship that are over their limits: what, and both figures as text.
+
+    Parameters
+    ----------
+    sizes, limits : Draught, beam, length and air draught [m]; sizes are None where unknown.
+    """
+    rows = zip(("draught", "beam", "length", "air draught"), sizes, limits, strict=True)
+    return [
+        (what, f"{size:g} m is over the {limit:g} m allowed")
+        for what, size, limit in rows
+        if size is not None and size > limit
+    ]
 
 
 def _read_canals() -> tuple[Canal, ...]:

@@ -21,7 +21,7 @@ from typing import Final
 
 import numpy as np
 
-from thalweg.chart.canals import CANALS, normalised_canal_name
+from thalweg.chart.canals import CANALS, normalised_canal_name, sizes_over_limits
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import Position, line_length
 from thalweg.core.types import FloatArray
@@ -140,14 +140,9 @@ class Passage:
         reasons = []
         if self.use == "small_or_local" and (length is None or length >= SMALL_SHIP_LENGTH):
             reasons.append(f"it is for ships below {SMALL_SHIP_LENGTH:g} m")
-        for what, value, limit in (
-            ("draught", draught, self.max_draught),
-            ("beam", beam, self.max_beam),
-            ("length", length, self.max_length),
-            ("air draught", air_draught, self.max_air_draught),
-        ):
-            if value is not None and value > limit:
-                reasons.append(f"the {what} of {value:g} m is over the {limit:g} m allowed")
+        sizes = (draught, beam, length, air_draught)
+        limits = (self.max_draught, self.max_beam, self.max_length, self.max_air_draught)
+        reasons += [f"the {what} of {over}" for what, over in sizes_over_limits(sizes, limits)]
         return f"{self.name}: {' and '.join(reasons)}" if reasons else ""
 
 
