@@ -12,6 +12,7 @@ import numpy as np
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoPathError, unknown_name_error
 from thalweg.core.geodesy import Position, format_position
+from thalweg.core.given_numbers import is_number
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.layered.layered_builder import layered_network
@@ -202,8 +203,7 @@ def distances_from_line(places: FloatArray, a: Position, b: Position) -> FloatAr
 
 def _metres(offset_nm: Any) -> Any:
     """Return an offset in metres; what is no number is left for `section_shapes` to refuse."""
-    number = isinstance(offset_nm, (int, float)) and not isinstance(offset_nm, bool)
-    return offset_nm * NAUTICAL_MILE if number else offset_nm
+    return offset_nm * NAUTICAL_MILE if is_number(offset_nm) else offset_nm
 
 
 def _places(given: Any) -> tuple[Position, ...]:
@@ -219,8 +219,7 @@ def _places(given: Any) -> tuple[Position, ...]:
 
 
 def _check_range(name: str, value: Any, largest: float) -> None:
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if value is not None and not (number and 0.0 < value <= largest):
+    if value is not None and not (is_number(value) and 0.0 < value <= largest):
         raise InputError(
             f"{name} of a layered network is {value!r}.",
             f"It is a number above 0, up to {largest:g}.",

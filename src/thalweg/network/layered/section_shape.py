@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import is_number
 from thalweg.core.types import Int32Array
 
 #: One value for all sections, or one for each.
@@ -159,8 +160,7 @@ def _of_sections(sections: int, name: str, given: Any) -> list[Any]:
             field=name,
         )
     for value in values:
-        number = isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
-        if not number or not math.isfinite(value) or (name != "offset" and value != int(value)):
+        if not is_number(value) or (name != "offset" and value != int(value)):
             raise InputError(
                 f"{value!r} is no value of {name} of a layered network.",
                 "layers and fan are whole numbers, offset is a length in metres.",

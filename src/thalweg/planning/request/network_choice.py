@@ -8,6 +8,7 @@ from typing import TypeAlias
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import Position
+from thalweg.core.given_numbers import is_number
 from thalweg.network import LayeredRequest, Network
 from thalweg.network.history.history_corridor import HistoryCorridor
 from thalweg.network.history.history_file import read_history
@@ -60,8 +61,9 @@ class NetworkChoice:
             raise unknown_name_error(
                 "network", str(self.network), (*NETWORK_KINDS, f"{_HISTORY}FILE")
             )
-        number = isinstance(self.spacing, (int, float)) and not isinstance(self.spacing, bool)
-        if self.spacing is not None and not (number and 0.1 <= self.spacing <= 1e6):
+        if self.spacing is not None and not (
+            is_number(self.spacing) and 0.1 <= self.spacing <= 1e6
+        ):
             raise InputError(
                 f"The resolution is {self.spacing!r} m.",
                 "A resolution is between 0.1 m and 1,000 km.",

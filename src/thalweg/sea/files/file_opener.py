@@ -11,10 +11,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
-
 from thalweg.core.errors import DatasetError, InputError
-from thalweg.core.given_numbers import shortened_repr
+from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.sea.files import grib, netcdf3_check, time_concatenation
 from thalweg.sea.files.ensemble_members import check_member_counts, combine_members, ensemble_file
 from thalweg.sea.files.file_contents import NothingRecognised, layer_candidates
@@ -87,8 +85,7 @@ def _with_draught(file: OpenedFile, draught: float) -> OpenedFile:
 
 
 def _checked_draught(draught: float) -> float:
-    number = isinstance(draught, (int, float, np.number)) and not isinstance(draught, bool)
-    if not (number and 0.0 < float(draught) < 100.0):
+    if not (is_number(draught) and 0.0 < float(draught) < 100.0):
         raise InputError(
             f"Currents cannot be averaged over a draught of {draught!r} m.",
             "The draught must be between 0 and 100 m.",
