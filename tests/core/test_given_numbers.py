@@ -11,7 +11,13 @@ import pytest
 from thalweg.chart import Chart
 from thalweg.chart.geojson_polygons import parse_polygons, read_features
 from thalweg.core.errors import InputError, ThalwegError
-from thalweg.core.given_numbers import float_array, is_number, shortened_repr, to_number
+from thalweg.core.given_numbers import (
+    float_array,
+    is_number,
+    rounded_or_none,
+    shortened_repr,
+    to_number,
+)
 from thalweg.core.strict_yaml import MAX_DEPTH, parse_yaml
 from thalweg.core.time import format_time, parse_time
 from thalweg.operations.dredging.project import Project
@@ -215,3 +221,8 @@ def test_options_of_formulas_are_checked(value):
 def test_routes_of_other_types_are_refused(route):
     with pytest.raises(InputError):
         evaluate(route, ship=SHIP, sea=Sea.calm(), depart=DAY)
+
+
+def test_rounded_or_none():
+    assert rounded_or_none(1.23456, 2) == 1.23
+    assert [rounded_or_none(x, 2) for x in (None, math.nan, math.inf)] == [None] * 3

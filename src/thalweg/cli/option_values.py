@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -357,8 +356,3 @@ def prepare_output_file(path: str) -> Path:
         )
     make_folder(target.parent)
     return target
-
-
-def rounded(value: float) -> float | None:
-    """Return a number with six decimals for JSON; None where it is not finite."""
-    return round(float(value), 6) if math.isfinite(value) else None

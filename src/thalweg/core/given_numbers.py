@@ -35,6 +35,11 @@ def finite_or_none(value: float | None) -> float | None:
     return None if value is None or not math.isfinite(value) else float(value)
 
 
+def rounded_or_none(value: float | None, digits: int) -> float | None:
+    """Return a number with some decimals, or None where there is none or it is not finite."""
+    return None if value is None or not math.isfinite(value) else round(float(value), digits)
+
+
 def float_array(values: ArrayLike, what: str) -> FloatArray:
     """Return a new array of floats.
 

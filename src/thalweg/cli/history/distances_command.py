@@ -10,6 +10,7 @@ from typing import Any
 from thalweg.cli import option_values
 from thalweg.cli.exit_codes import SUCCESS
 from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import rounded_or_none
 
 
 def add_command(commands: Any) -> None:
@@ -79,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.out:
         write_text(arguments.out, table.to_csv())
     if arguments.json:
-        rows = [[option_values.rounded(x) for x in row] for row in table.nm.tolist()]
+        rows = [[rounded_or_none(x, 6) for x in row] for row in table.nm.tolist()]
         found = {"ports": list(table.names), "distance_nm": rows, "notes": list(table.notes)}
         print(json.dumps(found, indent=2, allow_nan=False))
     elif not arguments.out:

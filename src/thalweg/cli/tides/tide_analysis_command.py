@@ -13,6 +13,7 @@ import numpy as np
 
 from thalweg.cli import option_values, options
 from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import rounded_or_none
 from thalweg.core.time import format_time
 
 if TYPE_CHECKING:
@@ -174,7 +175,7 @@ def _summary(analysis: TideAnalysis, source: str, out: str | None) -> dict[str, 
         "end": format_time(analysis.end),
         "nodes": int(constants.lat.size),
         "constituents": list(constants.names),
-        "tidal_share": {n: option_values.rounded(analysis.share(n)) for n in known},
+        "tidal_share": {n: rounded_or_none(analysis.share(n), 6) for n in known},
         "nodes_without_tide": {n: int((~k).sum()) for n, k in known.items()},
         "variables": {n: _rows(constants, n, k) for n, k in known.items()},
         "wrote": out,
@@ -188,7 +189,7 @@ def _rows(constants: Constituents, name: str, known: Any) -> list[dict[str, Any]
     sizes = constants.amplitude[name][:, known]
     middle = np.median(sizes, axis=1) if known.any() else np.full(len(constants.names), np.nan)
     rows = [
-        {"name": n, "period_h": float(1.0 / f), "amplitude_median": option_values.rounded(a)}
+        {"name": n, "period_h": float(1.0 / f), "amplitude_median": rounded_or_none(a, 6)}
         for n, f, a in zip(constants.names, constants.frequencies(), middle)
     ]
     return sorted(rows, key=lambda r: -(r["amplitude_median"] or 0.0))

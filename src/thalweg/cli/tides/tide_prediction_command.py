@@ -15,6 +15,7 @@ import numpy as np
 from thalweg.cli import option_values
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import write_text
+from thalweg.core.given_numbers import rounded_or_none
 from thalweg.core.time import format_time, parse_time
 from thalweg.core.types import FloatArray
 
@@ -130,7 +131,7 @@ def _series(constants: Constituents, times: Any, at: str | None) -> dict[str, An
 def _as_dict(constants: Constituents, times: Any, series: dict[str, Any]) -> dict[str, Any]:
     return {
         "times": [format_time(t) for t in times],
-        "variables": {n: [option_values.rounded(x) for x in v] for n, v in series.items()},
+        "variables": {n: [rounded_or_none(x, 6) for x in v] for n, v in series.items()},
         "constituents": list(constants.names),
         "convention": constants.convention,
         "source": dict(constants.facts),

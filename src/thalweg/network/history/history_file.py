@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from os import PathLike
 from typing import Any, Final
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import replacing_file
+from thalweg.core.given_numbers import rounded_or_none
 from thalweg.core.types import FloatArray
 from thalweg.network.history.arc_lines import ArcLines
 from thalweg.network.history.arc_statistics import SHARES, ArcEvidence
@@ -223,4 +223,4 @@ def _table(rows: list[dict[str, Any]], name: str, absent: list[Any]) -> FloatArr
 
 def _rounded(values: FloatArray, decimals: int) -> list[float | None]:
     """Return numbers for JSON; None where unknown."""
-    return [None if math.isnan(x) else round(x, decimals) for x in values.tolist()]
+    return [rounded_or_none(x, decimals) for x in values.tolist()]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from thalweg.core.file_writing import write_csv_rows
-from thalweg.core.types import FloatArray
+from thalweg.core.given_numbers import rounded_or_none
 from thalweg.core.units import HOUR
 from thalweg.service.jobs.child_messages import MessageWriter
 from thalweg.service.jobs.closure_facts import PLACES, TIMES, closure_facts
@@ -104,7 +104,15 @@ def project_diagrams(result: ProjectResult) -> dict[str, Any]:
         for run in result.runs
     }
     known = bool(np.isfinite(level).any())
-    tide = {"start": times[0], "step_s": _LEVEL_STEP, "level_m": _rounded(level)} if known else None
+    tide = (
+        {
+            "start": times[0],
+            "step_s": _LEVEL_STEP,
+            "level_m": [rounded_or_none(v, 3) for v in level.tolist()],
+        }
+        if known
+        else None
+    )
     return {"table": result.table(), "level": tide, "runs": runs}
 
 
@@ -145,10 +153,6 @@ def _same_track(one: Route, other: Route) -> bool:
     return len(a.lat) == len(b.lat) and bool(
         np.allclose(a.lat, b.lat, atol=1e-6) and np.allclose(a.lon, b.lon, atol=1e-6)
     )
-
-
-def _rounded(values: FloatArray) -> list[float | None]:
-    return [round(float(v), 3) if np.isfinite(v) else None for v in values]
 
 
 def _write_cycles(result: ProjectResult, order: JobOrder) -> None:
