@@ -120,7 +120,7 @@ def test_a_jet_beside_the_way_is_bounded_from_below():
         lambda t, y, x: 4.5 * np.exp(-(((y * 110574.0 - 11100.0) / 1800.0) ** 2)) + 0 * x,
         lambda t, y, x: 0 * x,
     )
-    ship, known = ship_of_one_speed(SPEED), 9.83 * 3600.0
+    ship, known = ship_of_one_speed(SPEED), 9.9 * 3600.0
     passage = StretchToBound(
         sea, None, ship, CURRENTS, (0.0, 0.0), (0.0, wide), depart=1e9, known=known
     )
@@ -130,6 +130,29 @@ def test_a_jet_beside_the_way_is_bounded_from_below():
     found = on_meshes(passage, 400)
     assert best < known
     assert 0.98 * best < found.value <= best
+
+
+def test_a_jet_outside_of_what_slow_water_lets_a_ship_reach_is_bounded():
+    """The ship needs 15 h beside the jet and 9.77 h along it: no bound was once the answer.
+
+    A domain as small as the greatest speed in it suggests left the jet out.
+    """
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": lambda t, y, x: 3 * np.exp(-(((y - 0.1) / 0.02) ** 2)),
+            "northward_sea_water_velocity": lambda t, y, x: 0.0 * y,
+        },
+        time_step=0.0,
+    )
+    known = 9.7685 * 3600.0
+    passage = StretchToBound(
+        sea, None, ship_of_one_speed(8.0 * 1852.0 / 3600.0), CURRENTS, (0.0, 0.0), (0.0, 2.0),
+        depart=1e9, known=known,
+    )  # fmt: skip
+    assert BarrierDomain.around(passage, 400).fastest > 7.0  # 4.12 m/s and nearly 3 m/s
+    found = time_certificate.certify_time(passage, seconds=2.0)
+    assert 0.97 * known < found.value < known
+    assert "minutes" not in found.sampling  # the sea never changes
 
 
 @pytest.mark.slow

@@ -83,7 +83,8 @@ def freeze_at_stations(
         raise InputError(
             f"The sea at {len(lat):,} stations and {steps:,} times takes {size / 1e9:.1f} GB.",
             f"The limit is {MEMORY_LIMIT / 1e9:.0f} GB.",
-            "Use a coarser resolution or a shorter window.",
+            "Use a coarser resolution, a shorter window, or a longer time step of the sea's "
+            "functions; waits for a limit to open are searched over days.",
         )
     stations = context.sea.freeze_stations(lat, lon, start, end, channels, extra=extra)
     return FrozenSea(stations, _top_speed(context, stations))

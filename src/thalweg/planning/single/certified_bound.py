@@ -56,7 +56,8 @@ _CELLS_OF_PATH = 800  # of functions, along the longer side
 _CELLS_OF_SPACING, _FEWEST_CELLS_OF_PATH = 10, 100
 _CONTRADICTED = (
     "no bound: in {sampling} the route of the plan would not be possible in its time, so that a "
-    "bound for that sea is not valid"
+    "bound for that sea is not valid; more time for the proof samples it more closely, and bounds "
+    "of how fast its functions change (lipschitz) make one for the functions themselves"
 )
 _ENCLOSED = (
     "no bound: the proof gives {bound}, but the route of the plan needs less; land or limits "

@@ -117,9 +117,8 @@ class BarrierDomain:
         cells : Cells of the raster along its longer side where the data are no finer.
         fastest : Speed over ground [m/s] that is known to be reached in the data.
         """
-        first = passage.ship.top_speed
-        if not math.isfinite(first):
-            first = passage.length / passage.known
+        mean = passage.length / passage.known  # the known route is as fast somewhere
+        first = max(mean, passage.ship.top_speed if math.isfinite(passage.ship.top_speed) else 0.0)
         first = max(first, fastest, passage.canal_speed(max(first, fastest)))
         found = None
         for wanted in sorted({min(cells, _CELLS_FOR_SPEED), cells}):
@@ -128,7 +127,7 @@ class BarrierDomain:
                 return None
             if abs(max(found.raster.values.shape[1:3]) - 1 - wanted) > 1:
                 break  # the data decide on the cells
-            first = found.fastest
+            first = max(mean, found.fastest)
         return found
 
     @classmethod

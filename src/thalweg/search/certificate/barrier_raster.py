@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -106,7 +106,7 @@ def freeze_barrier_raster(request: RasterRequest) -> BarrierRaster:
         south, min(north, 89.9), west, east, *request.period, request.channels,
         spacing_deg=spacing, extra=extra,
     )  # fmt: skip
-    if any(layer.period is None and not _is_uniform(layer) for layer in request.sea.layers):
+    if any(_changes_between_samples(layer) for layer in request.sea.layers):
         step = np.diff(fields.times).max() if fields.times.size > 1 else 0.0
         if lines is None and step > 0.0:
             notes.append(f"and every {step / 60.0:.0f} minutes")
@@ -116,6 +116,12 @@ def freeze_barrier_raster(request: RasterRequest) -> BarrierRaster:
     elif notes:
         notes.append("and between samples by the Lipschitz bounds of its functions")
     return BarrierRaster(_arrays(fields, request.period[0]), ", ".join(notes), margins)
+
+
+def _changes_between_samples(layer: Any) -> bool:
+    """Return whether a layer has no times of its own and is not the same everywhere or always."""
+    steady = getattr(layer, "time_step", None) == 0.0
+    return layer.period is None and not steady and not _is_uniform(layer)
 
 
 def _margins(request: RasterRequest, fields: GridFields) -> FloatArray | None:
