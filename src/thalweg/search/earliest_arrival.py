@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,6 +63,9 @@ class ArrivalQuery:
     def goal_node(self) -> int:
         """The goal; -1 if there is none."""
         return -1 if self.goal is None else int(self.goal)
+
+
+_ACCURACY_OF_WAITS: Final = 1.0  # of a path, within which one without waits is as good [s]
 
 
 def earliest_arrival(
@@ -169,7 +172,19 @@ def solve_earliest_arrival(
         per_metre=ROUNDING_FACTOR if by_distance else least_time_per_metre,
     )
     labels, memory = new_labels(len(station)), new_search_workspace(len(station))
+    direct = None
+    if query.wait and goal >= 0 and not by_distance:
+        # what a ship needs that never waits: waits that make a voyage longer are not looked at
+        direct, spent = new_labels(len(station)), new_search_workspace(len(station))
+        at_once = query._replace(wait=False)
+        label_setting(given.network, given.sea, given.ship, at_once, away, direct, spent)
+        if direct.settled[goal]:
+            labels.cost[goal] = direct.cost[goal] + _ACCURACY_OF_WAITS
     label_setting(given.network, given.sea, given.ship, query, away, labels, memory)
+    if direct is not None:
+        np.maximum(memory.refused, spent.refused, out=memory.refused)
+        if direct.settled[goal] and not labels.cost[goal] <= direct.cost[goal]:
+            labels = direct
     return _result(network, station, query, labels, memory)
 
 

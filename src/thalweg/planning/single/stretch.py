@@ -14,6 +14,7 @@ from thalweg.core.geodesy import distance, positions_along
 from thalweg.core.limits import TIGHTENING, Limits
 from thalweg.core.time import TimeLike, format_time
 from thalweg.core.units import HOUR
+from thalweg.kernels.codes import CURRENT, REASONS
 from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network
 from thalweg.planning.frozen_sea import FrozenSea, LastFrozenSea
@@ -188,7 +189,9 @@ def _search_and_refine(
     notes = network.meta.notes if network.meta.kind == "layered" else ()
     notes += tuple(f"The referee finds a limit exceeded: {v}." for v in route.violations[:5])
     until = route.depart + _ISOCHRONE_TIME_RATIO * route.time_h * HOUR if route.feasible else None
-    arrival = isochrones(context, network, frozen, route.depart, until)
+    # a limit opens after a wait; against currents the times without waits show as much
+    waits = bool(np.any(route.track.wait)) or bool(set(result.refused) - {REASONS[CURRENT]})
+    arrival = isochrones(context, network, frozen, route.depart, until, wait=waits)
     return StretchResult(route, result, network, arrival, notes)
 
 
@@ -198,6 +201,8 @@ def isochrones(
     frozen: FrozenSea,
     depart: float,
     until: float | None,
+    *,
+    wait: bool = True,
 ) -> np.ndarray:
     """Return the earliest arrival at every node [s since 1970], up to a time if one is given.
 
@@ -208,6 +213,7 @@ def isochrones(
     frozen : The sea at the stations of the network.
     depart : Departure [s since 1970-01-01T00:00Z].
     until : Latest arrival that is computed [s since 1970-01-01T00:00Z].
+    wait : Whether the ship may wait where the voyage lets it.
 
     Returns
     -------
@@ -218,7 +224,7 @@ def isochrones(
         start=network.meta.start,
         goal=None,
         depart=depart,
-        wait=context.voyage.wait,
+        wait=wait and context.voyage.wait,
         arrive_by=until,
     )
     return everywhere.node_arrival
