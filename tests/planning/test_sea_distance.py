@@ -258,3 +258,12 @@ def test_lists_of_passages_keep_names_with_commas():
     assert names_in_list("korea, western channel") == ["korea, western channel"]
     assert names_in_list("Korea, western channel; suez") == ["Korea, western channel", "suez"]
     assert names_in_list(" , ") == []
+
+
+def test_deep_ships_go_south_of_shikoku():
+    inland = sea_distance("Kobe", "Oita", draught_m=14.0)
+    outside = sea_distance("Kobe", "Oita", draught_m=20.8)
+    assert "Bisan Seto" in inland.straits
+    assert outside.straits == ("Tomogashima (Kitan)", "Bungo/Hayasui")
+    assert 255.0 < outside.nm < 320.0  # Kii Channel, Muroto, Ashizuri, Bungo Channel
+    assert any("Bisan Seto" in note for note in outside.notes)
