@@ -267,3 +267,19 @@ def test_deep_ships_go_south_of_shikoku():
     assert outside.straits == ("Tomogashima (Kitan)", "Bungo/Hayasui")
     assert 255.0 < outside.nm < 320.0  # Kii Channel, Muroto, Ashizuri, Bungo Channel
     assert any("Bisan Seto" in note for note in outside.notes)
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "miles", "passages"),
+    [
+        # 100 nm in tables of the Alaska ferries
+        ("Skagway", "Juneau", 101, {"Stephens Passage (north)"}),
+        # round Cape Spencer; by Peril Strait, which is for ferries, tables give 161
+        ("Sitka", "Juneau", 208, {"Chatham Strait-Icy Strait", "Stephens Passage (north)"}),
+    ],
+)
+def test_ways_in_south_east_alaska(start, goal, miles, passages):
+    found = sea_distance(start, goal)
+    assert found.nm == pytest.approx(miles, rel=0.03)
+    assert passages <= set(found.straits)
+    assert not any("Turns back" in note for note in found.notes)
