@@ -106,6 +106,18 @@ def test_the_index_is_the_source_of_other_ports():
     assert "the World Port Index gives 17.5 m" in port_depth_note(approach("Richards Bay"), 18.0)
 
 
+def test_belize_is_reached_by_the_channel_of_english_cay():
+    line = approach("Belize City").line
+    assert least_miles(line, (17.327, -88.045)) < 1.0
+    lat, lon, _ = densify(*np.array(line, float).T, 0.1 * NAUTICAL_MILE)
+    reefs = [area for area in SHOAL_AREAS if "Belize" in area.name]
+    assert len(reefs) == 2
+    assert not any(area.contains(lat, lon).any() for area in reefs)
+    gladden_spit, tobacco_cay, goffs_cay = (16.52, -87.97), (16.9, -88.05), (17.35, -88.03)
+    for place in (gladden_spit, tobacco_cay, goffs_cay):
+        assert any(area.contains(*np.array([place]).T)[0] for area in reefs)
+
+
 def test_surabaya_is_reached_by_its_western_channel():
     line = dense_line(approach("Surabaya").line)
     assert distance(-7.068, 112.658, line[:, 0], line[:, 1]).min() < 0.5 * NAUTICAL_MILE

@@ -8,6 +8,7 @@ import pytest
 import thalweg
 from thalweg.cli.distance_command import names_in_list
 from thalweg.cli.main import main
+from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import densify, distance
 from thalweg.core.units import NAUTICAL_MILE
@@ -283,3 +284,11 @@ def test_ways_in_south_east_alaska(start, goal, miles, passages):
     assert found.nm == pytest.approx(miles, rel=0.03)
     assert passages <= set(found.straits)
     assert not any("Turns back" in note for note in found.notes)
+
+
+def test_ships_from_belize_pass_between_its_reefs():
+    found = sea_distance("Belize City", "Puerto Cortes", draught_m=7.0)
+    assert found.nm == pytest.approx(107.0, abs=3.0)
+    lat, lon, _ = thalweg.core.geodesy.densify(*np.array(found.line).T, 0.2 * NAUTICAL_MILE)
+    for area in SHOAL_AREAS:
+        assert not area.contains(lat, lon).any(), area.name
