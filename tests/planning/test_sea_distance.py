@@ -305,5 +305,6 @@ def test_ships_from_belize_pass_between_its_reefs():
 )
 def test_second_entrances_on_the_side_of_the_way(start, goal, way, most):
     found = sea_distance(start, goal)
-    assert found.start.way == way
+    assert any(way in name for name, _ in found.approaches)
+    assert any(way in name for name, _ in found.approaches)
     assert found.nm < most
