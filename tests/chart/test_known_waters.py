@@ -118,6 +118,31 @@ def test_belize_is_reached_by_the_channel_of_english_cay():
         assert any(area.contains(*np.array([place]).T)[0] for area in reefs)
 
 
+@pytest.mark.parametrize(
+    ("port", "miles"),
+    # the Danube is marked in nautical miles from Sulina, 4 inside the sea end: Galati at 80
+    [("Tulcea", 42.4), ("Izmail", 59.2), ("Reni", 72.0), ("Galati", 84.0), ("Braila", 96.0)],
+)
+def test_ports_on_the_danube_are_reached_by_the_sulina_canal(port, miles):
+    line = approach(port)
+    assert line.length / NAUTICAL_MILE == pytest.approx(miles, rel=0.03)
+    assert least_miles(line.line, (45.178, 29.194)) < 0.5  # the canal at Gorgova
+    assert "7.3 m" in port_depth_note(line, 8.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "code"),
+    [("Yosu", "KRYOS"), ("Yeosu", "KRYOS"), ("Dunedin", "NZDUD"), ("NZDUD", "NZDUD")],
+)
+def test_ports_beside_others_are_found_by_their_own_name(name, code):
+    assert PORTS.find(name).locode == code
+
+
+def test_port_chalmers_and_dunedin_lie_in_otago_harbour():
+    for port in ("Port Chalmers", "Dunedin"):
+        assert least_miles(approach(port).line, (-45.775, 170.725)) < 1.0  # Taiaroa Head
+
+
 def test_surabaya_is_reached_by_its_western_channel():
     line = dense_line(approach("Surabaya").line)
     assert distance(-7.068, 112.658, line[:, 0], line[:, 1]).min() < 0.5 * NAUTICAL_MILE
