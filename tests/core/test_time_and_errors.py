@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import thalweg
+from thalweg.chart.passages import PASSAGES
 from thalweg.cli.exit_codes import print_error
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.errors import InputError, NoRouteError, close_matches, unknown_name_error
@@ -65,6 +66,17 @@ def test_of_many_names_the_nearest_are_listed_first():
 
 def test_near_matches_ignore_case():
     assert close_matches("roterdam", ["Rotterdam", "Antwerpen"]) == ["Rotterdam"]
+
+
+@pytest.mark.parametrize(
+    ("asked", "meant"),
+    [("Kanmon Kaikyo", "Kanmon (Shimonoseki)"), ("Malaca Strait", "Malacca: One Fathom Bank")],
+)
+def test_names_with_a_word_in_common_come_before_those_spelled_alike(asked, meant):
+    known = [passage.name for passage in PASSAGES]
+    error = unknown_name_error("passage", asked, known)
+    assert meant in error.details["near"][:2]
+    assert "Florida Straits" not in error.details["near"][:2]  # many names have the word
     assert "Did you mean 'Rotterdam'" in str(unknown_name_error("port", "roterdam", ["Rotterdam"]))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -125,6 +126,8 @@ class NoPathError(NoRouteError):
 def close_matches(word: str, known: Iterable[str], count: int = 3) -> list[str]:
     """Return the known words that look most like ``word``, best first, ignoring case.
 
+    Names that have a rare word in common with it come before those that are only spelled alike.
+
     Parameters
     ----------
     word : The unknown word.
@@ -136,8 +139,9 @@ def close_matches(word: str, known: Iterable[str], count: int = 3) -> list[str]:
     list of str : Best match first.
     """
     by_lower = {name.casefold(): name for name in known}
-    found = difflib.get_close_matches(word.casefold(), list(by_lower), n=count, cutoff=0.55)
-    return [by_lower[name] for name in found]
+    shared = _sharing_a_word(word, by_lower)
+    alike = difflib.get_close_matches(word.casefold(), list(by_lower), n=count, cutoff=0.55)
+    return [by_lower[name] for name in list(dict.fromkeys([*shared, *alike]))[:count]]
 
 
 _MOST_NAMES = 20  # that an error lists, the nearest in spelling first if there are more
@@ -145,6 +149,32 @@ _MOST_NAMES = 20  # that an error lists, the nearest in spelling first if there 
 
 def _likeness(word: str, name: str) -> float:
     return difflib.SequenceMatcher(None, word.casefold(), name.casefold()).ratio()
+
+
+_RARE = 3  # a word that more known names have, such as "strait", does not tell names apart
+_LEAST_LETTERS = 4  # of a word that two names may share
+_SAME_WORD = 0.85  # likeness of two spellings of one word
+
+
+def _words(name: str) -> set[str]:
+    return {word for word in re.findall(r"[^\W_]+", name.casefold()) if len(word) >= _LEAST_LETTERS}
+
+
+def _sharing_a_word(word: str, known: Iterable[str]) -> list[str]:
+    """Return the known names that have a rare word in common with a name, most alike first.
+
+    A word that is spelled almost the same counts as well.
+    """
+    having: dict[str, set[str]] = {}
+    for name in known:
+        for part in _words(name):
+            having.setdefault(part, set()).add(name)
+    found: set[str] = set()
+    for wanted in _words(word):
+        parts = difflib.get_close_matches(wanted, having, n=_RARE, cutoff=_SAME_WORD)
+        names = {name for part in parts for name in having[part]}
+        found |= names if len(names) <= _RARE else set()
+    return sorted(found, key=lambda name: (-_likeness(word, name), name))
 
 
 def nearest_names(word: str, known: Iterable[str]) -> str:
@@ -157,7 +187,9 @@ def nearest_names(word: str, known: Iterable[str]) -> str:
     names = sorted(known)
     if len(names) <= _MOST_NAMES:
         return ", ".join(names)
-    nearest = sorted(names, key=lambda name: -_likeness(word, name))[:_MOST_NAMES]
+    shared = _sharing_a_word(word, names)
+    others = sorted(set(names) - set(shared), key=lambda name: (-_likeness(word, name), name))
+    nearest = [*shared, *others][:_MOST_NAMES]
     return f"{', '.join(nearest)} and {len(names) - _MOST_NAMES} more"
 
 
