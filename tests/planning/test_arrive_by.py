@@ -119,3 +119,17 @@ def test_a_slower_route_that_is_late_is_not_said_to_be_better():
     chart = Chart.open_water(-0.4, 0.4, -0.2, 1.2)
     found = plan(voyage, ship=ship, sea=Sea.calm(), chart=chart, proof=0.0)
     assert not any("for comparison, is up to" in note for note in found.notes)
+
+
+@pytest.mark.slow
+def test_the_heading_and_the_notes_say_what_the_times_of_a_request_mean() -> None:
+    given = {"ship": SHIP, "sea": Sea.calm(), "chart": WATER, "resolution": 20_000.0}
+    burning = Ship.load("s175")
+    latest = DEPART + 30.0 * HOUR
+    found = plan(Voyage(**ENDS, objective="fuel", arrive=latest), **given | {"ship": burning})
+    heading = str(found).splitlines()[0]
+    assert ", least fuel, arriving by 2026-01-02 06:00 UTC" in heading  # it may arrive earlier
+    early = plan(Voyage(**{**ENDS, "depart": "1750-01-01"}), **given)
+    assert any(note.startswith("Check the year: ") for note in early.notes[:3])
+    late = plan(Voyage(**{**ENDS, "depart": "1950-01-01"}), **given)
+    assert not any("year" in note for note in late.notes)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import thalweg
+from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.cli.distance_command import names_in_list
 from thalweg.cli.main import main
-from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import densify, distance
 from thalweg.core.units import NAUTICAL_MILE

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import difflib
-import re
 import math
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any

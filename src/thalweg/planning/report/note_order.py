@@ -15,7 +15,7 @@ from thalweg.planning.report.ice_report import REACHES_ICE
 from thalweg.planning.report.land_report import CLOSE_TO_LAND, PASSES
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, LANE_DETOUR
 from thalweg.planning.report.wave_report import TOO_STEEP
-from thalweg.planning.request.coverage_check import UNREAD
+from thalweg.planning.request.coverage_check import CHECK_YEAR, UNREAD
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
 from thalweg.planning.request.shoal_choice import SHOALS_OPENED
 from thalweg.planning.request.swapped_degrees import CHECK_POSITION
@@ -45,6 +45,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     PASSAGE_CLOSED,
     OTHER_WAYS,
     FILLED,
+    CHECK_YEAR,
     UNREAD,
     UNUSUAL,
     KWON_FORM,

@@ -179,7 +179,9 @@ def _title(plan: PlanData) -> str:
         if objective in ("time", "distance"):
             held = _HELD[plan.voyage.hold or "power"]
             what = f"lowest {held}" if plan.voyage.depart is not None else "latest departure"
-        what += f", to arrive at {at}"
+            what += f", to arrive at {at}"
+        else:  # the latest arrival: the speed is chosen leg by leg
+            what += f", arriving by {at}"
     return f"{start} to {goal}, {what}"
 
 

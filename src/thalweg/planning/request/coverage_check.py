@@ -32,7 +32,9 @@ from thalweg.sea.doubtful_values import doubts_of_files
 from thalweg.sea.fill_policies import MAX_NEAREST, filled_distance, nearest_fills
 from thalweg.ship import Ship
 
+CHECK_YEAR: Final = "Check the year"  #: a note on a departure before 1900 begins so
 UNREAD: Final = "Weather is not considered"  #: a note on data that a ship does not read begins so
+_FIRST_USUAL: Final = -2_208_988_800.0  # 1900-01-01T00:00Z [s since 1970]
 _DIRECTIONS = ("sea_surface_wave_to_direction_east", "sea_surface_wave_to_direction_north")
 #: Period that is checked where the data have no end [s].
 _MAX_PERIOD = 20 * 24 * HOUR
@@ -91,7 +93,7 @@ def endpoints_within_coverage(
 def doubts_of_voyage(
     voyage: Voyage, sea: Sea, ends: Sequence[Endpoint], needs: Requirements
 ) -> tuple[str, ...]:
-    """Return warnings of data that are not read, and of wave data that look like another unit's.
+    """Return warnings of the year, of data not read, and of waves that look like another unit's.
 
     Not read are data that the speed of the ship does not depend on, and of these it is said where
     they do not hold at the departure.
@@ -102,10 +104,10 @@ def doubts_of_voyage(
     needs : Required variables; there is no warning of data that are not needed.
     """
     wanted = {standard_names.CHANNEL_VARIABLES[channel] for channel in needs.channels}
-    unread = _notes_of_unread(voyage.earliest_departure, sea, wanted)
+    first = voyage.earliest_departure
+    unread = (*_note_of_year(first), *_notes_of_unread(first, sea, wanted))
     if not wanted.intersection((standard_names.WAVE_HEIGHT, *_DIRECTIONS)):
         return unread
-    first = voyage.earliest_departure
     lat = np.array([end.lat for end in ends])
     lon = unwrap_longitude([end.lon for end in ends])
     rows = np.linspace(max(lat.min() - 1.0, -90.0), min(lat.max() + 1.0, 90.0), _DOUBT_ROWS)
@@ -113,6 +115,13 @@ def doubts_of_voyage(
     y, x = np.meshgrid(rows, columns)
     times = np.linspace(first, min(needs.data_end, first + _DOUBT_PERIOD), 4)
     return (*unread, *doubts_of_files(sea.layers, times, y.ravel(), wrap_longitude(x.ravel())))
+
+
+def _note_of_year(depart: float) -> tuple[str, ...]:
+    """Return a note on a departure before `_FIRST_USUAL`, which is mostly a slip."""
+    if depart >= _FIRST_USUAL:
+        return ()
+    return (f"{CHECK_YEAR}: the departure is at {format_time(depart)}, before 1900.",)
 
 
 def _notes_of_unread(depart: float, sea: Sea, wanted: Set[str]) -> tuple[str, ...]:
