@@ -143,6 +143,14 @@ def test_port_chalmers_and_dunedin_lie_in_otago_harbour():
         assert least_miles(approach(port).line, (-45.775, 170.725)) < 1.0  # Taiaroa Head
 
 
+def test_ships_to_the_strait_of_magellan_keep_off_the_evangelistas():
+    (islets,) = (area for area in SHOAL_AREAS if "Evangelistas" in area.name)
+    assert islets.contains(np.array([-52.387]), np.array([-75.10]))[0]  # the lighthouse
+    (strait,) = find_passages(["Magellan"])
+    lat, lon, _ = densify(*strait.positions, 0.5 * NAUTICAL_MILE)
+    assert not islets.contains(lat, lon).any()
+
+
 def test_surabaya_is_reached_by_its_western_channel():
     line = dense_line(approach("Surabaya").line)
     assert distance(-7.068, 112.658, line[:, 0], line[:, 1]).min() < 0.5 * NAUTICAL_MILE
