@@ -106,3 +106,20 @@ def test_a_distance_names_passages_that_its_draught_closes():
     assert "126 nm shorter" in note
     through = sea_distance("Lulea", "Gothenburg", draught_m=7.0)
     assert not any(note.startswith(PASSAGE_CLOSED) for note in through.notes)
+
+
+@pytest.mark.parametrize(
+    ("goal", "draught", "begins"),
+    [
+        ("Seward", 12.0, "The port is too shallow: the largest draught in Seward, US is 11 m"),
+        ("Seward", 10.0, None),
+        ("Valdez", 14.5, "No largest draught in Valdez, US is known: ask the port."),
+        ("Valdez", 12.0, None),
+    ],
+)
+def test_deep_ships_are_warned_of_ports_that_are_shallow_or_of_unknown_depth(goal, draught, begins):
+    start = (59.0, -148.0)
+    notes = sea_distance(start, goal, draught_m=draught).notes
+    about = [note for note in notes if "largest draught" in note]
+    assert len(about) == (begins is not None)
+    assert begins is None or about[0].startswith(begins)

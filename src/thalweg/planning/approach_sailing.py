@@ -21,7 +21,11 @@ from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import PlotContext, Proof
 from thalweg.planning.plan_front import BaselineComparison, ParetoFront
 from thalweg.planning.planning_context import PlanningContext
-from thalweg.planning.report.approach_report import port_depth_note, turn_back_notes_of_route
+from thalweg.planning.report.approach_report import (
+    port_depth_note,
+    turn_back_notes_of_route,
+    unknown_depth_text,
+)
 from thalweg.planning.report.provenance import provenance
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import priced_objective
@@ -143,6 +147,7 @@ class ApproachSailing:
                 + f" ({self._duration(approach) / HOUR:.1f} h at "
                 f"{self.speed / KNOT:.1f} kn, line {approach.quality}): counted in all totals; "
                 "weather, tide and depth are not considered there."
+                + unknown_depth_text(approach, draught)
             )
             found.append(port_depth_note(approach, draught))
         return tuple(filter(None, found))

@@ -26,7 +26,11 @@ from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
 from thalweg.planning.network_selection.closed_ways import closed_way_error
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
-from thalweg.planning.report.approach_report import port_depth_note, turn_back_notes
+from thalweg.planning.report.approach_report import (
+    port_depth_note,
+    turn_back_notes,
+    unknown_depth_text,
+)
 from thalweg.planning.report.distance_report import (
     LEAST_DEPTH,
     passages_closed_to_draught_notes,
@@ -234,8 +238,13 @@ def _way_over_seas(
         seas = replace(seas, shoals=_usual_shoals(chart, ends))
     notes = tuple(end.note for end in ends if end.note)
     first, last = ends[0].approach, ends[-1].approach
-    ports = [port_depth_note(end, draught or 0.0) for end in (first, last) if end is not None]
-    notes += tuple(filter(None, ports))
+    if draught is not None:
+        ports = [end for end in (first, last) if end is not None]
+        texts = [
+            port_depth_note(end, draught) or unknown_depth_text(end, draught).strip()
+            for end in ports
+        ]
+        notes += tuple(dict.fromkeys(filter(None, texts)))
     if len(ends) == 2 and first and last:
         line = line_between(first, last, legs_blocked=chart.legs_blocked)
         if line is not None:

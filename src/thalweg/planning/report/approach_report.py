@@ -1,4 +1,4 @@
-"""Ways that turn back where the approach of a port ends."""
+"""Notes on approaches: ports too shallow for a ship, ways that turn back where one ends."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from thalweg.route.route_tables import LEG_KINDS
 TURNS_BACK: Final = "Turns back"  #: a note on such a way begins so
 PORT_TOO_SHALLOW: Final = "The port is too shallow"  #: a note on such a port begins so
 _SHARP: Final = math.radians(120.0)
+_DEEP_SHIP: Final = 14.0  # draught that many ports do not take [m]
 
 
 def port_depth_note(approach: PortApproach, draught: float) -> str:
@@ -35,6 +36,18 @@ def port_depth_note(approach: PortApproach, draught: float) -> str:
         f"{PORT_TOO_SHALLOW}: {largest}; the ship draws {draught:.1f} m. Load less, or ask the "
         "port."
     )
+
+
+def unknown_depth_text(approach: PortApproach, draught: float) -> str:
+    """Return a sentence for deep ships on a port of which no largest draught is known, or "".
+
+    Parameters
+    ----------
+    draught : Of the ship [m].
+    """
+    if draught < _DEEP_SHIP or not math.isnan(approach.max_draught):
+        return ""
+    return f" No largest draught in {approach.port.label} is known: ask the port."
 
 
 def turn_back_notes(lat: FloatArray, lon: FloatArray, ends: Iterable[int]) -> list[str]:
