@@ -26,9 +26,9 @@ from thalweg import Chart
 from thalweg.chart.approaches import PORT_APPROACHES
 from thalweg.chart.passage_crossings import names_passed
 from thalweg.chart.ports import PORTS
+from thalweg.core.geodesy import line_length
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.alternatives.path_shortening import string_pull_path
-from thalweg.network.global_grid.sea_graph import path_length
 from thalweg.planning.sea_distance import sea_distance
 from thalweg.planning.seaways import Seaways
 
@@ -79,7 +79,7 @@ def compare(start: str, goal: str, seas: Seaways) -> dict[str, object]:
     )
     theirs = float(route["properties"]["length"])
     line = pulled_taut(seas, route["geometry"]["coordinates"])
-    taut = path_length(line) / NAUTICAL_MILE
+    taut = line_length(line) / NAUTICAL_MILE
     rest = 100.0 * (ours.nm / taut - 1.0)
     lanes = names_passed(seas.chart.coastline, seas.chart.passages, *np.array(line).T)
     return {
