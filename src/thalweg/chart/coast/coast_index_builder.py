@@ -64,14 +64,20 @@ def empty_index() -> IndexArrays:
     )
 
 
-def _shared_meridian_edges(
+def shared_meridian_edges(
     lat0: FloatArray,
     lat1: FloatArray,
     lon0: FloatArray,
     lon1: FloatArray,
     is_edge: NDArray[np.bool_],
 ) -> IntArray:
-    """Return the edges along meridians that two polygons share, where one land was split in two."""
+    """Return the edges along meridians that two polygons share, where one land was split in two.
+
+    Parameters
+    ----------
+    lat0, lat1, lon0, lon1 : First and last positions of edges [deg], (n,).
+    is_edge : Which of them are edges of polygons, (n,).
+    """
     k = np.flatnonzero((lon0 == lon1) & (lat0 != lat1) & is_edge)
     low, high = np.minimum(lat0[k], lat1[k]), np.maximum(lat0[k], lat1[k])
     places = np.stack([low, high, lon0[k] % 360.0], -1)
@@ -88,7 +94,7 @@ def _cut_edges(rings: Rings) -> CoastSegments:
     keep = (lat0 != lat1) | (lon0 != lon1)
     keep &= ~((np.abs(lat0) >= 90.0) & (np.abs(lat1) >= 90.0))
     keep[rings.start[1:-1] - 1] = False
-    keep[_shared_meridian_edges(lat0, lat1, lon0, lon1, keep)] = False
+    keep[shared_meridian_edges(lat0, lat1, lon0, lon1, keep)] = False
     edge = np.flatnonzero(keep)
     lat0, lat1, lon0, lon1 = lat0[edge], lat1[edge], lon0[edge], lon1[edge]
     north, east = np.radians(lat1 - lat0), np.radians(lon1 - lon0)

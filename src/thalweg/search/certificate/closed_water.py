@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
+from thalweg.chart.coast.coast_index_builder import shared_meridian_edges
 from thalweg.chart.offing import required_offing
 from thalweg.chart.zones.leg_fractions import points_inside
 from thalweg.core.geodesy import METRES_PER_DEGREE, densify, longitude_difference
@@ -54,7 +55,7 @@ def closed_cells(
     centres = _centres(lat, lon)
     kept = chart.offing_arrays.distance
     shore = np.asarray(chart.coastline.shore_distance(*centres, cap=max(1.0, kept)))
-    shores = _shore_pieces(chart.coastline.rings)
+    shores = _shore_pieces(chart.coastline.rings, lat, lon)
     closed = (shore.reshape(shape) <= 0.0) & ~_touched(shores, lat, lon)
     closed |= _outside_area(chart, lat, lon)
     if kept > 0.0:
@@ -118,16 +119,27 @@ def _inside_one_of(shapes: Sequence[Any], lat: FloatArray, lon: FloatArray) -> B
     return inside
 
 
-def _shore_pieces(rings: Rings) -> LinePieces:
-    """Return the edges of outlines of land, but for those at which the data split land."""
-    ends = np.zeros(max(rings.lat.size - 1, 0), bool)
-    ends[rings.start[1:-1] - 1] = True
-    lat, lon = rings.lat, rings.lon
-    split = (lon[:-1] == lon[1:]) & (lon[:-1] % 180.0 == 0.0)
-    kept = np.flatnonzero(~ends & ~split)
-    return LinePieces(
-        np.stack([lat[:-1][kept], lat[1:][kept]]), np.stack([lon[:-1][kept], lon[1:][kept]])
+def _shore_pieces(rings: Rings, lat: FloatArray, lon: FloatArray) -> LinePieces:
+    """Return the edges of land near a mesh, but for those at which the data split land."""
+    edges = LinePieces(
+        np.stack([rings.lat[:-1], rings.lat[1:]]), np.stack([rings.lon[:-1], rings.lon[1:]])
     )
+    kept = _are_near(edges, lat, lon)
+    kept[rings.start[1:-1] - 1] = False  # from one ring to the next
+    kept[shared_meridian_edges(edges.lat[0], edges.lat[1], edges.lon[0], edges.lon[1], kept)] = (
+        False
+    )
+    return LinePieces(edges.lat[:, kept], edges.lon[:, kept])
+
+
+def _are_near(boxes: LinePieces, lat: FloatArray, lon: FloatArray) -> BoolArray:
+    """Return which boxes, by two corners each, are within a degree of a mesh."""
+    near = (boxes.lat.min(axis=0) <= lat[-1] + 1.0) & (boxes.lat.max(axis=0) >= lat[0] - 1.0)
+    west, east = boxes.lon.min(axis=0), boxes.lon.max(axis=0)
+    turns = np.array([-360.0, 0.0, 360.0])[:, None]
+    near &= ((west + turns <= lon[-1] + 1.0) & (east + turns >= lon[0] - 1.0)).any(axis=0)
+    result: BoolArray = near
+    return result
 
 
 def _zone_pieces(shapes: Sequence[Any], lat: FloatArray, lon: FloatArray) -> LinePieces:
@@ -136,10 +148,9 @@ def _zone_pieces(shapes: Sequence[Any], lat: FloatArray, lon: FloatArray) -> Lin
 
     every = np.asarray(shapes, object)
     west, south, east, north = shapely.bounds(every).reshape(-1, 4).T
-    bulge = 1.0 + 0.25 * (east - west)  # great circles leave the box of their ends
-    near = (south - bulge <= lat[-1]) & (north + bulge >= lat[0])
-    turns = np.array([-360.0, 0.0, 360.0])[:, None]
-    near &= ((west + turns <= lon[-1] + 1.0) & (east + turns >= lon[0] - 1.0)).any(axis=0)
+    bulge = 0.25 * (east - west)  # great circles leave the box of their ends
+    boxes = LinePieces(np.stack([south - bulge, north + bulge]), np.stack([west, east]))
+    near = _are_near(boxes, lat, lon)
     step = max(_OUTLINE_PARTS * (lat[1] - lat[0]) * METRES_PER_DEGREE, 100.0)
     lines = []
     for shape in every[near]:
