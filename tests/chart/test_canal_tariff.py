@@ -50,6 +50,13 @@ def test_panama_charges_a_fixed_part_by_beam_and_a_rate_per_ton(beam, fixed, rat
     assert by_gross.fee_basis.endswith("(from the gross tonnage of the ship file)")
 
 
+def test_panama_dues_without_a_breadth_are_the_lowest_and_say_so():
+    got = dues_of(PANAMA, panama_net_tonnage=20_000)
+    assert got.fee == pytest.approx(60e3 + 5.25 * 20_000)
+    assert got.fee_basis.endswith("; breadth unknown: the lowest tariff")
+    assert "breadth" not in dues_of(SUEZ, suez_net_tonnage=12_000).fee_basis
+
+
 @pytest.mark.parametrize(
     ("gross", "euro"), [(500, 159 + 1201), (2000, 615 + 1318), (7000, 1212 + 1618), (10_000, 3165)]
 )

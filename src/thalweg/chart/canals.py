@@ -206,6 +206,8 @@ def _with_dues(canal: Canal, hull: HullSection) -> Canal:
     kinds = tariff_kind(hull.type or "", hull.breadth_m)
     paid = tariff.dues(tons, beam=hull.breadth_m, kind=kinds.get(tariff.tonnage, ""))
     basis = f"{name} {tons:,.0f} ({how})"
+    if hull.breadth_m is None and len(tariff.fixed) > 1:
+        basis += "; breadth unknown: the lowest tariff"
     return replace(canal, fee=float(round(paid)), fee_basis=basis)
 
 

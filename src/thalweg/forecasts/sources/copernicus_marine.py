@@ -9,7 +9,8 @@ here have the middle. Not tried against the live service by the tests.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -140,28 +141,36 @@ class CopernicusMarine:
         }
         if product.depth:
             wanted |= {"minimum_depth": 0.0, "maximum_depth": 1.0}
-        try:
+        with _transfer_of(product):
             remote = self.open_dataset(**wanted)
-            if "depth" in remote.dims:
-                remote = remote.isel(depth=0, drop=True)
-            given = remote["time"].values.astype("datetime64[s]").astype(float)
-            stamps = given // product.step * product.step + product.first
-            remote = remote.assign_coords(time=to_datetime64(stamps))
-            at = [k for k, stamp in enumerate(stamps) if np.min(np.abs(stamp - plan.times)) < 60.0]
+        if "depth" in remote.dims:
+            remote = remote.isel(depth=0, drop=True)
+        given = remote["time"].values.astype("datetime64[s]").astype(float)
+        stamps = given // product.step * product.step + product.first
+        remote = remote.assign_coords(time=to_datetime64(stamps))
+        at = [k for k, stamp in enumerate(stamps) if np.min(np.abs(stamp - plan.times)) < 60.0]
+        if not at:
+            return remote.isel(time=[])
+        with _transfer_of(product):
             slices = [
                 remote.isel(time=at[k : k + _SLICE]).load() for k in range(0, len(at), _SLICE)
             ]
-        except InputError:
-            raise
-        except Exception as error:
-            raise TransferError(
-                f"Copernicus Marine did not deliver {product.dataset}: {str(error)[:300]}.",
-                "An account and a network are needed (copernicusmarine login).",
-                "Log in again, or try later.",
-            ) from error
-        if not slices:
-            return remote.isel(time=[])
         return xr.concat(slices, "time")
+
+
+@contextmanager
+def _transfer_of(product: _Product) -> Iterator[None]:
+    """Report what the client of Copernicus Marine raises as an error of the transfer."""
+    try:
+        yield
+    except InputError:
+        raise
+    except Exception as error:
+        raise TransferError(
+            f"Copernicus Marine did not deliver {product.dataset}: {str(error)[:300]}.",
+            "An account and a network are needed (copernicusmarine login).",
+            "Log in again, or try later.",
+        ) from error
 
 
 def _side_by_side(sides: list[Any]) -> Any:
