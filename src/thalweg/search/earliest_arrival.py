@@ -117,6 +117,10 @@ def earliest_arrival(
     with other penalty factors, one label per node is exact as long as the time of passage does not
     decide which edges are open; ties go to the earlier arrival.
 
+    A search without waits comes first where a ship may wait: its cost, and a second for the
+    accuracy of departures after waits, bounds the search with waits, and its path is the answer
+    where no wait is better.
+
     A ship waits only while it stays afloat at the required depth, except at the start; a node that
     falls dry has a label for each time it is afloat (`thalweg.search.tidal_states`). Where it may
     not wait at every node, time is minimised by rounds from where it may
