@@ -156,3 +156,17 @@ def test_surabaya_is_reached_by_its_western_channel():
     assert distance(-7.068, 112.658, line[:, 0], line[:, 1]).min() < 0.5 * NAUTICAL_MILE
     (east,) = find_passages(["Surabaya: Eastern Channel"])
     assert east.ship_restriction(draught=8.0, length=150.0)
+
+
+def test_oita_is_left_through_the_middle_of_hayasui_strait():
+    line = approach("Oita").line
+    assert least_miles(line, (33.268, 131.905)) > 2.0  # Jizo Saki: 0.1 nm off before
+    (strait,) = find_passages(["Bungo/Hayasui"])
+    assert least_miles(list(zip(*strait.positions, strict=True)), line[-1]) < 1.5
+
+
+def test_the_spit_south_of_the_danube_is_a_shoal_area():
+    (spit,) = (area for area in SHOAL_AREAS if "Sacalin" in area.name)
+    assert spit.contains(np.array([44.82]), np.array([29.61]))[0]
+    sulina = approach("Galati").line[-1]
+    assert not spit.contains(np.array([sulina[0]]), np.array([sulina[1]]))[0]

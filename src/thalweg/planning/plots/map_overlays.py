@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 _LAND, _SHORE, _STORM = "#e2d6b5", "#6f6650", "#4a148c"
 _NO_GO, _PENALTY, _CONTROL, _LANE = "#c62828", "#ef6c00", "#00796b", "#ad1457"
 _SHOAL, _SHOAL_EDGE, _SHOAL_LABEL = "#9cc3d5", "#5f93ab", "shoal water kept off"
+_NOT_SEARCHED, _NOT_SEARCHED_LABEL = "#8f8468", "water not searched"
 _LEAST_CELLS, _OPENING = 4, 0.15  # of enclosed water; part of its outline that may be open
 _ARROWS = 15.0  # height of maps [deg] from which on arrows of lanes would cover them
 _DOTS = 4_000.0  # details of land smaller than the width of the map over this are not drawn
@@ -79,10 +80,13 @@ def draw_enclosed_water(
         if not (piece[[0, -1]].any() or piece[:, [0, -1]].any()):
             enclosed |= piece if _is_enclosed(piece, on_water) else False
     if enclosed.any():
-        axes.contourf(
+        drawn = axes.contourf(
             lon, lat, enclosed.astype(float), levels=[0.5, 1.5], colors=[_LAND], hatches=["////"],
             zorder=2,
         )  # fmt: skip
+        drawn.set(edgecolor=_NOT_SEARCHED, linewidth=0.0)  # the colour of the hatching
+        style = {"fc": _LAND, "ec": _NOT_SEARCHED, "hatch": "////", "lw": 0.5}
+        axes.fill([], [], label=_NOT_SEARCHED_LABEL, **style)  # for the legend
     return np.asarray(enclosed)
 
 
