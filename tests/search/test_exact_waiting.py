@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.campaigns.waiting_campaign import TOLERANCE, WaitingCase
+from tests.campaigns.waiting_campaign import DEPART, TOLERANCE, WaitingCase
 from tests.search.small import limits, line, make_fields, steady
 from thalweg.kernels.search.edge_departure import OPENING_TOLERANCE
 from thalweg.search import ShipOnNetwork, earliest_arrival
@@ -87,3 +87,17 @@ def test_a_ship_waits_for_a_weaker_current_between_the_times_of_data():
 def test_no_departure_at_a_minute_arrives_earlier(seed):
     case = WaitingCase.random(seed)
     assert case.arrival() <= case.brute_force() + TOLERANCE
+
+
+@pytest.mark.parametrize("seed", [3, 14, 25, 36, 47, 58])
+def test_a_search_of_all_nodes_arrives_as_early_as_one_for_each(seed):
+    case = WaitingCase.random(seed)
+    ship = case.on_network()
+    everywhere = earliest_arrival(ship, start=0, goal=None, depart=DEPART).node_arrival
+    apart = [
+        earliest_arrival(ship, start=0, goal=node, depart=DEPART).arrive
+        for node in range(1, case.network.n_nodes)
+    ]
+    without = earliest_arrival(ship, start=0, goal=None, depart=DEPART, wait=False).node_arrival
+    np.testing.assert_allclose(everywhere[1:], apart, rtol=0.0, atol=TOLERANCE)
+    assert (everywhere <= without).all()

@@ -177,17 +177,19 @@ def solve_earliest_arrival(
     )
     labels, memory = new_labels(len(station)), new_search_workspace(len(station))
     direct = None
-    if query.wait and goal >= 0 and not by_distance:
+    if query.wait and not by_distance:
         # what a ship needs that never waits: waits that make a voyage longer are not looked at
         direct, spent = new_labels(len(station)), new_search_workspace(len(station))
         at_once = query._replace(wait=False)
         label_setting(given.network, given.sea, given.ship, at_once, away, direct, spent)
-        if direct.settled[goal]:
+        if goal < 0:
+            labels = direct._replace(settled=labels.settled)
+        elif direct.settled[goal]:
             labels.cost[goal] = direct.cost[goal] + _ACCURACY_OF_WAITS
     label_setting(given.network, given.sea, given.ship, query, away, labels, memory)
     if direct is not None:
         np.maximum(memory.refused, spent.refused, out=memory.refused)
-        if direct.settled[goal] and not labels.cost[goal] <= direct.cost[goal]:
+        if goal >= 0 and direct.settled[goal] and not labels.cost[goal] <= direct.cost[goal]:
             labels = direct
     return _result(network, station, query, labels, memory)
 

@@ -216,7 +216,8 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
         Lower bound of the distance from each state to the goal [m], obeying the triangle
         inequality with the edge lengths; zeros make the search Dijkstra's.
     labels : NodeLabels
-        Filled; no node may be reached before.
+        Filled. Nodes may be reached before, by ways that this search may improve; a cost without a
+        time is a bound only.
     memory : Workspace
         Work space; its counts are filled: how many nodes were settled, how many edges left them,
         how many of these were sailed because they could be useful, and how many of these were
@@ -236,7 +237,11 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
     world = ShipOnEdges(network, sea, ship)
     nodes, keys, place, counts = memory.nodes, memory.keys, memory.place, memory.counts
     labels.cost[query.start], labels.time[query.start] = 0.0, query.depart
-    size = heap.push_or_lower(nodes, keys, place, 0, query.start, 0.0)
+    size = 0
+    for reached in range(labels.time.shape[0]):
+        if labels.time[reached] < math.inf:
+            key = labels.cost[reached] + distances[reached] * query.per_metre
+            size = heap.push_or_lower(nodes, keys, place, size, reached, key)
     while size > 0:
         node, _, size = heap.pop_least(nodes, keys, place, size)
         labels.settled[node] = True
