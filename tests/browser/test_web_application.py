@@ -305,6 +305,7 @@ def test_choosing_a_route_of_a_front_changes_cards_and_profile(visit):
     page.locator("#objective").select_option("front")
     visit.plan()
     assert page.locator(".routes button").count() >= 2
+    assert re.search(r"No route is [\d.]+ % better in both time and", page.content())
     page.locator("#tab-front").click()
     shown = (
         "({ chart, drawer }) => [chart.routes.chosen.getSource().getFeatures()[0].get('number'),"

@@ -278,7 +278,10 @@ def test_the_summary_of_a_front_states_how_far_its_other_routes_may_be(answer):
     of_front = replace(
         with_bound(answer, 0.976), voyage=replace(answer.voyage, objective="front"), front=front
     )
-    text = "at most 2.4 % from the best possible in time; in fuel, over the front: at most 10.0 %"
+    text = (
+        "at most 2.4 % from the best possible in time; over the front no route is 2.4 % better in "
+    )
+    text += "time and fuel; in fuel alone, at the same time: at most 10.0 %"
     assert quality_text(of_front) == text
     weak = replace(front, values=np.array([2.0]))
     assert quality_text(replace(of_front, front=weak)).endswith("little known (weak bound)")

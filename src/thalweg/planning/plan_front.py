@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 _RENAMED_STAGES = {"polish": "local search"}
 
 
+_HALVINGS = 30  # of a joint gap
+
+
 @dataclass(frozen=True, eq=False)
 class BaselineComparison:
     """The shortest route, sailed at constant settings through the same weather.
@@ -85,9 +88,45 @@ class ParetoFront:
             found.append(max(0.0, (float(value) - low) / float(value)) if known else None)
         return found
 
+    def joint_gaps(
+        self, routes: tuple[Route, ...], *, least_time_h: float = 0.0
+    ) -> list[float | None]:
+        """Return for each route the least share by which none is better in both time and value.
+
+        Parameters
+        ----------
+        least_time_h : No route is faster than this [h], nor than the first time of ``certain``;
+            NaN where it is not known.
+
+        Notes
+        -----
+        The multiplicative epsilon of Zitzler et al. (2003), https://doi.org/10.1109/TEVC.2003.810758,
+        of one route against the certain front: the least e for which no route takes less than
+        (1 - e) of its time at less than (1 - e) of its value.
+        """
+        found: list[float | None] = []
+        for route, value in zip(routes, self.values):
+            known = math.isfinite(certain_at(self.certain, route.time_h)) and value > 0
+            found.append(
+                self._joint_gap(route.time_h, float(value), least_time_h) if known else None
+            )
+        return found
+
+    def _joint_gap(self, time_h: float, value: float, least_time_h: float) -> float:
+        """Return the share by which no route is better in both time and value."""
+        least_time_h = float(np.fmax(least_time_h, self.certain[0, 0]))
+        low, high = 0.0, 1.0
+        for _ in range(_HALVINGS):
+            share = 0.5 * (low + high)
+            time = (1.0 - share) * time_h
+            better = time > least_time_h and certain_at(self.certain, time) < (1.0 - share) * value
+            low, high = (share, high) if better else (low, share)
+        return high
+
     def rows(self, routes: tuple[Route, ...]) -> list[dict[str, Any]]:
         """Return one plain dictionary per route."""
         rows = []
+        joint = self.joint_gaps(routes)
         for number, (route, gap) in enumerate(zip(routes, self.gaps(routes))):
             row = {
                 "number": number + 1,
@@ -99,6 +138,7 @@ class ParetoFront:
                 "distance_nm": route.distance_nm,
                 "waiting_h": route.waiting_h,
                 "gap": gap,
+                "joint_gap": joint[number],
                 "stage": self.stages[number],
                 "way": self.ways[number],
                 "feasible": route.feasible,

@@ -115,6 +115,7 @@ export class ResultView {
     return h("div.proof", {}, h("b", {}, said), h("div.gauge", { role: "img", "aria-label": said }, bar),
       h("details", {}, h("summary", {}, "How this is known"), h("ul.list", {},
         known(plan.lower_bound) ? h("li", {}, `${plan.front ? (plan.objective === "front" ? "No route takes less than" : "No route of any time has less than") : "No route is better than"} ${number(plan.lower_bound, 1)} ${plan.objective_unit}. ${kind}.`) : h("li", {}, `${kind}.`),
+        known(point?.joint_gap) && point.joint_gap < 1 ? h("li", {}, `No route is ${number(Math.ceil(1000 * point.joint_gap) / 10, 1)} % better in both time and ${plan.front.criterion}.`) : null,
         h("li", {}, "The bound does not count penalty areas, shoals and traffic lanes: where these make the way longer, the best possible is nearer than stated."),
         h("li", {}, "Every figure comes from sailing the route again in small steps."))));
   }
