@@ -87,8 +87,8 @@ def test_a_sea_from_a_file_must_last_long_enough(tmp_path, capsys):
     ("wrong", "told"),
     [
         (["--cycles", "-1"], "cycles"),
-        (["--most-wait", "-1"], "most-wait"),
-        (["--most-wait", "nan"], "most-wait"),
+        (["--max-wait", "-1"], "max-wait"),
+        (["--most-wait", "nan"], "max-wait"),
         (["--starts", "0"], "starts"),
         (["--hotel-kw", "-3"], "hotel-kw"),
         (["--calm"], "Choose one"),

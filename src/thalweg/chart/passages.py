@@ -50,8 +50,6 @@ class Passage:
         Least depth of the fairway [m]; NaN where unknown.
     max_draught, max_beam, max_length, max_air_draught : float
         Largest ship allowed [m]; inf where there is no limit or none is known.
-    direction : str
-        "both", or the way ships may pass.
     pilotage : str
         "compulsory", "recommended" or empty where unknown.
     note : str
@@ -77,7 +75,6 @@ class Passage:
     max_beam: float = math.inf
     max_length: float = math.inf
     max_air_draught: float = math.inf
-    direction: str = "both"
     pilotage: str = ""
     note: str = ""
     source: str = ""
@@ -227,7 +224,6 @@ def _passage_of_row(row: dict[str, str]) -> Passage:
         max_beam=number("max_beam_m", math.inf),
         max_length=number("max_length_m", math.inf),
         max_air_draught=number("max_air_draught_m", math.inf),
-        direction=row["direction"],
         pilotage=row["pilotage"],
         note=row["note"],
         source=row["source"],

@@ -73,7 +73,9 @@ def _add_study_options(parser: argparse.ArgumentParser) -> None:
         help="number of cycles of two trips (default: 5); 0: a single trip from FROM to TO",
     )
     parser.add_argument(
-        "--most-wait",
+        "--max-wait",
+        "--most-wait",  # the earlier name
+        dest="max_wait",
         type=float,
         default=12.4,
         metavar="H",
@@ -112,7 +114,7 @@ def run(arguments: argparse.Namespace) -> int:
     trips = _trips(arguments)
     count = arguments.starts or (4 if arguments.north_sea else 1)
     starts = (parse_time(arguments.depart) + np.arange(count) * M2_PERIOD / count).tolist()
-    waits = np.linspace(0.0, arguments.most_wait * HOUR, _WAITS)
+    waits = np.linspace(0.0, arguments.max_wait * HOUR, _WAITS)
     hotel, notes = _hotel_power(arguments), _ship_notes(arguments)
     arguments.progress("simulating the departures")
     study = waiting_study(trips, starts=starts, max_waits=waits, hotel_power=hotel)
@@ -144,7 +146,7 @@ def _check(arguments: argparse.Namespace) -> None:
     for name, value, least in (
         ("--cycles", arguments.cycles, 0),
         ("--starts", 1 if arguments.starts is None else arguments.starts, 1),
-        ("--most-wait", arguments.most_wait, 0.0),
+        ("--max-wait", arguments.max_wait, 0.0),
         ("--hotel-kw", arguments.hotel_kw or 0.0, 0.0),
     ):
         if not (math.isfinite(value) and value >= least):
@@ -241,7 +243,7 @@ def _window(arguments: argparse.Namespace, track: tuple[Position, Position], shi
     """Return for how long departures are needed [s]."""
     longest = _MAX_DURATION_RATIO * float(inverse(*track[0], *track[1])[0]) / float(ship.speeds[-1])
     trips = max(1, 2 * arguments.cycles)
-    return trips * (longest + arguments.most_wait * HOUR)
+    return trips * (longest + arguments.max_wait * HOUR)
 
 
 def _sea(arguments: argparse.Namespace, draught: float) -> Sea:
