@@ -6,7 +6,7 @@ import pytest
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.geodesy import distance
 from thalweg.core.limits import Limits
-from thalweg.planning.pareto.bounds import corners_of_lengths
+from thalweg.planning.pareto.front_bound.least_ways import corners_of_lengths
 from thalweg.planning.plan_front import certain_at
 from thalweg.search.certificate.barrier_domain import StretchToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier

@@ -15,7 +15,7 @@ from thalweg.core.geodesy import distance
 from thalweg.core.limits import Limits
 from thalweg.kernels import codes
 from thalweg.kernels.certificate.cost_conditions import PricedShip
-from thalweg.planning.pareto.certified_costs import raised_by_lines
+from thalweg.planning.pareto.front_bound.certified_front import raised_by_lines
 from thalweg.sea import Sea
 from thalweg.search.certificate.barrier_domain import StretchToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier

@@ -22,10 +22,10 @@ from thalweg.planning.pareto.baseline import (
     undercut_note,
     weather_blind_tracks,
 )
-from thalweg.planning.pareto.bounds import (
+from thalweg.planning.pareto.front_bound.certified_front import WITH_DUES, certified_front
+from thalweg.planning.pareto.front_bound.least_ways import (
     derive_proof,
 )
-from thalweg.planning.pareto.certified_costs import WITH_DUES, certified_front
 from thalweg.planning.pareto.route_names import route_labels
 from thalweg.planning.pareto.search_horizon import shortest_path_length
 from thalweg.planning.pareto.trade_off_context import (

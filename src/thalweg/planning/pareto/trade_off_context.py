@@ -54,6 +54,7 @@ class FrontDetail:
 WHOLE_FRONT = FrontDetail(36, 12, 140, 36, 60, 26, 40, 100)
 #: For the best route by one objective, with a few faster ones for comparison.
 BEST_ROUTE = FrontDetail(6, 3, 24, 4, 0, 0, 12, 12)
+_DAY: Final = 24.0 * HOUR
 _ONE_BEST: Final = ("fuel", "energy", "cost", "co2")
 
 
@@ -97,8 +98,14 @@ class TradeOffContext:
         """
         voyage = self.context.voyage
         one = voyage.objective in _ONE_BEST and voyage.method == "default"
-        steady = math.isinf(self.context.data_end)
+        steady = math.isinf(self.context.data_end) and not self._sea_changes
         return BEST_ROUTE if one and steady else WHOLE_FRONT
+
+    @cached_property
+    def _sea_changes(self) -> bool:
+        """Whether the sea has times between two that are a day apart: tides, functions of time."""
+        depart = self.context.voyage.earliest_departure
+        return len(self.context.sea.times(depart, depart + _DAY)) > 2
 
     @property
     def is_refined(self) -> bool:

@@ -249,13 +249,36 @@ def strongest_current_in_data(context: PlanningContext, route: Route) -> tuple[f
     -------
     tuple of float and str : The text is empty where the data themselves were read.
     """
-    currents = tuple(c for c in context.needs.channels if c in (CURRENT_EAST, CURRENT_NORTH))
-    if len(currents) < 2:
+    passage = _passage_of_currents(context, route)
+    if passage is None:
         return 0.0, ""
-    passage = replace(_passage(context, route), channels=currents)
     domain = BarrierDomain.around(passage, _CELLS_FOR_CURRENT)
     domain = domain or BarrierDomain.of_globe(passage, _CELLS_FOR_CURRENT)
     return domain.strongest_current, domain.sampling
+
+
+def currents_within_reach(
+    context: PlanningContext, route: Route
+) -> tuple[StretchToBound, BarrierDomain] | None:
+    """Return the currents in all water from which a route of some time can be sailed.
+
+    Parameters
+    ----------
+    route : A route that takes as long as any that counts.
+
+    Returns
+    -------
+    tuple or None : None without currents, near a pole and across half of the globe.
+    """
+    passage = _passage_of_currents(context, route)
+    domain = None if passage is None else BarrierDomain.around(passage, _CELLS_FOR_CURRENT)
+    return None if passage is None or domain is None else (passage, domain)
+
+
+def _passage_of_currents(context: PlanningContext, route: Route) -> StretchToBound | None:
+    """Return the passage of a route with currents as all there is in the sea; None without."""
+    currents = tuple(c for c in context.needs.channels if c in (CURRENT_EAST, CURRENT_NORTH))
+    return None if len(currents) < 2 else replace(_passage(context, route), channels=currents)
 
 
 def _contradicted(found: TimeCertificate, known: float, *, by_length: bool) -> str:

@@ -180,6 +180,13 @@ class BarrierDomain:
         return None
 
     @property
+    def axes(self) -> tuple[FloatArray, FloatArray]:
+        """Latitudes and longitudes of the nodes of the raster [deg]."""
+        _, rows, columns, _ = self.raster.values.shape
+        lat0, dlat, lon0, dlon = self.raster.corner
+        return lat0 + dlat * np.arange(rows), lon0 + dlon * np.arange(columns)
+
+    @property
     def cell_height(self) -> float:
         """Height of a cell of the raster [m]."""
         return float(self.raster.corner[1]) * 111_132.0
@@ -200,9 +207,7 @@ class BarrierDomain:
 
         Cells of the raster that are not inside all over keep their speed all over.
         """
-        _, rows, columns, _ = self.raster.values.shape
-        lat0, dlat, lon0, dlon = self.raster.corner
-        lat, lon = lat0 + dlat * np.arange(rows), lon0 + dlon * np.arange(columns)
+        lat, lon = self.axes
         inside = np.pad(cells_inside(zones, lat, lon), 1, constant_values=True)
         nodes = inside[1:, 1:] & inside[1:, :-1] & inside[:-1, 1:] & inside[:-1, :-1]
         values, channel = self.raster.values.copy(), self.raster.channel_index[SPEED_FIELD]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,7 +13,12 @@ from thalweg.core.pareto_fronts import lower_hull
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.kernels.certificate.cost_conditions import PricedShip
-from thalweg.planning.pareto.bounds import (
+from thalweg.planning.pareto.front_bound.fair_current_lines import (
+    WITH_FAIR_CURRENTS,
+    fair_current_lines,
+)
+from thalweg.planning.pareto.front_bound.least_ways import (
+    LeastWay,
     certain_front,
     least_ways,
     passes_counted_canal,
@@ -24,6 +29,7 @@ from thalweg.planning.pareto.trade_off_context import (
     RefereedCandidate,
     TradeOffContext,
 )
+from thalweg.planning.plan_front import certain_at
 from thalweg.planning.planning_context import greatest_speed_of
 from thalweg.planning.single.certified_bound import KEEPING_OUT, TABLE_MARGIN, kept_out
 from thalweg.search import table_bounds
@@ -84,15 +90,59 @@ def certified_front(
         kind = f"{kind}; {UNTIL_DATA_END}"
     if kept_out(context.chart, routes):
         kind = f"{kind}; for routes {KEEPING_OUT}"
-    if trade_off.interrupt_guard.stopped() or not context.proof_seconds:
+    if trade_off.interrupt_guard.stopped():
         return CertifiedFront(points, kind, allowed)
+    fair, until_fair, least = fair_current_lines(trade_off, routes)
+    by_currents = _not_before(raised_by_lines(points, fair, until_fair), least)
+    by_currents = _with_priced_time(trade_off, by_currents, until_fair, ways, current)
+    if _gains(by_currents, points):
+        kind = f"{kind}; {WITH_FAIR_CURRENTS}"
+    if not context.proof_seconds:
+        return CertifiedFront(by_currents, kind, allowed)
     lines, until, sampling = certified_lines(trade_off, ordered, seconds=context.proof_seconds)
-    raised = raised_by_lines(points, lines, until)
-    gain = raised[1] - np.interp(raised[0], *points)
-    if not gain.max(initial=0.0) > _LEAST_GAIN * raised[1].max(initial=0.0):
-        return CertifiedFront(points, kind, allowed)
+    if fair.size and lines.size:
+        lines, until = np.append(lines, fair, axis=1), min(until, until_fair)
+    raised = _not_before(raised_by_lines(points, lines, until), least)
+    if not _gains(raised, by_currents):
+        return CertifiedFront(by_currents, kind, allowed)
     kind = _KIND.format(until=until) + (f", in {sampling}" if sampling else "") + f"; {kind}"
     return CertifiedFront(raised, kind, min(allowed, until))
+
+
+def _with_priced_time(
+    trade_off: TradeOffContext,
+    certain: FloatArray,
+    until: float,
+    ways: Sequence[LeastWay],
+    current: float,
+) -> FloatArray:
+    """Return a certain front where routes slower than a time pay for that time as well [h]."""
+    price = trade_off.objective.prices.time
+    later = certain[0] > until
+    if not (price > 0.0 and 0.0 < until < certain[0, -1] * (1.0 + _AFTER) and later.any()):
+        return certain
+    unpriced = replace(trade_off.objective, prices=replace(trade_off.objective.prices, time=0.0))
+    least = certain_front(replace(trade_off, objective=unpriced), ways, current)[1].min()
+    raised = certain.copy()
+    raised[1, later] = np.maximum(certain[1, later], least + price * HOUR * until)
+    return raised
+
+
+def _gains(raised: FloatArray, points: FloatArray) -> bool:
+    """Return whether a certain front is clearly above an earlier one."""
+    gain = raised[1] - np.interp(raised[0], points[0], points[1])
+    enough = _LEAST_GAIN * raised[1].max(initial=0.0)
+    later = raised.size and raised[0, 0] > points[0, 0] * (1.0 + _LEAST_GAIN)
+    return bool(later or gain.max(initial=0.0) > enough)
+
+
+def _not_before(certain: FloatArray, least: float) -> FloatArray:
+    """Return a certain front without the times before the least one that is possible [h]."""
+    if not certain.size or not certain[0, 0] < least < certain[0, -1]:
+        return certain
+    after = certain[0] > least
+    first = np.array([[least], [certain_at(certain, least)]])
+    return np.append(first, certain[:, after], axis=1)
 
 
 def certified_lines(

@@ -1,0 +1,200 @@
+"""The strongest fair current, towards the goal, that a ship can meet at each time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from thalweg.core.geodesy import distance, unit_vectors
+from thalweg.core.types import BoolArray, FloatArray
+from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
+from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
+from thalweg.search.certificate.barrier_mesh import metres_per_degree
+
+_RADIUS = 6.371e6  # scale of a height along the way [m]; its slope is measured on the ellipsoid
+_UNREACHED = -math.inf
+_SIDES = slice(None, -1), slice(1, None)  # of cells: nodes before and after
+
+
+@dataclass(frozen=True, eq=False)
+class FairCurrents:
+    """The strongest fair currents in a domain, for each step between times of the data.
+
+    A fair current is what a current adds to the height of a ship (`heights_along`) in a second.
+
+    Attributes
+    ----------
+    times : Since departure [s], (m + 1,): the first is 0.
+    before : Least times from the cells to the goal [s], ascending, (n,).
+    first, last : Strongest fair current [m/s] at the begin and at the end of each step, in the
+        cells up to each of ``before``, (m, n); -inf where a ship is in none.
+    """
+
+    times: FloatArray
+    before: FloatArray
+    first: FloatArray
+    last: FloatArray
+
+    def of_voyages(self, hours: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return the strongest fair currents that voyages of some lengths can meet.
+
+        Parameters
+        ----------
+        hours : Durations [s], (k,), up to the last of ``times``.
+
+        Returns
+        -------
+        seconds, first, last : float64 array (k, m)
+            Length of each step within the voyage [s], 0 after it, and the strongest fair current
+            at its begin and at its end [m/s]; linear between is an upper bound.
+        """
+        begin, end = self.times[:-1], self.times[1:]
+        left = hours[:, None] - begin
+        seconds = np.clip(left, 0.0, end - begin)
+        place = np.searchsorted(self.before, left, side="right") - 1
+        step = np.broadcast_to(np.arange(begin.size), place.shape)
+        first, last = (
+            np.where(place < 0, _UNREACHED, values[step, place])
+            for values in (self.first, self.last)
+        )
+        with np.errstate(invalid="ignore"):
+            cut = first + (last - first) * (seconds / (end - begin))
+        return seconds, first, np.where(np.isfinite(first) & np.isfinite(last), cut, last)
+
+
+@dataclass(frozen=True, eq=False)
+class HeightField:
+    """A function of the position, bilinear on the cells of a raster, that rises to the goal.
+
+    Attributes
+    ----------
+    rise : From the start to the goal [m].
+    east, north : Least and greatest slope in each cell, (2, rows, columns).
+    """
+
+    rise: float
+    east: FloatArray
+    north: FloatArray
+
+    @property
+    def steepest(self) -> FloatArray:
+        """The greatest slope in each cell, (rows, columns)."""
+        return np.hypot(np.abs(self.east).max(axis=0), np.abs(self.north).max(axis=0))
+
+
+def heights_along(passage: StretchToBound, domain: BarrierDomain) -> list[HeightField]:
+    """Return heights: by the length along the great circle, and by the distance from the goal."""
+    lat, lon = domain.axes
+    here = np.meshgrid(lat, lon, indexing="ij")
+    start, goal = unit_vectors(*np.array([passage.start, passage.goal]).T)
+    ahead = goal - (goal @ start) * start
+    ahead /= max(float(np.linalg.norm(ahead)), 1e-12)
+    there = unit_vectors(*here)
+    along = _RADIUS * np.arctan2(there @ ahead, there @ start)
+    nearer = -np.asarray(distance(*here, *passage.goal))
+    return [_height_field(values, passage, lat, lon) for values in (along, nearer)]
+
+
+def _height_field(
+    values: FloatArray, passage: StretchToBound, lat: FloatArray, lon: FloatArray
+) -> HeightField:
+    north, east = metres_per_degree(lat)
+    by_east = np.diff(values, axis=1) / np.diff(lon)
+    by_north = np.diff(values, axis=0) / np.diff(lat)[:, None]
+    slopes_east = [by_east[a] / east[b, None] for a in _SIDES for b in _SIDES]
+    slopes_north = [by_north[:, a] / north[b, None] for a in _SIDES for b in _SIDES]
+    ends = [_bilinear(values, lat, lon, *end) for end in (passage.start, passage.goal)]
+    return HeightField(
+        ends[1] - ends[0],
+        np.array([np.min(slopes_east, axis=0), np.max(slopes_east, axis=0)]),
+        np.array([np.min(slopes_north, axis=0), np.max(slopes_north, axis=0)]),
+    )
+
+
+def _bilinear(values: FloatArray, lat: FloatArray, lon: FloatArray, y: float, x: float) -> float:
+    east = (x - lon[0]) % 360.0 + lon[0]
+    j = min(max(int(np.searchsorted(lat, y, side="right")) - 1, 0), lat.size - 2)
+    i = min(max(int(np.searchsorted(lon, east, side="right")) - 1, 0), lon.size - 2)
+    b = (y - lat[j]) / (lat[j + 1] - lat[j])
+    a = (east - lon[i]) / (lon[i + 1] - lon[i])
+    low, high = (values[k, i] * (1.0 - a) + values[k, i + 1] * a for k in (j, j + 1))
+    return float(low * (1.0 - b) + high * b)
+
+
+def strongest_fair_currents(
+    passage: StretchToBound,
+    domain: BarrierDomain,
+    fastest: float,
+    height: HeightField,
+    areas: Sequence[BoolArray],
+) -> tuple[float, list[FairCurrents]]:
+    """Return the steepest slope in reach, and the strongest fair currents in parts of a domain.
+
+    Parameters
+    ----------
+    passage : With one departure.
+    domain : All water that the ship can reach in the known time.
+    fastest : No ship is faster over ground [m/s].
+    areas : Cells of the raster, (rows, columns), for which the currents are taken together.
+
+    Notes
+    -----
+    A current is a mean of those at the corners of its cell, and linear between the times of the
+    data; the slopes of a bilinear function are between those on opposite sides of a cell. A ship
+    is in a cell at a time if its distances from the start and to the goal allow it at the greatest
+    speed over ground.
+    """
+    lat, lon = domain.axes
+    middle = np.meshgrid(0.5 * (lat[1:] + lat[:-1]), 0.5 * (lon[1:] + lon[:-1]), indexing="ij")
+    half = _half_diagonals(lat, lon)[:, None]
+    from_start, to_goal = (
+        np.maximum(np.asarray(distance(*end, *middle)) - half, 0.0) / fastest
+        for end in (passage.start, passage.goal)
+    )
+    in_reach = from_start + to_goal <= passage.known
+    steepest = float(height.steepest[in_reach].max(initial=0.0))
+    times = np.clip(domain.raster.times, 0.0, passage.known)
+    times = np.unique([0.0, *times, passage.known])
+    greatest = [_fair_at(domain, float(time), height) for time in times]
+    order = np.flatnonzero(in_reach)
+    order = order[np.argsort(to_goal.ravel()[order])]
+    found = []
+    for area in areas:
+        first, last = (np.empty((times.size - 1, order.size)) for _ in range(2))
+        for step, end in enumerate(times[1:]):
+            here = area.ravel()[order] & (from_start.ravel()[order] <= end)
+            for values, at in ((first, step), (last, step + 1)):
+                fair = np.where(here, greatest[at].ravel()[order], _UNREACHED)
+                values[step] = np.maximum.accumulate(fair)
+        found.append(FairCurrents(times, to_goal.ravel()[order], first, last))
+    return steepest, found
+
+
+def _half_diagonals(lat: FloatArray, lon: FloatArray) -> FloatArray:
+    """Return half the diagonal of the cells of each row [m], or a little more."""
+    north, east = metres_per_degree(lat)
+    width = np.maximum(east[1:], east[:-1]) * (lon[1] - lon[0])
+    tall = np.maximum(north[1:], north[:-1]) * np.diff(lat)
+    return np.asarray(0.5 * 1.01 * np.hypot(width, tall))
+
+
+def _fair_at(domain: BarrierDomain, time: float, height: HeightField) -> FloatArray:
+    """Return the strongest fair current in each cell at a time [m/s]; -inf where none is known."""
+    raster = domain.raster
+    k = int(np.clip(np.searchsorted(raster.times, time) - 1, 0, raster.times.size - 2))
+    share = (time - raster.times[k]) / (raster.times[k + 1] - raster.times[k])
+    share = min(max(float(share), 0.0), 1.0)
+    values = raster.values[k + (share == 1.0)].astype(float)
+    if 0.0 < share < 1.0:
+        values = values * (1.0 - share) + raster.values[k + 1] * share
+    east = values[..., raster.channel_index[CURRENT_EAST]]
+    north = values[..., raster.channel_index[CURRENT_NORTH]]
+    best = np.full(height.east.shape[1:], _UNREACHED)
+    for rows in _SIDES:
+        for columns in _SIDES:
+            fair = (east[rows, columns] * height.east).max(axis=0)
+            best = np.fmax(best, fair + (north[rows, columns] * height.north).max(axis=0))
+    return np.asarray(best + float(domain.margins[CURRENT_EAST]) * height.steepest)
