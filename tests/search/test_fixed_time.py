@@ -193,3 +193,20 @@ def test_a_ship_sails_the_globe_network_through_a_canal_and_round_when_it_is_for
     panama = chart.canals[1]
     assert panama.transit_time < found[0] < panama.transit_time + 500 * 1852 / speed
     assert found[1] > 10.0 * found[0]
+
+
+def test_a_useless_edge_that_is_blocked_further_on_is_not_passed():
+    """An edge is given up at its tail as slower than a canal; high waves close it 1 km on."""
+    lat, lon = geodesy.direct(0.0, 0.0, np.pi / 2, np.array([0.0, 4000.0, 8000.0]))
+    network = make_network(lat, lon, [(0, 1), (0, 2), (1, 2)], pieces=8)
+    network = with_canal(network, [(0, 1), (1, 2)], 750.0)
+    first = int(network.samples.station_a[network.samples.ptr[1]])  # of the edge from 0 to 2
+    current, waves = np.zeros((2, network.n_stations, TIMES.size))
+    current[0], waves[first] = -3.0, 9.0
+    fields = make_fields(
+        network, TIMES, current_east=current, current_north=0.0, wave_height_channel=waves
+    )
+    depart = TIMES[1] - 100.0  # soon before a time of the data, at which a wait may be of use
+    result = search(network, fields, 4.0, limits(wave=2.0), depart=depart)
+    assert result.path.tolist() == [0, 1, 2]
+    assert result.cost == pytest.approx(1500.0)

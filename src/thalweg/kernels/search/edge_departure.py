@@ -280,8 +280,8 @@ def wait_for_edge(world, edge, tail, k, at_once, terms, work):
     departure, best, found = t, math.inf, status
     latest = min(until, sea.times[-1])
     s, then, now = t, arrival, status
-    if now == OK:  # the arrival may be a lower bound only
-        then = _march_at(world, edge, tail, k, t, work)[0]
+    if now == OK:  # the arrival may be a lower bound only, of an edge that is blocked further on
+        then, now, _ = _march_at(world, edge, tail, k, t, work)
     for _ in range(_MOST_MARCHES):
         useless = t + min(best, enough) - factor * least_time
         if s >= useless or s > latest:
