@@ -213,6 +213,16 @@ def test_waves_above_the_limit_for_less_than_a_minute_are_found(wait, allowed, t
         assert found.value == pytest.approx(4.0 + (8356.0 - wait) / 600.0, abs=tolerance)
 
 
+@pytest.mark.filterwarnings("error")
+def test_water_without_a_bed_is_deep_enough():
+    """The differences of its depths were once of infinities, with a warning of numpy."""
+    sea = Sea.from_functions({"sea_floor_depth_below_geoid": lambda t, a, o: np.inf + 0.0 * a})
+    route = evaluate(
+        Track([0, 0], [0, 0.5], 0.0), ship=Ship.simple(speed_kn=8.0, draught_m=5.0), sea=sea
+    )
+    assert route.feasible
+
+
 def test_a_gap_is_reported_with_its_position():
     sea = Sea.from_functions(
         {UE: lambda t, a, o: np.where(o > 0.2, np.nan, 0.5), UN: lambda t, a, o: 0.0 * a}

@@ -110,7 +110,8 @@ def _doubtful_intervals(
     smooth = between & (points.charted[1:] == points.charted[:-1])  # each is the least of a piece
     doubt = np.full(len(between), -np.inf)
     for excess in limit_excesses(sailed.world, checked.sampled, checked.depth, min_ukc):
-        change = np.where(smooth, np.abs(np.diff(excess)), 0.0)
+        with np.errstate(invalid="ignore"):  # without a bound of the depth
+            change = np.where(smooth, np.abs(np.diff(excess)), 0.0)
         beside = np.fmax(np.append(0.0, change[:-1]), np.append(change[1:], 0.0))
         change, high = np.fmax(change, beside), np.maximum(excess[:-1], excess[1:])
         known = between & (high <= 0.0) & (change > 0.0)
