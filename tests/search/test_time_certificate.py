@@ -75,6 +75,21 @@ def test_in_a_uniform_current_the_bound_is_that_of_the_current_triangle(east, no
     assert 0.97 * best < found.value <= 1.001 * best  # the course is that of a plane
 
 
+def test_a_jet_beyond_the_ellipse_of_the_ships_speed_is_in_the_bound():
+    """Once no faster than straight on: the region was that of ships that never meet the jet."""
+    ends, speed, jet, edge = ((0.0, 0.0), (0.0, 10.0)), 2.0, 2.0, 1.61
+    sea = sea_of(lambda t, y, x: np.where(np.abs(y - 1.8) < 0.2, jet, 0.0) + 0 * x,
+                 lambda t, y, x: 0 * x)  # fmt: skip
+    straight = float(distance(*ends[0], *ends[1]))
+    by_jet = 2.0 * float(distance(0.0, 0.0, edge, 0.0)) / speed + straight / (speed + jet)
+    passage = StretchToBound(
+        sea, None, ship_of_one_speed(speed), CURRENTS, *ends, depart=1e9, known=straight / speed
+    )
+    domain = BarrierDomain.around(passage, 100)
+    assert domain.fastest == pytest.approx(speed + jet)
+    assert time_certificate.certify_time(passage, seconds=1.0).value < by_jet < passage.known
+
+
 @pytest.mark.slow
 def test_in_a_current_that_turns_with_the_tide_the_bound_follows_the_times():
     """A uniform current u(t): the ship arrives when the drift and V t together make the way."""

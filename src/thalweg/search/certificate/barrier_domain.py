@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from thalweg.core.geodesy import direct, distance, longitude_difference
+from thalweg.core.geodesy import MEAN_RADIUS, direct, distance, longitude_difference
 from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH, SPEED_FIELD
 from thalweg.kernels.leg.raster_sampling import RasterArrays
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier
 from thalweg.search.certificate.barrier_raster import (
+    BarrierRaster,
     RasterRequest,
     freeze_barrier_raster,
     is_uniform,
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from thalweg.sea import Sea
 
 _MARGIN: Final = 1.02
+_MARGIN_OF_HALVES: Final = 1.1  # of a search that reads much of the sea: one is mostly enough
+_ATTEMPTS: Final = 8  # to find the greatest speed in the domain of that speed
 _CELLS_FOR_SPEED: Final = 60  # of functions, while the greatest speed over ground is sought
 _STEPS_ROUND_ELLIPSE: Final = 73
 _HALVINGS: Final = 24  # of the way to the ellipse, which leave a metre or two, outside of it
@@ -120,14 +123,18 @@ class BarrierDomain:
         mean = passage.length / passage.known  # the known route is as fast somewhere
         first = max(mean, passage.ship.top_speed if math.isfinite(passage.ship.top_speed) else 0.0)
         first = max(first, fastest, passage.canal_speed(max(first, fastest)))
+        enough = _speed_within_half(passage, min(cells, _CELLS_FOR_SPEED), first)
+        if enough is None:
+            return None
         found = None
         for wanted in sorted({min(cells, _CELLS_FOR_SPEED), cells}):
-            found = cls._within_reach(passage, wanted, first)
+            found = cls._within_reach(passage, wanted, enough, first)
             if found is None:
                 return None
             if abs(max(found.raster.values.shape[1:3]) - 1 - wanted) > 1:
                 break  # the data decide on the cells
             first = max(mean, found.fastest)
+            enough = max(enough, first)
         return found
 
     @classmethod
@@ -143,22 +150,25 @@ class BarrierDomain:
         flows = tuple(c for c in passage.channels if c in (CURRENT_EAST, CURRENT_NORTH))
         request = RasterRequest(passage.sea, flows, _GLOBE, period, cells, ship.speed_field)
         frozen = freeze_barrier_raster(request)
-        top = ship.top_speed
-        if ship.speed_field is not None:
-            top = _greatest(frozen.arrays, SPEED_FIELD)
-        speed = top + _strongest_current(frozen.arrays, frozen.margins)
-        speed = max(speed, passage.canal_speed(speed))
+        top, speed = _greatest_speeds(passage, frozen)
         sampling = frozen.sampling if flows or ship.speed_field is not None else ""
         return cls(frozen.arrays, sampling, speed, replace(ship, top_speed=top), frozen.margins)
 
     @classmethod
     def _within_reach(
-        cls, passage: StretchToBound, cells: int, fastest: float
+        cls, passage: StretchToBound, cells: int, fastest: float, least: float
     ) -> BarrierDomain | None:
-        """Return the domain that a ship can reach by its greatest speed over ground in it."""
+        """Return the domain that a ship can reach by its greatest speed over ground in it.
+
+        Parameters
+        ----------
+        fastest : Speed over ground [m/s] that no route surpasses. Where the data say that it is
+            less in the whole domain, the domain of that speed is looked at in turn.
+        least : Speed over ground [m/s] below which the domain is not made smaller.
+        """
         ship = passage.ship
         period = passage.depart, passage.depart + passage.departures + passage.known
-        for _ in range(8):
+        for attempt in range(_ATTEMPTS):
             box = _box_of_routes(passage, fastest * _MARGIN)
             if box is None and is_uniform(passage.sea):
                 box = _round_box(passage)
@@ -168,15 +178,14 @@ class BarrierDomain:
                 passage.sea, passage.channels, box, period, cells, ship.speed_field
             )
             frozen = freeze_barrier_raster(request)
-            top = ship.top_speed
-            if ship.speed_field is not None:
-                top = _greatest(frozen.arrays, SPEED_FIELD)
-            speed = top + _strongest_current(frozen.arrays, frozen.margins)
-            speed = max(speed, passage.canal_speed(speed))
-            if speed <= fastest * _MARGIN:
+            top, speed = _greatest_speeds(passage, frozen)
+            # samples may miss what others have seen
+            certain = not frozen.sampling or bool(frozen.margins.any())
+            is_least = fastest <= max(speed, least) * _MARGIN or attempt >= _ATTEMPTS // 2
+            if speed <= fastest * _MARGIN and (is_least or not certain):
                 ship = replace(ship, top_speed=top)
                 return cls(frozen.arrays, frozen.sampling, speed, ship, frozen.margins)
-            fastest = speed
+            fastest = max(speed, least)
         return None
 
     @property
@@ -213,6 +222,70 @@ class BarrierDomain:
         values, channel = self.raster.values.copy(), self.raster.channel_index[SPEED_FIELD]
         values[..., channel] *= np.where(nodes, factor, 1.0)
         return replace(self, raster=self.raster._replace(values=values))
+
+
+def _greatest_speeds(passage: StretchToBound, frozen: BarrierRaster) -> tuple[float, float]:
+    """Return the greatest speeds through water and over ground on a raster [m/s]."""
+    top = passage.ship.top_speed
+    if passage.ship.speed_field is not None:
+        top = _greatest(frozen.arrays, SPEED_FIELD)
+    speed = top + _strongest_current(frozen.arrays, frozen.margins)
+    return top, max(speed, passage.canal_speed(speed))
+
+
+def _speed_within_half(passage: StretchToBound, cells: int, fastest: float) -> float | None:
+    """Return a speed over ground [m/s] that no route surpasses; None where none is found.
+
+    At every moment a ship is within half of the known time of the start or of the goal. So it is
+    never faster than a speed that is nowhere surpassed as far from them as that speed leads in half
+    of the known time. The greatest speed in the ellipse of `_box_of_routes` alone would not do: a
+    ship may leave it for a current outside.
+
+    Parameters
+    ----------
+    cells : Cells of the raster along the longer side of that box where the data are no finer.
+    fastest : Speed over ground [m/s] from which it is sought upwards.
+    """
+    ship, sea = passage.ship, passage.sea
+    flows = tuple(c for c in passage.channels if c in (CURRENT_EAST, CURRENT_NORTH))
+    if is_uniform(sea) or not (flows or ship.speed_field):
+        return fastest
+    period = passage.depart, passage.depart + passage.departures + passage.known
+    for _ in range(_ATTEMPTS):
+        box = _box_of_halves(passage, fastest * _MARGIN_OF_HALVES)
+        inner = _box_of_routes(passage, fastest)
+        if inner is None:
+            return None
+        larger = max(box[1] - box[0], box[3] - box[2]) / max(
+            inner[1] - inner[0], inner[3] - inner[2]
+        )
+        wanted = math.ceil(cells * larger)
+        request = RasterRequest(sea, flows, box, period, wanted, ship.speed_field)
+        speed = _greatest_speeds(passage, freeze_barrier_raster(request))[1]
+        if speed <= fastest * _MARGIN_OF_HALVES:
+            return max(fastest, speed)
+        fastest = speed
+    return None
+
+
+def _box_of_halves(passage: StretchToBound, speed: float) -> tuple[float, float, float, float]:
+    """Return a box round the positions within half of the known time of an end at a speed [m/s].
+
+    South, north, west and east [deg], not beyond the area of the chart.
+    """
+    radius = math.degrees(1.01 * 0.5 * speed * passage.known / MEAN_RADIUS)
+    south, north, _, _ = _GLOBE if passage.chart is None else passage.chart.area.array()
+    ends = [lat for lat, _ in (passage.start, passage.goal)]
+    south = max(min(ends) - radius, south, _GLOBE[0])
+    north = min(max(ends) + radius, north, _GLOBE[1])
+    beyond = 180.0
+    if radius + max(np.abs(ends)) < _GLOBE[1]:
+        shrink = math.cos(math.radians(max(np.abs(ends))))
+        beyond = math.degrees(math.asin(math.sin(math.radians(radius)) / shrink))
+    east = longitude_difference(passage.goal[1], passage.start[1])
+    half = min(0.5 * abs(east) + beyond, 180.0)
+    middle = passage.start[1] + 0.5 * east
+    return south, north, middle - half, middle + half
 
 
 def _greatest(raster: RasterArrays, channel: int) -> float:
