@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -123,7 +124,7 @@ class BarrierDomain:
         mean = passage.length / passage.known  # the known route is as fast somewhere
         first = max(mean, passage.ship.top_speed if math.isfinite(passage.ship.top_speed) else 0.0)
         first = max(first, fastest, passage.canal_speed(max(first, fastest)))
-        enough = _speed_within_half(passage, min(cells, _CELLS_FOR_SPEED), first)
+        enough = _unsurpassed_speed(passage, min(cells, _CELLS_FOR_SPEED), first)
         if enough is None:
             return None
         found = None
@@ -231,6 +232,38 @@ def _greatest_speeds(passage: StretchToBound, frozen: BarrierRaster) -> tuple[fl
         top = _greatest(frozen.arrays, SPEED_FIELD)
     speed = top + _strongest_current(frozen.arrays, frozen.margins)
     return top, max(speed, passage.canal_speed(speed))
+
+
+@dataclass(frozen=True)
+class _FoundSpeed:
+    """A speed over ground that no route of a passage surpasses, and for which passage it is."""
+
+    passage: tuple[object, ...]
+    cells: int
+    known: float
+    speed: float
+
+
+#: the last one found in each sea: one plan asks several times
+_FOUND_SPEEDS: WeakKeyDictionary[Sea, _FoundSpeed] = WeakKeyDictionary()
+
+
+def _unsurpassed_speed(passage: StretchToBound, cells: int, fastest: float) -> float | None:
+    """Return what `_speed_within_half` finds, once for a passage and all shorter known times."""
+    ship, chart = passage.ship, passage.chart
+    water = None if chart is None else (tuple(chart.area.array()), tuple(chart.canals))
+    key = (
+        passage.start, passage.goal, passage.depart, passage.departures, water, ship.top_speed,
+        ship.speed_field, tuple(c for c in passage.channels if c in (CURRENT_EAST, CURRENT_NORTH)),
+    )  # fmt: skip
+    last = _FOUND_SPEEDS.get(passage.sea)
+    holds = last is not None and last.passage == key and last.known >= passage.known
+    if last is not None and holds and last.cells >= cells:
+        return max(last.speed, fastest)
+    speed = _speed_within_half(passage, cells, fastest)
+    if speed is not None:
+        _FOUND_SPEEDS[passage.sea] = _FoundSpeed(key, cells, passage.known, speed)
+    return speed
 
 
 def _speed_within_half(passage: StretchToBound, cells: int, fastest: float) -> float | None:
