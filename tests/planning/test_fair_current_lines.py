@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 from scipy.optimize import linprog
-from thalweg.ship import PerformanceTable, TableError, TablePart
 
 from tests.worlds.plane import METRES_PER_LON, T0, Plane
 from thalweg import Chart, Sea, Ship, Voyage, plan
@@ -17,6 +16,7 @@ from thalweg.planning.plan_front import certain_at
 from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier
 from thalweg.search.certificate.fair_currents import heights_along, strongest_fair_currents
+from thalweg.ship import PerformanceTable, TableError, TablePart
 
 HOUR, TIDE = 3600.0, 44_714.0
 SPEEDS = np.array([2.0, 4.0, 6.0])

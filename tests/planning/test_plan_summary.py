@@ -285,3 +285,16 @@ def test_the_summary_of_a_front_states_how_far_its_other_routes_may_be(answer):
     assert quality_text(of_front) == text
     weak = replace(front, values=np.array([2.0]))
     assert quality_text(replace(of_front, front=weak)).endswith("little known (weak bound)")
+
+
+def test_least_fuel_states_how_far_it_may_be_from_routes_that_take_no_longer(answer):
+    time, value = answer.best.time_h, 2.0
+    certain = np.array([[0.5 * time, time, 1.01 * time, 9 * time], [2.5, 1.99, 1.2, 1.1]])
+    front = ParetoFront("fuel", "t", np.array([value]), ("exact",), ("open sea",), certain=certain)
+    of_fuel = replace(
+        with_bound(answer, 0.6), voyage=replace(answer.voyage, objective="fuel"), front=front
+    )
+    text = "at most 40.0 % from the best possible; at most 0.5 % from the best that takes no longer"
+    assert quality_text(of_fuel) == text
+    near = replace(front, values=np.array([2.0]), certain=certain - [[0.0], [0.8]])
+    assert quality_text(replace(of_fuel, front=near)).endswith("% from the best possible")

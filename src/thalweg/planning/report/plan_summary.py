@@ -29,6 +29,7 @@ from thalweg.route.indicator_columns import indicator_value
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData
+    from thalweg.planning.plan_front import ParetoFront
     from thalweg.sea import Sea
 
 MAX_LINES = 12  #: of a summary with its notes
@@ -36,6 +37,7 @@ MAX_LINES = 12  #: of a summary with its notes
 _STATED = ("No depth in the data",)
 _HELD = {"speed": "speed through water", "power": "power", "ground": "speed over ground"}
 _WEAK: Final = 0.5  # gap from which a bound says little of a route
+_CLEARLY_LESS: Final = 0.01  # of a gap, for which another one is stated beside it
 _LEAST = {
     "comfort": "least motion sickness",
     "encounters": "fewest encounters",
@@ -153,8 +155,10 @@ def quality_text(plan: PlanData) -> str:
 
 def _quality_of_front(plan: PlanData) -> str:
     """Return how far the other routes of a front can be from the best possible, if asked for."""
-    if plan.voyage.objective != "front" or plan.front is None:
+    if plan.front is None:
         return ""
+    if plan.voyage.objective != "front":
+        return _quality_at_this_time(plan, plan.front)
     gaps = [gap for gap in plan.front.gaps(plan.routes) if gap is not None]
     joint = plan.front.joint_gaps(plan.routes, least_time_h=plan.proof.certain)
     both = [gap for gap in joint if gap is not None]
@@ -168,6 +172,14 @@ def _quality_of_front(plan: PlanData) -> str:
         f"at most {_percent(max(gaps))} %" if max(gaps) <= _WEAK else "little known (weak bound)"
     )
     return f"{text}; in {value} alone, at the same time: {alone}"
+
+
+def _quality_at_this_time(plan: PlanData, front: ParetoFront) -> str:
+    """Return how far the best route can be from those that take no longer, if that is less."""
+    gaps = [gap for gap, one in zip(front.gaps(plan.routes), plan.routes) if one is plan.best]
+    if not gaps or gaps[0] is None or gaps[0] > plan.gap - _CLEARLY_LESS:
+        return ""
+    return f"; at most {_percent(gaps[0])} % from the best that takes no longer"
 
 
 def _percent(share: float) -> str:
