@@ -291,9 +291,7 @@ def test_least_fuel_states_how_far_it_may_be_from_routes_that_take_no_longer(ans
     time, value = answer.best.time_h, 2.0
     certain = np.array([[0.5 * time, time, 1.01 * time, 9 * time], [2.5, 1.99, 1.2, 1.1]])
     front = ParetoFront("fuel", "t", np.array([value]), ("exact",), ("open sea",), certain=certain)
-    of_fuel = replace(
-        with_bound(answer, 0.6), voyage=replace(answer.voyage, objective="fuel"), front=front
-    )
+    of_fuel = replace(with_bound(answer, 0.6), front=front)
     text = "at most 40.0 % from the best possible; at most 0.5 % from the best that takes no longer"
     assert quality_text(of_fuel) == text
     near = replace(front, values=np.array([2.0]), certain=certain - [[0.0], [0.8]])
