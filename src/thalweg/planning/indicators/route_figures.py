@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from thalweg.planning.report.provenance import LEAST_WAIT_H, waits_without_fuel
+from thalweg.planning.report.waiting_report import LEAST_WAIT_H, waits_without_fuel
 from thalweg.route import Route
 from thalweg.route.indicator_columns import INDICATORS, indicator_value, named_columns
 

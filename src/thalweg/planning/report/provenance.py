@@ -21,6 +21,7 @@ from thalweg.planning.report.given_route_report import given_route_notes
 from thalweg.planning.report.ice_report import ice_warnings
 from thalweg.planning.report.land_report import land_notes
 from thalweg.planning.report.lane_report import lane_notes
+from thalweg.planning.report.waiting_report import waiting_notes, waiting_weather_warnings
 from thalweg.planning.report.wave_report import comfort_turn_notes, steep_wave_warnings
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
@@ -29,7 +30,6 @@ from thalweg.sea import Sea
 from thalweg.sea.inspection import data_gaps
 from thalweg.ship import Ship
 
-LEAST_WAIT_H = 0.1  #: shorter waits are not spoken of
 _LEAST_KEPT, _SHORTEST_SLOW = 0.25, 1.0  # of the ordered speed; [h]
 #: Years between which a departure needs no warning: the reanalysis ERA5 begins in 1940.
 _FIRST_YEAR, _LAST_YEAR = "1940", "2100"
@@ -55,6 +55,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     notes += slow_speed_warnings(route) + steep_wave_warnings(route, context.sea)
     if context.voyage.objective == "comfort":
         notes += comfort_turn_notes(route)
+    notes += waiting_weather_warnings(route, context.sea, context.ship)
     notes += waiting_notes(route) + lane_notes(context.chart, route)
     if context.needs.limits.depth_checked:
         return notes
@@ -80,23 +81,6 @@ def slow_speed_warnings(route: Route) -> list[str]:
     ]
 
 
-def waits_without_fuel(route: Route) -> bool:
-    """Return whether a route waits 6 minutes or more and the ship is known to take no fuel then."""
-    if not route.waiting_h > LEAST_WAIT_H or route.fuel_t is None:
-        return False
-    return bool(np.sum(route.legs["waiting_fuel"]) == 0.0)
-
-
-def waiting_notes(route: Route) -> list[str]:
-    """Return a note where a route waits and the ship takes no fuel while she does."""
-    if not waits_without_fuel(route):
-        return []
-    return [
-        f"Waiting takes no fuel on {route.waiting_h:.1f} h: the ship file has no hotel load. Give "
-        "it, or plan without waits (--no-wait)."
-    ]
-
-
 def given_route_warnings(
     route: Route, *, chart: Chart, sea: Sea, ship: Ship, min_ukc: float | None
 ) -> list[str]:
@@ -112,6 +96,7 @@ def given_route_warnings(
     """
     notes = year_warnings(route) + ice_warnings(route, sea) + data_gap_warnings(sea, route)
     notes += slow_speed_warnings(route) + steep_wave_warnings(route, sea)
+    notes += waiting_weather_warnings(route, sea, ship)
     notes += given_route_notes(route, chart=chart, ship=ship)
     if route.min_ukc_m is not None:
         return notes

@@ -14,6 +14,7 @@ from thalweg.core.time import duration_text, utc_text
 from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.report.depth_report import CHECK_DEPTH
 from thalweg.planning.report.filled_weather import wave_shares
+from thalweg.planning.report.waiting_report import WAITS
 from thalweg.sea.models.cyclone_layer import AmbientSea, StormLayer
 
 if TYPE_CHECKING:
@@ -243,12 +244,14 @@ def least_clearance_text(route: Route) -> str:
 
 def kept_text(route: Route, ship: Ship | None, notes: Sequence[str]) -> str:
     """Return that all limits are kept, or which, where the depth is not known."""
+    under_way = any(note.startswith(WAITS) for note in notes)
     if route.min_ukc_m is not None:
-        return "all kept"
+        return "all kept under way, see the note on the wait" if under_way else "all kept"
     checked = ["land", "zones"]
     if ship is not None:
         named = (("waves", ship.limits.wave_height), ("wind", ship.limits.wind_speed))
-        checked += [what for what, limit in named if math.isfinite(limit)]
+        limited = [what for what, limit in named if math.isfinite(limit)]
+        checked += [f"{what} under way" for what in limited] if under_way else limited
     shallow = any(note.startswith(CHECK_DEPTH) for note in notes)
     depth = "TO BE CHECKED: the depth layer has too little, see the note"
     depth = depth if shallow else "NOT checked"

@@ -35,6 +35,7 @@ from thalweg.planning.single.route_candidates import (
     through_narrow_features,
     track_from_result,
 )
+from thalweg.planning.single.sheltered_waits import with_sheltered_waits
 from thalweg.planning.single.stretch_result import StretchResult
 from thalweg.planning.single.weather_gaps import (
     MAX_GAPS,
@@ -186,6 +187,7 @@ def _search_and_refine(
         route = refined_bound_path(context, network, hint, result, route, limits)
         if network.meta.kind != "layered":  # those routes keep to their layers
             route = through_narrow_features(context, route, limits)
+    route = with_sheltered_waits(context, route)
     notes = network.meta.notes if network.meta.kind == "layered" else ()
     notes += tuple(f"The referee finds a limit exceeded: {v}." for v in route.violations[:5])
     until = route.depart + _ISOCHRONE_TIME_RATIO * route.time_h * HOUR if route.feasible else None

@@ -1,0 +1,47 @@
+"""Waits moved to earlier places, where the weather is within the limits of the ship."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.waiting_report import waiting_weather_warnings
+from thalweg.route import Route
+
+_MOST_PLACES: Final = 16  # at which the wait is tried
+_MORE: Final = (0.0, 20.0)  # of the wait [s]: a limit may open between two points of the referee
+_LATER: Final = 60.0  # that a wait in better weather may cost [s]
+
+
+def with_sheltered_waits(context: PlanningContext, route: Route) -> Route:
+    """Return a route that waits where its limits of weather are kept, if it arrives as early.
+
+    The search counts weather under way only, and waits as late as it can. So the ship may lie at
+    sea in a storm that she could have waited for at her berth. All waits are put together, at the
+    first waypoint where that is possible.
+
+    Parameters
+    ----------
+    route : As evaluated.
+    """
+    ship, sea = context.ship, context.sea
+    if not (route.feasible and route.waiting_h > 0.0):
+        return route
+    if not waiting_weather_warnings(route, sea, ship):
+        return route
+    wait = np.asarray(route.track.wait, float)
+    last = int(np.flatnonzero(wait)[-1])
+    for place in np.unique(np.linspace(0, last, min(last + 1, _MOST_PLACES)).astype(int)):
+        position = route.track.lat[place], route.track.lon[place]
+        if place and not context.chart.zones.may_wait(*position):
+            continue
+        for more in _MORE:
+            moved = np.zeros(wait.size)
+            moved[place] = wait.sum() + more
+            tried = context.evaluate(route.track.replaced(wait=moved))
+            early = tried.feasible and tried.arrive <= route.arrive + _LATER
+            if early and not waiting_weather_warnings(tried, sea, ship):
+                return tried
+    return route
