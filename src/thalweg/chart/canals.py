@@ -12,6 +12,7 @@ chart other canals with `dataclasses.replace`.
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -249,7 +250,14 @@ def canal_index_of_legs(
     ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
     number = np.full(ends[0].shape, -1, np.int64)
     flat = number.reshape(-1)
-    a, b, c, d = (x.reshape(-1) for x in ends)
+    # few legs begin at the latitude of an end of a canal
+    lat = np.sort([position[0] for canal in canals for position in canal.ends])
+    below = np.searchsorted(lat - _END_TOLERANCE_DEGREES, ends[0].reshape(-1)) - 1
+    known = ends[0].reshape(-1) < np.append(lat, -math.inf)[below] + _END_TOLERANCE_DEGREES
+    legs = np.flatnonzero(known)
+    if not legs.size:
+        return number
+    a, b, c, d = (x.reshape(-1)[legs] for x in ends)
     for k, canal in enumerate(canals):
         for first, last in (canal.ends, canal.ends[::-1]):
             near = np.flatnonzero(
@@ -259,5 +267,6 @@ def canal_index_of_legs(
             if not len(near):
                 continue
             at_first = distance(a[near], b[near], *first) <= END_TOLERANCE
-            flat[near[at_first & (distance(c[near], d[near], *last) <= END_TOLERANCE)]] = k
+            there = at_first & (distance(c[near], d[near], *last) <= END_TOLERANCE)
+            flat[legs[near[there]]] = k
     return number
