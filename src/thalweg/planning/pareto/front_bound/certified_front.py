@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import time as clock
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -22,6 +23,7 @@ from thalweg.planning.pareto.front_bound.least_ways import (
     certain_front,
     least_ways,
     passes_counted_canal,
+    seconds_of_bound,
     strongest_current_of_plan,
 )
 from thalweg.planning.pareto.trade_off_context import (
@@ -31,7 +33,13 @@ from thalweg.planning.pareto.trade_off_context import (
 )
 from thalweg.planning.plan_front import certain_at
 from thalweg.planning.planning_context import greatest_speed_of
-from thalweg.planning.single.certified_bound import KEEPING_OUT, TABLE_MARGIN, kept_out
+from thalweg.planning.single.certified_bound import (
+    KEEPING_OUT,
+    TABLE_MARGIN,
+    certified_bound,
+    kept_out,
+)
+from thalweg.route import Route
 from thalweg.search import table_bounds
 from thalweg.search.certificate.barrier_domain import StretchToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier
@@ -41,6 +49,9 @@ _KIND = (
     "certificate: checked in every cell of a mesh that no course and speed costs less than the "
     "bound counts there, for routes of at most {until:.1f} h between the sea ends of approaches"
 )
+WITH_LEAST_TIME = "with the least time by a map of earliest arrivals"
+_PARTS = 2  # of the time for the proof: one is for the least time in currents
+_LONGEST_FOR_TIME = 4.0  # by default [s]
 WITH_DUES = "with the time, dues and fuel of canals, or the way round them"
 _MOST_PRICES = 8
 _LEAST_GAIN = 1e-5  # share of the greatest value, below which the lines add nothing
@@ -97,6 +108,11 @@ def certified_front(
     by_currents = _with_priced_time(trade_off, by_currents, until_fair, ways, current)
     if _gains(by_currents, points):
         kind = f"{kind}; {WITH_FAIR_CURRENTS}"
+    if current > 0.0 and context.voyage.objective == "front":
+        certified = _certified_least_time(trade_off, routes)
+        if certified > max(least, float(by_currents[0, 0])):
+            least, kind = certified, f"{kind}; {WITH_LEAST_TIME}"
+            by_currents = _not_before(by_currents, least)
     if not context.proof_seconds:
         return CertifiedFront(by_currents, kind, allowed)
     lines, until, sampling = certified_lines(trade_off, ordered, seconds=context.proof_seconds)
@@ -107,6 +123,19 @@ def certified_front(
         return CertifiedFront(by_currents, kind, allowed)
     kind = _KIND.format(until=until) + (f", in {sampling}" if sampling else "") + f"; {kind}"
     return CertifiedFront(raised, kind, min(allowed, until))
+
+
+def _certified_least_time(trade_off: TradeOffContext, routes: Sequence[Route]) -> float:
+    """Return a time [h] that no route takes less than, by a certificate; 0 where there is none."""
+    context, known = trade_off.context, [route for route in routes if route.feasible]
+    if len(trade_off.ends) > 2 or not known:
+        return 0.0
+    fastest = min(known, key=lambda route: route.time_h)
+    seconds = seconds_of_bound(trade_off, clock.perf_counter(), _PARTS)
+    seconds = min(seconds, _LONGEST_FOR_TIME) if context.proof_seconds is None else seconds
+    departures = fastest.depart, max(route.depart for route in known)
+    found = certified_bound(context, fastest, departures=departures, seconds=seconds)
+    return found.value / HOUR if found.value > 0.0 else 0.0
 
 
 def _with_priced_time(

@@ -190,7 +190,7 @@ def least_ways(
     what is between.
     """
     feasible, began = [route for route in routes if route.feasible], clock.perf_counter()
-    whole = certified_length(trade_off, feasible, _seconds(trade_off, began, 1))
+    whole = certified_length(trade_off, feasible, seconds_of_bound(trade_off, began, 1))
     inside, lines = 0.0, [(1.0, whole)]
     context, prices = trade_off.context, trade_off.objective.prices
     by_area = prices.inside > prices.outside and bool(context.chart.zones.eca)
@@ -208,7 +208,7 @@ def least_ways(
     for ratio in ratios:
         if trade_off.interrupt_guard.stopped():
             break
-        seconds = _seconds(trade_off, began, 1 + len(ratios))
+        seconds = seconds_of_bound(trade_off, began, 1 + len(ratios))
         found = certified_distance(context, feasible, price=ratio, longer=longer, seconds=seconds)
         priced.append((ratio, found.value))
     ways = []
@@ -350,7 +350,7 @@ def corners_of_lengths(
     return [(float(x[k]), float(x[k] + y[k])) for k in hull]
 
 
-def _seconds(trade_off: TradeOffContext, now: float, count: int) -> float:
+def seconds_of_bound(trade_off: TradeOffContext, now: float, count: int) -> float:
     """Return the time for one of some bounds of lengths [s].
 
     By default all of them take no longer than the plan has taken until now.
