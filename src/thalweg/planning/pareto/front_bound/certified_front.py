@@ -52,6 +52,7 @@ _KIND = (
 WITH_LEAST_TIME = "with the least time by a map of earliest arrivals"
 _PARTS = 2  # of the time for the proof: one is for the least time in currents
 _LONGEST_FOR_TIME = 4.0  # by default [s]
+_NEAR_ENOUGH = 0.995  # of the time of the fastest route
 WITH_DUES = "with the time, dues and fuel of canals, or the way round them"
 _MOST_PRICES = 8
 _LEAST_GAIN = 1e-5  # share of the greatest value, below which the lines add nothing
@@ -109,7 +110,7 @@ def certified_front(
     if _gains(by_currents, points):
         kind = f"{kind}; {WITH_FAIR_CURRENTS}"
     if current > 0.0 and context.voyage.objective == "front":
-        certified = _certified_least_time(trade_off, routes)
+        certified = _certified_least_time(trade_off, routes, float(by_currents[0, 0]))
         if certified > max(least, float(by_currents[0, 0])):
             least, kind = certified, f"{kind}; {WITH_LEAST_TIME}"
             by_currents = _not_before(by_currents, least)
@@ -125,12 +126,19 @@ def certified_front(
     return CertifiedFront(raised, kind, min(allowed, until))
 
 
-def _certified_least_time(trade_off: TradeOffContext, routes: Sequence[Route]) -> float:
-    """Return a time [h] that no route takes less than, by a certificate; 0 where there is none."""
+def _certified_least_time(
+    trade_off: TradeOffContext, routes: Sequence[Route], least: float
+) -> float:
+    """Return a time [h] that no route takes less than, by a certificate.
+
+    0 where there is none, and where the least time that is known already is near enough.
+    """
     context, known = trade_off.context, [route for route in routes if route.feasible]
     if len(trade_off.ends) > 2 or not known:
         return 0.0
     fastest = min(known, key=lambda route: route.time_h)
+    if least > _NEAR_ENOUGH * fastest.time_h:
+        return 0.0
     seconds = seconds_of_bound(trade_off, clock.perf_counter(), _PARTS)
     seconds = min(seconds, _LONGEST_FOR_TIME) if context.proof_seconds is None else seconds
     departures = fastest.depart, max(route.depart for route in known)
