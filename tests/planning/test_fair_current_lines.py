@@ -69,10 +69,11 @@ def bounds_of(sea, start, goal, known) -> tuple[FloatArray, float]:
     fastest = float(SPEEDS[-1]) + domain.strongest_current
     costs, shares = [], []
     for height in heights_along(passage, domain):
-        steepest, currents = strongest_fair_currents(passage, domain, fastest, height, everywhere)
-        times = np.array([known])
-        costs.append(least_costs(currents, steepest * SPEEDS, [COSTS], height.rise, times)[0])
-        reached = greatest_rise(currents, steepest * float(SPEEDS[-1]), times)[0]
+        steepest, currents = strongest_fair_currents(
+            passage, domain, fastest, height, everywhere, np.array([known])
+        )
+        costs.append(least_costs(currents, steepest * SPEEDS, [COSTS], height.rise)[0])
+        reached = greatest_rise(currents, steepest * float(SPEEDS[-1]))[0]
         shares.append(reached / height.rise)
     return np.array(costs), min(shares)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,50 +20,21 @@ _UNREACHED = -math.inf
 _SIDES = slice(None, -1), slice(1, None)  # of cells: nodes before and after
 
 
-@dataclass(frozen=True, eq=False)
-class FairCurrents:
-    """The strongest fair currents in a domain, for each step between times of the data.
+class FairCurrents(NamedTuple):
+    """The strongest fair currents that voyages of some lengths can meet, step by step.
 
     A fair current is what a current adds to the height of a ship (`heights_along`) in a second.
 
     Attributes
     ----------
-    times : Since departure [s], (m + 1,): the first is 0.
-    before : Least times from the cells to the goal [s], ascending, (n,).
-    first, last : Strongest fair current [m/s] at the begin and at the end of each step, in the
-        cells up to each of ``before``, (m, n); -inf where a ship is in none.
+    seconds : Length of each step between times of the data within a voyage [s], (voyages, steps).
+    first, last : The strongest fair current at its begin and at its end [m/s], (voyages, steps);
+        linear between is an upper bound. -inf where a ship is nowhere.
     """
 
-    times: FloatArray
-    before: FloatArray
+    seconds: FloatArray
     first: FloatArray
     last: FloatArray
-
-    def of_voyages(self, hours: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the strongest fair currents that voyages of some lengths can meet.
-
-        Parameters
-        ----------
-        hours : Durations [s], (k,), up to the last of ``times``.
-
-        Returns
-        -------
-        seconds, first, last : float64 array (k, m)
-            Length of each step within the voyage [s], 0 after it, and the strongest fair current
-            at its begin and at its end [m/s]; linear between is an upper bound.
-        """
-        begin, end = self.times[:-1], self.times[1:]
-        left = hours[:, None] - begin
-        seconds = np.clip(left, 0.0, end - begin)
-        place = np.searchsorted(self.before, left, side="right") - 1
-        step = np.broadcast_to(np.arange(begin.size), place.shape)
-        first, last = (
-            np.where(place < 0, _UNREACHED, values[step, place])
-            for values in (self.first, self.last)
-        )
-        with np.errstate(invalid="ignore"):
-            cut = first + (last - first) * (seconds / (end - begin))
-        return seconds, first, np.where(np.isfinite(first) & np.isfinite(last), cut, last)
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,6 +102,7 @@ def strongest_fair_currents(
     fastest: float,
     height: HeightField,
     areas: Sequence[BoolArray],
+    durations: FloatArray,
 ) -> tuple[float, list[FairCurrents]]:
     """Return the steepest slope in reach, and the strongest fair currents in parts of a domain.
 
@@ -139,6 +112,7 @@ def strongest_fair_currents(
     domain : All water that the ship can reach in the known time.
     fastest : No ship is faster over ground [m/s].
     areas : Cells of the raster, (rows, columns), for which the currents are taken together.
+    durations : Of voyages [s], (n,), up to the known time.
 
     Notes
     -----
@@ -158,19 +132,35 @@ def strongest_fair_currents(
     steepest = float(height.steepest[in_reach].max(initial=0.0))
     times = np.clip(domain.raster.times, 0.0, passage.known)
     times = np.unique([0.0, *times, passage.known])
-    greatest = [_fair_at(domain, float(time), height) for time in times]
     order = np.flatnonzero(in_reach)
     order = order[np.argsort(to_goal.ravel()[order])]
-    found = []
-    for area in areas:
-        first, last = (np.empty((times.size - 1, order.size)) for _ in range(2))
-        for step, end in enumerate(times[1:]):
-            here = area.ravel()[order] & (from_start.ravel()[order] <= end)
-            for values, at in ((first, step), (last, step + 1)):
-                fair = np.where(here, greatest[at].ravel()[order], _UNREACHED)
-                values[step] = np.maximum.accumulate(fair)
-        found.append(FairCurrents(times, to_goal.ravel()[order], first, last))
-    return steepest, found
+    counted = [area.ravel()[order] for area in areas]
+    left = durations[:, None] - times[:-1]
+    # cells are in reach of the goal up to a place in the order
+    place = np.searchsorted(to_goal.ravel()[order], left, side="right") - 1
+    ends = np.full((2, len(areas), *left.shape), _UNREACHED)
+    after = _fair_at(domain, float(times[0]), height).ravel()[order]
+    for step, end in enumerate(times[1:]):
+        before, after = after, _fair_at(domain, float(end), height).ravel()[order]
+        early = from_start.ravel()[order] <= end
+        reached = place[:, step] >= 0
+        for number, area in enumerate(counted):
+            for side, fair in enumerate((before, after)):
+                most = np.maximum.accumulate(np.where(area & early, fair, _UNREACHED))
+                ends[side, number, reached, step] = most[place[reached, step]]
+    seconds = np.clip(left, 0.0, np.diff(times))
+    return steepest, [
+        _cut_off(seconds, ends[0, k], ends[1, k], np.diff(times)) for k in range(len(areas))
+    ]
+
+
+def _cut_off(
+    seconds: FloatArray, first: FloatArray, last: FloatArray, whole: FloatArray
+) -> FairCurrents:
+    """Return fair currents of steps that may end with the voyage, before the data's next time."""
+    with np.errstate(invalid="ignore"):
+        cut = first + (last - first) * (seconds / whole)
+    return FairCurrents(seconds, first, np.where(np.isfinite(first) & np.isfinite(last), cut, last))
 
 
 def _half_diagonals(lat: FloatArray, lon: FloatArray) -> FloatArray:

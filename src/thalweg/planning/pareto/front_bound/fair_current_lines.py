@@ -76,12 +76,12 @@ def fair_current_lines(
     times = np.linspace(first, passage.known, int(min(max(count, 8), _VOYAGES)))
     least, values = first, np.zeros(times.size)
     for height in heights_along(passage, domain):
-        steepest, currents = strongest_fair_currents(passage, domain, fastest, height, areas)
+        steepest, currents = strongest_fair_currents(passage, domain, fastest, height, areas, times)
         speeds, rise = steepest / slow, _SHORTER * height.rise
-        possible = np.flatnonzero(greatest_rise(currents, float(speeds.max()), times) >= rise)
+        possible = np.flatnonzero(greatest_rise(currents, float(speeds.max())) >= rise)
         if possible.size:
             least = max(least, float(times[max(int(possible[0]) - 1, 0)]))
-        np.maximum(values, least_costs(currents, speeds, costs, rise, times), out=values)
+        np.maximum(values, least_costs(currents, speeds, costs, rise), out=values)
     # a voyage between two of the times costs no less than one of the later of them
     values, times = values[1:] + prices.time * times[:-1], times[:-1]
     values, times = values[times >= least], times[times >= least]
@@ -108,12 +108,12 @@ def _areas(trade_off: TradeOffContext, domain: BarrierDomain) -> tuple[list[Bool
     return [part for part, _ in parts], [name for _, name in parts]
 
 
-def greatest_rise(currents: Sequence[FairCurrents], speed: float, times: FloatArray) -> FloatArray:
-    """Return how far a ship may come in voyages of some times [m], at most."""
-    parts = [area.of_voyages(times) for area in currents]
-    first, last = (np.max([part[side] for part in parts], axis=0) for side in (1, 2))
+def greatest_rise(currents: Sequence[FairCurrents], speed: float) -> FloatArray:
+    """Return how far a ship may rise in voyages of some lengths [m], at most."""
+    first = np.max([area.first for area in currents], axis=0)
+    last = np.max([area.last for area in currents], axis=0)
     ends = np.maximum(speed + first, 0.0) + np.maximum(speed + last, 0.0)
-    return np.asarray((0.5 * parts[0][0] * ends).sum(axis=1))
+    return np.asarray((0.5 * currents[0].seconds * ends).sum(axis=1))
 
 
 def least_costs(
@@ -121,24 +121,23 @@ def least_costs(
     speeds: FloatArray,
     costs: Sequence[FloatArray],
     rise: float,
-    times: FloatArray,
 ) -> FloatArray:
-    """Return the least cost of voyages of some times, without the price of time.
+    """Return the least cost of voyages of some lengths, without the price of time.
 
     Parameters
     ----------
     currents, costs : By area; costs of a second at each of ``speeds`` [m/s].
     rise : From the start to the goal [m].
     """
-    by_area = [area.of_voyages(times) for area in currents]
-    best = np.zeros(times.size)
+    seconds = currents[0].seconds
+    best = np.zeros(len(seconds))
     for worth in _worth_of_a_metre(speeds, costs):
-        gain = [np.zeros(by_area[0][0].shape) for _ in range(2)]
-        for (_, *ends), cost in zip(by_area, costs, strict=True):
-            for fair, most in zip(ends, gain, strict=True):
+        gain = [np.zeros(seconds.shape) for _ in range(2)]
+        for area, cost in zip(currents, costs, strict=True):
+            for fair, most in zip((area.first, area.last), gain, strict=True):
                 for speed, rate in zip(speeds, cost, strict=True):
                     np.maximum(most, worth * (speed + fair) - rate, out=most)
-        spent = (0.5 * by_area[0][0] * (gain[0] + gain[1])).sum(axis=1)
+        spent = (0.5 * seconds * (gain[0] + gain[1])).sum(axis=1)
         np.maximum(best, worth * rise - spent, out=best)
     return best
 
