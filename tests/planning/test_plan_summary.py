@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
-from thalweg.chart.canals import Canal
+from thalweg.chart.canals import KIEL, Canal, canals_with_dues
 from thalweg.core.geodesy import format_position_minutes, parse_position
 from thalweg.core.time import duration_text, utc_text
 from thalweg.planning.plan_front import ParetoFront
@@ -296,3 +296,14 @@ def test_least_fuel_states_how_far_it_may_be_from_routes_that_take_no_longer(ans
     assert quality_text(of_fuel) == text
     near = replace(front, values=np.array([2.0]), certain=certain - [[0.0], [0.8]])
     assert quality_text(replace(of_fuel, front=near)).endswith("% from the best possible")
+
+
+def test_an_evaluated_route_states_the_dues_of_the_ship_not_the_mean_of_all(answer):
+    """The Kiel Canal, whose ends are here those of the route."""
+    track, known = answer.best.track, answer.plot_context
+    ends = ((track.lat[0], track.lon[0]), (track.lat[1], track.lon[1]))
+    chart = replace(known.chart, canals=(replace(KIEL, path=ends),))
+    ship = Ship.load("handysize-bulker")
+    (own,) = canals_with_dues([KIEL], ship.file.hull)
+    cost = dict(route_items(answer.best, sea=known.sea, chart=chart, ship=ship))["Cost"]
+    assert own.fee != KIEL.fee and f"canal dues {own.fee:,.0f} USD (by {own.fee_basis})" in cost

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from thalweg.chart.canal_parts import first_legs_of_transits, part_number_of_legs
+from thalweg.chart.canals import canals_with_dues
 from thalweg.core.geodesy import format_position_minutes
 from thalweg.core.time import duration_text, utc_text
 from thalweg.core.units import HOUR, KNOT
@@ -42,7 +43,7 @@ def route_items(
     sea, chart : With which it was evaluated.
     notes : Warnings about the route; those on depth show among the limits.
     """
-    canals = canals_passed(route, chart)
+    canals = canals_with_dues(canals_passed(route, chart), ship.file.hull)
     broken = [str(violation) for violation in route.violations]
     if not broken and not math.isfinite(route.arrive):
         broken = ["the route cannot be sailed to its end"]
