@@ -5,6 +5,7 @@ import pytest
 
 from tests.conftest import data_file
 from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.core.file_writing import new_figure
 from thalweg.core.time import parse_time
 from thalweg.planning.plots.map_extent import (
     MapExtent,
@@ -12,7 +13,8 @@ from thalweg.planning.plots.map_extent import (
     inverse_mercator,
     mercator,
 )
-from thalweg.planning.plots.map_labels import marked_times, time_label
+from thalweg.planning.plots.map_labels import LabelPlacer, marked_times, time_label
+from thalweg.planning.plots.map_overlays import draw_zones, place_labels
 from thalweg.planning.plots.route_profile import draw_profile
 from thalweg.planning.plots.voyage_map import draw_map
 
@@ -128,6 +130,37 @@ def test_labels_do_not_lie_on_each_other(lagoon):
     words = [text.get_text() for text in axes.texts]
     assert "30 Aug 06:00" in words and any(word.endswith("nm") for word in words)
     assert "depart 1998-08-30 05:10 UTC" in axes.get_title(loc="left")
+
+
+def labels_of_control_areas(box):
+    """Return the axes of a map without a route, and the labels that it shows."""
+    figure = new_figure(*box.figure_size())
+    axes = figure.add_subplot()
+    box.set_up(axes)
+    labels = draw_zones(axes, Chart.gshhg("c"), box)
+    figure.draw_without_rendering()
+    place_labels(LabelPlacer(axes, np.zeros((0, 2))), labels)
+    return axes, [text for text in axes.texts if text.get_text().startswith("ECA")]
+
+
+def test_control_areas_have_a_label_where_their_outline_shows():
+    """The outline of the Mediterranean area is on land in a map from the Red Sea to Bengal."""
+    assert not labels_of_control_areas(MapExtent(-3.0, 31.0, 32.7, 98.5))[1]
+    axes, labels = labels_of_control_areas(MapExtent(33.0, 39.0, -10.0, 0.0))
+    assert [label.get_text() for label in labels] == ["ECA Mediterranean"]
+    inside, box = axes.get_window_extent(), labels[0].get_window_extent()
+    assert inside.x0 <= box.x0 and box.x1 <= inside.x1
+    assert inside.y0 <= box.y0 and box.y1 <= inside.y1
+
+
+def test_labels_of_areas_stay_inside_the_axes():
+    axes = new_figure(4, 3).add_subplot()
+    axes.set_xlim(0.0, 1.0)
+    axes.set_ylim(0.0, 1.0)
+    axes.figure.draw_without_rendering()
+    placer, name = LabelPlacer(axes, np.zeros((0, 2))), "a name that is wider than these axes" * 3
+    assert not placer.place(name, 0.5, 0.99)
+    assert placer.place(name, 0.5, 0.99, needed=True)
 
 
 @pytest.mark.slow

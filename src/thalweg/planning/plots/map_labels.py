@@ -40,7 +40,7 @@ class LabelPlacer:
         Parameters
         ----------
         lon, lat : Its position, in the coordinates of the axes.
-        needed : Whether it is drawn even where it covers another label.
+        needed : Whether it is drawn even where it covers another label or leaves the axes.
         **style : Of `matplotlib.text.Text`.
         """
         from matplotlib.patheffects import withStroke
@@ -54,7 +54,7 @@ class LabelPlacer:
         costs = []
         for dx, dy in _OFFSETS:
             _set_offset(label, dx, dy)
-            costs.append(self._cost(label.get_window_extent()))
+            costs.append(self._cost(label.get_window_extent(), needed))
         best = int(np.argmin(costs))
         if costs[best] >= 1e3 and not needed:
             label.remove()
@@ -63,7 +63,7 @@ class LabelPlacer:
         self.taken.append(label.get_window_extent())
         return True
 
-    def _cost(self, box: Any) -> float:
+    def _cost(self, box: Any, needed: bool) -> float:
         inside = self.axes.get_window_extent()
         outside = max(0.0, inside.x0 - box.x0, box.x1 - inside.x1) + max(
             0.0, inside.y0 - box.y0, box.y1 - inside.y1
@@ -71,7 +71,8 @@ class LabelPlacer:
         x, y = self.lines.T if len(self.lines) else (np.zeros(0), np.zeros(0))
         covered = (x > box.x0) & (x < box.x1) & (y > box.y0) & (y < box.y1)
         overlaps = sum(bool(box.overlaps(other)) for other in self.taken)
-        return 1e3 * overlaps + (500.0 + outside if outside > 0.0 else 0.0) + float(covered.sum())
+        leaves = (500.0 if needed else 1e3) + outside if outside > 0.0 else 0.0
+        return 1e3 * overlaps + leaves + float(covered.sum())
 
 
 def _set_offset(label: Any, dx: float, dy: float) -> None:

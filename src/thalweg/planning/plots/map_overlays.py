@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thalweg.chart.zones.traffic_schemes import TRAFFIC_SCHEMES
-from thalweg.core.geodesy import Position
+from thalweg.core.geodesy import Position, wrap_longitude
 from thalweg.core.units import DAY
 from thalweg.planning.plots.map_extent import MapExtent
 from thalweg.planning.plots.map_labels import LabelPlacer, marked_times, time_label
@@ -24,6 +24,7 @@ _SHOAL, _SHOAL_EDGE, _SHOAL_LABEL = "#9cc3d5", "#5f93ab", "shoal water kept off"
 _NOT_SEARCHED, _NOT_SEARCHED_LABEL = "#8f8468", "water not searched"
 _LEAST_CELLS, _OPENING = 4, 0.15  # of enclosed water; part of its outline that may be open
 _ARROWS = 15.0  # height of maps [deg] from which on arrows of lanes would cover them
+_LINE_POINTS = 300  # on a line as long as the map is wide, to see which part of it shows
 _DOTS = 4_000.0  # details of land smaller than the width of the map over this are not drawn
 _NEAR = 2.5  # spacings of the network within which water counts as searched
 
@@ -193,15 +194,30 @@ def _draw_control_areas(axes: Any, chart: Chart, box: MapExtent) -> list[tuple[s
                     and lat.min() < box.north
                 ):
                     continue
-                here = (lon + turn > box.west) & (lon + turn < box.east)
-                here &= (lat > box.south) & (lat < box.north)
                 axes.plot(lon + turn, lat, color=_CONTROL, lw=0.9, ls=(0, (6, 3)), zorder=2.5)
-                if here.any():
-                    middle = int(np.flatnonzero(here)[len(np.flatnonzero(here)) // 2])
-                    labels.append(
-                        (f"ECA {_plain(area.name)}", float(lon[middle] + turn), float(lat[middle]))
-                    )
+                place = _visible_place(chart, box, lat, lon + turn)
+                if place is not None:
+                    labels.append((f"ECA {_plain(area.name)}", *place))
     return list({name: (name, x, y) for name, x, y in labels}.values())
+
+
+def _visible_place(
+    chart: Chart, box: MapExtent, lat: np.ndarray, lon: np.ndarray
+) -> tuple[float, float] | None:
+    """Return a place (lon, lat) amid the part of a line that shows on a map; None without one."""
+    detail = max(box.east - box.west, box.north - box.south) / _LINE_POINTS
+    steps = np.ceil(np.maximum(np.abs(np.diff(lat)), np.abs(np.diff(lon))) / detail)
+    number = np.concatenate([[0.0], np.cumsum(np.maximum(steps, 1.0))])
+    close = np.arange(number[-1] + 1.0)
+    y, x = np.interp(close, number, lat), np.interp(close, number, lon)
+    inside = (x > box.west) & (x < box.east) & (y > box.south) & (y < box.north)
+    y, x = y[inside], x[inside]
+    # land is drawn over the line
+    seen = np.flatnonzero(np.asarray(chart.is_navigable(y, wrap_longitude(x)), bool))
+    if not seen.size:
+        return None
+    middle = seen[seen.size // 2]
+    return float(x[middle]), float(y[middle])
 
 
 def storm_track(context: PlotContext) -> BestTrack | None:
