@@ -54,6 +54,29 @@ def test_a_path_too_shallow_at_any_tide_is_reported_with_place_time_and_depth() 
     assert error.remedy
 
 
+def test_a_closed_bar_is_the_cause_and_not_the_end_of_the_data_beside_it() -> None:
+    """The sea is known in a strip round the way only; without waits the bar is closed."""
+    known = estuary(6.5)
+
+    def bed(time, lat, lon):
+        depth = known.sample([BED], time, lat, lon)[BED]
+        return np.where((lat > 51.74) & (lat < 51.86), depth, np.nan)
+
+    with pytest.raises(NoRouteError) as caught:
+        asked(
+            Sea.from_functions({BED: bed, LEVEL: level}),
+            start=(51.80, 3.45),
+            goal=(51.80, 3.70),
+            wait=False,
+        )
+    error = caught.value
+    assert error.details["reasons"]["no data"] > error.details["reasons"]["under-keel clearance"]
+    assert "too shallow at that time: near 51.8" in error.possible
+    assert "7.50 m are required, and the greatest depth is 8.00 m at 2026" in error.possible
+    assert "--depart-window" in error.remedy and "waiting" in error.remedy
+    assert "gaps" not in error.remedy
+
+
 @pytest.mark.slow
 def test_a_path_that_opens_at_high_water_is_sailed() -> None:
     best = asked(estuary(6.5)).best

@@ -56,16 +56,16 @@ def no_route_error(
             f"{found.left / NAUTICAL_MILE:.1f} nm short."
         )
         ended = found.arrival > last
-    deficit = None if water is None else _depth_deficit(network, water.fields, water.required)
-    if deficit is not None:
+    deepest = None if water is None else _deepest_path(network, water.fields, water.required)
+    if deepest is not None and deepest.missing > 0.0:
         return NoRouteError(
             f"No route from {ends[0].name} to {ends[1].name}: "
             "the water is too shallow at any tide.",
-            str(deficit),
+            str(deepest),
             _ADVICE_SHALLOW,
             reasons=reasons,
             nearest=nearest,
-            missing_m=deficit.missing,
+            missing_m=deepest.missing,
         )
     stall = None
     if water is not None:
@@ -75,8 +75,16 @@ def no_route_error(
         reached = f"{stall} {reached}"
         slow = reasons.pop(codes.REASONS[codes.CURRENT], 0)
         reasons |= {_TOO_SLOW: slow} if slow else {}
-    elif reasons.get(codes.REASONS[codes.NO_DATA]) and water is not None:
-        reached += _unknown_beyond(network, -1 if found is None else found.node, water.fields)
+    causes = dict(reasons)
+    if stall is None and water is not None and reasons.get(codes.REASONS[codes.NO_DATA]):
+        unknown = _unknown_beyond(network, -1 if found is None else found.node, water.fields)
+        reached += unknown
+        if found is not None and not unknown:  # the gaps are elsewhere, as beyond the data
+            causes = _without_gaps(reasons)
+    is_tidal = stall is None and deepest is not None and not math.isnan(deepest.time)
+    is_tidal = is_tidal and _main_cause(causes) == codes.DEPTH
+    if is_tidal and deepest is not None:
+        reached += f" {deepest.tide_text()}"
     ended = ended and bool(reasons.get(codes.REASONS[codes.OUTSIDE_PERIOD]))
     within = f"arrives before the data end at {format_time(last)}" if ended else "keeps the limits"
     when = f"departing {format_time(depart)}"
@@ -85,7 +93,9 @@ def no_route_error(
     return NoRouteError(
         f"No route from {ends[0].name} to {ends[1].name} {within}, {when}.",
         reached,
-        _advice(reasons, ended) if stall is None else _ADVICE_STALL + (_LONGER if ended else ""),
+        _advice(causes, ended, is_tidal)
+        if stall is None
+        else _ADVICE_STALL + (_LONGER if ended else ""),
         reasons=reasons,
         nearest=nearest,
         **({"data_end": format_time(last)} if ended else {}),
@@ -192,8 +202,8 @@ def late_arrival_error(
     )
 
 
-class DepthDeficit(NamedTuple):
-    """Where and when the water is deepest on the best path, and still too shallow.
+class DeepestPath(NamedTuple):
+    """Where and when the water is deepest on the best path, and what is required there.
 
     Attributes
     ----------
@@ -213,8 +223,16 @@ class DepthDeficit(NamedTuple):
 
     @property
     def missing(self) -> float:
-        """Required depth less greatest depth [m]."""
+        """Required depth less greatest depth [m]; not positive where the tide is high enough."""
         return self.required - self.depth
+
+    def tide_text(self) -> str:
+        """Return that the water is deep enough at high water only, as a sentence."""
+        return (
+            f"The water on the way is too shallow at that time: near "
+            f"{format_position(self.lat, self.lon)} {self.required:.2f} m are required, "
+            f"and the greatest depth is {self.depth:.2f} m at {format_time(self.time)}."
+        )
 
     def __str__(self) -> str:
         place = format_position(self.lat, self.lon)
@@ -229,20 +247,24 @@ class DepthDeficit(NamedTuple):
         )
 
 
-def _depth_deficit(network: Network, fields: StationFields, required: float) -> DepthDeficit | None:
-    """Return the controlling depth if it is less than required at any tide."""
+def _deepest_path(network: Network, fields: StationFields, required: float) -> DeepestPath | None:
+    """Return the controlling depth at the highest tide beside the required one; None if unknown."""
     if not math.isfinite(required) or min(network.meta.start, network.meta.goal) < 0:
         return None
     found = find_controlling_depth(network, fields)
-    if found is None or found.depth >= required:
+    if found is None:
         return None
     end = float(fields.times[-1])
-    return DepthDeficit(found.lat, found.lon, found.depth, found.time, required, end)
+    return DeepestPath(found.lat, found.lon, found.depth, found.time, required, end)
 
 
 _ADVICE_SHALLOW = (
     "Load less (--load-factor), require less clearance (--ukc), or use data that include a higher "
     "tide."
+)
+_ADVICE_TIDE = (
+    "Depart later, search a window of departures (--depart-window), or allow waiting for the tide; "
+    "or load less (--load-factor), or require less clearance (--ukc)."
 )
 _TOO_SLOW = "current too strong for the speed that the weather leaves"
 _ADVICE_STALL = (
@@ -272,16 +294,29 @@ _ADVICE = {
 _OF_ANY_COAST = (codes.LAND, codes.OFFING, codes.NO_GO, codes.OUTSIDE_PERIOD)
 
 
-def _advice(reasons: dict[str, int], ended: bool) -> str:
-    later = _ADVICE_ENDED if ended else ""
+def _without_gaps(reasons: dict[str, int]) -> dict[str, int]:
+    """Return reasons without gaps of data, unless they are the only cause."""
+    others = {text: n for text, n in reasons.items() if text != codes.REASONS[codes.NO_DATA]}
+    return others if _main_cause(others) else reasons
+
+
+def _main_cause(reasons: dict[str, int]) -> int:
+    """Return the code of the most frequent reason but coasts and periods; 0 if there is none."""
     counts = {
         code: reasons.get(codes.REASONS[code], 0)
         for code in codes.REASONS
         if code not in _OF_ANY_COAST
     }
     code = max(counts, key=lambda c: counts[c])
-    if counts[code]:
-        advice = _ADVICE.get(code, "Change the limits or the area.")
+    return code if counts[code] else 0
+
+
+def _advice(reasons: dict[str, int], ended: bool, is_tidal: bool) -> str:
+    """Return what to do; ``is_tidal``: the tide makes the water deep enough at another time."""
+    later = _ADVICE_ENDED if ended else ""
+    code = _main_cause(reasons)
+    if code:
+        advice = _ADVICE_TIDE if is_tidal else _ADVICE.get(code, "Change the limits or the area.")
         return later or advice
     if later:
         return later
