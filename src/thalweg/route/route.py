@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+_MOST_DIGITS = 9  # after the point, of numbers that differ little
+
+
 @dataclass(frozen=True)
 class Violation:
     """One stretch of a route where a limit is violated or data are missing.
@@ -49,7 +52,8 @@ class Violation:
     def __str__(self) -> str:
         text = f"{self.reason} at {format_position(self.lat, self.lon)}, {format_time(self.time)}"
         if np.isfinite(self.value) and np.isfinite(self.limit):
-            text += f" ({self.value:.2f}, limit {self.limit:.2f})"
+            value, limit = _distinct(self.value, self.limit)
+            text += f" ({value}, limit {limit})"
         return text
 
     def as_dict(self) -> dict[str, Any]:
@@ -317,3 +321,13 @@ class Route:
         fuel += "" if self.cost is None else f", {self.cost:,.0f} {self.currency}"
         state = "" if self.feasible else f", {len(self.violations)} limits violated"
         return f"Route: {self.time_h:.4f} h, {self.distance_nm:.2f} nm{fuel}{state}"
+
+
+def _distinct(value: float, limit: float) -> tuple[str, str]:
+    """Return two numbers with two decimals, or as many more as make their texts differ."""
+    texts = (f"{value:.2f}", f"{limit:.2f}")
+    for digits in range(2, _MOST_DIGITS + 1):
+        texts = (f"{value:.{digits}f}", f"{limit:.{digits}f}")
+        if texts[0] != texts[1]:
+            break
+    return texts

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +21,7 @@ from thalweg.planning.request.requirements import required_under_keel_clearance
 from thalweg.route import (
     Route,
     RouteFileOptions,
+    Track,
     evaluate,
     write_route_files,
 )
@@ -28,11 +31,14 @@ from thalweg.sea.sea_maps import draw_maps, map_area
 
 #: Share of the thinning and decimals of positions, tried in turn while a file breaks a limit.
 _FINER_FILES = ((1.0, 6), (1.0, 8), (0.1, 8), (0.0, 8))
+#: By how much a wait of whole seconds is longer, tried in turn while a file breaks a limit [s].
+_LATER = (0.0, 1.0, 5.0)
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData
     from thalweg.sea import Sea
     from thalweg.sea.layer import Layer
+    from thalweg.ship import Ship
 
 
 def write_plan(
@@ -56,8 +62,8 @@ def write_plan(
     folder = make_folder(folder)
     options = _of_plan(plan, options or RouteFileOptions())
     plan.to_json(folder / "plan.json")
-    best = keeping_limits(plan, plan.best, options)
-    files = [folder / "plan.json", *write_route_files(plan.best, folder, options=best)]
+    route, own = keeping_limits(plan, plan.best, options)
+    files = [folder / "plan.json", *write_route_files(route, folder, options=own)]
     draw_map(plan, folder / "map.png", beside=beside)
     draw_profile(plan.best, folder / "profile.png")
     files += [folder / "map.png", folder / "profile.png", *write_space_time_diagram(plan, folder)]
@@ -71,42 +77,62 @@ def _of_plan(plan: PlanData, options: RouteFileOptions) -> RouteFileOptions:
     return replace(options, chart=chart, start=start, goal=goal)
 
 
-def keeping_limits(plan: PlanData, route: Route, options: RouteFileOptions) -> RouteFileOptions:
-    """Return options whose route files keep the limits of the plan where its depth is known.
+def keeping_limits(
+    plan: PlanData, route: Route, options: RouteFileOptions
+) -> tuple[Route, RouteFileOptions]:
+    """Return what to write so that route files keep the limits of depth and weather of a plan.
 
-    Few waypoints of six decimals may leave a narrow gully by metres. The track of the file is
-    therefore scored by the referee; while it breaks a limit, fewer waypoints are left out and more
-    decimals written.
+    Few waypoints of six decimals may leave a narrow gully by metres, and a rounded wait may end
+    before a limit allows it. The track of the file is therefore scored by the referee; while it
+    breaks a limit, the ship leaves up to some seconds later after a wait, fewer waypoints are left
+    out and more decimals written.
 
     Returns
     -------
-    RouteFileOptions : The options given where no finer ones help, the route has no known clearance
-        or has legs in canals or port approaches, or a number of waypoints was given.
+    (Route, RouteFileOptions)
+        Those given where no others help, the route has neither waits nor limits of weather and its
+        clearance is not known or it has legs in canals or port approaches, or a number of waypoints
+        was given.
     """
     context, voyage = plan.plot_context, plan.voyage
-    clearance = route.legs["under_keel_clearance"]
-    own = np.any(route.legs.get("leg_kind", 0))
-    if context is None or options.max_waypoints is not None or not route.feasible or own:
-        return options
-    if not np.isfinite(clearance).any():
-        return options
+    if context is None or options.max_waypoints is not None or not route.feasible:
+        return route, options
+    if not _is_limited(route, context.ship):
+        return route, options
+    min_ukc = required_under_keel_clearance(voyage, context.ship)
+
+    def scored(track: Track) -> Route:
+        world = {"ship": context.ship, "sea": context.sea, "chart": context.chart}
+        return evaluate(track, **world, min_ukc=min_ukc, strict=False)
+
+    @cache
+    def leaving(seconds: float) -> Route:
+        return route if math.isnan(seconds) else scored(_later_track(route.track, seconds))
+
+    delays = (math.nan, *_LATER) if route.track.wait.any() else (math.nan,)
     for share, decimals in _FINER_FILES:
         tried = replace(
             options,
             thinning=share * options.thinning,
             decimals=max(decimals, options.decimals),
         )
-        again = evaluate(
-            file_track(route, tried),
-            ship=context.ship,
-            sea=context.sea,
-            chart=context.chart,
-            min_ukc=required_under_keel_clearance(voyage, context.ship),
-            strict=False,
-        )
-        if again.feasible:
-            return tried
-    return options
+        for seconds in delays:
+            if scored(file_track(leaving(seconds), tried)).feasible:
+                return leaving(seconds), tried
+    return route, options
+
+
+def _is_limited(route: Route, ship: Ship) -> bool:
+    """Return whether rounded numbers in the files of a route may break a limit."""
+    own = np.any(route.legs.get("leg_kind", 0))
+    depth = np.isfinite(route.legs["under_keel_clearance"]).any() and not own
+    weather = math.isfinite(ship.limits.wave_height) or math.isfinite(ship.limits.wind_speed)
+    return bool(depth or weather or route.track.wait.any())
+
+
+def _later_track(track: Track, seconds: float) -> Track:
+    """Return a track whose waits have whole seconds, and so many more."""
+    return replace(track, wait=np.where(track.wait > 0.0, np.ceil(track.wait) + seconds, 0.0))
 
 
 def _write_front(plan: PlanData, folder: Path, options: RouteFileOptions) -> list[Path]:
@@ -122,8 +148,8 @@ def _write_front(plan: PlanData, folder: Path, options: RouteFileOptions) -> lis
         files.append(_write_table(front.comparison.rows, folder / "comparison.csv"))
     each = make_folder(folder / "routes")
     for number, route in enumerate(plan.routes, start=1):
-        own = keeping_limits(plan, route, options)
-        files += write_route_files(route, each, f"route_{number:02d}", own)
+        kept, own = keeping_limits(plan, route, options)
+        files += write_route_files(kept, each, f"route_{number:02d}", own)
     return files
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -14,7 +14,13 @@ from thalweg.core.rhumb_lines import inverse_rhumb
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.carried_extensions import Visit, visits_of
 from thalweg.route.formats.file_waypoints import FileVertices, file_vertices
-from thalweg.route.formats.parsed_track import GEOMETRY, GREAT_CIRCLE, RHUMB_LINE
+from thalweg.route.formats.parsed_track import (
+    GEOMETRY,
+    GREAT_CIRCLE,
+    RHUMB_LINE,
+    track_of,
+    waypoint_track,
+)
 from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.formats.sample_places import SamplePlaces, time_integral
 from thalweg.route.formats.waypoint_names import waypoint_names
@@ -112,14 +118,15 @@ def _waypoints_at(route: Route, vertices: FileVertices) -> list[Visit | None]:
 
 
 def file_track(route: Route, options: RouteFileOptions | None = None) -> Track:
-    """Return the track that a reader of the files of a route sails.
+    """Return the track that a reader of the files of a route sails, with their rounded numbers.
 
     Raises
     ------
     InputError : If the route needs more waypoints than the options allow.
     """
-    cut = _cut(route, file_vertices(route, options or RouteFileOptions()))
-    return replace(cut.track, speed=cut.legs["ordered_speed"])
+    rows = file_route(route, options).rows
+    positions = [(row["lat"], row["lon"]) for row in rows]
+    return track_of(waypoint_track(positions, rows[0]["time"], rows), None, "route")
 
 
 def _cut(route: Route, vertices: FileVertices) -> _CutRoute:

@@ -28,9 +28,10 @@ def write_route_result(
     from thalweg.planning.report.output_files import keeping_limits
     from thalweg.route import write_route_files
 
+    kept = route
     if plan is not None:
-        options = keeping_limits(plan, route, options)
-    write_route_files(route, folder, f"{stem}_{number:02d}", options)
+        kept, options = keeping_limits(plan, route, options)
+    write_route_files(kept, folder, f"{stem}_{number:02d}", options)
     write_json_file(folder / f"profile_{number:02d}.json", route_profile(route))
 
 
