@@ -62,9 +62,10 @@ def test_a_ship_that_waits_lies_still_in_the_profile():
     begin, end = float(route.legs["arrive"][0]), float(route.legs["depart"][1])
     assert end - begin == pytest.approx(7200.0)
     waits = (time >= begin - 0.1) & (time <= end + 0.1) & (speed == 0.0)
-    assert time[waits].tolist() == pytest.approx([begin, end], abs=0.1)
+    assert time[waits][[0, -1]].tolist() == pytest.approx([begin, end], abs=0.1)
+    assert np.diff(time[waits]).max() <= 900.0
     assert (speed[~waits] > 5.0).all()
-    assert np.array(profile["lat"])[waits].tolist() == [64.0, 64.0]
+    assert np.array(profile["lat"])[waits].tolist() == [64.0] * int(waits.sum())
     burnt = np.array(profile["fuel_t_per_day"])
     rate = float(route.legs["waiting_fuel"][1]) / 7200.0 * 86.4
     assert burnt[waits] == pytest.approx(rate, abs=0.006) and burnt[~waits].min() > rate

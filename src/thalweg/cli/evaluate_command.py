@@ -68,7 +68,9 @@ def run(arguments: argparse.Namespace) -> int:
         speed_kn=arguments.speed,
         min_ukc=arguments.ukc or 0.0,
     )
-    files = write_route(route, arguments.out, files_as) if arguments.out else []
+    files = []
+    if arguments.out:
+        files = write_route(route, arguments.out, files_as, min_ukc=arguments.ukc)
     notes = given_route_warnings(route, chart=chart, sea=sea, ship=ship, min_ukc=arguments.ukc)
     notes += route.assumptions
     if arguments.json:

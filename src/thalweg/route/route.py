@@ -109,6 +109,9 @@ class Route:
         (`thalweg.ship.fuel_prices.FuelTerms.prices`).
     engine_order : str
         What the engine holds on every leg (`thalweg.ship.consumption.engine_order`).
+    wait_samples : mapping of str to ndarray
+        The columns of ``samples`` during the waits, at least every five minutes; ``leg`` is the one
+        after the wait. Empty without waits.
     """
 
     track: Track
@@ -120,9 +123,10 @@ class Route:
     fuel_zones: Mapping[str, float] = field(default_factory=dict)
     prices: Mapping[str, Any] = field(default_factory=dict)
     engine_order: str = ""
+    wait_samples: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name in ("legs", "samples"):
+        for name in ("legs", "samples", "wait_samples"):
             columns = {key: np.array(values) for key, values in getattr(self, name).items()}
             for values in columns.values():
                 values.setflags(write=False)
@@ -258,16 +262,35 @@ class Route:
         return waypoint_frame(self)
 
     def sample_frame(self) -> pd.DataFrame:
-        """Return a pandas table of the fine samples, in SI.
+        """Return a pandas table of the fine samples and of the waits, in SI.
 
         Returns
         -------
         DataFrame
-            One row for each sample, with the columns of ``samples``.
+            One row for each sample in the order of time, with the columns of ``samples``; speeds
+            are zero during waits.
         """
         import pandas as pd
 
-        return pd.DataFrame(dict(self.samples))
+        return pd.DataFrame(self.samples_with_waits())
+
+    def samples_with_waits(self) -> dict[str, FloatArray]:
+        """Return the columns of ``samples`` with those of the waits between them.
+
+        Returns
+        -------
+        dict of str to ndarray
+            In the order of time; NaN where a value is not known during a wait.
+        """
+        waits = np.asarray(self.wait_samples.get("leg", ()), dtype=np.int64)
+        leg = np.concatenate([waits, self.samples["leg"]])
+        order = np.argsort(leg, kind="stable")  # a wait comes before its leg
+        unknown = np.full(len(waits), np.nan)
+        columns = {
+            name: np.concatenate([self.wait_samples.get(name, unknown), values])[order]
+            for name, values in self.samples.items()
+        }
+        return columns | {"leg": leg[order]}
 
     @property
     def cost_name(self) -> str:

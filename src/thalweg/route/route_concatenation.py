@@ -9,6 +9,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import longitude_difference
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.route import Route
 from thalweg.route.track import Track
 
@@ -62,11 +63,8 @@ def join(routes: Sequence[Route]) -> Route:
     doses = {name for name in legs if name.startswith("squared_dose:")}
     for name in (_QUANTITIES_OF_WAITS & legs.keys()) | doses:
         legs[name][first[1:-1][waits]] = np.nan
-    names = [name for name in routes[0].samples if all(name in r.samples for r in routes)]
-    samples = {name: np.concatenate([route.samples[name] for route in routes]) for name in names}
-    sizes = [len(route.samples["leg"]) for route in routes]
-    samples["leg"] = samples["leg"] + np.repeat(first[:-1], sizes)
-    samples["distance"] = samples["distance"] + np.repeat(length[:-1], sizes)
+    samples = _joined_samples([route.samples for route in routes], first, length)
+    waiting = [route.wait_samples or _without_rows(route.samples) for route in routes]
     return Route(
         _joined_track(routes),
         legs,
@@ -77,7 +75,24 @@ def join(routes: Sequence[Route]) -> Route:
         _summed_by_name([route.fuel_zones for route in routes]),
         routes[0].prices,
         routes[0].engine_order,
+        _joined_samples(waiting, first, length),
     )
+
+
+def _joined_samples(
+    parts: Sequence[Mapping[str, FloatArray]], first: IntArray, length: FloatArray
+) -> dict[str, FloatArray]:
+    """Return the samples of routes one after the other; ``first`` leg and distance of each."""
+    names = [name for name in parts[0] if all(name in part for part in parts)]
+    samples = {name: np.concatenate([part[name] for part in parts]) for name in names}
+    sizes = [len(part["leg"]) for part in parts]
+    samples["leg"] = samples["leg"] + np.repeat(first[:-1], sizes)
+    samples["distance"] = samples["distance"] + np.repeat(length[:-1], sizes)
+    return samples
+
+
+def _without_rows(samples: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    return {name: values[:0] for name, values in samples.items()}
 
 
 def _summed_by_name(parts: Sequence[Mapping[str, float]]) -> dict[str, float]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,22 +18,27 @@ from thalweg.route import Route
 _INK = "#22303c"
 
 
-def draw_profile(route: Route, path: str | Path | None = None) -> Any:
-    """Draw speeds, weather and clearance along a route against the time in UTC.
+def draw_profile(
+    route: Route, path: str | Path | None = None, *, min_ukc: float | None = None
+) -> Any:
+    """Draw speeds, weather and clearance along a route and in its waits against the time in UTC.
 
     Parameters
     ----------
     route : A route scored by the referee.
     path : Where to save it (PNG).
+    min_ukc : Required under-keel clearance [m], which is drawn; by default zero.
 
     Returns
     -------
     matplotlib.figure.Figure : One panel each for speeds, weather and depth, as far as they are
         known; the clearance panel states if no depth is known.
     """
-    panels = [panel for panel in (_speeds, _weather, _waves, _depths) if panel(route, None)]
+    route = replace(route, samples=route.samples_with_waits())
+    depths = partial(_depths, min_ukc=min_ukc or 0.0)
+    panels = [panel for panel in (_speeds, _weather, _waves, depths) if panel(route, None)]
     known = bool(np.isfinite(route.samples["under_keel_clearance"]).any())
-    heights = [0.25 if panel is _depths and not known else 1.0 for panel in panels]
+    heights = [0.25 if panel is depths and not known else 1.0 for panel in panels]
     figure = new_figure(10, 1.2 + 1.9 * sum(heights), layout=None)
     ratios = {"height_ratios": heights}
     rows = np.atleast_1d(figure.subplots(len(panels), 1, sharex=True, gridspec_kw=ratios))
@@ -123,7 +130,7 @@ def _waves(route: Route, axes: Any | None) -> bool:
     return True
 
 
-def _depths(route: Route, axes: Any | None) -> bool:
+def _depths(route: Route, axes: Any | None, min_ukc: float) -> bool:
     clearance = route.samples["under_keel_clearance"]
     known = clearance[np.isfinite(clearance)]
     if axes is not None and not known.size:
@@ -135,7 +142,8 @@ def _depths(route: Route, axes: Any | None) -> bool:
         axes.set_ylabel("clearance")
     elif axes is not None:
         _plot(axes, route, clearance, "under-keel clearance", _INK)
-        axes.axhline(0.0, color="#b71c1c", lw=0.8)
+        label = f"required: {min_ukc:g} m" if min_ukc else None
+        axes.axhline(min_ukc, color="#b71c1c", lw=0.8, label=label)
         if known.max() > 60:
             axes.set_yscale("symlog", linthresh=10)
         axes.set_ylabel("clearance [m]")

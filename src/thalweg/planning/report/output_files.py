@@ -65,9 +65,16 @@ def write_plan(
     route, own = keeping_limits(plan, plan.best, options)
     files = [folder / "plan.json", *write_route_files(route, folder, options=own)]
     draw_map(plan, folder / "map.png", beside=beside)
-    draw_profile(plan.best, folder / "profile.png")
+    draw_profile(plan.best, folder / "profile.png", min_ukc=_required_clearance(plan))
     files += [folder / "map.png", folder / "profile.png", *write_space_time_diagram(plan, folder)]
     return files if plan.front is None else files + _write_front(plan, folder, options)
+
+
+def _required_clearance(plan: PlanData) -> float | None:
+    """Return the required under-keel clearance of a plan [m]: of the voyage, else of the ship."""
+    if plan.plot_context is None:
+        return plan.voyage.min_ukc_m
+    return required_under_keel_clearance(plan.voyage, plan.plot_context.ship)
 
 
 def _of_plan(plan: PlanData, options: RouteFileOptions) -> RouteFileOptions:
@@ -161,14 +168,23 @@ def _write_table(rows: Sequence[Mapping[str, Any]], path: Path) -> Path:
 
 
 def write_route(
-    route: Route, folder: str | Path, options: RouteFileOptions | None = None
+    route: Route,
+    folder: str | Path,
+    options: RouteFileOptions | None = None,
+    *,
+    min_ukc: float | None = None,
 ) -> list[Path]:
-    """Write a route as route.json, in all formats, and its profile; return the files."""
+    """Write a route as route.json, in all formats, and its profile; return the files.
+
+    Parameters
+    ----------
+    min_ukc : Required under-keel clearance [m], which the profile shows.
+    """
     folder = make_folder(folder)
     text = json.dumps(route.as_dict(), indent=2, allow_nan=False)
     write_text(folder / "route.json", text + "\n")
     files = [folder / "route.json", *write_route_files(route, folder, options=options)]
-    draw_profile(route, folder / "profile.png")
+    draw_profile(route, folder / "profile.png", min_ukc=min_ukc)
     return [*files, folder / "profile.png"]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -26,9 +27,14 @@ from thalweg.route.referee.sailing_physics import (
     SailingEnvironment,
     SailingState,
     conditions_at,
-    sample_sea_and_depth,
 )
 from thalweg.route.referee.surroundings import surroundings_columns
+from thalweg.route.referee.wait_samples import (
+    WaitConditions,
+    wait_conditions,
+    wait_depth_violations,
+    wait_samples,
+)
 from thalweg.route.route import Route, Violation
 from thalweg.route.track import Track
 from thalweg.ship.consumption import engine_order
@@ -40,7 +46,6 @@ if TYPE_CHECKING:
 
 OUT_OF_RANGE = "The speed loss is used outside its range"  #: start of a note of a route
 WAITING_NOT_ALLOWED = "waiting not allowed"
-_MAX_CHECK_INTERVAL = 300.0  # longest time between two checks of the depth while waiting [s]
 
 
 def assemble_route(
@@ -60,7 +65,8 @@ def assemble_route(
     motion = sailing_state_along(world, pieces.canals, points, sampled_time)
     power, rate = _rates(world, pieces, points, time=sampled_time, motion=motion)
     checked = checked_points(sailed, points, time, min_ukc)
-    violations, least = _check_limits(sailed, checked, min_ukc)
+    waits = wait_conditions(sailed)
+    violations, least = _check_limits(sailed, checked, waits, min_ukc)
     violations += stoppage_violations(world, points, time, motion)
     violations += seaway_violations(world, points, time, motion)
     violations.sort(key=lambda item: item.time if math.isfinite(item.time) else math.inf)
@@ -86,9 +92,10 @@ def assemble_route(
     samples |= at_samples
     assumptions = (*world.assumptions, *spent.notes, *_range_notes(world, points, time, motion))
     assumptions = (*assumptions, *notes, *more)
+    legs |= {**spent.legs, **columns}
     return Route(
         pieces.track,
-        {**legs, **spent.legs, **columns},
+        legs,
         samples,
         tuple(violations),
         tolerance,
@@ -96,6 +103,7 @@ def assemble_route(
         spent.zones,
         terms.prices(),
         engine_order(world.ship),
+        wait_samples(sailed, waits, legs, samples),
     )
 
 
@@ -106,23 +114,27 @@ def _leg_kinds(pieces: TrackPieces) -> FloatArray:
 
 
 def _check_limits(
-    sailed: SailedTrack, checked: CheckedPoints, min_ukc: float | None
+    sailed: SailedTrack,
+    checked: CheckedPoints,
+    waits: Sequence[WaitConditions],
+    min_ukc: float | None,
 ) -> tuple[list[Violation], FloatArray]:
     """Return the violations at close points, and the least clearance of every leg [m]."""
     world, track = sailed.world, sailed.pieces.track
     near, moments, depth = checked.points, checked.moments, checked.depth
     sampled = checked.sampled
     found = limit_violations(world, near, moments, sampled=sampled, depth=depth, min_ukc=min_ukc)
-    waits = _wait_clearances(sailed)
-    found += _wait_depth_violations(track, waits, min_ukc)
+    # the first waypoint is a berth
+    waits = [one for one in waits if one.index > 0] if world.has_depth else []
+    found += wait_depth_violations(track, waits, min_ukc)
     found += waiting_violations(world.chart, track, sailed.leg_times()[1])
     found += canal_violations(world, sailed.pieces, sailed.leg_times()[0])
     found += lane_violations(world, sailed.pieces, sailed.leg_times()[0])
     found += land_violations(world, sailed.pieces, *sailed.leg_times())
     clearance = _finite(depth - world.ship.draught)
     least = _least_by_leg(near.leg, clearance, moments, len(track) - 1)
-    for index, _, lying in waits:  # a wait belongs to the leg after it
-        least[index] = np.fmin(least[index], np.fmin.reduce(_finite(lying)))
+    for one in waits:  # a wait belongs to the leg after it
+        least[one.index] = np.fmin(least[one.index], np.fmin.reduce(_finite(one.clearance)))
     return found, least
 
 
@@ -240,56 +252,6 @@ def _least_by_leg(leg: IntArray, values: FloatArray, time: FloatArray, count: in
 
 def _finite(values: FloatArray) -> FloatArray:
     return np.where(np.isfinite(values), values, math.nan)
-
-
-def _wait_clearances(sailed: SailedTrack) -> list[tuple[int, FloatArray, FloatArray]]:
-    """Return (waypoint, times, clearances [m]) of every wait but that at the first waypoint."""
-    world, track = sailed.world, sailed.pieces.track
-    if not world.has_depth:
-        return []
-    _, arrive = sailed.leg_times()
-    found = []
-    for index in np.flatnonzero(track.wait[1:-1]) + 1:
-        if not math.isfinite(arrive[index - 1]):
-            continue
-        count = 2 + int(track.wait[index] / _MAX_CHECK_INTERVAL)
-        time = arrive[index - 1] + np.linspace(0.0, track.wait[index], count)
-        _, depth = sample_sea_and_depth(
-            world, _repeated_waypoint(world, track, int(index), count), time
-        )
-        found.append((int(index), time, depth - world.ship.draught))
-    return found
-
-
-def _wait_depth_violations(
-    track: Track, waits: list[tuple[int, FloatArray, FloatArray]], min_ukc: float | None
-) -> list[Violation]:
-    """Return the waits during which there is too little water."""
-    found: list[Violation] = []
-    if min_ukc is None:
-        return found
-    for index, time, clearance in waits:
-        worst = int(np.argmin(clearance))
-        if not clearance[worst] >= min_ukc - 1e-9:
-            place = (float(track.lat[index]), float(track.lon[index]))
-            value = float(clearance[worst])
-            reason = "under-keel clearance" if math.isfinite(value) else "no data: depth"
-            found.append(
-                Violation(f"{reason} (waiting)", float(time[worst]), *place, value, min_ukc)
-            )
-    return found
-
-
-def _repeated_waypoint(
-    world: SailingEnvironment, track: Track, index: int, count: int
-) -> TrackPoints:
-    """Return one waypoint, several times."""
-    lat, lon = np.full(count, track.lat[index]), np.full(count, track.lon[index])
-    charted = np.full(count, math.inf)
-    if world.charted and world.chart is not None:
-        charted[:] = np.asarray(world.chart.depths.at(track.lat[index], track.lon[index]), float)
-    zero = np.zeros(count, dtype=np.int64)
-    return TrackPoints(lat, lon, np.zeros(count), zero, zero, np.zeros(count), charted)
 
 
 def waiting_violations(chart: Chart | None, track: Track, arrive: FloatArray) -> list[Violation]:

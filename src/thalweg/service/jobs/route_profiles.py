@@ -17,7 +17,6 @@ from thalweg.sea import standard_names as nm
 if TYPE_CHECKING:
     from thalweg.route import Route
 
-_LEAST_WAIT: Final = 60.0  # of a wait that has points of its own [s]
 MOST_POINTS: Final = 600  #: points of a profile
 _COMFORT: Final = "weighted_acceleration:"  # and the name of a place
 #: Columns of a profile: source in the samples of a route, factor, decimals.
@@ -75,30 +74,17 @@ def route_profile(route: Route) -> dict[str, Any]:
 
 
 def _with_waits(route: Route) -> tuple[dict[str, FloatArray], NDArray[np.int64]]:
-    """Return the samples of a route with two for each wait under way, and the indices of these.
+    """Return the samples with those of waits under way, and the indices of begin and end of each.
 
-    A ship that waits lies still and burns the fuel of her hotel load; the sea at begin and end is
-    that of the samples before and after.
+    A wait at the first waypoint is left out, as there the ship is not under way yet.
     """
-    samples = {name: np.asarray(values, float) for name, values in route.samples.items()}
-    time, legs, wait = samples["time"], route.legs, np.asarray(route.track.wait, float)
-    added: list[int] = []
-    for leg in np.flatnonzero(wait[1:-1] > _LEAST_WAIT) + 1:
-        begin, end = float(legs["arrive"][leg - 1]), float(legs["depart"][leg])
-        at = int(np.searchsorted(samples["time"], 0.5 * (begin + end)))
-        if not 0 < at < len(samples["time"]):
-            continue
-        rate = float(legs["waiting_fuel"][leg]) / (end - begin) if "waiting_fuel" in legs else 0.0
-        own = {
-            "lat": route.track.lat[leg], "lon": route.track.lon[leg], "speed_over_ground": 0.0,
-            "speed_through_water": 0.0, "power": 0.0, "fuel_rate": rate,
-        }  # fmt: skip
-        for name, values in samples.items():
-            pair = [own[name]] * 2 if name in own else [values[at - 1], values[at]]
-            samples[name] = np.insert(values, at, [begin, end] if name == "time" else pair)
-        added += [at, at + 1]
-    assert len(samples["time"]) == len(time) + len(added)
-    return samples, np.array(added, np.int64)
+    samples = route.samples_with_waits()
+    waits = np.asarray(route.wait_samples.get("leg", ()), np.int64)
+    first = int(np.count_nonzero(waits == 0))
+    samples = {name: np.asarray(values, float)[first:] for name, values in samples.items()}
+    legs, count = np.unique(waits[waits > 0], return_counts=True)
+    begin = np.searchsorted(samples["leg"], legs)  # the samples of a wait come before its leg
+    return samples, np.concatenate([begin, begin + count - 1]).astype(np.int64)
 
 
 def _thinned(time: FloatArray) -> Any:
