@@ -232,7 +232,7 @@ def _read_window(world, j, i, first, last, buffers):
                 bed_low, bed_high = _widen(bed_low, bed_high, sample[BED_DEPTH])
             if index[WATER_LEVEL] >= 0 and sample[WATER_LEVEL] == sample[WATER_LEVEL]:
                 level_low, level_high = _widen(level_low, level_high, sample[WATER_LEVEL])
-            known_corners += known
+            known_corners += known and _limits_are_known(index, sample, world.ship.limits)
         instants += 1
         if t >= end:
             break
@@ -269,6 +269,23 @@ def _read_window(world, j, i, first, last, buffers):
         shortest = direction_range(buffers.wind_over_ground, winds)[2] - margins[WIND_EAST]
         is_open = is_open and shortest <= world.ship.limits[LIMIT_WIND_SPEED]
     return instants, is_open, field_high, winds, waves
+
+
+@kernel_only
+def _limits_are_known(index, sample, limits):
+    """Return whether all that limits of a ship count is known: elsewhere she may not be."""
+    if limits[LIMIT_REQUIRED_DEPTH] > -math.inf:
+        if index[BED_DEPTH] >= 0 and sample[BED_DEPTH] != sample[BED_DEPTH]:
+            return False
+        if index[WATER_LEVEL] >= 0 and sample[WATER_LEVEL] != sample[WATER_LEVEL]:
+            return False
+    if limits[LIMIT_WAVE_HEIGHT] < math.inf and index[WAVE_HEIGHT_CHANNEL] >= 0:
+        if sample[WAVE_HEIGHT_CHANNEL] != sample[WAVE_HEIGHT_CHANNEL]:
+            return False
+    if limits[LIMIT_WIND_SPEED] < math.inf and index[WIND_EAST] >= 0 and index[WIND_NORTH] >= 0:
+        a, b = sample[WIND_EAST], sample[WIND_NORTH]
+        return a == a and b == b
+    return True
 
 
 @kernel_only

@@ -32,6 +32,7 @@ from thalweg.search.certificate.check_timing import USUAL_SECONDS_A_CELL, second
 from thalweg.search.certificate.length_round_land import length_round_land
 from thalweg.search.search_problem import ROUNDING_FACTOR
 
+_EMPTY_CELL: Final = 0.3  # of the time of a cell, for one of which the data know nothing
 _FIRST_CELLS: Final = 60  # cells of the first mesh along the geodesic
 _FEWEST_CELLS: Final = 24  # cells of the first mesh along the geodesic where there is little time
 #: Cells along the longer side of the raster, at least, for a sea that is given by functions.
@@ -229,8 +230,9 @@ class BarrierSearch:
     def __post_init__(self) -> None:
         wanted = self.cells * self.domain.cell_height / self.passage.length
         self._refinement = max(1, math.ceil(wanted))
-        _, rows, columns, _ = self.domain.raster.values.shape
-        self.expected_seconds = self.rate * rows * columns * self._refinement**2
+        known = np.isfinite(self.domain.raster.values).all(axis=3).any(axis=0)
+        counted = known.size * (_EMPTY_CELL + (1.0 - _EMPTY_CELL) * float(known.mean()))
+        self.expected_seconds = self.rate * counted * self._refinement**2
 
     def refine(self) -> TimeCertificate | None:
         """Return the bound of the next mesh; None where no barrier passed the check."""
