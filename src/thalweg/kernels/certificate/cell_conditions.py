@@ -274,18 +274,16 @@ def _read_window(world, j, i, first, last, buffers):
 @kernel_only
 def _limits_are_known(index, sample, limits):
     """Return whether all that limits of a ship count is known: elsewhere she may not be."""
+    known = True
     if limits[LIMIT_REQUIRED_DEPTH] > -math.inf:
-        if index[BED_DEPTH] >= 0 and sample[BED_DEPTH] != sample[BED_DEPTH]:
-            return False
-        if index[WATER_LEVEL] >= 0 and sample[WATER_LEVEL] != sample[WATER_LEVEL]:
-            return False
+        for channel in (BED_DEPTH, WATER_LEVEL):
+            known = known and not (index[channel] >= 0 and sample[channel] != sample[channel])
     if limits[LIMIT_WAVE_HEIGHT] < math.inf and index[WAVE_HEIGHT_CHANNEL] >= 0:
-        if sample[WAVE_HEIGHT_CHANNEL] != sample[WAVE_HEIGHT_CHANNEL]:
-            return False
+        known = known and sample[WAVE_HEIGHT_CHANNEL] == sample[WAVE_HEIGHT_CHANNEL]
     if limits[LIMIT_WIND_SPEED] < math.inf and index[WIND_EAST] >= 0 and index[WIND_NORTH] >= 0:
-        a, b = sample[WIND_EAST], sample[WIND_NORTH]
-        return a == a and b == b
-    return True
+        east, north = sample[WIND_EAST], sample[WIND_NORTH]
+        known = known and east == east and north == north
+    return known
 
 
 @kernel_only
