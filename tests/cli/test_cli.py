@@ -5,9 +5,11 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
+from rich.console import Console
 
 from thalweg.cli.main import build_parser, main
 from thalweg.cli.option_values import open_sea
+from thalweg.cli.tables import print_waypoints
 
 SHIP = """
 name: tester
@@ -135,6 +137,14 @@ def test_details_of_a_plan_on_request(capsys, ship):
     text = capsys.readouterr().out
     for word in ("7.6", "waypoint", "Lower bound", "Network: kind", "Fingerprint of the sea"):
         assert word in text
+
+
+def test_details_have_all_waypoints(capsys):
+    """A table of 46 waypoints said '... 16 more'."""
+    row = {"lat": 50.0, "lon": 1.0, "time": None}
+    print_waypoints(Console(), [{**row, "distance_nm": float(k)} for k in range(100)], "a route")
+    text = capsys.readouterr().out
+    assert "more" not in text and all(f" {k}.0 " in text for k in range(100))
 
 
 @pytest.mark.slow

@@ -218,8 +218,8 @@ def print_route(
 def print_waypoints(console: Any, waypoints: list[dict[str, Any]], title: str) -> None:
     """Print the table of a route's waypoints, narrow enough for a terminal of 80 columns."""
     table = new_table(title, _WAYPOINT_COLUMNS, left=("waypoint", "UTC"))
-    for row in _shortened([_waypoint_cells(row) for row in waypoints]):
-        table.add_row(*row)
+    for row in waypoints:
+        table.add_row(*_waypoint_cells(row))
     console.print(table)
 
 
@@ -240,12 +240,3 @@ def _waypoint_cells(row: dict[str, Any]) -> list[str]:
         number("waiting_h", 2) if row.get("waiting_h") else "",
         number("ukc_m", 1),
     ]
-
-
-def _shortened(rows: list[list[str]]) -> list[list[str]]:
-    """Return the rows without the middle of a long table; the files hold all of them."""
-    if len(rows) <= _MAX_ROWS:
-        return rows
-    half = _MAX_ROWS // 2
-    dots = [f"... {len(rows) - 2 * half} more", *[""] * (len(rows[0]) - 1)]
-    return [*rows[:half], dots, *rows[-half:]]
