@@ -209,6 +209,18 @@ def test_the_prices_and_their_sources_stand_beside_the_cost(answer):
     )
     dearer = ship.with_prices(600.0, 1.0, time_usd_per_day=12000.0).fuel_terms.prices()
     assert prices_text(dearer) == "fuel 600 USD/t (given), time 12,000 USD/day (given)"
+    by_factor = ship.with_prices(600.0).fuel_terms.prices()
+    assert prices_text(by_factor) == (
+        "fuel 600 USD/t (given) and 936 in control areas (by the factor of the ship file), "
+        "no price of time"
+    )
+    doubled = ship.with_prices(eca_price_factor=2.0)
+    assert prices_text(doubled.fuel_terms.prices()) == (
+        "fuel 300 USD/t (ship file) and 600 in control areas (by the given factor), "
+        "no price of time"
+    )
+    both = doubled.with_prices(500.0).fuel_terms.prices()
+    assert prices_text(both).startswith("fuel 500 USD/t and 1,000 in control areas (given)")
     legs = dict(answer.best.legs) | {"cost": np.full(len(answer.best.legs["length"]), 50.0)}
     priced = replace(answer.best, legs=legs, prices=dearer)
     assert cost_text(priced, []).endswith(

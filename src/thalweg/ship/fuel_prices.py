@@ -27,6 +27,8 @@ from thalweg.ship.methods.engine.fuel_properties import (
 from thalweg.ship.schema.ship_schema import CostsSection, ShipFile
 
 FUEL_QUANTITIES: Final = ("fuel", "cost", "co2", "charges")
+FACTOR_OF_SHIP_FILE: Final = "price of the request, factor of the ship file"
+FACTOR_OF_REQUEST: Final = "price of the ship file, factor of the request"
 _GRAMS: Final = 1000.0  #: in a kilogram
 _SHARE_NOISE: Final = 1e-9  #: of shares that are quotients of lengths
 
@@ -51,7 +53,8 @@ class FuelTerms:
         van Halem (2019); NaN when unknown. It is used where fuel has no price.
     cubed_speed_co2 : CO2 of a second of sailing per cubed ordered speed [kg/s per (m/s)^3], van
         Halem (2019), eq. 3.5; NaN when unknown. It is used where the CO2 of the fuel is unknown.
-    sources : Where the prices of ``fuel`` and ``time`` come from: "ship file" or "request".
+    sources : Where the prices of ``fuel`` and ``time``, the ``factor`` inside control areas and the
+        price ``fuel_inside`` come from: "request", for the last also of both; else "ship file".
     charges : Emission allowances and FuelEU penalty, which add to the cost of fuel.
     """
 
@@ -94,7 +97,7 @@ class FuelTerms:
         """
         values = {
             "fuel_per_t": (self.price_outside * TONNE, "fuel"),
-            "fuel_in_eca_per_t": (self.price_inside * TONNE, "fuel"),
+            "fuel_in_eca_per_t": (self.price_inside * TONNE, "fuel_inside"),
             "time_per_day": (self.time_price * DAY, "time"),
         }
         if self.by_speed:
@@ -265,12 +268,22 @@ class FuelTerms:
             eca_price_factor=self.eca_price_factor if keeps else factor,
             currency="USD" if dollars else self.currency,
             time_price=self.time_price if time_usd_per_day is None else time_usd_per_day / DAY,
-            sources={
-                **self.sources,
-                **({} if keeps else {"fuel": "request"}),
-                **({} if time_usd_per_day is None else {"time": "request"}),
-            },
+            sources=self._sources_with(
+                fuel=usd_per_t is not None,
+                factor=eca_price_factor is not None,
+                time=time_usd_per_day is not None,
+            ),
         )
+
+    def _sources_with(self, *, fuel: bool, factor: bool, time: bool) -> dict[str, str]:
+        """Return the sources of the prices where a request gives some of them."""
+        given = {"fuel": fuel, "factor": factor, "time": time}
+        found = {**self.sources, **{name: "request" for name, new in given.items() if new}}
+        if fuel or factor:
+            both = "fuel" in found and "factor" in found
+            one = FACTOR_OF_SHIP_FILE if "fuel" in found else FACTOR_OF_REQUEST
+            found["fuel_inside"] = "request" if both else one
+        return found
 
     def _ratio(self) -> float:
         """Return the price inside over that outside; 1 where it is unknown."""

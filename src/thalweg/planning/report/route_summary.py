@@ -17,6 +17,7 @@ from thalweg.planning.report.depth_report import CHECK_DEPTH
 from thalweg.planning.report.filled_weather import wave_shares
 from thalweg.planning.report.waiting_report import WAITS
 from thalweg.sea.models.cyclone_layer import AmbientSea, StormLayer
+from thalweg.ship.fuel_prices import FACTOR_OF_REQUEST, FACTOR_OF_SHIP_FILE
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -30,7 +31,11 @@ _WIND = ("eastward_wind", "northward_wind")
 _CURRENT = ("eastward_sea_water_velocity", "northward_sea_water_velocity")
 _NAMES = (_WAVES, *_WIND, *_CURRENT)
 _LEAST_PERCENT: Final = 0.5  # smaller shares of the way are not named
-_SOURCES: Final = {"request": "given"}  # other sources of prices by their own name
+_SOURCES: Final = {  # other sources of prices by their own name
+    "request": "given",
+    FACTOR_OF_SHIP_FILE: "by the factor of the ship file",
+    FACTOR_OF_REQUEST: "by the given factor",
+}
 
 
 def route_items(
@@ -131,8 +136,13 @@ def prices_text(prices: Mapping[str, Any]) -> str:
     )
     cubed = value("per_second_per_cubed_speed")
     if fuel is not None:
-        more = "" if inside in (None, fuel) else f" and {inside:,.0f} in control areas"
-        texts.append(f"fuel {fuel:,.0f} {currency}/t{more} ({_source(prices, 'fuel_per_t')})")
+        source = f" ({_source(prices, 'fuel_per_t')})"
+        more = ""
+        if inside not in (None, fuel):
+            of_inside = f" ({_source(prices, 'fuel_in_eca_per_t')})"
+            more = f"{'' if of_inside == source else source} and {inside:,.0f} in control areas"
+            source = of_inside
+        texts.append(f"fuel {fuel:,.0f} {currency}/t{more}{source}")
     if cubed is not None:
         source = _source(prices, "per_second_per_cubed_speed")
         texts.append(f"{cubed:g} {currency}/s per cubed speed ({source})")
