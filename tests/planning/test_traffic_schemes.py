@@ -199,10 +199,19 @@ def test_ways_against_lanes_are_left_out_of_alternatives(past_finisterre):
     ways = ([(42.4, -9.3), (42.7, -10.2), (43.7, -10.2), (43.9, -9.2)],
             [(42.4, -9.3), (43.9, -9.2)])  # fmt: skip
     routes = [evaluate(way, ship=SHIP, sea=Sea.calm(), depart=depart) for way in ways]
-    kept, (note,) = routes_within_lanes(chart, routes)
+    kept, (note,) = routes_within_lanes(chart, routes, routes[:1])
     assert kept == routes[:1]
     assert note.startswith("1 of 2 ways found are left out")
-    assert routes_within_lanes(chart, routes[:1]) == (routes[:1], [])
+    assert routes_within_lanes(chart, routes[:1], routes[:1]) == (routes[:1], [])
+
+
+def test_the_fastest_route_of_other_canals_stays_among_alternatives(past_finisterre):
+    """Coronel to Szczecin: the way by Magellan and Kiel was left out for 9 nm inshore of Dover."""
+    chart, _ = past_finisterre
+    ways = ([(42.4, -9.3), (42.7, -10.2), (43.7, -10.2), (43.9, -9.2)],
+            [(42.4, -9.3), (43.9, -9.2)])  # fmt: skip
+    routes = [evaluate(way, ship=SHIP, sea=Sea.calm(), depart="2026-01-01T00:00Z") for way in ways]
+    assert routes_within_lanes(chart, routes, routes) == (routes, [])
 
 
 @pytest.mark.slow

@@ -2,9 +2,9 @@
 
 The key figures are minimised on one network in the weather. Ways round islands, by and round named
 passages and farther off land are its shortest paths (round islands those of a network of all water
-between the ends), straightened as far as land allows, at the
-fastest route's speed. A mile in shoals, penalty zones and against lanes counts more in all of
-them, as in plans; ways that run farther against lanes than the fastest route are left out.
+between the ends), straightened as far as land allows, at the fastest route's speed. A mile in
+shoals, penalty zones and against lanes counts more in all of them, as in plans; ways that run
+farther against lanes than the fastest route by any canals are left out.
 """
 
 from __future__ import annotations
@@ -149,7 +149,8 @@ def candidate_routes(
             search.try_alternative(other)
     search.notes += lane_detour_notes(search.context.chart, [first.network])
     in_time = [route for route in search.routes if search.is_in_time(route.arrive - route.depart)]
-    kept, note = routes_within_lanes(search.context.chart, in_time)
+    standards = [route for route in search.fastest_routes if route in in_time]
+    kept, note = routes_within_lanes(search.context.chart, in_time, standards)
     return kept, [*search.notes, *note]
 
 
@@ -161,6 +162,7 @@ class _Candidates:
         self.terms = trade_off.objective.terms
         self.currency = self.terms.currency or "USD"
         self.routes: list[Route] = []
+        self.fastest_routes: list[Route] = []  # of each set of canals
         self.notes: list[str] = []
         self.best: dict[str, Route] = {}
         self.paths = FastestPaths()  # of the first network
@@ -180,6 +182,7 @@ class _Candidates:
         own = with_objective(self.trade_off, Objective.of("time", currency=self.currency))
         alternative, _horizon, route = fastest_in_known_water(own, alternative)
         self.routes.append(self._scored(route.track))
+        self.fastest_routes.append(self.routes[-1])
         self.best.setdefault("time", self.routes[-1])
         return alternative
 

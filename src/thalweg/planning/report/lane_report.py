@@ -120,36 +120,37 @@ def _listed(names: Mapping[str, Sequence[str]]) -> str:
     return " and ".join(parts)
 
 
-def routes_within_lanes(chart: Chart, routes: list[Route]) -> tuple[list[Route], list[str]]:
-    """Return the routes that run no farther against lanes than the first one, and a note.
+def routes_within_lanes(
+    chart: Chart, routes: list[Route], fastest: Sequence[Route]
+) -> tuple[list[Route], list[str]]:
+    """Return the routes that run no farther against lanes than fastest ones, and a note.
 
     Parameters
     ----------
     chart : With lanes, of the package or of the user.
-    routes : The first of them keeps the lanes as far as it pays.
+    fastest : Those of each set of canals, which keep the lanes as far as it pays.
 
     Returns
     -------
-    routes : Those within two miles of the first, which is one of them.
+    routes : Those within two miles of one of the fastest, against lanes and in inshore zones.
     notes : How many were left out; empty where none was.
     """
     if not chart.zones.lanes:
         return routes, []
-    against = [_length_against(chart, route) for route in routes]
-    kept = [one for one, metres in zip(routes, against) if metres <= against[0] + _LEAST]
+    most = np.max([_lengths_against(chart, route) for route in fastest], axis=0) + _LEAST
+    kept = [route for route in routes if np.all(_lengths_against(chart, route) <= most)]
     if len(kept) == len(routes):
         return routes, []
     return kept, [
         f"{len(routes) - len(kept)} of {len(routes)} ways found are left out: they run against "
-        "lanes or through inshore traffic zones, farther than the fastest route."
+        "lanes or through inshore traffic zones, farther than the fastest route by any canals."
     ]
 
 
-def _length_against(chart: Chart, route: Route) -> float:
-    """Return how far a route runs against lanes and in inshore traffic zones [m]."""
+def _lengths_against(chart: Chart, route: Route) -> FloatArray:
+    """Return how far a route runs against lanes, and in inshore traffic zones [m]."""
     legs = _legs(*_positions(route))
-    leg, _, share = chart.zones.lane_group.shares_against(*legs)
-    return float(np.sum(share * np.asarray(distance(*legs))[leg]))
+    return np.array([sum(_metres(chart, legs, inshore=one).values()) for one in (False, True)])
 
 
 def _has_schemes(chart: Chart) -> bool:
