@@ -21,6 +21,7 @@ from thalweg.planning.seaways import Seaways
 LEAST_DEPTH: Final = 2.5
 _CLEARLY_LONGER: Final = 1.05
 PASSAGE_CLOSED: Final = "Passage closed"  #: a note on passages that are closed begins so
+PASSAGES_CLOSED: Final = "Passages closed"  #: ... or so, where it is on several
 #: Closed passages are named that save so much of the way, and at least so much [m].
 _LEAST_SHARE: Final = 0.02
 _LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -14,7 +16,7 @@ from thalweg.core.geodesy import densify, distance, format_position
 from thalweg.core.time import format_time
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.planning_context import PlanningContext
-from thalweg.planning.report.distance_report import PASSAGE_CLOSED
+from thalweg.planning.report.distance_report import PASSAGE_CLOSED, PASSAGES_CLOSED
 from thalweg.planning.request.offing_choice import size_restriction
 from thalweg.route import Route
 from thalweg.route.referee.land_clearance import least_land_clearance
@@ -74,14 +76,25 @@ def time_of_passing(route: Route, leg: int, lat: float, lon: float) -> str:
 
 
 def closed_passage_notes(context: PlanningContext, route: Route) -> list[str]:
-    """Return a note on each passage that would shorten a route but is closed to the ship's size."""
+    """Return a note for each reason why a ship may not use passages that shorten a route."""
     avoided = split_avoided(context.voyage.avoid)[1]
-    notes = []
+    names: dict[str, list[str]] = {}
     for passage in context.chart.closed_passages:
         why = "" if passage in avoided else size_restriction(passage, context.ship)
         if why and _is_near(route, passage) and saved_length(route, passage) >= _LEAST_SAVED:
-            notes.append(f"{PASSAGE_CLOSED}: {why} (--open {passage.name!r} opens it).")
-    return notes
+            reason = why.removeprefix(f"{passage.name}: ")
+            names.setdefault(reason, []).append(passage.name)
+    return [_closed_note(reason, closed) for reason, closed in names.items()]
+
+
+def _closed_note(reason: str, names: Sequence[str]) -> str:
+    """Return a note on passages that are closed for one reason."""
+    if len(names) == 1:
+        why = reason if reason.startswith(names[0]) else f"{names[0]}: {reason}"
+        return f"{PASSAGE_CLOSED}: {why} (--open {names[0]!r} opens it)."
+    listed = f"{', '.join(names[:-1])} and {names[-1]}"
+    reason = re.sub(r"^it is\b", "they are", reason)
+    return f"{PASSAGES_CLOSED}: {listed}: {reason} (--open NAME opens one)."
 
 
 def _is_near(route: Route, passage: Passage) -> bool:
