@@ -172,3 +172,9 @@ def test_weather_that_a_ship_does_not_read_is_stated(year, held, tmp_path):
     found = plan(voyage, ship=SHIP, sea=sea, chart=WATER, resolution=5000.0, proof=0.0)
     note = next(note for note in found.notes if note.startswith("Weather is not considered"))
     assert ("not at the departure" in note) is not held
+
+
+def test_a_calm_sea_has_no_note_on_weather_that_is_not_considered():
+    voyage = Voyage(start=(50.5, 1.5), goal=(50.5, 2.5), depart="2026-01-01T06:00Z")
+    found = plan(voyage, ship=SHIP, sea=Sea.calm(), chart=WATER, resolution=5000.0, proof=0.0)
+    assert not any(note.startswith("Weather is not considered") for note in found.notes)

@@ -162,6 +162,11 @@ def test_weather_is_that_of_the_sea_even_if_the_ship_ignores_it(answer):
     assert weather_text(windy, None).startswith("strongest wind 16 kn, at ")
 
 
+def test_the_weather_of_a_calm_sea_is_calm(answer):
+    """A plan on a calm sea said 'calm or not known' where the ship reads no weather."""
+    assert weather_text(answer.best, Sea.calm()) == "calm: no wind, waves or currents"
+
+
 def test_the_share_of_the_way_without_known_waves_is_stated(answer):
     best = answer.best
     along = best.samples["distance"]

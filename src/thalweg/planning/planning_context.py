@@ -15,8 +15,7 @@ from thalweg.planning.request.requirements import Requirements, required_under_k
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, Track, evaluate
 from thalweg.sea import Sea
-from thalweg.sea.fill_policies import CALM_VALUES
-from thalweg.sea.models.function_layer import FormulaLayer
+from thalweg.sea.fill_policies import is_calm_layer
 from thalweg.ship import PerformanceTable, Ship, TableError, TablePart
 from thalweg.ship.fuel_prices import FuelTerms
 
@@ -113,10 +112,7 @@ class PlanningContext:
     @property
     def sea_is_calm(self) -> bool:
         """Whether the sea is known to have no wind, waves and currents anywhere."""
-        return all(
-            isinstance(layer, FormulaLayer) and layer.facts.get("values") == CALM_VALUES
-            for layer in self.sea.layers
-        )
+        return all(map(is_calm_layer, self.sea.layers))
 
     @property
     def min_ukc(self) -> float:

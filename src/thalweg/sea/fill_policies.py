@@ -51,6 +51,11 @@ FILLABLE_VARIABLES: dict[str, tuple[str, ...]] = {
 }
 
 
+def is_calm_layer(layer: Layer) -> bool:
+    """Return whether a layer is that of a calm sea: no wind, waves and currents anywhere."""
+    return isinstance(layer, FormulaLayer) and layer.facts.get("values") == CALM_VALUES
+
+
 def layers_filled(
     layers: Sequence[Layer], policies: Mapping[str, FillValue]
 ) -> tuple[tuple[Layer, ...], tuple[str, ...]]:

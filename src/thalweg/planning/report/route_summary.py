@@ -16,6 +16,7 @@ from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.report.depth_report import CHECK_DEPTH
 from thalweg.planning.report.filled_weather import wave_shares
 from thalweg.planning.report.waiting_report import WAITS
+from thalweg.sea.fill_policies import is_calm_layer
 from thalweg.sea.models.cyclone_layer import AmbientSea, StormLayer
 from thalweg.ship.fuel_prices import FACTOR_OF_REQUEST, FACTOR_OF_SHIP_FILE
 
@@ -182,6 +183,8 @@ def weather_text(route: Route, sea: Sea | None) -> str:
             digits = 0 if word == "wind" else 1
             return f"strongest {word} {values[at]:.{digits}f} kn, {_place(route, at)}"
     known = [values for values in (waves, wind, current) if values is not None]
+    if sea is not None and sea.layers and all(map(is_calm_layer, sea.layers)):
+        return "calm: no wind, waves or currents"
     if len(known) == 3 and all(np.isfinite(values).all() for values in known):
         return "calm: no wind, waves or currents"
     if known and not any(np.isfinite(values).any() for values in known):

@@ -29,7 +29,12 @@ from thalweg.planning.request.voyage_endpoints import MAX_SNAP_PORT, Endpoint
 from thalweg.planning.voyage import Voyage
 from thalweg.sea import Sea, standard_names
 from thalweg.sea.doubtful_values import doubts_of_files
-from thalweg.sea.fill_policies import MAX_NEAREST, filled_distance, nearest_fills
+from thalweg.sea.fill_policies import (
+    MAX_NEAREST,
+    filled_distance,
+    is_calm_layer,
+    nearest_fills,
+)
 from thalweg.ship import Ship
 
 CHECK_YEAR: Final = "Check the year"  #: a note on a departure before 1900 begins so
@@ -127,7 +132,9 @@ def _note_of_year(depart: float) -> tuple[str, ...]:
 def _notes_of_unread(depart: float, sea: Sea, wanted: Set[str]) -> tuple[str, ...]:
     """Return a note where a sea has wind or waves and the speed of the ship depends on neither."""
     weather = {"wind": standard_names.EASTWARD_WIND, "waves": standard_names.WAVE_HEIGHT}
-    given = {word: name for word, name in weather.items() if name in sea.variables}
+    data = [layer.variables for layer in sea.layers if not is_calm_layer(layer)]
+    names = frozenset[str]().union(*data)  # of a calm sea all that counts is known
+    given = {word: name for word, name in weather.items() if name in names}
     if not given or wanted & set(given.values()):
         return ()
     periods = [sea.period_of([name]) for name in given.values()]
