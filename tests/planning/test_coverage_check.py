@@ -7,7 +7,7 @@ import xarray as xr
 from thalweg import Chart, InputError, Sea, Ship, Voyage, plan
 from thalweg.core.errors import OutsideAreaError
 from thalweg.core.units import NAUTICAL_MILE as NM
-from thalweg.planning.report.note_order import danger_first
+from thalweg.planning.report.note_order import count_of_dangers, danger_first
 from thalweg.planning.report.plan_summary import plan_summary
 from thalweg.planning.request.coverage_check import _remedy, endpoints_within_coverage
 from thalweg.planning.request.requirements import derive_requirements
@@ -178,3 +178,14 @@ def test_a_calm_sea_has_no_note_on_weather_that_is_not_considered():
     voyage = Voyage(start=(50.5, 1.5), goal=(50.5, 2.5), depart="2026-01-01T06:00Z")
     found = plan(voyage, ship=SHIP, sea=Sea.calm(), chart=WATER, resolution=5000.0, proof=0.0)
     assert not any(note.startswith("Weather is not considered") for note in found.notes)
+
+
+def test_a_plan_states_units_and_times_that_are_not_in_the_data():
+    lat, lon = np.array([49.0, 53.0]), np.array([0.0, 6.0])
+    fields = {name: (("lat", "lon"), np.full((2, 2), 0.2)) for name in ("uo", "vo")}
+    sea = Sea.open(xr.Dataset(fields, {"lat": lat, "lon": lon}))
+    voyage = Voyage(start=(50.5, 1.5), goal=(50.5, 2.5), depart="2026-01-01T06:00Z")
+    found = plan(voyage, ship=SHIP, sea=sea, chart=WATER, resolution=5000.0, proof=0.0)
+    for begin in ("Units not stated", "No time in the data: the values"):
+        (note,) = [note for note in found.notes if note.startswith(begin)]
+        assert count_of_dangers([note]) == 1

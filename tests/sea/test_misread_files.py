@@ -12,7 +12,7 @@ from tests.sea.small_datasets import EAST, HS, NORTH, T0, regular, value
 from thalweg.core.errors import DatasetError
 from thalweg.core.time import parse_time
 from thalweg.sea import Sea
-from thalweg.sea.doubtful_values import doubts_of_files
+from thalweg.sea.doubtful_values import doubts_of_files, guesses_of_files
 from thalweg.ship.methods.seakeeping.wave_spectra import jonswap
 
 LEVEL, DEPTH = "sea_surface_height_above_geopotential_datum", "sea_floor_depth_below_geoid"
@@ -331,3 +331,17 @@ def test_directions_that_look_like_radians_and_waves_of_centimetres_raise_a_doub
     assert len(doubts_of_files(layers, np.array([T0, T0 + 3600.0, T0 + 7200.0]), y, x)) == 1
     assert not doubts_of_files(layers, np.array([T0]), y, x)  # too few values
     assert not doubts_of_files(Sea.storm().layers, np.array([T0]), y, x)  # no file
+
+
+def test_units_and_times_that_are_not_stated_have_a_note(tmp_path) -> None:
+    data = regular(fields={"swh": {"standard_name": HS}}, field=same(2.0))
+    data.to_netcdf(tmp_path / "plain.nc")
+    (note,) = Sea.open(tmp_path / "plain.nc").describe().warnings
+    assert note.startswith("Units not stated: plain.nc is read with swh as m.")
+    data["swh"].attrs["units"] = "m"
+    assert Sea.open(data).describe().warnings == ()
+    still = Sea.open(data.isel(time=0, drop=True))
+    (note,) = still.describe().warnings
+    assert note.startswith("No time in the data: the values of swh in ")
+    assert guesses_of_files(still.layers, {HS}) == (note,)
+    assert guesses_of_files(still.layers, {EAST}) == ()  # a plan that does not read it

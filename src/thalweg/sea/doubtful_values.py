@@ -1,8 +1,8 @@
-"""Warnings of values that are possible, but look like those of another unit."""
+"""Warnings of values that look like those of another unit, and of units and times not stated."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from typing import Any, Final
 
 import numpy as np
@@ -16,6 +16,11 @@ from thalweg.sea.layer_stack import sample_stack
 
 FEWEST_VALUES: Final = 100  #: with fewer known values there is no warning
 LOW_WAVES: Final = 0.1  #: waves that are lower everywhere raise a doubt [m]
+NO_UNITS: Final = "Units not stated"  #: a note on variables without units begins so
+NO_TIME: Final = "No time in the data"  #: a note on values that hold at all times begins so
+_LASTING: Final = frozenset({nm.BED_DEPTH})  # variables that need no time
+#: What values without units are read as, where it is not the canonical unit.
+_READ_AS: Final = {**dict.fromkeys(nm.WAVES.pair, "degrees"), nm.ICE: "a fraction of 1"}
 _FULL_TURN: Final = 2.0 * np.pi + 0.001  # of radians, read as degrees
 _NAMES: Final = (nm.WAVE_HEIGHT, *nm.WAVES.pair)
 
@@ -66,6 +71,43 @@ def doubts_of_files(
     if not names:
         return ()
     return doubts_of_values(sample_stack(gridded, names, times[:, None], lat, lon))
+
+
+def guesses_of_files(layers: Sequence[Layer], names: Set[str]) -> tuple[str, ...]:
+    """Return a note for each file on variables that are read without units or without a time.
+
+    Parameters
+    ----------
+    layers : Layers of a sea; formulas and single values among them are left out.
+    names : Canonical names of the variables that matter.
+
+    Returns
+    -------
+    tuple of str : What the values are read as, and that they are used at all times.
+    """
+    notes = []
+    for layer in layers:
+        if not isinstance(layer, GridLayer):
+            continue
+        guessed: dict[str, str] = {}
+        for one in layer.record.recognised:
+            if one.variable in names and "not stated" in one.units.split(", "):
+                unit = _READ_AS.get(one.variable) or nm.CANONICAL_UNITS.get(one.variable, "SI")
+                guessed[" and ".join(one.file_variables)] = unit
+        if guessed:
+            read = ", ".join(f"{name} as {unit}" for name, unit in guessed.items())
+            notes.append(f"{NO_UNITS}: {layer.source} is read with {read}. Add the units to it.")
+        still = [
+            " and ".join(one.file_variables)
+            for one in layer.record.recognised
+            if layer.axis.is_static and one.variable in names - _LASTING
+        ]
+        if still:
+            notes.append(
+                f"{NO_TIME}: the values of {', '.join(dict.fromkeys(still))} in {layer.source} "
+                "are used at all times of a voyage."
+            )
+    return tuple(notes)
 
 
 def _look_like_radians(east: FloatArray, north: FloatArray) -> bool:

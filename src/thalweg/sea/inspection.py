@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from thalweg.core.time import format_time
 from thalweg.sea.coverage import Coverage
-from thalweg.sea.doubtful_values import doubts_of_values
+from thalweg.sea.doubtful_values import doubts_of_values, guesses_of_files
 from thalweg.sea.ensemble_layer import member_count, select_member
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.grids.source_variables import GridWindow
@@ -52,7 +52,7 @@ class Inspection:
     ranges : mapping of str to (float, float)
         Least and greatest value [SI] at these times, by source and variable.
     gaps : Gaps in time axes; values are not interpolated across them.
-    warnings : Possible values that look like those of another unit.
+    warnings : Values that look like those of another unit; units and times that are not stated.
     members : Size of the ensemble, of which the first member is reported; 0 for a single sea.
     """
 
@@ -103,7 +103,8 @@ def inspect_layers(layers: Sequence[Layer]) -> Inspection:
     gridded = [layer for layer in single if isinstance(layer, GridLayer)]
     missing: dict[str, float] = {}
     ranges: dict[str, tuple[float, float]] = {}
-    warnings: list[str] = []
+    known = frozenset[str]().union(*(layer.variables for layer in gridded))
+    warnings = list(guesses_of_files(gridded, known))
     for layer in gridded:
         found, some = _value_ranges(layer)
         warnings += [f"{layer.source}: {text}" for text in doubts_of_values(some)]

@@ -28,7 +28,7 @@ from thalweg.planning.request.requirements import Requirements
 from thalweg.planning.request.voyage_endpoints import MAX_SNAP_PORT, Endpoint
 from thalweg.planning.voyage import Voyage
 from thalweg.sea import Sea, standard_names
-from thalweg.sea.doubtful_values import doubts_of_files
+from thalweg.sea.doubtful_values import doubts_of_files, guesses_of_files
 from thalweg.sea.fill_policies import (
     MAX_NEAREST,
     filled_distance,
@@ -98,7 +98,7 @@ def endpoints_within_coverage(
 def doubts_of_voyage(
     voyage: Voyage, sea: Sea, ends: Sequence[Endpoint], needs: Requirements
 ) -> tuple[str, ...]:
-    """Return warnings of the year, of data not read, and of waves that look like another unit's.
+    """Return warnings of the year, data not read, units and times not stated, and doubtful waves.
 
     Not read are data that the speed of the ship does not depend on, and of these it is said where
     they do not hold at the departure.
@@ -111,6 +111,7 @@ def doubts_of_voyage(
     wanted = {standard_names.CHANNEL_VARIABLES[channel] for channel in needs.channels}
     first = voyage.earliest_departure
     unread = (*_note_of_year(first), *_notes_of_unread(first, sea, wanted))
+    unread += guesses_of_files(sea.layers, wanted)
     if not wanted.intersection((standard_names.WAVE_HEIGHT, *_DIRECTIONS)):
         return unread
     lat = np.array([end.lat for end in ends])
