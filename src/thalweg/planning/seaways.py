@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Final, TypeAlias
 
 import numpy as np
 
 from thalweg.chart import Chart
-from thalweg.chart.canals import Canal, exclude_canals
+from thalweg.chart.canals import exclude_canals
 from thalweg.chart.depth.shoals import CONTOURS, Shoals
 from thalweg.chart.offing import disc_at, required_offing
 from thalweg.chart.passages import find_passages, split_avoided
@@ -19,19 +19,19 @@ from thalweg.core.geodesy import (
     densify,
     distance,
     format_position,
-    geocentric_positions,
-    geocentric_unit_vectors,
     line_length,
-    numbered_parts,
 )
-from thalweg.core.types import BoolArray, FloatArray, IntArray
+from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.network.alternatives.clear_water import (
+    ROUNDS,
+    ClearWater,
+    length_of_line,
+    positions_of,
+)
 from thalweg.network.alternatives.path_shortening import (
     PolylineCoordinates,
-    leg_lengths,
-    move_waypoints,
     string_pull_path,
-    total_cost,
 )
 from thalweg.network.global_grid.endpoint_attachment import LinePlaces
 from thalweg.network.global_grid.sea_graph import (
@@ -42,12 +42,8 @@ from thalweg.network.global_grid.sea_graph import (
 from thalweg.network.global_grid.sea_graph_cache import edge_excess, sea_graph
 from thalweg.planning.request.voyage_endpoints import Endpoint
 
-_ROUNDS: Final = 2  # passes of string pulling; each may double the waypoints of a corner
 #: A way off land that is longer than the one along the coast by more than this has bends.
 _MOST_LONGER: Final = 1.01
-_NEAR_LAND: Final = 3.0  # what a mile nearer to land than required counts more, beside the graph
-_FINE_LEG: Final = 12.0 * NAUTICAL_MILE  # of ways moved off capes
-_MOST_PLACES: Final = 64  # of a leg, where its distance from land is looked up
 _STEP: Final = 0.25 * NAUTICAL_MILE  # at which the distance from land is looked up for a note
 _TOLERANCE: Final = 0.1 * NAUTICAL_MILE
 _BEND: Final = 6.0 * NAUTICAL_MILE
@@ -183,8 +179,8 @@ class Seaways:
              for place in self._pulled(chart, off_land, part)]
             for path in self._candidates(start, goal)
         ]  # fmt: skip
-        clear = _ClearWater(off_land, self.shoals)
-        return min(found, key=clear.cost_with_canals) if len(found) > 1 else found[0]
+        clear = ClearWater(off_land, self.shoals)
+        return min(found, key=partial(_cost_with_canals, clear)) if len(found) > 1 else found[0]
 
     def _candidates(self, start: Endpoint, goal: Endpoint) -> list[list[Position]]:
         """Return the way over the graph, and the one without shoals where that is shorter.
@@ -230,109 +226,25 @@ class Seaways:
         if tuple(part[0]) > tuple(part[-1]):  # string pulling depends on the direction
             return self._pulled(chart, off_land, part[::-1])[::-1]
         if len(part) < 3:
-            return _places(*part.T)
-        clear = _ClearWater(off_land, self.shoals)
+            return positions_of(*part.T)
+        clear = ClearWater(off_land, self.shoals)
         if self._has_wide_shoals:
-            line = string_pull_path(chart, *part.T, leg_cost=clear.cost, rounds=_ROUNDS)
-            return _places(*clear.moved(chart, line, off_shoals=False))
-        found = clear.moved(chart, string_pull_path(clear, *part.T, rounds=_ROUNDS))
-        along = string_pull_path(chart, *part.T, rounds=_ROUNDS)
-        if _length(found) > _MOST_LONGER * _length(along) + _BEND:
+            line = string_pull_path(chart, *part.T, leg_cost=clear.cost, rounds=ROUNDS)
+            line = clear.moved(chart, line, off_shoals=False)
+            return positions_of(*clear.round_land(chart, line))
+        found = clear.moved(chart, string_pull_path(clear, *part.T, rounds=ROUNDS))
+        along = string_pull_path(chart, *part.T, rounds=ROUNDS)
+        if length_of_line(found) > _MOST_LONGER * length_of_line(along) + _BEND:
             found = min(found, clear.moved(chart, along), key=clear.cost_of)
-        return _places(*found)
+        return positions_of(*clear.round_land(chart, found))
 
 
-@dataclass(frozen=True)
-class _ClearWater:
-    """Water off land and off shoals, and what a way costs that leaves it."""
-
-    off_land: Chart
-    shoals: Shoals | None
-
-    @property
-    def canals(self) -> Sequence[Canal]:
-        return self.off_land.canals
-
-    def canal_of_legs(self, *ends: FloatArray) -> IntArray:
-        return np.asarray(self.off_land.canal_of_legs(*ends))
-
-    def legs_blocked(self, *ends: FloatArray) -> BoolArray:
-        """Return which legs are too near to land, or lead over shoals."""
-        blocked = np.asarray(self.off_land.legs_blocked(*ends))
-        return blocked if self.shoals is None else blocked | (self.shoals.excess(*ends) > 0.0)
-
-    def moved(
-        self, chart: Chart, line: PolylineCoordinates, *, off_shoals: bool = True
-    ) -> PolylineCoordinates:
-        """Return a way whose legs near land and over shoals are moved as far as costs fall.
-
-        Parameters
-        ----------
-        off_shoals : Whether legs over shoals are moved that are not near land.
-        """
-        lat, lon = line
-        blocked = self.legs_blocked if off_shoals else self.off_land.legs_blocked
-        near = np.asarray(blocked(lat[:-1], lon[:-1], lat[1:], lon[1:]))
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], near.astype(int), [0]]))).reshape(-1, 2)
-        first = np.maximum(edges[:, 0] - 1, np.append(0, edges[:-1, 1]))  # with the leg before ...
-        last = np.minimum(edges[:, 1] + 1, np.append(first[1:], len(lat) - 1))  # ... and after it
-        found = _places(lat, lon)
-        for begin, end in reversed(list(zip(first.tolist(), last.tolist()))):
-            part = slice(begin, end + 1)
-            y, x = string_pull_path(chart, lat[part], lon[part], leg_cost=self.cost, rounds=_ROUNDS)
-            if np.any(blocked(y[:-1], x[:-1], y[1:], x[1:])):
-                y, x = move_waypoints(chart, y, x, leg_cost=self.cost, longest_leg=_FINE_LEG)
-            found[part] = _places(*string_pull_path(chart, y, x, leg_cost=self.cost, rounds=0))
-        lat, lon = np.array(found).T
-        return lat, lon
-
-    def cost_of(self, line: PolylineCoordinates) -> float:
-        """Return the cost of a way."""
-        return total_cost(line, self.cost)
-
-    def cost_with_canals(self, way: Sequence[Position]) -> float:
-        """Return the cost of a way in which canals count as long as they are."""
-        parts = [part for part in _between_canals(self.off_land, way) if len(part) > 1]
-        length, _ = path_length_and_canals(self.off_land, way)
-        at_sea = sum(line_length(_places(*part.T)) for part in parts)
-        return sum(self.cost_of((part[:, 0], part[:, 1])) for part in parts) + length - at_sea
-
-    def cost(
-        self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
-    ) -> FloatArray:
-        """Return the length of legs [m], more near land and over shoals."""
-        length = leg_lengths(lat1, lon1, lat2, lon2)
-        cost = length.copy()
-        near = np.flatnonzero(self.off_land.legs_blocked(lat1, lon1, lat2, lon2))
-        ends = (x[near] for x in (lat1, lon1, lat2, lon2))
-        cost[near] += _NEAR_LAND * self._near_land(length[near], *ends)
-        if self.shoals is not None:
-            cost += length * self.shoals.excess(lat1, lon1, lat2, lon2)
-        return np.asarray(cost)
-
-    def _near_land(
-        self,
-        length: FloatArray,
-        lat1: FloatArray,
-        lon1: FloatArray,
-        lat2: FloatArray,
-        lon2: FloatArray,
-    ) -> FloatArray:
-        """Return for how long [m] legs are nearer to land than required, those that are so."""
-        offing = self.off_land.offing.distance
-        count = np.clip(np.ceil(2.0 * length / max(offing, 1.0)), 1, _MOST_PLACES)
-        leg, part = numbered_parts(count)
-        share = (part + 0.5) / count[leg]
-        one, other = (
-            geocentric_unit_vectors(lat1, lon1)[leg],
-            geocentric_unit_vectors(lat2, lon2)[leg],
-        )
-        lat, lon = geocentric_positions(one + share[:, None] * (other - one))  # on the chord
-        shore = np.asarray(self.off_land.coastline.shore_distance(lat, lon, cap=offing))
-        near = shore < required_offing(self.off_land.offing_arrays, lat, lon)
-        beside = np.bincount(leg, near, minlength=len(length)) / count * length
-        # a leg past a cape between two places is near it for so long at least
-        return np.asarray(np.maximum(beside, np.minimum(offing, length)))
+def _cost_with_canals(clear: ClearWater, way: Sequence[Position]) -> float:
+    """Return the cost of a way in which canals count as long as they are."""
+    parts = [part for part in _between_canals(clear.off_land, way) if len(part) > 1]
+    length, _ = path_length_and_canals(clear.off_land, way)
+    at_sea = sum(line_length(positions_of(*part.T)) for part in parts)
+    return sum(clear.cost_of((part[:, 0], part[:, 1])) for part in parts) + length - at_sea
 
 
 @lru_cache(maxsize=1)
@@ -361,14 +273,6 @@ def _between_canals(chart: Chart, path: Sequence[Position]) -> list[FloatArray]:
 def _line(path: Sequence[Position]) -> PolylineCoordinates:
     lat, lon = np.array(path).T
     return lat, lon
-
-
-def _length(line: PolylineCoordinates) -> float:
-    return line_length(_places(*line))
-
-
-def _places(lat: FloatArray, lon: FloatArray) -> list[Position]:
-    return list(zip(lat.tolist(), lon.tolist()))
 
 
 def path_length_and_canals(chart: Chart, path: Sequence[Position]) -> tuple[float, tuple[str, ...]]:
