@@ -11,9 +11,12 @@ import pytest
 
 from tests.planning.test_comfort_plans import DATA, DEPART, PERIOD, _sea
 from thalweg.chart import Chart
+from thalweg.chart.canals import CANALS
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.objective import Objective
 from thalweg.planning import Voyage, alternative_plans, indicator_front, plan
+from thalweg.planning.indicators import route_choices
+from thalweg.planning.indicators.route_choices import named_routes
 from thalweg.planning.indicators.route_figures import (
     COMPARED_FIGURES,
     best_of_all,
@@ -386,6 +389,21 @@ def test_champions_and_differences_in_words():
     assert champions(nearly)["sick_percent"] == 1  # 9 and 8 % in a table
     work = [calm | other | {"time": t, "workable_percent": w} for t, w in ((7, 99.06), (8, 100.0))]
     assert champions(work)["workable_percent"] == 1  # what is missing to 100 % counts
+
+
+def test_routes_by_other_canals_are_not_called_the_same_way(monkeypatch):
+    """By Kiel on an ocean voyage was 'the way of route 2', which led round the Skaw."""
+    way = [(54.0, 1.0), (55.0, 4.0)]
+    slow = Ship.simple(speed_kn=8.0, draught_m=5.0)
+    routes = [
+        evaluate(way, ship=ship, sea=Sea.calm(), depart=DEPART)
+        for ship in (Ship.simple(speed_kn=12.0, draught_m=5.0), slow)
+    ]
+    water = Chart.open_water(53.0, 56.0, 0.0, 5.0)
+    assert named_routes(routes, routes, water)[1].difference.startswith("the way of route 1")
+    by = {id(routes[0]): [], id(routes[1]): [next(one for one in CANALS if one.name == "kiel")]}
+    monkeypatch.setattr(route_choices, "canals_passed", lambda route, chart: by[id(route)])
+    assert "the way of route" not in named_routes(routes, routes, water)[1].difference
 
 
 @pytest.mark.slow

@@ -20,6 +20,7 @@ from thalweg.planning.indicators.route_figures import (
     difference_in_words,
     waiting_in_words,
 )
+from thalweg.planning.report.route_summary import canals_passed
 from thalweg.route import Route
 from thalweg.route.indicator_columns import indicator_value
 
@@ -72,6 +73,7 @@ def named_routes(
         for route, names in zip(chosen, passes)
     ]
     found, lines = [], [line_at_shares(route) for route in chosen]
+    canals = [[canal.name for canal in canals_passed(route, chart)] for route in chosen]
     for k, route in enumerate(chosen):
         words = tuple(COMPARED_FIGURES[name].words for name, j in best.items() if j == k)
         name = labels[k]
@@ -79,7 +81,8 @@ def named_routes(
             name = f"{name}, {words[0] if words else f'number {k + 1}'}"
         words_of_it = difference_in_words(values[k], values[0]) if k else "the fastest"
         difference = words_of_it + waiting_in_words(route)
-        same = next((j for j in range(k) if not lines_differ(lines[k], lines[j])), None)
+        alike = (j for j in range(k) if canals[k] == canals[j])
+        same = next((j for j in alike if not lines_differ(lines[k], lines[j])), None)
         if same is not None:
             speeds = [chosen[j].distance_nm / chosen[j].time_h for j in (k, same)]
             how = "slower" if speeds[0] < (1.0 - SLOWER) * speeds[1] else "with more miles"
