@@ -11,10 +11,10 @@ import numpy as np
 from thalweg.kernels.certificate.cell_conditions import (
     SECTORS,
     cell_speeds,
-    has_limits,
     make_buffers,
     read_cell,
 )
+from thalweg.kernels.certificate.known_limits import has_limits
 from thalweg.kernels.certificate.speed_ranges import direction_range
 from thalweg.kernels.codes import (
     AXIS_DEPTH,

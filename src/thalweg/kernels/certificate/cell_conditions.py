@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from thalweg.kernels.certificate.known_limits import has_limits, limits_are_known
 from thalweg.kernels.certificate.mesh_sampling import sample_node, time_step_of
 from thalweg.kernels.certificate.speed_ranges import (
     angle_from_bow_range,
@@ -232,7 +233,7 @@ def _read_window(world, j, i, first, last, buffers):
                 bed_low, bed_high = _widen(bed_low, bed_high, sample[BED_DEPTH])
             if index[WATER_LEVEL] >= 0 and sample[WATER_LEVEL] == sample[WATER_LEVEL]:
                 level_low, level_high = _widen(level_low, level_high, sample[WATER_LEVEL])
-            known_corners += known and _limits_are_known(index, sample, world.ship.limits)
+            known_corners += known and limits_are_known(index, sample, world.ship.limits)
         instants += 1
         if t >= end:
             break
@@ -269,32 +270,6 @@ def _read_window(world, j, i, first, last, buffers):
         shortest = direction_range(buffers.wind_over_ground, winds)[2] - margins[WIND_EAST]
         is_open = is_open and shortest <= world.ship.limits[LIMIT_WIND_SPEED]
     return instants, is_open, field_high, winds, waves
-
-
-@kernel_only
-def _limits_are_known(index, sample, limits):
-    """Return whether all that limits of a ship count is known: elsewhere she may not be."""
-    known = True
-    if limits[LIMIT_REQUIRED_DEPTH] > -math.inf:
-        for channel in (BED_DEPTH, WATER_LEVEL):
-            known = known and not (index[channel] >= 0 and sample[channel] != sample[channel])
-    if limits[LIMIT_WAVE_HEIGHT] < math.inf and index[WAVE_HEIGHT_CHANNEL] >= 0:
-        known = known and sample[WAVE_HEIGHT_CHANNEL] == sample[WAVE_HEIGHT_CHANNEL]
-    if limits[LIMIT_WIND_SPEED] < math.inf and index[WIND_EAST] >= 0 and index[WIND_NORTH] >= 0:
-        east, north = sample[WIND_EAST], sample[WIND_NORTH]
-        known = known and east == east and north == north
-    return known
-
-
-@kernel_only
-def has_limits(world):
-    """Return whether depth, waves or wind may close a cell."""
-    limits = world.ship.limits
-    return (
-        limits[LIMIT_REQUIRED_DEPTH] > -math.inf
-        or limits[LIMIT_WAVE_HEIGHT] < math.inf
-        or limits[LIMIT_WIND_SPEED] < math.inf
-    )
 
 
 @kernel_only
