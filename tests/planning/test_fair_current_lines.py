@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.optimize import linprog
 
 from tests.worlds.plane import METRES_PER_LON, T0, Plane
-from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg import Chart, Sea, Ship, Track, Voyage, evaluate, plan
 from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
@@ -21,6 +22,8 @@ from thalweg.ship import PerformanceTable, TableError, TablePart
 HOUR, TIDE = 3600.0, 44_714.0
 SPEEDS = np.array([2.0, 4.0, 6.0])
 COSTS = np.array([1.0, 5.0, 14.0])  # of a second
+EASTWARD = {"standard_name": "eastward_sea_water_velocity", "units": "m s-1"}
+NORTHWARD = {"standard_name": "northward_sea_water_velocity", "units": "m s-1"}
 
 
 def flow_of(rng):
@@ -137,3 +140,40 @@ def test_the_front_in_a_uniform_tide_is_bounded_within_a_few_per_cent():
         truth = least_fuel_in_a_tide(METRES_PER_LON, hours, speeds, rates)
         low = certain_at(found.front.certain, hours)
         assert 0.95 * truth < low <= truth * 1.001
+
+
+def test_the_bound_of_a_cost_is_the_least_of_its_front_at_all_times():
+    """A jet beside the way, which the coarse network does not see, saves time that has a price.
+
+    Routes slower than the known one pay for more time than the cheapest that the bound allows.
+    """
+    lat, lon = np.arange(-30, 31) * 0.05, np.arange(-20, 71) * 0.05
+    times = np.arange(T0, T0 + 40 * HOUR, 900.0)
+    east = np.zeros((times.size, lat.size, lon.size), np.float32)
+    east[:, 36] = 3.0
+    sea = Sea.open(
+        xr.Dataset(
+            {
+                "uo": (("time", "latitude", "longitude"), east, EASTWARD),
+                "vo": (("time", "latitude", "longitude"), 0.0 * east, NORTHWARD),
+            },
+            coords={
+                "time": (times * 1e9).astype("int64").astype("datetime64[ns]"),
+                "latitude": ("latitude", lat, {"units": "degrees_north"}),
+                "longitude": ("longitude", lon, {"units": "degrees_east"}),
+            },
+        )
+    )
+    ship = Ship.simple(speed_kn=10.0, speeds_kn=[6.0, 10.0], draught_m=5.0, fuel_t_per_day=24.0)
+    voyage = Voyage(
+        start=(0.0, 0.0), goal=(0.0, 2.0), depart=T0, objective="cost", offing_nm=0.0,
+        method="exact", fuel_price_usd=10.0, time_price_usd_per_h=1000.0,
+    )  # fmt: skip
+    chart = Chart.open_water(-1.2, 1.2, -0.8, 3.0)
+    found = plan(voyage, ship=ship, sea=sea, chart=chart, resolution=60_000.0)
+    by_jet = Track([0.0, 0.3, 0.3, 0.0], [0.0, 0.3, 1.7, 2.0], T0, setting=np.array([1, 1, 1]))
+    sailed = evaluate(by_jet, ship=found.plot_context.ship, sea=sea, chart=chart)
+    cost = 1000.0 * sailed.time_h + 10.0 * sailed.fuel_t
+    assert cost < 0.9 * found.front.values[0]  # the plan misses the jet
+    assert found.proof.certain <= found.front.certain[1].min()
+    assert found.proof.certain < cost

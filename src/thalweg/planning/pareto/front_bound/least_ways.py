@@ -68,7 +68,8 @@ def derive_proof(
         return _proof(float(certain[0].min()), kind, fastest)
     points = [point for one in explored if one.exact for point in one.exact.points]
     solver = min((point.cost for point in points), default=math.nan)
-    return _proof(certain_at(certain, until), kind, solver)
+    earlier = certain[1, certain[0] <= until]  # a front may rise where slower routes pay for time
+    return _proof(float(np.min(earlier, initial=certain_at(certain, until))), kind, solver)
 
 
 def _proof(value: float, kind: str, solver: float) -> Proof:
