@@ -26,6 +26,23 @@ EASTWARD = {"standard_name": "eastward_sea_water_velocity", "units": "m s-1"}
 NORTHWARD = {"standard_name": "northward_sea_water_velocity", "units": "m s-1"}
 
 
+def gridded(times, lat, lon, east):
+    """A file with a current to the east (times, rows, columns)."""
+    return Sea.open(
+        xr.Dataset(
+            {
+                "uo": (("time", "latitude", "longitude"), east, EASTWARD),
+                "vo": (("time", "latitude", "longitude"), 0.0 * east, NORTHWARD),
+            },
+            coords={
+                "time": (times * 1e9).astype("int64").astype("datetime64[ns]"),
+                "latitude": ("latitude", lat, {"units": "degrees_north"}),
+                "longitude": ("longitude", lon, {"units": "degrees_east"}),
+            },
+        )
+    )
+
+
 def flow_of(rng):
     """A random smooth current of up to some 2 m/s that changes over a tide."""
     a, b = rng.normal(0.0, 0.8, (2, 3)), rng.uniform(-1.0, 1.0, (2, 3))
@@ -151,19 +168,7 @@ def test_the_bound_of_a_cost_is_the_least_of_its_front_at_all_times():
     times = np.arange(T0, T0 + 40 * HOUR, 900.0)
     east = np.zeros((times.size, lat.size, lon.size), np.float32)
     east[:, 36] = 3.0
-    sea = Sea.open(
-        xr.Dataset(
-            {
-                "uo": (("time", "latitude", "longitude"), east, EASTWARD),
-                "vo": (("time", "latitude", "longitude"), 0.0 * east, NORTHWARD),
-            },
-            coords={
-                "time": (times * 1e9).astype("int64").astype("datetime64[ns]"),
-                "latitude": ("latitude", lat, {"units": "degrees_north"}),
-                "longitude": ("longitude", lon, {"units": "degrees_east"}),
-            },
-        )
-    )
+    sea = gridded(times, lat, lon, east)
     ship = Ship.simple(speed_kn=10.0, speeds_kn=[6.0, 10.0], draught_m=5.0, fuel_t_per_day=24.0)
     voyage = Voyage(
         start=(0.0, 0.0), goal=(0.0, 2.0), depart=T0, objective="cost", offing_nm=0.0,
@@ -177,3 +182,22 @@ def test_the_bound_of_a_cost_is_the_least_of_its_front_at_all_times():
     assert cost < 0.9 * found.front.values[0]  # the plan misses the jet
     assert found.proof.certain <= found.front.certain[1].min()
     assert found.proof.certain < cost
+
+
+def test_a_current_that_is_assumed_where_data_are_unknown_holds_between_two_times():
+    """The data know a foul current at every second hour, and nothing between: there it is slack."""
+    lat, lon = np.arange(-5, 6) * 0.1, np.arange(-3, 14) * 0.1
+    times = T0 + np.arange(21) * HOUR
+    east = np.full((times.size, lat.size, lon.size), -1.5, np.float32)
+    east[1::2] = np.nan
+    sea = gridded(times, lat, lon, east).filled(currents=0.0)
+    ship = Ship.simple(speed_kn=12.0, speeds_kn=[6.0, 12.0], draught_m=5.0, fuel_t_per_day=24.0)
+    voyage = Voyage(
+        start=(0.0, 0.0), goal=(0.0, 1.0), depart=T0, objective="front", offing_nm=0.0,
+        method="exact",
+    )  # fmt: skip
+    chart = Chart.open_water(-0.3, 0.3, -0.2, 1.2)
+    found = plan(voyage, ship=ship, sea=sea, chart=chart, resolution=20_000.0)
+    for route, value in zip(found.routes, found.front.values, strict=True):
+        assert found.front.certain[0, 0] <= route.time_h * 1.0001
+        assert certain_at(found.front.certain, route.time_h) <= value * 1.001

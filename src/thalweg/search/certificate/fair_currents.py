@@ -9,9 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from thalweg.core.errors import OutsidePeriodError
 from thalweg.core.geodesy import distance, unit_vectors
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
+from thalweg.kernels.leg.raster_sampling import RasterArrays
+from thalweg.sea.freeze import freeze_station_fields
+from thalweg.sea.standard_names import CHANNEL_VARIABLES
 from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.barrier_mesh import metres_per_degree
 
@@ -134,14 +138,21 @@ def strongest_fair_currents(
     times = np.unique([0.0, *times, passage.known])
     order = np.flatnonzero(in_reach)
     order = order[np.argsort(to_goal.ravel()[order])]
+    rasters = _by_layer(passage, domain)
+    drift = float(domain.margins[CURRENT_EAST]) * height.steepest
+
+    def fair_at(time: float) -> FloatArray:
+        strongest = np.fmax.reduce([_fair_at(raster, time, height) for raster in rasters])
+        return np.asarray((strongest + drift).ravel()[order])
+
     counted = [area.ravel()[order] for area in areas]
     left = durations[:, None] - times[:-1]
     # cells are in reach of the goal up to a place in the order
     place = np.searchsorted(to_goal.ravel()[order], left, side="right") - 1
     ends = np.full((2, len(areas), *left.shape), _UNREACHED)
-    after = _fair_at(domain, float(times[0]), height).ravel()[order]
+    after = fair_at(float(times[0]))
     for step, end in enumerate(times[1:]):
-        before, after = after, _fair_at(domain, float(end), height).ravel()[order]
+        before, after = after, fair_at(float(end))
         early = from_start.ravel()[order] <= end
         reached = place[:, step] >= 0
         for number, area in enumerate(counted):
@@ -171,9 +182,36 @@ def _half_diagonals(lat: FloatArray, lon: FloatArray) -> FloatArray:
     return np.asarray(0.5 * 1.01 * np.hypot(width, tall))
 
 
-def _fair_at(domain: BarrierDomain, time: float, height: HeightField) -> FloatArray:
+def _by_layer(passage: StretchToBound, domain: BarrierDomain) -> list[RasterArrays]:
+    """Return the raster of a domain, of each layer of the sea alone where there are several.
+
+    In a cell, and between two times, with one unknown value a layer is unknown all over: the next
+    layer holds there up to the corners and times at which the first one is known.
+    """
+    name = CHANNEL_VARIABLES[CURRENT_EAST]
+    layers = [layer for layer in passage.sea.layers if name in layer.variables]
+    if len(layers) < 2:
+        return [domain.raster]
+    lat, lon = np.meshgrid(*domain.axes, indexing="ij")
+    period = passage.depart, passage.depart + passage.departures + passage.known
+    rasters = []
+    for layer in layers:
+        try:
+            fields = freeze_station_fields(
+                (layer,), lat.ravel(), lon.ravel(), *period, (CURRENT_EAST, CURRENT_NORTH)
+            )
+        except OutsidePeriodError:  # of data that have no value at these times
+            continue
+        values = np.moveaxis(fields.values.reshape(*lat.shape, *fields.values.shape[1:]), 2, 0)
+        times = fields.times - passage.depart
+        rasters.append(
+            domain.raster._replace(times=times, values=values, channel_index=fields.channel_index)
+        )
+    return rasters
+
+
+def _fair_at(raster: RasterArrays, time: float, height: HeightField) -> FloatArray:
     """Return the strongest fair current in each cell at a time [m/s]; -inf where none is known."""
-    raster = domain.raster
     k = int(np.clip(np.searchsorted(raster.times, time) - 1, 0, raster.times.size - 2))
     share = (time - raster.times[k]) / (raster.times[k + 1] - raster.times[k])
     share = min(max(float(share), 0.0), 1.0)
@@ -187,4 +225,4 @@ def _fair_at(domain: BarrierDomain, time: float, height: HeightField) -> FloatAr
         for columns in _SIDES:
             fair = (east[rows, columns] * height.east).max(axis=0)
             best = np.fmax(best, fair + (north[rows, columns] * height.north).max(axis=0))
-    return np.asarray(best + float(domain.margins[CURRENT_EAST]) * height.steepest)
+    return np.asarray(best)
