@@ -7,13 +7,14 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from thalweg.chart import Chart
 from thalweg.core.geodesy import direct, distance
 from thalweg.core.limits import Limits
 from thalweg.kernels import codes
 from thalweg.sea import Sea
-from thalweg.search.certificate import time_certificate
+from thalweg.search.certificate import barrier_raster, time_certificate
 from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier, metres_per_degree
 from thalweg.search.certificate.time_certificate import BarrierSearch, TimeCertificate
@@ -88,6 +89,39 @@ def test_a_jet_beyond_the_ellipse_of_the_ships_speed_is_in_the_bound():
     domain = BarrierDomain.around(passage, 100)
     assert domain.fastest == pytest.approx(speed + jet)
     assert time_certificate.certify_time(passage, seconds=1.0).value < by_jet < passage.known
+
+
+def test_lines_left_out_in_the_search_for_the_greatest_speed_are_stated(monkeypatch):
+    """The jet is on one line of the data, which is read only in the water near the way."""
+    monkeypatch.setattr(barrier_raster, "_MOST_CELLS", 1200)
+    lat, lon = np.arange(-50, 51) * 0.05, np.arange(-40, 81) * 0.05
+    east = np.zeros((lat.size, lon.size))
+    east[57] = 9.0  # 0.35 degrees off
+    names = {"uo": "eastward_sea_water_velocity", "vo": "northward_sea_water_velocity"}
+    sea = Sea.open(
+        xr.Dataset(
+            {
+                name: (("lat", "lon"), east * (name == "uo"), {"standard_name": names[name]})
+                for name in names
+            },
+            coords={
+                "lat": ("lat", lat, {"units": "degrees_north"}),
+                "lon": ("lon", lon, {"units": "degrees_east"}),
+            },
+        )
+    )
+    passage = StretchToBound(
+        sea,
+        None,
+        ship_of_one_speed(5.0),
+        CURRENTS,
+        (0.0, 0.0),
+        (0.0, 2.0),
+        depart=1e9,
+        known=44_550.0,
+    )
+    domain = BarrierDomain.around(passage, 60)
+    assert domain.fastest >= 14.0 or "lines of the data" in domain.sampling
 
 
 @pytest.mark.slow

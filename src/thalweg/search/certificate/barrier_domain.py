@@ -124,10 +124,10 @@ class BarrierDomain:
         mean = passage.length / passage.known  # the known route is as fast somewhere
         first = max(mean, passage.ship.top_speed if math.isfinite(passage.ship.top_speed) else 0.0)
         first = max(first, fastest, passage.canal_speed(max(first, fastest)))
-        enough = _unsurpassed_speed(passage, min(cells, _CELLS_FOR_SPEED), first)
-        if enough is None:
+        unsurpassed = _unsurpassed_speed(passage, min(cells, _CELLS_FOR_SPEED), first)
+        if unsurpassed is None:
             return None
-        found = None
+        (enough, sampling), found = unsurpassed, None
         for wanted in sorted({min(cells, _CELLS_FOR_SPEED), cells}):
             found = cls._within_reach(passage, wanted, enough, first)
             if found is None:
@@ -136,7 +136,7 @@ class BarrierDomain:
                 break  # the data decide on the cells
             first = max(mean, found.fastest)
             enough = max(enough, first)
-        return found
+        return found if found is None or found.sampling else replace(found, sampling=sampling)
 
     @classmethod
     def of_globe(cls, passage: StretchToBound, cells: int) -> BarrierDomain:
@@ -242,13 +242,16 @@ class _FoundSpeed:
     cells: int
     known: float
     speed: float
+    sampling: str
 
 
 #: the last one found in each sea: one plan asks several times
 _FOUND_SPEEDS: WeakKeyDictionary[Sea, _FoundSpeed] = WeakKeyDictionary()
 
 
-def _unsurpassed_speed(passage: StretchToBound, cells: int, fastest: float) -> float | None:
+def _unsurpassed_speed(
+    passage: StretchToBound, cells: int, fastest: float
+) -> tuple[float, str] | None:
     """Return what `_speed_within_half` finds, once for a passage and all shorter known times."""
     ship, chart = passage.ship, passage.chart
     water = None if chart is None else (tuple(chart.area.array()), tuple(chart.canals))
@@ -259,15 +262,19 @@ def _unsurpassed_speed(passage: StretchToBound, cells: int, fastest: float) -> f
     last = _FOUND_SPEEDS.get(passage.sea)
     holds = last is not None and last.passage == key and last.known >= passage.known
     if last is not None and holds and last.cells >= cells:
-        return max(last.speed, fastest)
-    speed = _speed_within_half(passage, cells, fastest)
-    if speed is not None:
-        _FOUND_SPEEDS[passage.sea] = _FoundSpeed(key, cells, passage.known, speed)
-    return speed
+        return max(last.speed, fastest), last.sampling
+    found = _speed_within_half(passage, cells, fastest)
+    if found is not None:
+        _FOUND_SPEEDS[passage.sea] = _FoundSpeed(key, cells, passage.known, *found)
+    return found
 
 
-def _speed_within_half(passage: StretchToBound, cells: int, fastest: float) -> float | None:
-    """Return a speed over ground [m/s] that no route surpasses; None where none is found.
+def _speed_within_half(
+    passage: StretchToBound, cells: int, fastest: float
+) -> tuple[float, str] | None:
+    """Return a speed over ground [m/s] that no route surpasses, and how the sea was sampled for it.
+
+    None where none is found.
 
     At every moment a ship is within half of the known time of the start or of the goal. So it is
     never faster than a speed that is nowhere surpassed as far from them as that speed leads in half
@@ -282,7 +289,7 @@ def _speed_within_half(passage: StretchToBound, cells: int, fastest: float) -> f
     ship, sea = passage.ship, passage.sea
     flows = tuple(c for c in passage.channels if c in (CURRENT_EAST, CURRENT_NORTH))
     if is_uniform(sea) or not (flows or ship.speed_field):
-        return fastest
+        return fastest, ""
     period = passage.depart, passage.depart + passage.departures + passage.known
     for _ in range(_ATTEMPTS):
         box = _box_of_halves(passage, fastest * _MARGIN_OF_HALVES)
@@ -294,9 +301,10 @@ def _speed_within_half(passage: StretchToBound, cells: int, fastest: float) -> f
         )
         wanted = math.ceil(cells * larger)
         request = RasterRequest(sea, flows, box, period, wanted, ship.speed_field)
-        speed = _greatest_speeds(passage, freeze_barrier_raster(request))[1]
+        frozen = freeze_barrier_raster(request)
+        speed = _greatest_speeds(passage, frozen)[1]
         if speed <= fastest * _MARGIN_OF_HALVES:
-            return max(fastest, speed)
+            return max(fastest, speed), frozen.sampling
         fastest = speed
     return None
 
