@@ -201,3 +201,23 @@ def test_a_current_that_is_assumed_where_data_are_unknown_holds_between_two_time
     for route, value in zip(found.routes, found.front.values, strict=True):
         assert found.front.certain[0, 0] <= route.time_h * 1.0001
         assert certain_at(found.front.certain, route.time_h) <= value * 1.001
+
+
+def test_a_bound_in_overlapping_files_is_not_above_the_routes_of_the_plan():
+    """Round one unknown value the file below holds in the whole cell, up to the known corners."""
+    lat, lon = np.arange(-6, 7) * 0.125, np.arange(-5, 19) * 0.125
+    times = T0 + np.arange(30) * HOUR
+    upper = np.zeros((times.size, lat.size, lon.size), np.float32)
+    lower = upper + 3.0
+    upper[:, 6, 2:8:2], lower[:, 6, 2:8:2] = np.nan, 0.0
+    sea = Sea.layered(gridded(times, lat, lon, upper), gridded(times, lat, lon, lower))
+    ship = Ship.simple(speed_kn=10.0, speeds_kn=[6.0, 10.0], draught_m=5.0, fuel_t_per_day=24.0)
+    voyage = Voyage(
+        start=(0.0625, 0.0), goal=(0.0625, 1.0), depart=T0, objective="front", offing_nm=0.0,
+    )  # fmt: skip
+    chart = Chart.open_water(-0.5, 0.5, -0.4, 1.7)
+    found = plan(voyage, ship=ship, sea=sea, chart=chart)
+    assert found.lower_bound <= found.best.time_h
+    assert "overlapping files" in found.proof.kind or found.proof.kind.startswith("no bound")
+    for route, value in zip(found.routes, found.front.values, strict=True):
+        assert certain_at(found.front.certain, route.time_h) <= value * 1.001

@@ -19,6 +19,7 @@ from thalweg.sea.grids.rectilinear_grid import RectilinearGrid
 from thalweg.sea.models.function_layer import FormulaLayer
 from thalweg.sea.models.lipschitz_bounds import greatest_spacing, margins_of_samples
 from thalweg.sea.standard_names import (
+    CHANNEL_VARIABLES,
     EASTWARD_CURRENT,
     EASTWARD_WIND,
     NORTHWARD_CURRENT,
@@ -110,12 +111,21 @@ def freeze_barrier_raster(request: RasterRequest) -> BarrierRaster:
         step = np.diff(fields.times).max() if fields.times.size > 1 else 0.0
         if lines is None and step > 0.0:
             notes.append(f"and every {step / 60.0:.0f} minutes")
+    if _layers_overlap(request):
+        notes.append("a sea of overlapping files joined at the points of the finest")
     margins = _margins(request, fields)
     if margins is None:
         margins = np.zeros(CHANNEL_COUNT)
     elif notes:
         notes.append("and between samples by the Lipschitz bounds of its functions")
     return BarrierRaster(_arrays(fields, request.period[0]), ", ".join(notes), margins)
+
+
+def _layers_overlap(request: RasterRequest) -> bool:
+    """Return whether two layers that are not uniform give the same variable."""
+    names = {CHANNEL_VARIABLES[channel] for channel in request.channels}
+    given = [layer.variables & names for layer in request.sea.layers if not _is_uniform(layer)]
+    return sum(map(len, given)) > len(set().union(*given))
 
 
 def _changes_between_samples(layer: Any) -> bool:

@@ -77,11 +77,14 @@ def heights_along(passage: StretchToBound, domain: BarrierDomain) -> list[Height
 def _height_field(
     values: FloatArray, passage: StretchToBound, lat: FloatArray, lon: FloatArray
 ) -> HeightField:
-    north, east = metres_per_degree(lat)
+    # degrees of longitude are longest, and those of latitude shortest, at the equator
+    rows = (lat[:-1], lat[1:], np.clip(0.0, lat[:-1], lat[1:]))
     by_east = np.diff(values, axis=1) / np.diff(lon)
     by_north = np.diff(values, axis=0) / np.diff(lat)[:, None]
-    slopes_east = [by_east[a] / east[b, None] for a in _SIDES for b in _SIDES]
-    slopes_north = [by_north[:, a] / north[b, None] for a in _SIDES for b in _SIDES]
+    slopes_east, slopes_north = [], []
+    for north, east in map(metres_per_degree, rows):
+        slopes_east += [by_east[side] / east[:, None] for side in _SIDES]
+        slopes_north += [by_north[:, side] / north[:, None] for side in _SIDES]
     ends = [_bilinear(values, lat, lon, *end) for end in (passage.start, passage.goal)]
     return HeightField(
         ends[1] - ends[0],

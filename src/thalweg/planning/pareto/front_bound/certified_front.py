@@ -51,6 +51,8 @@ _KIND = (
 )
 WITH_LEAST_TIME = "with the least time by a map of earliest arrivals"
 _PARTS = 2  # of the time for the proof: one is for the least time in currents
+_CONTRADICTION = 2e-3  # by which a front may be above a route, for the errors of tables
+_ABOVE_A_ROUTE = "no bound: the line of the proof is above a route of the plan"
 _LONGEST_FOR_TIME = 4.0  # by default [s]
 _NEAR_ENOUGH = 0.995  # of the time of the fastest route
 WITH_DUES = "with the time, dues and fuel of canals, or the way round them"
@@ -84,12 +86,35 @@ def certified_front(
     """Return the front that no route is below, by the least length and by barriers of cost.
 
     Barriers of cost take some seconds to pay: they are searched where a time for the proof is
-    given.
+    given. A front above one of the routes is not published: the sea of the proof is not theirs.
 
     Parameters
     ----------
     ordered : The front, with routes within the limits or not.
     """
+    found = _certified_fronts(trade_off, explored, ordered)
+    for front in reversed(found):
+        if not any(_is_above(front.points, item) for item in ordered):
+            return front
+    return CertifiedFront(np.zeros((2, 1)), _ABOVE_A_ROUTE, found[0].until)
+
+
+def _is_above(points: FloatArray, item: RefereedCandidate) -> bool:
+    """Return whether a certain front is clearly above a feasible route."""
+    route, value = item.route, item.value
+    if not (route.feasible and math.isfinite(value)):
+        return False
+    hours = route.time_h * (1.0 + _CONTRADICTION) + route.tolerance_s / HOUR
+    too_late = points[0, 0] > hours
+    return bool(too_late or certain_at(points, hours) > value * (1.0 + _CONTRADICTION))
+
+
+def _certified_fronts(
+    trade_off: TradeOffContext,
+    explored: list[ExploredAlternative],
+    ordered: Sequence[RefereedCandidate],
+) -> list[CertifiedFront]:
+    """Return fronts that no route is below, from the simplest to the best."""
     context, routes = trade_off.context, [item.route for item in ordered]
     latest = min(context.latest_arrival, context.data_end)  # later routes meet unknown sea
     allowed = (latest - context.voyage.earliest_departure) / HOUR
@@ -102,8 +127,9 @@ def certified_front(
         kind = f"{kind}; {UNTIL_DATA_END}"
     if kept_out(context.chart, routes):
         kind = f"{kind}; for routes {KEEPING_OUT}"
+    fronts = [CertifiedFront(points, kind, allowed)]
     if trade_off.interrupt_guard.stopped():
-        return CertifiedFront(points, kind, allowed)
+        return fronts
     fair, until_fair, least = fair_current_lines(trade_off, routes)
     by_currents = _not_before(raised_by_lines(points, fair, until_fair), least)
     by_currents = _with_priced_time(trade_off, by_currents, until_fair, ways, current)
@@ -114,16 +140,17 @@ def certified_front(
         if certified > max(least, float(by_currents[0, 0])):
             least, kind = certified, f"{kind}; {WITH_LEAST_TIME}"
             by_currents = _not_before(by_currents, least)
+    fronts.append(CertifiedFront(by_currents, kind, allowed))
     if not context.proof_seconds:
-        return CertifiedFront(by_currents, kind, allowed)
+        return fronts
     lines, until, sampling = certified_lines(trade_off, ordered, seconds=context.proof_seconds)
     if fair.size and lines.size:
         lines, until = np.append(lines, fair, axis=1), min(until, until_fair)
     raised = _not_before(raised_by_lines(points, lines, until), least)
-    if not _gains(raised, by_currents):
-        return CertifiedFront(by_currents, kind, allowed)
-    kind = _KIND.format(until=until) + (f", in {sampling}" if sampling else "") + f"; {kind}"
-    return CertifiedFront(raised, kind, min(allowed, until))
+    if _gains(raised, by_currents):
+        kind = _KIND.format(until=until) + (f", in {sampling}" if sampling else "") + f"; {kind}"
+        fronts.append(CertifiedFront(raised, kind, min(allowed, until)))
+    return fronts
 
 
 def _certified_least_time(
@@ -134,16 +161,32 @@ def _certified_least_time(
     0 where there is none, and where the least time that is known already is near enough.
     """
     context, known = trade_off.context, [route for route in routes if route.feasible]
-    if len(trade_off.ends) > 2 or not known:
+    if len(trade_off.ends) > 2 or not known or not _is_fastest_setting(trade_off):
         return 0.0
     fastest = min(known, key=lambda route: route.time_h)
-    if least > _NEAR_ENOUGH * fastest.time_h:
+    apart = len(kept_out(context.chart, [fastest])) != len(kept_out(context.chart, routes))
+    if apart or least > _NEAR_ENOUGH * fastest.time_h:
         return 0.0
     seconds = seconds_of_bound(trade_off, clock.perf_counter(), _PARTS)
     seconds = min(seconds, _LONGEST_FOR_TIME) if context.proof_seconds is None else seconds
     departures = fastest.depart, max(route.depart for route in known)
     found = certified_bound(context, fastest, departures=departures, seconds=seconds)
     return found.value / HOUR if found.value > 0.0 else 0.0
+
+
+def _is_fastest_setting(trade_off: TradeOffContext) -> bool:
+    """Return whether the setting of the plan is the fastest in all weather."""
+    context = trade_off.context
+    tops = [greatest_speed_of(context.ship, context.table, int(s)) for s in trade_off.settings]
+    top = greatest_speed_of(context.ship, context.table, context.setting)
+    if max(tops) > top:
+        return False
+    if not context.table.axes or context.sea_is_calm:
+        return True
+    parts = [part.values[..., trade_off.settings] for part in context.table.parts]
+    highest = [part.values[..., context.setting, None] for part in context.table.parts]
+    rising = all(np.all((a <= b) | np.isnan(a)) for a, b in zip(parts, highest, strict=True))
+    return context.table.finish is None and rising
 
 
 def _with_priced_time(

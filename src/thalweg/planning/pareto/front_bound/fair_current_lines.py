@@ -11,7 +11,7 @@ from thalweg.core.pareto_fronts import lower_hull
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import HOUR
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
-from thalweg.planning.single.certified_bound import currents_within_reach
+from thalweg.planning.single.certified_bound import TABLE_MARGIN, currents_within_reach
 from thalweg.route import Route
 from thalweg.search.certificate.barrier_domain import BarrierDomain
 from thalweg.search.certificate.closed_water import cells_inside
@@ -26,7 +26,7 @@ _VOYAGES: Final = 400  # lengths of voyages for which a value is bounded, at mos
 _MULTIPLIERS: Final = 64  # values of a metre that are tried
 _MOST_NUMBERS: Final = 2e7  # times, voyages and settings together
 _SPREAD: Final = 4.0  # of the values of a metre, beyond those of the settings
-_OVERSHOOT: Final = 1.02  # of the greatest speed over ground, beyond that of the domain
+_OVERSHOOT: Final = 1.0 + 1e-6  # of the greatest speed over ground, beyond that of the domain
 _SHORTER: Final = 1.0 - 1e-6  # geodesic, for the rounding of sums
 
 
@@ -82,6 +82,9 @@ def fair_current_lines(
         if possible.size:
             least = max(least, float(times[max(int(possible[0]) - 1, 0)]))
         np.maximum(values, least_costs(currents, speeds, costs, rise), out=values)
+    tables = context.table.axes or trade_off.consumption.axes
+    margin = 1.0 - TABLE_MARGIN if tables else 1.0
+    least, values = margin * least, margin * values
     # a voyage between two of the times costs no less than one of the later of them
     values, times = values[1:] + prices.time * times[:-1], times[:-1]
     values, times = values[times >= least], times[times >= least]
