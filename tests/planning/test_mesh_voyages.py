@@ -78,8 +78,10 @@ def test_san_diego_waits_for_the_tide_over_flats_that_fall_dry(tmp_path, capsys)
     again = evaluate(track, ship=ship, sea=sea, min_ukc=0.5, step=5.0)
     assert again.feasible and again.min_ukc_m >= 0.5 - 1e-6
     assert again.time_h == pytest.approx(best["time_h"], abs=1e-3)
-    # The waits are in the file; the thinned mesh is too coarse for the gullies: all nodes are used.
-    assert read_track(tmp_path / "route.csv").wait.sum() == pytest.approx(3600.0 * waits.sum())
+    # The waits are in the file, some seconds longer at most so that rounded times keep the limits.
+    longer = read_track(tmp_path / "route.csv").wait.sum() - 3600.0 * waits.sum()
+    assert -0.01 <= longer <= 6.0 * np.count_nonzero(waits)
+    # The thinned mesh is too coarse for the gullies: all nodes are used.
     thinned = planned(
         capsys, "32.65,-117.25", "32.63,-117.11", *words[:-2], "--ukc", "0.5",
         "--network", "mesh", "--resolution", "0.3",

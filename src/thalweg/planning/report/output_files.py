@@ -28,11 +28,14 @@ from thalweg.route import (
 from thalweg.route.formats.file_route import file_track
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.sea_maps import draw_maps, map_area
+from thalweg.sea.standard_names import EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGHT
 
 #: Share of the thinning and decimals of positions, tried in turn while a file breaks a limit.
 _FINER_FILES = ((1.0, 6), (1.0, 8), (0.1, 8), (0.0, 8))
 #: By how much a wait of whole seconds is longer, tried in turn while a file breaks a limit [s].
 _LATER = (0.0, 1.0, 5.0)
+_NEAR_LIMIT = 0.98  # of a limit of waves or wind, from where rounded numbers may exceed it
+_WIND = (EASTWARD_WIND, NORTHWARD_WIND)
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData
@@ -133,8 +136,11 @@ def _is_limited(route: Route, ship: Ship) -> bool:
     """Return whether rounded numbers in the files of a route may break a limit."""
     own = np.any(route.legs.get("leg_kind", 0))
     depth = np.isfinite(route.legs["under_keel_clearance"]).any() and not own
-    weather = math.isfinite(ship.limits.wave_height) or math.isfinite(ship.limits.wind_speed)
-    return bool(depth or weather or route.track.wait.any())
+    waves = np.asarray(route.samples.get(WAVE_HEIGHT, ()), float)
+    wind = np.hypot(*(route.samples.get(name, np.zeros(0)) for name in _WIND))
+    near = np.any(waves > _NEAR_LIMIT * ship.limits.wave_height)
+    near |= np.any(wind > _NEAR_LIMIT * ship.limits.wind_speed)
+    return bool(depth or near or route.track.wait.any())
 
 
 def _later_track(track: Track, seconds: float) -> Track:
