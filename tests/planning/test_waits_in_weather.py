@@ -14,7 +14,7 @@ KNOWN, UNKNOWN = 6.0, np.nan
 def planned(tmp_path):
     """Plan past high waves from 3.0E for 40 h, and from 1.5E after hour 20 for a while."""
 
-    def of(until, height):
+    def of(until, height, objective="time", **ship):
         hours = np.arange(97.0)
         lat, lon = np.arange(-1.0, 1.001, 0.05), np.arange(0.0, 6.001, 0.05)
         time, _, east = np.meshgrid(hours, lat, lon, indexing="ij")
@@ -31,10 +31,13 @@ def planned(tmp_path):
         field = (("time", "lat", "lon"), waves, {"standard_name": name, "units": "m"})
         xr.Dataset({"hs": field}, axes).to_netcdf(tmp_path / "waves.nc")
         return plan(
-            Voyage(start=(0.0, 0.5), goal=(0.0, 5.5), depart="2026-05-01T00:00Z"),
-            ship=Ship.simple(speed_kn=10.0, draught_m=5.0, max_wave_height_m=4.0),
+            Voyage(
+                start=(0.0, 0.5), goal=(0.0, 5.5), depart="2026-05-01T00:00Z", objective=objective
+            ),
+            ship=Ship.simple(speed_kn=10.0, draught_m=5.0, max_wave_height_m=4.0, **ship),
             sea=Sea.open(tmp_path / "waves.nc"),
             chart=Chart.open_water(-1.0, 1.0, 0.0, 6.0),
+            proof=3.0,
         )
 
     return of
@@ -61,3 +64,12 @@ def test_a_wait_that_has_no_other_place_is_the_first_note(planned, height, words
     (note,) = (note for note in found.notes if note.startswith("Waits at sea"))
     assert words in note
     assert "waves under way" in limits_text(found)
+
+
+@pytest.mark.slow
+def test_the_least_time_of_a_front_knows_when_waves_fall(planned):
+    """At the top speed all the way the voyage would take 30 h, and not the 55 h of the wait."""
+    speeds = {"speeds_kn": [8.0, 10.0], "fuel_t_per_day": 24.0}
+    found = planned(until=30, height=KNOWN, objective="front", **speeds)
+    assert found.best.time_h > 55.0
+    assert 0.95 * found.best.time_h < found.lower_bound <= found.best.time_h

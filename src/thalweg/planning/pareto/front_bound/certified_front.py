@@ -135,7 +135,8 @@ def _certified_fronts(
     by_currents = _with_priced_time(trade_off, by_currents, until_fair, ways, current)
     if _gains(by_currents, points):
         kind = f"{kind}; {WITH_FAIR_CURRENTS}"
-    if current > 0.0 and context.voyage.objective == "front":
+    waits = any(route.waiting_h > 0.0 for route in routes)  # for limits that open
+    if (current > 0.0 or waits) and context.voyage.objective == "front":
         certified = _certified_least_time(trade_off, routes, float(by_currents[0, 0]))
         if certified > max(least, float(by_currents[0, 0])):
             least, kind = certified, f"{kind}; {WITH_LEAST_TIME}"
