@@ -16,6 +16,7 @@ from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels import codes
 from thalweg.sea import standard_names as nm
 from thalweg.sea.frozen_fields import GridFields, StationFields
+from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.layer import Layer
 from thalweg.sea.layer_stack import (
     sample_stack,
@@ -31,6 +32,7 @@ DerivedChannel: TypeAlias = Callable[
 ]
 
 POINTS_PER_CHUNK = 1 << 17  #: values computed at a time, so that temporaries stay small
+POINTS_OF_SOME_TIMES = 1 << 20  #: the same where all stations of some times are computed
 _BLOCK_OF_COPY = 1 << 16  # values copied at a time into another order
 
 
@@ -99,6 +101,16 @@ def freeze_station_fields(
     variables = [name for c in present if (name := _variable(c, derived))]
     times = times_to_freeze(layers, (float(start), float(end)), variables, derived)
     values = np.empty((lat.size, times.size, len(present)), np.float32)
+    if any(
+        layer.is_read_in_parts(layer.variables if derived else variables, times, lat, lon)
+        for layer in layers
+        if isinstance(layer, GridLayer)
+    ):  # all stations of some times, so that each part of the files is read once
+        count = max(1, POINTS_OF_SOME_TIMES // lat.size)
+        for first in range(0, times.size, count):
+            part = slice(first, first + count)
+            _sample_stations(values[:, part], layers, (times[part], lat, lon), present, derived)
+        return StationFields(times, values, index)
     rows = max(1, POINTS_PER_CHUNK // times.size)
     for first in range(0, lat.size, rows):
         part = slice(first, first + rows)

@@ -1,7 +1,8 @@
 """A cache of the values read from files: one block per quantity.
 
 A request outside the cached block reads a block that holds both, with a margin that grows so that
-many small requests do not become many small reads.
+many small requests do not become many small reads. Blocks begin and end where chunks of the file do
+as far as memory allows, since a part of a compressed chunk takes as long to read as all of it.
 """
 
 from __future__ import annotations
@@ -9,9 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from thalweg.sea.grids.source_variables import GridWindow, Quantity, RawArray
+import numpy as np
+
+from thalweg.sea.grids.source_variables import ChunkSizes, GridWindow, Quantity, RawArray
 
 MAX_UNION_BYTES = 80_000_000  #: larger blocks are not extended to hold the previous block too
+MAX_CHUNKED_BYTES = 240_000_000  #: larger blocks are not extended to whole chunks
 
 
 class CachedBlock(NamedTuple):
@@ -52,11 +56,25 @@ class BlockCache:
         if cached is not None:
             both = self._union(window, cached.window)
             window = both if both.size <= most else window
+        in_chunks = self._in_whole_chunks(window, quantity.chunks)
+        if in_chunks.size * quantity.bytes_per_value <= MAX_CHUNKED_BYTES:
+            window = in_chunks
+        earlier = None if cached is None else _levels_held(cached, window)
         self.blocks.pop(key, None)
         del cached  # the old values and the new ones are not held together
-        found = CachedBlock(window, quantity.read(window, columns))
+        found = CachedBlock(window, _read_after(earlier, quantity, window, columns))
         self.blocks[key] = found
         return found
+
+    def _in_whole_chunks(self, window: GridWindow, chunks: ChunkSizes) -> GridWindow:
+        """Return a window extended to whole chunks."""
+        nt, ny, nx = self.shape
+        t0, t1 = _whole(window.t0, window.t1, chunks.levels, nt)
+        y0, y1 = _whole(window.y0, window.y1, chunks.rows, ny)
+        x0, x1 = window.x0, window.x0 + window.width
+        if x1 <= nx:
+            x0, x1 = _whole(x0, x1, chunks.columns, nx)
+        return GridWindow(t0, t1, y0, y1, x0, x1 - x0)
 
     def _window_with_margin(self, window: GridWindow) -> GridWindow:
         """Return a window with a margin, a quarter of its size."""
@@ -81,6 +99,32 @@ class BlockCache:
         return GridWindow(
             min(a.t0, b.t0), max(a.t1, b.t1), min(a.y0, b.y0), max(a.y1, b.y1), x0, width
         )
+
+
+def _whole(first: int, last: int, chunk: int, size: int) -> tuple[int, int]:
+    """Return a range that begins and ends where chunks do."""
+    return first - first % chunk, min(size, last + -last % chunk)
+
+
+def _levels_held(cached: CachedBlock, window: GridWindow) -> CachedBlock | None:
+    """Return the first levels of a window as far as a block of the same positions holds them."""
+    held = cached.window
+    if held[2:] != window[2:] or not held.t0 <= window.t0 < held.t1 < window.t1:
+        return None
+    if any(v.shape[0] != held.t1 - held.t0 for v in cached.values.values()):
+        return None  # variables without times
+    values = {name: v[window.t0 - held.t0 :].copy() for name, v in cached.values.items()}
+    return CachedBlock(window._replace(t1=held.t1), values)
+
+
+def _read_after(
+    earlier: CachedBlock | None, quantity: Quantity, window: GridWindow, columns: int
+) -> dict[str, RawArray]:
+    """Return the values of a window, of which only levels after those held are read."""
+    if earlier is None:
+        return quantity.read(window, columns)
+    later = quantity.read(window._replace(t0=earlier.window.t1), columns)
+    return {name: np.concatenate([v, later[name]]) for name, v in earlier.values.items()}
 
 
 def _columns_in_grid(x0: int, width: int, columns: int, wraps: bool) -> tuple[int, int]:

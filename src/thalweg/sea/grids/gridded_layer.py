@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -15,7 +15,7 @@ from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.geometry import field_sampling
 from thalweg.sea import standard_names as nm
 from thalweg.sea.coverage import Coverage
-from thalweg.sea.grids.block_cache import BlockCache
+from thalweg.sea.grids.block_cache import MAX_UNION_BYTES, BlockCache
 from thalweg.sea.grids.grid_protocol import Grid, GridLocation
 from thalweg.sea.grids.source_variables import GridWindow, Quantity
 from thalweg.sea.grids.time_axis import TimeAxis, TimeLocation
@@ -47,6 +47,9 @@ class GridLayer:
     source: str
     facts: Mapping[str, Any]
     record: RecognitionRecord = field(default_factory=RecognitionRecord)
+    _located: list[tuple[FloatArray, FloatArray, GridLocation]] = field(
+        default_factory=list, init=False, repr=False
+    )
 
     @cached_property
     def variables(self) -> frozenset[str]:
@@ -67,7 +70,7 @@ class GridLayer:
         self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
         """Return values at points (N,); NaN where unknown."""
-        located, moments = self.grid.locate(lat, lon), self.axis.locate(time)
+        located, moments = self._locate(lat, lon), self.axis.locate(time)
         known = (located.corner[:, 0] >= 0) & (moments.level >= 0)
         samples = {name: np.full(time.shape, np.nan) for name in names}
         if not known.any():
@@ -93,7 +96,7 @@ class GridLayer:
         self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
         """Return values (S, T) at stations for all times; NaN where unknown."""
-        located, moments = self.grid.locate(lat, lon), self.axis.locate(times)
+        located, moments = self._locate(lat, lon), self.axis.locate(times)
         shape = (lat.size, times.size)
         inside, when = located.corner[:, 0] >= 0, moments.level >= 0
         if not (inside.any() and when.any()):
@@ -116,6 +119,27 @@ class GridLayer:
                     values, corner, located.weight, level, moments.fraction, samples[name]
                 )
         return nan_pairs(samples, [v.pair for v in nm.VECTORS])
+
+    def is_read_in_parts(
+        self, names: Collection[str], times: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> bool:
+        """Return whether the values for all stations and times are more than the cache holds."""
+        located, moments = self._locate(lat, lon), self.axis.locate(times)
+        inside, when = located.corner[:, 0] >= 0, moments.level >= 0
+        if not (inside.any() and when.any()):
+            return False
+        size = self._window(located, moments, inside, when).size
+        asked = [q for q in self.quantities if not set(q.names).isdisjoint(names)]
+        return any(size * q.bytes_per_value > MAX_UNION_BYTES for q in asked)
+
+    def _locate(self, lat: FloatArray, lon: FloatArray) -> GridLocation:
+        """Return where positions are in the grid; the last ones are kept."""
+        for last_lat, last_lon, found in self._located:
+            if np.array_equal(last_lat, lat) and np.array_equal(last_lon, lon):
+                return found
+        located = self.grid.locate(lat, lon)
+        self._located[:] = [(lat.copy(), lon.copy(), located)]
+        return located
 
     def times(self, start: float, end: float) -> FloatArray:
         """Return native times over a window, one beyond each side."""

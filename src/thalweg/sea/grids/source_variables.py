@@ -6,8 +6,9 @@ is made from and the conversion to SI units and true components.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -20,6 +21,17 @@ from thalweg.sea import plausible_values
 RawArray: TypeAlias = NDArray[Any]
 READ_ERRORS = (OSError, RuntimeError, ValueError, IndexError, KeyError, EOFError, OverflowError)
 MAX_VALUES_AT_ONCE = 4_000_000  #: values that are read and converted at once
+
+
+class ChunkSizes(NamedTuple):
+    """Levels, rows and columns of the parts in which a file stores a variable; 1 where unknown.
+
+    A compressed file is read in whole chunks: a part of one takes as long as all of it.
+    """
+
+    levels: int = 1
+    rows: int = 1
+    columns: int = 1
 
 
 class GridWindow(NamedTuple):
@@ -68,6 +80,14 @@ class VariableInFile:
     has_time: bool
     factor: float = 1.0
     valid: tuple[float, float] | None = None
+
+    @property
+    def chunks(self) -> ChunkSizes:
+        """The chunks of the file."""
+        stored = self.array.encoding.get("preferred_chunks") or {}
+        sizes = [max(1, int(stored.get(dim, 1))) for dim in self.array.dims]
+        levels = sizes[0] if self.has_time else 1
+        return ChunkSizes(levels, *sizes[-2:]) if len(sizes) > 2 else ChunkSizes(levels)
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,18 +220,30 @@ class Quantity:
         """Bytes of one value of all its names."""
         return np.dtype(self._kind).itemsize * len(self.names)
 
+    @cached_property
+    def chunks(self) -> ChunkSizes:
+        """The largest chunks of its variables."""
+        stored = [v.pieces[0].chunks for v in self.variables]
+        return ChunkSizes(*(max(sizes) for sizes in zip(*stored)))
+
     def read(self, window: GridWindow, columns: int) -> dict[str, RawArray]:
         """Return arrays (times, points) by canonical name, checked for plausible values."""
-        points = window.size // _level_count(window)
-        at_once = max(1, MAX_VALUES_AT_ONCE // max(1, self.layers * points))
-        if _level_count(window) <= at_once or not any(v.timed for v in self.variables):
+        levels, rows = _level_count(window), window.y1 - window.y0
+        most = MAX_VALUES_AT_ONCE // self.layers
+        if window.size <= most or not any(v.timed for v in self.variables):
             return self._read(window, columns)
-        found = {name: np.empty((_level_count(window), points), self._kind) for name in self.names}
-        for t in range(window.t0, window.t1, at_once):
-            part = window._replace(t0=t, t1=min(t + at_once, window.t1))
-            for name, values in self._read(part, columns).items():
-                found[name][part.t0 - window.t0 : part.t1 - window.t0] = values
-        return found
+        # whole chunks: first as few levels as needed, then as many rows as that leaves
+        at_once = _in_chunks(most // (rows * window.width), self.chunks.levels)
+        rows_at_once = _in_chunks(most // (min(at_once, levels) * window.width), self.chunks.rows)
+        shape = (levels, rows, window.width)
+        found = {name: np.empty(shape, self._kind) for name in self.names}
+        for t0, t1 in _steps(window.t0, window.t1, at_once):
+            for y0, y1 in _steps(window.y0, window.y1, rows_at_once):
+                part = window._replace(t0=t0, t1=t1, y0=y0, y1=y1)
+                place = slice(t0 - window.t0, t1 - window.t0), slice(y0 - window.y0, y1 - window.y0)
+                for name, values in self._read(part, columns).items():
+                    found[name][place] = values.reshape(t1 - t0, y1 - y0, -1)
+        return {name: values.reshape(levels, -1) for name, values in found.items()}
 
     def _read(self, window: GridWindow, columns: int) -> dict[str, RawArray]:
         raws = [np.asarray(v.read(window, columns), np.float64) for v in self.variables]
@@ -227,3 +259,17 @@ class Quantity:
 
 def _level_count(window: GridWindow) -> int:
     return max(1, window.t1 - window.t0)
+
+
+def _in_chunks(wanted: int, chunk: int) -> int:
+    """Return a number of whole chunks not above what is wanted, one at least."""
+    return max(chunk, wanted - wanted % chunk)
+
+
+def _steps(first: int, last: int, size: int) -> Iterator[tuple[int, int]]:
+    """Yield ranges that cover [first, last) and begin at multiples of a size."""
+    begin = first
+    while begin < last:
+        end = min(last, begin - begin % size + size)
+        yield begin, end
+        begin = end
