@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg import Chart, Sea, Ship, Track, Voyage, evaluate, plan
+from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.report.plan_summary import limits_text
+from thalweg.planning.report.waiting_report import waiting_weather_warnings
 
 KNOWN, UNKNOWN = 6.0, np.nan
 
@@ -73,3 +75,47 @@ def test_the_least_time_of_a_front_knows_when_waves_fall(planned):
     found = planned(until=30, height=KNOWN, objective="front", **speeds)
     assert found.best.time_h > 55.0
     assert 0.95 * found.best.time_h < found.lower_bound <= found.best.time_h
+
+
+def warnings_of_waits(wait_h, wind_kn):
+    """Return the warnings of a ship with a limit of 20 kn that waits at 0.2E, in hours."""
+    names = ("eastward_wind", "northward_wind")
+    sea = Sea.from_functions(
+        {
+            names[0]: lambda time, lat, lon: wind_kn(time / HOUR) * KNOT * 0.6 + 0.0 * lat,
+            names[1]: lambda time, lat, lon: wind_kn(time / HOUR) * KNOT * 0.8 + 0.0 * lat,
+        }
+    )
+    ship = Ship.simple(speed_kn=10.0, draught_m=5.0, max_wind_speed_kn=20.0)
+    track = Track([0.0] * 3, [0.0, 0.2, 0.4], depart=0.0, wait=[HOUR * one for one in wait_h])
+    chart = Chart.open_water(-1.0, 1.0, -1.0, 1.0)
+    route = evaluate(track, ship=ship, sea=sea, chart=chart, strict=False)
+    return waiting_weather_warnings(route, ship)
+
+
+def storm(hour):  # from 2 h to 6 h; the ship gets to 0.2E after 1.2 h
+    return np.where((hour > 2.0) & (hour < 6.0), 35.0, 5.0)
+
+
+def unknown_for_two_hours(hour):
+    return np.where((hour > 2.0) & (hour < 4.0), np.nan, 5.0)
+
+
+def test_a_wait_in_wind_above_the_limit_is_stated():
+    (note,) = warnings_of_waits([0.0, 8.0, 0.0], storm)
+    assert note.startswith("Waits at sea 8.0 h at ")
+    assert "in wind of up to 35.0 kn, above the limit of 20.0 kn" in note
+
+
+def test_the_hours_of_unknown_wind_in_a_wait_are_stated():
+    (note,) = warnings_of_waits([0.0, 8.0, 0.0], unknown_for_two_hours)
+    assert "where the data have no wind for 2.0 h of it" in note
+
+
+@pytest.mark.parametrize(
+    "wait_h",
+    [[5.0, 0.0, 0.0], [1.0, 0.09, 0.0], [0.0, 0.0, 0.0], [0.0, 0.5, 0.0]],
+    ids=["at the berth", "under six minutes", "without waits", "before the storm"],
+)
+def test_other_waits_are_not_stated(wait_h):
+    assert warnings_of_waits(wait_h, storm) == []

@@ -55,7 +55,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     notes += slow_speed_warnings(route) + steep_wave_warnings(route, context.sea)
     if context.voyage.objective == "comfort":
         notes += comfort_turn_notes(route)
-    notes += waiting_weather_warnings(route, context.sea, context.ship)
+    notes += waiting_weather_warnings(route, context.ship)
     notes += waiting_notes(route) + lane_notes(context.chart, route)
     if context.needs.limits.depth_checked:
         return notes
@@ -96,7 +96,7 @@ def given_route_warnings(
     """
     notes = year_warnings(route) + ice_warnings(route, sea) + data_gap_warnings(sea, route)
     notes += slow_speed_warnings(route) + steep_wave_warnings(route, sea)
-    notes += waiting_weather_warnings(route, sea, ship)
+    notes += waiting_weather_warnings(route, ship)
     notes += given_route_notes(route, chart=chart, ship=ship)
     if route.min_ukc_m is not None:
         return notes

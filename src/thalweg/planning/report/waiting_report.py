@@ -8,72 +8,69 @@ from typing import Final
 import numpy as np
 
 from thalweg.core.geodesy import format_position
-from thalweg.core.types import FloatArray
+from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import HOUR, KNOT
 from thalweg.route import Route
-from thalweg.sea import Sea
 from thalweg.sea.standard_names import EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGHT
 from thalweg.ship import Ship
 
 WAITS: Final = "Waits at sea"  #: notes on weather in a wait begin so
 LEAST_WAIT_H: Final = 0.1  #: shorter waits are not stated [h]
-_STEP: Final = 600.0  # between the times at which a wait is looked at [s]
-_MOST_TIMES: Final = 2000
 _ADVICE = (
     "weather is checked under way only. Depart later, or name where she may wait (zones of the "
     "kind anchorage)."
 )
 
 
-def waiting_weather_warnings(route: Route, sea: Sea, ship: Ship) -> list[str]:
+def waiting_weather_warnings(route: Route, ship: Ship) -> list[str]:
     """Return warnings of waits in waves and wind above the limits of a ship, or in unknown ones.
 
     The first waypoint is left out: there the ship is at her berth.
     """
-    limits = (
-        ("waves", WAVE_HEIGHT, ship.limits.wave_height, 1.0, "m"),
-        ("wind", EASTWARD_WIND, ship.limits.wind_speed, KNOT, "kn"),
-    )
+    met = route.wait_samples
+    known = [
+        ("waves", met.get(WAVE_HEIGHT), ship.limits.wave_height, 1.0, "m"),
+        ("wind", _wind_speed(route), ship.limits.wind_speed, KNOT, "kn"),
+    ]
     notes = []
-    for place, time in _waits(route):
-        for name, variable, limit, unit, symbol in limits:
-            if not (np.isfinite(limit) and variable in sea.variables):
+    for place, hours, lying in _waits(route):
+        where = f"{WAITS} {hours:.1f} h at {format_position(*place)}"
+        for name, values, limit, unit, symbol in known:
+            if values is None or not np.isfinite(limit):
                 continue
-            values = _sampled(sea, variable, place, time)
-            unknown = float(np.mean(np.isnan(values))) * (time[-1] - time[0]) / HOUR
-            above = values > limit * (1.0 + 1e-9)
-            hours = (time[-1] - time[0]) / HOUR
-            where = f"{WAITS} {hours:.1f} h at {format_position(*place)}"
-            if above.any():
-                most = float(np.nanmax(values)) / unit
+            here = values[lying]
+            unknown = np.isnan(here)
+            if (here > limit * (1.0 + 1e-9)).any():
+                most = float(np.nanmax(here)) / unit
                 notes.append(
                     f"{where} in {name} of up to {most:.1f} {symbol}, above the limit of "
                     f"{limit / unit:.1f} {symbol}: {_ADVICE}"
                 )
-            elif unknown > 0.0:
+            elif unknown.any():
                 notes.append(
-                    f"{where}, where the data have no {name} for {unknown:.1f} h of it: {_ADVICE}"
+                    f"{where}, where the data have no {name} for "
+                    f"{float(np.mean(unknown)) * hours:.1f} h of it: {_ADVICE}"
                 )
     return notes
 
 
-def _waits(route: Route) -> Iterator[tuple[tuple[float, float], FloatArray]]:
-    """Yield of each wait on the way its position [deg] and times to look at [s since 1970]."""
-    arrive, depart = route.legs["arrive"][:-1], route.legs["depart"][1:]
-    for number in np.flatnonzero(depart - arrive > LEAST_WAIT_H * HOUR):
-        place = float(route.track.lat[number + 1]), float(route.track.lon[number + 1])
-        begin, end = float(arrive[number]), float(depart[number])
-        count = min(2 + int((end - begin) / _STEP), _MOST_TIMES)
-        yield place, np.linspace(begin, end, count)
+def _waits(route: Route) -> Iterator[tuple[tuple[float, float], float, BoolArray]]:
+    """Yield of each wait on the way its position [deg], its length [h] and which samples it has."""
+    if not route.wait_samples:
+        return
+    leg, time = route.wait_samples["leg"], route.wait_samples["time"]
+    for number in np.unique(leg[leg > 0]):
+        lying = leg == number
+        hours = float(np.ptp(time[lying])) / HOUR
+        if hours > LEAST_WAIT_H:
+            place = float(route.track.lat[number]), float(route.track.lon[number])
+            yield place, hours, lying
 
 
-def _sampled(sea: Sea, variable: str, place: tuple[float, float], time: FloatArray) -> FloatArray:
-    """Return a height of waves [m] or the speed of the wind [m/s] at a place and times."""
-    lat, lon = (np.full(time.size, one) for one in place)
-    if variable == WAVE_HEIGHT:
-        return np.asarray(sea.sample([variable], time, lat, lon)[variable], float)
-    wind = sea.sample([EASTWARD_WIND, NORTHWARD_WIND], time, lat, lon)
-    return np.hypot(wind[EASTWARD_WIND], wind[NORTHWARD_WIND])
+def _wind_speed(route: Route) -> FloatArray | None:
+    """Return the speed of the wind in the samples of the waits [m/s]; None without wind."""
+    east, north = (route.wait_samples.get(name) for name in (EASTWARD_WIND, NORTHWARD_WIND))
+    return None if east is None or north is None else np.hypot(east, north)
 
 
 def waits_without_fuel(route: Route) -> bool:

@@ -26,10 +26,10 @@ def with_sheltered_waits(context: PlanningContext, route: Route) -> Route:
     ----------
     route : As evaluated.
     """
-    ship, sea = context.ship, context.sea
+    ship = context.ship
     if not (route.feasible and route.waiting_h > 0.0):
         return route
-    if not waiting_weather_warnings(route, sea, ship):
+    if not waiting_weather_warnings(route, ship):
         return route
     wait = np.asarray(route.track.wait, float)
     last = int(np.flatnonzero(wait)[-1])
@@ -42,6 +42,6 @@ def with_sheltered_waits(context: PlanningContext, route: Route) -> Route:
             moved[place] = wait.sum() + more
             tried = context.evaluate(route.track.replaced(wait=moved))
             early = tried.feasible and tried.arrive <= route.arrive + _LATER
-            if early and not waiting_weather_warnings(tried, sea, ship):
+            if early and not waiting_weather_warnings(tried, ship):
                 return tried
     return route
