@@ -184,6 +184,30 @@ def test_the_bound_of_a_cost_is_the_least_of_its_front_at_all_times():
     assert found.proof.certain < cost
 
 
+def test_currents_in_reach_are_read_once_for_a_front(monkeypatch):
+    passages, around = [], BarrierDomain.around
+
+    def counted(passage, cells, **more):
+        passages.append((tuple(passage.channels), passage.known, cells))
+        return around(passage, cells, **more)
+
+    monkeypatch.setattr(BarrierDomain, "around", counted)
+    lat, lon = np.arange(-5, 6) * 0.1, np.arange(-3, 14) * 0.1
+    times = T0 + np.arange(21) * HOUR
+    sea = gridded(times, lat, lon, np.full((times.size, lat.size, lon.size), 0.5, np.float32))
+    ship = Ship.simple(speed_kn=12.0, speeds_kn=[6.0, 12.0], draught_m=5.0, fuel_t_per_day=24.0)
+    voyage = Voyage(
+        start=(0.0, 0.0), goal=(0.0, 1.0), depart=T0, objective="fuel", offing_nm=0.0,
+        method="exact",
+    )  # fmt: skip
+    chart = Chart.open_water(-0.3, 0.3, -0.2, 1.2)
+    found = plan(voyage, ship=ship, sea=sea, chart=chart, resolution=20_000.0)
+    slowest = max(route.time_h for route in found.routes if route.feasible)
+    channels = (CURRENT_EAST, CURRENT_NORTH)
+    of_currents = [one for one in passages if one[0] == channels]
+    assert [known for _, known, _ in of_currents] == pytest.approx([slowest * HOUR])
+
+
 def test_a_current_that_is_assumed_where_data_are_unknown_holds_between_two_times():
     """The data know a foul current at every second hour, and nothing between: there it is slack."""
     lat, lon = np.arange(-5, 6) * 0.1, np.arange(-3, 14) * 0.1

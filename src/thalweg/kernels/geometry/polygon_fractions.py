@@ -57,12 +57,12 @@ def _fraction_inside(index, outlines, a, b, finest):
         return (1.0 if inside(index, a[0], a[1], a[2]) else 0.0), 0
     arc = 2.0 * atan2(0.5 * chord, sqrt(max(0.5 + 0.5 * dot, 0.0)))
     # the scale is a parabola through three places; its integral gives lengths
-    first, amid, last = (
+    first, middle, last = (
         _metres_per_radian(a, b, arc, 0.0),
         _metres_per_radian(a, b, arc, 0.5),
         _metres_per_radian(a, b, arc, 1.0),
     )
-    one, two = 0.5 * (4.0 * amid - 3.0 * first - last), 2.0 * (first - 2.0 * amid + last) / 3.0
+    one, two = 0.5 * (4.0 * middle - 3.0 * first - last), 2.0 * (first - 2.0 * middle + last) / 3.0
     total, tests, k, depth = 0.0, 0, 0, 0
     while True:
         size = 1.0 / (1 << depth)

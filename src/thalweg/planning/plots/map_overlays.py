@@ -204,7 +204,7 @@ def _draw_control_areas(axes: Any, chart: Chart, box: MapExtent) -> list[tuple[s
 def _visible_place(
     chart: Chart, box: MapExtent, lat: np.ndarray, lon: np.ndarray
 ) -> tuple[float, float] | None:
-    """Return a place (lon, lat) amid the part of a line that shows on a map; None without one."""
+    """Return the middle (lon, lat) of the part of a line that a map shows; None without one."""
     detail = max(box.east - box.west, box.north - box.south) / _LINE_POINTS
     steps = np.ceil(np.maximum(np.abs(np.diff(lat)), np.abs(np.diff(lon))) / detail)
     number = np.concatenate([[0.0], np.cumsum(np.maximum(steps, 1.0))])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -237,48 +237,41 @@ def certified_total(
     return LowerBound(sum(bound.value for bound in least), kind)
 
 
-def strongest_current_in_data(context: PlanningContext, route: Route) -> tuple[float, str]:
-    """Return the strongest current [m/s] that a ship can meet, and how the sea was sampled.
+@dataclass(frozen=True, eq=False)
+class CurrentsInReach:
+    """The currents in all water from which a route of some time can be sailed.
+
+    Attributes
+    ----------
+    passage : Of the route, with currents as all there is in the sea.
+    domain : None near a pole and across half of the globe.
+    """
+
+    passage: StretchToBound
+    domain: BarrierDomain | None
+
+    def strongest(self) -> tuple[float, str]:
+        """Return the strongest current that a ship can meet [m/s], and how the sea was sampled.
+
+        The text is empty where the data themselves were read.
+        """
+        domain = self.domain or BarrierDomain.of_globe(self.passage, _CELLS_FOR_CURRENT)
+        return domain.strongest_current, domain.sampling
+
+
+def currents_in_reach(context: PlanningContext, route: Route) -> CurrentsInReach | None:
+    """Return the currents in the water that a ship can reach; None without currents.
 
     Parameters
     ----------
     route : A route that takes as long as any that counts: water farther away than its time at the
         greatest speed is left out.
-
-    Returns
-    -------
-    tuple of float and str : The text is empty where the data themselves were read.
     """
-    passage = _passage_of_currents(context, route)
-    if passage is None:
-        return 0.0, ""
-    domain = BarrierDomain.around(passage, _CELLS_FOR_CURRENT)
-    domain = domain or BarrierDomain.of_globe(passage, _CELLS_FOR_CURRENT)
-    return domain.strongest_current, domain.sampling
-
-
-def currents_within_reach(
-    context: PlanningContext, route: Route
-) -> tuple[StretchToBound, BarrierDomain] | None:
-    """Return the currents in all water from which a route of some time can be sailed.
-
-    Parameters
-    ----------
-    route : A route that takes as long as any that counts.
-
-    Returns
-    -------
-    tuple or None : None without currents, near a pole and across half of the globe.
-    """
-    passage = _passage_of_currents(context, route)
-    domain = None if passage is None else BarrierDomain.around(passage, _CELLS_FOR_CURRENT)
-    return None if passage is None or domain is None else (passage, domain)
-
-
-def _passage_of_currents(context: PlanningContext, route: Route) -> StretchToBound | None:
-    """Return the passage of a route with currents as all there is in the sea; None without."""
     currents = tuple(c for c in context.needs.channels if c in (CURRENT_EAST, CURRENT_NORTH))
-    return None if len(currents) < 2 else replace(_passage(context, route), channels=currents)
+    if len(currents) < 2:
+        return None
+    passage = replace(_passage(context, route), channels=currents)
+    return CurrentsInReach(passage, BarrierDomain.around(passage, _CELLS_FOR_CURRENT))
 
 
 def _contradicted(found: TimeCertificate, known: float, *, by_length: bool) -> str:

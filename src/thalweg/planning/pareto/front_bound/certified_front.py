@@ -36,7 +36,9 @@ from thalweg.planning.planning_context import greatest_speed_of
 from thalweg.planning.single.certified_bound import (
     KEEPING_OUT,
     TABLE_MARGIN,
+    CurrentsInReach,
     certified_bound,
+    currents_in_reach,
     kept_out,
 )
 from thalweg.route import Route
@@ -118,7 +120,8 @@ def _certified_fronts(
     context, routes = trade_off.context, [item.route for item in ordered]
     latest = min(context.latest_arrival, context.data_end)  # later routes meet unknown sea
     allowed = (latest - context.voyage.earliest_departure) / HOUR
-    current, kind = strongest_current_of_plan(trade_off, explored, routes)
+    reached = _currents_in_reach(trade_off, routes)
+    current, kind = strongest_current_of_plan(trade_off, explored, reached)
     ways = least_ways(trade_off, [*routes, *(one.fastest for one in explored)], current)
     points = certain_front(trade_off, ways, current)
     if len(ways) > 1 and passes_counted_canal(trade_off, routes):
@@ -130,7 +133,7 @@ def _certified_fronts(
     fronts = [CertifiedFront(points, kind, allowed)]
     if trade_off.interrupt_guard.stopped():
         return fronts
-    fair, until_fair, least = fair_current_lines(trade_off, routes)
+    fair, until_fair, least = fair_current_lines(trade_off, routes, reached)
     by_currents = _not_before(raised_by_lines(points, fair, until_fair), least)
     by_currents = _with_priced_time(trade_off, by_currents, until_fair, ways, current)
     if _gains(by_currents, points):
@@ -152,6 +155,16 @@ def _certified_fronts(
         kind = _KIND.format(until=until) + (f", in {sampling}" if sampling else "") + f"; {kind}"
         fronts.append(CertifiedFront(raised, kind, min(allowed, until)))
     return fronts
+
+
+def _currents_in_reach(
+    trade_off: TradeOffContext, routes: Sequence[Route]
+) -> CurrentsInReach | None:
+    """Return the currents that routes no slower than the slowest can meet; None if not searched."""
+    feasible = [route for route in routes if route.feasible]
+    if not feasible or trade_off.interrupt_guard.stopped():
+        return None
+    return currents_in_reach(trade_off.context, max(feasible, key=lambda route: route.time_h))
 
 
 def _certified_least_time(

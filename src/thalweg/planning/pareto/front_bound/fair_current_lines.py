@@ -11,7 +11,7 @@ from thalweg.core.pareto_fronts import lower_hull
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import HOUR
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
-from thalweg.planning.single.certified_bound import TABLE_MARGIN, currents_within_reach
+from thalweg.planning.single.certified_bound import TABLE_MARGIN, CurrentsInReach
 from thalweg.route import Route
 from thalweg.search.certificate.barrier_domain import BarrierDomain
 from thalweg.search.certificate.closed_water import cells_inside
@@ -31,9 +31,14 @@ _SHORTER: Final = 1.0 - 1e-6  # geodesic, for the rounding of sums
 
 
 def fair_current_lines(
-    trade_off: TradeOffContext, routes: Sequence[Route]
+    trade_off: TradeOffContext, routes: Sequence[Route], reached: CurrentsInReach | None
 ) -> tuple[FloatArray, float, float]:
     """Return lines that no route is below, by the fair currents that a ship can meet.
+
+    Parameters
+    ----------
+    routes : Of the front.
+    reached : Currents in reach of the slowest of them.
 
     Returns
     -------
@@ -56,14 +61,13 @@ def fair_current_lines(
     """
     none = np.empty((2, 0)), 0.0, 0.0
     context = trade_off.context
-    feasible = [route for route in routes if route.feasible]
-    if len(trade_off.ends) > 2 or len({route.depart for route in feasible}) != 1:
+    departures = {route.depart for route in routes if route.feasible}
+    if reached is None or len(trade_off.ends) > 2 or len(departures) != 1:
         return none
-    found = currents_within_reach(context, max(feasible, key=lambda route: route.time_h))
+    passage, domain = reached.passage, reached.domain
     slow, rates = trade_off.slowness_and_rates(0.0)
-    if found is None or not (np.isfinite(slow) & (slow > 0.0) & np.isfinite(rates)).all():
+    if domain is None or not (np.isfinite(slow) & (slow > 0.0) & np.isfinite(rates)).all():
         return none
-    passage, domain = found
     fastest = float(1.0 / slow.min()) + domain.strongest_current
     if fastest > _OVERSHOOT * domain.fastest or passage.canal_speed(fastest) > 0.0:
         return none

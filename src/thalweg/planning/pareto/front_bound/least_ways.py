@@ -24,9 +24,9 @@ from thalweg.planning.plan_data import Proof
 from thalweg.planning.plan_front import certain_at
 from thalweg.planning.report.route_summary import canals_passed
 from thalweg.planning.single.certified_bound import (
+    CurrentsInReach,
     certified_distance,
     priced_length,
-    strongest_current_in_data,
 )
 from thalweg.route import Route
 
@@ -80,23 +80,23 @@ def _proof(value: float, kind: str, solver: float) -> Proof:
 
 
 def strongest_current_of_plan(
-    trade_off: TradeOffContext, explored: list[ExploredAlternative], routes: Sequence[Route]
+    trade_off: TradeOffContext,
+    explored: list[ExploredAlternative],
+    reached: CurrentsInReach | None,
 ) -> tuple[float, str]:
     """Return the strongest current [m/s] for the bound of a front, and the kind of the bound.
 
     Parameters
     ----------
-    routes : Of the front.
+    reached : Currents in reach of the routes of the front; None where they were not searched.
     """
-    context = trade_off.context
-    if not {codes.CURRENT_EAST, codes.CURRENT_NORTH} <= set(context.needs.channels):
+    if not {codes.CURRENT_EAST, codes.CURRENT_NORTH} <= set(trade_off.context.needs.channels):
         return 0.0, _KIND
-    feasible = [route for route in routes if route.feasible]
-    if not feasible or trade_off.interrupt_guard.stopped():
+    if reached is None:
         return math.inf, _CURRENT_UNKNOWN
-    found = strongest_current_in_data(context, max(feasible, key=lambda route: route.time_h))
+    strongest, sampling = reached.strongest()
     at_stations = max(strongest_current(one.frozen.stations) for one in explored)
-    return max(found[0], at_stations), _KIND + (f", in {found[1]}" if found[1] else "")
+    return max(strongest, at_stations), _KIND + (f", in {sampling}" if sampling else "")
 
 
 @dataclass(frozen=True)
