@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from thalweg.chart.approach_branches import approach_branches
 from thalweg.chart.port_draughts import port_draughts
 from thalweg.chart.ports import PORTS, Port
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.geodesy import (
     METRES_PER_DEGREE,
     Position,
@@ -208,7 +209,7 @@ class PortApproaches:
         last = np.cumsum(count) - 1
         begin = np.delete(np.arange(len(vertices)), last)
         a, b = vertices[begin], vertices[begin + 1]
-        sailed = np.concatenate([[0.0], np.cumsum(distance(*a.T, *b.T))])[:-1]
+        sailed = cumulative_sums(distance(*a.T, *b.T))[:-1]
         first = np.concatenate([[0], last[:-1] + 1]) - np.arange(len(lines))
         whose = np.repeat(np.arange(len(lines)), count - 1)
         start = sailed - sailed[np.minimum(first, len(sailed) - 1)][whose]

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.types import FloatArray
 
 
@@ -38,7 +39,7 @@ class Rings:
             if (_doubled_area(ring[:, 0], ring[:, 1]) < 0.0) != hole:
                 ring = ring[::-1]
             points.append(ring)
-        start = np.concatenate([[0], np.cumsum([len(p) for p in points], dtype=np.int64)])
+        start = cumulative_sums(np.array([len(p) for p in points], np.int64))
         flat = np.vstack(points) if points else np.empty((0, 2))
         return cls(np.ascontiguousarray(flat[:, 0]), np.ascontiguousarray(flat[:, 1]), start)
 

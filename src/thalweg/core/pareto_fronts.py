@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.types import FloatArray, IntArray
 
 ROUNDING_TOLERANCE = 1e-9  #: relative improvement that may be rounding of two equal values
@@ -86,7 +87,7 @@ def length_along_front(first: ArrayLike, second: ArrayLike) -> FloatArray:
     """
     x, y = (np.asarray(values, float) for values in (first, second))
     dx, dy = (np.diff(values) / max(float(np.ptp(values)), 1e-12) for values in (x, y))
-    return np.concatenate([[0.0], np.cumsum(np.hypot(dx, dy))])
+    return cumulative_sums(np.hypot(dx, dy))
 
 
 def evenly_spaced_subset(first: ArrayLike, second: ArrayLike, count: int) -> IntArray:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core import geodesy
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.types import BoolArray, Float32Array, FloatArray, Int32Array
 from thalweg.kernels import codes
 from thalweg.kernels.network import graph_building
@@ -153,7 +154,7 @@ def evenly_spaced_samples(
     samples : Evenly spaced samples of every pair.
     """
     pieces = np.maximum(1, np.ceil(pairs.length / spacing - 1e-9)).astype(np.int64)
-    ptr = np.concatenate([[0], np.cumsum(pieces - 1)])
+    ptr = cumulative_sums(pieces - 1)
     of = np.repeat(np.arange(len(pairs.first)), pieces - 1)
     s = (np.arange(len(of)) - ptr[of] + 1) / pieces[of]
     lat, lon = stations.lat, stations.lon

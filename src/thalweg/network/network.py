@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.types import BoolArray, Float32Array, FloatArray, Int32Array, IntArray
 from thalweg.deprecated_names import renamed_attributes
 
@@ -357,10 +358,10 @@ class Network:
             With their samples.
         """
         leaving = np.bincount(self.tails()[keep], minlength=self.n_nodes)
-        indptr = np.concatenate([[0], np.cumsum(leaving)]).astype(np.int64)
+        indptr = cumulative_sums(leaving)
         count = np.diff(self.samples.ptr)
         inside = np.repeat(keep, count)
-        ptr = np.concatenate([[0], np.cumsum(count[keep])]).astype(np.int64)
+        ptr = cumulative_sums(count[keep])
         old = self.samples
         samples = Samples(
             ptr,

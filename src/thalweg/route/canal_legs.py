@@ -19,6 +19,7 @@ from thalweg.chart.canal_parts import (
     part_number_of_legs,
 )
 from thalweg.chart.canals import Canal, canals_with_dues
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import ThalwegError
 from thalweg.core.geodesy import Position, direct, inverse
 from thalweg.core.types import FloatArray
@@ -123,7 +124,7 @@ class CanalLegs:
             path = path[::-1]
         lat, lon = path.T
         lengths, courses, _ = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
-        start = np.concatenate([[0.0], np.cumsum(lengths)])
+        start = cumulative_sums(lengths)
         part = np.clip(np.searchsorted(start, along, side="right") - 1, 0, len(lengths) - 1)
         there = direct(lat[part], lon[part], courses[part], along - start[part])
         return *there, courses[part]

@@ -20,6 +20,7 @@ from typing import Any, Final, Protocol
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import unknown_name_error
 from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.types import FloatArray
@@ -223,7 +224,7 @@ def _greatest_in_an_hour(rate: FloatArray, time: FloatArray) -> float:
     """Return the greatest integral of a rate over an hour (over all, where that is less)."""
     known = np.isfinite(time)
     t, r = time[known], rate[known]
-    total = np.concatenate([[0.0], np.cumsum(0.5 * (r[1:] + r[:-1]) * np.diff(t))])
+    total = cumulative_sums(0.5 * (r[1:] + r[:-1]) * np.diff(t))
     starts = np.concatenate([t, t - HOUR])
     starts = np.clip(starts, t[0], max(t[-1] - HOUR, t[0]))
     ends = np.minimum(starts + HOUR, t[-1])

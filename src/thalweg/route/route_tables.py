@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.time import format_time, to_datetime64
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
@@ -112,25 +113,20 @@ def waypoint_columns(route: SailedRoute) -> dict[str, FloatArray]:
         "lon": track.lon,
         "time": np.concatenate([[track.depart], legs["arrive"]]),
         "waiting_h": track.wait / HOUR,
-        "distance_nm": np.concatenate([[0.0], np.cumsum(length)]) / NAUTICAL_MILE,
+        "distance_nm": cumulative_sums(length) / NAUTICAL_MILE,
         "course_deg": np.degrees(samples["course"][at]),
         "heading_deg": np.degrees(samples["heading"][at]),
         "ordered_speed_kn": np.append(legs["ordered_speed"], math.nan) / KNOT,
         "speed_through_water_kn": np.append(_mean_over_time(route), math.nan) / KNOT,
         "speed_over_ground_kn": np.append(over_ground, math.nan) / KNOT,
-        "fuel_t": _cumulative(fuel) / TONNE,
-        "energy_mwh": _cumulative(legs["energy"] + legs["waiting_energy"]) / MEGAWATT_HOUR,
-        "co2_t": _cumulative(legs["co2"]) / TONNE,
-        route.cost_name: _cumulative(legs["cost"]),
+        "fuel_t": cumulative_sums(fuel) / TONNE,
+        "energy_mwh": cumulative_sums(legs["energy"] + legs["waiting_energy"]) / MEGAWATT_HOUR,
+        "co2_t": cumulative_sums(legs["co2"]) / TONNE,
+        route.cost_name: cumulative_sums(legs["cost"]),
         **_conditions(route, at),
         "ukc_m": np.append(legs["under_keel_clearance"], math.nan),
         **{name: np.append(values, math.nan) for name, values in leg_indicators(legs).items()},
     }
-
-
-def _cumulative(values: FloatArray) -> FloatArray:
-    """Return a sum over the legs up to each waypoint."""
-    return np.concatenate([[0.0], np.cumsum(values)])
 
 
 def _sample_of_waypoint(leg: FloatArray) -> np.ndarray:

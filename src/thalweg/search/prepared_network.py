@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import AXIS_DEPTH, BED_DEPTH, LIMIT_REQUIRED_DEPTH, WATER_LEVEL
 from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays
@@ -74,12 +75,10 @@ class PreparedNetwork:
         """
         check_fields_of_network(network, len(fields.values))
         order = np.argsort(network.graph.target, kind="stable").astype(np.int32)
-        ptr = np.concatenate(
-            [[0], np.cumsum(np.bincount(network.graph.target, minlength=network.n_nodes))]
-        )
+        ptr = cumulative_sums(np.bincount(network.graph.target, minlength=network.n_nodes))
         sea = sea_arrays(fields, tides=True)
         tails = np.ascontiguousarray(network.tails(), np.int32)
-        return cls(network, network_arrays(network), sea, tails, ptr.astype(np.int64), order)
+        return cls(network, network_arrays(network), sea, tails, ptr, order)
 
     @cached_property
     def strongest(self) -> NDArray[np.float32]:
@@ -144,7 +143,7 @@ class PreparedNetwork:
         split = wait and required > -math.inf and varies
         if split:
             tidal_intervals.count_tidal_states(self.sea, self.charted, changing, required, counts)
-        ptr = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+        ptr = cumulative_sums(counts)
         size = int(ptr[-1])
         states = tidal_intervals.TidalStates(
             ptr, np.empty(size, np.int32), *(np.empty(size) for _ in range(3))

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import BED_DEPTH, WATER_LEVEL
 from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays
@@ -146,7 +147,7 @@ def _copy_edges(network: NetworkArrays, states: NetworkArrays, begin: FloatArray
     count = len(network.can_wait)
     order = np.argsort(states.station, kind="stable")
     copies = np.bincount(states.station, minlength=count)
-    where = np.concatenate(([0], np.cumsum(copies)))
+    where = cumulative_sums(copies)
     degree = np.diff(network.indptr)[states.station]
     tail = np.repeat(np.arange(len(states.station)), degree)
     edge = _ranges(network.indptr[states.station], degree)
@@ -168,7 +169,7 @@ def _copy_edges(network: NetworkArrays, states: NetworkArrays, begin: FloatArray
         depth=network.depth[edge],
         factor=network.factor[edge],
         fixed_time=network.fixed_time[edge],
-        via_ptr=np.concatenate(([0], np.cumsum(samples))).astype(np.int64),
+        via_ptr=cumulative_sums(samples),
         via_a=network.via_a[via],
         via_b=network.via_b[via],
         via_w=network.via_w[via],

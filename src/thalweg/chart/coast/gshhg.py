@@ -19,6 +19,7 @@ import numpy as np
 
 from thalweg.chart.coast.islets import islet_rings
 from thalweg.chart.rings import Rings
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import DatasetError, InputError
 
 RESOLUTIONS: Final = {"c": "crude", "l": "low", "i": "intermediate", "h": "high", "f": "full"}
@@ -127,7 +128,7 @@ def read_land_rings(resolution: str, *, narrows_closed: bool = True, islets: boo
         raise _mismatch(meta, points)
     chosen = np.flatnonzero(np.isin(levels, LAND_LEVELS))
     counts, firsts = counts[chosen], firsts[chosen]
-    start = np.concatenate([[0], np.cumsum(counts)])
+    start = cumulative_sums(counts)
     take = np.arange(start[-1]) + np.repeat(firsts - start[:-1], counts)
     land = Rings(raw[take, 1].astype(float), raw[take, 0].astype(float), start)
     strips = [*CLOSED_CANALS.values(), *(_narrow_strips() if narrows_closed else ())]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from thalweg.chart.zones.leg_fractions import outlines_only
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.geodesy import METRES_PER_DEGREE
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.kernels.geometry.coast_index import outlines_touched
@@ -56,7 +57,7 @@ def area_exits(
 def _short_pieces(lat: FloatArray, lon: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return a line [deg] with more positions, so that no piece is longer than the step."""
     pieces = np.ceil(np.hypot(np.diff(lat), np.diff(lon)) / _STEP)
-    place = np.concatenate([[0.0], np.cumsum(np.maximum(pieces, 1.0))])
+    place = cumulative_sums(np.maximum(pieces, 1.0))
     along = np.arange(place[-1] + 1.0)
     return np.interp(along, place, lat), np.interp(along, place, lon)
 

@@ -16,6 +16,7 @@ import numpy as np
 from thalweg.chart.depth.shoals import HARBOUR
 from thalweg.chart.offing import closing_line
 from thalweg.chart.passages import Passage
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import (
     MEAN_RADIUS,
@@ -291,7 +292,7 @@ class SeaGraph:
         tail, head, length = tail[order], head[order], length[order]
         ends = np.concatenate([self.indptr, np.full(count - len(self.indptr) + 1, self.indptr[-1])])
         at = ends[tail + 1]
-        more = np.concatenate([[0], np.cumsum(np.bincount(tail, minlength=count))])
+        more = cumulative_sums(np.bincount(tail, minlength=count))
         indptr = (ends + more).astype(np.int32)
         target = np.insert(self.target, at, head)
         return indptr, target, np.insert(weight, at, length)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import Position, distance, geocentric_positions, line_length
 from thalweg.core.types import BoolArray, FloatArray, IntArray
@@ -85,7 +86,7 @@ class ArcLines:
         ArcLines : In the order of the index.
         """
         count = np.diff(self.ptr)[index]
-        ptr = np.concatenate([[0], np.cumsum(count)]).astype(np.int64)
+        ptr = cumulative_sums(count)
         at = np.arange(ptr[-1]) + np.repeat(self.ptr[index] - ptr[:-1], count)
         return ArcLines(ptr, self.lat[at], self.lon[at])
 
@@ -297,7 +298,7 @@ def _drawn(
     begin = tracks.vectors_at(stretches.begin + margin)
     end = tracks.vectors_at(stretches.end - margin)
     inner = np.maximum(last - first, 0)
-    ptr = np.concatenate([[0], np.cumsum(inner + 4)])
+    ptr = cumulative_sums(inner + 4)
     lat, lon = np.empty(ptr[-1]), np.empty(ptr[-1])
     for k, edge in enumerate((ptr[:-1], ptr[1:] - 1)):
         lat[edge], lon[edge] = ends.lat[:, k], ends.lon[:, k]

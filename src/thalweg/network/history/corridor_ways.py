@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from thalweg.core import geodesy
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.geodesy import distance
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -128,7 +129,7 @@ def _stations(
     length, start, end = geodesy.inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
     first, last = np.append(start, end[-1]), np.append(start[0], end)
     course = np.angle(np.exp(1j * first) + np.exp(1j * last))
-    along = np.concatenate([[0.0], np.cumsum(length)])
+    along = cumulative_sums(length)
     return lat, lon, course, along / max(float(along[-1]), 1e-9)
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from thalweg.core import geodesy
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import InputError, NoPathError
 from thalweg.core.geodesy import METRES_PER_DEGREE, Position, format_position
 from thalweg.core.types import FloatArray, IntArray
@@ -358,7 +359,7 @@ def _network(
         np.where(which >= 0, np.nan, pairs.course).astype(np.float32),
     )  # fmt: skip
     leaving = np.bincount(a, minlength=stations.n_nodes)
-    graph = Graph(np.concatenate([[0], np.cumsum(leaving)]).astype(np.int64), b)
+    graph = Graph(cumulative_sums(leaving), b)
     directed = DirectedEdges(graph, np.arange(len(a), dtype=np.int32), np.zeros(len(a), bool))
     meta = NetworkMeta(
         kind="history", spacing_m=spacing, directions=LANES, gap_rad=2.0 * np.pi,

@@ -12,6 +12,7 @@ from typing import Final
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.geodesy import Position, distance, geocentric_positions
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.network.history.arc_lines import ArcLines
@@ -120,7 +121,7 @@ def attached_line(
         replaces the end only.
     """
     lat, lon = line
-    along = np.concatenate([[0.0], np.cumsum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:]))])
+    along = cumulative_sums(distance(lat[:-1], lon[:-1], lat[1:], lon[1:]))
     low, high = margins[0], along[-1] - margins[1]
     inner = (along > low) & (along < high)
     inner[[0, -1]] = False

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.geodesy import Position, distance, geocentric_positions, line_length
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.network.history.arc_lines import ArcLines, GlobeWays, LinesOffLand, repaired_line
@@ -127,7 +128,7 @@ def _drawn(
     at = np.flatnonzero(stretch_turning_points(tracks, begin, end, tolerance))
     first = np.searchsorted(tracks.along[at], low, side="right")
     inner = np.maximum(np.searchsorted(tracks.along[at], high, side="left") - first, 0)
-    ptr = np.concatenate([[0], np.cumsum(inner + 4)]).astype(np.int64)
+    ptr = cumulative_sums(inner + 4)
     found = np.empty((2, ptr[-1]))
     for k, edge in enumerate((ptr[:-1], ptr[1:] - 1)):
         found[0, edge], found[1, edge] = lat[:, k], lon[:, k]
@@ -139,7 +140,7 @@ def _drawn(
     found[:, to] = tracks.lat[of], tracks.lon[of]
     use = np.ones(ptr[-1], bool)  # without a margin the second place is the first
     use[ptr[:-1] + 1], use[ptr[1:] - 2] = (margin > 0.0).T
-    kept = np.concatenate([[0], np.cumsum(use)])[ptr]
+    kept = cumulative_sums(use)[ptr]
     return _without_near(ArcLines(kept, found[0, use], found[1, use]))
 
 
@@ -155,8 +156,8 @@ def _without_near(lines: ArcLines) -> ArcLines:
     drop[near + 1] = True
     drop[near[end[near + 1]]] = True
     keep = ~drop | end
-    ptr = np.concatenate([[0], np.cumsum(keep)])[lines.ptr]
-    return ArcLines(ptr.astype(np.int64), lines.lat[keep], lines.lon[keep])
+    ptr = cumulative_sums(keep)[lines.ptr]
+    return ArcLines(ptr, lines.lat[keep], lines.lon[keep])
 
 
 def _chosen(old: ArcLines, new: ArcLines, use_new: BoolArray) -> ArcLines:

@@ -11,6 +11,7 @@ import numpy as np
 
 from thalweg.chart.port_names import normalised_port_name
 from thalweg.chart.ports import PORTS
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING, MEAN_RADIUS, Position, distance
 from thalweg.core.types import BoolArray, FloatArray, IntArray
@@ -194,12 +195,12 @@ class VoyageTracks:
         """Distance sailed (n,) [m], ascending over all voyages, with a jump between them."""
         steps = self.steps.copy()
         steps[self.ptr[1:] - 1] = _BETWEEN_VOYAGES
-        return np.concatenate([[0.0], np.cumsum(steps)[:-1]])
+        return cumulative_sums(steps)[:-1]
 
     @cached_property
     def unobserved(self) -> FloatArray:
         """Distance in gaps (n,) [m], summed over all positions before each."""
-        return np.concatenate([[0.0], np.cumsum(np.where(self.broken, self.steps, 0.0))[:-1]])
+        return cumulative_sums(np.where(self.broken, self.steps, 0.0))[:-1]
 
     def vectors_at(self, along: FloatArray) -> FloatArray:
         """Return positions as vectors on the sphere of mean radius.

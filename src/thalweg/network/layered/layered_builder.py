@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thalweg.core import geodesy
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import NoPathError
 from thalweg.core.geodesy import Position
 from thalweg.core.types import BoolArray, Int32Array
@@ -153,7 +154,7 @@ def _assembled(
     )
     count = len(first)  # the segments are in the order of their first nodes
     leaving = np.bincount(first, minlength=stations.n_nodes)
-    graph = Graph(np.concatenate([[0], np.cumsum(leaving)]).astype(np.int64), second)
+    graph = Graph(cumulative_sums(leaving), second)
     directed = DirectedEdges(graph, np.arange(count, dtype=np.int32), np.zeros(count, bool))
     meta = NetworkMeta(
         kind="layered",

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import InputError
 from thalweg.core.given_numbers import is_number
 from thalweg.core.types import Int32Array
@@ -111,7 +112,7 @@ class SectionShape:
             From each layer to the next; 0 is the start, the last node the end.
         """
         sizes = self.nodes_in_layers
-        begin = np.concatenate([[0], np.cumsum(sizes)])
+        begin = cumulative_sums(sizes)
         first, second = [], []
         q = (self.fan - 1) // 2
         for k in range(self.layers + 1):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.geodesy import MEAN_RADIUS, Position, direct, inverse
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.network import lattice_edges
@@ -244,7 +245,7 @@ def _level_samples(
     """Sample pairs where they cross lattice lines: blends of two nodes, or extra stations."""
     level, point, offset = part.level, part.point, part.offset
     between = np.maximum(np.abs(di), np.abs(dj)) - 1
-    ptr = np.concatenate([[0], np.cumsum(between[offset])]).astype(np.int64)
+    ptr = cumulative_sums(between[offset])
     total = int(ptr[-1])
     a, b = np.empty(total, np.int32), np.empty(total, np.int32)
     w, s = np.empty(total, np.float32), np.empty(total, np.float32)

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.types import IntArray
 from thalweg.kernels.geometry.triangle_crossings import Triangulation, crossed_sides
 from thalweg.network.conformal_projection import mercator_projection
@@ -63,5 +64,5 @@ def _triangles_around_nodes(triangles: np.ndarray, count: int) -> tuple[IntArray
     """Return the triangles around each node."""
     node = triangles.ravel()
     order = np.argsort(node, kind="stable")
-    ptr = np.concatenate([[0], np.cumsum(np.bincount(node, minlength=count))])
+    ptr = cumulative_sums(np.bincount(node, minlength=count))
     return ptr.astype(np.int64), (order // 3).astype(np.int32)

@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.geodesy import Position
 from thalweg.core.types import FloatArray
 from thalweg.core.units import MINUTE
@@ -64,7 +65,7 @@ class WorkWindows:
                 wind = np.hypot(sampled[EASTWARD_WIND], sampled[NORTHWARD_WIND])
                 allowed &= wind <= limits.wind_speed
         step = np.where(allowed[:-1] & allowed[1:], np.diff(times), 0.0)
-        return cls(times, np.concatenate([[0.0], np.cumsum(step)]))
+        return cls(times, cumulative_sums(step))
 
     def end(self, start: float, duration: float) -> float:
         """Return when work of a duration [s] that starts at a time ends [s since 1970].

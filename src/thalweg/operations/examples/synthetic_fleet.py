@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, densify, direct, inverse, line_length
 from thalweg.core.time import TimeLike, parse_time
@@ -159,7 +160,7 @@ class _Line:
     def of(cls, route: SyntheticRoute) -> _Line:
         lat, lon, _ = densify(*_columns(route.line), _BEND)
         length, course, _ = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
-        along = np.concatenate([[0.0], np.cumsum(length)])
+        along = cumulative_sums(length)
         return cls(route, lat, lon, along, np.append(course, course[-1]))
 
     def sailed(

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from thalweg.chart.canals import Canal
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, densify, distance
 from thalweg.core.types import BoolArray, FloatArray, IntArray
@@ -261,7 +262,7 @@ def voyages_between_calls(fleet: FleetTracks, calls: PortCalls) -> VoyageTracks:
     keep[edges - 1] = True
     moving = np.where(calls.stopped, 0.0, np.append(np.diff(fleet.time), 0.0))
     moving = _without_time_in_port(fleet, moving, first, last)
-    sailed = np.concatenate([[0.0], np.cumsum(moving)[:-1]])
+    sailed = cumulative_sums(moving)[:-1]
     index, voyage = index[keep], voyage[keep]
     ptr = np.searchsorted(voyage, np.arange(len(at) + 1)).astype(np.int64)
     draught = group_percentiles(fleet.draught[index], ptr, (50.0,))[:, 0]
@@ -289,7 +290,7 @@ def _without_time_in_port(
     """
     vectors = ellipsoid_vectors(fleet.lat, fleet.lon)
     step = np.append(lengths_between(vectors[:-1], vectors[1:]), 0.0)
-    length, time = (np.concatenate([[0.0], np.cumsum(part)]) for part in (step, moving))
+    length, time = (cumulative_sums(part) for part in (step, moving))
     inner = last - first >= _INTERVALS
     low, high = first[inner] + 1, last[inner] - 1
     speed = (length[high] - length[low]) / np.maximum(time[high] - time[low], 1.0)

@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
@@ -204,7 +205,7 @@ def _activities(
 
     An activity with an interval of ``away``, a gap long enough for a trip, is not complete.
     """
-    segment = np.concatenate([[0], np.cumsum(_unobserved_intervals(log, kinds))]).tolist()
+    segment = cumulative_sums(_unobserved_intervals(log, kinds)).tolist()
     edges = _interval_boundaries(log)
     activities: list[Activity] = []
     for first, last in _constant_runs(list(zip(kinds, trips, segment))):

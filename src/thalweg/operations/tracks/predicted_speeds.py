@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.operations.tracks.track_calibration import mean_speeds
@@ -127,8 +128,8 @@ def segment_means(log: TrackLog, segments: MeasuredSegments, name: str) -> Float
     """Return the mean over each segment of a measured value; NaN where it is unknown."""
     values = log.values[name]
     known = np.isfinite(values)
-    sums = np.append(0.0, np.cumsum(np.where(known, values, 0.0)))
-    counts = np.append(0, np.cumsum(known))
+    sums = cumulative_sums(np.where(known, values, 0.0))
+    counts = cumulative_sums(known)
     first = np.searchsorted(log.time, segments.time - 0.5 * segments.duration - 1e-6)
     last = np.searchsorted(log.time, segments.time + 0.5 * segments.duration + 1e-6)
     count = counts[last] - counts[first]

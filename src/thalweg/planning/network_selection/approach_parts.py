@@ -14,6 +14,7 @@ from thalweg.chart.approaches import dense_line, line_part
 from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.chart.depth.shoals import EXCESS, Shoals
 from thalweg.chart.depth.shoals_of_draught import shoals_of_draught
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import Position, distance, format_position_minutes
 from thalweg.core.types import FloatArray
@@ -156,7 +157,7 @@ def _has_shoals(
     A named shoal area counts beside a channel as well, unless a harbour is in it.
     """
     legs = _legs(path)
-    sailed = np.concatenate([[0.0], np.cumsum(distance(*legs))])
+    sailed = cumulative_sums(distance(*legs))
     beside = (sailed[:-1] < left_out[0]) | (sailed[-1] - sailed[1:] < left_out[1])
     if np.any(np.asarray(shoals.excess(*legs))[beside] > _MOST_SHOAL):
         return True

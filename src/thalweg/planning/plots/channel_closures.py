@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.types import FloatArray
 from thalweg.route import Route
 from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints, cut_into_pieces
@@ -94,7 +95,7 @@ def find_closures(
         route.track, float(route.track.lengths.sum()) / max(places, 2), 1, chart
     )
     points = _segment_ends(environment, pieces)
-    start = np.concatenate([[0.0], np.cumsum(pieces.length)])
+    start = cumulative_sums(pieces.length)
     order = np.lexsort((points.along, points.leg))
     points = points.part(order)
     times = default_times(route) if times is None else np.asarray(times, float)

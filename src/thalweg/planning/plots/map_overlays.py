@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thalweg.chart.zones.traffic_schemes import TRAFFIC_SCHEMES
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.geodesy import Position, wrap_longitude
 from thalweg.core.units import DAY
 from thalweg.planning.plots.map_extent import MapExtent
@@ -207,7 +208,7 @@ def _visible_place(
     """Return the middle (lon, lat) of the part of a line that a map shows; None without one."""
     detail = max(box.east - box.west, box.north - box.south) / _LINE_POINTS
     steps = np.ceil(np.maximum(np.abs(np.diff(lat)), np.abs(np.diff(lon))) / detail)
-    number = np.concatenate([[0.0], np.cumsum(np.maximum(steps, 1.0))])
+    number = cumulative_sums(np.maximum(steps, 1.0))
     close = np.arange(number[-1] + 1.0)
     y, x = np.interp(close, number, lat), np.interp(close, number, lon)
     inside = (x > box.west) & (x < box.east) & (y > box.south) & (y < box.north)

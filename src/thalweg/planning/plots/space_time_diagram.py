@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.core.time import format_time, parse_time
@@ -194,7 +195,7 @@ def _draw_ship_track(axes: Any, route: Route) -> list[Any]:
     waits = np.flatnonzero(route.track.wait > 0.0)
     if not waits.size:
         return list(handles)
-    reached = np.concatenate([[0.0], np.cumsum(route.legs["length"])]) / NAUTICAL_MILE
+    reached = cumulative_sums(route.legs["length"]) / NAUTICAL_MILE
     arrive = np.concatenate([[route.depart], route.legs["arrive"]])
     for k in waits:
         span = (np.array([arrive[k], arrive[k] + route.track.wait[k]]) - route.depart) / HOUR

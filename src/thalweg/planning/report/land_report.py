@@ -12,6 +12,7 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.chart.passage_crossings import passages_crossed
 from thalweg.chart.passages import Passage, split_avoided
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.geodesy import densify, distance, format_position
 from thalweg.core.time import format_time
 from thalweg.core.units import NAUTICAL_MILE
@@ -115,7 +116,7 @@ def saved_length(route: Route, passage: Passage) -> float:
     float : Negative if the passage is out of the way.
     """
     lat, lon, _leg = densify(np.asarray(route.track.lat), np.asarray(route.track.lon), _PIECE)
-    sailed = np.append(0.0, np.cumsum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
+    sailed = cumulative_sums(distance(lat[:-1], lon[:-1], lat[1:], lon[1:]))
     ends = passage.line[0], passage.line[-1]
     most = -np.inf
     for first, last in (ends, ends[::-1]):

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.geodesy import inverse
 from thalweg.core.rhumb_lines import inverse_rhumb
 from thalweg.core.types import FloatArray, IntArray
@@ -109,7 +110,7 @@ def _cut_at_waypoints(route: Route, options: RouteFileOptions) -> FileRoute:
 
 def _waypoints_at(route: Route, vertices: FileVertices) -> list[Visit | None]:
     """Return the waypoint of the route at each waypoint of the file; None between two of them."""
-    start = np.concatenate([[0.0], np.cumsum(route.legs["length"])])
+    start = cumulative_sums(route.legs["length"])
     nearest = np.searchsorted(start, vertices.at - 1e-3)
     nearest = np.minimum(nearest, len(start) - 1)
     same = np.abs(start[nearest] - vertices.at) < 1e-3
@@ -132,7 +133,7 @@ def file_track(route: Route, options: RouteFileOptions | None = None) -> Track:
 def _cut(route: Route, vertices: FileVertices) -> _CutRoute:
     """Return the legs and samples of a route between the vertices of its files."""
     track, at, leg = route.track, vertices.at, vertices.leg
-    start = np.concatenate([[0.0], np.cumsum(route.legs["length"])])
+    start = cumulative_sums(route.legs["length"])
     before = np.maximum(np.searchsorted(start, at - 1e-6, side="right") - 1, 0)
     leaving_place = SamplePlaces.on_legs(route.samples, leg, at)
     leaving = leaving_place.values(route.samples, nearest=_DIRECTIONS)
@@ -159,7 +160,7 @@ def _cut(route: Route, vertices: FileVertices) -> _CutRoute:
             legs[name] = _extremes(values, leg[:-1], before[1:], extreme)
             continue
         share = begun if name.startswith("waiting") else sailed  # a wait is at the start of its leg
-        until = np.concatenate([[0.0], np.cumsum(values)])[leg]
+        until = cumulative_sums(values)[leg]
         legs[name] = np.diff(until + np.where(share == 0.0, 0.0, values[leg] * share))
     return _CutRoute(cut_track, legs, samples, route.cost_name, route.engine_order)
 

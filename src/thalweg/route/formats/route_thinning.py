@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.geodesy import MEAN_RADIUS, distance, inverse
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import KNOT, NAUTICAL_MILE
@@ -73,7 +74,7 @@ class RouteLine:
             if keep_named:
                 held |= np.array([at in given.names or at in given.corridors for at in visits])
         held |= carried
-        start = np.concatenate([[0.0], np.cumsum(length)])
+        start = cumulative_sums(length)
         approach = np.broadcast_to(kind != 0, canal.shape).copy()
         return cls(
             track.lat, track.lon, track.wait, start, canal, approach, held, carried, route.samples

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.types import FloatArray, IntArray
 
 
@@ -73,7 +74,7 @@ class SamplePlaces:
         for name, values in samples.items():
             near = values[self.nearest]
             if name not in nearest:
-                unknown = np.concatenate([[0], np.cumsum(~np.isfinite(values))])
+                unknown = cumulative_sums(~np.isfinite(values))
                 whole = unknown[self.last + 1] == unknown[self.first]
                 near = np.where(whole, self.interpolated(values), near)
             found[name] = near
@@ -94,5 +95,5 @@ def time_integral(samples: Mapping[str, FloatArray], rate: FloatArray) -> FloatA
     usable &= np.logical_or.reduceat(rate != 0.0, first)
     rate = np.where(usable[number], rate, 1.0)
     step = 0.5 * (rate[1:] + rate[:-1]) * np.diff(samples["time"])
-    total = np.concatenate([[0.0], np.cumsum(np.where(leg[1:] == leg[:-1], step, 0.0))])
+    total = cumulative_sums(np.where(leg[1:] == leg[:-1], step, 0.0))
     return np.asarray(total - total[first][number])

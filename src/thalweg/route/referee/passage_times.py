@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.types import FloatArray
 
 #: ``(index of the first point, one past the last, times, speeds through water guessed or None) ->
@@ -182,7 +183,7 @@ def _integrate(
     depart: float, step: FloatArray, wait: FloatArray, slowness: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return (times at the ends of pieces, times at the Gauss points) for given slowness."""
-    elapsed = np.concatenate([[0.0], np.cumsum(step * slowness.mean(axis=1) + wait)])
+    elapsed = cumulative_sums(step * slowness.mean(axis=1) + wait)
     start = depart + elapsed
     return start, start[:-1, None] + step[:, None] * (slowness @ _GAUSS_MATRIX.T)
 

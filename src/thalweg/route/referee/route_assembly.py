@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.referee.check_points import CheckedPoints, checked_points
 from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints
@@ -147,7 +148,7 @@ def _samples(
     rates: tuple[FloatArray, FloatArray],
 ) -> dict[str, FloatArray]:
     """Return the columns of the fine samples; NaN beyond the last point that is reached."""
-    start = np.concatenate([[0.0], np.cumsum(sailed.pieces.length)])
+    start = cumulative_sums(sailed.pieces.length)
     varying = {
         **motion.sampled,
         "time": time,

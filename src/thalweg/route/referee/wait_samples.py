@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.types import FloatArray
 from thalweg.route.referee.leg_segments import TrackPoints
 from thalweg.route.referee.sailing import SailedTrack
@@ -69,7 +70,7 @@ def wait_samples(
     legs, samples : Of the route.
     """
     pieces, draught = sailed.pieces, sailed.world.ship.draught
-    start = np.concatenate([[0.0], np.cumsum(pieces.length)])
+    start = cumulative_sums(pieces.length)
     power = 0.0 if np.isfinite(samples["power"]).any() else math.nan
     columns: dict[str, list[FloatArray]] = {name: [np.zeros(0)] for name in samples}
     for one in waits:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.geodesy import unwrap_longitude
 from thalweg.core.types import FloatArray
 from thalweg.route.route import Route
@@ -60,7 +61,7 @@ def _interpolated_track(feasible: Track, better: Track, share: float) -> Track:
 
 def _length_fractions(track: Track) -> FloatArray:
     """Return the share of the length before each waypoint."""
-    along = np.concatenate([[0.0], np.cumsum(track.lengths)])
+    along = cumulative_sums(track.lengths)
     return np.asarray(along / along[-1])
 
 

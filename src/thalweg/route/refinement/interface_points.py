@@ -13,6 +13,7 @@ from functools import cache
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.geodesy import (
     METRES_PER_DEGREE,
     longitude_difference,
@@ -329,7 +330,7 @@ class _BentLine:
         """
         fixed = sorted({0, len(self.lat) - 1, *self.places})
         k = fixed.index(place)
-        along = np.concatenate([[0.0], np.cumsum(rough_lengths(self.lat, self.lon))])
+        along = cumulative_sums(rough_lengths(self.lat, self.lon))
         anchors = [along[fixed[k - 1]], along[place], along[fixed[k + 1]]]
         return np.asarray(np.interp(along, anchors, [0.0, 1.0, 0.0]))
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.geodesy import rough_lengths
 from thalweg.core.limits import Limits
 from thalweg.deprecated_names import limits_as_array
@@ -217,7 +218,7 @@ def resampled_polyline(line: Polyline, count: int) -> Polyline:
     line : Without waits.
     count : Number of points.
     """
-    along = np.concatenate([[0.0], np.cumsum(rough_lengths(line.lat, line.lon))])
+    along = cumulative_sums(rough_lengths(line.lat, line.lon))
     at = np.linspace(0.0, along[-1], count)
     index = np.minimum(np.searchsorted(along, at[:-1], side="right") - 1, len(line.setting) - 1)
     lat, lon = np.interp(at, along, line.lat), np.interp(at, along, line.lon)

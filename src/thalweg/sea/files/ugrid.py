@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import DatasetError
 from thalweg.core.geodesy import longitude_difference
 from thalweg.core.types import FloatArray, IntArray
@@ -338,5 +339,5 @@ def _face_averaging(mesh: MeshTopology, lat: FloatArray, lon: FloatArray) -> Fac
     face, node = row[order].astype(np.int64), node[order]
     east = longitude_difference(lon[face], mesh.lon[node])
     distance = np.hypot(east * np.cos(np.radians(mesh.lat[node])), lat[face] - mesh.lat[node])
-    start = np.concatenate([[0], np.cumsum(np.bincount(node, minlength=mesh.lat.size))])
+    start = cumulative_sums(np.bincount(node, minlength=mesh.lat.size))
     return FaceAveraging(start.astype(np.int64), face, 1.0 / np.maximum(distance, 1e-12))

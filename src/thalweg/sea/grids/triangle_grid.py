@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.bounding_box import EDGE_TOLERANCE, BoundingBox
 from thalweg.core.geodesy import longitude_difference
 from thalweg.core.types import FloatArray, IntArray
@@ -133,7 +134,7 @@ def make_triangle_bins(
         x, y, corners = _repeat_across_seam(plane, x, y, corners)
     frame, counts = _refined_bins(x, y)
     n = len(counts)
-    start = np.concatenate([[0], np.cumsum(counts.ravel())]).astype(np.int64)
+    start = cumulative_sums(counts.ravel())
     items = np.empty(start[-1], np.int64)
     field_sampling.fill_bins(x, y, frame, (n, n), start[:-1].copy(), items)
     return TriangleBins(x, y, np.ascontiguousarray(corners), frame, (n, n), start, items)

@@ -11,6 +11,7 @@ import numpy as np
 from thalweg.chart.coast.coast_index_builder import shared_meridian_edges
 from thalweg.chart.offing import required_offing
 from thalweg.chart.zones.leg_fractions import points_inside
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.geodesy import METRES_PER_DEGREE, densify, longitude_difference
 from thalweg.core.types import BoolArray, FloatArray
 
@@ -198,7 +199,7 @@ def _mark_pieces(cells: BoolArray, y: FloatArray, x: FloatArray) -> None:
     length = np.maximum(np.abs(y[1] - y[0]), np.abs(x[1] - x[0]))
     parts = np.maximum(np.ceil(2.0 * np.minimum(length, 1e5)).astype(np.int64), 1)
     piece = np.repeat(np.arange(length.size), parts)
-    first = np.concatenate([[0], np.cumsum(parts)[:-1]])
+    first = cumulative_sums(parts)[:-1]
     share = (np.arange(piece.size) - first[piece]) / parts[piece]
     step_y, step_x = (y[1] - y[0]) / parts, (x[1] - x[0]) / parts
     y0 = y[0, piece] + share * (y[1] - y[0])[piece]

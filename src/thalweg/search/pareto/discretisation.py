@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import STATUS_COUNT
@@ -309,8 +310,8 @@ def new_edge_tables(front_problem: FrontProblem, plan: Discretisation) -> EdgeTa
         times=plan.slices,
         first=first,
         count=count,
-        place=np.concatenate(([0], np.cumsum(count)[:-1])).astype(np.int64),
-        offset=np.concatenate(([0], np.cumsum(size)[:-1])).astype(np.int64),
+        place=cumulative_sums(count)[:-1],
+        offset=cumulative_sums(size)[:-1],
         state=np.zeros(int(count.sum()), np.uint8),
         values=np.empty(int(size.sum()), np.float32),
         refused=np.zeros(STATUS_COUNT, np.int64),
@@ -325,7 +326,7 @@ def new_bin_labels(windows: BinWindows) -> BinLabels:
     return BinLabels(
         first=windows.first,
         last=windows.last,
-        place=np.concatenate(([0], np.cumsum(bins)[:-1])).astype(np.int64),
+        place=cumulative_sums(bins)[:-1],
         cost=np.full(total, np.inf, np.float32),
         when=np.empty((total, 2), np.float32),
         source=np.empty((total, 2), np.int32),

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.pareto_fronts import lower_hull
 from thalweg.core.types import FloatArray
 from thalweg.kernels.pareto.edge_tables import EdgeTables
@@ -225,7 +226,7 @@ def _new_labels(plan: Discretisation) -> LowerLabels:
     return LowerLabels(
         first=windows.first,
         last=windows.last,
-        place=np.concatenate(([0], np.cumsum(bins)[:-1])).astype(np.int64),
+        place=cumulative_sums(bins)[:-1],
         cost=np.full(int(bins.sum()), np.inf),
         best=np.full(len(bins), np.inf),
         dead=np.full(len(bins), np.inf),
@@ -238,7 +239,7 @@ def _new_slack(
     size = blocks.count * np.diff(front_problem.arrays.network.indptr)
     total = int(size.sum())
     return InterpolationBounds(
-        start=np.concatenate(([0], np.cumsum(size)[:-1])).astype(np.int64),
+        start=cumulative_sums(size)[:-1],
         state=np.zeros(len(blocks.state), np.uint8),
         off=np.empty((total, 3), np.float32),
         gains=np.empty(total, np.uint8),

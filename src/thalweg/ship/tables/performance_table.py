@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import AXIS_COUNT
 from thalweg.kernels.leg.table_lookup import TableArrays
@@ -165,7 +166,7 @@ class PerformanceTable:
             axis_start=start,
             axis_inv_step=inverse,
             axis_size=size,
-            value_offset=np.concatenate([[0], np.cumsum(lengths)[:-1]]).astype(np.int64),
+            value_offset=cumulative_sums(lengths)[:-1],
             n_settings=len(self.settings),
             values=np.concatenate([part.values.ravel() for part in self.parts]),
             squared_height_limit=stops if np.isfinite(stops).any() else np.empty(0),
