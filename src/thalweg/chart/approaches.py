@@ -26,6 +26,7 @@ from thalweg.chart.approach_branches import approach_branches
 from thalweg.chart.port_draughts import port_draughts
 from thalweg.chart.ports import PORTS, Port
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.geodesy import (
     METRES_PER_DEGREE,
     Position,
@@ -230,8 +231,7 @@ class PortApproaches:
         )
         across = right - left + 1
         cells = (high - low + 1) * across
-        which = np.repeat(np.arange(len(cells)), cells)
-        number = np.arange(len(which)) - np.repeat(np.cumsum(cells) - cells, cells)
+        which, number = numbered_parts(cells)
         row = low[which] + number // across[which]
         column = (left[which] + number % across[which]) % _TURN
         order = np.lexsort((which, column, row))

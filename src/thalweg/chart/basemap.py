@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from thalweg.chart.rings import Rings
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.types import FloatArray
 
 
@@ -52,9 +53,8 @@ def _clipped_polygons(rings: Rings, chosen: Any, shift: float, box: Any) -> list
     import shapely
 
     counts = np.diff(rings.start)[chosen]
-    member = np.repeat(np.arange(len(chosen)), counts)
-    offset = np.repeat(np.cumsum(counts) - counts, counts)
-    take = np.arange(len(member)) - offset + rings.start[chosen][member]
+    member, number = numbered_parts(counts)
+    take = number + rings.start[chosen][member]
     lines = shapely.linearrings(rings.lon[take] + shift, rings.lat[take], indices=member)
     shapes: Any = shapely.make_valid(shapely.polygons(lines))
     holes = ~shapely.is_ccw(lines)

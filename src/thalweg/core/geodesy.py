@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pyproj import Geod
 
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.ellipsoid import AXIS_RATIO_SQUARED as AXIS_RATIO_SQUARED
 from thalweg.core.ellipsoid import EQUATORIAL_RADIUS as EQUATORIAL_RADIUS
 from thalweg.core.ellipsoid import FLATTENING as FLATTENING
@@ -259,13 +260,6 @@ def densify(
     lat, lon = np.asarray(lat, float), np.asarray(lon, float)
     lengths = distance(lat[:-1], lon[:-1], lat[1:], lon[1:])
     return in_equal_pieces(lat, lon, np.maximum(1, np.ceil(lengths / np.asarray(spacing) - 1e-9)))
-
-
-def numbered_parts(count: ArrayLike) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return of every part of legs in given counts (n,) its leg, and its number in it from 0."""
-    parts = np.asarray(count, np.int64)
-    leg = np.repeat(np.arange(len(parts)), parts)
-    return leg, np.arange(len(leg)) - np.repeat(np.cumsum(parts) - parts, parts)
 
 
 def in_equal_pieces(

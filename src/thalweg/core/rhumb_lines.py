@@ -21,6 +21,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.ellipsoid import ECCENTRICITY_SQUARED, EQUATORIAL_RADIUS
 from thalweg.core.geodesy import (
     MEAN_RADIUS,
@@ -29,7 +30,6 @@ from thalweg.core.geodesy import (
     distance,
     in_equal_pieces,
     inverse,
-    numbered_parts,
     wrap_longitude,
 )
 from thalweg.core.types import BoolArray, FloatArray, IntArray

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import BED_DEPTH, WATER_LEVEL
 from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays
@@ -179,6 +180,5 @@ def _copy_edges(network: NetworkArrays, states: NetworkArrays, begin: FloatArray
 
 def _ranges(start: IntArray, count: IntArray) -> IntArray:
     """Return the concatenation of ``start[i], start[i] + 1, ..., start[i] + count[i] - 1``."""
-    total = int(count.sum())
-    before = np.repeat(np.cumsum(count) - count, count)
-    return np.asarray(np.arange(total) - before + np.repeat(start, count))
+    group, number = numbered_parts(count)
+    return start[group] + number

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.rings import Rings
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.ellipsoid import MEAN_RADIUS
 from thalweg.core.geodesy import geocentric_positions, geocentric_unit_vectors
 from thalweg.core.types import FloatArray, IntArray
@@ -154,8 +155,7 @@ def _segments_by_cell(pieces: CoastSegments, side: int) -> tuple[IntArray, IntAr
         i0, j0 = np.maximum(i0, 0), np.maximum(j0, 0)
         wide, high_ = np.minimum(i1, side - 1) - i0 + 1, np.minimum(j1, side - 1) - j0 + 1
         copies = wide * high_
-        which = np.repeat(np.arange(len(near)), copies)
-        number = np.arange(len(which)) - np.repeat(np.cumsum(copies) - copies, copies)
+        which, number = numbered_parts(copies)
         cell = (face * side + j0[which] + number // wide[which]) * side
         cell += i0[which] + number % wide[which]
         keys.append(cell * count + near[which])

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.coast.coast_index_builder import empty_index
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.ellipsoid import MEAN_RADIUS
 from thalweg.core.geodesy import direct, inverse, wrap_longitude
 from thalweg.core.types import FloatArray
@@ -107,8 +108,7 @@ def _fractions_by_bisection(
     """Return shares of legs that touch an outline."""
     length, course, _ = inverse(lat1, lon1, lat2, lon2)
     parts = np.maximum(np.ceil(length / MAX_PART_LENGTH), 1.0).astype(np.int64)
-    leg = np.repeat(np.arange(len(parts)), parts)
-    number = np.arange(len(leg)) - np.repeat(np.cumsum(parts) - parts, parts)
+    leg, number = numbered_parts(parts)
 
     def ends(share: FloatArray) -> tuple[FloatArray, FloatArray]:
         lat, lon = direct(lat1[leg], lon1[leg], course[leg], share * length[leg])
@@ -130,8 +130,7 @@ def straight_pieces(
 
     length, course, _ = inverse(lat1, lon1, lat2, lon2)
     pieces = np.maximum(np.ceil(length / _STRAIGHT), 1.0).astype(np.int64)
-    leg = np.repeat(np.arange(len(pieces)), pieces)
-    number = np.arange(len(leg)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    leg, number = numbered_parts(pieces)
     sides = []
     for share in (number / pieces[leg], (number + 1) / pieces[leg]):
         lat, lon = direct(lat1[leg], lon1[leg], course[leg], share * length[leg])

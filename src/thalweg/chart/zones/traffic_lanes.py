@@ -15,6 +15,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import direct, inverse, wrap_longitude
 from thalweg.core.given_numbers import shortened_repr, to_number
@@ -235,8 +236,7 @@ class LaneGroup:
         """
         length, course, _ = inverse(lat1, lon1, lat2, lon2)
         pieces = np.maximum(np.ceil(length / _PIECE), 1.0).astype(np.int64)
-        leg = np.repeat(np.arange(len(lat1)), pieces + 1)
-        number = np.arange(len(leg)) - np.repeat(np.cumsum(pieces + 1) - pieces - 1, pieces + 1)
+        leg, number = numbered_parts(pieces + 1)
         y, x = direct(lat1[leg], lon1[leg], course[leg], number / pieces[leg] * length[leg])
         first = np.flatnonzero(number < pieces[leg])
         first = first[self._may_meet(y[first], x[first], y[first + 1], x[first + 1])]

@@ -12,6 +12,7 @@ from thalweg.chart import Chart
 from thalweg.chart.canals import Canal
 from thalweg.chart.depth.shoals import Shoals
 from thalweg.chart.offing import required_offing
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.geodesy import (
     Position,
     densify,
@@ -19,7 +20,6 @@ from thalweg.core.geodesy import (
     geocentric_positions,
     geocentric_unit_vectors,
     line_length,
-    numbered_parts,
 )
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE

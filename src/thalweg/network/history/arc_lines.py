@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import Position, distance, geocentric_positions, line_length
 from thalweg.core.types import BoolArray, FloatArray, IntArray
@@ -304,8 +305,7 @@ def _drawn(
         lat[edge], lon[edge] = ends.lat[:, k], ends.lon[:, k]
     for edge, vectors in ((ptr[:-1] + 1, begin), (ptr[1:] - 2, end)):
         lat[edge], lon[edge] = geocentric_positions(vectors)
-    line = np.repeat(np.arange(len(inner)), inner)
-    rank = np.arange(len(line)) - np.repeat(np.cumsum(inner) - inner, inner)
+    line, rank = numbered_parts(inner)
     to, of = ptr[line] + 2 + rank, at[first[line] + rank]
     lat[to], lon[to] = tracks.lat[of], tracks.lon[of]
     return ArcLines(ptr, lat, lon)

@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.geodesy import Position, distance, geocentric_positions
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.network.history.arc_lines import ArcLines
@@ -101,8 +102,7 @@ def following_arcs(tail: IntArray, head: IntArray, fixed: BoolArray) -> tuple[In
     order = np.argsort(tail, kind="stable")
     low, high = (np.searchsorted(tail[order], head, side=side) for side in ("left", "right"))
     count = np.where(fixed[head], 0, high - low)
-    before = np.repeat(np.arange(len(tail)), count)
-    rank = np.arange(len(before)) - np.repeat(np.cumsum(count) - count, count)
+    before, rank = numbered_parts(count)
     after = order[low[before] + rank]
     onward = head[after] != tail[before]
     return before[onward], after[onward]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.geodesy import Position, distance, geocentric_positions, line_length
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.network.history.arc_lines import ArcLines, GlobeWays, LinesOffLand, repaired_line
@@ -134,8 +135,7 @@ def _drawn(
         found[0, edge], found[1, edge] = lat[:, k], lon[:, k]
     for edge, along in ((ptr[:-1] + 1, low), (ptr[1:] - 2, high)):
         found[:, edge] = geocentric_positions(tracks.vectors_at(along))
-    line = np.repeat(np.arange(len(inner)), inner)
-    rank = np.arange(len(line)) - np.repeat(np.cumsum(inner) - inner, inner)
+    line, rank = numbered_parts(inner)
     to, of = ptr[line] + 2 + rank, at[first[line] + rank]
     found[:, to] = tracks.lat[of], tracks.lon[of]
     use = np.ones(ptr[-1], bool)  # without a margin the second place is the first

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from thalweg.core import geodesy
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.geodesy import Position
 from thalweg.core.types import FloatArray, Int32Array
 from thalweg.network.layered.section_shape import PerSection, SectionShape, section_shapes
@@ -73,8 +74,7 @@ def _section_positions(
     along = np.arange(len(sizes)) / (len(sizes) - 1) * float(length)
     middle_lat, middle_lon = geodesy.direct(*start, float(course), along)
     _, onward, _ = geodesy.inverse(middle_lat[:-1], middle_lon[:-1], *end)
-    of = np.repeat(np.arange(len(sizes)), sizes)
-    rank = np.arange(len(of)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+    of, rank = numbered_parts(sizes)
     starboard = shape.spacing_in_layer() * (rank - 0.5 * (sizes[of] - 1))
     across = np.append(onward, 0.0)[of] + 0.5 * math.pi
     lat, lon = geodesy.direct(middle_lat[of], middle_lon[of], across, starboard)

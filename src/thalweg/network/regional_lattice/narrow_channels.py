@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.network.alternatives.homotopy import ring_areas
@@ -116,8 +117,7 @@ def _split_edges(edges: ShoreEdges, apart: float) -> tuple[ShoreEdges, IntArray]
     a, b = edges
     parts = np.ceil(np.linalg.norm(b - a, axis=1) * MEAN_RADIUS / apart).astype(np.int64)
     parts = np.clip(parts, 1, _MAX_PARTS)
-    edge = np.repeat(np.arange(len(a)), parts)
-    number = np.arange(len(edge)) - np.repeat(np.cumsum(parts) - parts, parts)
+    edge, number = numbered_parts(parts)
     along = (b - a)[edge] / parts[edge, None]
     return (a[edge] + number[:, None] * along, a[edge] + (number[:, None] + 1) * along), edge
 

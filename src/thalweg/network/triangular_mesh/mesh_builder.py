@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import wrap_longitude
 from thalweg.core.types import BoolArray, FloatArray, Int32Array, IntArray
@@ -254,8 +255,7 @@ def _pass_through_nodes(pairs: Pairs, n: int) -> BoolArray:
     number = np.tile(np.arange(1, count + 1), 2)
     table = coo_array((number, both), shape=(n, n)).tocsr()
     degree = np.diff(table.indptr)[pairs.first]
-    pair = np.repeat(np.arange(count), degree)
-    slot = np.arange(len(pair)) - np.repeat(np.cumsum(degree) - degree, degree)
+    pair, slot = numbered_parts(degree)
     entry = np.repeat(table.indptr[pairs.first], degree) + slot
     middle, to_middle = table.indices[entry], table.data[entry] - 1
     shorter = pairs.length[to_middle] < pairs.length[pair]

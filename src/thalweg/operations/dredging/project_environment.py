@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import (
     Position,
     direct,
     distance,
     inverse,
-    numbered_parts,
     positions_along,
 )
 from thalweg.core.limits import Limits

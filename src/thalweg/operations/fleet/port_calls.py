@@ -10,6 +10,7 @@ import numpy as np
 
 from thalweg.chart.canals import Canal
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, densify, distance
 from thalweg.core.types import BoolArray, FloatArray, IntArray
@@ -254,8 +255,8 @@ def voyages_between_calls(fleet: FleetTracks, calls: PortCalls) -> VoyageTracks:
     at = np.flatnonzero((np.diff(calls.ship) == 0) & (calls.last[:-1] < calls.first[1:]))
     first, last = calls.last[at], calls.first[at + 1]
     count = last - first + 1
-    index = np.arange(count.sum()) + np.repeat(first - np.cumsum(count) + count, count)
-    voyage = np.repeat(np.arange(len(at)), count)
+    voyage, number = numbered_parts(count)
+    index = first[voyage] + number
     keep = ~(calls.stopped[index] & calls.stopped[np.maximum(index - 1, 0)])
     edges = np.cumsum(count)
     keep[edges - count] = True

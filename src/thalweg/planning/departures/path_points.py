@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network import Network
@@ -137,8 +138,7 @@ def points_of_paths(paths: Sequence[SailedPath]) -> PathPoints:
     first = np.flatnonzero(np.diff(owner) == 0).astype(np.int32)
     pairs = measured_pairs(lat, lon, first, first + np.int32(1))
     pieces = np.maximum(1, np.ceil(pairs.length / _PIECE)).astype(np.int64)
-    leg = np.repeat(np.arange(len(first)), pieces)
-    rank = np.arange(len(leg)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    leg, rank = numbered_parts(pieces)
     share = (rank + 0.5) / pieces[leg]
     begin, end = first[leg], first[leg] + 1
     there = positions_on_short_legs(lat, lon, begin, end, pairs.length[leg], share)

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.geodesy import METRES_PER_DEGREE, direct, inverse, numbered_parts, rough_lengths
+from thalweg.core.arrays.numbered_parts import numbered_parts
+from thalweg.core.geodesy import METRES_PER_DEGREE, direct, inverse, rough_lengths
 from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import HOUR

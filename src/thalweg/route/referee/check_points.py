@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from thalweg.core.geodesy import numbered_parts
+from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.referee.leg_segments import TrackPoints
 from thalweg.route.referee.limit_checks import limit_excesses

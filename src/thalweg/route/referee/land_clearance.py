@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from thalweg.chart.offing import required_offing
-from thalweg.core.geodesy import direct, inverse, numbered_parts
+from thalweg.core.arrays.numbered_parts import numbered_parts
+from thalweg.core.geodesy import direct, inverse
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 

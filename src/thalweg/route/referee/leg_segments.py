@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import WGS84, inverse, numbered_parts, wrap_longitude
+from thalweg.core.arrays.numbered_parts import numbered_parts
+from thalweg.core.geodesy import WGS84, inverse, wrap_longitude
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.canal_legs import CanalLegs, canal_legs
 from thalweg.route.track import Track
