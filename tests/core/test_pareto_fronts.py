@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from thalweg.core.pareto_fronts import (
     ROUNDING_TOLERANCE,
     evenly_spaced_subset,
+    falling_hull,
     length_along_front,
     lower_hull,
     non_dominated_indices,
@@ -49,6 +50,16 @@ def test_no_point_is_below_the_lower_hull(drawn):
     assert (y >= np.interp(x, x[hull], y[hull]) - 1e-9).all()
     slopes = np.diff(y[hull]) / np.diff(x[hull])
     assert (np.diff(slopes) > 0.0).all()
+
+
+@given(points)
+def test_the_falling_hull_is_the_lower_hull_up_to_its_least_value(drawn):
+    x, y = np.array(drawn, float).reshape(-1, 2).T
+    hull, falling = lower_hull(x, y), falling_hull(x, y)
+    assert hull[: len(falling)].tolist() == falling.tolist()
+    assert (np.diff(y[falling]) < 0.0).all()
+    if drawn:
+        assert y[falling[-1]] == y.min()
 
 
 def test_points_are_chosen_evenly_along_the_front_with_both_ends():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import math
 
@@ -52,6 +53,18 @@ def on_meshes(passage: StretchToBound, cells: int = 120, meshes: int = 1) -> Tim
     search = BarrierSearch(passage, BarrierDomain.around(passage, cells), cells, 3e-4)
     found = [one for one in (search.refine() for _ in range(meshes)) if one is not None]
     return max(found, key=lambda one: one.value)
+
+
+def test_a_passage_counts_the_sea_until_the_last_departure_has_arrived():
+    channels = (codes.BED_DEPTH, *CURRENTS)
+    passage = StretchToBound(
+        Sea.calm(), None, ship_of_one_speed(SPEED), channels, START, GOAL, depart=100.0, known=30.0
+    )
+    assert passage.period == (100.0, 130.0)
+    assert dataclasses.replace(passage, latest=150.0).period == (100.0, 180.0)
+    assert dataclasses.replace(passage, latest=50.0).period == (100.0, 130.0)
+    assert passage.currents == CURRENTS
+    assert dataclasses.replace(passage, channels=(codes.BED_DEPTH,)).currents == ()
 
 
 @pytest.mark.slow

@@ -73,6 +73,17 @@ def lower_hull(first: ArrayLike, second: ArrayLike) -> IntArray:
     return np.array(hull, dtype=np.int64)
 
 
+def falling_hull(first: ArrayLike, second: ArrayLike) -> IntArray:
+    """Return the indices of the points on the lower convex hull up to the least second objective.
+
+    Parameters
+    ----------
+    first, second : Finite coordinates, (n,).
+    """
+    hull, y = lower_hull(first, second), np.asarray(second, float)
+    return hull[: int(np.argmin(y[hull])) + 1] if len(hull) else hull
+
+
 def length_along_front(first: ArrayLike, second: ArrayLike) -> FloatArray:
     """Return how far along a front each of its points is, both objectives scaled to their ranges.
 

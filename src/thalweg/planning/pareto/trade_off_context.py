@@ -119,6 +119,12 @@ class TradeOffContext:
             return 1.0
         return min([1.0, *(float(factor) for _, factor in self.context.chart.zones.price)])
 
+    @property
+    def table_margin(self) -> float:
+        """What a bound is multiplied by for the error of tables; 1 without tables."""
+        tables = self.context.table.axes or self.consumption.axes
+        return 1.0 - TABLE_MARGIN if tables else 1.0
+
     def slowness_and_rates(self, current: float) -> tuple[FloatArray, FloatArray]:
         """Return the least time of a metre [s] and the least consumption a second of each setting.
 

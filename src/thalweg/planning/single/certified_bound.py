@@ -267,10 +267,10 @@ def currents_in_reach(context: PlanningContext, route: Route) -> CurrentsInReach
     route : A route that takes as long as any that counts: water farther away than its time at the
         greatest speed is left out.
     """
-    currents = tuple(c for c in context.needs.channels if c in (CURRENT_EAST, CURRENT_NORTH))
-    if len(currents) < 2:
+    passage = _passage(context, route)
+    if len(passage.currents) < 2:
         return None
-    passage = replace(_passage(context, route), channels=currents)
+    passage = replace(passage, channels=passage.currents)
     return CurrentsInReach(passage, BarrierDomain.around(passage, _CELLS_FOR_CURRENT))
 
 

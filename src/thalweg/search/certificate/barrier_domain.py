@@ -19,7 +19,9 @@ from thalweg.search.certificate.barrier_raster import (
     BarrierRaster,
     RasterRequest,
     freeze_barrier_raster,
+    greatest_value,
     is_uniform,
+    strongest_current_of_raster,
 )
 from thalweg.search.certificate.closed_water import cells_inside
 
@@ -74,6 +76,16 @@ class StretchToBound:
     def departures(self) -> float:
         """From the first to the last departure [s]."""
         return 0.0 if self.latest is None else max(self.latest - self.depart, 0.0)
+
+    @property
+    def period(self) -> tuple[float, float]:
+        """From the first departure to the arrival of the known route after the last one [s]."""
+        return self.depart, self.depart + self.departures + self.known
+
+    @property
+    def currents(self) -> tuple[int, ...]:
+        """Channels of currents that count."""
+        return tuple(c for c in self.channels if c in (CURRENT_EAST, CURRENT_NORTH))
 
     def canal_speed(self, fastest: float) -> float:
         """Return the greatest speed [m/s] along the geodesic at which a canal joins its ends.
@@ -146,11 +158,8 @@ class BarrierDomain:
         ----------
         cells : Cells of the raster along the equator where the data are no finer.
         """
-        ship, period = passage.ship, (passage.depart, passage.depart + passage.known)
-        period = period[0], period[1] + passage.departures
-        flows = tuple(c for c in passage.channels if c in (CURRENT_EAST, CURRENT_NORTH))
-        request = RasterRequest(passage.sea, flows, _GLOBE, period, cells, ship.speed_field)
-        frozen = freeze_barrier_raster(request)
+        ship, flows = passage.ship, passage.currents
+        frozen = _frozen(passage, flows, _GLOBE, cells)
         top, speed = _greatest_speeds(passage, frozen)
         sampling = frozen.sampling if flows or ship.speed_field is not None else ""
         return cls(frozen.arrays, sampling, speed, replace(ship, top_speed=top), frozen.margins)
@@ -168,17 +177,13 @@ class BarrierDomain:
         least : Speed over ground [m/s] below which the domain is not made smaller.
         """
         ship = passage.ship
-        period = passage.depart, passage.depart + passage.departures + passage.known
         for attempt in range(_ATTEMPTS):
             box = _box_of_routes(passage, fastest * _MARGIN)
             if box is None and is_uniform(passage.sea):
                 box = _round_box(passage)
             if box is None:
                 return None
-            request = RasterRequest(
-                passage.sea, passage.channels, box, period, cells, ship.speed_field
-            )
-            frozen = freeze_barrier_raster(request)
+            frozen = _frozen(passage, passage.channels, box, cells)
             top, speed = _greatest_speeds(passage, frozen)
             # samples may miss what others have seen
             certain = not frozen.sampling or bool(frozen.margins.any())
@@ -204,7 +209,7 @@ class BarrierDomain:
     @property
     def strongest_current(self) -> float:
         """The strongest current in the domain [m/s]; 0 without currents."""
-        return _strongest_current(self.raster, self.margins)
+        return strongest_current_of_raster(self.raster, self.margins)
 
     def from_departure(self, later: float) -> BarrierDomain:
         """Return the domain with times since a departure later than the first by so much [s]."""
@@ -225,12 +230,24 @@ class BarrierDomain:
         return replace(self, raster=self.raster._replace(values=values))
 
 
+def _frozen(
+    passage: StretchToBound,
+    channels: Sequence[int],
+    box: tuple[float, float, float, float],
+    cells: int,
+) -> BarrierRaster:
+    """Return the raster of some channels of the sea of a passage in a box."""
+    field = passage.ship.speed_field
+    request = RasterRequest(passage.sea, channels, box, passage.period, cells, field)
+    return freeze_barrier_raster(request)
+
+
 def _greatest_speeds(passage: StretchToBound, frozen: BarrierRaster) -> tuple[float, float]:
     """Return the greatest speeds through water and over ground on a raster [m/s]."""
     top = passage.ship.top_speed
     if passage.ship.speed_field is not None:
-        top = _greatest(frozen.arrays, SPEED_FIELD)
-    speed = top + _strongest_current(frozen.arrays, frozen.margins)
+        top = greatest_value(frozen.arrays, SPEED_FIELD)
+    speed = top + strongest_current_of_raster(frozen.arrays, frozen.margins)
     return top, max(speed, passage.canal_speed(speed))
 
 
@@ -257,7 +274,7 @@ def _unsurpassed_speed(
     water = None if chart is None else (tuple(chart.area.array()), tuple(chart.canals))
     key = (
         passage.start, passage.goal, passage.depart, passage.departures, water, ship.top_speed,
-        ship.speed_field, tuple(c for c in passage.channels if c in (CURRENT_EAST, CURRENT_NORTH)),
+        ship.speed_field, passage.currents,
     )  # fmt: skip
     last = _FOUND_SPEEDS.get(passage.sea)
     holds = last is not None and last.passage == key and last.known >= passage.known
@@ -286,11 +303,8 @@ def _speed_within_half(
     cells : Cells of the raster along the longer side of that box where the data are no finer.
     fastest : Speed over ground [m/s] from which it is sought upwards.
     """
-    ship, sea = passage.ship, passage.sea
-    flows = tuple(c for c in passage.channels if c in (CURRENT_EAST, CURRENT_NORTH))
-    if is_uniform(sea) or not (flows or ship.speed_field):
+    if is_uniform(passage.sea) or not (passage.currents or passage.ship.speed_field):
         return fastest, ""
-    period = passage.depart, passage.depart + passage.departures + passage.known
     for _ in range(_ATTEMPTS):
         box = _box_of_halves(passage, fastest * _MARGIN_OF_HALVES)
         inner = _box_of_routes(passage, fastest)
@@ -299,9 +313,7 @@ def _speed_within_half(
         larger = max(box[1] - box[0], box[3] - box[2]) / max(
             inner[1] - inner[0], inner[3] - inner[2]
         )
-        wanted = math.ceil(cells * larger)
-        request = RasterRequest(sea, flows, box, period, wanted, ship.speed_field)
-        frozen = freeze_barrier_raster(request)
+        frozen = _frozen(passage, passage.currents, box, math.ceil(cells * larger))
         speed = _greatest_speeds(passage, frozen)[1]
         if speed <= fastest * _MARGIN_OF_HALVES:
             return max(fastest, speed), frozen.sampling
@@ -327,21 +339,6 @@ def _box_of_halves(passage: StretchToBound, speed: float) -> tuple[float, float,
     half = min(0.5 * abs(east) + beyond, 180.0)
     middle = passage.start[1] + 0.5 * east
     return south, north, middle - half, middle + half
-
-
-def _greatest(raster: RasterArrays, channel: int) -> float:
-    values = raster.values[..., raster.channel_index[channel]]
-    return float(np.nanmax(values, initial=0.0)) if np.isfinite(values).any() else 0.0
-
-
-def _strongest_current(raster: RasterArrays, margins: FloatArray) -> float:
-    east, north = raster.channel_index[CURRENT_EAST], raster.channel_index[CURRENT_NORTH]
-    if east < 0 or north < 0:
-        return 0.0
-    values = raster.values
-    size = np.hypot(values[..., east], values[..., north])
-    known = float(np.nanmax(size, initial=0.0)) if np.isfinite(size).any() else 0.0
-    return known + float(margins[CURRENT_EAST])
 
 
 def _round_box(passage: StretchToBound) -> tuple[float, float, float, float]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thalweg.core.types import FloatArray
-from thalweg.kernels.codes import CHANNEL_COUNT, SPEED_FIELD
+from thalweg.kernels.codes import CHANNEL_COUNT, CURRENT_EAST, CURRENT_NORTH, SPEED_FIELD
 from thalweg.kernels.leg.raster_sampling import RasterArrays
 from thalweg.route.evaluators.time_evaluator import raster_arrays
 from thalweg.sea.frozen_fields import GridFields
@@ -119,6 +119,24 @@ def freeze_barrier_raster(request: RasterRequest) -> BarrierRaster:
     elif notes:
         notes.append("and between samples by the Lipschitz bounds of its functions")
     return BarrierRaster(_arrays(fields, request.period[0]), ", ".join(notes), margins)
+
+
+def greatest_value(raster: RasterArrays, channel: int) -> float:
+    """Return the greatest value of a channel that is not negative; 0 where none is known."""
+    return _greatest(raster.values[..., raster.channel_index[channel]])
+
+
+def strongest_current_of_raster(raster: RasterArrays, margins: FloatArray) -> float:
+    """Return the strongest current [m/s] that a raster and its margins allow; 0 without any."""
+    east, north = raster.channel_index[CURRENT_EAST], raster.channel_index[CURRENT_NORTH]
+    if east < 0 or north < 0:
+        return 0.0
+    size = np.hypot(raster.values[..., east], raster.values[..., north])
+    return _greatest(size) + float(margins[CURRENT_EAST])
+
+
+def _greatest(values: FloatArray) -> float:
+    return float(np.nanmax(values, initial=0.0)) if np.isfinite(values).any() else 0.0
 
 
 def _layers_overlap(request: RasterRequest) -> bool:

@@ -196,12 +196,11 @@ def _by_layer(passage: StretchToBound, domain: BarrierDomain) -> list[RasterArra
     if len(layers) < 2:
         return [domain.raster]
     lat, lon = np.meshgrid(*domain.axes, indexing="ij")
-    period = passage.depart, passage.depart + passage.departures + passage.known
     rasters = []
     for layer in layers:
         try:
             fields = freeze_station_fields(
-                (layer,), lat.ravel(), lon.ravel(), *period, (CURRENT_EAST, CURRENT_NORTH)
+                (layer,), lat.ravel(), lon.ravel(), *passage.period, (CURRENT_EAST, CURRENT_NORTH)
             )
         except OutsidePeriodError:  # of data that have no value at these times
             continue

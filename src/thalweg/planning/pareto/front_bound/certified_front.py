@@ -35,7 +35,6 @@ from thalweg.planning.plan_front import certain_at
 from thalweg.planning.planning_context import greatest_speed_of
 from thalweg.planning.single.certified_bound import (
     KEEPING_OUT,
-    TABLE_MARGIN,
     CurrentsInReach,
     certified_bound,
     currents_in_reach,
@@ -272,8 +271,8 @@ def certified_lines(
     found = certify_costs(cost, prices / HOUR, known, seconds=seconds)
     if not found.cells:
         return none
-    margin = 1.0 - TABLE_MARGIN if context.table.axes or trade_off.consumption.axes else 1.0
-    return np.array([prices, margin * found.values]), float(hours.max()), found.sampling
+    values = trade_off.table_margin * found.values
+    return np.array([prices, values]), float(hours.max()), found.sampling
 
 
 def _prices_of_time(hours: FloatArray, values: FloatArray) -> FloatArray:

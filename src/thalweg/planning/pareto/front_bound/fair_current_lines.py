@@ -7,11 +7,11 @@ from typing import Final
 
 import numpy as np
 
-from thalweg.core.pareto_fronts import lower_hull
+from thalweg.core.pareto_fronts import falling_hull
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import HOUR
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
-from thalweg.planning.single.certified_bound import TABLE_MARGIN, CurrentsInReach
+from thalweg.planning.single.certified_bound import CurrentsInReach
 from thalweg.route import Route
 from thalweg.search.certificate.barrier_domain import BarrierDomain
 from thalweg.search.certificate.closed_water import cells_inside
@@ -60,7 +60,6 @@ def fair_current_lines(
     is the bound: the dual of the linear programme that mixes settings over time.
     """
     none = np.empty((2, 0)), 0.0, 0.0
-    context = trade_off.context
     departures = {route.depart for route in routes if route.feasible}
     if reached is None or len(trade_off.ends) > 2 or len(departures) != 1:
         return none
@@ -86,16 +85,13 @@ def fair_current_lines(
         if possible.size:
             least = max(least, float(times[max(int(possible[0]) - 1, 0)]))
         np.maximum(values, least_costs(currents, speeds, costs, rise), out=values)
-    tables = context.table.axes or trade_off.consumption.axes
-    margin = 1.0 - TABLE_MARGIN if tables else 1.0
-    least, values = margin * least, margin * values
+    least, values = trade_off.table_margin * least, trade_off.table_margin * values
     # a voyage between two of the times costs no less than one of the later of them
     values, times = values[1:] + prices.time * times[:-1], times[:-1]
     values, times = values[times >= least], times[times >= least]
     if times.size < 2:
         return np.empty((2, 0)), 0.0, least / HOUR
-    hull = lower_hull(times, values)
-    hull = hull[: int(np.argmin(values[hull])) + 1]
+    hull = falling_hull(times, values)
     slopes = np.diff(values[hull]) / np.diff(times[hull])
     lines = np.array([-slopes, values[hull][:-1] - slopes * times[hull][:-1]])
     lines = np.append(lines, [[0.0], [values[hull][-1]]], axis=1)

@@ -14,7 +14,7 @@ import numpy as np
 from thalweg.chart.canal_parts import part_number_of_legs
 from thalweg.chart.zones.area_exits import MARGIN_OF_EXITS, area_exits
 from thalweg.core.geodesy import distance
-from thalweg.core.pareto_fronts import lower_hull
+from thalweg.core.pareto_fronts import falling_hull, lower_hull
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.kernels import codes
@@ -128,8 +128,7 @@ def certain_front(
     fronts = [_front_of_lengths(trade_off, way.lengths, current) for way in ways]
     hours = np.concatenate([front[0] + way.hours for front, way in zip(fronts, ways, strict=True)])
     values = np.concatenate([front[1] + way.value for front, way in zip(fronts, ways, strict=True)])
-    hull = lower_hull(hours, values)
-    hull = hull[: int(np.argmin(values[hull])) + 1]
+    hull = falling_hull(hours, values)
     return np.array([hours[hull], values[hull]])
 
 
@@ -316,10 +315,8 @@ def _lines_by_exits(trade_off: TradeOffContext) -> tuple[float, list[tuple[float
     if all(inside) or not far[0].size:
         return sum(lengths_inside), []
     least, whole = (far[0] if inside[0] else far[1]), far[0] + far[1]
-    hull = lower_hull(least, whole)
-    hull = hull[: int(np.argmin(whole[hull])) + 1]
     lines = []
-    for a, b in itertools.pairwise(hull):
+    for a, b in itertools.pairwise(falling_hull(least, whole)):
         slope = float((whole[a] - whole[b]) / (least[b] - least[a]))
         lines.append((1.0 + slope, float(whole[a] + slope * least[a])))
     return sum(lengths_inside), lines
@@ -346,9 +343,7 @@ def corners_of_lengths(
     places |= {max(inside, least / ratio) for ratio, least in kept}
     x = np.array(sorted(places))
     y = np.max([least - ratio * x for ratio, least in kept], axis=0, initial=0.0)
-    hull = lower_hull(x, y)
-    hull = hull[: int(np.argmin(y[hull])) + 1]
-    return [(float(x[k]), float(x[k] + y[k])) for k in hull]
+    return [(float(x[k]), float(x[k] + y[k])) for k in falling_hull(x, y)]
 
 
 def seconds_of_bound(trade_off: TradeOffContext, now: float, count: int) -> float:
