@@ -1,5 +1,7 @@
 """Waits at sea in waves above the limit or in unknown ones: avoided where possible, else stated."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -8,6 +10,7 @@ from thalweg import Chart, Sea, Ship, Track, Voyage, evaluate, plan
 from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.report.plan_summary import limits_text
 from thalweg.planning.report.waiting_report import waiting_weather_warnings
+from thalweg.planning.single.sheltered_waits import with_sheltered_waits
 
 KNOWN, UNKNOWN = 6.0, np.nan
 
@@ -119,3 +122,33 @@ def test_the_hours_of_unknown_wind_in_a_wait_are_stated():
 )
 def test_other_waits_are_not_stated(wait_h):
     assert warnings_of_waits(wait_h, storm) == []
+
+
+@pytest.mark.parametrize(
+    ("rough_start", "closed", "place"),
+    [(False, (), 0), (True, (), 1), (True, (0.2,), 2), (True, (0.2, 0.4), 3)],
+)
+def test_a_wait_moves_to_the_first_sheltered_place_where_she_may_wait(rough_start, closed, place):
+    """It blows at 0.6E from 4.5 h to 7 h, in the wait, and on the first leg from 3 h on."""
+
+    def wind(time, lat, lon):
+        at_wait = (np.abs(lon - 0.6) < 0.05) & (time > 4.5 * HOUR) & (time < 7.0 * HOUR)
+        at_start = rough_start & (np.abs(lon - 0.1) < 0.05) & (time > 3.0 * HOUR)
+        return np.where(at_wait | at_start, 30.0, 1.0) + 0.0 * lat
+
+    names = ("eastward_wind", "northward_wind")
+    sea = Sea.from_functions({names[0]: wind, names[1]: lambda time, lat, lon: 0.0 * time * lat})
+    ship = Ship.simple(speed_kn=10.0, draught_m=5.0, max_wind_speed_kn=20.0)
+    water = Chart.open_water(-1.0, 1.0, -1.0, 1.0)
+    zones = SimpleNamespace(may_wait=lambda lat, lon: not np.isclose(lon, closed).any())
+    context = SimpleNamespace(
+        ship=ship, chart=SimpleNamespace(zones=zones),
+        evaluate=lambda track: evaluate(track, ship=ship, sea=sea, chart=water, strict=False),
+    )  # fmt: skip
+    wait = np.array([0.0, 0.0, 0.0, 4.0 * HOUR, 0.0])
+    route = context.evaluate(Track([0.0] * 5, [0.0, 0.2, 0.4, 0.6, 0.8], depart=0.0, wait=wait))
+    assert route.feasible
+    found = with_sheltered_waits(context, route)
+    assert np.flatnonzero(found.track.wait).tolist() == [place]
+    assert found.arrive == pytest.approx(route.arrive, abs=30.0)
+    assert (found is route) == (place == 3)

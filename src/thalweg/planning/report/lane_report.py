@@ -132,7 +132,8 @@ def routes_within_lanes(
 
     Returns
     -------
-    routes : Those within two miles of one of the fastest, against lanes and in inshore zones.
+    routes : Those with no more than two miles above the most of the fastest, against lanes, and so
+        in inshore zones.
     notes : How many were left out; empty where none was.
     """
     if not chart.zones.lanes:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
@@ -100,9 +99,8 @@ def keeping_limits(
     Returns
     -------
     (Route, RouteFileOptions)
-        Those given where no others help, the route has neither waits nor limits of weather and its
-        clearance is not known or it has legs in canals or port approaches, or a number of waypoints
-        was given.
+        Those given where no others help, where rounding cannot break a limit (`_is_limited`), and
+        where a number of waypoints was given.
     """
     context, voyage = plan.plot_context, plan.voyage
     if context is None or options.max_waypoints is not None or not route.feasible:
@@ -116,10 +114,10 @@ def keeping_limits(
         return evaluate(track, **world, min_ukc=min_ukc, strict=False)
 
     @cache
-    def leaving(seconds: float) -> Route:
-        return route if math.isnan(seconds) else scored(_later_track(route.track, seconds))
+    def leaving(seconds: float | None) -> Route:
+        return route if seconds is None else scored(_later_track(route.track, seconds))
 
-    delays = (math.nan, *_LATER) if route.track.wait.any() else (math.nan,)
+    delays = (None, *_LATER) if route.track.wait.any() else (None,)
     for share, decimals in _FINER_FILES:
         tried = replace(
             options,
@@ -133,7 +131,11 @@ def keeping_limits(
 
 
 def _is_limited(route: Route, ship: Ship) -> bool:
-    """Return whether rounded numbers in the files of a route may break a limit."""
+    """Return whether rounded numbers in the files of a route may break a limit.
+
+    They may where a clearance is known and no leg is in a canal or a port approach, where waves or
+    wind are near their limits, and where the ship waits.
+    """
     own = np.any(route.legs.get("leg_kind", 0))
     depth = np.isfinite(route.legs["under_keel_clearance"]).any() and not own
     waves = np.asarray(route.samples.get(WAVE_HEIGHT, ()), float)
