@@ -77,3 +77,24 @@ def test_the_profile_shows_waits_and_the_required_clearance(route):
     clearance = np.interp(middle, *depths.lines[0].get_data())
     assert clearance == pytest.approx(6.0 + level(3600.0 * middle, 0.0, 0.0), abs=0.01)
     assert list(depths.lines[1].get_ydata()) == [1.5, 1.5]
+
+
+def test_a_wait_with_too_little_water_and_one_without_depth_break_a_limit():
+    """The tide falls from 14 to 10 m, 4 m under the keel, while the ship lies at 0.2E."""
+    route = sailed([0.0, WAIT, 0.0], min_ukc=4.5, strict=False)
+    (low,) = (one for one in route.violations if one.reason == "under-keel clearance (waiting)")
+    lying = route.wait_samples["under_keel_clearance"]
+    assert low.value == pytest.approx(lying.min()) and low.limit == 4.5
+    assert low.time == route.wait_samples["time"][np.argmin(lying)]
+    assert (low.lat, low.lon) == (0.0, 0.2)
+
+    def bed(time, lat, lon):
+        return np.where((np.abs(lon - 0.2) < 1e-6) & (time > 4.0 * 3600.0), np.nan, 30.0)
+
+    sea = Sea.from_functions({BED: bed, WAVES: waves}, period=(0.0, 2e5))
+    track = Track([0.0] * 3, [0.0, 0.2, 0.4], depart=0.0, wait=[0.0, WAIT, 0.0])
+    chart = Chart.open_water(-1.0, 1.0, -1.0, 1.0)
+    unknown = evaluate(track, ship=SHIP, sea=sea, chart=chart, min_ukc=1.0, strict=False)
+    reasons = [one.reason for one in unknown.violations]
+    assert "no data: depth (waiting)" in reasons
+    assert np.isnan(unknown.wait_samples["depth"]).any()
