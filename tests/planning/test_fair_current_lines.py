@@ -98,6 +98,17 @@ def bounds_of(sea, start, goal, known) -> tuple[FloatArray, float]:
     return np.array(costs), min(shares)
 
 
+def plan_of_one_degree(sea, objective):
+    """Return a plan along the equator for a ship that sails 6 or 12 kn."""
+    ship = Ship.simple(speed_kn=12.0, speeds_kn=[6.0, 12.0], draught_m=5.0, fuel_t_per_day=24.0)
+    voyage = Voyage(
+        start=(0.0, 0.0), goal=(0.0, 1.0), depart=T0, objective=objective, offing_nm=0.0,
+        method="exact",
+    )  # fmt: skip
+    chart = Chart.open_water(-0.3, 0.3, -0.2, 1.2)
+    return plan(voyage, ship=ship, sea=sea, chart=chart, resolution=20_000.0)
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_no_track_costs_less_than_the_bound_of_its_ends_and_time(seed):
     rng = np.random.default_rng(seed)
@@ -195,13 +206,7 @@ def test_currents_in_reach_are_read_once_for_a_front(monkeypatch):
     lat, lon = np.arange(-5, 6) * 0.1, np.arange(-3, 14) * 0.1
     times = T0 + np.arange(21) * HOUR
     sea = gridded(times, lat, lon, np.full((times.size, lat.size, lon.size), 0.5, np.float32))
-    ship = Ship.simple(speed_kn=12.0, speeds_kn=[6.0, 12.0], draught_m=5.0, fuel_t_per_day=24.0)
-    voyage = Voyage(
-        start=(0.0, 0.0), goal=(0.0, 1.0), depart=T0, objective="fuel", offing_nm=0.0,
-        method="exact",
-    )  # fmt: skip
-    chart = Chart.open_water(-0.3, 0.3, -0.2, 1.2)
-    found = plan(voyage, ship=ship, sea=sea, chart=chart, resolution=20_000.0)
+    found = plan_of_one_degree(sea, "fuel")
     slowest = max(route.time_h for route in found.routes if route.feasible)
     channels = (CURRENT_EAST, CURRENT_NORTH)
     of_currents = [one for one in passages if one[0] == channels]
@@ -215,13 +220,7 @@ def test_a_current_that_is_assumed_where_data_are_unknown_holds_between_two_time
     east = np.full((times.size, lat.size, lon.size), -1.5, np.float32)
     east[1::2] = np.nan
     sea = gridded(times, lat, lon, east).filled(currents=0.0)
-    ship = Ship.simple(speed_kn=12.0, speeds_kn=[6.0, 12.0], draught_m=5.0, fuel_t_per_day=24.0)
-    voyage = Voyage(
-        start=(0.0, 0.0), goal=(0.0, 1.0), depart=T0, objective="front", offing_nm=0.0,
-        method="exact",
-    )  # fmt: skip
-    chart = Chart.open_water(-0.3, 0.3, -0.2, 1.2)
-    found = plan(voyage, ship=ship, sea=sea, chart=chart, resolution=20_000.0)
+    found = plan_of_one_degree(sea, "front")
     for route, value in zip(found.routes, found.front.values, strict=True):
         assert found.front.certain[0, 0] <= route.time_h * 1.0001
         assert certain_at(found.front.certain, route.time_h) <= value * 1.001
