@@ -1,13 +1,17 @@
 """The least length round land: true shortest ways in made and real water, and no more than ways."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
 
 from thalweg import Chart
+from thalweg.chart.passages import Passage
 from thalweg.core.geodesy import distance
 from thalweg.search.certificate.barrier_mesh import BarrierLink
-from thalweg.search.certificate.length_round_land import land_inside, length_round_land
+from thalweg.search.certificate.land_corners import land_inside
+from thalweg.search.certificate.length_round_land import length_round_land
 from thalweg.search.certificate.positions_in_reach import Reach
 
 NM = 1852.0
@@ -39,6 +43,26 @@ def test_between_two_islands_the_gap_counts_and_not_the_way_round_both():
     shortest = by(start, (0.05, 1.0), (0.05, 1.5), goal)
     found = length_round_land(chart, start, goal, 1.01 * shortest, seconds=20.0)
     assert 0.995 * shortest < found <= shortest
+
+
+def test_a_closed_passage_between_two_islands_is_not_a_gap():
+    two = [island(1.0, 0.05, 1.5, 3.0), island(1.0, -2.0, 1.5, -0.05)]
+    chart = Chart.from_geojson({"type": "GeometryCollection", "geometries": two})
+    passage = Passage(
+        "gap", "trade", ((0.0, 0.9), (0.0, 1.6)), 5000.0, closing_line=((-0.1, 1.25), (0.1, 1.25))
+    )
+    start, goal = (1.0, 0.0), (1.0, 2.5)
+    through = by(start, (0.05, 1.0), (0.05, 1.5), goal)
+    round_it = by(start, (3.0, 1.0), (3.0, 1.5), goal)
+    known = 1.01 * round_it
+    found = length_round_land(chart, start, goal, known, seconds=20.0)
+    assert 0.995 * through < found <= through
+    closed = replace(chart, closed_passages=(passage,))
+    found = length_round_land(closed, start, goal, known, seconds=20.0)
+    assert 0.99 * round_it < found <= round_it
+    # a way along the passage's line that crosses it nowhere is as short as before
+    found = length_round_land(closed, (0.0, 1.2), (-1.0, 0.5), known, seconds=20.0)
+    assert found <= by((0.0, 1.2), (-0.05, 1.0), (-1.0, 0.5))
 
 
 def test_a_canal_through_an_island_counts_what_it_is_given():

@@ -18,14 +18,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.basemap import ring_bounds
-from thalweg.chart.coast.coast_index_builder import build_index, empty_index
 from thalweg.chart.coast.leg_tests import point_status
 from thalweg.chart.rings import Rings
-from thalweg.core.geodesy import distance, inverse, unit_vectors
+from thalweg.core.geodesy import distance, unit_vectors
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.kernels.codes import OK
-from thalweg.kernels.geometry.coast_index import CoastArrays, leg_codes
+from thalweg.kernels.geometry.coast_index import leg_codes
 from thalweg.search.certificate.barrier_mesh import BarrierLink
+from thalweg.search.certificate.land_corners import (
+    ANGLE_TOLERANCE,
+    Corners,
+    corners_of,
+    inner_polygons,
+    land_inside,
+    places_of_turns,
+)
+from thalweg.search.certificate.lines_across_passages import lines_across_passages
 from thalweg.search.certificate.positions_in_reach import SPHERE, Reach
 from thalweg.search.search_problem import ROUNDING_FACTOR
 
@@ -37,31 +45,10 @@ _LEAST_TOLERANCE, _MOST_TOLERANCE = 0.002, 0.1  # [deg]
 _FINER, _FINEST = 0.4, 3  # factor of finer tolerances, and how often it is applied
 _SLOWER: Final = 2.5  # a search with a finer tolerance than the one before
 _ENOUGH: Final = 0.995  # of the known length, at which no finer tolerance is tried
-_LONGEST_EDGE: Final = 4.0  # times the root of the tolerance [deg]: see Notes of `land_inside`
-_INDEX_CELLS: Final = 256  # along a side of each of the six faces
-_ANGLE_TOLERANCE: Final = 0.02  # of tangents: courses on a sphere are within 0.01 [rad]
 _LONGEST_TESTED: Final = 1.8  # chord of a leg whose arc is tested [radii]
 _FEW_CORNERS: Final = 16  # of rings that are used wherever their corners are
 _CAP_STEP: Final = 2.0  # of the outline of a closed polar cap [deg]
 _LENGTH_TOLERANCE: Final = 1e-6  # by which the known length may be surpassed
-
-
-@dataclass(frozen=True, eq=False)
-class Corners:
-    """Corners of polygons, at which a shortest way may turn.
-
-    Attributes
-    ----------
-    lat, lon : [deg].
-    back, on : Courses to the corners before and after on the outline [rad].
-    coast : Polygons a little inside, which no leg of a shortest way touches.
-    """
-
-    lat: FloatArray
-    lon: FloatArray
-    back: FloatArray
-    on: FloatArray
-    coast: CoastArrays
 
 
 def length_round_land(
@@ -79,7 +66,8 @@ def length_round_land(
 
     Parameters
     ----------
-    chart : Its land and no-go zones, and the latitudes beyond its area, are kept clear of.
+    chart : Its land and no-go zones, and the latitudes beyond its area, are kept clear of; its
+        closed passages are not crossed.
     start, goal : (lat, lon) [deg].
     known : Length of a route that exists [m], with what its canals count.
     links : Canals that a route may pass; they count as long as the ship sails in their time.
@@ -104,8 +92,9 @@ def length_round_land(
     near = _rings_within(chart.coastline.rings, reach)
     for level in range(_FINEST + 1):
         now = clock.perf_counter()
-        closed = _closed_shapes(chart, near, reach, _FINER**level * tolerance, kept_out)
-        found = _least_length(closed, reach, links, _FINER**level * tolerance, began + seconds)
+        fine = _FINER**level * tolerance
+        closed = _closed_shapes(chart, near, reach, fine, kept_out)
+        found = _least_length(chart, closed, reach, links, fine, began + seconds)
         best = max(best, ROUNDING_FACTOR * found)
         ended = clock.perf_counter()
         if best >= _ENOUGH * known or ended + _SLOWER * (ended - now) > began + seconds:
@@ -114,6 +103,7 @@ def length_round_land(
 
 
 def _least_length(
+    chart: Chart,
     closed: Sequence[Any],
     reach: Reach,
     links: Sequence[BarrierLink],
@@ -124,7 +114,12 @@ def _least_length(
     shapes = land_inside(closed, tolerance)
     if not shapes:
         return 0.0
-    search = _Search.between(corners_of(shapes, tolerance, reach), reach, links)
+    inner = inner_polygons(shapes, tolerance)
+    shut = [one for one in chart.closed_passages if reach.has(*one.positions).any()]
+    turns = places_of_turns(shapes, reach, links)
+    across = lines_across_passages(chart.coastline, shut, closed, inner, turns)
+    corners = corners_of(shapes, inner, reach, across)
+    search = _Search.between(corners, reach, links)
     if search.is_enclosed():
         return 0.0
     found = search.run(until)
@@ -218,52 +213,6 @@ def _land_polygons(
             if lon.max() + shift > box[0] and lon.min() + shift < box[2]:
                 moved = shapely.polygons(ring + np.array([shift, 0.0]))
                 yield shapely.clip_by_rect(moved, *box)
-
-
-def land_inside(shapes: Sequence[Any], tolerance: float) -> list[Any]:
-    """Return polygons inside some polygons, with fewer corners, by half a tolerance at least [deg].
-
-    Notes
-    -----
-    Simplified outlines are within the tolerance of the outline. So what is twice the tolerance
-    inside of the simplified polygon is inside the polygon, and one tolerance away from its outline.
-    Edges are straight in longitude and latitude; from a geodesic between its ends an edge of
-    4 sqrt(tolerance) degrees differs by less than a fifth of the tolerance below 80 degrees of
-    latitude, by ``edge^2 tan(latitude) / 8``.
-    """
-    import shapely
-
-    simple = shapely.simplify(shapely.make_valid(np.array(shapes)), tolerance)
-    inside = shapely.buffer(simple, -2.0 * tolerance, join_style="mitre")
-    parts = shapely.get_parts(shapely.simplify(inside, 0.25 * tolerance))
-    parts = parts[~shapely.is_empty(parts)]
-    outer = shapely.polygons(shapely.get_exterior_ring(parts))
-    return list(shapely.segmentize(outer, _LONGEST_EDGE * math.sqrt(tolerance)))
-
-
-def corners_of(shapes: Sequence[Any], tolerance: float, reach: Reach) -> Corners:
-    """Return the corners of polygons within reach at which a way can turn."""
-    import shapely
-
-    smaller = shapely.get_parts(shapely.buffer(np.array(shapes), -0.5 * tolerance))
-    rings = [shapely.get_coordinates(one.exterior)[:, ::-1] for one in smaller if not one.is_empty]
-    index = build_index(Rings.from_lists((ring, False) for ring in rings), _INDEX_CELLS)
-    area = np.array([-90.0, 90.0, -180.0, 360.0])
-    lines = [
-        shapely.get_coordinates(one.exterior)[:-1, ::-1] for one in shapely.normalize(shapes)
-    ]  # clockwise: land is to starboard of the way on
-    places, last, further = (
-        np.concatenate([np.roll(line, by, axis=0) for line in lines]) for by in (0, 1, -1)
-    )
-    kept = reach.has(places[:, 0], places[:, 1])
-    places, last, further = places[kept], last[kept], further[kept]
-    back, on = (inverse(*places.T, *beside.T)[1] for beside in (last, further))
-    inner = (back - on) % (2.0 * math.pi)
-    turns = inner <= math.pi + _ANGLE_TOLERANCE
-    return Corners(
-        places[turns, 0], places[turns, 1], back[turns], on[turns],
-        CoastArrays(index, empty_index(), area),
-    )  # fmt: skip
 
 
 @dataclass(eq=False)
@@ -379,5 +328,5 @@ class _Search:
 
 def _is_starboard(bearing: FloatArray) -> BoolArray:
     """Return which relative bearings [-pi, pi] are to starboard, ahead or astern, by a margin."""
-    ahead_or_astern = np.abs(np.sin(bearing)) <= _ANGLE_TOLERANCE
+    ahead_or_astern = np.abs(np.sin(bearing)) <= ANGLE_TOLERANCE
     return np.asarray((bearing >= 0.0) | ahead_or_astern)
