@@ -116,6 +116,20 @@ def test_the_waits_of_a_route_are_totalled(capsys, tmp_path, ship):
     assert "waiting" not in capsys.readouterr().out
 
 
+def test_a_route_of_more_speed_than_the_ship_makes_breaks_a_limit(capsys, tmp_path):
+    ship, route = tmp_path / "twelve.yaml", tmp_path / "fast.csv"
+    ship.write_text(
+        "name: twelve\nhull: {draught_m: 6.0}\nspeeds_kn: [12]\n"
+        "engine: {reference_speed_kn: 12, reference_power_kw: 3000, sfoc_g_per_kwh: 190}\n"
+    )
+    route.write_text("lat,lon,time,ordered_speed_kn\n52,3,2026-01-01T00:00Z,35\n52.2,3,,\n")
+    world = ["evaluate", str(route), "--ship", str(ship), "--calm", "--coast", "none"]
+    assert main(world) == 4
+    printed = capsys.readouterr().out
+    assert "NOT KEPT: ordered speed above the greatest of the ship: leg 1" in printed
+    assert "(35.00 kn, limit 12.00 kn)" in printed and "mean speed 12.0 kn" in printed
+
+
 @pytest.mark.slow
 def test_plan_for_a_person(capsys, ship):
     code = main(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from thalweg.core.geodesy import format_position
 from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
-from thalweg.core.units import HOUR, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
+from thalweg.core.units import HOUR, KNOT, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
 from thalweg.route.cost_parts import COST_PARTS
 from thalweg.route.indicator_columns import indicator_table, indicator_value
 from thalweg.route.route_tables import waypoint_frame, waypoint_rows
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+ORDERED_TOO_FAST: Final = "ordered speed above the greatest of the ship"  #: start of a reason
 _MOST_DIGITS = 9  # after the point, of numbers that differ little
 
 
@@ -52,8 +53,9 @@ class Violation:
     def __str__(self) -> str:
         text = f"{self.reason} at {format_position(self.lat, self.lon)}, {format_time(self.time)}"
         if np.isfinite(self.value) and np.isfinite(self.limit):
-            value, limit = _distinct(self.value, self.limit)
-            text += f" ({value}, limit {limit})"
+            unit, name = (KNOT, " kn") if self.reason.startswith(ORDERED_TOO_FAST) else (1.0, "")
+            value, limit = _distinct(self.value / unit, self.limit / unit)
+            text += f" ({value}{name}, limit {limit}{name})"
         return text
 
     def as_dict(self) -> dict[str, Any]:

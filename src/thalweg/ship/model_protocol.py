@@ -221,6 +221,26 @@ class AdjustableModel(Protocol):
 
 
 @runtime_checkable
+class GreatestSpeedModel(Protocol):
+    """Capability: a model that knows the greatest calm-water speed that can be ordered."""
+
+    def greatest_speed(self, load_factor: float) -> float:
+        """Return the greatest calm-water speed [m/s]; inf where nothing limits it.
+
+        Parameters
+        ----------
+        load_factor : float
+            0 empty to 1 full.
+
+        Returns
+        -------
+        float
+            Above it the ship has no power, or its power is not known.
+        """
+        ...
+
+
+@runtime_checkable
 class CrabAngleModel(Protocol):
     """Capability: a model that may depend on the angle between heading and course."""
 

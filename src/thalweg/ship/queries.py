@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final, Protocol
 
 from numpy.typing import ArrayLike
@@ -13,6 +14,8 @@ from thalweg.ship.conditions import Conditions
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import (
+    AdjustableModel,
+    GreatestSpeedModel,
     JointPowerAndFuelModel,
     ShipModel,
 )
@@ -254,6 +257,22 @@ def ship_top_speed(ship: ModelledShip, setting: int = 0) -> float | None:
     """
     top = ship.model.top_speed(setting, ship.loading.load_factor)
     return None if top is None else top * (1.0 + _SINGLE_PRECISION)
+
+
+def ship_greatest_order(ship: ModelledShip) -> float:
+    """Return the greatest calm-water speed that can be ordered.
+
+    Returns
+    -------
+    float
+        [m/s] at the load factor: that of the largest power, or the highest of the ship file where
+        the power above it is not known; inf where nothing limits it.
+    """
+    if isinstance(ship.model, GreatestSpeedModel):
+        return ship.model.greatest_speed(ship.loading.load_factor)
+    if isinstance(ship.model, AdjustableModel):
+        return float(ship.model.speeds(ship.loading.load_factor)[-1])
+    return math.inf
 
 
 def model_needs(model: ShipModel) -> frozenset[str]:

@@ -233,6 +233,7 @@ class Ship:
     tabulate_fuel = delegated(ship_tabulation.ship_fuel_table)
     tabulate_power = delegated(ship_tabulation.ship_power_table)
     top_speed = delegated(queries.ship_top_speed)
+    greatest_order = delegated(queries.ship_greatest_order)
     fingerprint = delegated(ship_tabulation.ship_fingerprint)
 
     @property

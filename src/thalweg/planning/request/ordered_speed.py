@@ -31,7 +31,7 @@ def with_ordered_speed(ship: Ship, speed_kn: float | None) -> Ship:
     """
     if speed_kn is None or _misses(ship, speed_kn).min() <= _SAME_SPEED_KN:
         return ship
-    top = float(np.max(ship.speeds)) / KNOT
+    top = ship.greatest_order() / KNOT
     if not ship.is_resistance_based and speed_kn > top:
         listed = ", ".join(f"{speed / KNOT:.1f}" for speed in ship.speeds)
         raise InputError(

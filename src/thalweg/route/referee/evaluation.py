@@ -27,7 +27,7 @@ from thalweg.route.referee.route_assembly import assemble_route
 from thalweg.route.referee.sailing import data_spacings
 from thalweg.route.referee.sailing_physics import SailingEnvironment, make_sailing_environment
 from thalweg.route.referee.wind_speed_only import with_wind_speed
-from thalweg.route.route import Route
+from thalweg.route.route import ORDERED_TOO_FAST, Route, Violation
 from thalweg.route.track import Track
 from thalweg.ship.fuel_prices import FuelTerms
 
@@ -42,6 +42,7 @@ MIN_PIECES = 8  #: of every leg
 MAX_STEP = 0.5 * NAUTICAL_MILE  #: [m]
 MAX_PIECES = 2000  #: of a route at the coarser of its two step sizes (`MIN_PIECES` come first)
 _SPEED_TOLERANCE = 1e-6  # relative, for speeds that went through a file
+_FILE_ROUNDING = 1e-4  # relative, by which files may round a speed above the greatest of the ship
 
 
 def evaluate(
@@ -121,6 +122,10 @@ def evaluate(
     is at its berth. If the sea has no current variables, still water is assumed, and the route
     states this.
 
+    A leg that orders a speed above the greatest of the ship (that of its largest power, or the
+    highest of a ship file that knows no power above it) is sailed at the greatest; this is a
+    violation.
+
     Fuel is priced per piece: the exact share inside the emission control areas of the chart at the
     terms inside, the rest at those outside, times the factor of price zones. A leg from one end of
     a canal of the chart to the other takes the length, time and dues of the canal, at the fuel rate
@@ -133,12 +138,15 @@ def evaluate(
     _check_clearance(min_ukc)
     terms = _checked_terms(ship, terms)
     ship = ship if load_factor is None else ship.with_load_factor(load_factor)
-    ship, track = resolve_settings(ship, as_track(route, depart), speed_kn)
+    track = _with_ordered_speed(as_track(route, depart), speed_kn)
+    wanted, track = track.speed, _within_reach(ship, track)
+    ship, track = resolve_settings(ship, track)
     world = make_sailing_environment(ship, with_wind_speed(ship, sea), chart)
     step = None if step is None else _checked_step(step)
     pieces = cut_into_pieces(track, step or _default_step(world, track), MIN_PIECES, chart, ship)
     sailed, tolerance = sail_to_tolerance(world, pieces, adapt=step is None)
     result = assemble_route(sailed, min_ukc, tolerance, terms)
+    result = _with_too_fast_legs(result, wanted)
     if isinstance(route, (str, Path)) and chart is not None:
         from thalweg.route.formats import cross_track_notes
 
@@ -180,14 +188,51 @@ def as_track(route: RouteLike, depart: TimeLike | None = None) -> Track:
     return Track.from_positions(route, depart=depart)
 
 
-def resolve_settings(ship: Ship, track: Track, speed_kn: float | None = None) -> tuple[Ship, Track]:
+def _with_ordered_speed(track: Track, speed_kn: float | None) -> Track:
+    """Return the track with an ordered calm-water speed on every leg [kn]; None: its own."""
+    if speed_kn is None:
+        return track
+    if not (is_number(speed_kn) and speed_kn > 0.0):
+        raise InputError(
+            f"The ordered speed is {shortened_repr(speed_kn)}, which is not a number above zero.",
+            "It is a calm-water speed in knots.",
+            "Correct it, or leave it out.",
+            field="speed_kn",
+        )
+    return track.replaced(speed=np.full(len(track) - 1, speed_kn * KNOT))
+
+
+def _within_reach(ship: Ship, track: Track) -> Track:
+    """Return the track with no speed ordered above the greatest of the ship."""
+    greatest = ship.greatest_order() if np.isfinite(track.speed).any() else math.inf
+    return track.replaced(speed=np.minimum(track.speed, greatest)) if greatest < math.inf else track
+
+
+def _with_too_fast_legs(route: Route, wanted: FloatArray) -> Route:
+    """Return the route with the legs as violations that order more [m/s] than the ship makes."""
+    found, track = [], route.track
+    made = np.asarray(route.legs["ordered_speed"], float)
+    number = track.leg_numbers
+    for leg in np.flatnonzero(wanted > made * (1.0 + _FILE_ROUNDING)):
+        if leg and number[leg] == number[leg - 1]:  # a part of the same leg of the given route
+            continue
+        found.append(
+            Violation(
+                f"{ORDERED_TOO_FAST}: leg {number[leg]}",
+                float(route.legs["depart"][leg]),
+                float(track.lat[leg]),
+                float(track.lon[leg]),
+                float(wanted[leg]),
+                float(made[leg]),
+            )
+        )
+    return replace(route, violations=(*found, *route.violations)) if found else route
+
+
+def resolve_settings(ship: Ship, track: Track) -> tuple[Ship, Track]:
     """Return the ship and the track with every setting an index from 0, the lowest.
 
     Where the track orders speeds that the ship does not have, the ship gets these.
-
-    Parameters
-    ----------
-    speed_kn : Ordered calm-water speed on every leg [kn].
 
     Returns
     -------
@@ -198,16 +243,6 @@ def resolve_settings(ship: Ship, track: Track, speed_kn: float | None = None) ->
     ------
     InputError : If a setting does not exist, or the ship cannot sail at a speed.
     """
-    if speed_kn is not None:
-        if not is_number(speed_kn):
-            raise InputError(
-                f"The ordered speed is {shortened_repr(speed_kn)}, which is not a number.",
-                "It is a calm-water speed in knots.",
-                "Correct it, or leave it out.",
-                field="speed_kn",
-            )
-        ship = ship.with_speeds([speed_kn * KNOT])
-        return ship, _with_settings(track, np.zeros(len(track) - 1, dtype=np.int64))
     count = len(ship.speeds)
     setting = np.where(track.setting < 0, track.setting + count, track.setting)
     by_speed = np.isfinite(track.speed)

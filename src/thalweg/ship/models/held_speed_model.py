@@ -148,6 +148,10 @@ class HeldSpeedModel:
         """Where the speed loss is used outside its range."""
         return self.base.notes(conditions, setting)
 
+    def greatest_speed(self, load_factor: float) -> float:
+        """Greatest calm-water speed [m/s] of its settings."""
+        return self.base.greatest_speed(load_factor)
+
     def with_speeds(self, speeds: FloatArray, load_factor: float) -> HeldSpeedModel:
         """Return the model with other ordered speeds [m/s]."""
         return HeldSpeedModel.of(self.base, speeds, load_factor)

@@ -206,6 +206,12 @@ class KnownSpeedModel:
         """Where the speed loss is used outside its range."""
         return [] if self.loss is None else self.loss.notes(conditions)
 
+    def greatest_speed(self, load_factor: float) -> float:
+        """Greatest calm-water speed [m/s] whose power or fuel the ship file gives."""
+        full, empty = (self.law.rows or (self.speeds_full, self.speeds_empty))[:2]
+        known = interpolate_loading(load_factor, empty=empty, full=full)
+        return float(max(known[-1], self.speeds(load_factor)[-1]))
+
     def with_speeds(self, speeds: FloatArray, load_factor: float) -> KnownSpeedModel:
         """Return the model with other settings, given by calm-water speed [m/s] at a load factor.
 

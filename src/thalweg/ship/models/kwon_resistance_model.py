@@ -80,6 +80,7 @@ class KwonResistanceModel:
     tabulate_power = delegated(ResistanceModel.tabulate_power, "base")
     #: Calm-water speed [m/s]: weather does not raise it.
     top_speed = delegated(ResistanceModel.top_speed, "base")
+    greatest_speed = delegated(ResistanceModel.greatest_speed, "base")
     resistance = delegated(ResistanceModel.resistance, "base")
 
     def speed_through_water(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:

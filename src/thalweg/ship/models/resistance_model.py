@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final, TypeAlias
@@ -228,6 +229,13 @@ class ResistanceModel:
 
         self._by_loading(conditions, index, note)
         return found
+
+    def greatest_speed(self, load_factor: float) -> float:
+        """Calm-water speed [m/s] at the largest power of the engines; inf where it is not given."""
+        limit = self.plant.largest_power
+        if np.isinf(limit):
+            return math.inf
+        return float(self._calm_speeds(load_factor, np.array([limit]))[0])
 
     def with_speeds(self, speeds: FloatArray, load_factor: float) -> ResistanceModel:
         """Return the model with other settings, given by calm-water speeds [m/s].
