@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from thalweg.core.errors import InputError
-from thalweg.core.units import DAY
+from thalweg.core.units import DAY, KNOT
 from thalweg.ship import Conditions, Ship, TableError
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.tables.tabulate import constant_part
@@ -190,8 +190,49 @@ def test_fuel_that_is_given_is_the_whole_ships():
             "engine": {"hotel_load_kw": 100},
         }
     )
-    assert ship.tabulate_fuel().parts[0].values * DAY == pytest.approx([1250.0, 10000.0])
-    assert ship.waiting_fuel_rate == pytest.approx(100 * 195 / 3.6e6)
+    hotel = 100 * 195 / 3.6e6
+    # at 6 kn it was 1250 kg, below what the hotel load and the engines take
+    slow = 0.125 * (10000.0 - hotel * DAY) + hotel * DAY
+    assert slow == pytest.approx(1659.5)
+    assert ship.tabulate_fuel().parts[0].values * DAY == pytest.approx([slow, 10000.0])
+    again = ship.with_speeds(np.array([3.0, 6.0, 12.0]) * KNOT).tabulate_fuel().parts[0].values
+    assert again[1:] * DAY == pytest.approx([slow, 10000.0])
+    assert again[0] > ship.waiting_fuel_rate == pytest.approx(hotel)
+
+
+def test_given_fuel_in_weather_keeps_the_hotel_load_at_every_power():
+    data = {
+        "name": "known fuel in waves",
+        "hull": DATA["hull"],
+        "speeds_kn": [6, 12],
+        "fuel": {"reference_t_per_day": 20.0},
+        "engine": {
+            "reference_speed_kn": 12.0, "reference_power_kw": 4000.0, "hotel_load_kw": 200.0,
+        },
+        "models": {"calm_water": "cubic", "waves": "stawave_1"},
+    }  # fmt: skip
+    ship = Ship.from_dict(data)
+    calm = {"wind_speed": 0.0, "wind_angle": 0.0, "wave_height": 0.0, "wave_angle": 0.0}
+    at = Conditions(calm | {"wave_period": 8.0})
+    hotel = 200 * 195 / 3.6e6 * DAY
+    found = ship.fuel_rate(at, np.array([0, 1])) * DAY
+    assert found == pytest.approx([0.125 * (20000.0 - hotel) + hotel, 20000.0], rel=1e-3)
+
+
+def test_fuel_in_a_table_is_the_whole_ships_in_each_row():
+    table = {"speed_kn": [6, 12], "fuel_t_per_day": [2.0, 10.0]}
+    ship = Ship.from_dict(
+        {"name": "t", "hull": {"draught_m": 5.0}, "table": table, "engine": {"hotel_load_kw": 100}}
+    )
+    assert ship.tabulate_fuel().parts[0].values * DAY == pytest.approx([2000.0, 10000.0])
+    assert ship.waiting_fuel_rate * DAY == pytest.approx(468.0)
+
+
+def test_a_hotel_load_beyond_the_given_fuel_is_refused():
+    data = {"name": "t", "hull": {"draught_m": 5.0}, "speeds_kn": [8]}
+    fuel = {"reference_t_per_day": 0.4}
+    with pytest.raises(InputError, match=r"0.4 t a day, and its hotel load takes 0.468 t"):
+        Ship.from_dict({**data, "fuel": fuel, "engine": {"hotel_load_kw": 100}})
 
 
 @pytest.mark.parametrize(

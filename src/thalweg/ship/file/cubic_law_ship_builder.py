@@ -8,7 +8,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
-from thalweg.core.units import DAY, KNOT, TONNE
+from thalweg.core.units import KNOT
 from thalweg.ship.file.part_builders import resistance_methods
 from thalweg.ship.hull.estimate import CALM_WATER_ASSUMPTION, Estimate
 from thalweg.ship.hull.hull import Hull
@@ -18,7 +18,7 @@ from thalweg.ship.models.added_resistance_model import build_wind_resistance
 from thalweg.ship.models.calm_water_model import CALM_WATER_COMPONENTS, CalmWaterResistance
 from thalweg.ship.models.engine_plant import EnginePlant, build_engine_plant
 from thalweg.ship.models.propulsion_model import build_propulsion
-from thalweg.ship.models.speed_power_laws import reference_point
+from thalweg.ship.models.speed_power_laws import fuel_of_engines, reference_point
 from thalweg.ship.schema.ship_schema import ShipFile
 
 _POSSIBLE_METHODS = {"waves", "wind", "propulsion"}
@@ -102,14 +102,15 @@ def _reference_power(file: ShipFile) -> tuple[float, float]:
 def cubic_law_plant(file: ShipFile) -> EnginePlant:
     """Return the engines of a ship with the cubic law: of constant specific consumption.
 
-    It is ``engine.sfoc_g_per_kwh``, else that of ``fuel.reference_t_per_day`` (the whole ship's).
+    It is ``engine.sfoc_g_per_kwh``, else that of ``fuel.reference_t_per_day`` (the whole ship's)
+    without the hotel load.
     The power is limited to ``engine.power_kw``, else to the largest that the file names.
     """
     plant, point = build_engine_plant(file), reference_point(file)
     speed, power = _reference_power(file)
     if point.fuel_t_per_day is not None and file.engine.sfoc_g_per_kwh is None:
-        sfoc = point.fuel_t_per_day * TONNE / DAY / power / GRAM_PER_KILOWATT_HOUR
-        plant = replace(plant, sfoc=sfoc, hotel_power=0.0, curve=((0.0, 1.0), (sfoc, sfoc)))
+        sfoc = fuel_of_engines(file, point.fuel_t_per_day) / power / GRAM_PER_KILOWATT_HOUR
+        plant = replace(plant, sfoc=sfoc, curve=((0.0, 1.0), (sfoc, sfoc)))
     elif file.engine.sfoc_g_per_kwh is not None and not plant.curve[0]:
         plant = replace(plant, curve=((0.0, 1.0), (plant.sfoc, plant.sfoc)))
     if np.isfinite(plant.rating):

@@ -47,9 +47,10 @@ def build_known_speed_model(file: ShipFile, hull: Hull, loading: Loading) -> Kno
         fuel = power_to_fuel_rate(power)
     check_table_rises(full, {"fuel_t_per_day": fuel * DAY / TONNE, "power_kw": power / 1000.0})
     loss, squat = build_speed_loss(file, hull, loading), build_squat_model(file, hull, loading)
-    model = KnownSpeedModel(
-        full, empty, fuel, power, SpeedPowerLaw(law, power_to_fuel_rate), loss, squat
+    of_speed = SpeedPowerLaw(
+        law, power_to_fuel_rate, hotel_fuel=file.engine.hotel_fuel_rate if law == "cubic" else 0.0
     )
+    model = KnownSpeedModel(full, empty, fuel, power, of_speed, loss, squat)
     return with_settings(model, file)
 
 

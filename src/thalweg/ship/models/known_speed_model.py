@@ -102,11 +102,14 @@ class SpeedPowerLaw:
         Fuel rate [kg/s] of a power [W], where fuel follows from power and not from the speed.
     rows : Speeds full and empty, fuel rates and powers that the settings were taken from; those of
         the settings themselves when not given.
+    hotel_fuel : Fuel of the hotel load [kg/s], the part of given fuel rates that the cubic law does
+        not raise.
     """
 
     name: str = "none"
     power_to_fuel_rate: Callable[[FloatArray], FloatArray] | None = None
     rows: tuple[FloatArray, FloatArray, FloatArray, FloatArray] | None = None
+    hotel_fuel: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,7 +236,9 @@ class KnownSpeedModel:
         if name != "table":  # beyond the settings both grow as the speed does
             beyond = speeds / np.clip(speeds, own[0], own[-1])
             full, empty = full * beyond, empty * beyond
-        fuel, power = (_values_by_law(name, rows[0], column, full) for column in rows[2:])
+        hotel = self.law.hotel_fuel
+        fuel = hotel + _values_by_law(name, rows[0], rows[2] - hotel, full)
+        power = _values_by_law(name, rows[0], rows[3], full)
         if self.law.power_to_fuel_rate is not None:
             fuel = self.law.power_to_fuel_rate(power)
         law = replace(self.law, rows=rows)

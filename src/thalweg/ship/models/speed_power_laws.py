@@ -89,7 +89,10 @@ def _without_law(file: ShipFile, speeds: FloatArray) -> tuple[FloatArray, FloatA
 
 
 def _from_cubic_law(file: ShipFile, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Fuel rates [kg/s] and powers [W] through the reference point."""
+    """Fuel rates [kg/s] and powers [W] through the reference point.
+
+    The fuel of the hotel load, which the reference contains, is the same at every speed.
+    """
     speed_kn, power_kw, fuel_t_per_day = reference_point(file)
     reference = (speeds.max() / KNOT if speed_kn is None else speed_kn) * KNOT
     if power_kw is None and fuel_t_per_day is None:
@@ -100,11 +103,32 @@ def _from_cubic_law(file: ShipFile, speeds: FloatArray) -> tuple[FloatArray, Flo
             "Add one, or choose calm_water: none.",
             missing=["engine.reference_power_kw", "fuel.reference_t_per_day"],
         )
-    burnt = math.nan if fuel_t_per_day is None else fuel_t_per_day * TONNE / DAY
+    engines = math.nan if fuel_t_per_day is None else fuel_of_engines(file, fuel_t_per_day)
     power = math.nan if power_kw is None else power_kw * 1000.0
     return (
-        cubic_law(speeds, reference_speed=reference, reference_value=burnt),
+        cubic_law(speeds, reference_speed=reference, reference_value=engines)
+        + file.engine.hotel_fuel_rate,
         cubic_law(speeds, reference_speed=reference, reference_value=power),
+    )
+
+
+def fuel_of_engines(file: ShipFile, fuel_t_per_day: float) -> float:
+    """Return the fuel rate of propulsion [kg/s] in a fuel rate of the whole ship [t/day].
+
+    Raises
+    ------
+    InputError : If the hotel load takes all of it.
+    """
+    hotel = file.engine.hotel_fuel_rate
+    engines = fuel_t_per_day * TONNE / DAY - hotel
+    if engines > 0.0 or hotel == 0.0:
+        return engines
+    raise InputError(
+        f"The ship's fuel is {fuel_t_per_day:g} t a day, and its hotel load takes "
+        f"{hotel * DAY / TONNE:.3g} t of it.",
+        "The fuel of a day at sea is that of the whole ship: propulsion and hotel load.",
+        "Correct fuel.reference_t_per_day or engine.hotel_load_kw.",
+        key="engine.hotel_load_kw",
     )
 
 

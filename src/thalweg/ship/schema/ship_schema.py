@@ -150,7 +150,11 @@ class PropulsionSection(Section):
 
 
 class EngineSection(Section):
-    """Engines, their specific consumption, and the hotel load."""
+    """Engines, their specific consumption, and the hotel load, which burns at sea and at anchor.
+
+    Fuel that is made from power gets that of the hotel load on top; fuel that is given
+    (``fuel.reference_t_per_day``, ``table.fuel_t_per_day``) contains it.
+    """
 
     count: Annotated[WholeNumber, Field(ge=1, le=12)] = 1
     type: Text | None = None
@@ -186,7 +190,10 @@ class EngineSection(Section):
 
 
 class FuelSection(Section):
-    """Fuels outside and inside emission control areas, and their prices."""
+    """Fuels outside and inside emission control areas, their prices, and the fuel of a day at sea.
+
+    ``reference_t_per_day`` is the whole ship's: propulsion and hotel load.
+    """
 
     type: Text | None = None
     eca_type: Text | None = None

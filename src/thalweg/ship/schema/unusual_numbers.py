@@ -157,7 +157,8 @@ def _of_fuel(file: ShipFile) -> list[str]:
     if given is not None:
         notes += _outside(given, _SPECIFIC, "engine.sfoc_g_per_kwh is {value:g} g/kWh")
     if daily and power:
-        specific = daily * TONNE * 1000.0 / (power * DAY / HOUR)
+        burnt = max(daily * TONNE - engine.hotel_fuel_rate * DAY, 0.0)  # without the hotel load
+        specific = burnt * 1000.0 / (power * DAY / HOUR)
         words = f"{daily:g} t of fuel a day at {power:g} kW are {{value:.0f}} g/kWh"
         if given is None:
             notes += _outside(specific, _SPECIFIC, words)
