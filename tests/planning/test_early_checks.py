@@ -8,12 +8,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from thalweg import Chart
+from thalweg import Chart, Sea, Ship, Voyage
 from thalweg.cli import option_values
 from thalweg.cli.main import main
 from thalweg.core.errors import InputError
 from thalweg.network import lattice
 from thalweg.network.regional_lattice import lattice_builder, lattice_size
+from thalweg.planning.request.early_checks import check_request
+from thalweg.planning.sea_distance import sea_distance
+from thalweg.ship.schema.value_types import DEEPEST_DRAUGHT
 
 
 @pytest.fixture
@@ -70,3 +73,17 @@ def test_a_lattice_that_does_not_fit_in_memory_is_refused_before_it_is_built(mon
     tracemalloc.stop()
     assert "larger spacing" in caught.value.remedy
     assert peak < 400_000_000  # 11.8 GB once
+
+
+def test_plans_distances_and_ship_files_refuse_the_same_draughts():
+    """A draught of 40 m was planned from Rotterdam to Vlissingen with a note alone."""
+    sea, limit = Sea.calm(), "at most 30"
+    voyage = Voyage(start=(50.5, 1.2), goal=(50.5, 1.4), depart=0.0)
+    deep = Ship.from_speed_function(lambda c: 5.0 + 0.0 * c.wave_height, draught_m=30.5)
+    with pytest.raises(InputError, match=limit):
+        check_request(voyage, deep, sea)
+    with pytest.raises(InputError, match=limit):
+        sea_distance("Rotterdam", "Vlissingen", draught_m=30.5)
+    with pytest.raises(InputError, match=limit):
+        Ship.simple(draught_m=30.5)
+    check_request(voyage, Ship.simple(draught_m=DEEPEST_DRAUGHT), sea)

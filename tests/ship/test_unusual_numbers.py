@@ -79,7 +79,7 @@ def test_unusual_numbers_are_named_with_the_usual_range(sections, text):
     ("sections", "key"),
     [
         ({"hull": {"breadth_m": 175.0}}, "hull.breadth_m"),
-        ({"hull": {"draught_m": 36.0, "breadth_m": 23.0}}, "hull.draught_m"),
+        ({"hull": {"draught_m": 29.0, "breadth_m": 18.0}}, "hull.draught_m"),
         ({"engine": {"sfoc_g_per_kwh": 0.185}}, "engine.sfoc_g_per_kwh"),
         ({"engine": {"reference_power_kw": 8.5}}, "engine.reference_power_kw"),  # MW
         ({"engine": {"reference_power_kw": 8.5e6}}, "engine.reference_power_kw"),  # W

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from numbers import Real
-from typing import Annotated, Any
+from typing import Annotated, Any, Final
 
 from pydantic import BeforeValidator, Field, PlainSerializer
 from pydantic_core import PydanticCustomError
@@ -99,8 +99,9 @@ Word = BeforeValidator(as_word)
 OneOrMore = BeforeValidator(as_list)
 SternShape = Annotated[str | float, BeforeValidator(as_stern_shape)]
 
+DEEPEST_DRAUGHT: Final = 30.0  #: that plans and distances take; no ship was deeper than 29 m [m]
 Length = Annotated[Number, Field(gt=0.0, le=500.0)]  #: [m]
-Draught = Annotated[Number, Field(ge=0.0, le=40.0)]  #: [m]
+Draught = Annotated[Number, Field(ge=0.0, le=DEEPEST_DRAUGHT)]  #: [m]
 SuperstructureHeight = Annotated[Number, Field(gt=0.0, le=100.0)]  #: [m]
 #: Name of a place or a task on board
 PlaceName = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9 _-]{0,39}$")]
