@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from thalweg import Chart, Sea, Ship, evaluate
 from thalweg.planning.report.given_route_report import given_route_notes
 from thalweg.planning.report.note_order import count_of_dangers
+from thalweg.planning.report.provenance import given_route_warnings
 
 SHIP = Ship.load("handysize-bulker")
 
@@ -52,3 +54,21 @@ def test_routes_in_open_sea_and_on_other_charts_have_none(chart):
     assert notes_of(ocean, chart) == []
     assert notes_of(ocean, Chart.open_water(40.0, 50.0, -30.0, -10.0)) == []
     assert np.isfinite(SHIP.draught)
+
+
+def test_units_and_times_that_a_file_does_not_state_have_a_note():
+    """Only `inspect` and plans had them."""
+    lat, lon = np.array([49.0, 53.0]), np.array([0.0, 6.0])
+    fields = {name: (("lat", "lon"), np.full((2, 2), 0.2)) for name in ("uo", "vo", "swh")}
+    sea, water = (
+        Sea.open(xr.Dataset(fields, {"lat": lat, "lon": lon})),
+        Chart.open_water(49, 53, 0, 6),
+    )
+    ship = Ship.simple(speed_kn=10.0, draught_m=5.0)
+    places = [(50.5, 1.5), (50.5, 2.5)]
+    route = evaluate(places, ship=ship, sea=sea, chart=water, depart="2026-01-01T06:00Z")
+    notes = given_route_warnings(route, chart=water, sea=sea, ship=ship, min_ukc=None)
+    (units,) = [note for note in notes if note.startswith("Units not stated")]
+    assert "uo and vo as m/s" in units and "swh" not in units  # this ship does not read waves
+    (still,) = [note for note in notes if note.startswith("No time in the data")]
+    assert "the values of uo and vo" in still

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from tests.route.planar import ship
 from thalweg.core.errors import InputError
+from thalweg.core.time import parse_time
 from thalweg.core.units import KNOT
 from thalweg.route import (
     RouteFileOptions,
@@ -221,6 +222,7 @@ def test_missing_binary_and_huge_files_are_refused(tmp_path, monkeypatch):
         "\ufeffWaypoint\tLatitude\tLongitude\n1\t51.05\t1.45\n2\t51.3\t2.0\n",
     ],
 )
+@pytest.mark.filterwarnings("ignore:route.csv. its column speed is not used")
 def test_tables_as_other_programs_write_them(tmp_path, text):
     path = tmp_path / "route.csv"
     path.write_text(text, encoding="utf-8")
@@ -255,3 +257,72 @@ def test_greatest_and_least_values_of_legs_are_not_divided_among_their_pieces():
     assert {row["land_distance_nm"] for row in on_first} == {7.0}
     assert {row["pitch_deg"] for row in on_first} == {2.0}
     assert {row["land_distance_nm"] for row in rows[len(on_first) : -1]} == {3.0}
+
+
+BACKWARDS = ("2026-01-01T00:00:00Z", "2026-01-01T05:50:00Z", "2026-01-01T01:50:00Z")
+
+
+def _file_with_times(path, times):
+    places = [(51.5, 2.0), (51.8, 2.5), (52.2, 3.2)]
+    rows = list(zip(places, times))
+    if path.suffix == ".csv":
+        text = "lat,lon,time\n" + "".join(f"{lat},{lon},{t}\n" for (lat, lon), t in rows)
+    elif path.suffix == ".gpx":
+        points = "".join(
+            f'<rtept lat="{lat}" lon="{lon}"><time>{t}</time></rtept>' for (lat, lon), t in rows
+        )
+        text = f'<gpx xmlns="http://www.topografix.com/GPX/1/1"><rte>{points}</rte></gpx>'
+    elif path.suffix == ".kml":
+        marks = "".join(
+            f"<Placemark><TimeStamp><when>{t}</when></TimeStamp>"
+            f"<Point><coordinates>{lon},{lat}</coordinates></Point></Placemark>"
+            for (lat, lon), t in rows
+        )
+        text = f'<kml xmlns="http://www.opengis.net/kml/2.2"><Document>{marks}</Document></kml>'
+    else:
+        features = [
+            {
+                "type": "Feature",
+                "geometry": {"type": "Point", "coordinates": [lon, lat]},
+                "properties": {"time": t},
+            }
+            for (lat, lon), t in rows
+        ]
+        text = json.dumps({"type": "FeatureCollection", "features": features})
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize("ending", ["csv", "gpx", "kml", "geojson"])
+def test_times_that_go_backwards_are_refused(tmp_path, ending):
+    """The ship sailed at her own speed, without a word on the times."""
+    path = _file_with_times(tmp_path / f"route.{ending}", BACKWARDS)
+    with pytest.raises(InputError, match="Waypoint 3 of the route is at 2026-01-01T01:50") as found:
+        read_track(path)
+    assert "before waypoint 2 at 2026-01-01T05:50" in str(found.value)
+    rising = _file_with_times(path, sorted(BACKWARDS))
+    assert read_track(rising).depart == parse_time(BACKWARDS[0])
+    with_gap = _file_with_times(path, (BACKWARDS[0], "", BACKWARDS[0]))
+    assert len(read_track(with_gap)) in (2, 3)  # KML leaves points without a time out
+
+
+@pytest.mark.parametrize(
+    ("header", "named"),
+    [
+        ("speed", "speed"),
+        ("Speed (kn)", "speed"),
+        ("sog_kn", "sog_kn"),
+        ("ordered_speed_kn", None),
+        ("speed_over_ground_kn", None),
+        ("wind_speed", None),
+    ],
+)
+def test_a_speed_column_that_is_not_used_is_named(tmp_path, recwarn, header, named):
+    path = tmp_path / "route.csv"
+    path.write_text(f"lat,lon,time,{header}\n51,2,2026-01-01T00:00Z,14\n52,3,,14\n")
+    read_track(path)
+    said = [str(one.message) for one in recwarn if "not used" in str(one.message)]
+    assert len(said) == (named is not None)
+    if named:
+        assert f"route.csv: its column {named} is not used" in said[0]
+        assert "ordered_speed_kn" in said[0]

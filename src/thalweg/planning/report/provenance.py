@@ -27,6 +27,7 @@ from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
 from thalweg.route.referee.route_assembly import OUT_OF_RANGE
 from thalweg.sea import Sea
+from thalweg.sea.doubtful_values import guesses_of_files
 from thalweg.sea.inspection import data_gaps
 from thalweg.ship import Ship
 
@@ -86,7 +87,8 @@ def given_route_warnings(
 ) -> list[str]:
     """Return the warnings about a route from a file, as those about the routes of a plan.
 
-    These are on its year, ice, gaps of data, land, passages, traffic lanes, depth and shoals.
+    These are on its year, ice, gaps of data, units and times that files do not state, land,
+    passages, traffic lanes, depth and shoals.
 
     Parameters
     ----------
@@ -95,6 +97,7 @@ def given_route_warnings(
     min_ukc : Required under the keel [m]; None: by the ship file.
     """
     notes = year_warnings(route) + ice_warnings(route, sea) + data_gap_warnings(sea, route)
+    notes += guesses_of_files(sea.layers, frozenset(route.samples))
     notes += slow_speed_warnings(route) + steep_wave_warnings(route, sea)
     notes += waiting_weather_warnings(route, ship)
     notes += given_route_notes(route, chart=chart, ship=ship)

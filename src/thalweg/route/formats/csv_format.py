@@ -6,6 +6,7 @@ import csv
 import io
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 from thalweg.core.errors import InputError
@@ -17,6 +18,7 @@ from thalweg.route.formats.parsed_track import (
     WAITS,
     ParsedTrack,
     position_of,
+    unused_speed_notes,
     waypoint_track,
 )  # fmt: skip
 from thalweg.route.formats.route_file_options import RouteFileOptions
@@ -64,10 +66,11 @@ def parse_csv(text: str) -> ParsedTrack:
             row[:] = [re.sub(r"^\s*([+-]?\d+),(\d+)\s*$", r"\1.\2", cell) for cell in row]
     positions = [_position(row, lat, lon, i) for i, row in enumerate(rows[1:], start=1)]
     time = _column(header, "time")
-    first = _cell_of(rows[1], time) if time is not None and len(rows) > 1 else ""
+    times = [None if time is None else _cell_of(row, time) for row in rows[1:]]
     given = {name: header.index(name) for name in (*WAITS, *SPEEDS, GEOMETRY) if name in header}
     values = [{name: _cell_of(row, k) for name, k in given.items()} for row in rows[1:]]
-    return waypoint_track(positions, first, values)
+    parsed = waypoint_track(positions, times, values)
+    return replace(parsed, notes=[f"its column {one}" for one in unused_speed_notes(header)])
 
 
 def write_csv(route: Route, path: str | Path, options: RouteFileOptions | None = None) -> None:

@@ -127,7 +127,7 @@ def file_track(route: Route, options: RouteFileOptions | None = None) -> Track:
     """
     rows = file_route(route, options).rows
     positions = [(row["lat"], row["lon"]) for row in rows]
-    return track_of(waypoint_track(positions, rows[0]["time"], rows), None, "route")
+    return track_of(waypoint_track(positions, [rows[0]["time"]], rows), None, "route")
 
 
 def _cut(route: Route, vertices: FileVertices) -> _CutRoute:

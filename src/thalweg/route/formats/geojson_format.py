@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,12 @@ from thalweg.core.geodesy import Position, densify, positions_along
 from thalweg.core.time import parse_time
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route.formats.file_route import file_route
-from thalweg.route.formats.parsed_track import ParsedTrack, position_of, waypoint_track
+from thalweg.route.formats.parsed_track import (
+    ParsedTrack,
+    position_of,
+    unused_speed_notes,
+    waypoint_track,
+)
 from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.route import Route
 
@@ -65,7 +71,11 @@ def parse_geojson(text: str) -> ParsedTrack:
     positions = [_position(item, i) for i, (item, _) in enumerate(chosen, start=1)]
     if chosen is on_line:
         return ParsedTrack(_without_cuts(positions), first_time)
-    return waypoint_track(positions, first_time, [properties for _, properties in chosen])
+    given = [properties for _, properties in chosen]
+    times = [first_time, *(one.get("time") for one in given[1:])]
+    parsed = waypoint_track(positions, times, given)
+    notes = unused_speed_notes(str(name) for one in given for name in one)
+    return replace(parsed, notes=[f"its property {note}" for note in notes])
 
 
 def _first_line(lines: list[list[list[Any]]]) -> list[Any]:

@@ -47,8 +47,8 @@ def parse_gpx(text: str) -> ParsedTrack:
             "Export the route itself, not only waypoints.",
         )
     positions = [position_of(p.get("lat"), p.get("lon"), i) for i, p in enumerate(points, start=1)]
-    time = next((e.text for e in points[0] if local_name(e) == "time" and e.text), None)
-    return waypoint_track(positions, time, [_extensions(point) for point in points])
+    times = [next((e.text for e in p if local_name(e) == "time" and e.text), None) for p in points]
+    return waypoint_track(positions, times, [_extensions(point) for point in points])
 
 
 def write_gpx(route: Route, path: str | Path, options: RouteFileOptions | None = None) -> None:

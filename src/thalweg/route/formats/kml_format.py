@@ -119,7 +119,8 @@ def _of_points(places: list[ElementTree.Element]) -> ParsedTrack:
     positions = [
         position for place in places for position in _positions(_named(place, "coordinates")[:1])
     ]
-    return waypoint_track(positions, _time(places[0]), [_extended_data(place) for place in places])
+    given = [_extended_data(place) for place in places]
+    return waypoint_track(positions, [_time(place) for place in places], given)
 
 
 def _of_lines(place: ElementTree.Element) -> ParsedTrack | None:
@@ -129,7 +130,7 @@ def _of_lines(place: ElementTree.Element) -> ParsedTrack | None:
         return None
     parts = [element for line in lines for element in _named(line, "coordinates")[:1]]
     notes = ["its lines are joined to one route"] if len(parts) > 1 else []
-    return replace(waypoint_track(_positions(parts), _time(place), ()), notes=notes)
+    return replace(waypoint_track(_positions(parts), [_time(place)], ()), notes=notes)
 
 
 def _of_track(place: ElementTree.Element) -> ParsedTrack | None:
@@ -139,8 +140,8 @@ def _of_track(place: ElementTree.Element) -> ParsedTrack | None:
         return None
     texts = [(element.text or "").split() for element in coords]
     positions = [position_of(*_pair(values, i)[::-1], i) for i, values in enumerate(texts, start=1)]
-    time = next((element.text for element in _named(place, "when") if element.text), None)
-    return waypoint_track(positions, time, ())
+    times = [element.text for element in _named(place, "when") if element.text]
+    return waypoint_track(positions, times, ())
 
 
 def _positions(elements: Iterable[ElementTree.Element]) -> list[Position]:

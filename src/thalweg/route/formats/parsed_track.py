@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+import re
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import PurePath
 from typing import NamedTuple
@@ -15,7 +16,7 @@ from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.core.geodesy import Position, check_position
 from thalweg.core.given_numbers import shortened_repr, to_number
 from thalweg.core.rhumb_lines import rhumb_pieces
-from thalweg.core.time import TimeLike, parse_time
+from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.units import DAY, HOUR, KNOT
 from thalweg.route.carried_extensions import NO_EXTENSIONS, CarriedExtensions
 from thalweg.route.track import Track
@@ -67,6 +68,7 @@ class WaypointOrder(NamedTuple):
 #: What files call the wait at a waypoint and the speed ordered from there on, with units in SI.
 WAITS = {"waiting_h": HOUR, "wait_h": HOUR, "waiting_s": 1.0, "wait_s": 1.0}
 SPEEDS = {"ordered_speed_kn": KNOT}
+_SPEED_WORDS = ("speed", "speeds", "sog", "stw", "knots", "kn", "kts")
 GEOMETRY = "geometry"  #: what files call the kind of line of the leg after a waypoint
 RHUMB_LINE, GREAT_CIRCLE = "RL", "GC"  #: kinds of lines in files of this package
 _RHUMB_WORDS = ("rl", "rhumb", "rhumb line", "rhumbline", "loxodrome")
@@ -104,19 +106,87 @@ def waypoint_order(values: Mapping[str, object], number: int) -> WaypointOrder:
 
 
 def waypoint_track(
-    positions: list[Position], time: TimeLike | None, given: Sequence[Mapping[str, object]]
+    positions: list[Position],
+    times: Sequence[TimeLike | None],
+    given: Sequence[Mapping[str, object]],
 ) -> ParsedTrack:
     """Return the contents of a file with what it gives at each waypoint, by name.
 
     Parameters
     ----------
-    time : Of the first waypoint; None or no text where the file has none.
+    times : Of the waypoints, of which the first is used; None or no text where the file has none.
+
+    Raises
+    ------
+    InputError : If a time is before that of an earlier waypoint.
     """
+    time = times[0] if times else None
+    _check_times_rise(times)
     orders = [waypoint_order(values, i) for i, values in enumerate(given, start=1)]
     rhumb = [is_rhumb_line(values.get(GEOMETRY), i) for i, values in enumerate(given[:-1], start=1)]
     return ParsedTrack(
         positions, parse_time(time) if time not in (None, "") else None, orders, rhumb
     )
+
+
+def _check_times_rise(times: Sequence[TimeLike | None]) -> None:
+    """Refuse a time before that of an earlier waypoint.
+
+    Parameters
+    ----------
+    times : Of the waypoints; what is no time is not looked at.
+
+    Raises
+    ------
+    InputError : Names both waypoints.
+    """
+    latest, of = -math.inf, 0
+    for number, value in enumerate(times, start=1):
+        if value is None or value == "":
+            continue
+        try:
+            moment = parse_time(value)
+        except InputError:
+            continue
+        if moment < latest:
+            raise InputError(
+                f"Waypoint {number} of the route is at {format_time(moment)}, before waypoint {of} "
+                f"at {format_time(latest)}.",
+                "The times of a route rise from waypoint to waypoint.",
+                "Correct the times, or the order of the waypoints.",
+                waypoint=number,
+            )
+        latest, of = moment, number
+
+
+def unused_speed_notes(names: Iterable[str]) -> list[str]:
+    """Return a note on speeds of a file that are not used.
+
+    Parameters
+    ----------
+    names : Of the columns; the speeds through water and over ground of files of this package are
+        results, on which there is no note.
+
+    Returns
+    -------
+    list of str : Empty where no speed is left out.
+    """
+    found = list(dict.fromkeys(names))
+    unused = [name for name in found if _is_speed(name)]
+    if not unused or any(name in SPEEDS for name in found):
+        return []
+    return [
+        f"{' and '.join(unused)} {'is' if len(unused) == 1 else 'are'} not used: the ship sails at "
+        f"its own speed, or at those of {', '.join(SPEEDS)} (through calm water)"
+    ]
+
+
+def _is_speed(name: str) -> bool:
+    """Return whether the name of a column means a speed that this package does not write."""
+    if name in ("speed_through_water_kn", "speed_over_ground_kn"):
+        return False
+    words = re.split(r"[^a-z]+", name.casefold())
+    return any(word in _SPEED_WORDS for word in words) and "wind" not in words
 
 
 def is_rhumb_line(text: object, number: int) -> bool:
