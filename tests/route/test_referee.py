@@ -227,7 +227,7 @@ def test_a_gap_is_reported_with_its_position():
     sea = Sea.from_functions(
         {UE: lambda t, a, o: np.where(o > 0.2, np.nan, 0.5), UN: lambda t, a, o: 0.0 * a}
     )
-    with pytest.raises(CoverageError, match=r"0\.20\d\dE.*sea_water_velocity \(gap\)"):
+    with pytest.raises(CoverageError, match=r"0\.20\d\dE.*current \(eastward_sea"):
         evaluate([(0, 0), (0, 0.4)], ship=ship(5.0), sea=sea, depart=0, step=200.0)
     route = evaluate([(0, 0), (0, 0.1), (0, 0.4)], ship=ship(5.0), sea=sea, depart=0, strict=False)
     assert not route.feasible
@@ -245,18 +245,23 @@ def test_sailing_beyond_the_end_of_the_data_is_reported():
     sea = Sea.from_functions(
         {UE: lambda t, a, o: 0.5 + 0 * a, UN: lambda t, a, o: 0.0 * a}, period=(0.0, 3600.0)
     )
-    with pytest.raises(OutsidePeriodError, match="1970-01-01T01:0"):
+    with pytest.raises(OutsidePeriodError, match="1970-01-01T01:0") as found:
         evaluate([(0, 0), (0, 1)], ship=ship(5.0), sea=sea, depart=0)
+    words = str(found.value)  # they named one component, and strict=False as if on every interface
+    assert f"the data have no current ({UE}, {UN})." in words
+    assert "outside the period of the data" in words
+    assert "In Python, evaluate(..., strict=False) returns" in words
 
 
 def test_a_ship_that_needs_what_the_sea_lacks_is_refused():
-    with pytest.raises(MissingVariableError, match=r"does not have: .*wind"):
+    with pytest.raises(MissingVariableError, match=r"does not have: .*wind") as found:
         evaluate(
             [(0, 0), (0, 1)],
             ship=Ship.simple(10, 5, max_wind_speed_kn=30),
             sea=Sea.from_functions({}),
             depart=0,
         )
+    assert "--fill wind=0 (in Python, Sea.filled)" in str(found.value)
 
 
 def test_missing_currents_are_a_stated_assumption():

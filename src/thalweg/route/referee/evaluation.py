@@ -155,7 +155,7 @@ def evaluate(
     if strict and not math.isfinite(result.arrive):
         gaps = [violation for violation in result.violations if is_data_gap(violation)]
         if gaps:
-            raise coverage_error(gaps[-1])
+            raise coverage_error(gaps)
     return result
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints
 from thalweg.route.referee.sailing_physics import SailingEnvironment, SailingState
 from thalweg.route.route import Violation
 from thalweg.route.track import Track
+from thalweg.sea.standard_names import plain_names
 from thalweg.ship.condition_variables import (
     EASTWARD_WIND,
     NORTHWARD_WIND,
@@ -178,19 +179,29 @@ def canal_violations(
     return found
 
 
-def coverage_error(violation: Violation) -> CoverageError:
-    """Return the error for a route that leaves the data."""
+def coverage_error(gaps: Sequence[Violation]) -> CoverageError:
+    """Return the error for a route that leaves the data.
+
+    Parameters
+    ----------
+    gaps : Its gaps in the data, of which those at the place of the last are named.
+    """
+    violation = gaps[-1]
     place = f"{format_position(violation.lat, violation.lon)} at {format_time(violation.time)}"
-    what = violation.reason.partition(": ")[2]
-    kind = CoverageError
+    here = [one for one in gaps if one.time == violation.time]
+    names = sorted({one.reason.partition(": ")[2].partition(" (")[0] for one in here})
+    words = plain_names(names)
+    what = words if words == ", ".join(names) else f"{words} ({', '.join(names)})"
+    kind, why = CoverageError, "The data have a gap there."
     if violation.reason.endswith("(period)"):
-        kind = OutsidePeriodError
+        kind, why = OutsidePeriodError, "That is outside the period of the data."
     elif violation.reason.endswith("(area)"):
-        kind = OutsideAreaError
+        kind, why = OutsideAreaError, "That is outside the area of the data."
     return kind(
-        f"The route runs to {place}, where {what} is missing in the data.",
-        "Up to there it can be evaluated.",
-        "Add data that cover it, change the route, or choose a partial result (strict=False).",
+        f"The route runs to {place}, where the data have no {what}.",
+        why,
+        "Add data that cover it, or change the route or the departure. In Python, "
+        "evaluate(..., strict=False) returns the route as far as it can be sailed.",
         lat=violation.lat,
         lon=violation.lon,
         time=violation.time,

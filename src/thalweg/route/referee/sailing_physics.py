@@ -12,6 +12,7 @@ from thalweg.chart.chart import control_areas_in_force
 from thalweg.core.errors import MissingVariableError
 from thalweg.core.types import FloatArray
 from thalweg.route.referee.leg_segments import TrackPoints
+from thalweg.sea.fill_policies import fill_hint
 from thalweg.sea.standard_names import plain_names
 from thalweg.ship.condition_variables import (
     BED_DEPTH,
@@ -110,7 +111,8 @@ def make_sailing_environment(ship: Ship, sea: Sea, chart: Chart | None) -> Saili
             f"The ship {ship.name!r} needs data that the sea does not have: "
             f"{plain_names(missing)}.",
             f"The sea has: {plain_names(sea.variables)}.",
-            "Add data with it, or fill it by name (Sea.filled).",
+            f"Add a file with {'it' if len(missing) == 1 else 'them'}, or fill by name: "
+            f"{fill_hint(missing, sea.variables)} (in Python, Sea.filled).",
             missing=missing,
         )
     names = set(ship.needs)
