@@ -240,3 +240,31 @@ def test_departures_that_meet_a_limit_have_no_arrival():
     late = table.times + took > closes + 60.0
     assert np.isfinite(table.duration[sure]).all() and np.isinf(table.duration[late]).all()
     assert sure.sum() > 250 and late.sum() > 150
+
+
+def test_a_ship_without_power_is_refused_with_what_to_add():
+    """The hopper dredger of van Halem has no power, and the message did not say what it lacks."""
+
+    def table(ship):
+        departures = Departures(0.0, period=TIDE, step=TIDE / 4)
+        return trip_table([WEST_END, EAST_END], ship=ship, sea=sea_of(), departures=departures)
+
+    dredger = Ship.load("hopper-dredger")
+    with pytest.raises(InputError) as found:
+        table(dredger.with_load_factor(0.0))
+    asked = "add engine: {reference_speed_kn: 10, reference_power_kw: ...}"
+    assert asked in str(found.value) and "set models: {calm_water: cubic}" in str(found.value)
+    engine = {"reference_speed_kn": 10, "reference_power_kw": 2400}
+    models = {**dredger.data["models"], "calm_water": "cubic"}
+    with_power = Ship.from_dict({**dredger.data, "engine": engine, "models": models})
+    found = table(with_power)
+    assert found.energy == pytest.approx(2400e3 * found.duration)
+    rows = Ship.from_dict(
+        {
+            "name": "rows",
+            "hull": {"draught_m": 5.0},
+            "table": {"speed_kn": [8, 10], "fuel_t_per_day": [3.0, 6.0]},
+        }
+    )
+    with pytest.raises(InputError, match="add a column power_kw to its table"):
+        table(rows)

@@ -17,6 +17,7 @@ from thalweg.core.errors import CoverageError, InputError, MissingVariableError
 from thalweg.core.geodesy import format_position
 from thalweg.core.time import TimeLike, format_time
 from thalweg.core.types import FloatArray
+from thalweg.core.units import KNOT
 from thalweg.operations.waiting.departures import Departures
 from thalweg.operations.waiting.trip_table import TripTable
 from thalweg.route.referee.evaluation import RouteLike, as_track, resolve_settings
@@ -189,11 +190,7 @@ class _TrackSimulation:
         parts = [self._sail(departs[i : i + chunk]) for i in range(0, len(departs), chunk)]
         duration, energy = (np.concatenate(column) for column in zip(*parts))
         if np.isnan(energy).any():
-            raise InputError(
-                f"The power of the ship {self.environment.ship.name!r} is unknown.",
-                "Energy needs a ship with a power: a resistance or a fuel and engine description.",
-                "Choose a ship such as 'vox-olympia', or describe the engine in its file.",
-            )
+            raise _unknown_power_error(self.environment.ship)
         return duration, energy
 
     def _sail(self, departs: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -355,3 +352,27 @@ def _limited_quantity(name: str, conditions: Conditions, motion: SailingState) -
     if name == "wind_speed":
         return np.hypot(motion.sampled[EASTWARD_WIND], motion.sampled[NORTHWARD_WIND])
     return np.asarray(conditions[name], float)
+
+
+def _unknown_power_error(ship: Ship) -> InputError:
+    """Return the error of a ship without power, with what its ship file lacks."""
+    file = ship.file
+    missing = ["engine.reference_power_kw"]
+    if file.table is not None and file.models.calm_water in (None, "table"):
+        missing = ["table.power_kw"]
+        remedy = "add a column power_kw to its table [kW]"
+    else:
+        at = f"{float(ship.with_load_factor(1.0).speeds[-1]) / KNOT:.3g}"
+        given = file.engine.reference_speed_kn
+        remedy = "add engine: {reference_speed_kn: " + (at if given is None else f"{given:g}")
+        remedy += ", reference_power_kw: ...}, the brake power at that speed [kW]"
+        if file.models.calm_water not in (None, "cubic"):
+            remedy += ", and set models: {calm_water: cubic}"
+            missing.append("models.calm_water")
+    return InputError(
+        f"The power of the ship {ship.name!r} is unknown.",
+        "The rules of waiting compare energy: that of the brake while the ship sails, and of the "
+        "hotel load all the time.",
+        f"In a ship file of your own, {remedy}; or choose a ship with power, such as vox-olympia.",
+        missing=missing,
+    )
