@@ -1,5 +1,8 @@
 """Bad input is refused with a clear message."""
 
+import dataclasses
+import inspect
+import pickle
 import re
 
 import numpy as np
@@ -297,3 +300,14 @@ def test_data_that_end_on_a_way_round_land_are_the_reason_given():
     assert lat < 42.5  # a day down the Adriatic, and not off Venice
     left = float(re.search(r"([\d.]+) nm short", str(caught.value))[1])
     assert left == pytest.approx(1_085.0 - 24.0 * 12.0, abs=20.0)
+
+
+def test_an_unknown_entry_of_a_voyage_has_near_matches():
+    """It was a bare TypeError."""
+    with pytest.raises(InputError, match="Did you mean 'objective'") as caught:
+        Voyage(start=(50.0, 0.0), goal=(51.0, 0.0), depart=0.0, objectiv="fuel")
+    assert caught.value.details["field"] == "objectiv"
+    voyage = Voyage(start=(50.0, 0.0), goal=(51.0, 0.0), depart=0.0)
+    assert dataclasses.replace(voyage, speed_kn=9.0).speed_kn == 9.0
+    assert pickle.loads(pickle.dumps(voyage)) == voyage
+    assert "objective" in inspect.signature(Voyage).parameters

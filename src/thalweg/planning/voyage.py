@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.file_reading import read_text_file
@@ -21,6 +22,8 @@ from thalweg.planning.voyage_parts import (
     VoyagePrices,
 )
 
+_Request = TypeVar("_Request")
+
 #: The entries of a voyage in the order of its files.
 _ENTRIES: Final = (
     "start", "goal", "depart", "depart_window", "objective", "via", "arrive_by", "arrive", "wait",
@@ -34,6 +37,27 @@ _MAY_BE_EMPTY: Final = ("via", "forbid", "open", "avoid", "weights", "at_most", 
 _LEFT_OUT: Final = (("method", "default"), ("ignore_shoals", False), ("ignore_lanes", False))
 
 
+def _check_entries(names: Iterable[object]) -> None:
+    """Refuse a name that is no entry of a voyage, with near matches."""
+    for name in names:
+        if name not in _ENTRIES:
+            raise unknown_name_error("voyage entry", str(name), _ENTRIES, field=str(name))
+
+
+def _with_near_names(cls: type[_Request]) -> type[_Request]:
+    """Return a class of requests whose constructor names what an unknown entry may have meant."""
+    init = cls.__init__
+
+    @functools.wraps(init)
+    def checked(self: _Request, *args: Any, **entries: Any) -> None:
+        _check_entries(entries)
+        init(self, *args, **entries)
+
+    cls.__init__ = checked  # type: ignore[assignment, method-assign]
+    return cls
+
+
+@_with_near_names
 @dataclass(frozen=True, kw_only=True)
 class Voyage(IndicatorRequest, SearchRequest, VoyagePrices, Schedule, Itinerary):
     """A voyage to plan: an itinerary, a schedule, prices and a search request.
@@ -124,7 +148,8 @@ class Voyage(IndicatorRequest, SearchRequest, VoyagePrices, Schedule, Itinerary)
     Raises
     ------
     InputError
-        For places, times, speeds or names that are not possible.
+        For unknown entries (with near matches), and for places, times, speeds or names that are not
+        possible.
     """
 
     def __post_init__(self) -> None:
@@ -221,9 +246,7 @@ class Voyage(IndicatorRequest, SearchRequest, VoyagePrices, Schedule, Itinerary)
                 "Write {start: Rotterdam, goal: Lisbon, depart: 2026-01-01T06:00Z}, for example.",
                 field="voyage",
             )
-        for key in data:
-            if key not in _ENTRIES:
-                raise unknown_name_error("voyage entry", str(key), _ENTRIES, field=str(key))
+        _check_entries(data)
         missing = [key for key in ("start", "goal") if key not in data]
         if missing:
             raise InputError(
