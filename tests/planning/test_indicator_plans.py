@@ -383,6 +383,10 @@ def test_champions_and_differences_in_words():
     words = difference_in_words(calm, fast)
     assert words == "+30 min, 12 % sick instead of 30 %, +8 nm"
     assert difference_in_words(fast, fast) == "nearly the same figures"
+    boat = fast | other | {"time": 2.0, "fuel": 0.031, "distance": 12.0}
+    thrifty = boat | {"fuel": 0.027, "distance": 11.4}  # were +0.004 t fuel, +1 nm
+    assert difference_in_words(boat, thrifty) == "+4.00 kg fuel (+15 %), +0.6 nm"
+    assert champions([boat, thrifty])["fuel"] == 1  # both were 0.03 t
     close = calm | {"sick_percent": 29.6}  # in a table both are 30 %
     assert "sick_percent" not in champions([fast | other, close | other])
     nearly = [calm | other | {"sick_percent": value} for value in (8.8, 7.9)]

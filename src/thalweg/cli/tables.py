@@ -128,24 +128,27 @@ def print_front(console: Any, plan: Plan) -> None:
     import numpy as np
 
     from thalweg.core.pareto_fronts import evenly_spaced_subset
+    from thalweg.route.number_texts import amount_column, decimals
 
     front = plan.front
     assert front is not None  # checked by the caller
     columns = ("h", front.criterion, "nm", "wait h", "gap %", "from", "way")
-    title = f"{front.criterion} against time ({front.unit})"
-    table = new_table(title, columns, left=("from", "way"), wrap="way")
     rows = sorted(front.rows(plan.routes), key=lambda row: float(row["time_h"]))
     shown = evenly_spaced_subset(
         np.array([row["time_h"] for row in rows]),
         np.array([row[front.column] for row in rows]),
         _MAX_ROWS,
     )
-    for row in (rows[index] for index in shown):
+    values, unit = amount_column([rows[index][front.column] for index in shown], front.unit)
+    title = f"{front.criterion} against time ({unit})"
+    table = new_table(title, columns, left=("from", "way"), wrap="way")
+    miles = decimals([row["distance_nm"] for row in rows])
+    waits = decimals([row["waiting_h"] for row in rows], least=1)
+    for row, value in zip((rows[index] for index in shown), values):
         gap = "" if row["gap"] is None else f"{100 * row['gap']:.1f}"
-        value = f"{row[front.column]:,.2f}"
         table.add_row(
-            f"{row['time_h']:.2f}", value, f"{row['distance_nm']:.0f}", f"{row['waiting_h']:.1f}",
-            gap, row["stage"], row["way"],
+            f"{row['time_h']:.2f}", value, f"{row['distance_nm']:.{miles}f}",
+            f"{row['waiting_h']:.{waits}f}", gap, row["stage"], row["way"],
         )  # fmt: skip
     console.print(table)
     if len(rows) > len(shown):
@@ -156,6 +159,8 @@ def print_front(console: Any, plan: Plan) -> None:
 
 def _savings(plan: Plan) -> list[str]:
     """Return sentences on what the front saves over the weather-blind route, at the ends."""
+    from thalweg.route.number_texts import amount_text
+
     comparison = plan.front.comparison if plan.front is not None else None
     if comparison is None or plan.front is None:
         return []
@@ -164,14 +169,14 @@ def _savings(plan: Plan) -> list[str]:
         saved = []
         if row["saved"] is not None and row["saved"] > 0.0:
             saved.append(
-                f"{row['saved']:,.2f} {plan.front.unit} ({row['saved_percent']:.1f} %) in the "
-                "same time"
+                f"{amount_text(row['saved'], plan.front.unit)} ({row['saved_percent']:.1f} %) in "
+                "the same time"
             )
         if row["saved_h"] is not None and row["saved_h"] > 0.0:
             saved.append(f"{row['saved_h']:.2f} h at the same {plan.front.criterion}")
         lines.append(
             f"Weather-blind at {row['speed_kn']:.1f} kn: {row['time_h']:.2f} h, "
-            f"{row['value']:,.2f} {plan.front.unit}"
+            + amount_text(row["value"], plan.front.unit)
             + ("" if row["feasible"] else " (breaks a limit)")
             + (f"; the front saves {', or '.join(saved)}." if saved else ".")
         )

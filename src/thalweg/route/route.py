@@ -16,6 +16,7 @@ from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
 from thalweg.route.cost_parts import COST_PARTS
 from thalweg.route.indicator_columns import indicator_table, indicator_value
+from thalweg.route.number_texts import amount_text
 from thalweg.route.route_tables import waypoint_frame, waypoint_rows
 from thalweg.route.track import Track
 
@@ -342,8 +343,8 @@ class Route:
         }
 
     def __str__(self) -> str:
-        fuel = "" if self.fuel_t is None else f", {self.fuel_t:.2f} t fuel"
-        fuel += "" if self.cost is None else f", {self.cost:,.0f} {self.currency}"
+        fuel = "" if self.fuel_t is None else f", {amount_text(self.fuel_t, 't')} fuel"
+        fuel += "" if self.cost is None else f", {amount_text(self.cost, self.currency)}"
         state = "" if self.feasible else f", {len(self.violations)} limits violated"
         return f"Route: {self.time_h:.4f} h, {self.distance_nm:.2f} nm{fuel}{state}"
 

@@ -136,8 +136,13 @@ def _print_alternatives(found: AlternativePlans) -> None:
     """Print the routes in words, and a table of their figures."""
     from rich.console import Console
 
-    from thalweg.planning.indicators.route_figures import COMPARED_FIGURES, compared_values
+    from thalweg.planning.indicators.route_figures import (
+        COMPARED_FIGURES,
+        compared_values,
+        figure_digits,
+    )
     from thalweg.route.indicator_columns import INDICATORS
+    from thalweg.route.number_texts import amount_column
 
     print(found)
     values = [compared_values(one.route) for one in found.choices]
@@ -151,7 +156,10 @@ def _print_alternatives(found: AlternativePlans) -> None:
         figure = COMPARED_FIGURES[name]
         unit = INDICATORS[name][0] or (found.choices[0].route.currency if name == "cost" else "")
         shown.append(name)
-        cells = ("-" if v != v else f"{v:,.{figure.digits}f}" for v in row)
+        digits = figure_digits(name, row)
+        cells = ["-" if v != v else f"{v:,.{digits}f}" for v in row]
+        if name == "fuel":
+            cells, unit = amount_column(row, unit)
         table.add_row(f"{figure.short} {unit}".rstrip(), *cells)
     if any(slack is not None for slack in found.slack_h):
         table.add_row("slack h", *("-" if s is None else f"{s:.1f}" for s in found.slack_h))

@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+import math
+from typing import Any, Final
+
+from thalweg.route.number_texts import decimals
+
+#: Columns whose values are small for small craft, with their least number of decimals.
+_MORE_DIGITS_OF_SMALL_CRAFT: Final = {
+    "brake_power_kw": 0, "fuel_kg_per_h": 0, "fuel_kg_per_nm": 1, "co2_kg_per_h": 0,
+}  # fmt: skip
 
 
 def print_sheet(sheet: dict[str, Any]) -> None:
@@ -22,6 +30,7 @@ def print_sheet(sheet: dict[str, Any]) -> None:
     heads += ["power\nkW", "fuel\nkg/h", "fuel\nkg/nm", "CO2\nkg/h", "CII\ng/(t nm)"]
     for head in heads:
         table.add_column(head, justify="right", no_wrap=True)
+    digits = {name: _digits(sheet["conditions"], name) for name in _MORE_DIGITS_OF_SMALL_CRAFT}
     for row in sheet["conditions"]:
         forces = row["resistance_n"]
         ordered = row.get("ordered_speed_kn")
@@ -31,15 +40,18 @@ def print_sheet(sheet: dict[str, Any]) -> None:
             cells += [_text(_in_thousands(forces[name]), 1) for name in ("total", "waves", "wind")]
         cii = row["cii"]
         cells += [
-            _text(row["brake_power_kw"], 0),
-            _text(row["fuel_kg_per_h"], 0),
-            _text(row["fuel_kg_per_nm"], 1),
-            _text(row["co2_kg_per_h"], 0),
+            *(_text(row[name], digits[name]) for name in _MORE_DIGITS_OF_SMALL_CRAFT),
             f"{cii['attained_g_per_t_nm']:.2f} {cii['rating_2026'] or ''}" if cii else "-",
         ]
         table.add_row(*cells)
     console.print(table)
     _print_notes(console, sheet)
+
+
+def _digits(rows: list[dict[str, Any]], name: str) -> int:
+    """Return the number of decimals of a column."""
+    values = [math.nan if row[name] is None else row[name] for row in rows]
+    return decimals(values, least=_MORE_DIGITS_OF_SMALL_CRAFT[name])
 
 
 def _print_notes(console: Any, sheet: dict[str, Any]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from thalweg.planning.report.waiting_report import LEAST_WAIT_H, waits_without_fuel
 from thalweg.route import Route
 from thalweg.route.indicator_columns import INDICATORS, indicator_value, named_columns
+from thalweg.route.number_texts import amount_text, decimals
 
 
 class ComparedFigure(NamedTuple):
@@ -21,7 +22,7 @@ class ComparedFigure(NamedTuple):
     best : "least" or "greatest".
     words : Of the route that is best in it.
     short : Name in a table.
-    digits : Decimals in words and tables.
+    digits : Least number of decimals in words and tables.
     """
 
     best: str
@@ -49,6 +50,7 @@ COMPARED_FIGURES: Final = {
 _OF_PLACES: Final = (
     "comfort", "sick_percent", "worst_hour_percent", "max_acceleration", "uncomfortable_percent"
 )  # fmt: skip
+_MOST_DIGITS: Final = {"time": 2, "distance": 1, "fuel": 5, "cost": 2}  # of small values
 _EQUAL: Final = 1e-2  # figures that differ by less than this share are the same
 _EQUAL_POINTS: Final = 0.5  # ... as are those in per cent of the time, by so many points
 _WORTH_WORDS: Final = 0.03  # smaller differences are not put into words ...
@@ -100,7 +102,7 @@ def champions(values: Sequence[dict[str, float]]) -> dict[str, int]:
             continue
         signed = column if figure.best == "least" else -column
         equal = _tolerance(name, column)
-        shown = np.round(signed, figure.digits)  # as in the table
+        shown = np.round(signed, figure_digits(name, column))  # as in the table
         if np.ptp(column) > equal and np.ptp(shown) > 0.0:  # of equal ones the fastest
             near = signed <= signed.min() + equal
             near |= shown == shown[np.argmin(signed)]
@@ -108,6 +110,18 @@ def champions(values: Sequence[dict[str, float]]) -> dict[str, int]:
             times = np.array([one["time"] for one in values])
             found[name] = int(near[np.argmin(times[near])])
     return found
+
+
+def figure_digits(name: str, values: Iterable[float]) -> int:
+    """Return with how many decimals a figure of routes is compared and written, in its own unit.
+
+    Parameters
+    ----------
+    values : Of the routes beside each other; small and near values have more decimals.
+    """
+    digits = COMPARED_FIGURES[name].digits
+    most = _MOST_DIGITS.get(name)
+    return digits if most is None else decimals(values, least=digits, most=most)
 
 
 def _tolerance(name: str, values: np.ndarray) -> float:
@@ -131,7 +145,7 @@ def best_of_all(
         every = np.array([one[name] for one in candidates])
         signed = every if COMPARED_FIGURES[name].best == "least" else -every
         own = values[at][name] * (1.0 if COMPARED_FIGURES[name].best == "least" else -1.0)
-        digits = COMPARED_FIGURES[name].digits
+        digits = figure_digits(name, every)
         equal = _tolerance(name, every)
         least = float(np.nanmin(signed))
         if own > least + equal and round(own, digits) > round(least, digits):
@@ -154,7 +168,7 @@ def difference_in_words(values: dict[str, float], reference: dict[str, float]) -
         if name == "time":
             words.append(f"{sign}{_duration(abs(change))}")
         elif name == "distance":
-            words.append(f"{sign}{abs(change):.0f} nm")
+            words.append(f"{sign}{abs(change):.{0 if abs(change) >= 3.0 else 1}f} nm")
         elif name == "sick_percent":
             digits = 0 if abs(change) >= 1.0 else 1
             words.append(f"{own:.{digits}f} % sick instead of {other:.{digits}f} %")
@@ -162,7 +176,7 @@ def difference_in_words(values: dict[str, float], reference: dict[str, float]) -
             words.append(f"{own:.1f} encounters instead of {other:.1f}")
         else:
             share = f" ({sign}{abs(change) / other:.0%})" if other > 0.0 else ""
-            words.append(f"{sign}{abs(change):.2g} t fuel{share}".replace("%)", " %)"))
+            words.append(f"{sign}{amount_text(abs(change), 't')} fuel{share}".replace("%)", " %)"))
     return ", ".join(words) or "nearly the same figures"
 
 

@@ -15,6 +15,7 @@ from thalweg.planning.plots.map_extent import MapExtent
 from thalweg.planning.plots.map_labels import LabelPlacer
 from thalweg.planning.plots.map_overlays import draw_land, draw_zones, place_labels
 from thalweg.route import Route
+from thalweg.route.number_texts import hours_texts, miles_text
 
 _SEA: Final = "#eaf3fa"
 #: Colours of Okabe and Ito (2008), which differ also for the colour-blind.
@@ -45,8 +46,9 @@ def draw_alternatives_map(
     box.set_up(axes)
     draw_land(axes, chart, box)
     labels = draw_zones(axes, chart, box)
+    hours = hours_texts([route.time_h for route in routes])
     for number, (route, name, colour) in enumerate(zip(routes, names, _COLOURS), start=1):
-        text = f"{number}. {name}: {route.time_h:.1f} h, {route.distance_nm:,.0f} nm"
+        text = f"{number}. {name}: {hours[number - 1]} h, {miles_text(route.distance_nm)} nm"
         line = box.line(route.samples["lon"]), route.samples["lat"]
         axes.plot(*line, color=colour, lw=2.0, zorder=5, label=text)
     axes.set_title(

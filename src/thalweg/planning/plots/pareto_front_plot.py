@@ -11,6 +11,7 @@ import numpy as np
 from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.core.time import parse_time
 from thalweg.planning.plan_front import knee
+from thalweg.route.number_texts import amount_column, hours_texts
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData
@@ -73,10 +74,10 @@ def _draw_points(axes: Any, plan: PlanData) -> None:
         axes.plot(time[here], front.values[here], "o", ms=5, color=colour, label=f"routes: {way}")
     chosen = {int(order[0]): "fastest", int(order[-1]): "least"}
     chosen.setdefault(int(order[knee(time[order], front.values[order])]), "knee")
-    for index, word in chosen.items():
-        value = front.values[index]
-        digits = 0 if value >= 1000.0 else 1 if value >= 100.0 else 2
-        text = f"{word}: {time[index]:.1f} h, {value:,.{digits}f} {front.unit}"
+    hours = hours_texts([time[index] for index in chosen])
+    amounts, unit = amount_column([front.values[index] for index in chosen], front.unit)
+    for (index, word), hour, amount in zip(chosen.items(), hours, amounts):
+        text = f"{word}: {hour} h, {amount} {unit}"
         axes.annotate(
             text,
             (time[index], front.values[index]),

@@ -23,6 +23,7 @@ from thalweg.planning.plots.map_overlays import (
     storm_track,
 )
 from thalweg.planning.plots.stage_passages import stage_arrival_times
+from thalweg.route.number_texts import amount_text, miles_text
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData, PlotContext
@@ -296,11 +297,11 @@ def _longitudes_on_line(route: Route, box: MapExtent) -> np.ndarray:
 
 def _decorate_axes(axes: Any, plan: PlanData, box: MapExtent) -> None:
     best = plan.best
-    fuel = "" if best.fuel_t is None else f", {best.fuel_t:,.1f} t fuel"
+    fuel = "" if best.fuel_t is None else f", {amount_text(best.fuel_t, 't')} fuel"
     departs, arrives = (utc_text(time) for time in (best.depart, best.arrive))
     axes.set_title(
         f"{plan.provenance.get('from')} to {plan.provenance.get('to')}: "
-        f"{duration_text(best.arrive - best.depart)}, {best.distance_nm:,.1f} nm{fuel}\n"
+        f"{duration_text(best.arrive - best.depart)}, {miles_text(best.distance_nm)} nm{fuel}\n"
         f"depart {departs}, arrive {arrives}",
         fontsize=9,
         loc="left",

@@ -26,6 +26,7 @@ from thalweg.planning.report.route_summary import (
     weather_text,
 )
 from thalweg.route.indicator_columns import indicator_value
+from thalweg.route.number_texts import amount_column, amount_text, hours_texts
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData
@@ -84,7 +85,7 @@ def summary_items(plan: PlanData) -> list[tuple[str, str]]:
     items += [("Distance", distance_text(best, canals)), ("Fuel", fuel_text(best))]
     items.append(("Cost", cost_text(best, canals)))
     if plan.voyage.objective == "energy" and best.energy_mwh is not None:
-        items.append(("Energy", f"{best.energy_mwh:,.2f} MWh"))
+        items.append(("Energy", amount_text(best.energy_mwh, "MWh")))
     if plan.front is not None and len(plan.routes) > 1:
         items.append(("Choice", _choice(plan)))
     items += [
@@ -221,12 +222,12 @@ def _choice(plan: PlanData) -> str:
     if front.criterion == "comfort":  # a share of people says more than a squared dose
         values = np.array([indicator_value(route, "sick_percent") for route in plan.routes])
         unit = "% sick"
-    digits = 0 if float(np.nanmax(values)) >= 1e4 else 1
-    texts = [
-        f"{word} {time[k]:.1f} h {values[k]:,.{digits}f} {unit}"
-        for k, word in sorted(chosen.items(), key=lambda item: time[item[0]])
-    ]
-    return "; ".join(texts)
+    rows = sorted(chosen, key=lambda k: time[k])
+    hours = hours_texts([time[k] for k in rows])
+    amounts, unit = amount_column([values[k] for k in rows], unit)
+    return "; ".join(
+        f"{chosen[k]} {hour} h {amount} {unit}" for k, hour, amount in zip(rows, hours, amounts)
+    )
 
 
 def _sea(plan: PlanData) -> Sea | None:

@@ -16,6 +16,7 @@ from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.report.depth_report import CHECK_DEPTH
 from thalweg.planning.report.filled_weather import wave_shares
 from thalweg.planning.report.waiting_report import WAITS
+from thalweg.route.number_texts import amount_text, miles_text
 from thalweg.sea.fill_policies import is_calm_layer
 from thalweg.sea.models.cyclone_layer import AmbientSea, StormLayer
 from thalweg.ship.fuel_prices import FACTOR_OF_REQUEST, FACTOR_OF_SHIP_FILE
@@ -80,7 +81,7 @@ def distance_text(route: Route, canals: Sequence[Canal]) -> str:
     mean = f", mean speed {route.distance_nm / sailing:.1f} kn" if sailing > 0.0 else ""
     by = f", by {' and '.join(canal.title for canal in canals)}" if canals else ""
     met = "" if route.encounters is None else f", {route.encounters:.1f} encounters expected"
-    return f"{route.distance_nm:,.1f} nm{mean}{by}{met}"
+    return f"{miles_text(route.distance_nm)} nm{mean}{by}{met}"
 
 
 def canals_passed(route: Route, chart: Chart | None) -> list[Canal]:
@@ -100,8 +101,8 @@ def fuel_text(route: Route) -> str:
     if route.fuel_t is None:
         return "not known: the ship file has no fuel"
     inside = route.fuel_eca_t
-    areas = f", of it {inside:,.1f} t in emission control areas" if inside else ""
-    return f"{route.fuel_t:,.1f} t{areas}"
+    areas = f", of it {amount_text(inside, 't')} in emission control areas" if inside else ""
+    return f"{amount_text(route.fuel_t, 't')}{areas}"
 
 
 def cost_text(route: Route, canals: Sequence[Canal]) -> str:
@@ -115,7 +116,7 @@ def cost_text(route: Route, canals: Sequence[Canal]) -> str:
     word = "of it " if route.currency == "USD" else "without "
     paid = f", {word}canal dues {dues:,.0f} USD{basis}" if dues else ""
     prices = prices_text(route.prices)
-    return f"{route.cost:,.0f} {route.currency}{paid}" + (f"; {prices}" if prices else "")
+    return f"{amount_text(route.cost, route.currency)}{paid}" + (f"; {prices}" if prices else "")
 
 
 def prices_text(prices: Mapping[str, Any]) -> str:
