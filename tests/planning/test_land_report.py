@@ -5,33 +5,61 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
-from thalweg import Sea, Ship, evaluate
-from thalweg.chart.passages import find_passages
+import pytest
+
+from thalweg import Chart, Ship, Voyage
 from thalweg.planning.report.land_report import closed_passage_notes
 from thalweg.planning.report.note_order import count_of_dangers
+from thalweg.planning.request.offing_choice import restrict_passages
 
-SHIP = Ship.simple(speed_kn=12.0, draught_m=9.5, length_m=190.0)
+TANKER = Ship.load("kvlcc2")  # draught 20.8 m
+BULKER = Ship.simple(speed_kn=12.0, draught_m=9.5, length_m=190.0)
+BY_LOMBOK = [
+    (26.8, 50.3), (25.0, 57.0), (5.5, 80.0), (-9.5, 115.7), (1.0, 119.0), (5.0, 119.5),
+    (13.0, 120.0), (30.3, 122.5),
+]  # fmt: skip
+ROUND_VANCOUVER_ISLAND = [(49.3, -123.6), (48.3, -124.8), (51.0, -130.0), (54.3, -133.0)]
 ALONG_NORWAY = [(58.0, 5.0), (62.5, 4.5), (67.0, 11.0), (70.0, 17.5), (71.3, 25.0), (70.8, 29.0)]
 
 
-def notes_with_closed(*names: str) -> list[str]:
-    route = evaluate(ALONG_NORWAY, ship=SHIP, sea=Sea.calm(), depart="2026-01-01T00:00Z")
-    chart = SimpleNamespace(closed_passages=find_passages(names))
-    context: Any = SimpleNamespace(voyage=SimpleNamespace(avoid=()), ship=SHIP, chart=chart)
+@pytest.fixture(scope="module")
+def world():
+    return Chart.gshhg("i")
+
+
+def notes_on(
+    chart: Chart, ship: Ship, places: list[tuple[float, float]], avoid: tuple[str, ...] = ()
+) -> list[str]:
+    voyage = Voyage(start=places[0], goal=places[-1], depart=0.0, avoid=avoid)
+    lat, lon = zip(*places)
+    route: Any = SimpleNamespace(track=SimpleNamespace(lat=lat, lon=lon))
+    closed = restrict_passages(chart, voyage, ship, offing=3704.0)
+    context: Any = SimpleNamespace(voyage=voyage, ship=ship, chart=closed)
     return closed_passage_notes(context, route)
 
 
-def test_passages_closed_for_one_reason_share_a_note():
-    """Hammerfest to Ventspils had 16 lines on leads for ships below 120 m."""
-    (note,) = notes_with_closed("Naeroysund", "Stokksund", "Tjeldsund")
+def test_passages_of_the_way_that_a_draught_closes_share_a_note(world):
+    """Surabaya, Badung Strait and Alas were named, beside the route by Lombok, and not Malacca."""
+    (note,) = notes_on(world, TANKER, BY_LOMBOK)
     assert note == (
-        "Passages closed: Naeroysund, Stokksund and Tjeldsund: they are for ships below 120 m "
-        "(--open NAME opens one)."
+        "Passages closed: Malacca: One Fathom Bank, Malacca-Singapore west and Singapore Main "
+        "Strait: the draught of 20.8 m is over the 20.5 m allowed (--open NAME opens one)."
     )
     assert count_of_dangers([note]) == 1
 
 
-def test_a_single_closed_passage_says_how_to_open_it():
-    assert notes_with_closed("Tjeldsund") == [
-        "Passage closed: Tjeldsund: it is for ships below 120 m (--open 'Tjeldsund' opens it)."
+def test_passages_that_the_voyage_avoids_are_not_named(world):
+    avoid = ("Malacca: One Fathom Bank", "Malacca-Singapore west", "Singapore Main Strait")
+    assert not any("Malacca" in note for note in notes_on(world, TANKER, BY_LOMBOK, avoid))
+
+
+def test_a_single_closed_passage_says_how_to_open_it(world):
+    assert notes_on(world, BULKER, ROUND_VANCOUVER_ISLAND) == [
+        "Passage closed: Johnstone and Seymour Narrows: it is for ships below 120 m "
+        "(--open 'Johnstone and Seymour Narrows' opens it)."
     ]
+
+
+def test_closed_passages_beside_a_way_that_is_as_short_are_not_named(world):
+    """Straight lines from an outer route through the leads of Norway cross land."""
+    assert notes_on(world, BULKER, ALONG_NORWAY) == []

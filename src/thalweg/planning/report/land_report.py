@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -13,18 +14,20 @@ from thalweg.chart import Chart
 from thalweg.chart.passage_crossings import passages_crossed
 from thalweg.chart.passages import Passage, split_avoided
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
-from thalweg.core.geodesy import densify, distance, format_position
+from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.geodesy import densify, distance, format_position, line_length
 from thalweg.core.time import format_time
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.distance_report import PASSAGE_CLOSED, PASSAGES_CLOSED
 from thalweg.planning.request.offing_choice import size_restriction
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.seaways import Seaways, small_passages, world_chart
 from thalweg.route import Route
 from thalweg.route.referee.land_clearance import least_land_clearance
 
 _PIECE: Final = 20.0 * NAUTICAL_MILE  # routes are split so to find where a passage would leave them
 _LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE  # closed passages that save less are not mentioned
-_FARTHEST: Final = 120.0 * NAUTICAL_MILE  # nor are those farther from the route
 NEAREST_LAND: Final = "Nearest land"  #: a note on it begins so
 CLOSE_TO_LAND: Final = "Close to land"  #: ... or so, where it is nearer than `_CLOSE`
 _CLOSE: Final = 0.25 * NAUTICAL_MILE
@@ -77,15 +80,49 @@ def time_of_passing(route: Route, leg: int, lat: float, lon: float) -> str:
 
 
 def closed_passage_notes(context: PlanningContext, route: Route) -> list[str]:
-    """Return a note for each reason why a ship may not use passages that shorten a route."""
+    """Return a note for each reason why a ship may not use passages of a shorter way.
+
+    They are those that the shortest way between the ends of the route uses where all passages are
+    open that are closed to a ship of this size.
+    """
     avoided = split_avoided(context.voyage.avoid)[1]
-    names: dict[str, list[str]] = {}
+    closed: dict[str, str] = {}
     for passage in context.chart.closed_passages:
         why = "" if passage in avoided else size_restriction(passage, context.ship)
-        if why and _is_near(route, passage) and saved_length(route, passage) >= _LEAST_SAVED:
-            reason = why.removeprefix(f"{passage.name}: ")
-            names.setdefault(reason, []).append(passage.name)
-    return [_closed_note(reason, closed) for reason, closed in names.items()]
+        if why:
+            closed[passage.name] = why.removeprefix(f"{passage.name}: ")
+    if not any(
+        passage.name in closed and saved_length(route, passage) >= _LEAST_SAVED
+        for passage in context.chart.closed_passages
+    ):
+        return []
+    names: dict[str, list[str]] = {}
+    for name in _closed_on_shorter_way(context.chart, route, closed):
+        names.setdefault(closed[name], []).append(name)
+    return [_closed_note(reason, alike) for reason, alike in names.items()]
+
+
+def _closed_on_shorter_way(chart: Chart, route: Route, closed: Collection[str]) -> list[str]:
+    """Return the passages on the way that is shorter where closed ones are open, in its order."""
+    ends = [
+        Endpoint("", float(route.track.lat[k]), float(route.track.lon[k]), 0.0) for k in (0, -1)
+    ]
+    world, canals = world_chart(), {canal.name for canal in chart.canals}
+    now = replace(
+        Seaways.of_chart(world, (), opened=sorted(small_passages(world))),
+        canals=tuple(canal.name for canal in world.canals if canal.name not in canals),
+        passages=tuple(passage.name for passage in chart.closed_passages),
+    )
+    opened = replace(now, passages=tuple(name for name in now.passages if name not in closed))
+    try:
+        length = line_length(now.graph_path(*ends))
+        path = opened.graph_path(*ends)
+    except (InputError, NoRouteError):  # an end that the chart of all seas has on land
+        return []
+    if length - line_length(path) < _LEAST_SAVED:
+        return []
+    crossed = passages_crossed(now.chart.coastline, now.chart.passages, *np.array(path).T)
+    return [passage.name for _, passage in crossed if passage.name in closed]
 
 
 def _closed_note(reason: str, names: Sequence[str]) -> str:
@@ -96,13 +133,6 @@ def _closed_note(reason: str, names: Sequence[str]) -> str:
     listed = f"{', '.join(names[:-1])} and {names[-1]}"
     reason = re.sub(r"^it is\b", "they are", reason)
     return f"{PASSAGES_CLOSED}: {listed}: {reason} (--open NAME opens one)."
-
-
-def _is_near(route: Route, passage: Passage) -> bool:
-    """Return whether a passage is so near to a route that little land can be between."""
-    lat, lon, _leg = densify(np.asarray(route.track.lat), np.asarray(route.track.lon), _PIECE)
-    ends = passage.line[0], passage.line[-1]
-    return all(float(np.min(distance(lat, lon, *end))) <= _FARTHEST for end in ends)
 
 
 def saved_length(route: Route, passage: Passage) -> float:
