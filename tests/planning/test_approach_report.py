@@ -1,11 +1,15 @@
 """Notes on ways that turn back where the approach of a port ends."""
 
+import json
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from thalweg import Sea, Ship, evaluate
+from thalweg.cli.main import main
 from thalweg.planning.report.approach_report import turn_back_notes, turn_back_notes_of_route
 from thalweg.planning.report.note_order import count_of_dangers
 from thalweg.route.route_tables import LEG_KINDS
@@ -18,6 +22,9 @@ def test_a_way_that_turns_back_is_stated_with_the_place():
     (note,) = turn_back_notes(LAT, LON, [1])
     assert note.startswith("Turns back by 1") and "56.2800N 5.8000W" in note
     assert count_of_dangers([note]) == 1  # no summary leaves it out
+    # the first example of the README said that its way may be longer than need be
+    assert "there the channel of a port meets the open sea" in note
+    assert "Where the ship can use a nearer channel, plan from or to a position in it" in note
 
 
 def test_turns_elsewhere_and_ways_onwards_have_no_note():
@@ -32,3 +39,11 @@ def test_ends_of_approaches_are_found_on_a_route(kinds, found):
     kind = np.array([LEG_KINDS.index(name) for name in kinds])
     sailed = replace(route, legs=dict(route.legs) | {"leg_kind": kind})
     assert len(turn_back_notes_of_route(sailed)) == found
+
+
+@pytest.mark.slow
+def test_the_first_example_of_the_readme_has_no_note_on_danger(capsys):
+    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+    command = re.search(r"^thalweg (plan .*) --out out$", readme, re.MULTILINE)[1]
+    assert main([*command.split(), "--json"]) == 0
+    assert count_of_dangers(json.loads(capsys.readouterr().out)["notes"]) == 0

@@ -65,9 +65,9 @@ def turn_back_notes(lat: FloatArray, lon: FloatArray, ends: Iterable[int]) -> li
     turns = np.abs(course_changes(lat, lon))
     return [
         f"{TURNS_BACK} by {math.degrees(turns[at - 1]):.0f} degrees at "
-        f"{format_position(lat[at], lon[at])}, where the approach of a port ends, so that the way "
-        "may be longer than need be. Plan from or to a position on the side of the way onwards, if "
-        "the chart allows it."
+        f"{format_position(lat[at], lon[at])}: there the channel of a port meets the open sea, on "
+        "another side than the rest of the way. Where the ship can use a nearer channel, plan from "
+        "or to a position in it, and the way is shorter."
         for at in ends
         if 1 <= at <= len(turns) and turns[at - 1] > _SHARP
     ]
