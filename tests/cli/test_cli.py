@@ -1,12 +1,14 @@
 """The command line: results, exit codes, and error messages with a remedy."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import xarray as xr
 from rich.console import Console
 
+from thalweg.cli.distance_command import _print_distance
 from thalweg.cli.main import build_parser, main
 from thalweg.cli.option_values import open_sea
 from thalweg.cli.tables import print_waypoints
@@ -348,3 +350,20 @@ def test_fills_of_vectors_have_a_form_on_the_command_line(currents, capsys):
         ["eastward_wind", "northward_wind"], time.astype("datetime64[s]").astype(float), 50.5, 2.0
     )
     assert (float(wind["eastward_wind"]), float(wind["northward_wind"])) == (10.0, -2.0)
+
+
+def test_distances_of_short_ways_have_decimals_and_times_to_the_minute(capsys):
+    """They had 0.1 days and whole miles."""
+    way = SimpleNamespace(
+        start="A",
+        goal="B",
+        nm=12.34,
+        canals=(),
+        straits=(),
+        approaches=(),
+        notes=(),
+        length=22854.0,
+    )
+    _print_distance(way, 8.0, 12.34 / 8.0 / 24.0)
+    printed = capsys.readouterr().out
+    assert "A to B: 12.3 nm" in printed and "1 h 33 min (0.06 days) at 8 kn" in printed

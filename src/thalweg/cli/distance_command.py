@@ -8,7 +8,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from thalweg.cli.exit_codes import SUCCESS
-from thalweg.core.units import NAUTICAL_MILE
+from thalweg.core.time import duration_text
+from thalweg.core.units import DAY, NAUTICAL_MILE
 
 if TYPE_CHECKING:
     from thalweg.planning.sea_distance import SeaDistance
@@ -135,9 +136,10 @@ def _print_small_ships(way: SeaDistance, small: SeaDistance) -> None:
 
 
 def _print_distance(way: SeaDistance, speed: float | None, days: float | None) -> None:
-    print(f"{way.start} to {way.goal}: {way.nm:,.0f} nm")
+    print(f"{way.start} to {way.goal}: {way.nm:,.{0 if way.nm >= 100.0 else 1}f} nm")
     if days is not None:
-        print(f"  {days:.1f} days ({24.0 * days:.1f} h) at {speed:g} kn, canals at that speed")
+        in_days = f"{days:.{1 if days >= 1.0 else 2}f} days"
+        print(f"  {duration_text(days * DAY)} ({in_days}) at {speed:g} kn, canals at that speed")
     if way.canals:
         print(f"  canals: {', '.join(way.canals)}")
     if way.straits:
