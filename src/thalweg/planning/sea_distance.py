@@ -49,6 +49,7 @@ from thalweg.planning.seaways import (
     world_chart,
 )
 from thalweg.planning.voyage_parts import Place
+from thalweg.ship.schema.value_types import DEEPEST_DRAUGHT
 
 #: Canals too small for most ships, which are not used by default.
 SMALL_CANALS: Final = ("corinth",)
@@ -58,7 +59,6 @@ LEAST_SHORTER: Final = 0.05  #: share by which a way is clearly shorter
 _SHORT_WAY: Final = 500.0 * NAUTICAL_MILE  # small passages may shorten it wherever they are
 _NEAR_END: Final = 150.0 * NAUTICAL_MILE  # else they are so near an end ...
 _NEAR_DIRECT: Final = 1.02  # ... or their detour from the direct line is at most this
-_DEEPEST_DRAUGHT: Final = 30.0  # [m]
 #: Ways without a draught keep off water shallower than this where they can [m].
 USUAL_DEPTH: Final = 5.0
 
@@ -331,10 +331,10 @@ def _canals_entered(chart: Chart, line: Sequence[Position]) -> tuple[str, ...]:
 
 def _seas_for_draught(seas: Seaways, draught: float, ends: Sequence[Endpoint]) -> Seaways:
     """Return the seaways for a draught [m]: what plans close and where a mile counts more."""
-    if not (is_number(draught) and 0.0 < draught <= _DEEPEST_DRAUGHT):
+    if not (is_number(draught) and 0.0 < draught <= DEEPEST_DRAUGHT):
         raise InputError(
             f"The draught is {shortened_repr(draught)} m.",
-            f"Draughts are above 0 and at most {_DEEPEST_DRAUGHT:g} m.",
+            f"Draughts are above 0 and at most {DEEPEST_DRAUGHT:g} m.",
             "Correct it, or leave it out.",
             field="draught_m",
         )
