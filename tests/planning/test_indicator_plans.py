@@ -404,10 +404,11 @@ def test_routes_by_other_canals_are_not_called_the_same_way(monkeypatch):
         for ship in (Ship.simple(speed_kn=12.0, draught_m=5.0), slow)
     ]
     water = Chart.open_water(53.0, 56.0, 0.0, 5.0)
-    assert named_routes(routes, routes, water)[1].difference.startswith("the way of route 1")
+    own = routes, routes, water, slow.file.hull
+    assert named_routes(*own)[1].difference.startswith("the way of route 1")
     by = {id(routes[0]): [], id(routes[1]): [next(one for one in CANALS if one.name == "kiel")]}
     monkeypatch.setattr(route_choices, "canals_passed", lambda route, chart: by[id(route)])
-    assert "the way of route" not in named_routes(routes, routes, water)[1].difference
+    assert "the way of route" not in named_routes(*own)[1].difference
 
 
 @pytest.mark.slow

@@ -53,6 +53,16 @@ def test_ways_by_and_round_the_kiel_canal(planned):
 
 
 @pytest.mark.slow
+def test_ways_round_canals_are_listed_however_long(planned, monkeypatch):
+    """Magellan instead of Panama is 2.6 times as long."""
+    monkeypatch.setattr("thalweg.planning.passage_alternatives.MAX_DETOUR", 1.05)
+    ways = passage_alternatives(planned)
+    assert ("kiel",) in {way.without for way in ways}
+    for way in ways[1:]:
+        assert "kiel" in way.without or way.distance <= 1.05 * ways[0].distance
+
+
+@pytest.mark.slow
 def test_dues_are_those_of_the_ship(planned):
     ship = Ship.load("handysize-bulker")
     (canal,) = canals_with_dues((KIEL,), ship.file.hull)

@@ -112,15 +112,20 @@ def _print_alternatives(console: Any, plan: Plan) -> None:
     """Print the ways round the canals and passages of a plan."""
     if len(plan.passage_alternatives) < 2:
         return
+    from thalweg.chart.canals import CANALS
+
+    titles = {canal.name: canal.title for canal in CANALS}
     columns = ("without", "nm", "h", "canal dues USD", "by")
     title = "Other ways, by distance in calm water at the speed of the plan"
     table = new_table(title, columns, left=("without", "by"), wrap="by")
     for row in plan.passage_alternatives:
         table.add_row(
-            ", ".join(row["without"]) or "-", f"{row['distance_nm']:,.0f}", f"{row['time_h']:,.1f}",
-            f"{row['canal_dues_usd']:,.0f}", ", ".join(row["passes"]),
+            ", ".join(titles.get(name, name) for name in row["without"]) or "-",
+            f"{row['distance_nm']:,.0f}", f"{row['time_h']:,.1f}", f"{row['canal_dues_usd']:,.0f}",
+            ", ".join(titles.get(name, name) for name in row["passes"]),
         )  # fmt: skip
     console.print(table)
+    console.print("'thalweg alternatives' plans such ways, with their fuel and cost.")
 
 
 def print_front(console: Any, plan: Plan) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
@@ -19,7 +20,8 @@ from thalweg.planning.plan_data import PlanData
 from thalweg.planning.request.voyage_endpoints import Endpoint, resolve_places
 from thalweg.planning.seaways import Seaways, path_length_and_canals
 
-#: Ways longer than this multiple of the shortest are left out, and those hardly longer.
+#: Ways round passages longer than this multiple of the shortest are left out; those hardly longer
+#: are as well.
 MAX_DETOUR: Final = 2.2
 _LEAST_DETOUR: Final = 3.0 * NAUTICAL_MILE
 _MOST_SEARCHES: Final = 12
@@ -117,13 +119,15 @@ def passage_alternatives(plan: PlanData) -> tuple[PassageAlternative, ...]:
         return ()
     shortest = question.alternative(())
     found = {frozenset(shortest.passes): shortest}
+    canals = {canal.name for canal in question.seas.chart.canals}
     for closed in _to_close(shortest, found):
         try:
             other = question.alternative(closed)
         except NoRouteError:
             continue
         longer = other.distance - shortest.distance
-        if _LEAST_DETOUR <= longer <= (MAX_DETOUR - 1.0) * shortest.distance:
+        most = math.inf if closed[0] in canals else (MAX_DETOUR - 1.0) * shortest.distance
+        if _LEAST_DETOUR <= longer <= most:
             found.setdefault(frozenset(other.passes), other)
     return tuple(sorted(found.values(), key=lambda way: way.distance))
 

@@ -161,6 +161,8 @@ def _print_alternatives(found: AlternativePlans) -> None:
         if name == "fuel":
             cells, unit = amount_column(row, unit)
         table.add_row(f"{figure.short} {unit}".rstrip(), *cells)
+    if any(one.canals for one in found.choices):
+        table.add_row("canal dues USD", *(f"{one.canal_dues_usd:,.0f}" for one in found.choices))
     if any(slack is not None for slack in found.slack_h):
         table.add_row("slack h", *("-" if s is None else f"{s:.1f}" for s in found.slack_h))
     console = Console()

@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -28,6 +29,7 @@ from thalweg.planning.indicators.route_figures import (
     champions,
     compared_values,
 )
+from thalweg.planning.indicators.ways_not_offered import fastest_without_canals, unchosen_notes
 from thalweg.planning.pareto.limited_plan import IndicatorLimit
 from thalweg.planning.report.filled_weather import filled_waves_note
 from thalweg.planning.report.land_report import NEAREST_LAND
@@ -91,6 +93,8 @@ class AlternativePlans:
                 "best_in": ", ".join(one.best_in),
                 "difference": one.difference,
                 "passes": ", ".join(one.passes),
+                "canals": ", ".join(one.canals),
+                "canal_dues_usd": one.canal_dues_usd,
                 "slack_h": slack,
                 **all_figures(one.route),
             }
@@ -153,8 +157,9 @@ class AlternativePlans:
         for number, one in enumerate(self.choices, start=1):
             best = f" [{', '.join(one.best_in)}]" if one.best_in else ""
             lines.append(f"{number}. {one.name}{best}: {one.difference}")
-            if one.passes:
-                lines.append(f"   passes {', '.join(map(name_with_limits, one.passes))}")
+            names = [*one.canals, *map(name_with_limits, one.passes)]
+            if names:
+                lines.append(f"   passes {', '.join(names)}")
         return "\n".join(lines)
 
 
@@ -201,7 +206,9 @@ def alternative_plans(
     chart, the knees of their fronts with time, and the best by a weighted sum; and at the speed of
     the fastest route the shortest ways round islands, by and round named passages and farther off
     land, straightened. All share one network and one sea for each set of open canals. Chosen are
-    the best in one figure after the other that differ from those chosen before, in water or time.
+    the best in one figure after the other that differ from those chosen before, in water or time,
+    and the fastest without each canal of the fastest route, however long it takes. Notes say why a
+    way without a canal or passage is not offered.
     """
     chart = Chart.gshhg(usual_resolution()) if chart is None else chart
     check_argument_types(voyage, ship, sea, chart)
@@ -218,7 +225,8 @@ def alternative_plans(
     context = replace(context, report_progress=progress or context.report_progress)
     routes, notes = berth_to_berth_candidates(context, ends)
     kept = _kept(routes, limits)
-    chosen = _chosen(kept, most)
+    chosen = _chosen(kept, most, context.chart)
+    notes += unchosen_notes(context.chart, routes, chosen, partial(_broken, limits))
     warnings = [
         [note for note in route_warnings(context, one) if not note.startswith(NEAREST_LAND)]
         for one in chosen
@@ -230,7 +238,7 @@ def alternative_plans(
     slack = [(latest - one.arrive) / HOUR if math.isfinite(latest) else None for one in chosen]
     return AlternativePlans(
         voyage,
-        named_routes(chosen, kept, context.chart),
+        named_routes(chosen, kept, context.chart, ship.file.hull),
         tuple(slack),
         tuple(notes),
         (ends[0].true_name, ends[-1].true_name),
@@ -304,19 +312,28 @@ def _kept(routes: list[Route], limits: Sequence[IndicatorLimit]) -> list[Route]:
     if kept:
         return kept
     nearest = min(routes, key=lambda route: sum(one.excess(route) > 0.0 for one in limits))
-    broken = ", ".join(one.text(nearest) for one in limits if one.excess(nearest) > 0.0)
+    broken = _broken(limits, nearest)
     asked = f"None of {len(routes)} routes keeps the limits of the voyage."
     raise NoRouteError(asked, f"The nearest breaks: {broken}.", "Relax the limits.", reasons={})
 
 
-def _chosen(routes: Sequence[Route], most: int) -> list[Route]:
-    """Return routes that differ, the best in one figure after the other, the fastest first."""
+def _broken(limits: Sequence[IndicatorLimit], route: Route) -> str:
+    """Return which limits a route breaks, as text; empty for none."""
+    return ", ".join(one.text(route) for one in limits if one.excess(route) > 0.0)
+
+
+def _chosen(routes: Sequence[Route], most: int, chart: Chart) -> list[Route]:
+    """Return routes that differ, the best in one figure after the other, the fastest first.
+
+    The fastest without each canal of the fastest route are among them.
+    """
     values = [compared_values(route) for route in routes]
     best = champions(values)
     order = list(dict.fromkeys([best.get("time", 0), *best.values()]))
     lines = [line_at_shares(route) for route in routes]
     main = [best[name] for name in _MAIN_FIGURES if name in best]
-    found: list[int] = []
+    round_canals = [routes.index(one) for _, one in fastest_without_canals(routes, chart)]
+    found = list(dict.fromkeys([order[0], *round_canals] if round_canals else []))[:most]
     for same_way_too, among in ((True, main), (False, order), (True, order)):
         for k in among:
             if len(found) == most or k in found:
@@ -331,4 +348,5 @@ def _chosen(routes: Sequence[Route], most: int) -> list[Route]:
                 found.append(k)
     chosen = sorted((routes[k] for k in found), key=lambda route: route.time_h)
     good = {0, *champions([compared_values(route) for route in chosen]).values()}
-    return [route for k, route in enumerate(chosen) if k in good]  # each is best in something
+    good |= {k for k, one in enumerate(chosen) if any(one is routes[j] for j in round_canals)}
+    return [route for k, route in enumerate(chosen) if k in good]  # others are best in nothing

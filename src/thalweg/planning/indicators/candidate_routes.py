@@ -37,8 +37,10 @@ from thalweg.planning.approach_sailing import (
     shared_line,
 )
 from thalweg.planning.indicators.passage_ways import way_by_passage
+from thalweg.planning.indicators.ways_not_offered import canal_notes
 from thalweg.planning.network_selection.route_alternatives import (
     RouteAlternative,
+    canals_used,
     network_of_all_ways,
 )
 from thalweg.planning.offing_attempts import plan_off_land
@@ -101,9 +103,10 @@ def _feasible_candidates(
     """Return the candidates that keep the limits, searched with limits as tight as that takes."""
     for step in NETWORK_STEPS:
         own = replace(trade_off, limits=trade_off.context.needs.limits.tightened(TIGHTENING[step]))
-        routes, notes = candidate_routes(own, alternatives)
+        routes, notes, refused = candidate_routes(own, alternatives)
         latest = trade_off.context.latest_arrival
         kept = [route for route in routes if route.feasible and route.arrive <= latest + 1.0]
+        notes += canal_notes(own.context.chart, routes, kept or routes[:1], latest, refused)
         if kept or trade_off.interrupt_guard.stopped():
             break
     return kept or routes[:1], list(dict.fromkeys((*trade_off.context.needs.notes, *notes)))
@@ -111,7 +114,7 @@ def _feasible_candidates(
 
 def candidate_routes(
     trade_off: TradeOffContext, alternatives: list[RouteAlternative]
-) -> tuple[list[Route], list[str]]:
+) -> tuple[list[Route], list[str], list[tuple[set[str], str]]]:
     """Return routes among which the alternatives of a voyage are, and notes.
 
     Parameters
@@ -122,8 +125,9 @@ def candidate_routes(
     Returns
     -------
     routes : Scored by the referee, the fastest of the shortest alternative first; some may break
-        limits.
+        limits, and those by other canals may take longer.
     notes : Which candidates could not be found.
+    refused : Canals of each alternative without a route, and why it has none.
 
     Raises
     ------
@@ -151,7 +155,8 @@ def candidate_routes(
     in_time = [route for route in search.routes if search.is_in_time(route.arrive - route.depart)]
     standards = [route for route in search.fastest_routes if route in in_time]
     kept, note = routes_within_lanes(search.context.chart, in_time, standards)
-    return kept, [*search.notes, *note]
+    kept += [route for route in search.fastest_routes if route not in in_time]
+    return kept, [*search.notes, *note], search.refused
 
 
 class _Candidates:
@@ -164,6 +169,7 @@ class _Candidates:
         self.routes: list[Route] = []
         self.fastest_routes: list[Route] = []  # of each set of canals
         self.notes: list[str] = []
+        self.refused: list[tuple[set[str], str]] = []  # canals of alternatives without a route
         self.best: dict[str, Route] = {}
         self.paths = FastestPaths()  # of the first network
 
@@ -191,7 +197,8 @@ class _Candidates:
         try:
             self.fastest(alternative)
         except NoRouteError as error:
-            self.notes.append(f"No route by {alternative.name}: {error.args[0]}")
+            used = set(canals_used(alternative.network, self.context.chart))
+            self.refused.append((used, str(error.args[0])))
 
     def add(self, words: str, tracks: Iterator[Track]) -> None:
         """Score the tracks of one step; a step that is not possible leaves a note."""

@@ -20,7 +20,7 @@ from thalweg.planning.request.voyage_endpoints import Endpoint
 
 #: Greatest number of nodes of networks for fronts, unless a resolution is given.
 MAX_FRONT_NODES = 3_000
-#: Alternatives longer than this multiple of the shortest are left out.
+#: Alternatives longer than this multiple of the shortest are left out of plans.
 MAX_LENGTH_RATIO = 1.8
 _COAST_LEVELS = 2
 OPEN_SEA: Final = "open sea"  #: name of the alternative without canals
@@ -43,7 +43,10 @@ class RouteAlternative:
 
 
 def find_route_alternatives(
-    context: PlanningContext, ends: Sequence[Endpoint], worth: Mapping[str, float]
+    context: PlanningContext,
+    ends: Sequence[Endpoint],
+    worth: Mapping[str, float],
+    longest_ratio: float = MAX_LENGTH_RATIO,
 ) -> list[RouteAlternative]:
     """Return the route alternatives between the ends of a voyage.
 
@@ -51,18 +54,19 @@ def find_route_alternatives(
     ----------
     worth : Length [m] that costs as much as a canal, by its name: so much longer may the way round
         it be.
+    longest_ratio : Alternatives longer than this multiple of the shortest, beyond what the canals
+        are worth, are left out.
 
     Notes
     -----
     The shortest one comes first. If it passes n canals there are up to 2^n - 1 more, one for every
-    set of them that is closed. Alternatives over `MAX_LENGTH_RATIO` times as long, beyond what the
-    canals are worth, are left out, and so are repeated ones. A network is built for each;
+    set of them that is closed. Repeated ones are left out. A network is built for each;
     `thalweg.network.paths_without_canals` compares paths on one given network.
     """
     context.report_progress(f"building the network from {ends[0].name} to {ends[-1].name}")
     first = _route_alternative(context, ends, context.chart)
     alternatives, used = {first.name: first}, canals_used(first.network, context.chart)
-    longest = MAX_LENGTH_RATIO * _shortest_length(first.network)
+    longest = longest_ratio * _shortest_length(first.network)
     longest += sum(worth.get(name, 0.0) for name in used)
 
     def find(closed: tuple[str, ...]) -> RouteAlternative | None:

@@ -21,6 +21,7 @@ from thalweg.core.pareto_fronts import (
 )
 from thalweg.core.units import HOUR
 from thalweg.planning.network_selection.route_alternatives import (
+    MAX_LENGTH_RATIO,
     RouteAlternative,
     find_route_alternatives,
 )
@@ -101,15 +102,20 @@ def with_trade_off(
     ends: list[Endpoint],
     search: Callable[[TradeOffContext, list[RouteAlternative]], Result],
 ) -> Result:
-    """Return what a search finds on the networks of the route alternatives, the shortest first."""
+    """Return what a search finds on the networks of the route alternatives, the shortest first.
+
+    These avoid each canal of the shortest one, however long they are.
+    """
     with InterruptGuard() as interrupt_guard:
         trade_off = _trade_off_context(context, ends, interrupt_guard)
-        return search(trade_off, _alternatives(trade_off))
+        return search(trade_off, _alternatives(trade_off, longest_ratio=math.inf))
 
 
-def _alternatives(trade_off: TradeOffContext) -> list[RouteAlternative]:
+def _alternatives(
+    trade_off: TradeOffContext, longest_ratio: float = MAX_LENGTH_RATIO
+) -> list[RouteAlternative]:
     worth = trade_off.worth_of_canals()
-    return find_route_alternatives(trade_off.context, trade_off.ends, worth)
+    return find_route_alternatives(trade_off.context, trade_off.ends, worth, longest_ratio)
 
 
 def _trade_off_context(
