@@ -1,16 +1,20 @@
-"""Notes on passages that are closed to a ship."""
+"""Notes on the nearest land, at sea and in approaches, and on passages closed to a ship."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
-from thalweg import Chart, Ship, Voyage
-from thalweg.planning.report.land_report import closed_passage_notes
+from thalweg import Chart, Sea, Ship, Voyage, evaluate
+from thalweg.planning.report.land_report import closed_passage_notes, nearest_land_notes
 from thalweg.planning.report.note_order import count_of_dangers
 from thalweg.planning.request.offing_choice import restrict_passages
+from thalweg.route.indicator_columns import indicator_value
+from thalweg.route.route_tables import LEG_KINDS
 
 TANKER = Ship.load("kvlcc2")  # draught 20.8 m
 BULKER = Ship.simple(speed_kn=12.0, draught_m=9.5, length_m=190.0)
@@ -63,3 +67,23 @@ def test_a_single_closed_passage_says_how_to_open_it(world):
 def test_closed_passages_beside_a_way_that_is_as_short_are_not_named(world):
     """Straight lines from an outer route through the leads of Norway cross land."""
     assert notes_on(world, BULKER, ALONG_NORWAY) == []
+
+
+def test_the_nearest_land_at_sea_is_the_figure_of_the_table():
+    """Rotterdam to Gdynia was 0.5 nm off land in the table and 0.0 nm in a note on the approach."""
+    ring = [[0.0, 0.02], [0.1, 0.02], [0.1, 0.1], [0.0, 0.1], [0.0, 0.02]]
+    islet = [[0.5, 0.05], [0.6, 0.05], [0.6, 0.1], [0.5, 0.1], [0.5, 0.05]]
+    land = {"type": "MultiPolygon", "coordinates": [[ring], [islet]]}
+    chart = Chart.from_geojson(land)
+    places = [(0.017, -0.1), (0.017, 0.2), (0.0, 0.4), (0.0, 0.8)]
+    plain = evaluate(places, ship=BULKER, sea=Sea.calm(), chart=chart, depart="2026-01-01T00:00Z")
+    (note,) = nearest_land_notes(chart, plain)
+    assert note.startswith("Close to land: 0.2 nm off at sea, from 0.0170N")
+    kind = np.array([LEG_KINDS.index("approach"), 0, 0], float)
+    route = replace(plain, legs={**plain.legs, "leg_kind": kind})
+    (note,) = nearest_land_notes(chart, route)
+    assert note.startswith("Close to land: 0.2 nm off in the approach of a port, from 0.0170N")
+    assert "; 3.0 nm off at sea, from 0.0000N" in note
+    assert indicator_value(route, "land_distance_nm") == pytest.approx(3.0, abs=0.05)
+    farther = replace(plain, legs={**plain.legs, "leg_kind": kind[::-1]})
+    assert "approach" not in nearest_land_notes(chart, farther)[0]

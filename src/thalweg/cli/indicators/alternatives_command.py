@@ -28,10 +28,12 @@ _MEANINGS: Final = {
     "sick_percent": "sick: share of people seasick at the first place of the ship file",
     "max_acceleration": "acceleration: greatest root mean square there, vertical",
     "encounters": "encounters: ships expected to be met",
-    "inshore_percent": "inshore: share of the length within 3 nm of land",
-    "land_distance_nm": "off land: least distance from land",
+    "inshore_percent": "inshore: share of the whole length within 3 nm of land",
+    "land_distance_nm": "off land at sea: least distance from land, without approaches of "
+    "ports and canals",
     "contour_distance_nm": "off shoals: least distance from charted water that is too shallow",
-    "near_ground_h": "near ground: time within 1 nm of land or of water that is too shallow",
+    "near_ground_h": "near ground: time within 1 nm of land or of water that is too shallow, "
+    "approaches of ports included",
     "workable_percent": "workable: share of the time in which the first task can be done",
 }
 

@@ -38,7 +38,7 @@ COMPARED_FIGURES: Final = {
     "fuel": ComparedFigure("least", "least fuel", "fuel", 2),
     "cost": ComparedFigure("least", "cheapest", "cost", 0),
     "encounters": ComparedFigure("least", "fewest encounters", "encounters", 1),
-    "land_distance_nm": ComparedFigure("greatest", "farthest from land", "off land", 1),
+    "land_distance_nm": ComparedFigure("greatest", "farthest from land", "off land at sea", 1),
     "near_ground_h": ComparedFigure("least", "least time near the ground", "near ground", 1),
     "workable_percent": ComparedFigure("greatest", "most time to work", "workable", 0),
     "distance": ComparedFigure("least", "shortest", "length", 0),

@@ -25,6 +25,7 @@ from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways, small_passages, world_chart
 from thalweg.route import Route
 from thalweg.route.referee.land_clearance import least_land_clearance
+from thalweg.route.route_tables import LEG_KINDS
 
 _PIECE: Final = 20.0 * NAUTICAL_MILE  # routes are split so to find where a passage would leave them
 _LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE  # closed passages that save less are not mentioned
@@ -42,15 +43,7 @@ def land_notes(context: PlanningContext, route: Route) -> list[str]:
     """
     if context.needs.limits.offing <= 0.0 and context.voyage.offing_nm == 0.0:
         return []
-    notes = []
-    nearest = least_land_clearance(context.chart, route.track)
-    if nearest is not None and nearest.distance < _NEAR:
-        place = format_position(nearest.lat, nearest.lon)
-        what = CLOSE_TO_LAND if nearest.distance < _CLOSE else NEAREST_LAND
-        notes.append(
-            f"{what}: {nearest.distance / NAUTICAL_MILE:.1f} nm off, from {place}"
-            f"{time_of_passing(route, nearest.leg, nearest.lat, nearest.lon)}."
-        )
+    notes = nearest_land_notes(context.chart, route)
     for passage in passages_used(context.chart, route):
         facts = [
             f"line at least {passage.half_width / NAUTICAL_MILE:.2g} nm off the coastline",
@@ -61,6 +54,30 @@ def land_notes(context: PlanningContext, route: Route) -> list[str]:
         ]
         notes.append(f"{PASSES}{passage.name} ({'; '.join(facts)}).")
     return notes + closed_passage_notes(context, route)
+
+
+def nearest_land_notes(chart: Chart, route: Route) -> list[str]:
+    """Return a note on the nearest land to a route at sea, and in its approaches if that is less.
+
+    The distance at sea is the indicator ``land_distance_nm``. Empty far off land.
+    """
+    count = len(route.track.lat) - 1
+    kind = np.asarray(route.legs.get("leg_kind", np.zeros(count)))
+    approach = kind == LEG_KINDS.index("approach")
+    at_sea = least_land_clearance(chart, route.track, ~approach)
+    near = least_land_clearance(chart, route.track, approach)
+    if near is not None and at_sea is not None and near.distance >= at_sea.distance:
+        near = None
+    texts = [
+        f"{one.distance / NAUTICAL_MILE:.1f} nm off {where}, from "
+        f"{format_position(one.lat, one.lon)}{time_of_passing(route, one.leg, one.lat, one.lon)}"
+        for one, where in ((near, "in the approach of a port"), (at_sea, "at sea"))
+        if one is not None and one.distance < _NEAR
+    ]
+    if not texts:
+        return []
+    least = min(one.distance for one in (near, at_sea) if one is not None)
+    return [f"{CLOSE_TO_LAND if least < _CLOSE else NEAREST_LAND}: {'; '.join(texts)}."]
 
 
 def time_of_passing(route: Route, leg: int, lat: float, lon: float) -> str:

@@ -6,7 +6,7 @@ geodesics are sampled ever more closely wherever land could be nearer than what 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -14,7 +14,7 @@ import numpy as np
 from thalweg.chart.offing import required_offing
 from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.geodesy import direct, inverse
-from thalweg.core.types import FloatArray, IntArray
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 
 if TYPE_CHECKING:
@@ -45,9 +45,18 @@ class LandClearance:
     leg: int
 
 
-def least_land_clearance(chart: Chart, track: Track) -> LandClearance | None:
-    """Return where a track is nearest to land, without legs through canals; None for no legs."""
+def least_land_clearance(
+    chart: Chart, track: Track, legs: BoolArray | None = None
+) -> LandClearance | None:
+    """Return where a track is nearest to land, without legs through canals; None for no legs.
+
+    Parameters
+    ----------
+    legs : Which legs count, (legs,); by default all.
+    """
     pieces = _Pieces.of_track(chart, track)
+    if legs is not None:
+        pieces = pieces.selected(np.asarray(legs)[pieces.leg])
     best: LandClearance | None = None
     while len(pieces.leg):
         lat, lon, shore = pieces.middles(chart)
@@ -107,6 +116,9 @@ class _Pieces:
         return cls(
             leg, lat[leg], lon[leg], np.asarray(courses)[leg], number * part, (number + 1) * part
         )
+
+    def selected(self, keep: BoolArray) -> _Pieces:
+        return _Pieces(*(getattr(self, one.name)[keep] for one in fields(self)))
 
     def length(self) -> FloatArray:
         return np.asarray(self.end - self.begin)
