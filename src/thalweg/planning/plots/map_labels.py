@@ -13,6 +13,7 @@ from thalweg.core.units import DAY, HOUR
 
 _INK = "#22303c"
 _OFFSETS = [(0, 9), (0, -9), (9, 0), (-9, 0), (8, 7), (-8, 7), (8, -7), (-8, -7), (0, 18), (0, -18)]
+_CLEAR = 4.0  # room between labels and lines [display units]
 _STEPS_H = (0.25, 0.5, 1.0, 2.0, 3.0, 6.0, 12.0, 24.0, 48.0, 96.0, 240.0)
 _MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
 
@@ -69,10 +70,16 @@ class LabelPlacer:
             0.0, inside.y0 - box.y0, box.y1 - inside.y1
         )
         x, y = self.lines.T if len(self.lines) else (np.zeros(0), np.zeros(0))
-        covered = (x > box.x0) & (x < box.x1) & (y > box.y0) & (y < box.y1)
+        wide = box.padded(_CLEAR)
+        covered = (x > wide.x0) & (x < wide.x1) & (y > wide.y0) & (y < wide.y1)
         overlaps = sum(bool(box.overlaps(other)) for other in self.taken)
         leaves = (500.0 if needed else 1e3) + outside if outside > 0.0 else 0.0
         return 1e3 * overlaps + leaves + float(covered.sum())
+
+
+def drawn_texts(axes: Any) -> list[Any]:
+    """Return the boxes of the words on axes [display units], such as of a scale or of contours."""
+    return [text.get_window_extent() for text in axes.texts if text.get_text()]
 
 
 def _set_offset(label: Any, dx: float, dy: float) -> None:

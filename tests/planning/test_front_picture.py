@@ -1,0 +1,60 @@
+"""The picture of a front: its axes show the routes, and state a bound that is far below them."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from thalweg.planning.plan_front import ParetoFront
+from thalweg.planning.plots.pareto_front_plot import draw_pareto_front
+
+TIMES = np.linspace(192.0, 198.0, 13)
+VALUES = 100_000.0 + 400.0 * (198.0 - TIMES) ** 2
+
+
+def picture(certain):
+    """Return the axes of the picture of a front with a bound."""
+    n = len(TIMES)
+    front = ParetoFront(
+        "cost", "USD", VALUES, ("exact",) * n, ("open sea",) * n, certain=np.array(certain)
+    )
+    routes = tuple(SimpleNamespace(time_h=t, feasible=True, arrive=0.0) for t in TIMES)
+    voyage = SimpleNamespace(objective="front", arrive_by=None)
+    plan = SimpleNamespace(
+        front=front, routes=routes, voyage=voyage, provenance={"from": "Here", "to": "There"}
+    )
+    return draw_pareto_front(plan).axes[0]
+
+
+def test_a_weak_bound_does_not_squeeze_the_routes():
+    """A bound of half the cost took two thirds of the axis."""
+    axes = picture([[185.0, 200.0], [60_000.0, 50_000.0]])
+    (low, high), (west, east) = axes.get_ylim(), axes.get_xlim()
+    assert np.ptp(VALUES) > 0.65 * (high - low) and np.ptp(TIMES) > 0.8 * (east - west)
+    words = [text.get_text() for text in axes.texts]
+    least = np.interp(198.0, [185.0, 200.0], [60_000.0, 50_000.0])
+    first = f"no route of 198.0 h can be below {least:,.0f} USD:"
+    assert f"{first}\nat most 48.7 % less than the one found" in words
+    assert (
+        "no route can be faster than 185.0 h:\nat most 3.6 % less than the fastest found" in words
+    )
+
+
+def test_a_bound_close_to_the_routes_is_shown_whole():
+    axes = picture([TIMES, VALUES - 500.0])
+    (bound,) = [line for line in axes.lines if line.get_label().startswith("no route can be")]
+    assert bound.get_ydata().min() > axes.get_ylim()[0]
+    assert not any("at most" in text.get_text() for text in axes.texts)
+
+
+@pytest.mark.parametrize("least", [50_000.0, 99_000.0])
+def test_labels_cover_neither_each_other_nor_the_legend(least):
+    axes = picture([[185.0, 200.0], [least, least]])
+    boxes = [text.get_window_extent() for text in axes.texts]
+    boxes.append(axes.get_legend().get_window_extent())
+    assert len(boxes) >= 4
+    for number, box in enumerate(boxes):
+        assert not any(box.overlaps(other) for other in boxes[:number])
+    points = axes.transData.transform(np.column_stack([TIMES, VALUES]))
+    for box in boxes:
+        assert not any(box.contains(x, y) for x, y in points)
