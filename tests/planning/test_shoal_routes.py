@@ -15,6 +15,7 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Voyage, plan
 from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.depth_report import water_to_check
 from thalweg.planning.report.provenance import given_route_warnings
 from thalweg.planning.request.requirements import Requirements
 from thalweg.planning.request.shoal_choice import add_shoals, close_shoals
@@ -129,6 +130,9 @@ def test_a_route_from_a_file_gets_the_same_depth_warnings():
     assert any(note.startswith("Crosses Nantucket Shoals") for note in found)
     (note,) = (note for note in found if note.startswith("Check the depth: 12.0 m "))
     assert " has 12 m near 41 " in note and "passed at 1970-01-01T0" in note
+    lat, lon, check = water_to_check(WORLD, route, BULKER, 0.0)
+    assert check.any() and SHOAL_AREAS[0].contains(lat[check], lon[check]).any()
+    assert not water_to_check(Chart.open_water(), route, BULKER, 0.0)[2].any()
     more = given_route_warnings(route, chart=WORLD, sea=Sea.calm(), ship=BULKER, min_ukc=2.0)
     assert any(note.startswith("Check the depth: 14.0 m are required") for note in more)
     charted = Chart.open_water().with_depth(lambda lat, lon: 50.0 + 0.0 * lat)

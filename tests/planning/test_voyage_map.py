@@ -1,12 +1,18 @@
-"""Maps: lines without jumps at any longitude."""
+"""Maps: lines without jumps, the best route on top, labels, bars of colours, water to check."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection
 
 from tests.conftest import data_file
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.file_writing import new_figure
 from thalweg.core.time import parse_time
+from thalweg.planning.plan_front import ParetoFront
+from thalweg.planning.plots import routes_on_map
+from thalweg.planning.plots.alternatives_map import draw_alternatives_map
 from thalweg.planning.plots.map_extent import (
     MapExtent,
     degree_label,
@@ -14,8 +20,8 @@ from thalweg.planning.plots.map_extent import (
     mercator,
 )
 from thalweg.planning.plots.map_labels import LabelPlacer, marked_times, time_label
-from thalweg.planning.plots.map_overlays import draw_zones, place_labels
-from thalweg.planning.plots.route_profile import draw_profile
+from thalweg.planning.plots.map_overlays import _draw_arrow, draw_zones, place_labels
+from thalweg.planning.plots.route_profile import LIMIT_COLOUR, draw_profile
 from thalweg.planning.plots.voyage_map import draw_map
 
 SHIP = Ship.simple(speed_kn=12.0, draught_m=5.0)
@@ -202,3 +208,105 @@ def test_shoal_water_that_a_plan_keeps_off_is_drawn():
     drawn = [path for one in axes.collections for path in one.get_paths() if one.zorder == 1.5]
     assert any(path.contains_point(osprey_reef) for path in drawn)
     assert not any(path.contains_point((147.0, -14.5)) for path in drawn)
+
+
+@pytest.fixture(scope="module")
+def front_map(lagoon):
+    """The map of a front of three routes; the second leads farther south."""
+    best = lagoon.best
+    other = replace(best, samples={**best.samples, "lat": best.samples["lat"] - 0.05})
+    front = ParetoFront(
+        "cost", "USD", np.array([300.0, 200.0, 100.0]), ("exact",) * 3, ("open sea",) * 3
+    )
+    return draw_map(replace(lagoon, routes=(best, other, best), front=front))
+
+
+@pytest.mark.slow
+def test_the_best_route_of_a_front_lies_on_the_others_which_show_their_cost(front_map):
+    """Forty routes in one colour hid the best one."""
+    lines = [one for one in front_map.axes[0].collections if isinstance(one, LineCollection)]
+    others, best = sorted(lines, key=lambda one: one.get_zorder())
+    assert others.get_zorder() < best.get_zorder()
+    assert sorted(others.get_array()) == [100.0, 200.0]
+    labels = [axes.get_xlabel() for axes in front_map.axes[0].child_axes]
+    assert labels == ["cost of 2 other routes [USD]", "speed over ground of the best route [kn]"]
+
+
+@pytest.mark.slow
+def test_bars_of_colours_cover_neither_the_map_nor_each_other(front_map):
+    axes = front_map.axes[0]
+    front_map.draw_without_rendering()
+    bars = [bar.get_tightbbox() for bar in axes.child_axes]
+    ticks = [tick.get_window_extent() for tick in axes.get_xticklabels()]
+    boxes = [axes.get_window_extent(), axes.title.get_window_extent(), *ticks]
+    for bar in bars:
+        assert not any(bar.overlaps(box) for box in boxes)
+    assert not bars[0].overlaps(bars[1])
+    saved = front_map.get_tightbbox()  # that of files [inch]
+    assert saved.y0 * front_map.dpi <= min(bar.y0 for bar in bars) + 1e-6
+    assert saved.y1 * front_map.dpi >= axes._left_title.get_window_extent().y1 - 1e-6
+
+
+@pytest.mark.slow
+def test_water_to_check_is_drawn_in_the_colour_of_limits(lagoon, monkeypatch):
+    lat, lon = lagoon.best.samples["lat"], lagoon.best.samples["lon"]
+    check = np.arange(len(lat)) >= len(lat) - 5
+    monkeypatch.setattr(routes_on_map, "water_to_check", lambda *_: (lat, lon, check))
+    axes = draw_map(lagoon).axes[0]
+    (drawn,) = [line for line in axes.lines if line.get_label() == routes_on_map.TO_CHECK]
+    assert drawn.get_color() == LIMIT_COLOUR
+    assert drawn.get_ydata() == pytest.approx(lat[-5:])
+    (route,) = [line for line in axes.lines if line.get_label() == "route, times in UTC"]
+    assert drawn.get_zorder() > route.get_zorder()
+
+
+@pytest.mark.slow
+def test_water_with_less_than_the_required_clearance_is_drawn():
+    chart = Chart.open_water(50.0, 51.0, 0.0, 2.0).with_depth(
+        lambda lat, lon: np.where(np.asarray(lon) > 1.0, 8.0, 20.0) + 0.0 * lat
+    )
+    voyage = Voyage(start=(50.5, 0.5), goal=(50.5, 1.5), depart="2026-01-01")
+    found = plan(voyage, ship=SHIP, sea=Sea.calm(), chart=chart, resolution=5000.0)
+    strict = replace(found, voyage=replace(voyage, min_ukc_m=5.0))
+
+    def drawn(plan_of_it):
+        lines = draw_map(plan_of_it).axes[0].lines
+        return [line for line in lines if line.get_label() == routes_on_map.TO_CHECK]
+
+    assert drawn(found) == []
+    (line,) = drawn(strict)
+    assert line.get_xdata().min() == pytest.approx(1.0, abs=0.1)
+    assert line.get_xdata().max() == pytest.approx(1.5, abs=0.01)
+
+
+@pytest.mark.slow
+def test_the_first_of_alternatives_lies_on_the_others_on_the_same_way(lagoon):
+    routes, names = (lagoon.best,) * 3, ("fast", "cheap", "calm")
+    chart = lagoon.plot_context.chart
+    axes = draw_alternatives_map(routes, names, chart, ("A", "B")).axes[0]
+    lines = [line for line in axes.lines if line.get_label()[:2] in ("1.", "2.", "3.")]
+    order = [line.get_zorder() for line in lines]
+    assert order == sorted(order, reverse=True) and len(set(order)) == 3
+    widths = [line.get_linewidth() for line in lines]
+    assert widths == sorted(widths) and len(set(widths)) == 3
+
+
+@pytest.mark.slow
+def test_labels_do_not_lie_on_the_marks_of_times(lagoon):
+    axes = draw_map(lagoon).axes[0]
+    (marks,) = [line for line in axes.lines if line.get_markersize() == 3.5]
+    points = axes.transData.transform(marks.get_xydata())
+    for text in axes.texts:
+        if text.get_zorder() == 10:
+            box = text.get_window_extent()
+            assert not any(box.contains(x, y) for x, y in points), text.get_text()
+
+
+def test_arrows_of_lanes_end_at_the_edge_of_the_map():
+    """Arrows of schemes at the edge reached over the axes."""
+    box = MapExtent(52.0, 53.2, 2.0, 4.05)
+    axes = new_figure(*box.figure_size()).add_subplot()
+    box.set_up(axes)
+    _draw_arrow(axes, (53.0, 3.9), (53.4, 4.5), 0.0)
+    (arrow,) = axes.texts
+    assert arrow.arrow_patch.get_clip_box() is not None

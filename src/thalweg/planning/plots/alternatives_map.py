@@ -12,7 +12,7 @@ from thalweg.chart import Chart
 from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.core.time import utc_text
 from thalweg.planning.plots.map_extent import MapExtent
-from thalweg.planning.plots.map_labels import LabelPlacer
+from thalweg.planning.plots.map_labels import LabelPlacer, drawn_texts
 from thalweg.planning.plots.map_overlays import draw_land, draw_zones, place_labels
 from thalweg.route import Route
 from thalweg.route.number_texts import hours_texts, miles_text
@@ -50,7 +50,9 @@ def draw_alternatives_map(
     for number, (route, name, colour) in enumerate(zip(routes, names, _COLOURS), start=1):
         text = f"{number}. {name}: {hours[number - 1]} h, {miles_text(route.distance_nm)} nm"
         line = box.line(route.samples["lon"]), route.samples["lat"]
-        axes.plot(*line, color=colour, lw=2.0, zorder=5, label=text)
+        # the first on top; the others are wider, so that they show beneath it on the same way
+        style = {"lw": 1.6 + 1.4 * (number - 1), "zorder": 5.0 - 0.1 * number}
+        axes.plot(*line, color=colour, solid_capstyle="butt", label=text, **style)
     axes.set_title(
         f"{ends[0]} to {ends[1]}: alternatives, depart {utc_text(routes[0].depart)}",
         fontsize=9,
@@ -79,7 +81,7 @@ def _label(
     figure.set_layout_engine("none")
     lines = [np.column_stack([box.line(r.samples["lon"]), r.samples["lat"]]) for r in routes]
     shown = [axes.transData.transform(line) for line in lines]
-    placer = LabelPlacer(axes, np.concatenate(shown))
+    placer = LabelPlacer(axes, np.concatenate(shown), drawn_texts(axes))
     for index, name in ((0, ends[0]), (-1, ends[1])):
         axes.plot(*lines[0][index], "o", mfc="white", mec="#22303c", mew=1.6, ms=7, zorder=7)
         placer.place(name, *lines[0][index], needed=True, fontsize=8, fontweight="bold")

@@ -174,10 +174,12 @@ def _draw_lanes(axes: Any, chart: Chart, box: MapExtent) -> None:
 
 def _draw_arrow(axes: Any, start: Position, end: Position, turn: float) -> None:
     """Draw an arrow between two positions (lat, lon) on the map."""
-    axes.annotate(
-        "", (end[1] + turn, end[0]), (start[1] + turn, start[0]), annotation_clip=True, zorder=2.7,
+    arrow = axes.annotate(
+        "", (end[1] + turn, end[0]), (start[1] + turn, start[0]), annotation_clip=False, zorder=2.7,
         arrowprops={"arrowstyle": "->", "color": _LANE, "lw": 0.7, "shrinkA": 2, "shrinkB": 2},
     )  # fmt: skip
+    arrow.arrow_patch.set_clip_path(axes.patch)
+    arrow.set_in_layout(False)
 
 
 def _draw_control_areas(axes: Any, chart: Chart, box: MapExtent) -> list[tuple[str, float, float]]:

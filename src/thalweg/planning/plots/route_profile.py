@@ -16,6 +16,7 @@ from thalweg.planning.plots.map_labels import marked_times, time_label
 from thalweg.route import Route
 
 _INK = "#22303c"
+LIMIT_COLOUR = "#b71c1c"  #: of limits, and of water with less than is required
 
 
 def draw_profile(
@@ -136,14 +137,14 @@ def _depths(route: Route, axes: Any | None, min_ukc: float) -> bool:
     if axes is not None and not known.size:
         axes.text(
             0.5, 0.5, "under-keel clearance not known: no depth in the data", ha="center",
-            va="center", transform=axes.transAxes, fontsize=8, color="#b71c1c",
+            va="center", transform=axes.transAxes, fontsize=8, color=LIMIT_COLOUR,
         )  # fmt: skip
         axes.set_yticks([])
         axes.set_ylabel("clearance")
     elif axes is not None:
         _plot(axes, route, clearance, "under-keel clearance", _INK)
         label = f"required: {min_ukc:g} m" if min_ukc else None
-        axes.axhline(min_ukc, color="#b71c1c", lw=0.8, label=label)
+        axes.axhline(min_ukc, color=LIMIT_COLOUR, lw=0.8, label=label)
         if known.max() > 60:
             axes.set_yscale("symlog", linthresh=10)
         axes.set_ylabel("clearance [m]")

@@ -13,7 +13,7 @@ from thalweg.core.geodesy import wrap_longitude
 from thalweg.core.time import duration_text, utc_text
 from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.plots.map_extent import MapExtent
-from thalweg.planning.plots.map_labels import LabelPlacer, marked_times, time_label
+from thalweg.planning.plots.map_labels import LabelPlacer, drawn_texts, marked_times, time_label
 from thalweg.planning.plots.map_overlays import (
     draw_enclosed_water,
     draw_land,
@@ -21,6 +21,12 @@ from thalweg.planning.plots.map_overlays import (
     draw_zones,
     place_labels,
     storm_track,
+)
+from thalweg.planning.plots.routes_on_map import (
+    BAR_HEIGHT,
+    ROUTE_COLOUR,
+    draw_routes_of_plan,
+    longitudes_on_line,
 )
 from thalweg.planning.plots.stage_passages import stage_arrival_times
 from thalweg.route.number_texts import amount_text, miles_text
@@ -35,7 +41,9 @@ _CURRENT = ("eastward_sea_water_velocity", "northward_sea_water_velocity")
 _DEPTH = "sea_floor_depth_below_geoid"
 _LEVEL = "sea_surface_height_above_geopotential_datum"
 
-_SEA, _ROUTE, _INK = "#eaf3fa", "#c2185b", "#22303c"
+_PAD = 0.08  # round the picture [inch]
+_MARKER_POINTS = 20  # of a line that count as much as the mark of a time
+_SEA, _INK = "#eaf3fa", "#22303c"
 _WAVE_COLOURS = (_SEA, "#b9d8ec", "#6aaed6", "#2c74b3", "#3b2f8f", "#7a1f7a")
 
 
@@ -53,7 +61,8 @@ def draw_map(plan: PlanData, path: str | Path | None = None, *, beside: Route | 
     """
     beside = beside or _weather_blind(plan)
     box = MapExtent.of_routes([*plan.routes, *([] if beside is None else [beside])])
-    figure = new_figure(*box.figure_size())
+    width, height = box.figure_size()
+    figure = new_figure(width, height + (0.0 if plan.front is None else BAR_HEIGHT))
     axes = figure.add_subplot()
     axes.set_facecolor(_SEA)
     box.set_up(axes)
@@ -65,11 +74,11 @@ def draw_map(plan: PlanData, path: str | Path | None = None, *, beside: Route | 
         track = storm_track(plan.plot_context)
         if track is not None and math.isfinite(plan.best.arrive):
             labels = [*draw_storm(axes, track, box, plan.best.depart, plan.best.arrive), *labels]
-    _draw_routes(figure, axes, plan, box, beside)
+    draw_routes_of_plan(figure, axes, plan, box, beside)
     _decorate_axes(axes, plan, box)
     _label(figure, axes, plan, box, labels)
-    if path is not None:
-        save_figure(figure, path)
+    if path is not None:  # the layout does not count the bars of colours below the map
+        save_figure(figure, path, bbox_inches="tight", pad_inches=_PAD)
     return figure
 
 
@@ -77,13 +86,6 @@ def _weather_blind(plan: PlanData) -> Route | None:
     """Return the fastest route that ignores the weather, of the comparison of a front."""
     comparison = plan.front.comparison if plan.front is not None else None
     return comparison.routes[0] if comparison is not None and comparison.routes else None
-
-
-def _label_of_reference(plan: PlanData) -> str:
-    samples = plan.best.samples
-    met = [samples[name] for name in (_WAVES, *_WIND, *_CURRENT) if name in samples]
-    weather = any(np.nanmax(np.abs(values), initial=0.0) > 0.0 for values in met)
-    return "route that ignores the weather" if weather else "shortest route"
 
 
 def _draw_sea(figure: Any, axes: Any, plan: PlanData, context: PlotContext, box: MapExtent) -> None:
@@ -206,56 +208,6 @@ def _dilated(mask: np.ndarray) -> np.ndarray:
     return np.asarray(binary_dilation(mask, np.ones((3, 3), bool)))
 
 
-def _draw_speed(figure: Any, axes: Any, route: Route, box: MapExtent) -> None:
-    """Draw a route coloured by its speed over ground."""
-    from matplotlib.collections import LineCollection
-
-    points = np.column_stack([box.line(route.samples["lon"]), route.samples["lat"]])
-    speed = route.samples["speed_over_ground"] / KNOT
-    lines = LineCollection(
-        list(np.stack([points[:-1], points[1:]], axis=1)), cmap="plasma", lw=3.0, zorder=5
-    )
-    lines.set_array(0.5 * (speed[:-1] + speed[1:]))
-    axes.add_collection(lines)
-    bar = figure.colorbar(lines, ax=axes, shrink=0.5, pad=0.01, aspect=25, location="bottom")
-    bar.set_label("speed over ground [kn]", fontsize=8)
-    bar.ax.tick_params(labelsize=7)
-
-
-def _draw_routes(
-    figure: Any, axes: Any, plan: PlanData, box: MapExtent, beside: Route | None
-) -> None:
-    best = plan.best
-    if beside is not None:
-        axes.plot(
-            box.line(beside.samples["lon"]), beside.samples["lat"], "--", color=_INK, lw=1.3,
-            zorder=4.5, label=_label_of_reference(plan),
-        )  # fmt: skip
-    for route in plan.routes[1:]:
-        axes.plot(
-            box.line(route.samples["lon"]), route.samples["lat"], color=_ROUTE, lw=0.8, alpha=0.5,
-            zorder=5,
-        )  # fmt: skip
-    if plan.front is None:
-        axes.plot(
-            box.line(best.samples["lon"]), best.samples["lat"], color=_ROUTE, lw=2.2, zorder=5,
-            label="route, times in UTC",
-        )  # fmt: skip
-    else:
-        _draw_speed(figure, axes, best, box)
-    track, track_lon = best.track, _longitudes_on_line(best, box)
-    waits = track.wait > 0
-    if waits.any():
-        axes.plot(
-            track_lon[waits], track.lat[waits], "s", color="#ff8f00", ms=6, zorder=7, label="waits"
-        )
-    for index in (0, -1):
-        axes.plot(
-            track_lon[index], track.lat[index], "o", mfc="white", mec=_ROUTE, mew=1.6, ms=7,
-            zorder=7,
-        )  # fmt: skip
-
-
 def _label(
     figure: Any,
     axes: Any,
@@ -268,31 +220,34 @@ def _label(
     figure.set_layout_engine("none")
     best, samples = plan.best, plan.best.samples
     x = box.line(samples["lon"])
-    placer = LabelPlacer(axes, axes.transData.transform(np.column_stack([x, samples["lat"]])))
+    lines = [line.get_xydata() for line in axes.lines if len(line.get_xydata()) > 2]
+    lines.append(np.column_stack([x, samples["lat"]]))
+    times, step = _times_on_route(best)
+    lon, lat = (np.interp(times, samples["time"], line) for line in (x, samples["lat"]))
+    if len(times):
+        axes.plot(lon, lat, "o", mfc="white", mec=ROUTE_COLOUR, mew=1.0, ms=3.5, zorder=6)
+        lines.append(np.repeat(np.column_stack([lon, lat]), _MARKER_POINTS, axis=0))
+    placer = LabelPlacer(axes, axes.transData.transform(np.concatenate(lines)))
     legend = axes.get_legend()
+    placer.taken += drawn_texts(axes)
     if legend is not None:
         placer.taken.append(legend.get_window_extent())
-    track_lon = _longitudes_on_line(best, box)
+    track_lon = longitudes_on_line(best, box)
     for index, key in ((0, "from"), (-1, "to")):
         name = str(plan.provenance.get(key) or "")
         here = float(track_lon[index]), float(best.track.lat[index])
         if name:
             placer.place(name, *here, needed=True, fontsize=8, fontweight="bold")
-    if math.isfinite(best.arrive):
-        times, step = marked_times(best.depart, best.arrive)
-        lon, lat = (np.interp(times, samples["time"], line) for line in (x, samples["lat"]))
-        axes.plot(lon, lat, "o", mfc="white", mec=_ROUTE, mew=1.0, ms=3.5, zorder=6)
-        for time, *place in zip(times, lon, lat):
-            placer.place(time_label(float(time), step), *map(float, place), fontsize=7)
+    for time, *place in zip(times, lon, lat):
+        placer.place(time_label(float(time), step), *map(float, place), fontsize=7)
     place_labels(placer, labels)
 
 
-def _longitudes_on_line(route: Route, box: MapExtent) -> np.ndarray:
-    """Return the longitudes of the waypoints on the drawn line of the route."""
-    lat, lon, drawn = route.samples["lat"], route.samples["lon"], box.line(route.samples["lon"])
-    places = zip(route.track.lat, route.track.lon)
-    near = [int(np.argmin(np.abs(lat - y) + np.abs(wrap_longitude(lon - x)))) for y, x in places]
-    return np.asarray(drawn[near] + wrap_longitude(route.track.lon - lon[near]))
+def _times_on_route(route: Route) -> tuple[np.ndarray, float]:
+    """Return the times to mark on a route, and their step [s]; none where it has no end."""
+    if not math.isfinite(route.arrive):
+        return np.zeros(0), HOUR
+    return marked_times(route.depart, route.arrive)
 
 
 def _decorate_axes(axes: Any, plan: PlanData, box: MapExtent) -> None:

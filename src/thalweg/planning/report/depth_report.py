@@ -10,7 +10,7 @@ from thalweg.chart import Chart
 from thalweg.chart.depth.global_depth import NAME, coarse_depth
 from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.core.geodesy import densify, distance, format_position_minutes
-from thalweg.core.types import FloatArray
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.report.land_report import passages_used, time_of_passing
 from thalweg.route import Route
@@ -46,14 +46,46 @@ def depth_notes(chart: Chart, route: Route, ship: Ship, clearance: float) -> lis
     if not chart.passages or not draught > 0.0:
         return []
     required = draught + clearance
-    lat, lon, leg = densify(route.track.lat, route.track.lon, _STEP)
-    leg = np.append(leg, leg[-1:])
+    line = lat, lon, _ = _points_of(route)
     notes = [
         f"{CROSSES_SHOAL} {area.name} (charted as shoal area; {area.source})."
         for area in SHOAL_AREAS
         if area.contains(lat, lon).any()
     ]
     depth = np.asarray(coarse_depth(lat, lon))
+    shallow = _is_shallow(chart, route, ship, depth < required)
+    if shallow.any():
+        notes.append(_shallow_legs(route, depth, np.flatnonzero(shallow), line, required))
+    return notes
+
+
+def water_to_check(
+    chart: Chart, route: Route, ship: Ship, clearance: float
+) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """Return positions along a route [deg], and where a note of `depth_notes` says to check it.
+
+    Parameters are those of `depth_notes`. None is to be checked where it returns no notes.
+    """
+    lat, lon, _ = _points_of(route)
+    draught = float(ship.draught)
+    if not chart.passages or not draught > 0.0:
+        return lat, lon, np.zeros(len(lat), bool)
+    too_little = np.asarray(coarse_depth(lat, lon)) < draught + clearance
+    check = _is_shallow(chart, route, ship, too_little)
+    for area in SHOAL_AREAS:
+        check |= area.contains(lat, lon)
+    return lat, lon, check
+
+
+def _points_of(route: Route) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Return positions along a route [deg], each with its leg."""
+    lat, lon, leg = densify(route.track.lat, route.track.lon, _STEP)
+    return lat, lon, np.append(leg, leg[-1:])
+
+
+def _is_shallow(chart: Chart, route: Route, ship: Ship, too_little: BoolArray) -> BoolArray:
+    """Return where the depth layer has too little and says something."""
+    lat, lon, leg = _points_of(route)
     canal_or_approach = canal_legs(route.track, chart, ship)
     judged = _judged(chart, route, lat, lon) & (canal_or_approach.number[leg] < 0)
     in_canals = canal_or_approach.number[
@@ -62,12 +94,7 @@ def depth_notes(chart: Chart, route: Route, ship: Ship, clearance: float) -> lis
     for k in np.unique(in_canals).tolist():
         for end in canal_or_approach.canals[k].ends:
             judged &= np.asarray(distance(lat, lon, *end)) >= _ENDS
-    shallow = (depth < required) & judged
-    if shallow.any():
-        notes.append(
-            _shallow_legs(route, depth, np.flatnonzero(shallow), (lat, lon, leg), required)
-        )
-    return notes
+    return np.asarray(too_little & judged)
 
 
 def _judged(chart: Chart, route: Route, lat: FloatArray, lon: FloatArray) -> np.ndarray:
