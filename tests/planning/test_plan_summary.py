@@ -102,13 +102,13 @@ def with_bound(answer, certain, kind="certificate"):
 @pytest.mark.parametrize(
     ("certain", "kind", "text"),
     [
-        (0.963, "certificate", "at most 3.7 % from the best possible"),
-        (1.0, "certificate", "at most 0.1 % from the best possible"),
-        (0.6, "certificate", "at most 40.0 % from the best possible"),
+        (0.963, "certificate", "at most 3.7 % less time is possible"),
+        (1.0, "certificate", "at most 0.1 % less time is possible"),
+        (0.6, "certificate", "at most 40.0 % less time is possible"),
         (
             0.231,
             "certificate",
-            "little known (weak bound): the best possible is at least 23 % of this",
+            "little is proved: the least possible time is between 23 and 100 % of this",
         ),
         (np.nan, "no bound: the route ends at a pole", "no bound: the route ends at a pole"),
         (0.0, "certificate", "no bound was found"),
@@ -296,12 +296,20 @@ def test_the_summary_of_a_front_states_how_far_its_other_routes_may_be(answer):
         with_bound(answer, 0.976), voyage=replace(answer.voyage, objective="front"), front=front
     )
     text = (
-        "at most 2.4 % from the best possible in time; over the front no route is 2.4 % better in "
+        "at most 2.4 % less time is possible; "
+        "over the front no route is 2.4 % better in both time and fuel; at the same time "
+        "at most 10.0 % less fuel is possible"
     )
-    text += "time and fuel; in fuel alone, at the same time: at most 10.0 %"
     assert quality_text(of_front) == text
-    weak = replace(front, values=np.array([2.0]))
-    assert quality_text(replace(of_front, front=weak)).endswith("little known (weak bound)")
+    weak = quality_text(replace(of_front, front=replace(front, values=np.array([2.0]))))
+    assert weak.endswith("how much less fuel is possible at the same time is hardly known")
+    unknown = replace(front, certain=np.empty((2, 0)))
+    assert quality_text(replace(of_front, front=unknown)) == (
+        "at most 2.4 % less time is possible; how much less fuel is possible over the front is not "
+        "known"
+    )
+    every = [quality_text(replace(of_front, front=one)) for one in (front, unknown)]
+    assert not any("weak" in text or "bound" in text for text in [*every, weak])
 
 
 def test_least_fuel_states_how_far_it_may_be_from_routes_that_take_no_longer(answer):
@@ -309,10 +317,10 @@ def test_least_fuel_states_how_far_it_may_be_from_routes_that_take_no_longer(ans
     certain = np.array([[0.5 * time, time, 1.01 * time, 9 * time], [2.5, 1.99, 1.2, 1.1]])
     front = ParetoFront("fuel", "t", np.array([value]), ("exact",), ("open sea",), certain=certain)
     of_fuel = replace(with_bound(answer, 0.6), front=front)
-    text = "at most 40.0 % from the best possible; at most 0.5 % from the best that takes no longer"
+    text = "at most 40.0 % less time is possible, and at most 0.5 % less without taking longer"
     assert quality_text(of_fuel) == text
     near = replace(front, values=np.array([2.0]), certain=certain - [[0.0], [0.8]])
-    assert quality_text(replace(of_fuel, front=near)).endswith("% from the best possible")
+    assert quality_text(replace(of_fuel, front=near)).endswith("% less time is possible")
 
 
 def test_an_evaluated_route_states_the_dues_of_the_ship_not_the_mean_of_all(answer):

@@ -87,7 +87,8 @@ def _print_details(plan: Plan) -> None:
     print_waypoints(console, plan.best.waypoints(), title)
     console.print(
         escape(
-            f"Lower bound {plan.lower_bound:.2f} {plan.unit}, gap {100 * plan.gap:.1f} %: "
+            f"Lower bound {plan.lower_bound:.2f} {plan.unit}: no route can be below it, at most "
+            f"{100 * plan.gap:.1f} % less than this one (the gap); "
             if plan.gap < 1.0
             else ""
         )
@@ -156,6 +157,8 @@ def print_front(console: Any, plan: Plan) -> None:
             f"{row['waiting_h']:.{waits}f}", gap, row["stage"], row["way"],
         )  # fmt: skip
     console.print(table)
+    if any(row["gap"] is not None for row in rows):
+        console.print(f"gap: at most so much less {front.criterion} is possible at the same time.")
     if len(rows) > len(shown):
         console.print(f"{len(shown)} of {len(rows)} routes; --out DIR writes all to front.csv.")
     for line in _savings(plan):

@@ -305,8 +305,8 @@ def _dues_notes(trade_off: TradeOffContext, best: RefereedCandidate, proof: Proo
         return [f"The bound of the cost leaves the canal dues out ({dues:,.0f} USD)."]
     share = math.ceil(1000.0 * (1.0 - proof.certain / rest)) / 10.0
     return [
-        f"The bound of the cost leaves the canal dues out ({dues:,.0f} USD): without them the plan "
-        f"is at most {share:.1f} % from the best possible at sea."
+        f"The bound of the cost leaves the canal dues out ({dues:,.0f} USD): of the cost without "
+        f"them, at most {share:.1f} % less is possible."
     ]
 
 

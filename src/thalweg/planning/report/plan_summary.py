@@ -45,6 +45,14 @@ _LEAST = {
     "inshore": "least length near land",
     "weighted": "least weighted sum",
 }
+#: Of key figures in sentences on how much less of them is possible.
+_FIGURE_WORDS: Final = {
+    "co2": "CO2",
+    "comfort": "motion sickness dose",
+    "inshore": "length near land",
+    "weighted": "weighted sum",
+    "front": "time",
+}
 _ALWAYS = ("land", "no-go zone")  # reasons that every coastal route meets
 
 
@@ -139,7 +147,7 @@ def limits_text(plan: PlanData) -> str:
 
 
 def quality_text(plan: PlanData) -> str:
-    """Return how far the best route can be from the best possible one, or why that is unknown."""
+    """Return how much better than the best route is possible at most, or why that is unknown."""
     early = "stopped early; " if plan.cancelled else ""
     if not plan.best.feasible:
         return f"{early}not stated: the route breaks a limit"
@@ -148,14 +156,27 @@ def quality_text(plan: PlanData) -> str:
     if not plan.gap < 1.0:
         why = plan.proof.kind if plan.proof.kind.startswith("no bound") else "no bound was found"
         return f"{early}{why}"
+    figure = _figure_words(plan.voyage.objective)
     if plan.gap > _WEAK:
         least = math.floor(100.0 * (1.0 - plan.gap) + 1e-9)
-        return f"{early}little known (weak bound): the best possible is at least {least} % of this"
-    return f"{early}at most {_percent(plan.gap)} % from the best possible{_quality_of_front(plan)}"
+        return (
+            f"{early}little is proved: the least possible {figure} is between {least} and 100 % "
+            "of this"
+        )
+    return f"{early}{_at_most(plan.gap, figure)}{_quality_of_front(plan)}"
+
+
+def _figure_words(name: str) -> str:
+    return _FIGURE_WORDS.get(name, name)
+
+
+def _at_most(gap: float, figure: str) -> str:
+    """Return how much less of a key figure is possible, with few words."""
+    return f"at most {_percent(gap)} % less {figure} is possible"
 
 
 def _quality_of_front(plan: PlanData) -> str:
-    """Return how far the other routes of a front can be from the best possible, if asked for."""
+    """Return how much better the other routes of a front can be, if asked for."""
     if plan.front is None:
         return ""
     if plan.voyage.objective != "front":
@@ -163,24 +184,24 @@ def _quality_of_front(plan: PlanData) -> str:
     gaps = [gap for gap in plan.front.gaps(plan.routes) if gap is not None]
     joint = plan.front.joint_gaps(plan.routes, least_time_h=plan.proof.certain)
     both = [gap for gap in joint if gap is not None]
-    value = plan.front.criterion
-    if not both or max(both) > _WEAK:
-        return f" in time; in {value}, over the front: little known (weak bound)"
-    text = (
-        f" in time; over the front no route is {_percent(max(both))} % better in time and {value}"
-    )
-    alone = (
-        f"at most {_percent(max(gaps))} %" if max(gaps) <= _WEAK else "little known (weak bound)"
-    )
-    return f"{text}; in {value} alone, at the same time: {alone}"
+    value = _figure_words(plan.front.criterion)
+    if not both:
+        return f"; how much less {value} is possible over the front is not known"
+    alone = f"at the same time {_at_most(max(gaps), value)}"
+    if max(gaps) > _WEAK:
+        alone = f"how much less {value} is possible at the same time is hardly known"
+    if max(both) > _WEAK:
+        return f"; {alone}"
+    share = _percent(max(both))
+    return f"; over the front no route is {share} % better in both time and {value}; {alone}"
 
 
 def _quality_at_this_time(plan: PlanData, front: ParetoFront) -> str:
-    """Return how far the best route can be from those that take no longer, if that is less."""
+    """Return how much better routes can be that take no longer, if that is less."""
     gaps = [gap for gap, one in zip(front.gaps(plan.routes), plan.routes) if one is plan.best]
     if not gaps or gaps[0] is None or gaps[0] > plan.gap - _CLEARLY_LESS:
         return ""
-    return f"; at most {_percent(gaps[0])} % from the best that takes no longer"
+    return f", and at most {_percent(gaps[0])} % less without taking longer"
 
 
 def _percent(share: float) -> str:

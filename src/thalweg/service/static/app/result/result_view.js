@@ -108,7 +108,7 @@ export class ResultView {
     const point = plan.front?.points[selection.route];
     const found = plan.front ? point?.gap : plan.gap, gap = found < 1 ? found : null; // at 1 the bound is zero: none
     const quality = this.result.job.summary.quality || "";
-    const said = plan.front ? (known(gap) ? `At most ${number(Math.ceil(1000 * gap) / 10, 1)} % from the best possible at its time` : "No bound is known for this route") : quality ? quality[0].toUpperCase() + quality.slice(1) : "No bound is known";
+    const said = plan.front ? (known(gap) ? `At most ${number(Math.ceil(1000 * gap) / 10, 1)} % less ${plan.front.criterion} is possible at its time` : "No bound is known for this route") : quality ? quality[0].toUpperCase() + quality.slice(1) : "No bound is known";
     const kind = plan.lower_bound_kind[0].toUpperCase() + plan.lower_bound_kind.slice(1);
     const bar = h("i");
     bar.style.width = `${known(gap) ? Math.max(2, 100 * (1 - gap)) : 0}%`;
@@ -116,7 +116,7 @@ export class ResultView {
       h("details", {}, h("summary", {}, "How this is known"), h("ul.list", {},
         known(plan.lower_bound) ? h("li", {}, `${plan.front ? (plan.objective === "front" ? "No route takes less than" : "No route of any time has less than") : "No route is better than"} ${number(plan.lower_bound, 1)} ${plan.objective_unit}. ${kind}.`) : h("li", {}, `${kind}.`),
         known(point?.joint_gap) && point.joint_gap < 1 ? h("li", {}, `No route is ${number(Math.ceil(1000 * point.joint_gap) / 10, 1)} % better in both time and ${plan.front.criterion}.`) : null,
-        h("li", {}, "The bound does not count penalty areas, shoals and traffic lanes: where these make the way longer, the best possible is nearer than stated."),
+        h("li", {}, "The bound does not count penalty areas, shoals and traffic lanes: where these make the way longer, even less improvement is possible."),
         h("li", {}, "Every figure comes from sailing the route again in small steps."))));
   }
 
