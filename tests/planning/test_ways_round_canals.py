@@ -4,9 +4,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from thalweg import Chart, Sea, Ship, Voyage
 from thalweg.chart.canals import KIEL, SUEZ
+from thalweg.cli.indicators.alternatives_command import _print_alternatives
+from thalweg.cli.tables import print_passage_alternatives
 from thalweg.core.time import parse_time
 from thalweg.planning import alternative_plans
 from thalweg.planning.indicators import alternative_plans as module_of_plans
@@ -137,3 +140,39 @@ def test_notes_say_why_a_way_that_was_found_is_not_offered():
 def test_tonnes_of_long_voyages_are_in_words_without_powers_of_ten():
     fast, slow = (dict.fromkeys(COMPARED_FIGURES, np.nan) | {"fuel": t} for t in (892.5, 1258.6))
     assert difference_in_words(slow, fast) == "+366 t fuel (+41 %)"
+
+
+@pytest.mark.slow
+def test_the_table_of_alternatives_has_the_dues_of_canals(by_kiel, capsys):
+    _print_alternatives(by_kiel)
+    rows = {
+        line.split("  ")[1].strip(): line
+        for line in capsys.readouterr().out.splitlines()
+        if line.startswith("  ")
+    }
+    dues = [f"{one.canal_dues_usd:,.0f}" for one in by_kiel.choices]
+    assert rows["canal dues USD"].split()[3:] == dues and "0" in dues
+    assert "off land at sea nm" in rows and "cost USD" in rows
+
+
+def test_the_table_of_other_ways_names_canals_in_full(capsys):
+    ways = [
+        {
+            "without": [],
+            "passes": ["panama"],
+            "distance_nm": 4909.0,
+            "time_h": 330.4,
+            "canal_dues_usd": 113_765.0,
+        },
+        {
+            "without": ["panama"],
+            "passes": ["Magellan"],
+            "distance_nm": 12_736.0,
+            "time_h": 838.8,
+            "canal_dues_usd": 0.0,
+        },
+    ]
+    print_passage_alternatives(Console(width=100), SimpleNamespace(passage_alternatives=ways))
+    text = capsys.readouterr().out
+    assert text.count("Panama Canal") == 2 and "panama" not in text
+    assert "thalweg alternatives" in text

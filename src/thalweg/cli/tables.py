@@ -97,7 +97,7 @@ def _print_details(plan: Plan) -> None:
     )
     if plan.front is not None:
         print_front(console, plan)
-    _print_alternatives(console, plan)
+    print_passage_alternatives(console, plan)
     print_notes(console, plan.notes)
     refused = ", ".join(f"{reason}: {count}" for reason, count in plan.rejections.items())
     console.print(f"Legs rejected: {refused or 'none'}.", soft_wrap=True)
@@ -109,7 +109,7 @@ def _print_details(plan: Plan) -> None:
         console.print(f"Fingerprint of the {name}: {digest}", soft_wrap=True)
 
 
-def _print_alternatives(console: Any, plan: Plan) -> None:
+def print_passage_alternatives(console: Any, plan: Plan) -> None:
     """Print the ways round the canals and passages of a plan."""
     if len(plan.passage_alternatives) < 2:
         return
