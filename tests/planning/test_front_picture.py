@@ -12,11 +12,11 @@ TIMES = np.linspace(192.0, 198.0, 13)
 VALUES = 100_000.0 + 400.0 * (198.0 - TIMES) ** 2
 
 
-def picture(certain):
+def picture(certain, values=VALUES, figure=("cost", "USD")):
     """Return the axes of the picture of a front with a bound."""
     n = len(TIMES)
     front = ParetoFront(
-        "cost", "USD", VALUES, ("exact",) * n, ("open sea",) * n, certain=np.array(certain)
+        *figure, values, ("exact",) * n, ("open sea",) * n, certain=np.array(certain)
     )
     routes = tuple(SimpleNamespace(time_h=t, feasible=True, arrive=0.0) for t in TIMES)
     voyage = SimpleNamespace(objective="front", arrive_by=None)
@@ -58,3 +58,12 @@ def test_labels_cover_neither_each_other_nor_the_legend(least):
     points = axes.transData.transform(np.column_stack([TIMES, VALUES]))
     for box in boxes:
         assert not any(box.contains(x, y) for x, y in points)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_front_of_any_key_figure_has_a_picture():
+    """`plan --objective inshore --out` ended with an error."""
+    axes = picture(np.empty((2, 0)), np.zeros(len(TIMES)), ("inshore", "nm"))
+    assert axes.get_ylabel() == "inshore [nm]"
+    assert axes.get_ylim()[0] < 0.0 < axes.get_ylim()[1]
+    assert picture(np.empty((2, 0)), figure=("encounters", "")).get_ylabel() == "encounters"

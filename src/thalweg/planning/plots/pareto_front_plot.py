@@ -53,7 +53,8 @@ def draw_pareto_front(plan: PlanData, path: str | Path | None = None) -> Any:
     _set_limits(axes, plan, blind)
     _draw_bound(axes, plan)
     axes.set_xlabel("time from departure to arrival [h]")
-    axes.set_ylabel(f"{_CRITERION_LABELS.get(front.criterion, front.criterion)} [{front.unit}]")
+    unit = f" [{front.unit}]" if front.unit else ""
+    axes.set_ylabel(_CRITERION_LABELS.get(front.criterion, front.criterion) + unit)
     axes.set_title(
         f"{plan.provenance['from']} to {plan.provenance['to']}: Pareto front",
         fontsize=10,
@@ -87,9 +88,12 @@ def _set_limits(axes: Any, plan: PlanData, blind: list[tuple[float, float]]) -> 
     front = plan.front
     assert front is not None
     points = [(route.time_h, value) for route, value in zip(plan.routes, front.values)] + blind
-    time, value = np.array([point for point in points if np.isfinite(point).all()]).T
+    known = [point for point in points if np.isfinite(point).all()]
+    if not known:
+        return
+    time, value = np.array(known).T
     wide, high = (
-        max(float(np.ptp(x)), _LEAST_RANGE * float(np.abs(x).max())) for x in (time, value)
+        max(float(np.ptp(x)), _LEAST_RANGE * float(np.abs(x).max())) or 1.0 for x in (time, value)
     )
     bounds = [certain_at(front.certain, float(t)) for t in time]
     least = min([float(value.min()), *(bound for bound in bounds if math.isfinite(bound))])
@@ -139,7 +143,7 @@ def _draw_bound(axes: Any, plan: PlanData) -> None:
     """Draw the bound of all routes; where it is cut off, an arrow with its value."""
     front = plan.front
     assert front is not None
-    if front.certain.shape[1] < 2:
+    if front.certain.shape[1] < 2 or not any(math.isfinite(one.time_h) for one in plan.routes):
         return
     (west, east), (low, high) = axes.get_xlim(), axes.get_ylim()
     first = float(front.certain[0, 0])
