@@ -81,9 +81,9 @@ def test_the_nearest_land_at_sea_is_the_figure_of_the_table():
     assert note.startswith("Close to land: 0.2 nm off at sea, from 0.0170N")
     kind = np.array([LEG_KINDS.index("approach"), 0, 0], float)
     route = replace(plain, legs={**plain.legs, "leg_kind": kind})
-    (note,) = nearest_land_notes(chart, route)
-    assert note.startswith("Close to land: 0.2 nm off in the approach of a port, from 0.0170N")
-    assert "; 3.0 nm off at sea, from 0.0000N" in note
+    near, at_sea = nearest_land_notes(chart, route)
+    assert near.startswith("Close to land: 0.2 nm off in the approach of a port, from 0.0170N")
+    assert at_sea.startswith("Nearest land: 3.0 nm off at sea, from 0.0000N")
     assert indicator_value(route, "land_distance_nm") == pytest.approx(3.0, abs=0.05)
     farther = replace(plain, legs={**plain.legs, "leg_kind": kind[::-1]})
     assert "approach" not in nearest_land_notes(chart, farther)[0]

@@ -57,7 +57,7 @@ def land_notes(context: PlanningContext, route: Route) -> list[str]:
 
 
 def nearest_land_notes(chart: Chart, route: Route) -> list[str]:
-    """Return a note on the nearest land to a route at sea, and in its approaches if that is less.
+    """Return notes on the nearest land to a route at sea, and in its approaches if that is less.
 
     The distance at sea is the indicator ``land_distance_nm``. Empty far off land.
     """
@@ -68,16 +68,13 @@ def nearest_land_notes(chart: Chart, route: Route) -> list[str]:
     near = least_land_clearance(chart, route.track, approach)
     if near is not None and at_sea is not None and near.distance >= at_sea.distance:
         near = None
-    texts = [
+    return [
+        f"{CLOSE_TO_LAND if one.distance < _CLOSE else NEAREST_LAND}: "
         f"{one.distance / NAUTICAL_MILE:.1f} nm off {where}, from "
-        f"{format_position(one.lat, one.lon)}{time_of_passing(route, one.leg, one.lat, one.lon)}"
+        f"{format_position(one.lat, one.lon)}{time_of_passing(route, one.leg, one.lat, one.lon)}."
         for one, where in ((near, "in the approach of a port"), (at_sea, "at sea"))
         if one is not None and one.distance < _NEAR
     ]
-    if not texts:
-        return []
-    least = min(one.distance for one in (near, at_sea) if one is not None)
-    return [f"{CLOSE_TO_LAND if least < _CLOSE else NEAREST_LAND}: {'; '.join(texts)}."]
 
 
 def time_of_passing(route: Route, leg: int, lat: float, lon: float) -> str:
