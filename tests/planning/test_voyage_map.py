@@ -152,6 +152,8 @@ def labels_of_control_areas(box):
 def test_control_areas_have_a_label_where_their_outline_shows():
     """The outline of the Mediterranean area is on land in a map from the Red Sea to Bengal."""
     assert not labels_of_control_areas(MapExtent(-3.0, 31.0, 32.7, 98.5))[1]
+    caribbean = labels_of_control_areas(MapExtent(15.0, 21.0, -70.0, -60.0))[1]
+    assert [label.get_text() for label in caribbean] == ["ECA US Caribbean"]
     axes, labels = labels_of_control_areas(MapExtent(33.0, 39.0, -10.0, 0.0))
     assert [label.get_text() for label in labels] == ["ECA Mediterranean"]
     inside, box = axes.get_window_extent(), labels[0].get_window_extent()

@@ -51,7 +51,7 @@ def draw_alternatives_map(
         text = f"{number}. {name}: {hours[number - 1]} h, {miles_text(route.distance_nm)} nm"
         line = box.line(route.samples["lon"]), route.samples["lat"]
         # the first on top; the others are wider, so that they show beneath it on the same way
-        style = {"lw": 1.6 + 1.4 * (number - 1), "zorder": 5.0 - 0.1 * number}
+        style = {"lw": 1.6 + 0.9 * (number - 1), "zorder": 5.0 - 0.1 * number}
         axes.plot(*line, color=colour, solid_capstyle="butt", label=text, **style)
     axes.set_title(
         f"{ends[0]} to {ends[1]}: alternatives, depart {utc_text(routes[0].depart)}",

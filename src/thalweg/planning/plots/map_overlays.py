@@ -275,4 +275,4 @@ def _outline(polygon: Any, turn: float = 0.0) -> Any:
 
 
 def _plain(name: str) -> str:
-    return name.replace("-", " ").title()
+    return name.replace("-", " ").title().replace("Us ", "US ")
