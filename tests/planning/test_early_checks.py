@@ -12,11 +12,11 @@ from thalweg import Chart, Sea, Ship, Voyage
 from thalweg.cli import option_values
 from thalweg.cli.main import main
 from thalweg.core.errors import InputError
+from thalweg.core.limits import DEEPEST_DRAUGHT
 from thalweg.network import lattice
 from thalweg.network.regional_lattice import lattice_builder, lattice_size
 from thalweg.planning.request.early_checks import check_request
 from thalweg.planning.sea_distance import sea_distance
-from thalweg.ship.schema.value_types import DEEPEST_DRAUGHT
 
 
 @pytest.fixture

@@ -46,8 +46,9 @@ def test_passages_of_the_way_that_a_draught_closes_share_a_note(world):
     """Surabaya, Badung Strait and Alas were named, beside the route by Lombok, and not Malacca."""
     (note,) = notes_on(world, TANKER, BY_LOMBOK)
     assert note == (
-        "Passages closed: Malacca: One Fathom Bank, Malacca-Singapore west and Singapore Main "
-        "Strait: the draught of 20.8 m is over the 20.5 m allowed (--open NAME opens one)."
+        "Passages closed: Malacca: One Fathom Bank, Malacca-Singapore west, Singapore Main Strait "
+        "and Horsburgh (Middle Channel): the draught of 20.8 m is over the 20.5 m allowed (--open "
+        "NAME opens one)."
     )
     assert count_of_dangers([note]) == 1
 

@@ -15,12 +15,12 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Voyage, plan
 from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.planning_context import PlanningContext
-from thalweg.planning.report.depth_report import water_to_check
 from thalweg.planning.report.provenance import given_route_warnings
 from thalweg.planning.request.requirements import Requirements
 from thalweg.planning.request.shoal_choice import add_shoals, close_shoals
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import evaluate
+from thalweg.route.doubtful_depth import water_to_check
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 

@@ -15,7 +15,7 @@ from thalweg.core.geodesy import direct, distance
 from thalweg.core.limits import Limits
 from thalweg.kernels import codes
 from thalweg.sea import Sea
-from thalweg.search.certificate import barrier_raster, time_certificate
+from thalweg.search.certificate import barrier_domain, barrier_raster, time_certificate
 from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier, metres_per_degree
 from thalweg.search.certificate.time_certificate import BarrierSearch, TimeCertificate
@@ -104,9 +104,7 @@ def test_a_jet_beyond_the_ellipse_of_the_ships_speed_is_in_the_bound():
     assert time_certificate.certify_time(passage, seconds=1.0).value < by_jet < passage.known
 
 
-def test_lines_left_out_in_the_search_for_the_greatest_speed_are_stated(monkeypatch):
-    """The jet is on one line of the data, which is read only in the water near the way."""
-    monkeypatch.setattr(barrier_raster, "_MOST_CELLS", 1200)
+def passage_beside_a_jet_on_one_line() -> StretchToBound:
     lat, lon = np.arange(-50, 51) * 0.05, np.arange(-40, 81) * 0.05
     east = np.zeros((lat.size, lon.size))
     east[57] = 9.0  # 0.35 degrees off
@@ -123,7 +121,7 @@ def test_lines_left_out_in_the_search_for_the_greatest_speed_are_stated(monkeypa
             },
         )
     )
-    passage = StretchToBound(
+    return StretchToBound(
         sea,
         None,
         ship_of_one_speed(5.0),
@@ -133,8 +131,31 @@ def test_lines_left_out_in_the_search_for_the_greatest_speed_are_stated(monkeypa
         depart=1e9,
         known=44_550.0,
     )
+
+
+def test_lines_left_out_in_the_search_for_the_greatest_speed_are_stated(monkeypatch):
+    """The jet is on one line of the data, which is read only in the water near the way."""
+    monkeypatch.setattr(barrier_raster, "_MOST_CELLS", 1200)
+    passage = passage_beside_a_jet_on_one_line()
     domain = BarrierDomain.around(passage, 60)
     assert domain.fastest >= 14.0 or "lines of the data" in domain.sampling
+
+
+def test_data_that_decide_on_the_cells_are_not_read_again_for_finer_ones(monkeypatch):
+    monkeypatch.setattr(barrier_raster, "_MOST_CELLS", 1200)
+    passage, frozen = passage_beside_a_jet_on_one_line(), []
+
+    def count(request):
+        frozen.append(request.cells)
+        return barrier_raster.freeze_barrier_raster(request)
+
+    monkeypatch.setattr(barrier_domain, "freeze_barrier_raster", count)
+    domain = BarrierDomain.around(passage, 60)
+    before = len(frozen)  # of the greatest speed, which is kept, and of the domain
+    found = time_certificate.certify_time(passage, seconds=0.0)
+    assert len(frozen) - before == 1
+    assert "lines of the data" in found.sampling
+    assert found.value == pytest.approx(passage.length / domain.fastest, rel=1e-6)
 
 
 @pytest.mark.slow

@@ -11,6 +11,8 @@ import numpy as np
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 
+DEEPEST_DRAUGHT: Final = 30.0  #: of ships that are taken; no ship was deeper than 29 m [m]
+
 
 @dataclass(frozen=True)
 class Tightening:

@@ -23,6 +23,7 @@ from thalweg.chart.passage_crossings import names_passed
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position, distance, line_length
 from thalweg.core.given_numbers import is_number, shortened_repr
+from thalweg.core.limits import DEEPEST_DRAUGHT
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
 from thalweg.planning.network_selection.closed_ways import closed_way_error
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
@@ -49,7 +50,6 @@ from thalweg.planning.seaways import (
     world_chart,
 )
 from thalweg.planning.voyage_parts import Place
-from thalweg.ship.schema.value_types import DEEPEST_DRAUGHT
 
 #: Canals too small for most ships, which are not used by default.
 SMALL_CANALS: Final = ("corinth",)

@@ -12,7 +12,7 @@ from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.core.time import parse_time
 from thalweg.planning.plan_front import certain_at, knee
 from thalweg.planning.plots.map_labels import LabelPlacer, drawn_texts
-from thalweg.route.number_texts import amount_column, hours_texts
+from thalweg.route.number_texts import amount_column, amount_text, hours_texts
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData
@@ -133,12 +133,6 @@ def _close_points(axes: Any, lines: list[Any]) -> np.ndarray:
     return np.concatenate(found)
 
 
-def _value_text(value: float) -> str:
-    """Return a value with as many decimals as it needs."""
-    digits = 0 if value >= 1000.0 else 1 if value >= 100.0 else 2
-    return f"{value:,.{digits}f}"
-
-
 def _draw_bound(axes: Any, plan: PlanData) -> None:
     """Draw the bound of all routes; where it is cut off, an arrow with its value."""
     front = plan.front
@@ -166,7 +160,7 @@ def _draw_bound(axes: Any, plan: PlanData) -> None:
         time, value = max(hidden)
         least = certain_at(front.certain, time)
         text = (
-            f"no route of {time:.1f} h can be below {_value_text(least)} {front.unit}:\n"
+            f"no route of {time:.1f} h can be below {amount_text(least, front.unit)}:\n"
             f"at most {_percent(least, value)} less than the one found"
         )
         _point_outside(axes, text, (time, low))

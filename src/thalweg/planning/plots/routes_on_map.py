@@ -11,8 +11,8 @@ from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import KNOT
 from thalweg.planning.plots.map_extent import MapExtent
 from thalweg.planning.plots.route_profile import LIMIT_COLOUR
-from thalweg.planning.report.depth_report import water_to_check
 from thalweg.planning.request.requirements import required_under_keel_clearance
+from thalweg.route.doubtful_depth import water_to_check
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData

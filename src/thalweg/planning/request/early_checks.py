@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from thalweg.core.errors import InputError
+from thalweg.core.limits import DEEPEST_DRAUGHT
 from thalweg.kernels import codes
 from thalweg.planning.request.ordered_speed import with_order
 from thalweg.planning.request.requirements import check_departure_in_data, check_variables
 from thalweg.planning.voyage import Voyage
 from thalweg.sea import Sea, standard_names
 from thalweg.ship import Ship
-from thalweg.ship.schema.value_types import DEEPEST_DRAUGHT
 
 _CURRENT = (codes.CURRENT_EAST, codes.CURRENT_NORTH)
 

@@ -144,8 +144,8 @@ class BarrierDomain:
             found = cls._within_reach(passage, wanted, enough, first)
             if found is None:
                 return None
-            if abs(max(found.raster.values.shape[1:3]) - 1 - wanted) > 1:
-                break  # the data decide on the cells
+            if not found.has_cells(wanted):
+                break
             first = max(mean, found.fastest)
             enough = max(enough, first)
         return found if found is None or found.sampling else replace(found, sampling=sampling)
@@ -193,6 +193,10 @@ class BarrierDomain:
                 return cls(frozen.arrays, frozen.sampling, speed, ship, frozen.margins)
             fastest = max(speed, least)
         return None
+
+    def has_cells(self, wanted: int) -> bool:
+        """Return whether the raster has the cells wanted; else the data decide on them."""
+        return abs(max(self.raster.values.shape[1:3]) - 1 - wanted) <= 1
 
     @property
     def axes(self) -> tuple[FloatArray, FloatArray]:

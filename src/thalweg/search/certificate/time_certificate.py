@@ -104,16 +104,18 @@ def certify_time(
         The largest bound found; that of the least length near a pole and across half of the globe.
     """
     began, rate = clock.perf_counter(), usual_rate(passage)
-    domain = BarrierDomain.around(passage, _cells(passage, seconds, rate))
+    cells = _cells(passage, seconds, rate)
+    domain = BarrierDomain.around(passage, cells)
     if domain is None:
         globe = BarrierDomain.of_globe(passage, _CELLS_OF_GEODESIC)
         return free_space_time(passage, globe, seconds=seconds)
     if seconds > 0.0:
         rate = seconds_a_cell(passage, domain)
     if rate > _MUCH_SLOWER * usual_rate(passage):
-        domain = BarrierDomain.around(passage, _cells(passage, seconds, rate)) or domain
+        cells = _cells(passage, seconds, rate)
+        domain = BarrierDomain.around(passage, cells) or domain
     finer = None
-    if domain.sampling:
+    if domain.sampling and domain.has_cells(cells):
         finer = BarrierDomain.around(passage, _CELLS_OF_GEODESIC, fastest=domain.fastest)
     best = free_space_time(passage, finer or domain, seconds=seconds)
     if seconds <= 0.0:

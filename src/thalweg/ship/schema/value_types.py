@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from numbers import Real
-from typing import Annotated, Any, Final
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, PlainSerializer
 from pydantic_core import PydanticCustomError
 
 from thalweg.core.errors import unknown_name_error
+from thalweg.core.limits import DEEPEST_DRAUGHT
 
 STERN_SHAPE_NAMES = ("pram", "v", "v_shaped", "normal", "u", "u_shaped")
 
@@ -99,7 +100,6 @@ Word = BeforeValidator(as_word)
 OneOrMore = BeforeValidator(as_list)
 SternShape = Annotated[str | float, BeforeValidator(as_stern_shape)]
 
-DEEPEST_DRAUGHT: Final = 30.0  #: that plans and distances take; no ship was deeper than 29 m [m]
 Length = Annotated[Number, Field(gt=0.0, le=500.0)]  #: [m]
 Draught = Annotated[Number, Field(ge=0.0, le=DEEPEST_DRAUGHT)]  #: [m]
 SuperstructureHeight = Annotated[Number, Field(gt=0.0, le=100.0)]  #: [m]

@@ -1,0 +1,90 @@
+"""Water on a route that the global depth layer shows too shallow, or that is a named shoal area."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from thalweg.chart import Chart
+from thalweg.chart.depth.global_depth import coarse_depth
+from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
+from thalweg.chart.passage_crossings import passages_crossed
+from thalweg.core.geodesy import densify, distance
+from thalweg.core.types import BoolArray, FloatArray, IntArray
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.route.canal_legs import canal_legs
+from thalweg.route.route import Route
+from thalweg.ship import Ship
+
+_STEP: Final = 1.0 * NAUTICAL_MILE
+_NOT_JUDGED: Final = 1.0 * NAUTICAL_MILE  # from land, the spacing of the data of the layer
+_NARROW: Final = 3.0 * NAUTICAL_MILE  # half width of passages that the layer does not show
+_ENDS: Final = 12.0 * NAUTICAL_MILE  # from ends and canals, where channels are dredged
+
+
+def water_to_check(
+    chart: Chart, route: Route, ship: Ship, clearance: float
+) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """Return positions along a route [deg], and where its depth is to be checked.
+
+    Parameters
+    ----------
+    chart : Chart of the route.
+    route : The evaluated route.
+    ship : With its draught.
+    clearance : Required under the keel [m].
+
+    Returns
+    -------
+    lat, lon : [deg].
+    check : bool array; nowhere on charts that are not of the world and without a draught.
+    """
+    lat, lon, _ = positions_with_legs(route)
+    draught = float(ship.draught)
+    if not chart.passages or not draught > 0.0:
+        return lat, lon, np.zeros(len(lat), bool)
+    too_little = np.asarray(coarse_depth(lat, lon)) < draught + clearance
+    check = is_too_shallow(chart, route, ship, too_little)
+    for area in SHOAL_AREAS:
+        check |= area.contains(lat, lon)
+    return lat, lon, check
+
+
+def positions_with_legs(route: Route) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Return positions along a route [deg], each with its leg."""
+    lat, lon, leg = densify(route.track.lat, route.track.lon, _STEP)
+    return lat, lon, np.append(leg, leg[-1:])
+
+
+def is_too_shallow(chart: Chart, route: Route, ship: Ship, too_little: BoolArray) -> BoolArray:
+    """Return where the depth layer has too little (bool, by position) and says something."""
+    lat, lon, leg = positions_with_legs(route)
+    canal_or_approach = canal_legs(route.track, chart, ship)
+    judged = _judged(chart, route, lat, lon) & (canal_or_approach.number[leg] < 0)
+    in_canals = canal_or_approach.number[
+        (canal_or_approach.number >= 0) & ~canal_or_approach.approach
+    ]
+    for k in np.unique(in_canals).tolist():
+        for end in canal_or_approach.canals[k].ends:
+            judged &= np.asarray(distance(lat, lon, *end)) >= _ENDS
+    return np.asarray(too_little & judged)
+
+
+def _judged(chart: Chart, route: Route, lat: FloatArray, lon: FloatArray) -> np.ndarray:
+    """Return where the layer says something: off land, the ends and narrow passages."""
+    shore = np.asarray(chart.coastline.shore_distance(lat, lon, cap=2.0 * _NOT_JUDGED))
+    judged = shore >= _NOT_JUDGED
+    for end in (0, -1):
+        judged &= distance(lat, lon, lat[end], lon[end]) >= _ENDS
+    for _, passage in passages_crossed(chart.coastline, chart.passages, *_waypoints(route)):
+        if passage.half_width < _NARROW:
+            y, x, _ = densify(*passage.positions, 2.0 * _STEP)
+            close = np.flatnonzero(judged & (np.abs(lat - y.mean()) < np.ptp(y) + 0.2))
+            for k in close:
+                judged[k] = distance(lat[k], lon[k], y, x).min() >= 2.0 * _NARROW
+    return judged
+
+
+def _waypoints(route: Route) -> tuple[FloatArray, FloatArray]:
+    return np.asarray(route.track.lat), np.asarray(route.track.lon)
