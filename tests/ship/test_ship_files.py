@@ -76,6 +76,11 @@ def test_cubic_law_through_a_reference_power():
             ("breadth_m", "bredth_m"),
             r"'bredth_m' is not a key of 'hull'.\s+Keys are: (\w+, ){19}\w+ and \d+ more",
         ),
+        (("breadth_m", "beam_m"), "Did you mean 'breadth_m'"),
+        (
+            ("draught_m: 7", "draught_m: 7, length_m: 100"),
+            "Did you mean 'length_between_perpendiculars_m' or 'length_overall_m'",
+        ),
         (("speed_kn: 12", "speed_kn: .nan"), "table.speed_kn.*finite"),
         (("speed_kn: 12", "speed_kn: 0"), "table.speed_kn.*greater than 0"),
         (("speed_kn: 12", "speed_kn: -12"), "table.speed_kn.*greater than 0"),

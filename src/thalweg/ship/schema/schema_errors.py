@@ -24,6 +24,19 @@ _BY_NAME = {
         "{deck work: {place: mess, max_vertical_acceleration_m_s2: 0.5}}",
     ),
 }
+#: Words that others use for keys, by what their letters begin with.
+_OTHER_WORDS = {
+    "lengthm": ("length_between_perpendiculars_m", "length_overall_m"),
+    "loa": ("length_overall_m",),
+    "lpp": ("length_between_perpendiculars_m",),
+    "lbp": ("length_between_perpendiculars_m",),
+    "lwl": ("length_waterline_m",),
+    "beam": ("breadth_m",),
+    "width": ("breadth_m",),
+    "dwt": ("deadweight_t",),
+    "mcr": ("power_kw",),
+    "servicespeed": ("reference_speed_kn", "speeds_kn"),
+}
 _OUT_OF_RANGE = ("greater_than", "greater_than_equal", "less_than_equal")
 
 
@@ -70,7 +83,7 @@ def _unknown_key_error(
 ) -> InputError:
     known = list(_section_class(schema, section).model_fields)
     place = f"'{section[0]}'" if section else "a ship file"
-    near = close_matches(str(name)[:80], known)
+    near = _keys_of_other_word(str(name), known) or close_matches(str(name)[:80], known)
     remedy = f"Did you mean {' or '.join(repr(n) for n in near)}?" if near else "Leave it out."
     return InputError(
         f"{_abbreviated(name)} is not a key of {place}.",
@@ -79,6 +92,13 @@ def _unknown_key_error(
         key=str(name)[:80],
         near=near,
     )
+
+
+def _keys_of_other_word(word: str, known: Sequence[str]) -> list[str]:
+    """Return the known keys for which others use a word."""
+    letters = "".join(letter for letter in word.casefold() if letter.isalnum())
+    found = (keys for begin, keys in _OTHER_WORDS.items() if letters.startswith(begin))
+    return [key for keys in found for key in keys if key in known]
 
 
 def _not_a_section_error(
