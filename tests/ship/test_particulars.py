@@ -319,3 +319,18 @@ def test_an_empty_displacement_that_is_given_asks_for_no_other():
     loading = {"draught_full_m": 7.0, "draught_empty_m": 0.1, "weight_empty_t": 102.5}
     data = {"name": "x", "hull": HULL, "speeds_kn": [12.0], "loading": loading}
     assert Ship.from_dict(data).with_load_factor(0.0).loading.displacement == pytest.approx(100.0)
+
+
+def test_speeds_above_the_greatest_of_a_ship_with_known_speeds_are_reported():
+    """The power of 25 kn by the cubic law, nine times that of the engines, had no warning."""
+    ship = Ship.from_dict(
+        {
+            "name": "coaster",
+            "hull": {"length_between_perpendiculars_m": 80, "breadth_m": 13, "draught_m": 5},
+            "engine": {"reference_speed_kn": 12, "reference_power_kw": 1500},
+            "speeds_kn": [8, 12],
+        }
+    )
+    over, within = performance_sheet(ship, speeds_kn=[25, 12])["conditions"][::-1]
+    assert over["warnings"] == ["above the greatest speed of the ship, 12 kn"]
+    assert within["warnings"] == []

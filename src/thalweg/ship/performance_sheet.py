@@ -201,7 +201,7 @@ def _known_speed_rows(
     ship: Ship, conditions: Conditions, speeds: FloatArray
 ) -> list[dict[str, Any]]:
     ordered = ship if np.array_equal(speeds, ship.speeds) else ship.with_speeds(speeds)
-    rows = []
+    greatest, rows = ship.greatest_order(), []
     for k, speed in enumerate(np.unique(speeds)):
         attained = float(ordered.speed_through_water(conditions, k))
         notes = [str(n) for n in ordered.notes(conditions, k)]
@@ -211,6 +211,8 @@ def _known_speed_rows(
                 "prediction: no speed is given"
             )
             attained = np.nan
+        if speed > greatest * (1.0 + 1e-9):
+            notes.append(f"above the greatest speed of the ship, {greatest / KNOT:.4g} kn")
         fuel = float(ordered.fuel_rate(conditions, k))
         power = float(ordered.power(conditions, k))
         rows.append(
