@@ -11,6 +11,7 @@ from thalweg.core.pareto_fronts import (
     ROUNDING_TOLERANCE,
     evenly_spaced_subset,
     falling_hull,
+    higher_of_two_fronts,
     length_along_front,
     lower_hull,
     non_dominated_indices,
@@ -68,3 +69,18 @@ def test_points_are_chosen_evenly_along_the_front_with_both_ends():
     assert time[chosen] == pytest.approx([0.0, 2.5, 5.0, 7.5, 10.0])
     assert len(evenly_spaced_subset(time, cost, 500)) == 101
     assert length_along_front([0.0, 1.0, 2.0], [7.0, 7.0, 7.0]).tolist() == [0.0, 0.5, 1.0]
+
+
+def test_the_higher_of_two_bounds_meets_both_and_where_they_cross():
+    """10 - x from 1 on and 7 - x / 4 from 2 on cross at 4; the second is level from 8."""
+    first, second = np.array([[1.0, 9.0], [9.0, 1.0]]), np.array([[2.0, 8.0], [6.5, 5.0]])
+    found = higher_of_two_fronts(first, second)
+    assert found[0] == pytest.approx([2.0, 4.0, 8.0, 9.0])
+    assert found[1] == pytest.approx([8.0, 6.0, 5.0, 5.0])
+    assert higher_of_two_fronts(second, first) == pytest.approx(found)
+
+
+def test_a_bound_is_the_higher_where_there_is_no_other():
+    bound, none = np.array([[1.0, 9.0], [9.0, 1.0]]), np.empty((2, 0))
+    assert higher_of_two_fronts(bound, none) is bound
+    assert higher_of_two_fronts(none, bound) is bound

@@ -27,3 +27,31 @@ def test_a_current_beside_the_way_does_not_loosen_the_least_time():
     least = float(found.front.certain[0, 0])
     assert 0.95 * truth < least <= truth * 1.0005  # with the strongest current it is 0.67 of it
     assert found.proof.certain == pytest.approx(least)
+
+
+@pytest.mark.slow
+def test_a_front_with_certificates_of_cost_is_nowhere_below_that_by_fair_currents(monkeypatch):
+    """Certificates for a part of the times must not end what fair currents prove after it."""
+    tide = 2.0 * np.pi / (12.42 * HOUR)
+    sea = PLANE.sea(lambda t, x, y: (np.cos(tide * (t - T0)) + 0.0 * x, 0.0 * x))
+    ship = Ship.simple(
+        speed_kn=SPEED / KNOT, speeds_kn=[7.0, SPEED / KNOT], draught_m=5.0, fuel_t_per_day=24.0
+    )
+    voyage = Voyage(
+        start=PLANE.position(0, 0), goal=PLANE.position(8, 0), depart=T0, objective="front",
+        offing_nm=0.0, method="exact",
+    )  # fmt: skip
+    chart = PLANE.water(-1, 9, -4, 4)
+    conditions = {"ship": ship, "sea": sea, "chart": chart, "resolution": 10_000.0}
+    alone = plan(voyage, **conditions).front.certain
+    until = 0.5 * float(alone[0, 0] + alone[0, -1])
+    dearer = 1.001 * float(np.interp(until, *alone))  # a line by a proof, up to that time
+    monkeypatch.setattr(
+        "thalweg.planning.pareto.front_bound.certified_front.certified_lines",
+        lambda *_, **__: (np.array([[0.0], [dearer]]), until, ""),
+    )
+    both = plan(voyage, **conditions, proof=3.0).front.certain
+    hours = np.linspace(alone[0, 0], alone[0, -1], 101)
+    raised = np.interp(hours, *both)
+    assert (raised >= np.interp(hours, *alone) * (1.0 - 1e-9)).all()
+    assert np.interp(until, *both) == pytest.approx(dearer)

@@ -19,7 +19,7 @@ KNOWN, UNKNOWN = 6.0, np.nan
 def planned(tmp_path):
     """Plan past high waves from 3.0E for 40 h, and from 1.5E after hour 20 for a while."""
 
-    def of(until, height, objective="time", **ship):
+    def of(until, height, objective="time", proof=3.0, **ship):
         hours = np.arange(97.0)
         lat, lon = np.arange(-1.0, 1.001, 0.05), np.arange(0.0, 6.001, 0.05)
         time, _, east = np.meshgrid(hours, lat, lon, indexing="ij")
@@ -42,7 +42,7 @@ def planned(tmp_path):
             ship=Ship.simple(speed_kn=10.0, draught_m=5.0, max_wave_height_m=4.0, **ship),
             sea=Sea.open(tmp_path / "waves.nc"),
             chart=Chart.open_water(-1.0, 1.0, 0.0, 6.0),
-            proof=3.0,
+            proof=proof,
         )
 
     return of
@@ -72,12 +72,15 @@ def test_a_wait_that_has_no_other_place_is_the_first_note(planned, height, words
 
 
 @pytest.mark.slow
-def test_the_least_time_of_a_front_knows_when_waves_fall(planned):
-    """At the top speed all the way the voyage would take 30 h, and not the 55 h of the wait."""
+@pytest.mark.parametrize("proof", [None, 3.0], ids=["time of the search", "time given"])
+def test_the_least_time_of_a_front_knows_when_waves_fall(planned, proof, monkeypatch):
+    """At 10 kn the voyage would take 30 h, at 8 kn 37.5 h, and not the 55 h of the wait."""
+    monkeypatch.setattr("thalweg.planning.pareto.front_bound.least_ways._SECONDS", 4.0)
     speeds = {"speeds_kn": [8.0, 10.0], "fuel_t_per_day": 24.0}
-    found = planned(until=30, height=KNOWN, objective="front", **speeds)
+    found = planned(until=30, height=KNOWN, objective="front", proof=proof, **speeds)
     assert found.best.time_h > 55.0
     assert 0.95 * found.best.time_h < found.lower_bound <= found.best.time_h
+    assert found.front.certain[0, 0] == pytest.approx(found.lower_bound)
 
 
 def warnings_of_waits(wait_h, wind_kn):

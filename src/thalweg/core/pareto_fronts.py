@@ -84,6 +84,31 @@ def falling_hull(first: ArrayLike, second: ArrayLike) -> IntArray:
     return hull[: int(np.argmin(y[hull])) + 1] if len(hull) else hull
 
 
+def higher_of_two_fronts(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Return the pointwise maximum of two lower bounds of a front, which is one as well.
+
+    Parameters
+    ----------
+    first, second : float64 array (2, n)
+        Points to be joined by lines, by ascending first objective; nothing is possible before the
+        first of them, and the bound is level after the last.
+
+    Returns
+    -------
+    float64 array (2, k)
+        From the later of the two first points on.
+    """
+    if not (first.size and second.size):
+        return second if second.size else first
+    x = np.union1d(first[0], second[0])
+    x = np.append(max(first[0, 0], second[0, 0]), x[x > max(first[0, 0], second[0, 0])])
+    lead = np.interp(x, *first) - np.interp(x, *second)
+    k = np.flatnonzero(lead[:-1] * lead[1:] < 0.0)  # the lines cross between k and k + 1
+    crossings = x[k] + (x[k + 1] - x[k]) * lead[k] / (lead[k] - lead[k + 1])
+    x = np.union1d(x, crossings)
+    return np.array([x, np.maximum(np.interp(x, *first), np.interp(x, *second))])
+
+
 def length_along_front(first: ArrayLike, second: ArrayLike) -> FloatArray:
     """Return how far along a front each of its points is, both objectives scaled to their ranges.
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thalweg.core.pareto_fronts import lower_hull
+from thalweg.core.pareto_fronts import higher_of_two_fronts, lower_hull
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.kernels.certificate.cost_conditions import PricedShip
@@ -147,9 +147,7 @@ def _certified_fronts(
     if not context.proof_seconds:
         return fronts
     lines, until, sampling = certified_lines(trade_off, ordered, seconds=context.proof_seconds)
-    if fair.size and lines.size:
-        lines, until = np.append(lines, fair, axis=1), min(until, until_fair)
-    raised = _not_before(raised_by_lines(points, lines, until), least)
+    raised = higher_of_two_fronts(raised_by_lines(points, lines, until), by_currents)
     if _gains(raised, by_currents):
         kind = _KIND.format(until=until) + (f", in {sampling}" if sampling else "") + f"; {kind}"
         fronts.append(CertifiedFront(raised, kind, min(allowed, until)))
@@ -231,11 +229,13 @@ def _gains(raised: FloatArray, points: FloatArray) -> bool:
 
 def _not_before(certain: FloatArray, least: float) -> FloatArray:
     """Return a certain front without the times before the least one that is possible [h]."""
-    if not certain.size or not certain[0, 0] < least < certain[0, -1]:
+    if not certain.size or not certain[0, 0] < least:
         return certain
-    after = certain[0] > least
-    first = np.array([[least], [certain_at(certain, least)]])
-    return np.append(first, certain[:, after], axis=1)
+    value = certain_at(certain, least)
+    after = certain[:, certain[0] > least]
+    if not after.size:  # level from the least time on
+        after = np.array([[2.0 * least], [value]])
+    return np.append(np.array([[least], [value]]), after, axis=1)
 
 
 def certified_lines(
