@@ -119,7 +119,7 @@ def test_the_route_avoids_closed_periods(waiting) -> None:
     best = waiting.best
     samples = best.samples
     found = find_closures(
-        best, ship=SHIP, sea=bar(), min_ukc=1.0, times=np.unique(samples["time"]), places=400
+        best, ship=SHIP, sea=bar(), min_ukc=1.0, times=np.unique(samples["time"]), places=3000
     )
     column = np.searchsorted(found.times, samples["time"])
     row = np.abs(found.distance[:, None] - samples["distance"][None, :]).argmin(axis=0)

@@ -151,7 +151,7 @@ def test_a_wait_moves_to_the_first_sheltered_place_where_she_may_wait(rough_star
     wait = np.array([0.0, 0.0, 0.0, 4.0 * HOUR, 0.0])
     route = context.evaluate(Track([0.0] * 5, [0.0, 0.2, 0.4, 0.6, 0.8], depart=0.0, wait=wait))
     assert route.feasible
-    found = with_sheltered_waits(context, route)
+    found = with_sheltered_waits(context, route, route.arrive + 60.0)
     assert np.flatnonzero(found.track.wait).tolist() == [place]
     assert found.arrive == pytest.approx(route.arrive, abs=30.0)
     assert (found is route) == (place == 3)

@@ -14,7 +14,7 @@ from thalweg.planning.report.given_route_report import NEAR_LAND
 from thalweg.planning.report.ice_report import REACHES_ICE
 from thalweg.planning.report.land_report import CLOSE_TO_LAND, PASSES
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, LANE_DETOUR
-from thalweg.planning.report.waiting_report import WAITS
+from thalweg.planning.report.waiting_report import PASSES_TIME, WAITS
 from thalweg.planning.report.wave_report import TOO_STEEP
 from thalweg.planning.request.coverage_check import CHECK_YEAR, UNREAD
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
@@ -33,6 +33,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     PORT_TOO_SHALLOW,
     LIMIT_EXCEEDED,
     WAITS,
+    PASSES_TIME,
     TOO_STEEP,
     REACHES_ICE,
     CHECK_POSITION,

@@ -15,6 +15,7 @@ from thalweg.sea.standard_names import EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGH
 from thalweg.ship import Ship
 
 WAITS: Final = "Waits at sea"  #: notes on weather in a wait begin so
+PASSES_TIME: Final = "Waiting is not permitted"  #: notes on miles that pass the time begin so
 LEAST_WAIT_H: Final = 0.1  #: shorter waits are not stated [h]
 _ADVICE = (
     "weather is checked under way only. Depart later, or name where she may wait (zones of the "

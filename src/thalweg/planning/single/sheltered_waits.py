@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
@@ -12,10 +13,9 @@ from thalweg.route import Route
 
 _MOST_PLACES: Final = 16  # at which the wait is tried
 _MORE: Final = (0.0, 20.0)  # of the wait [s]: a limit may open between two points of the referee
-_LATER: Final = 60.0  # that a wait in better weather may cost [s]
 
 
-def with_sheltered_waits(context: PlanningContext, route: Route) -> Route:
+def with_sheltered_waits(context: PlanningContext, route: Route, latest: float) -> Route:
     """Return a route that waits where its limits of weather are kept, if it arrives as early.
 
     The search counts weather under way only, and waits as late as it can. So the ship may lie at
@@ -25,12 +25,27 @@ def with_sheltered_waits(context: PlanningContext, route: Route) -> Route:
     Parameters
     ----------
     route : As evaluated.
+    latest : Latest arrival with the waits elsewhere [s since 1970-01-01T00:00Z].
     """
     ship = context.ship
     if not (route.feasible and route.waiting_h > 0.0):
         return route
     if not waiting_weather_warnings(route, ship):
         return route
+    for tried in routes_with_one_wait(context, route):
+        early = tried.feasible and tried.arrive <= latest
+        if early and not waiting_weather_warnings(tried, ship):
+            return tried
+    return route
+
+
+def routes_with_one_wait(context: PlanningContext, route: Route) -> Iterator[Route]:
+    """Yield a route with all its waits at one waypoint, from the first to the last where it waits.
+
+    Parameters
+    ----------
+    route : With one wait or more.
+    """
     wait = np.asarray(route.track.wait, float)
     last = int(np.flatnonzero(wait)[-1])
     for place in np.unique(np.linspace(0, last, min(last + 1, _MOST_PLACES)).astype(int)):
@@ -40,8 +55,4 @@ def with_sheltered_waits(context: PlanningContext, route: Route) -> Route:
         for more in _MORE:
             moved = np.zeros(wait.size)
             moved[place] = wait.sum() + more
-            tried = context.evaluate(route.track.replaced(wait=moved))
-            early = tried.feasible and tried.arrive <= route.arrive + _LATER
-            if early and not waiting_weather_warnings(tried, ship):
-                return tried
-    return route
+            yield context.evaluate(route.track.replaced(wait=moved))

@@ -26,6 +26,11 @@ from thalweg.planning.single.exceeded_limits import (
     exceeded_limits_on_route,
     without_exceeding_edges,
 )
+from thalweg.planning.single.fewer_waits import (
+    LatePaths,
+    passing_time_notes,
+    with_best_waits,
+)
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.single.route_candidates import (
     departing_later,
@@ -35,7 +40,6 @@ from thalweg.planning.single.route_candidates import (
     through_narrow_features,
     track_from_result,
 )
-from thalweg.planning.single.sheltered_waits import with_sheltered_waits
 from thalweg.planning.single.stretch_result import StretchResult
 from thalweg.planning.single.weather_gaps import (
     MAX_GAPS,
@@ -56,6 +60,7 @@ from thalweg.search import (
     earliest_arrival,
     lower_bound,
 )
+from thalweg.search.earliest_arrival import ArrivalQuery
 from thalweg.search.lower_bounds import Penalties
 
 #: Periods for which the sea is frozen, in multiples of the time along the geodesic.
@@ -187,14 +192,37 @@ def _search_and_refine(
         route = refined_bound_path(context, network, hint, result, route, limits)
         if network.meta.kind != "layered":  # those routes keep to their layers
             route = through_narrow_features(context, route, limits)
-    route = with_sheltered_waits(context, route)
+    paths = _late_paths(context, network, frozen, limits, (result, route))
+    fixed = window[1] == window[0]
+    passing = passing_time_notes(context, route, paths, ends[0].name) if fixed else []
+    route = with_best_waits(context, route, paths, last_departure=window[1])
     notes = network.meta.notes if network.meta.kind == "layered" else ()
     notes += tuple(f"The referee finds a limit exceeded: {v}." for v in route.violations[:5])
+    notes += tuple(passing)
     until = route.depart + _ISOCHRONE_TIME_RATIO * route.time_h * HOUR if route.feasible else None
     # a limit opens after a wait; against currents the times without waits show as much
     waits = bool(np.any(route.track.wait)) or bool(set(result.refused) - {REASONS[CURRENT]})
     arrival = isochrones(context, network, frozen, route.depart, until, wait=waits)
     return StretchResult(route, result, network, arrival, notes)
+
+
+def _late_paths(
+    context: PlanningContext,
+    network: Network,
+    frozen: FrozenSea,
+    limits: Limits,
+    found: tuple[SearchResult, Route],
+) -> LatePaths:
+    """Return the paths of later departures than that of a route, and of the search it is from."""
+    result, route = found
+    ship = _ship_on_network(context, network, frozen, limits)
+    start, goal = network.meta.start, network.meta.goal
+    query = ArrivalQuery(start, goal, route.depart, wait=context.voyage.wait)
+
+    def refine(late: SearchResult) -> Route:
+        return refine_track(context, track_from_result(network, late, context.setting), limits)
+
+    return LatePaths(ship, query, result.arrive, refine)
 
 
 def isochrones(

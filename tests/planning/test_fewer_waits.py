@@ -1,0 +1,157 @@
+"""Waits for a storm over the goal: one wait and the direct way, where the ship arrives as early."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from thalweg import Chart, Sea, Ship, Track, Voyage, evaluate, plan
+from thalweg.core.units import HOUR
+from thalweg.planning.report.note_order import danger_first
+from thalweg.planning.report.waiting_report import PASSES_TIME
+from thalweg.planning.single.fewer_waits import LatePaths, with_fewer_waits
+
+GOAL, DIRECT_NM, LIMIT = 3.24, 194.8, 4.0
+MINUTE_H = 1.0 / 60.0
+
+
+def storm_round(x, y, lon, lat, radius):
+    """Return the share of the greatest wave height round the middle (x, y) of a storm."""
+    return np.exp(-((((lon - x) / radius) ** 2) + ((lat - y) / radius) ** 2))
+
+
+def leaves_slowly(t, lat, lon):
+    """Return waves of a storm that moves off eastwards from hour 50 on, at 3 kn [m]."""
+    return 1.0 + 8.0 * storm_round(GOAL + 0.05 * np.maximum(t - 50.0, 0.0), 0.0, lon, lat, 1.0)
+
+
+def ends_at_once(t, lat, lon):
+    """Return waves of a storm that is over between hour 63 and 66 [m]."""
+    return 1.0 + 7.0 * storm_round(GOAL, 0.0, lon, lat, 0.8) * (t < 66.0)
+
+
+def moves_and_fades(t, lat, lon):
+    """Return waves of a storm that moves north-west from hour 11 on, and fades by hour 71 [m]."""
+    moved = np.maximum(t - 11.27, 0.0)
+    height = 8.0 * storm_round(GOAL - 0.027 * moved, 0.034 * moved, lon, lat, 1.23)
+    return 1.0 + height * np.clip((71.4 - t) / 12.0, 0.0, 1.0)
+
+
+@pytest.fixture
+def planned(tmp_path):
+    """Plan the least time past waves given every 3 h, as a function of hours and degrees."""
+
+    def of(waves, box=(-2.0, 2.0, -1.0, 5.0), **conditions):
+        hours = np.arange(0.0, 145.0, 3.0)
+        lat, lon = np.arange(box[0], box[1] + 0.01, 0.1), np.arange(box[2], box[3] + 0.01, 0.1)
+        height = waves(*np.meshgrid(hours, lat, lon, indexing="ij"))
+        name = "sea_surface_wave_significant_height"
+        axes = {
+            "time": np.datetime64("2026-05-01", "ns") + hours.astype(int) * np.timedelta64(1, "h"),
+            "lat": ("lat", lat, {"units": "degrees_north"}),
+            "lon": ("lon", lon, {"units": "degrees_east"}),
+        }
+        field = (("time", "lat", "lon"), height, {"standard_name": name, "units": "m"})
+        xr.Dataset({"hs": field}, axes).to_netcdf(tmp_path / "waves.nc")
+        return plan(
+            Voyage(start=(0.0, 0.0), goal=(0.0, GOAL), depart="2026-05-01T00:00Z", **conditions),
+            ship=Ship.simple(speed_kn=12.0, draught_m=5.0, max_wave_height_m=LIMIT),
+            sea=Sea.open(tmp_path / "waves.nc"),
+            chart=Chart.open_water(*box),
+        )
+
+    return of
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("waves", "longer"), [(leaves_slowly, 1.003), (ends_at_once, 1.06)], ids=["slowly", "at once"]
+)
+def test_a_ship_waits_once_at_her_berth_and_sails_on(planned, waves, longer):
+    """The first path found waits ten times, and is 8 % longer, or 25 % and a minute earlier."""
+    found = planned(waves)
+    best, wait = found.best, np.asarray(found.best.track.wait)
+    assert best.feasible
+    assert np.flatnonzero(wait).tolist() == [0]
+    assert best.distance_nm < longer * DIRECT_NM
+    assert best.time_h <= found.proof.solver_total + MINUTE_H
+    assert found.lower_bound <= best.time_h
+    assert (best.samples["sea_surface_wave_significant_height"] <= LIMIT * (1.0 + 1e-9)).all()
+
+
+@pytest.mark.slow
+def test_a_ship_that_may_not_wait_is_shown_what_it_costs(planned):
+    """She sails to and fro for a day behind the storm; leaving 22.5 h later is as good."""
+    found = planned(moves_and_fades, box=(-5.0, 5.0, -5.0, 9.0), wait=False)
+    assert found.best.distance_nm > 2.0 * DIRECT_NM
+    note = danger_first(found.notes)[0]
+    assert note.startswith(PASSES_TIME)
+    assert f"sails {found.best.distance_nm:.0f} nm" in note and "2.3 times what she needs" in note
+    assert "at 2026-05-01T22:" in note and "depart then, or permit waits." in note
+
+
+def test_a_ship_that_may_not_wait_and_need_not_has_no_such_note(planned):
+    found = planned(lambda t, lat, lon: 1.0 + 0.0 * t, wait=False)
+    assert not any(note.startswith(PASSES_TIME) for note in found.notes)
+
+
+def context_in_wind(closed):
+    """Return a context with a limit of 20 kn, in wind of 30 m/s where (hours, lon) is closed."""
+
+    def wind(time, lat, lon):
+        return np.where(closed(time / HOUR, lon), 30.0, 1.0) + 0.0 * lat
+
+    names = ("eastward_wind", "northward_wind")
+    sea = Sea.from_functions({names[0]: wind, names[1]: lambda time, lat, lon: 0.0 * time * lat})
+    ship = Ship.simple(speed_kn=10.0, draught_m=5.0, max_wind_speed_kn=20.0)
+    chart = Chart.open_water(-1.0, 1.0, -1.0, 2.0)
+    return SimpleNamespace(
+        ship=ship, chart=chart, latest_arrival=np.inf,
+        voyage=SimpleNamespace(objective="distance"),
+        evaluate=lambda track: evaluate(track, ship=ship, sea=sea, chart=chart, strict=False),
+    )  # fmt: skip
+
+
+def sailed_with(context, wait_h):
+    """Return a route along the equator with waits [h] at waypoints every 0.2 degrees (1.2 h)."""
+    lon = 0.2 * np.arange(len(wait_h))
+    wait = HOUR * np.asarray(wait_h, float)
+    route = context.evaluate(Track(0.0 * lon, lon, depart=0.0, wait=wait))
+    assert route.feasible
+    return route
+
+
+NO_PATHS = LatePaths(None, None, np.inf, None)
+
+
+def test_waits_are_joined_as_far_as_the_limits_allow():
+    """The third leg is open from hour 5 to 7, the last from hour 12 on: it takes two waits."""
+
+    def closed(hour, lon):
+        third = (np.abs(lon - 0.5) < 0.05) & ((hour < 5.0) | (hour > 7.0))
+        return third | ((np.abs(lon - 1.1) < 0.05) & (hour < 12.0))
+
+    context = context_in_wind(closed)
+    route = sailed_with(context, [0.0, 1.5, 1.2, 2.0, 1.1, 0.0, 0.0])
+    found = with_fewer_waits(context, route, NO_PATHS, last_departure=0.0)
+    assert found.feasible
+    assert np.flatnonzero(found.track.wait).tolist() == [1, 3]
+    assert found.arrive == pytest.approx(route.arrive, abs=1.0)
+
+
+def test_waits_are_joined_at_the_berth_where_all_can_be():
+    context = context_in_wind(lambda hour, lon: (np.abs(lon - 0.7) < 0.05) & (hour < 9.0))
+    route = sailed_with(context, [0.0, 3.0, 1.0, 1.1, 0.0])
+    found = with_fewer_waits(context, route, NO_PATHS, last_departure=0.0)
+    assert found.feasible
+    assert np.flatnonzero(found.track.wait).tolist() == [0]
+    assert found.arrive == pytest.approx(route.arrive, abs=1.0)
+
+
+@pytest.mark.parametrize("wait_h", [[0.0, 5.1, 0.0, 0.0, 0.0], [0.05, 0.04, 0.0, 0.0, 0.0]])
+def test_one_wait_and_short_ones_on_the_direct_way_stay(wait_h):
+    context = context_in_wind(lambda hour, lon: (np.abs(lon - 0.7) < 0.05) & (hour < 0.0))
+    context.voyage.objective = "time"
+    route = sailed_with(context, wait_h)
+    assert with_fewer_waits(context, route, NO_PATHS, last_departure=0.0) is route
