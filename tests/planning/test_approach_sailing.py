@@ -274,6 +274,31 @@ def test_departure_is_from_the_berth():
     assert plan.objective_value == pytest.approx(plan.best.distance_nm)
 
 
+@pytest.mark.slow
+def test_a_ship_waits_for_lower_waves_at_her_berth_and_not_off_the_port():
+    """Waves of 6 m everywhere until noon: at the sea end of the approach she would lie in them."""
+    noon = float(Voyage(start="Rotterdam", goal="Lowestoft", depart=DEPART).depart) + 12.0 * HOUR
+    name = "sea_surface_wave_significant_height"
+    high = {name: lambda t, y, x: np.where(t < noon, 6.0, 1.0) + 0.0 * y}
+    sea = Sea.layered(Sea.from_functions(high), Sea.calm())
+    small = Ship.simple(speed_kn=10.0, draught_m=5.0, max_wave_height_m=4.0)
+    voyage = Voyage(start="Rotterdam", goal="Lowestoft", depart=DEPART)
+    found = thalweg.plan(voyage, ship=small, sea=sea, chart=chart())
+    best = found.best
+    length = best.distance_nm * NAUTICAL_MILE
+    approach = approach_of("Rotterdam")
+    out = approach.duration(approach_speed(small, 0))
+    assert np.flatnonzero(best.track.wait).tolist() == [0]
+    assert best.depart == voyage.depart and best.feasible
+    assert best.track.wait[0] == pytest.approx(12.0 * HOUR - out, abs=60.0)
+    assert best.time_h * HOUR == pytest.approx(
+        best.track.wait[0] + length / (10.0 * KNOT), rel=0.01
+    )
+    assert best.wait_samples["leg"].max() == 0
+    assert found.lower_bound <= best.time_h
+    assert not any(note.startswith("Waits at sea") for note in found.notes)
+
+
 def test_degrees_that_may_be_swapped_are_noted():
     end = resolve_endpoint("4.1,52.0", chart(), "start")
     assert end.note.startswith("Check the position: 4.1,52 is read as 4.1000N 52.0000E, more than")

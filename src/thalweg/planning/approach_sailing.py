@@ -156,10 +156,13 @@ class ApproachSailing:
         """Return the time of an approach [s]."""
         return 0.0 if approach is None else approach.duration(self.speed)
 
-    def sail(self, line: Sequence[Position], depart: float, context: PlanningContext) -> Route:
-        """Return the line of an approach as sailed; departure in s since 1970."""
+    def sail(
+        self, line: Sequence[Position], depart: float, context: PlanningContext, wait: float = 0.0
+    ) -> Route:
+        """Return the line of an approach as sailed, after a wait [s]; departure in s since 1970."""
         lat, lon = np.array(line, float).T
-        track = Track(lat, lon, depart, None, np.full(len(lat) - 1, self.setting))  # type: ignore[arg-type]
+        waits = np.append(wait, np.zeros(len(lat) - 1))
+        track = Track(lat, lon, depart, waits, np.full(len(lat) - 1, self.setting))
         voyage = context.voyage
         terms = priced_objective(voyage, context.ship).terms if voyage.chooses_speeds else None
         return context.evaluate(track, terms)
@@ -171,6 +174,8 @@ class SailedApproaches:
     def __init__(self, sailing: ApproachSailing, context: PlanningContext) -> None:
         self._sailing = sailing
         self._sail = cache(partial(sailing.sail, context=context))
+        at_sea = replace(context, chart=replace(context.chart, approaches=None))
+        self._evaluate = None if context.voyage.chooses_speeds else at_sea.evaluate
 
     def joined_at_sea_ends(self, route: Route) -> Route:
         """Return a route, or a stretch of it, with the approaches that begin where it ends."""
@@ -193,7 +198,15 @@ class SailedApproaches:
         parts = [route]
         if outward is not None and outward.length > 1.0:
             depart = route.depart - outward.duration(self._sailing.speed)
-            parts.insert(0, self._sail(tuple(outward.line), depart))
+            wait = float(route.track.wait[0])
+            if wait > 0.0 and self._evaluate is not None:  # at the berth, not at the sea end
+                waits = np.append(0.0, route.track.wait[1:])
+                parts = [
+                    self._evaluate(route.track.replaced(depart=route.depart + wait, wait=waits))
+                ]
+            else:
+                wait = 0.0
+            parts.insert(0, self._sail(tuple(outward.line), depart, wait=wait))
         if inward is not None and inward.length > 1.0 and math.isfinite(route.arrive):
             parts.append(self._sail(tuple(inward.line[::-1]), route.arrive))
         return join_routes([_connected(a, b) for a, b in zip(parts, [*parts[1:], None])])
