@@ -66,16 +66,18 @@ def planned(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("waves", "longer"), [(leaves_slowly, 1.003), (ends_at_once, 1.06)], ids=["slowly", "at once"]
+    ("waves", "longer", "later"),
+    [(leaves_slowly, 1.003, 0.02 * MINUTE_H), (ends_at_once, 1.06, MINUTE_H)],
+    ids=["slowly", "at once"],
 )
-def test_a_ship_waits_once_at_her_berth_and_sails_on(planned, waves, longer):
+def test_a_ship_waits_once_at_her_berth_and_sails_on(planned, waves, longer, later):
     """The first path found waits ten times, and is 8 % longer, or 25 % and a minute earlier."""
     found = planned(waves)
     best, wait = found.best, np.asarray(found.best.track.wait)
     assert best.feasible
     assert np.flatnonzero(wait).tolist() == [0]
     assert best.distance_nm < longer * DIRECT_NM
-    assert best.time_h <= found.proof.solver_total + MINUTE_H
+    assert best.time_h <= found.proof.solver_total + later
     assert found.lower_bound <= best.time_h
     assert (best.samples["sea_surface_wave_significant_height"] <= LIMIT * (1.0 + 1e-9)).all()
 

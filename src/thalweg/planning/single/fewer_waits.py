@@ -19,7 +19,7 @@ from thalweg.planning.report.waiting_report import (
 )
 from thalweg.planning.single.sheltered_waits import routes_with_one_wait, with_sheltered_waits
 from thalweg.route import Route
-from thalweg.route.refinement.better_route import comparison_key
+from thalweg.route.refinement.better_route import comparison_key, shorten_waits
 from thalweg.search import SearchResult, ShipOnNetwork
 from thalweg.search.earliest_arrival import ArrivalQuery
 from thalweg.search.latest_departure import latest_departure
@@ -134,6 +134,8 @@ def with_fewer_waits(
         tried = context.evaluate(track.replaced(depart=depart, wait=wait))
         if tried.feasible:
             tried = _with_joined_waits(context, tried, latest)
+        if tried.feasible and tried.arrive > route.arrive + _ROUNDING:
+            tried = shorten_waits(tried, context.evaluate)
         if _is_allowed(context, tried, route, latest):
             best = min(best, tried, key=lambda item: (_count(item), _under_way(item)))
             break
