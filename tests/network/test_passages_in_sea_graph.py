@@ -67,7 +67,15 @@ def test_both_ends_of_narrow_passages_lead_to_open_water():
 
 @pytest.mark.parametrize(
     "name",
-    ["Sunda", "Gelasa (Gaspar)", "Durian Strait", "Bab el Mandeb (large)", "Karimata", "Foveaux"],
+    [
+        "Sunda",
+        "Gelasa (Gaspar)",
+        "Durian Strait",
+        "Bab el Mandeb (large)",
+        "Karimata",
+        "Foveaux",
+        "Sannikov",
+    ],
 )
 def test_a_closed_passage_has_no_way_beside_an_island_in_it(name):
     chart = world_chart()

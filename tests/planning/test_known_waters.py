@@ -123,3 +123,50 @@ def test_deep_ships_are_warned_of_ports_that_are_shallow_or_of_unknown_depth(goa
     about = [note for note in notes if "largest draught" in note]
     assert len(about) == (begins is not None)
     assert begins is None or about[0].startswith(begins)
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "draught", "passage", "miles"),
+    [
+        ("Hong Kong", "Shekou", 12.0, "Ma Wan (Hong Kong)", 23.0),  # 56 south of Lantau
+        ("Hong Kong", "Huangpu", None, "Ma Wan (Hong Kong)", 68.5),  # 70 in tables, 95 before
+        ("Cheju", "Mokpo", 8.0, "Mokpo: Jangjuk and Sia channels", 90.5),  # 134 from the north
+        ("Busan", "Mokpo", 8.0, "Mokpo: Jangjuk and Sia channels", 215.0),
+        ("Jakarta", "Palembang", 6.0, "Bangka", 335.0),  # 534 round Bangka
+        ("Jakarta", "Palembang", 11.0, "Gelasa (Gaspar)", 451.0),
+        ("Seattle", (48.82, -122.78), 12.0, "Rosario Strait", 83.5),  # 102 by Haro Strait
+        ("Port Moresby", "Lae", 8.0, "China Strait", 585.0),
+    ],
+)
+def test_ships_use_the_narrow_passages_of_their_trade(start, goal, draught, passage, miles):
+    found = sea_distance(start, goal, draught_m=draught)
+    assert passage in found.straits
+    assert found.nm == pytest.approx(miles, rel=0.015)
+
+
+def test_anacortes_to_vancouver_leads_through_rosario_strait():
+    found = sea_distance("Anacortes", "Vancouver", draught_m=11.0)
+    assert found.nm == pytest.approx(69.0, abs=2.0)  # 99 by Haro Strait
+
+
+def test_hinatuan_passage_is_for_small_ships():
+    assert sea_distance("Cebu", "Davao", open=["Hinatuan"]).nm == pytest.approx(428.0, abs=5.0)
+    assert "Hinatuan Passage" not in sea_distance("Cebu", "Davao").straits
+
+
+@pytest.mark.parametrize("draught", [12.0, 15.0])
+def test_deep_ships_from_eastern_australia_pass_jomard_entrance(draught):
+    found = sea_distance("Newcastle, AU", "Yokohama", draught_m=draught)
+    assert "Jomard Entrance" in found.straits
+    line = densify(*np.array(found.line).T, NAUTICAL_MILE)[:2]
+    for reef in ((-10.77, 151.78), (-11.2, 151.6), (-8.5, 150.5), (-9.27, 150.85)):
+        assert miles_from(reef, *line) > 6.0  # Conflict Group, barrier reef, Lusancay, Amphlett
+    assert found.nm == pytest.approx(4266.0, abs=10.0)
+
+
+@pytest.mark.parametrize("draught", [None, 5.0, 8.0])
+def test_ships_keep_off_the_sand_ridges_of_jiangsu(draught):
+    found = sea_distance("Shanghai", "Qingdao", draught_m=draught)
+    assert found.nm == pytest.approx(376.0, abs=5.0)  # 327 over them for a ship of 5 m
+    line = densify(*np.array(found.line).T, NAUTICAL_MILE)[:2]
+    assert miles_from((32.9, 121.6), *line) > 20.0
