@@ -128,8 +128,9 @@ def test_deep_ships_are_warned_of_ports_that_are_shallow_or_of_unknown_depth(goa
 @pytest.mark.parametrize(
     ("start", "goal", "draught", "passage", "miles"),
     [
-        ("Hong Kong", "Shekou", 12.0, "Ma Wan (Hong Kong)", 23.0),  # 56 south of Lantau
+        ("Hong Kong", "Shekou", 12.0, "Ma Wan (Hong Kong)", 22.8),  # 56 south of Lantau
         ("Hong Kong", "Huangpu", None, "Ma Wan (Hong Kong)", 68.5),  # 70 in tables, 95 before
+        ("Shekou", "Xiamen", 9.5, "East Lamma Channel (Hong Kong)", 309.5),
         ("Cheju", "Mokpo", 8.0, "Mokpo: Jangjuk and Sia channels", 90.5),  # 134 from the north
         ("Busan", "Mokpo", 8.0, "Mokpo: Jangjuk and Sia channels", 215.0),
         ("Jakarta", "Palembang", 6.0, "Bangka", 335.0),  # 534 round Bangka
@@ -170,3 +171,27 @@ def test_ships_keep_off_the_sand_ridges_of_jiangsu(draught):
     assert found.nm == pytest.approx(376.0, abs=5.0)  # 327 over them for a ship of 5 m
     line = densify(*np.array(found.line).T, NAUTICAL_MILE)[:2]
     assert miles_from((32.9, 121.6), *line) > 20.0
+
+
+@pytest.mark.parametrize("draught", [5.0, 8.0, 11.0])
+def test_manila_to_cebu_is_as_far_for_all_draughts(draught):
+    found = sea_distance("Manila", "Cebu", draught_m=draught)  # 423, 437 and 426 before
+    assert "Hilutangan Channel (Cebu)" in found.straits
+    assert found.nm == pytest.approx(414.5, abs=2.0)
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "miles"),
+    [
+        ("Manila", "Cebu", 414.0),  # 502 west of Panay
+        ("Shekou", "Xiamen", 310.0),  # 356 west of Lantau, over 2 m
+    ],
+)
+def test_plans_of_coasters_are_as_long_as_distances(start, goal, miles):
+    found = calm_plan(start, goal, Ship.load("handysize-bulker"), objective="distance")
+    assert found.best.distance_nm == pytest.approx(miles, rel=0.01)
+
+
+def test_one_approach_is_left_early_where_both_lead_over_shoals():
+    found = sea_distance("Hong Kong", "Huangpu")
+    assert not any("Turns back" in note for note in found.notes)

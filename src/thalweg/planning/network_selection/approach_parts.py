@@ -83,6 +83,41 @@ def _left_off_land(
     off_land : Distance from land of the places where a line is left [m].
     """
     lines = [_places_of(end, seas, off_land) for end in ends]
+    both = _cut_that_saves(ends, lines, seas, draught, (longest, share))
+    if both is None or both[1]:
+        return both
+    if not all(line.may_leave.sum() > 1 for line in lines):
+        return None
+    whole = [_left_at_its_end(line) for line in lines]
+    found = [
+        _cut_that_saves(ends, choice, seas, draught, (longest, share))
+        for choice in ([lines[0], whole[1]], [whole[0], lines[1]])
+    ]
+    clear = [one for one in found if one is not None and one[1]]
+    return min(clear, key=lambda one: one[0], default=None)
+
+
+def _left_at_its_end(line: LinePlaces) -> LinePlaces:
+    """Return the places of a line that is left at its sea end only."""
+    may_leave = np.zeros(len(line.lat), bool)
+    may_leave[-1] = True
+    return replace(line, may_leave=may_leave)
+
+
+def _cut_that_saves(
+    ends: tuple[Endpoint, Endpoint],
+    lines: Sequence[LinePlaces],
+    seas: Seaways,
+    draught: float,
+    wanted: tuple[float, float],
+) -> tuple[float, list[Endpoint]] | None:
+    """Return the distance and the cut ends, none of them if over shoals; None if little is saved.
+
+    Parameters
+    ----------
+    wanted : Distance [m] that has to be shortened, and by what share.
+    """
+    longest, share = wanted
     try:
         length, path, cut = _cut_ends(ends, lines, seas)
     except NoRouteError:
@@ -97,7 +132,7 @@ def _left_off_land(
     harbours = _harbours(ends, cut)
     depth = draught or _USUAL_DRAUGHT
     shoals = _shoals(seas, harbours, depth)
-    return None if _has_shoals(path, left_out, shoals, depth) else (length, cut)
+    return length, [] if _has_shoals(path, left_out, shoals, depth) else cut
 
 
 def _places_of(end: Endpoint, seas: Seaways, off_land: float) -> LinePlaces:
