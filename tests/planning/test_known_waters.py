@@ -137,6 +137,8 @@ def test_deep_ships_are_warned_of_ports_that_are_shallow_or_of_unknown_depth(goa
         ("Jakarta", "Palembang", 11.0, "Gelasa (Gaspar)", 451.0),
         ("Seattle", (48.82, -122.78), 12.0, "Rosario Strait", 83.5),  # 102 by Haro Strait
         ("Port Moresby", "Lae", 8.0, "China Strait", 585.0),
+        ("Cebu", "Davao", 8.0, "Surigao", 491.5),  # 570 by Zamboanga
+        ("Cebu", "Davao", 11.0, "Surigao", 491.5),
     ],
 )
 def test_ships_use_the_narrow_passages_of_their_trade(start, goal, draught, passage, miles):
