@@ -245,10 +245,10 @@ def test_the_command_states_the_way_of_small_ships(capsys):
     """Narvik to Harstad is 266 nm round Lofoten and 48 through straits for ships below 120 m."""
     assert main(["distance", "Narvik", "Harstad", "--quiet"]) == 0
     text = capsys.readouterr().out
-    assert "ships shorter than 120 m: 48 nm by Ramsund, Tjeldsund (--open all)" in text
+    assert "ships shorter than 120 m: 48.2 nm by Ramsund, Tjeldsund (--open all)" in text
     assert main(["distance", "Narvik", "Harstad", "--open", "all", "--quiet"]) == 0
     text = capsys.readouterr().out
-    assert text.startswith("Narvik, NO to Harstad, NO: 48 nm") and "shorter than" not in text
+    assert text.startswith("Narvik, NO to Harstad, NO: 48.2 nm") and "shorter than" not in text
     assert main(["distance", "Rotterdam", "Hamburg", "--quiet"]) == 0
     assert "shorter than" not in capsys.readouterr().out
 

@@ -132,11 +132,15 @@ def _print_small_ships(way: SeaDistance, small: SeaDistance) -> None:
         return
     by = [name for name in small.straits if name not in way.straits]
     through = f" by {', '.join(by)}" if by else ""
-    print(f"  ships shorter than 120 m: {small.nm:,.0f} nm{through} (--open all)")
+    print(f"  ships shorter than 120 m: {_miles(small)} nm{through} (--open all)")
+
+
+def _miles(way: SeaDistance) -> str:
+    return f"{way.nm:,.{0 if way.nm >= 100.0 else 1}f}"
 
 
 def _print_distance(way: SeaDistance, speed: float | None, days: float | None) -> None:
-    print(f"{way.start} to {way.goal}: {way.nm:,.{0 if way.nm >= 100.0 else 1}f} nm")
+    print(f"{way.start} to {way.goal}: {_miles(way)} nm")
     if days is not None:
         in_days = f"{days:.{1 if days >= 1.0 else 2}f} days"
         print(f"  {duration_text(days * DAY)} ({in_days}) at {speed:g} kn, canals at that speed")
