@@ -139,7 +139,7 @@ def test_notes_say_why_a_way_that_was_found_is_not_offered():
 
 def test_tonnes_of_long_voyages_are_in_words_without_powers_of_ten():
     fast, slow = (dict.fromkeys(COMPARED_FIGURES, np.nan) | {"fuel": t} for t in (892.5, 1258.6))
-    assert difference_in_words(slow, fast) == "+366 t fuel (+41 %)"
+    assert difference_in_words(slow, fast) == "+366.1 t fuel (+41 %)"
 
 
 @pytest.mark.slow
