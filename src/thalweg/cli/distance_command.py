@@ -136,7 +136,9 @@ def _print_small_ships(way: SeaDistance, small: SeaDistance) -> None:
 
 
 def _miles(way: SeaDistance) -> str:
-    return f"{way.nm:,.{0 if way.nm >= 100.0 else 1}f}"
+    from thalweg.route.number_texts import decimals
+
+    return f"{way.nm:,.{decimals([way.nm], most=1)}f}"
 
 
 def _print_distance(way: SeaDistance, speed: float | None, days: float | None) -> None:

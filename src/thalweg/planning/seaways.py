@@ -94,13 +94,17 @@ class Seaways:
         return cls(chart, shut, tuple(p.name for p in passages if p.name in open_names))
 
     @classmethod
-    def of_ship_chart(cls, chart: Chart) -> Seaways:
+    def of_ship_chart(cls, chart: Chart, *, every_passage: bool = False) -> Seaways:
         """Return the seaways of the world without what the chart of a plan closes.
 
         They have all passages for small ships, or none, so that few graphs are made.
+
+        Parameters
+        ----------
+        every_passage : The passages for small ships are there, closed, for other ships too.
         """
         every = world_chart()
-        opened = sorted(small_passages(every)) if small_passages(chart) else ()
+        opened = sorted(small_passages(every)) if every_passage or small_passages(chart) else ()
         world = cls.of_chart(every, (), opened=opened)
         canals = {canal.name for canal in chart.canals}
         shut = tuple(canal.name for canal in world.chart.canals if canal.name not in canals)

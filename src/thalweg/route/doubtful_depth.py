@@ -9,11 +9,11 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.chart.depth.global_depth import coarse_depth
 from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
-from thalweg.chart.passage_crossings import passages_crossed
 from thalweg.core.geodesy import densify, distance
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route.canal_legs import canal_legs
+from thalweg.route.passages_used import passages_used
 from thalweg.route.route import Route
 from thalweg.ship import Ship
 
@@ -77,14 +77,10 @@ def _judged(chart: Chart, route: Route, lat: FloatArray, lon: FloatArray) -> np.
     judged = shore >= _NOT_JUDGED
     for end in (0, -1):
         judged &= distance(lat, lon, lat[end], lon[end]) >= _ENDS
-    for _, passage in passages_crossed(chart.coastline, chart.passages, *_waypoints(route)):
+    for passage in passages_used(chart, route):
         if passage.half_width < _NARROW:
             y, x, _ = densify(*passage.positions, 2.0 * _STEP)
             close = np.flatnonzero(judged & (np.abs(lat - y.mean()) < np.ptp(y) + 0.2))
             for k in close:
                 judged[k] = distance(lat[k], lon[k], y, x).min() >= 2.0 * _NARROW
     return judged
-
-
-def _waypoints(route: Route) -> tuple[FloatArray, FloatArray]:
-    return np.asarray(route.track.lat), np.asarray(route.track.lon)

@@ -26,12 +26,7 @@ def depth_notes(chart: Chart, route: Route, ship: Ship, clearance: float) -> lis
 
     For routes on which neither chart nor sea provides depth, which is checked everywhere else.
 
-    Parameters
-    ----------
-    chart : Chart of the route.
-    route : The evaluated route.
-    ship : With its draught.
-    clearance : Required under the keel [m].
+    Parameters are those of `water_to_check`.
 
     Returns
     -------

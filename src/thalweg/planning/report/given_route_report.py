@@ -10,7 +10,7 @@ from thalweg.chart import Chart
 from thalweg.core.geodesy import format_position
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.report.distance_report import PASSAGE_CLOSED
-from thalweg.planning.report.land_report import passages_used, time_of_passing
+from thalweg.planning.report.land_report import time_of_passing
 from thalweg.planning.report.lane_report import lane_notes
 from thalweg.planning.request.lane_choice import chart_with_schemes
 from thalweg.planning.request.offing_choice import (
@@ -20,6 +20,7 @@ from thalweg.planning.request.offing_choice import (
 )
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
+from thalweg.route.passages_used import passages_used
 from thalweg.route.referee.land_clearance import offing_breaches
 from thalweg.route.route_tables import LEG_KINDS
 from thalweg.ship import Ship

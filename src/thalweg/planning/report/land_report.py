@@ -22,8 +22,9 @@ from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.distance_report import PASSAGE_CLOSED, PASSAGES_CLOSED
 from thalweg.planning.request.offing_choice import size_restriction
 from thalweg.planning.request.voyage_endpoints import Endpoint
-from thalweg.planning.seaways import Seaways, small_passages, world_chart
+from thalweg.planning.seaways import Seaways
 from thalweg.route import Route
+from thalweg.route.passages_used import passages_used
 from thalweg.route.referee.land_clearance import least_land_clearance
 from thalweg.route.route_tables import LEG_KINDS
 
@@ -121,12 +122,7 @@ def _closed_on_shorter_way(chart: Chart, route: Route, closed: Collection[str]) 
     ends = [
         Endpoint("", float(route.track.lat[k]), float(route.track.lon[k]), 0.0) for k in (0, -1)
     ]
-    world, canals = world_chart(), {canal.name for canal in chart.canals}
-    now = replace(
-        Seaways.of_chart(world, (), opened=sorted(small_passages(world))),
-        canals=tuple(canal.name for canal in world.canals if canal.name not in canals),
-        passages=tuple(passage.name for passage in chart.closed_passages),
-    )
+    now = Seaways.of_ship_chart(chart, every_passage=True)
     opened = replace(now, passages=tuple(name for name in now.passages if name not in closed))
     try:
         length = line_length(now.graph_path(*ends))
@@ -167,9 +163,3 @@ def saved_length(route: Route, passage: Passage) -> float:
         left = np.maximum.accumulate(-sailed - distance(lat, lon, *first))
         most = max(most, float(np.max(sailed - distance(lat, lon, *last) + left)))
     return most - passage.length
-
-
-def passages_used(chart: Chart, route: Route) -> list[Passage]:
-    """Return the passages of a chart that a route leads through, in their order on the route."""
-    lat, lon = np.asarray(route.track.lat), np.asarray(route.track.lon)
-    return [p for _, p in passages_crossed(chart.coastline, chart.passages, lat, lon)]

@@ -92,11 +92,7 @@ def with_fewer_waits(
 ) -> Route:
     """Return a route that arrives as early with fewer waits, or as many and less time under way.
 
-    Parameters
-    ----------
-    route : As evaluated.
-    paths : Of late departures.
-    last_departure : The ship waits at her berth from then on [s since 1970-01-01T00:00Z].
+    Parameters are those of `with_best_waits`.
 
     Returns
     -------
