@@ -4,14 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.sparse
 import shapely
 
 from thalweg import Chart
 from thalweg.chart.passages import Passage
 from thalweg.core.geodesy import distance
 from thalweg.search.certificate.barrier_mesh import BarrierLink
+from thalweg.search.certificate.closed_polygons import ClosedPolygons
 from thalweg.search.certificate.land_corners import land_inside
 from thalweg.search.certificate.length_round_land import length_round_land
+from thalweg.search.certificate.local_outlines import FINER, LocalOutlines
 from thalweg.search.certificate.positions_in_reach import Reach
 
 NM = 1852.0
@@ -63,6 +66,91 @@ def test_a_closed_passage_between_two_islands_is_not_a_gap():
     # a way along the passage's line that crosses it nowhere is as short as before
     found = length_round_land(closed, (0.0, 1.2), (-1.0, 0.5), known, seconds=20.0)
     assert found <= by((0.0, 1.2), (-0.05, 1.0), (-1.0, 0.5))
+
+
+def isthmus(width):
+    """Two continents and a land bridge of a width [deg] between them."""
+    bridge = island(12.0, -0.3, 12.0 + width, 0.3)
+    lands = [island(10.0, 0.2, 14.0, 20.0), island(10.0, -20.0, 14.0, -0.2), bridge]
+    return Chart.from_geojson({"type": "GeometryCollection", "geometries": lands})
+
+
+@pytest.mark.parametrize("width", [0.15, 0.04])
+def test_a_land_bridge_narrower_than_the_first_tolerance_is_no_gap(width):
+    start, goal = (0.0, 0.0), (0.0, 24.0)
+    round_it = by(start, (20.0, 10.0), (20.0, 14.0), goal)
+    found = length_round_land(isthmus(width), start, goal, 1.02 * round_it, seconds=60.0)
+    assert 0.99 * round_it < found <= round_it
+
+
+def test_outlines_are_finer_only_in_tiles_that_are_refined():
+    chart = isthmus(0.15)
+    reach = Reach((0.0, 0.0), (0.0, 24.0), 6e6)
+    outlines = LocalOutlines(ClosedPolygons.within_reach(chart, reach), 0.1)
+    middle = shapely.Point(12.075, 0.0)
+    assert not any(one.contains(middle) for one in outlines.outlines()[0])
+    assert outlines.refine(np.array([[0.0], [12.075]]), beside=1)
+    land = shapely.union_all(outlines.closed.meeting((9.0, -21.0, 15.0, 21.0), 0.0))
+    shapes, inner = map(shapely.union_all, outlines.outlines())
+    assert shapes.contains(middle) and inner.contains(middle)
+    assert land.contains(shapes.buffer(0.01)) and shapes.contains(inner.buffer(0.01))
+    assert outlines.refine(np.array([[0.0], [12.075]]), beside=1)
+    assert not outlines.refine(np.array([[0.0], [12.075]]), beside=1)  # no finer level
+
+
+def ragged_island(random):
+    """An island 2 to 8 degrees wide with bays and headlands, as a ring (n, 2)."""
+    angle = np.sort(random.uniform(0.0, 2.0 * np.pi, 90))
+    radius = random.uniform(1.0, 4.0, 90)
+    return np.c_[radius * np.cos(angle) + 10.0, radius * np.sin(angle)]
+
+
+def chart_of(ring):
+    return Chart.from_geojson(
+        {"type": "Polygon", "coordinates": [[*ring.tolist(), ring[0].tolist()]]}
+    )
+
+
+def straight_way(ring, start, goal):
+    """Length of the shortest way on lines that are straight on a map [m]: some way, so no bound."""
+    nodes = np.concatenate([[start[::-1], goal[::-1]], ring])
+    land = shapely.make_valid(shapely.Polygon(ring))
+    inside = shapely.buffer(land, -1e-7)
+    one, other = np.triu_indices(len(nodes), 1)
+    lines = shapely.linestrings(np.stack([nodes[one], nodes[other]], axis=1))
+    free = ~shapely.intersects(lines, inside)
+    share = np.linspace(0.0, 1.0, 40)[:, None]
+    lon, lat = np.moveaxis(
+        nodes[one[free]] * (1.0 - share[..., None]) + nodes[other[free]] * share[..., None], -1, 0
+    )
+    length = distance(lat[:-1], lon[:-1], lat[1:], lon[1:]).sum(axis=0)
+    graph = scipy.sparse.coo_array((length, (one[free], other[free])), shape=(len(nodes),) * 2)
+    return float(scipy.sparse.csgraph.dijkstra(graph.tocsr(), directed=False, indices=0)[1])
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_it_is_no_longer_than_a_way_round_a_ragged_island(seed):
+    ring = ragged_island(np.random.default_rng(seed))
+    start, goal = (-1.0, 4.0), (0.5, 16.0)
+    way = straight_way(ring, start, goal)
+    known = 4.1e6  # so that the first tolerance is 0.1 degrees
+    found = length_round_land(chart_of(ring), start, goal, known, seconds=30.0)
+    assert 0.975 * way < found <= way
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_outlines_of_several_levels_are_inside_the_land(seed):
+    """Inner polygons are so far inside that geodesics between corners do not touch them."""
+    random = np.random.default_rng(seed)
+    chart, reach = chart_of(ragged_island(random)), Reach((0.0, 2.0), (0.0, 18.0), 6e6)
+    outlines = LocalOutlines(ClosedPolygons.within_reach(chart, reach), 0.1)
+    for _ in range(3):
+        outlines.refine(random.uniform([[-4.0], [6.0]], [[4.0], [14.0]], (2, 2)))
+    land = shapely.union_all(outlines.closed.meeting((0.0, -10.0, 20.0, 10.0), 0.0))
+    shapes, inner = map(shapely.union_all, outlines.outlines())
+    finest = min(outlines.tolerance * FINER**level for level in outlines.levels.values())
+    assert land.contains(shapes.buffer(0.5 * finest))
+    assert shapes.contains(inner.buffer(0.25 * finest))
 
 
 def test_a_canal_through_an_island_counts_what_it_is_given():

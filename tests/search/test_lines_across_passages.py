@@ -7,7 +7,7 @@ import shapely.affinity
 
 from thalweg import Chart
 from thalweg.chart.passages import Passage
-from thalweg.search.certificate.lines_across_passages import lines_across_passages
+from thalweg.search.certificate.lines_across_passages import PassageLines
 
 NORTH, SOUTH = shapely.box(1.0, 0.05, 1.5, 3.0), shapely.box(1.0, -2.0, 1.5, -0.05)
 INNER = [shape.buffer(-0.04, join_style="mitre") for shape in (NORTH, SOUTH)]
@@ -17,7 +17,7 @@ CORNERS = np.array([[0.09, 1.04], [0.09, 1.46], [-0.09, 1.04], [-0.09, 1.46]])  
 def lines(ends, turns=CORNERS):
     passage = Passage("gap", "trade", ((0.0, 0.9), (0.0, 1.6)), 5000.0, closing_line=ends)
     coastline = Chart.open_water().coastline
-    return lines_across_passages(coastline, [passage], [NORTH, SOUTH], INNER, turns)
+    return PassageLines(coastline, [passage], [NORTH, SOUTH]).into(INNER, turns)
 
 
 def test_a_line_begins_and_ends_inside_the_inner_polygons():
@@ -49,7 +49,19 @@ def test_lines_are_found_where_polygons_are_a_turn_of_the_globe_away():
         [shapely.affinity.translate(shape, xoff=360.0) for shape in some]
         for some in ([NORTH, SOUTH], INNER)
     )
-    (line,) = lines_across_passages(
-        Chart.open_water().coastline, [passage], moved, inner, np.add(CORNERS, [0.0, 360.0])
-    )
+    across = PassageLines(Chart.open_water().coastline, [passage], moved)
+    (line,) = across.into(inner, np.add(CORNERS, [0.0, 360.0]))
     assert line[2:4, 1].tolist() == pytest.approx([361.2, 361.2])
+
+
+@pytest.mark.parametrize("turn", [0.0, 360.0])
+def test_a_way_crosses_the_lines_between_its_positions(turn):
+    passage = Passage(
+        "gap", "trade", ((0.0, 0.9), (0.0, 1.6)), 5000.0, closing_line=((-0.06, 1.2), (0.06, 1.2))
+    )
+    across = PassageLines(Chart.open_water().coastline, [passage], [NORTH, SOUTH])
+    through = np.array([0.0, 0.02]), np.array([1.0, 1.4]) + turn
+    beside = np.array([0.0, 0.02]), np.array([1.21, 1.4]) + turn
+    (line,) = across.crossed(*through)
+    assert line.tolist() == [[-0.06, 1.2], [0.06, 1.2]]
+    assert across.crossed(*beside) == []

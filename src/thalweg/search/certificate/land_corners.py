@@ -60,8 +60,14 @@ def land_inside(shapes: Sequence[Any], tolerance: float) -> list[Any]:
     inside = shapely.buffer(simple, -2.0 * tolerance, join_style="mitre")
     parts = shapely.get_parts(shapely.simplify(inside, 0.25 * tolerance))
     parts = parts[~shapely.is_empty(parts)]
-    outer = shapely.polygons(shapely.get_exterior_ring(parts))
-    return list(shapely.segmentize(outer, _LONGEST_EDGE * math.sqrt(tolerance)))
+    return shortened_edges(shapely.polygons(shapely.get_exterior_ring(parts)), tolerance)
+
+
+def shortened_edges(shapes: Any, tolerance: float) -> list[Any]:
+    """Return polygons with edges that are near enough to geodesics for a tolerance [deg]."""
+    import shapely
+
+    return list(shapely.segmentize(np.asarray(shapes), _LONGEST_EDGE * math.sqrt(tolerance)))
 
 
 def inner_polygons(shapes: Sequence[Any], tolerance: float) -> list[Any]:

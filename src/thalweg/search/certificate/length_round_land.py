@@ -10,30 +10,28 @@ from __future__ import annotations
 import heapq
 import math
 import time as clock
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.chart.basemap import ring_bounds
 from thalweg.chart.coast.leg_tests import point_status
-from thalweg.chart.rings import Rings
-from thalweg.core.geodesy import distance, unit_vectors
+from thalweg.core.geodesy import densify, distance, unit_vectors
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.kernels.codes import OK
 from thalweg.kernels.geometry.coast_index import leg_codes
 from thalweg.search.certificate.barrier_mesh import BarrierLink
+from thalweg.search.certificate.closed_polygons import ClosedPolygons
 from thalweg.search.certificate.land_corners import (
     ANGLE_TOLERANCE,
     Corners,
     corners_of,
-    inner_polygons,
-    land_inside,
     places_of_turns,
 )
-from thalweg.search.certificate.lines_across_passages import lines_across_passages
+from thalweg.search.certificate.lines_across_passages import PassageLines
+from thalweg.search.certificate.local_outlines import LocalOutlines
 from thalweg.search.certificate.positions_in_reach import SPHERE, Reach
 from thalweg.search.search_problem import ROUNDING_FACTOR
 
@@ -42,12 +40,12 @@ if TYPE_CHECKING:
 
 _METRES_OF_TOLERANCE: Final = 4.0e7  # of length for a degree of the first tolerance
 _LEAST_TOLERANCE, _MOST_TOLERANCE = 0.002, 0.1  # [deg]
-_FINER, _FINEST = 0.4, 3  # factor of finer tolerances, and how often it is applied
-_SLOWER: Final = 2.5  # a search with a finer tolerance than the one before
-_ENOUGH: Final = 0.995  # of the known length, at which no finer tolerance is tried
+_SLOWER: Final = 1.5  # a search with outlines that are finer somewhere than the one before
+_ENOUGH: Final = 0.995  # of the known length, at which no finer outline is tried
+_BESIDE: Final = 1  # tiles round those where a way crosses land are refined with them
+_DEGREE: Final = 1.1e5  # [m]
 _LONGEST_TESTED: Final = 1.8  # chord of a leg whose arc is tested [radii]
-_FEW_CORNERS: Final = 16  # of rings that are used wherever their corners are
-_CAP_STEP: Final = 2.0  # of the outline of a closed polar cap [deg]
+_MARGIN: Final = 1.01  # by which legs tested first are longer than the length that is likely
 _LENGTH_TOLERANCE: Final = 1e-6  # by which the known length may be surpassed
 
 
@@ -88,131 +86,84 @@ def length_round_land(
     if known <= free or seconds <= 0.0 or short:
         return free
     tolerance = min(max(known / _METRES_OF_TOLERANCE, _LEAST_TOLERANCE), _MOST_TOLERANCE)
-    best = free
-    near = _rings_within(chart.coastline.rings, reach)
-    for level in range(_FINEST + 1):
+    outlines = LocalOutlines(ClosedPolygons.within_reach(chart, reach, kept_out), tolerance)
+    shut = [one for one in chart.closed_passages if reach.has(*one.positions).any()]
+    across = PassageLines(chart.coastline, shut, outlines.land)
+    best, way = free, Way(0.0)
+    while True:
         now = clock.perf_counter()
-        fine = _FINER**level * tolerance
-        closed = _closed_shapes(chart, near, reach, fine, kept_out)
-        found = _least_length(chart, closed, reach, links, fine, began + seconds)
-        best = max(best, ROUNDING_FACTOR * found)
+        way = _shortest_way(outlines, across, reach, links, began + seconds, way.length)
+        best = max(best, ROUNDING_FACTOR * way.length)
         ended = clock.perf_counter()
         if best >= _ENOUGH * known or ended + _SLOWER * (ended - now) > began + seconds:
-            break
-    return best
+            return best
+        crossed, cut = _closed_places(way, outlines, across)
+        if not outlines.refine(crossed, beside=_BESIDE) and not outlines.refine(cut):
+            return best
 
 
-def _least_length(
-    chart: Chart,
-    closed: Sequence[Any],
+def _shortest_way(
+    outlines: LocalOutlines,
+    across: PassageLines,
     reach: Reach,
     links: Sequence[BarrierLink],
-    tolerance: float,
     until: float,
-) -> float:
-    """Return the least length round polygons inside some [m], or a bound; 0 where there is none."""
-    shapes = land_inside(closed, tolerance)
+    likely: float,
+) -> Way:
+    """Return the shortest way round outlines, or a bound without positions."""
+    shapes, inner = outlines.outlines()
     if not shapes:
-        return 0.0
-    inner = inner_polygons(shapes, tolerance)
-    shut = [one for one in chart.closed_passages if reach.has(*one.positions).any()]
+        return Way(0.0)
     turns = places_of_turns(shapes, reach, links)
-    across = lines_across_passages(chart.coastline, shut, closed, inner, turns)
-    corners = corners_of(shapes, inner, reach, across)
+    corners = corners_of(shapes, inner, reach, across.into(inner, turns))
     search = _Search.between(corners, reach, links)
-    if search.is_enclosed():
-        return 0.0
-    found = search.run(until)
-    return 0.0 if math.isnan(found) else found
+    return Way(0.0) if search.is_enclosed() else search.run(until, likely)
 
 
-def _frames(lat: FloatArray, lon: FloatArray) -> FloatArray:
-    """Return unit vectors up, east and north, (3, n, 3)."""
+def _closed_places(
+    way: Way, outlines: LocalOutlines, across: PassageLines
+) -> tuple[FloatArray, FloatArray]:
+    """Return where a way crosses land and closed passages, and where it cuts land at its turns.
+
+    Both (lat, lon) [deg], (2, n).
+    """
+    crossed, cut = [np.empty((2, 0))], [np.empty((2, 0))]
+    for leg in way.legs:
+        lat, lon, _ = densify(leg[:, 0], leg[:, 1], _DEGREE * outlines.finest)
+        crossed += [line.T for line in across.crossed(lat, lon)]
+        on_land = outlines.closed_positions(lat, lon)
+        at_sea = np.flatnonzero(~on_land)
+        if not len(at_sea):
+            crossed.append(np.stack([lat, lon]))
+            continue
+        between = np.arange(len(lat))
+        between = (between > at_sea[0]) & (between < at_sea[-1])
+        crossed.append(np.stack([lat, lon])[:, on_land & between])
+        cut.append(np.stack([lat, lon])[:, on_land & ~between])
+    return np.concatenate(crossed, axis=1), np.concatenate(cut, axis=1)
+
+
+def directions(lat: FloatArray, lon: FloatArray, course: FloatArray) -> FloatArray:
+    """Return the unit vectors of courses [rad] at positions [deg], (n, 3)."""
     lam = np.radians(lon)
     east = np.stack([-np.sin(lam), np.cos(lam), np.zeros_like(lam)], -1)
-    up = unit_vectors(lat, lon)
-    return np.stack([up, east, np.cross(up, east)])
+    north = np.cross(unit_vectors(lat, lon), east)
+    return np.asarray(np.sin(course)[:, None] * east + np.cos(course)[:, None] * north)
 
 
-def _closed_shapes(
-    chart: Chart,
-    near: NDArray[np.int64],
-    reach: Reach,
-    tolerance: float,
-    kept_out: Sequence[Any],
-) -> list[Any]:
-    """Return the polygons (x lon, y lat [deg]) within reach that are closed to a ship.
+@dataclass(frozen=True, eq=False)
+class Way:
+    """A shortest way, or a bound of its length.
 
-    The land is that of the rings of the coastline with the numbers near.
+    Attributes
+    ----------
+    length : Least length [m]; 0 where none is known.
+    legs : Ends (lat, lon) [deg] of its geodesics, (n, 2, 2), without those through canals; none of
+        a bound.
     """
-    import shapely
 
-    box = reach.box()  # land outside is left out: the length round less land is no longer
-    west = reach.middle - 180.0
-    land = np.array(list(_land_polygons(chart.coastline.rings, near, box, tolerance)), object)
-    whole = np.where(shapely.is_valid(land), land, shapely.make_valid(land))
-    # one polygon of all that the data cut at meridians, canals and narrows; no water inside it
-    parts = shapely.get_parts(shapely.get_parts(shapely.union_all(whole)))
-    parts = parts[shapely.get_type_id(parts) == shapely.GeometryType.POLYGON]
-    found = list(shapely.polygons(shapely.get_exterior_ring(parts)))
-    zones = np.array([*chart.zones.closed_shapes, *kept_out], dtype=object)
-    left, bottom, right, top = shapely.bounds(zones).reshape(-1, 4).T
-    for shift in (-360.0, 0.0, 360.0):
-        near = (left + shift < box[2]) & (right + shift > box[0])
-        near &= (bottom < box[3]) & (top > box[1])
-        outlines = shapely.polygons(shapely.get_exterior_ring(zones[near]))
-        moved = shapely.transform(outlines, lambda xy, by=shift: xy + np.array([by, 0.0]))
-        found += list(shapely.clip_by_rect(moved, *box))
-    south, north, _, _ = chart.area.array()
-    across = np.arange(west, west + 360.0 + _CAP_STEP, _CAP_STEP)
-    for edge, pole in ((south, -90.0), (north, 90.0)):
-        if abs(edge) < 89.0:
-            line = [*((x, edge) for x in across), (across[-1], pole), (across[0], pole)]
-            found.append(shapely.Polygon(line))
-    return [shape for shape in found if not shape.is_empty]
-
-
-def _rings_within(rings: Rings, reach: Reach) -> NDArray[np.int64]:
-    """Return the numbers of the rings with a corner within reach, or with few corners.
-
-    The few corners of a ring may be far away on both sides of what is within reach.
-    """
-    if not len(rings):
-        return np.empty(0, np.int64)
-    box = reach.box()
-    south, north, _, _ = ring_bounds(rings)
-    counts = np.diff(rings.start)
-    some = np.flatnonzero((north > box[1]) & (south < box[3]))
-    start = np.cumsum(counts[some]) - counts[some]
-    corners = np.repeat(rings.start[some] - start, counts[some])
-    corners += np.arange(len(corners))
-    kept = counts[some] <= _FEW_CORNERS
-    if len(some):
-        has = reach.has(rings.lat[corners], rings.lon[corners])
-        kept |= np.logical_or.reduceat(has, start)
-    return some[kept]
-
-
-def _land_polygons(
-    rings: Rings, near: NDArray[np.int64], box: tuple[float, ...], tolerance: float
-) -> Iterable[Any]:
-    """Yield the land in a box of those outer rings of some that are large enough."""
-    import shapely
-
-    if not len(near):
-        return
-    south, north, west, east = ring_bounds(rings)
-    large = np.maximum(north - south, east - west) >= 4.0 * tolerance
-    for number in near[large[near]]:
-        part = slice(rings.start[number], rings.start[number + 1])
-        lat, lon = rings.lat[part], rings.lon[part]
-        ring = np.stack([lon, lat], axis=1)
-        if not shapely.is_ccw(shapely.linearrings(ring)):  # a lake
-            continue
-        for shift in (-360.0, 0.0, 360.0):
-            if lon.max() + shift > box[0] and lon.min() + shift < box[2]:
-                moved = shapely.polygons(ring + np.array([shift, 0.0]))
-                yield shapely.clip_by_rect(moved, *box)
+    length: float
+    legs: FloatArray = field(default_factory=lambda: np.empty((0, 2, 2)))
 
 
 @dataclass(eq=False)
@@ -222,7 +173,8 @@ class _Search:
     Attributes
     ----------
     lat, lon : Of the nodes [deg]: start, goal, ends of canals, corners.
-    frames : Their unit vectors up, east and north, (3, n, 3).
+    up : Their unit vectors, (n, 3).
+    sides : Normals of the planes by both edges of the corners, of unit length, (2, n, 3); else 0.
     first : Number of nodes that are no corners.
     rest : Lower bound of the length from each node to the goal [m].
     known : Longest length that counts [m].
@@ -233,7 +185,8 @@ class _Search:
     speed: float
     lat: FloatArray
     lon: FloatArray
-    frames: FloatArray
+    up: FloatArray
+    sides: FloatArray
     first: int
     rest: FloatArray
     known: float
@@ -250,54 +203,97 @@ class _Search:
             np.array(single).T, (corners.lat, corners.lon), strict=True))  # fmt: skip
         rest = np.asarray(distance(lat, lon, *reach.goal))
         known = reach.known * (1.0 + _LENGTH_TOLERANCE)
-        frames = _frames(lat, lon)
-        return cls(corners, links, reach.speed, lat, lon, frames, len(single), rest, known)
+        up, sides = unit_vectors(lat, lon), np.zeros((2, len(lat), 3))
+        first = len(single)
+        for side, course in zip(sides, (corners.back, corners.on), strict=True):
+            side[first:] = np.cross(up[first:], directions(lat[first:], lon[first:], course))
+        return cls(corners, links, reach.speed, lat, lon, up, sides, first, rest, known)
 
     def is_enclosed(self) -> bool:
         """Return whether the start, the goal or the end of a canal is inside a polygon."""
         single = self.lat[: self.first], self.lon[: self.first]
         return bool((point_status(self.corners.coast, *single) != OK).any())
 
-    def run(self, until: float) -> float:
-        """Return the least length, or a bound of it when time is up [m]; NaN if there is no way."""
+    def run(self, until: float, likely: float = 0.0) -> Way:
+        """Return the shortest way; a bound where time is up, 0 if there is no way.
+
+        Parameters
+        ----------
+        until : Time by the clock at which the search ends [s].
+        likely : A length that is probably not much shorter [m].
+        """
         best = np.full(len(self.lat), math.inf)
         best[0] = 0.0
         done = np.zeros(len(self.lat), bool)
+        before = np.full(len(self.lat), -1)
         queue = [(float(self.rest[0]), 0)]
-        while queue:
+        limit = min(_MARGIN * max(likely, float(self.rest[0])), self.known)
+        later: list[tuple[int, NDArray[np.int64], FloatArray]] = []
+
+        def reach(node: int, others: NDArray[np.int64], least: FloatArray) -> None:
+            """Enter the nodes that are nearer by free legs; those beyond the limit wait."""
+            nearer = (least < best[others]) & ~done[others]
+            soon = nearer & (least + self.rest[others] <= limit)
+            if (soon != nearer).any():
+                later.append((node, others[nearer & ~soon], least[nearer & ~soon]))
+            others = others[soon]
+            others = others[self._are_free(node, others)]
+            here = self.lat[node], self.lon[node]
+            far = best[node] + distance(*here, self.lat[others], self.lon[others])
+            nearer = (far < best[others]) & (far + self.rest[others] <= self.known)
+            enter(node, others[nearer], far[nearer])
+
+        def enter(node: int, others: NDArray[np.int64], far: FloatArray) -> None:
+            best[others], before[others] = far, node
+            for entry in zip((far + self.rest[others]).tolist(), others.tolist(), strict=True):
+                heapq.heappush(queue, entry)
+
+        while queue or later:
+            if later and (not queue or queue[0][0] > limit):
+                limit = min(_MARGIN * limit, self.known)
+                waiting, later = later, []
+                for legs in waiting:
+                    reach(*legs)
+                continue
             least, node = heapq.heappop(queue)
-            if node == 1 or clock.perf_counter() > until:
-                return least
+            if node == 1:
+                return Way(least, self._legs(before))
+            if clock.perf_counter() > until:
+                return Way(least)
             if done[node]:
                 continue
             done[node] = True
-            others, far = self._reached_from(node, best, done)
-            best[others] = far
-            for entry in zip((far + self.rest[others]).tolist(), others.tolist(), strict=True):
-                heapq.heappush(queue, entry)
-        return math.nan
+            reach(node, *self._legs_from(node, best, done))
+            other, passed = self._by_canal(node, best)
+            if passed < best[other] and passed + self.rest[other] <= self.known:
+                enter(node, np.array([other]), np.array([passed]))
+        return Way(0.0)
 
-    def _reached_from(
+    def _legs(self, before: NDArray[np.int64]) -> FloatArray:
+        """Return the geodesics of the way to the goal, the last first."""
+        legs, node = [], 1
+        while node != 0:
+            last = int(before[node])
+            by_canal = min(last, node) >= 2 and max(last, node) < self.first and last ^ 1 == node
+            if not by_canal:
+                legs.append([[self.lat[k], self.lon[k]] for k in (last, node)])
+            node = last
+        return np.array(legs).reshape(-1, 2, 2)
+
+    def _legs_from(
         self, node: int, best: FloatArray, done: BoolArray
     ) -> tuple[NDArray[np.int64], FloatArray]:
-        """Return the nodes that are nearer by a free leg or a canal from one, and how far [m]."""
-        up, east, north = self.frames
-        rough = best[node] + SPHERE * np.arccos(np.clip(up @ up[node], -1.0, 1.0))
-        some = np.flatnonzero(~done & (rough < best) & (rough + self.rest <= self.known))
-        out = np.arctan2(up[some] @ east[node], up[some] @ north[node])
-        into = np.arctan2(-(east[some] @ up[node]), -(north[some] @ up[node]))
-        some = some[self._touches(np.full(len(some), node), out) & self._touches(some, into)]
-        far = best[node] + distance(self.lat[node], self.lon[node], self.lat[some], self.lon[some])
-        nearer = (far < best[some]) & (far + self.rest[some] <= self.known)
-        some, far = some[nearer], far[nearer]
-        free = self._are_free(node, some)
-        some, far = some[free], far[free]
-        if 2 <= node < self.first:
-            other = node + 1 if node % 2 == 0 else node - 1
-            passed = best[node] + self.links[(node - 2) // 2].seconds * self.speed
-            if passed < min([best[other], *far[some == other]]):
-                return np.append(some[some != other], other), np.append(far[some != other], passed)
-        return some, far
+        """Return the nodes to which legs from one may lead, and the least length to them [m]."""
+        least = best[node] + SPHERE * np.arccos(np.clip(self.up @ self.up[node], -1.0, 1.0))
+        nearer = ~done & (least < np.minimum(best, self.known - self.rest))
+        some = np.flatnonzero(nearer & self._touches(node))
+        return some, least[some]
+
+    def _by_canal(self, node: int, best: FloatArray) -> tuple[int, float]:
+        """Return the other end of the canal of a node, and the length to it [m]."""
+        if not 2 <= node < self.first:
+            return node, math.inf
+        return node ^ 1, float(best[node]) + self.links[(node - 2) // 2].seconds * self.speed
 
     def _are_free(self, node: int, others: NDArray[np.int64]) -> BoolArray:
         """Return which legs from a node touch no polygon.
@@ -309,24 +305,21 @@ class _Search:
         ends = np.full(count, self.lat[node]), np.full(count, self.lon[node])
         code, unsure = np.empty(count, np.int8), np.empty(count, np.bool_)
         leg_codes(self.corners.coast, *ends, self.lat[others], self.lon[others], code, unsure)
-        chord = np.linalg.norm(self.frames[0, others] - self.frames[0, node], axis=1)
+        chord = np.linalg.norm(self.up[others] - self.up[node], axis=1)
         return np.asarray((code == OK) | (chord > _LONGEST_TESTED))
 
-    def _touches(self, nodes: NDArray[np.int64], course: FloatArray) -> BoolArray:
-        """Return where a course through a corner leaves its polygon on one side."""
-        result = np.ones(len(nodes), bool)
-        corner = np.flatnonzero(nodes >= self.first)
-        at = nodes[corner] - self.first
-        back, on = (
-            (side[at] - course[corner] + math.pi) % (2.0 * math.pi) - math.pi
-            for side in (self.corners.back, self.corners.on)
-        )
-        to_starboard = _is_starboard(back) & _is_starboard(on)
-        result[corner] = to_starboard | (_is_starboard(-back) & _is_starboard(-on))
+    def _touches(self, node: int) -> BoolArray:
+        """Return to which nodes legs from one leave the polygons of both on one side.
+
+        Sines of courses relative to the leg, times that of its length, are triple products of
+        directions; to starboard they are positive.
+        """
+        cosine = self.up @ self.up[node]
+        margin = ANGLE_TOLERANCE * np.sqrt(np.maximum(1.0 - cosine * cosine, 0.0))
+        there = [-(side @ self.up[node]) for side in self.sides]
+        here = [self.up @ side[node] for side in self.sides]
+        result = np.ones(len(self.up), bool)
+        for back, on in (there, here):
+            to_starboard = (back >= -margin) & (on >= -margin)
+            result &= to_starboard | ((back <= margin) & (on <= margin))
         return result
-
-
-def _is_starboard(bearing: FloatArray) -> BoolArray:
-    """Return which relative bearings [-pi, pi] are to starboard, ahead or astern, by a margin."""
-    ahead_or_astern = np.abs(np.sin(bearing)) <= ANGLE_TOLERANCE
-    return np.asarray((bearing >= 0.0) | ahead_or_astern)

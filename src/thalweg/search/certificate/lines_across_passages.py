@@ -23,57 +23,77 @@ _AROUND: Final = 2.0  # turns beyond this from a line are not near it nor its wa
 _BESIDE: Final = 0.002  # corners nearer to a line are on no clear side of it [deg]
 
 
-def lines_across_passages(
-    coastline: Coastline,
-    passages: Iterable[Passage],
-    land: Sequence[Any],
-    inner: Sequence[Any],
-    turns: FloatArray,
-) -> list[FloatArray]:
-    """Return lines across closed passages that reach into polygons inside the land.
-
-    A route crosses neither a closed passage nor land. So it does not cross such a line: from the
-    ends of the line across the passage it leads on through land.
+class PassageLines:
+    """Lines across closed passages, which no route crosses.
 
     Parameters
     ----------
-    coastline : The lines across passages end on its land.
+    coastline : The lines end on its land.
     passages : Closed ones.
     land : Polygons (x longitude, y latitude [deg]) that are closed to ships.
-    inner : Smaller polygons inside these.
-    turns : Places (lat, lon) where ways begin or turn, (n, 2) [deg]. Legs are tested on arcs within
-        100 m of geodesics, so that one that begins very near a line might count as crossing it
-        although it does not: lines near these places are left out.
-
-    Returns
-    -------
-    list of float64 array (6, 2)
-        Latitudes and longitudes [deg] of each line, joined by great circles. Passages are left out
-        if an end is on no land that holds an inner polygon in reach.
     """
-    import shapely
 
-    every, smaller = np.asarray(land, object), np.asarray(inner, object)
-    shapely.prepare(every)
-    west = shapely.total_bounds(every)[0]
-    found = []
-    for passage in passages:
-        across = np.array(closing_line(coastline, passage))
-        lon = west + (across[0, 1] - west) % 360.0
-        across[:, 1] = lon + longitude_difference(across[:, 1], lon)
-        (south, west_end), (north, east_end) = across.min(axis=0), across.max(axis=0)
-        near = turns[
-            (turns[:, 0] > south - _AROUND)
-            & (turns[:, 0] < north + _AROUND)
-            & (turns[:, 1] > west_end - _AROUND)
-            & (turns[:, 1] < east_end + _AROUND)
-        ]
-        if _is_beside(across, near):
-            continue
-        first, last = (_way_inland(every, smaller, place, near) for place in across)
-        if first is not None and last is not None:
-            found.append(np.concatenate([first[::-1], across, last]))
-    return found
+    def __init__(
+        self, coastline: Coastline, passages: Iterable[Passage], land: Sequence[Any]
+    ) -> None:
+        import shapely
+
+        self._land = np.asarray(land, object)
+        shapely.prepare(self._land)
+        self._west = float(shapely.total_bounds(self._land)[0]) if len(land) else 0.0
+        self._lines = [np.array(closing_line(coastline, passage)) for passage in passages]
+        for line in self._lines:
+            first = self._west + (line[0, 1] - self._west) % 360.0
+            line[:, 1] = first + longitude_difference(line[:, 1], first)
+
+    def into(self, inner: Sequence[Any], turns: FloatArray) -> list[FloatArray]:
+        """Return lines that reach into polygons inside the land.
+
+        A route crosses neither a closed passage nor land. So it does not cross such a line: from
+        the ends of the line across the passage it leads on through land.
+
+        Parameters
+        ----------
+        inner : Polygons inside the land.
+        turns : Places (lat, lon) where ways begin or turn, (n, 2) [deg]. Legs are tested on arcs
+            within 100 m of geodesics, so that one that begins very near a line might count as
+            crossing it although it does not: lines near these places are left out.
+
+        Returns
+        -------
+        list of float64 array (n, 2)
+            Latitudes and longitudes [deg] of each line, joined by great circles. Passages are left
+            out if an end is on no land that holds an inner polygon in reach.
+        """
+        smaller = np.asarray(inner, object)
+        found = []
+        for across in self._lines:
+            (south, west_end), (north, east_end) = across.min(axis=0), across.max(axis=0)
+            near = turns[
+                (turns[:, 0] > south - _AROUND)
+                & (turns[:, 0] < north + _AROUND)
+                & (turns[:, 1] > west_end - _AROUND)
+                & (turns[:, 1] < east_end + _AROUND)
+            ]
+            if _is_beside(across, near):
+                continue
+            first, last = (_way_inland(self._land, smaller, place, near) for place in across)
+            if first is not None and last is not None:
+                found.append(np.concatenate([first[::-1], across, last]))
+        return found
+
+    def crossed(self, lat: FloatArray, lon: FloatArray) -> list[FloatArray]:
+        """Return the lines across passages that a way crosses, all (lat, lon) [deg]."""
+        import shapely
+
+        if len(lat) < 2 or not self._lines:
+            return []
+        lon = self._west + np.unwrap(lon - self._west, period=360.0)
+        lon -= 360.0 * np.floor((lon[0] - self._west) / 360.0)
+        way = shapely.LineString(np.stack([lon, lat], axis=1))
+        lines = [shapely.LineString(line[:, ::-1]) for line in self._lines]
+        crossing = shapely.intersects(way, np.array(lines, object))
+        return [line for line, crossed in zip(self._lines, crossing, strict=True) if crossed]
 
 
 def _way_inland(land: Any, inner: Any, place: FloatArray, turns: FloatArray) -> FloatArray | None:
