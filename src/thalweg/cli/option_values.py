@@ -138,7 +138,7 @@ def _parse_fill_policy(text: str) -> tuple[str, FillValue]:
         of_waves = name == "waves" and (
             value in ("wind", "head_seas", "fetch_limited") or value.startswith("coastal_shelter")
         )
-        is_text = of_waves or value.startswith("nearest:")
+        is_text = of_waves or (name, value) == ("wind", "waves") or value.startswith("nearest:")
         east, comma, north = value.partition(",")
         if comma and name in ("currents", "wind"):
             return name, (float(east), float(north))
@@ -147,7 +147,7 @@ def _parse_fill_policy(text: str) -> tuple[str, FillValue]:
         raise InputError(
             f"--fill {text} is not understood.",
             f"It is one of {', '.join(f'{n}=0' for n in FILLABLE)}, currents=EAST,NORTH, "
-            "wind=EAST,NORTH (towards, in m/s), waves=wind, waves=head_seas, "
+            "wind=EAST,NORTH (towards, in m/s), wind=waves, waves=wind, waves=head_seas, "
             "waves=coastal_shelter, waves=fetch_limited, or NAME=nearest:NM.",
             "Give the value in this form.",
         ) from None

@@ -236,7 +236,8 @@ def add_sea_options(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=VALUE",
         help=f"value to use where {', '.join(FILLABLE[:-1])} or {FILLABLE[-1]} are missing [m/s, "
         "m/s, m], for example --fill wind=0 waves=wind; wind=EAST,NORTH and currents=EAST,NORTH: "
-        "the same vector [m/s, towards]; waves=head_seas: waves of known height without direction "
+        "the same vector [m/s, towards]; wind=waves: that which raises the known waves; "
+        "waves=head_seas: waves of known height without direction "
         "come from ahead; NAME=nearest:NM: the nearest known value within so "
         "many nm (cells without data next to land); waves=coastal_shelter[:NM[:FACTOR]]: the same "
         "with 0.8 of the height; waves=fetch_limited: those of the local wind over its fetch to "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
 from functools import partial
 from typing import Any, Final, TypeAlias
 
@@ -16,6 +16,7 @@ from thalweg.sea.layer import Layer, RetimedLayer
 from thalweg.sea.layer_stack import stack_variables
 from thalweg.sea.models.coast_fills import NearestLayer, head_seas_layer, nearest_layer
 from thalweg.sea.models.function_layer import FormulaLayer, constant_layer
+from thalweg.sea.models.wind_of_waves import WindOfWavesLayer, wind_of_waves_layer
 from thalweg.sea.models.wind_sea import FetchFunction, WindSeaLayer, wind_sea_layer
 from thalweg.sea.plausible_values import PLAUSIBLE_RANGES
 
@@ -26,6 +27,7 @@ NEAREST: Final = "nearest"  #: begins the policy of the nearest known position
 SHELTER: Final = "coastal_shelter"  #: begins that of waves in the shelter of a coast
 SHELTER_DISTANCE: Final = 25.0  #: [nm] of that policy where none is given
 SHELTER_FACTOR: Final = 0.8  #: of the wave height there, as in Prestegardshus (2020), eq. 3.4
+OF_WAVES: Final = "waves"  #: of wind: that which raises the known waves
 FETCH_LIMITED: Final = "fetch_limited"  #: waves of the local wind over the true fetch
 MAX_NEAREST: Final = 100.0  #: [nm] greatest distance of that policy
 _FILLED: Final = "filled"  # label of the layer of constant values
@@ -56,6 +58,12 @@ def is_calm_layer(layer: Layer) -> bool:
     return isinstance(layer, FormulaLayer) and layer.facts.get("values") == CALM_VALUES
 
 
+def _names_a_model(policy: str, value: FillValue) -> bool:
+    """Return whether a fill value is the name of a policy, not a number or a function."""
+    of_quantity = policy == "waves" or (policy == "wind" and value == OF_WAVES)
+    return isinstance(value, str) and (of_quantity or value.startswith(NEAREST))
+
+
 def layers_filled(
     layers: Sequence[Layer], policies: Mapping[str, FillValue]
 ) -> tuple[tuple[Layer, ...], tuple[str, ...]]:
@@ -75,17 +83,18 @@ def layers_filled(
     known = stack_variables(layers)
     models: list[tuple[str, Any]] = []
     for policy, value in policies.items():
-        if isinstance(value, str) and (policy == "waves" or value.startswith(NEAREST)):
+        if _names_a_model(policy, value):
             _check_name(policy)
-            models.append((policy, value.strip()))
+            models.append((policy, value.strip()))  # type: ignore[union-attr]
             continue
         if callable(value):
             models.append((policy, _checked_fetch(policy, value)))
             continue
         values.update(fill_values(policy, value))  # type: ignore[arg-type]
         assumptions.append(f"where unknown, {policy.replace('_', ' ')} = {value}")
+    made = {*values, *(nm.WIND.pair if ("wind", OF_WAVES) in models else ())}
     for vector in (nm.WIND, nm.CURRENT):
-        if vector.east in values and vector.speed in known and vector.east not in known:
+        if vector.east in made and vector.speed in known and vector.east not in known:
             assumptions.append(f"the data's {vector.speed}, without direction, is not used")
     filled = [*layers]
     for policy, value in models:
@@ -96,10 +105,10 @@ def layers_filled(
             assumptions.append(text)
     if values:
         filled.append(constant_layer(values, _FILLED))
-    for _, value in models:
+    for policy, value in models:
         if isinstance(value, str) and value.startswith((NEAREST, SHELTER)):
             continue
-        make, text = _wave_model(value)
+        make, text = _wave_model(value) if policy == "waves" else _WIND_MODEL
         filled.append(make(filled))
         assumptions.append(text)
     return tuple(filled), tuple(assumptions)
@@ -117,7 +126,7 @@ def layers_without_fills(layers: Sequence[Layer]) -> tuple[Layer, ...]:
         while isinstance(layer, RetimedLayer):
             layer = layer.layer
         constant = isinstance(layer, FormulaLayer) and layer.label == _FILLED
-        return constant or isinstance(layer, (NearestLayer, WindSeaLayer))
+        return constant or isinstance(layer, (NearestLayer, WindSeaLayer, WindOfWavesLayer))
 
     return tuple(layer for layer in layers if not is_fill(layer))
 
@@ -142,7 +151,7 @@ def check_fill(policy: str, value: FillValue) -> None:
     elif policy == "waves" and isinstance(value, str):
         if value != FETCH_LIMITED:
             _wave_model(value)
-    elif not callable(value):
+    elif not callable(value) and not _names_a_model(policy, value):
         fill_values(policy, value)
 
 
@@ -243,6 +252,14 @@ def _wave_model(
     )
 
 
+#: of ``wind=waves``: the layer, and the sentence that states it
+_WIND_MODEL: Final = (
+    wind_of_waves_layer,
+    "where unknown, the wind is that which raises the known waves (Carter 1982, 500 km of fetch, "
+    "24 h), in their direction",
+)
+
+
 def _check_name(policy: str) -> None:
     if policy not in FILLABLE_VARIABLES:
         raise unknown_name_error("filling policy", policy, FILLABLE_VARIABLES)
@@ -270,8 +287,8 @@ def fill_values(policy: str, value: float | tuple[float, float] | str) -> dict[s
     if not np.isfinite(numbers).all() or not (is_pair or numbers.size == 1):
         raise InputError(
             f"{policy} cannot be filled with {value!r}.",
-            "Give one finite number, (east, north) for currents and wind, 'wind' or 'head_seas' "
-            f"for waves, or '{NEAREST}:NM'.",
+            "Give one finite number, (east, north) for currents and wind, 'waves' for wind, 'wind' "
+            f"or 'head_seas' for waves, or '{NEAREST}:NM'.",
             f"For example filled({policy}=0.0).",
         )
     if is_pair:
@@ -312,12 +329,23 @@ def fill_hint(missing: Sequence[str], known: frozenset[str]) -> str:
             hints.append("waves=head_seas (the known heights, from ahead on every course)")
         elif policy == "waves" and set(nm.WIND.pair) <= known:
             hints.append("waves=wind (those that the wind raises)")
+        elif policy == "wind" and nm.WAVE_HEIGHT in known:
+            hints.append(_wind_hint(lacking, known))
         else:
             hints.append(f"{policy}=0")
     others = lacking - {n for names in FILLABLE_VARIABLES.values() for n in names}
     others -= set(_SPEEDS.values())
     text = f"--fill {' '.join(hints)}" if hints else "no value can be filled"
     return f"{text} ({', '.join(sorted(others))} cannot be filled)" if others and hints else text
+
+
+def _wind_hint(lacking: Set[str], known: Set[str]) -> str:
+    """Return how to fill the wind of a sea with waves: never calm beside waves that act by it."""
+    if set(nm.WAVES.pair) <= known:
+        return "wind=waves (that which raises the known waves)"
+    if lacking & set(nm.WAVES.pair):  # the ship reads the waves themselves
+        return "wind=0"
+    return "wind=EAST,NORTH (towards, in m/s; the known waves have no direction to take it from)"
 
 
 def nearest_fills(unknown: Sequence[str], miles: float = 25.0) -> list[str]:

@@ -324,13 +324,13 @@ class Sea:
         Parameters
         ----------
         **policies
-            ``currents`` and ``wind``: 0.0 or (east, north) [m/s]; ``waves``: significant height
-            [m] (0.0, or a height with direction north and period 8 s), ``"wind"`` for those of the
-            known wind (`thalweg.sea.models.wind_sea.carter_1982`), ``"head_seas"`` where direction
-            or period is unknown (`HeadSeasLayer`); ``water_level`` [m]; ``ice`` [-].
-            The value holds where no layer knows one. ``"nearest:25"`` takes the nearest known
-            value within 25 nm; for waves, ``"coastal_shelter"`` does with 0.8 of the height, a
-            `thalweg.chart.coastal_fetch.CoastalFetch` gives those of the wind over its fetch.
+            ``currents``, ``wind``: 0.0 or (east, north) [m/s]; ``wind`` also ``"waves"``, that of
+            known waves (`WindOfWavesLayer`); ``waves``: significant height [m] (0.0, or a height
+            with direction north and period 8 s), ``"wind"`` for those of the known wind
+            (`thalweg.sea.models.wind_sea.carter_1982`), ``"head_seas"`` where direction or period
+            is unknown (`HeadSeasLayer`); ``water_level`` [m]; ``ice`` [-]. It holds where no layer
+            knows one. ``"nearest:25"`` takes the nearest known value within 25 nm, for waves
+            ``"coastal_shelter"`` with 0.8 of the height, a `CoastalFetch` those of the local wind.
 
         Returns
         -------

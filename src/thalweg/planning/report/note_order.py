@@ -14,6 +14,7 @@ from thalweg.planning.report.given_route_report import NEAR_LAND
 from thalweg.planning.report.ice_report import REACHES_ICE
 from thalweg.planning.report.land_report import CLOSE_TO_LAND, PASSES
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, LANE_DETOUR
+from thalweg.planning.report.unread_weather import WAVES_UNREAD, WIND_UNREAD
 from thalweg.planning.report.waiting_report import PASSES_TIME, WAITS
 from thalweg.planning.report.wave_report import TOO_STEEP
 from thalweg.planning.request.coverage_check import CHECK_YEAR, UNREAD
@@ -50,7 +51,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     OTHER_WAYS,
     FILLED,
     CHECK_YEAR,
-    UNREAD,
+    (UNREAD, WAVES_UNREAD, WIND_UNREAD),
     (NO_UNITS, NO_TIME),
     UNUSUAL,
     KWON_FORM,

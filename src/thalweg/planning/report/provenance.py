@@ -21,8 +21,10 @@ from thalweg.planning.report.given_route_report import given_route_notes
 from thalweg.planning.report.ice_report import ice_warnings
 from thalweg.planning.report.land_report import land_notes
 from thalweg.planning.report.lane_report import lane_notes
+from thalweg.planning.report.unread_weather import unread_weather_notes
 from thalweg.planning.report.waiting_report import waiting_notes, waiting_weather_warnings
 from thalweg.planning.report.wave_report import comfort_turn_notes, steep_wave_warnings
+from thalweg.planning.request.coverage_check import UNREAD
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
 from thalweg.route.referee.route_assembly import OUT_OF_RANGE
@@ -54,6 +56,8 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     notes += data_gap_warnings(context.sea, route)
     notes += [text for text in route.assumptions if text.startswith(OUT_OF_RANGE)]
     notes += slow_speed_warnings(route) + steep_wave_warnings(route, context.sea)
+    if not any(note.startswith(UNREAD) for note in context.needs.notes):  # it says so already
+        notes += unread_weather_notes(route, context.sea, context.ship)
     if context.voyage.objective == "comfort":
         notes += comfort_turn_notes(route)
     notes += waiting_weather_warnings(route, context.ship)
@@ -87,8 +91,8 @@ def given_route_warnings(
 ) -> list[str]:
     """Return the warnings about a route from a file, as those about the routes of a plan.
 
-    These are on its year, ice, gaps of data, units and times that files do not state, land,
-    passages, traffic lanes, depth and shoals.
+    These are on its year, ice, gaps of data, units and times that files do not state, weather that
+    the ship does not read, land, passages, traffic lanes, depth and shoals.
 
     Parameters
     ----------
@@ -99,6 +103,7 @@ def given_route_warnings(
     notes = year_warnings(route) + ice_warnings(route, sea) + data_gap_warnings(sea, route)
     notes += guesses_of_files(sea.layers, frozenset(route.samples))
     notes += slow_speed_warnings(route) + steep_wave_warnings(route, sea)
+    notes += unread_weather_notes(route, sea, ship)
     notes += waiting_weather_warnings(route, ship)
     notes += given_route_notes(route, chart=chart, ship=ship)
     if route.min_ukc_m is not None:

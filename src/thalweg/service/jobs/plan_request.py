@@ -164,8 +164,9 @@ class ShipAndSea(BaseModel):
     fill: dict[FilledQuantity, FillPolicy | Annotated[list[FillPolicy], Field(max_length=5)]] = (
         Field(
             default_factory=dict,
-            description="what unknown values are taken as: a number, `nearest:NM`, for waves also "
-            "`wind`, `head_seas`, `coastal_shelter`, `fetch_limited`; several are tried in order",
+            description="what unknown values are taken as: a number, `nearest:NM`, for wind also "
+            "`waves`, for waves `wind`, `head_seas`, `coastal_shelter`, `fetch_limited`; several "
+            "are tried in order",
             examples=[{"waves": ["nearest:25", 0.0]}],
         )
     )

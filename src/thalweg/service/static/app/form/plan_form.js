@@ -65,6 +65,7 @@ export class PlanForm extends EventTarget {
     this.forbid = CANALS.map(([value, text]) => [value, h("input", { type: "checkbox", id: `forbid-${value}` }), text]);
     this.fills = ["waves", "wind", "currents"].map((name) => [name, h("select", { id: `fill-${name}` },
       h("option", { value: "" }, "closed water"), h("option", { value: "0" }, "none (0)"), h("option", { value: "nearest:25" }, "nearest value within 25 nm"),
+      name === "wind" ? h("option", { value: "waves" }, "that which raises the waves") : [],
       name === "waves" ? [h("option", { value: "wind" }, "those that the wind raises"), h("option", { value: "head_seas" }, "head seas, where only heights are known")] : [])]);
     this.button = h("button.primary", { type: "submit" }, "Plan the voyage");
     this.files = new VoyageFiles(this);
