@@ -23,6 +23,7 @@ from thalweg.planning.request.shoal_choice import SHOALS_OPENED
 from thalweg.planning.request.swapped_degrees import CHECK_POSITION
 from thalweg.planning.request.voyage_endpoints import NOT_REACHED
 from thalweg.route.referee.route_assembly import OUT_OF_RANGE
+from thalweg.route.stated_times import TIMES_UNUSED
 from thalweg.sea.doubtful_values import NO_TIME, NO_UNITS
 from thalweg.ship.schema.unusual_numbers import UNUSUAL
 from thalweg.ship.ship_assumptions import KWON_FORM
@@ -51,6 +52,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     OTHER_WAYS,
     FILLED,
     CHECK_YEAR,
+    TIMES_UNUSED,
     (UNREAD, WAVES_UNREAD, WIND_UNREAD),
     (NO_UNITS, NO_TIME),
     UNUSUAL,

@@ -38,6 +38,7 @@ class ParsedTrack:
     route_name : Where the format requires that the file has this name.
     extensions : Of other makers.
     leg_numbers : By leg, its number in the file, from 1; empty: legs are those of the file.
+    times : By position, the stated arrival [s since 1970-01-01T00:00Z]; NaN: none. Empty: none.
     """
 
     positions: list[Position]
@@ -49,6 +50,7 @@ class ParsedTrack:
     route_name: str | None = None
     extensions: CarriedExtensions = NO_EXTENSIONS
     leg_numbers: list[int] = field(default_factory=list)
+    times: list[float] = field(default_factory=list)
 
     def all_notes(self, name: str) -> list[str]:
         """Return the notes of a file of a name."""
@@ -114,39 +116,51 @@ def waypoint_track(
 
     Parameters
     ----------
-    times : Of the waypoints, of which the first is used; None or no text where the file has none.
+    times : Of the waypoints, of which the first is sailed; None or no text where the file has none.
 
     Raises
     ------
     InputError : If a time is before that of an earlier waypoint.
     """
     time = times[0] if times else None
-    _check_times_rise(times)
+    moments = stated_moments(times)
+    _check_times_rise(moments)
     orders = [waypoint_order(values, i) for i, values in enumerate(given, start=1)]
     rhumb = [is_rhumb_line(values.get(GEOMETRY), i) for i, values in enumerate(given[:-1], start=1)]
-    return ParsedTrack(
-        positions, parse_time(time) if time not in (None, "") else None, orders, rhumb
-    )
+    first = parse_time(time) if time not in (None, "") else None
+    return ParsedTrack(positions, first, orders, rhumb, times=moments)
 
 
-def _check_times_rise(times: Sequence[TimeLike | None]) -> None:
+def stated_moments(times: Sequence[TimeLike | None]) -> list[float]:
+    """Return times [s since 1970-01-01T00:00Z]; NaN where there is none, or what is no time.
+
+    Parameters
+    ----------
+    times : Texts or times of a file.
+    """
+    found = []
+    for value in times:
+        try:
+            found.append(math.nan if value is None or value == "" else parse_time(value))
+        except InputError:
+            found.append(math.nan)
+    return found
+
+
+def _check_times_rise(moments: Sequence[float]) -> None:
     """Refuse a time before that of an earlier waypoint.
 
     Parameters
     ----------
-    times : Of the waypoints; what is no time is not looked at.
+    moments : Of the waypoints [s since 1970-01-01T00:00Z]; NaN where there is none.
 
     Raises
     ------
     InputError : Names both waypoints.
     """
     latest, of = -math.inf, 0
-    for number, value in enumerate(times, start=1):
-        if value is None or value == "":
-            continue
-        try:
-            moment = parse_time(value)
-        except InputError:
+    for number, moment in enumerate(moments, start=1):
+        if math.isnan(moment):
             continue
         if moment < latest:
             raise InputError(

@@ -74,10 +74,11 @@ def parse_rtz(data: bytes) -> ParsedTrack:
         )
     positions = [_position(waypoint, i, notes) for i, waypoint in enumerate(waypoints, start=1)]
     notes = [*rtz_notes(root, waypoints), *notes]
-    first_time, stays = _schedule(root, waypoints, notes)
+    first_time, stays, times = _schedule(root, waypoints, notes)
     orders = [_order(w, i, stay) for i, (w, stay) in enumerate(zip(waypoints, stays), start=1)]
     if first_time is not None:
         first_time -= orders[0].wait  # the departure of the schedule comes after the wait
+        times[0] = first_time
     usual = [
         leg
         for group in children(root, "waypoints")
@@ -108,6 +109,7 @@ def parse_rtz(data: bytes) -> ParsedTrack:
             },
             details=_details(root, waypoints, visits, legs),
         ),
+        times=times,
     )
 
 
@@ -224,8 +226,11 @@ def _limit(legs: list[ElementTree.Element], name: str) -> float:
 
 def _schedule(
     root: ElementTree.Element, waypoints: list[ElementTree.Element], notes: list[str]
-) -> tuple[float | None, list[float]]:
-    """Return the departure, and the stays at the waypoints [s], of the first schedule with one."""
+) -> tuple[float | None, list[float], list[float]]:
+    """Return the departure, the stays at the waypoints [s] and the arrivals there [s since 1970].
+
+    They are those of the first schedule with a departure; an unknown arrival is NaN.
+    """
     stays = [0.0] * len(waypoints)
     number_of = {waypoint.get("id"): n for n, waypoint in reversed(list(enumerate(waypoints)))}
     schedules = [s for group in children(root, "schedules") for s in children(group, "schedule")]
@@ -246,8 +251,10 @@ def _schedule(
             for number, row in rows.items():
                 if 0 < number < len(waypoints) - 1:
                     stays[number] = _stay(row)
-            return stated_time(first, "etd"), stays
-    return None, stays
+            depart = stated_time(first, "etd")
+            known = {number: stated_time(row, "eta") for number, row in rows.items()} | {0: depart}
+            return depart, stays, [known.get(k, math.nan) for k in range(len(waypoints))]
+    return None, stays, []
 
 
 def _stay(row: ElementTree.Element) -> float:

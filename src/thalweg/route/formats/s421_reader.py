@@ -6,6 +6,7 @@ in lower case and whose values are attributes, are read alike.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from xml.etree import ElementTree
 
@@ -15,6 +16,7 @@ from thalweg.route.formats.parsed_track import (
     ParsedTrack,
     WaypointOrder,
     position_of,
+    stated_moments,
     waypoint_order,
 )
 from thalweg.route.formats.rtz_writer import MANUFACTURER
@@ -48,12 +50,15 @@ def parse_s421(data: bytes) -> ParsedTrack:
         )
     notes: list[str] = []
     positions = [_position(waypoint, i) for i, waypoint in enumerate(waypoints, start=1)]
-    stays, first_time = _schedule(features, waypoints)
+    stays, times = _schedule(features, waypoints)
+    first_time = None if math.isnan(times[0]) else times[0]
     orders = [_order(w, i, stay) for i, (w, stay) in enumerate(zip(waypoints, stays), start=1)]
     if first_time is not None:
         first_time -= orders[0].wait  # the departure of the schedule comes after the wait
+        times[0] = first_time
     rhumb = [_is_rhumb(waypoint, by_name, notes) for waypoint in waypoints[1:]]
-    return ParsedTrack(positions, first_time, orders, rhumb, list(dict.fromkeys(notes)))
+    notes = list(dict.fromkeys(notes))
+    return ParsedTrack(positions, first_time, orders, rhumb, notes, times=times)
 
 
 def _features_of(root: ElementTree.Element) -> dict[str, list[ElementTree.Element]]:
@@ -102,23 +107,28 @@ def _is_rhumb(
 
 def _schedule(
     features: Mapping[str, list[ElementTree.Element]], waypoints: list[ElementTree.Element]
-) -> tuple[list[float], float | None]:
-    """Return the stays at the waypoints [s] and the departure, of the first schedule with one."""
+) -> tuple[list[float], list[float]]:
+    """Return the stays at the waypoints [s], and the departure and the arrivals there.
+
+    Of each the first stated one [s since 1970-01-01T00:00Z]; NaN where it is not known.
+    """
     number_of = {
         _value(waypoint, "routeWaypointID"): n
         for n, waypoint in reversed(list(enumerate(waypoints)))
     }
     inside = {id(e): n for n, w in enumerate(waypoints) for e in w.iter()}
-    stays, first_time = [0.0] * len(waypoints), None
+    stays, times = [0.0] * len(waypoints), [math.nan] * len(waypoints)
     for element in features.get("routescheduleelement", []):
         key = _value(element, "routeWaypointId") or _value(element, "routeWaypointID")
         number = inside.get(id(element), number_of.get(key))
         eta, etd = (_value(element, f"routeScheduleElement{end}") for end in ("ETA", "ETD"))
-        if number == 0 and etd and first_time is None:
-            first_time = parse_time(etd)
-        elif number is not None and 0 < number < len(waypoints) - 1 and eta and etd:
+        if number == 0 and etd and math.isnan(times[0]):
+            times[0] = parse_time(etd)
+        elif number and math.isnan(times[number]):
+            times[number] = stated_moments([eta])[0]
+        if number is not None and 0 < number < len(waypoints) - 1 and eta and etd:
             stays[number] = stays[number] or max(0.0, parse_time(etd) - parse_time(eta))
-    return stays, first_time
+    return stays, times
 
 
 def _order(waypoint: ElementTree.Element, number: int, stay: float) -> WaypointOrder:

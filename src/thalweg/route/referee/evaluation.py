@@ -28,6 +28,7 @@ from thalweg.route.referee.sailing import data_spacings
 from thalweg.route.referee.sailing_physics import SailingEnvironment, make_sailing_environment
 from thalweg.route.referee.wind_speed_only import with_wind_speed
 from thalweg.route.route import ORDERED_TOO_FAST, Route, Violation
+from thalweg.route.stated_times import stated_time_notes
 from thalweg.route.track import Track
 from thalweg.ship.fuel_prices import FuelTerms
 
@@ -147,10 +148,11 @@ def evaluate(
     sailed, tolerance = sail_to_tolerance(world, pieces, adapt=step is None)
     result = assemble_route(sailed, min_ukc, tolerance, terms)
     result = _with_too_fast_legs(result, wanted)
-    if isinstance(route, (str, Path)) and chart is not None:
-        from thalweg.route.formats import cross_track_notes
+    if isinstance(route, (str, Path)):
+        from thalweg.route.formats import cross_track_notes, route_file_contents
 
-        notes = cross_track_notes(route, chart)
+        notes = stated_time_notes(route_file_contents(Path(route)), result)
+        notes += [] if chart is None else cross_track_notes(route, chart)
         result = replace(result, assumptions=(*result.assumptions, *notes))
     if strict and not math.isfinite(result.arrive):
         gaps = [violation for violation in result.violations if is_data_gap(violation)]
