@@ -151,6 +151,40 @@ def test_a_held_speed_is_named_and_needs_a_speed(capsys, track):
     assert code == 2
 
 
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--ets-price", "80"], "EU ETS on 50 %, FuelEU not counted (no --eur-rate)"),
+        (["--eur-rate", "1.1"], "FuelEU on 50 %, EU ETS not counted (no --ets-price)"),
+        (["--ets-price", "80", "--eur-rate", "1.1"], "EU charges on 50 %\n"),
+        (["--ets-price", "80", "--eu-year", "2024"], "EU charges on 50 %\n"),  # before FuelEU
+    ],
+)
+def test_the_cost_says_which_charges_do_not_count(capsys, track, options, words):
+    """Only plan.json had it."""
+    assert main(["evaluate", track, *SHIP, *DEPART, "--eu-share", "50", *options]) == 0
+    (line,) = (x for x in capsys.readouterr().out.splitlines() if x.startswith("Cost"))
+    assert words in line + "\n"
+
+
+def test_a_price_of_time_replaces_the_hire_and_both_are_named(capsys, track, tmp_path):
+    hired = tmp_path / "hired.yaml"
+    hired.write_text(
+        "name: hired\nhull: {draught_m: 6.0}\nspeeds_kn: [10, 12]\n"
+        "models: {calm_water: table}\ncosts: {hire_per_day: 12000, currency: USD}\n"
+        "table: {speed_kn: [10, 12], fuel_t_per_day: [12, 20]}\nfuel: {price_per_t: 600}\n"
+    )
+    asked = ["evaluate", track, "--ship", str(hired), "--calm", "--coast", "none", *DEPART]
+    _, own = run_json(capsys, *asked)
+    assert "replaced" not in own["prices"]["time_per_day"]
+    _, scored = run_json(capsys, *asked, "--time-price", "1000")
+    assert scored["cost_parts"]["time"] == pytest.approx(1000.0 * scored["time_h"])
+    assert own["cost_parts"]["time"] == pytest.approx(500.0 * scored["time_h"])
+    main([*asked, "--time-price", "1000"])
+    words = "time 24,000 USD/day (given in place of 12,000 of the ship file)"
+    assert words in capsys.readouterr().out
+
+
 @pytest.mark.slow
 def test_charges_without_prices_are_unknown_and_not_zero(capsys, track):
     """0.0 would say that the European Union charges nothing."""

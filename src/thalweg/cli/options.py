@@ -132,7 +132,8 @@ def add_price_options(group: Any) -> None:
         "--time-price",
         type=float,
         metavar="USD",
-        help="cost of time in addition to fuel [USD per hour]; default: the hire of the ship file",
+        help="cost of time in addition to fuel [USD per hour], in place of the hire of the ship "
+        "file; default: that hire",
     )
     group.add_argument(
         "--eu-share",

@@ -48,6 +48,7 @@ class FuelTerms:
     eca_price_factor : Price inside over price outside; NaN where they are two prices of their own.
     own_carbon_factor : CO2 per fuel [kg/kg] given for the ship itself, of the fuel burnt outside.
     time_price : Price of time (hire) [currency/s].
+    replaced_time_price : That of the ship file where a request replaced it; 0: none.
     cubed_speed_price : float
         Price of a second of sailing per cubed ordered speed [currency/s per (m/s)^3], lambda_f of
         van Halem (2019); NaN when unknown. It is used where fuel has no price.
@@ -66,6 +67,7 @@ class FuelTerms:
     own_carbon_factor: float | None = None
     currency: str = ""
     time_price: float = 0.0
+    replaced_time_price: float = 0.0
     cubed_speed_price: float = math.nan
     cubed_speed_co2: float = math.nan
     sources: Mapping[str, str] = field(default_factory=dict)
@@ -93,7 +95,8 @@ class FuelTerms:
         -------
         dict : ``currency``, and ``{"value", "source"}`` of ``fuel_per_t``, ``fuel_in_eca_per_t``,
             ``time_per_day`` and, where it counts, ``per_second_per_cubed_speed``; and
-            ``european_charges``, with what is ``not_counted`` for want of a price.
+            ``european_charges``, with what is ``not_counted`` for want of a price. A price of time
+            that a request replaced is ``replaced`` of ``time_per_day``.
         """
         values = {
             "fuel_per_t": (self.price_outside * TONNE, "fuel"),
@@ -108,6 +111,8 @@ class FuelTerms:
             known = math.isfinite(value)
             source = self.sources.get(kind, "ship file") if known else None
             found[name] = {"value": round(value, 9) if known else None, "source": source}
+        if self.replaced_time_price not in (0.0, self.time_price):
+            found["time_per_day"]["replaced"] = round(self.replaced_time_price * DAY, 9)
         return found
 
     @property
@@ -260,6 +265,7 @@ class FuelTerms:
         self._same_currency(usd_per_t, time_usd_per_day)
         factor = self._ratio() if eca_price_factor is None else eca_price_factor
         keeps = usd_per_t is None and eca_price_factor is None
+        own = self.replaced_time_price if "time" in self.sources else self.time_price
         dollars = usd_per_t is not None or time_usd_per_day is not None
         return replace(
             self,
@@ -268,6 +274,7 @@ class FuelTerms:
             eca_price_factor=self.eca_price_factor if keeps else factor,
             currency="USD" if dollars else self.currency,
             time_price=self.time_price if time_usd_per_day is None else time_usd_per_day / DAY,
+            replaced_time_price=self.replaced_time_price if time_usd_per_day is None else own,
             sources=self._sources_with(
                 fuel=usd_per_t is not None,
                 factor=eca_price_factor is not None,

@@ -149,13 +149,26 @@ def prices_text(prices: Mapping[str, Any]) -> str:
         source = _source(prices, "per_second_per_cubed_speed")
         texts.append(f"{cubed:g} {currency}/s per cubed speed ({source})")
     if hire is not None:
-        texts.append(f"time {hire:,.0f} {currency}/day ({_source(prices, 'time_per_day')})")
+        own = prices["time_per_day"].get("replaced")
+        more = "" if own is None else f" in place of {own:,.0f} of the ship file"
+        texts.append(f"time {hire:,.0f} {currency}/day ({_source(prices, 'time_per_day')}{more})")
     elif texts:
         texts.append("no price of time")
-    charges = prices.get("european_charges") or {}
-    if charges.get("voyage_share"):
-        texts.append(f"EU charges on {100.0 * charges['voyage_share']:.0f} %")
+    texts += _charges_texts(prices.get("european_charges") or {})
     return ", ".join(texts)
+
+
+def _charges_texts(charges: Mapping[str, Any]) -> list[str]:
+    """Return which charges of the European Union count, and which do not for want of a price."""
+    if not charges.get("voyage_share"):
+        return []
+    share = f"on {100.0 * charges['voyage_share']:.0f} %"
+    missing = charges["not_counted"]
+    if len(missing) != 1:
+        return [f"EU charges {share}"]
+    if charges["allowance_price"]:
+        return [f"EU ETS {share}", "FuelEU not counted (no --eur-rate)"]
+    return [f"FuelEU {share}", "EU ETS not counted (no --ets-price)"]
 
 
 def _source(prices: Mapping[str, Any], name: str) -> str:

@@ -211,5 +211,7 @@ def european_prices(charges: EuropeanCharges | None) -> dict[str, Any]:
     }
     if charges is None:
         return {"source": None, "not_counted": list(reasons.values())}
+    if math.isinf(fueleu_target(charges.year)):  # no penalty in that year
+        del reasons["euro_price"]
     missing = [text for name, text in reasons.items() if not getattr(charges, name)]
     return {**asdict(charges), "source": "request", "not_counted": missing}
