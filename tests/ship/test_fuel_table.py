@@ -57,6 +57,41 @@ def test_a_ship_with_a_table_of_fuel_burns_its_settings_fuel():
     assert table.error == TableError(0.0, 0.0, 0.0, 0)
 
 
+@pytest.mark.parametrize("rows", [False, True])
+@pytest.mark.parametrize("law", ["table", "cubic"])
+def test_fuel_per_hour_is_that_per_day_over_24(rows, law):
+    """fuel_kg_per_h, as performance sheets have it, was no key of a table."""
+
+    def ship_of(**fuel):
+        table = {"speed_kn": [10.0, 12.0], **fuel}
+        if rows:
+            table = [dict(zip(table, values)) for values in zip(*table.values())]
+        hull, models = {"draught_m": 6.0}, {"calm_water": law}
+        data = {"name": "x", "hull": hull, "speeds_kn": [10, 12], "table": table, "models": models}
+        return Ship.from_dict(data)
+
+    daily = ship_of(fuel_t_per_day=[12.0, 24.0])
+    hourly = ship_of(fuel_kg_per_h=[500.0, 1000.0])
+    for k in (0, 1):
+        rates = [float(ship.fuel_rate(Conditions(), k)) for ship in (daily, hourly)]
+        assert rates[0] == pytest.approx(rates[1])
+    assert float(hourly.fuel_rate(Conditions(), 1)) == pytest.approx(1000.0 / 3600.0)
+
+
+@pytest.mark.parametrize(
+    ("columns", "words"),
+    [
+        ({"fuel_kg_per_h": [500, 900], "fuel_t_per_day": [12, 24]}, "given twice"),
+        ({"fuel_kg_per_h": [500]}, "fuel_kg_per_h has another length"),
+        ({"fuel_kg_per_h": [500, 5e4]}, "fuel_kg_per_h"),
+    ],
+)
+def test_wrong_fuels_per_hour_are_refused_by_their_key(columns, words):
+    table = {"speed_kn": [10.0, 12.0], **columns}
+    with pytest.raises(InputError, match=words):
+        Ship.from_dict({"name": "x", "hull": {"draught_m": 6.0}, "table": table})
+
+
 def test_a_setting_of_power_burns_the_same_in_all_weather():
     ship = Ship.from_dict({**DATA, "powers_kw": [3600, 7650]})
     table, c = ship.tabulate_fuel(), _draws(300, 3)

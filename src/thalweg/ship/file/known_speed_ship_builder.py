@@ -81,7 +81,7 @@ def _fuel_rate_of_power(file: ShipFile) -> Callable[[FloatArray], FloatArray] | 
     follows the load.
     """
     engine = file.engine
-    in_table = file.table is not None and file.table.fuel_t_per_day is not None
+    in_table = file.table is not None and file.table.daily_fuel is not None
     if in_table or file.fuel.reference_t_per_day is not None:
         return None
     if engine.sfoc_g_per_kwh is not None:

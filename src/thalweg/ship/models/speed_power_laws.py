@@ -12,7 +12,8 @@ from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
 from thalweg.core.units import DAY, KNOT, TONNE
 from thalweg.ship.models.known_speed_model import KnownSpeedModel, cubic_law
-from thalweg.ship.schema.ship_schema import ShipFile, TableSection
+from thalweg.ship.schema.ship_schema import ShipFile
+from thalweg.ship.schema.table_section import TableSection
 
 
 def speed_power_law_name(file: ShipFile) -> str:
@@ -149,7 +150,7 @@ def reference_point(file: ShipFile) -> ReferencePoint:
         )
     check_table(table)
     last = int(np.argmax(table.speed_kn))
-    power, fuel = table.power_kw, table.fuel_t_per_day
+    power, fuel = table.power_kw, table.daily_fuel
     return ReferencePoint(
         table.speed_kn[last],
         None if power is None else power[last],
@@ -231,12 +232,12 @@ def check_table(table: TableSection | None) -> dict[str, tuple[float, ...]]:
     if table is None or table.speed_kn is None:
         raise InputError(
             "calm_water: table is chosen, but the ship file has no table with speed_kn.",
-            "A table has columns speed_kn and fuel_t_per_day, power_kw or both.",
+            "A table has columns speed_kn and fuel_t_per_day (or fuel_kg_per_h), power_kw or both.",
             "Add 'table:', or choose another calm_water model.",
             missing=["table.speed_kn"],
         )
-    columns = table.columns
-    ragged = {name for name, column in columns.items() if len(column) != len(table.speed_kn)}
+    given = table.plain()
+    ragged = {name for name, column in given.items() if len(column) != len(table.speed_kn)}
     if ragged:
         raise InputError(
             f"In the ship's table {', '.join(sorted(ragged))} has another length than speed_kn.",
@@ -244,7 +245,7 @@ def check_table(table: TableSection | None) -> dict[str, tuple[float, ...]]:
             "Fill the missing numbers.",
             key="table",
         )
-    return columns
+    return table.columns
 
 
 def _from_table(file: ShipFile, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:

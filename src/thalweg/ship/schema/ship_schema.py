@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Field, ValidationError
 
 from thalweg.core.errors import InputError
 from thalweg.ship.methods.engine.specific_consumption import GRAM_PER_KILOWATT_HOUR
 from thalweg.ship.schema.schema_errors import input_error
+from thalweg.ship.schema.section import Section
+from thalweg.ship.schema.table_section import TableSection
 from thalweg.ship.schema.value_types import (
     AppendageCount,
     Coefficient,
@@ -43,30 +43,6 @@ from thalweg.ship.schema.value_types import (
     WholeNumber,
     Word,
 )
-
-
-class Section(BaseModel):
-    """A section of a ship file: its keys are checked, unknown keys are refused."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _keys_have_values(cls, data: Any) -> Any:
-        """Refuse keys without a value; None means "not given" in the typed sections only."""
-        if isinstance(data, Mapping):
-            for key, value in data.items():
-                if value is None and key in cls.model_fields:
-                    raise PydanticCustomError("no_value", "has no value", {"key": key})
-        return data
-
-    def plain(self) -> dict[str, Any]:
-        """Return the keys that the file gives as plain data, with numbers as floats."""
-        return self.model_dump(exclude_unset=True)
-
-    def gives(self, *keys: str) -> bool:
-        """Return whether the file gives any of these keys."""
-        return not self.model_fields_set.isdisjoint(keys)
 
 
 class HullSection(Section):
@@ -263,42 +239,6 @@ class WaterSection(Section):
 
     density_kg_m3: Annotated[Number, Field(ge=990.0, le=1040.0)] | None = None
     kinematic_viscosity_m2_s: Annotated[Number, Field(ge=6e-7, le=2.2e-6)] | None = None
-
-
-class TableSection(Section):
-    """Columns over speed; in a file also given as rows."""
-
-    speed_kn: Annotated[tuple[Speed, ...], OneOrMore] | None = None
-    fuel_t_per_day: Annotated[tuple[Consumption, ...], OneOrMore] | None = None
-    power_kw: Annotated[tuple[Power, ...], OneOrMore] | None = None
-    power_percent: (
-        Annotated[tuple[Annotated[Number, Field(gt=0.0, le=120.0)], ...], OneOrMore] | None
-    ) = None
-    engines: Annotated[tuple[Annotated[Number, Field(ge=1.0, le=12.0)], ...], OneOrMore] | None = (
-        None
-    )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _rows_as_columns(cls, rows: Any) -> Any:
-        """Turn a table given as a list of rows into columns."""
-        if not isinstance(rows, Sequence) or isinstance(rows, str):
-            return rows
-        if not rows or not all(
-            isinstance(row, Mapping) and row.keys() == rows[0].keys() for row in rows
-        ):
-            raise InputError(
-                "The rows of 'table' do not all have the same keys.",
-                f"A row holds keys among: {', '.join(cls.model_fields)}.",
-                "Give every row the same keys, or give columns.",
-                key="table",
-            )
-        return {name: [row[name] for row in rows] for name in rows[0]}
-
-    @property
-    def columns(self) -> dict[str, tuple[float, ...]]:
-        """The columns that the file gives, by key."""
-        return self.plain()
 
 
 class ModelsSection(Section):

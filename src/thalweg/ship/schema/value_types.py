@@ -115,6 +115,7 @@ AppendageCount = Annotated[WholeNumber, Field(ge=0, le=8)]
 Power = Annotated[Number, Field(gt=0.0, le=2e5)]  #: [kW]
 HotelLoad = Annotated[Number, Field(ge=0.0, le=1e5)]  #: [kW]
 Consumption = Annotated[Number, Field(gt=0.0, le=1000.0)]  #: [g/kWh] or [t/day]
+HourlyFuel = Annotated[Number, Field(gt=0.0, le=1e6 / 24.0)]  #: [kg/h], up to 1000 t/day
 EngineLoad = Annotated[Number, Field(gt=0.0, le=1.5)]  #: share of the rating
 Speed = Annotated[Number, Field(gt=0.0, le=80.0)]  #: [kn]
 Percent = Annotated[Number, Field(gt=0.0, le=100.0)]
