@@ -1,5 +1,6 @@
 """The picture of a front: its axes show the routes, and state a bound that is far below them."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,18 +8,22 @@ import pytest
 
 from thalweg.planning.plan_front import ParetoFront
 from thalweg.planning.plots.pareto_front_plot import draw_pareto_front
+from thalweg.planning.report.plan_summary import _choice
 
 TIMES = np.linspace(192.0, 198.0, 13)
 VALUES = 100_000.0 + 400.0 * (198.0 - TIMES) ** 2
 
 
-def picture(certain, values=VALUES, figure=("cost", "USD")):
-    """Return the axes of the picture of a front with a bound."""
-    n = len(TIMES)
+def picture(certain, values=VALUES, figure=("cost", "USD"), times=TIMES, blind=None):
+    """Return the axes of the picture of a front with a bound, and perhaps a weather-blind route."""
+    n = len(times)
     front = ParetoFront(
         *figure, values, ("exact",) * n, ("open sea",) * n, certain=np.array(certain)
     )
-    routes = tuple(SimpleNamespace(time_h=t, feasible=True, arrive=0.0) for t in TIMES)
+    if blind is not None:
+        route = SimpleNamespace(time_h=blind[0], feasible=True, arrive=0.0)
+        front = replace(front, comparison=SimpleNamespace(routes=[route], values=[blind[1]]))
+    routes = tuple(SimpleNamespace(time_h=t, feasible=True, arrive=0.0) for t in times)
     voyage = SimpleNamespace(objective="front", arrive_by=None)
     plan = SimpleNamespace(
         front=front, routes=routes, voyage=voyage, provenance={"from": "Here", "to": "There"}
@@ -67,3 +72,37 @@ def test_a_front_of_any_key_figure_has_a_picture():
     assert axes.get_ylabel() == "inshore [nm]"
     assert axes.get_ylim()[0] < 0.0 < axes.get_ylim()[1]
     assert picture(np.empty((2, 0)), figure=("encounters", "")).get_ylabel() == "encounters"
+
+
+def test_the_legend_covers_no_mark_of_a_front_of_one_route():
+    """The weather-blind route lay under it, with later and dearer ones alone in their corner."""
+    blind = (196.0, 1_310_000.0)
+    bound = [[185.0, 200.0], [1_200_000.0, 1_190_000.0]]
+    axes = picture(bound, np.array([1_250_000.0]), times=np.array([195.0]), blind=blind)
+    legend = axes.get_legend().get_window_extent()
+    for place in (blind, (195.0, 1_250_000.0)):
+        x, y = axes.transData.transform(place)
+        assert not legend.padded(8.0).contains(x, y)
+        assert axes.get_window_extent().contains(x, y)
+    assert "only route: 195.0 h, 1,250,000 USD" in [text.get_text() for text in axes.texts]
+
+
+def test_axes_have_whole_numbers_without_a_factor():
+    """A bare 1e6 stood above the axis."""
+    axes = picture(np.empty((2, 0)), 12.0 * VALUES)
+    axes.figure.draw_without_rendering()
+    for axis in (axes.xaxis, axes.yaxis):
+        assert axis.get_offset_text().get_text() == ""
+    assert "1,250,000" in [text.get_text() for text in axes.get_yticklabels()]
+
+
+def test_picture_and_summary_call_a_route_by_one_word():
+    """The summary had "between" where the picture had "knee"."""
+    axes = picture(np.empty((2, 0)))
+    words = {text.get_text().partition(":")[0] for text in axes.texts}
+    assert {"fastest", "knee", "least cost"} <= words
+    n = len(TIMES)
+    front = ParetoFront("cost", "USD", VALUES, ("exact",) * n, ("open sea",) * n)
+    plan = SimpleNamespace(front=front, routes=[SimpleNamespace(time_h=t) for t in TIMES])
+    named = [part.split()[0] for part in _choice(plan).split("; ")]
+    assert named == ["fastest", "knee", "least"]

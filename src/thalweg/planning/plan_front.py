@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -22,6 +22,13 @@ _RENAMED_STAGES = {"polish": "local search"}
 
 
 _HALVINGS = 30  # of a joint gap
+#: Words for the least of key figures whose names alone do not say it.
+_LEAST: Final = {
+    "comfort": "least motion sickness",
+    "encounters": "fewest encounters",
+    "inshore": "least length near land",
+    "weighted": "least weighted sum",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,3 +192,24 @@ def knee(time: FloatArray, value: FloatArray) -> int:
     x = (time - time.min()) / max(float(np.ptp(time)), 1e-12)
     y = (value - value.min()) / max(float(np.ptp(value)), 1e-12)
     return int(np.argmin(x + y))
+
+
+def least_words(criterion: str) -> str:
+    """Return the words for the least of a key figure, such as "least fuel"."""
+    return _LEAST.get(criterion, f"least {criterion}")
+
+
+def words_of_points(front: ParetoFront, time: FloatArray) -> dict[int, str]:
+    """Return what the ends of a front and its knee are called, by their index.
+
+    Parameters
+    ----------
+    front : With a value for each route.
+    time : Times of its routes, in the same order, (n,).
+    """
+    if len(time) == 1:
+        return {0: "only route"}
+    order = np.argsort(time)
+    chosen = {int(order[0]): "fastest", int(order[-1]): least_words(front.criterion)}
+    chosen.setdefault(int(order[knee(time[order], front.values[order])]), "knee")
+    return chosen

@@ -10,7 +10,7 @@ import numpy as np
 
 from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.core.time import parse_time
-from thalweg.planning.plan_front import certain_at, knee
+from thalweg.planning.plan_front import certain_at, words_of_points
 from thalweg.planning.plots.map_labels import LabelPlacer, drawn_texts
 from thalweg.route.number_texts import amount_column, amount_text, hours_texts
 
@@ -28,6 +28,7 @@ _COLOURS = ("#c2185b", "#1565c0", "#2e7d32", "#ef6c00", "#6a1b9a", "#00838f")
 _INK, _BOUND = "#22303c", "#607d8b"
 _MARGIN: Final = 0.08  # of the axes beside the routes, as a share of their range
 _BELOW: Final = 0.3  # ... and below them, where the bound may show
+_ROOM: Final = 12.0  # between the legend and marks [display units]
 _LEAST_RANGE: Final = 0.02  # of a value: smaller differences are not drawn as large ones
 
 
@@ -52,6 +53,8 @@ def draw_pareto_front(plan: PlanData, path: str | Path | None = None) -> Any:
     _draw_points(axes, plan)
     _set_limits(axes, plan, blind)
     _draw_bound(axes, plan)
+    for axis in (axes.xaxis, axes.yaxis):  # whole numbers, without a factor beside the axis
+        axis.set_major_formatter(lambda value, _: f"{value:,.12g}")
     axes.set_xlabel("time from departure to arrival [h]")
     unit = f" [{front.unit}]" if front.unit else ""
     axes.set_ylabel(_CRITERION_LABELS.get(front.criterion, front.criterion) + unit)
@@ -64,6 +67,7 @@ def draw_pareto_front(plan: PlanData, path: str | Path | None = None) -> Any:
     legend = axes.legend(fontsize=8, framealpha=0.9, loc="upper right")
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
+    _clear_legend(axes, legend)
     _label(axes, plan, legend)
     if path is not None:
         save_figure(figure, path)
@@ -102,17 +106,26 @@ def _set_limits(axes: Any, plan: PlanData, blind: list[tuple[float, float]]) -> 
     axes.set_ylim(low, float(value.max()) + 1.5 * _MARGIN * high)
 
 
+def _clear_legend(axes: Any, legend: Any) -> None:
+    """Raise the upper end of the axes until no mark lies under the legend."""
+    box = legend.get_window_extent().padded(_ROOM)
+    marks = [line.get_xydata() for line in axes.lines if line.get_marker() not in ("", "None")]
+    x, y = axes.transData.transform(np.concatenate(marks)).T
+    covered = y[(x > box.x0) & (x < box.x1) & (y > box.y0)]
+    if covered.size:
+        bottom, (low, high) = axes.get_window_extent().y0, axes.get_ylim()
+        axes.set_ylim(low, low + (high - low) * (covered.max() - bottom) / (box.y0 - bottom))
+
+
 def _label(axes: Any, plan: PlanData, legend: Any) -> None:
     """Label the ends and the knee, where they cover neither routes nor each other."""
     front = plan.front
     assert front is not None  # checked by the caller
     time = np.array([route.time_h for route in plan.routes])
-    order = np.argsort(time)
     lines = [line.get_xydata() for line in axes.lines]
     placer = LabelPlacer(axes, axes.transData.transform(_close_points(axes, lines)))
     placer.taken += [legend.get_window_extent(), *drawn_texts(axes)]
-    chosen = {int(order[0]): "fastest", int(order[-1]): "least"}
-    chosen.setdefault(int(order[knee(time[order], front.values[order])]), "knee")
+    chosen = words_of_points(front, time)
     hours = hours_texts([time[index] for index in chosen])
     amounts, unit = amount_column([front.values[index] for index in chosen], front.unit)
     for (index, word), hour, amount in zip(chosen.items(), hours, amounts):

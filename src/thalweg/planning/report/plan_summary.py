@@ -11,7 +11,7 @@ import numpy as np
 
 from thalweg.core.time import utc_text
 from thalweg.kernels.codes import NO_GO, OUTSIDE_PERIOD, REASONS
-from thalweg.planning.plan_front import knee
+from thalweg.planning.plan_front import least_words, words_of_points
 from thalweg.planning.report.note_order import count_of_dangers, danger_first
 from thalweg.planning.report.route_summary import (
     arrival_text,
@@ -39,12 +39,6 @@ _STATED = ("No depth in the data",)
 _HELD = {"speed": "speed through water", "power": "power", "ground": "speed over ground"}
 _WEAK: Final = 0.5  # gap from which a bound says little of a route
 _CLEARLY_LESS: Final = 0.01  # of a gap, for which another one is stated beside it
-_LEAST = {
-    "comfort": "least motion sickness",
-    "encounters": "fewest encounters",
-    "inshore": "least length near land",
-    "weighted": "least weighted sum",
-}
 #: Of key figures in sentences on how much less of them is possible.
 _FIGURE_WORDS: Final = {
     "co2": "CO2",
@@ -215,7 +209,7 @@ def _title(plan: PlanData) -> str:
     what = (
         "time against " + plan.front.criterion
         if (objective == "front" and plan.front is not None)
-        else _LEAST.get(objective, f"least {objective}")
+        else least_words(objective)
     )
     if plan.voyage.arrive is not None:
         at = utc_text(float(plan.voyage.arrive))  # type: ignore[arg-type]
@@ -233,12 +227,7 @@ def _choice(plan: PlanData) -> str:
     front = plan.front
     assert front is not None  # checked by the caller
     time = np.array([route.time_h for route in plan.routes])
-    order = np.argsort(time)
-    chosen = {
-        int(order[0]): "fastest",
-        int(order[-1]): _LEAST.get(front.criterion, f"least {front.criterion}"),
-    }
-    chosen.setdefault(int(order[knee(time[order], front.values[order])]), "between")
+    chosen = words_of_points(front, time)
     values, unit = front.values, front.unit
     if front.criterion == "comfort":  # a share of people says more than a squared dose
         values = np.array([indicator_value(route, "sick_percent") for route in plan.routes])
