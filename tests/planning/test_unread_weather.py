@@ -44,7 +44,7 @@ def test_waves_that_a_speed_loss_by_the_wind_does_not_read_are_stated():
     """Kwon's ship made her calm speed in 4 m waves with a wind of 0, without a note."""
     route, (note,) = notes_of(KWON, WAVES, wind=0.0)
     assert note.startswith(f"{WAVES_UNREAD}: up to 4.0 m at 50")
-    assert "depends on the wind alone" in note
+    assert "depends on the wind alone (kwon_2008 means the waves of that wind)" in note
     assert count_of_dangers([note]) == 1
     slower, none = notes_of(KWON, WAVES, wind="waves")
     assert none == []  # they act by the wind that is derived from them

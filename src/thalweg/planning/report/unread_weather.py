@@ -48,6 +48,8 @@ def unread_weather_notes(route: Route, sea: Sea, ship: Ship) -> list[str]:
         place = _highest(height, at_sea, _LEAST_HEIGHT)
         if place is not None:
             alone = " depends on the wind alone and" if reads_wind else ""
+            if reads_wind and ship.file.models.speed_loss == "kwon_2008":
+                alone = " depends on the wind alone (kwon_2008 means the waves of that wind) and"
             notes.append(
                 f"{WAVES_UNREAD}: up to {np.nanmax(height):.1f} m {place}; her speed{alone} is the "
                 "same without them, and so are power and fuel."
