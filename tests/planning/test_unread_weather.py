@@ -44,7 +44,7 @@ def test_waves_that_a_speed_loss_by_the_wind_does_not_read_are_stated():
     """Kwon's ship made her calm speed in 4 m waves with a wind of 0, without a note."""
     route, (note,) = notes_of(KWON, WAVES, wind=0.0)
     assert note.startswith(f"{WAVES_UNREAD}: up to 4.0 m at 50")
-    assert "depends on the wind alone (kwon_2008 means the waves of that wind)" in note
+    assert "her speed depends on the wind alone, which would raise lower waves there, and" in note
     assert count_of_dangers([note]) == 1
     slower, none = notes_of(KWON, WAVES, wind="waves")
     assert none == []  # they act by the wind that is derived from them
@@ -52,11 +52,16 @@ def test_waves_that_a_speed_loss_by_the_wind_does_not_read_are_stated():
 
 
 def test_waves_beside_a_wind_of_the_data_are_stated_where_they_do_not_make_it():
-    both = {**WAVES, **WIND}
-    assert notes_of(KWON, both)[1][0].startswith(WAVES_UNREAD)
-    assert notes_of(KWON, both, wind="waves")[1][0].startswith(WAVES_UNREAD)
-    low = {**both, nm.WAVE_HEIGHT: lambda t, y, x: 0.4 + 0.0 * y}
+    swell = {**WAVES, **WIND, nm.EASTWARD_WIND: lambda t, y, x: 6.0 + 0.0 * y}
+    assert notes_of(KWON, swell)[1][0].startswith(WAVES_UNREAD)
+    assert notes_of(KWON, swell, wind="waves")[1][0].startswith(WAVES_UNREAD)
+    low = {**swell, nm.WAVE_HEIGHT: lambda t, y, x: 0.4 + 0.0 * y}
     assert notes_of(KWON, low)[1] == []
+
+
+def test_waves_of_the_wind_are_those_that_a_loss_by_the_wind_means():
+    """A wind of 12 m/s raises 3.4 m: 4 m are its waves, as far as the formulas know."""
+    assert notes_of(KWON, {**WAVES, **WIND})[1] == []
 
 
 def test_a_wind_that_a_ship_of_waves_alone_does_not_read_is_stated():

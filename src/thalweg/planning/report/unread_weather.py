@@ -17,19 +17,22 @@ from thalweg.sea import standard_names as nm
 from thalweg.sea.layer import Layer, RetimedLayer
 from thalweg.sea.layer_stack import sample_stack, stack_variables
 from thalweg.sea.models.wind_of_waves import WindOfWavesLayer
-from thalweg.sea.models.wind_sea import WindSeaLayer
+from thalweg.sea.models.wind_sea import WindSeaLayer, carter_1982
 from thalweg.ship import Ship
 
 WAVES_UNREAD: Final = "The waves do not slow the ship"  #: a note on such waves begins so
 WIND_UNREAD: Final = "The wind does not slow the ship"  #: a note on such wind begins so
 _LEAST_HEIGHT: Final = 0.5  # [m]; lower waves slow no ship by much
+_SWELL: Final = 1.0  # by which waves are higher than those of the wind, to be stated [m]
 _LEAST_WIND: Final = 5.0  # [m/s]
 
 
 def unread_weather_notes(route: Route, sea: Sea, ship: Ship) -> list[str]:
     """Return notes on waves and wind at sea that leave the speed and power of the ship as they are.
 
-    Waves from which the wind that the ship reads was derived count, as does such a wind.
+    Waves from which the wind that the ship reads was derived count, as does such a wind. A speed
+    loss of Kwon (2008) by the wind means the waves that this wind raises: only those that are
+    clearly higher are not read.
 
     Parameters
     ----------
@@ -45,11 +48,16 @@ def unread_weather_notes(route: Route, sea: Sea, ship: Ship) -> list[str]:
         height = sea.sample([nm.WAVE_HEIGHT], *at_sea)[nm.WAVE_HEIGHT]
         if reads_wind:
             height = np.where(_derived(sea, WindOfWavesLayer, nm.WIND.pair, at_sea), 0.0, height)
+        means_waves = reads_wind and ship.file.models.speed_loss == "kwon_2008"
+        if means_waves and set(nm.WIND.pair) <= sea.variables:
+            blown = sea.sample(list(nm.WIND.pair), *at_sea)
+            raised, _ = carter_1982(np.hypot(*(blown[name] for name in nm.WIND.pair)))
+            height = np.where(height <= raised + _SWELL, 0.0, height)
         place = _highest(height, at_sea, _LEAST_HEIGHT)
         if place is not None:
             alone = " depends on the wind alone and" if reads_wind else ""
-            if reads_wind and ship.file.models.speed_loss == "kwon_2008":
-                alone = " depends on the wind alone (kwon_2008 means the waves of that wind) and"
+            if means_waves:
+                alone = " depends on the wind alone, which would raise lower waves there, and"
             notes.append(
                 f"{WAVES_UNREAD}: up to {np.nanmax(height):.1f} m {place}; her speed{alone} is the "
                 "same without them, and so are power and fuel."
