@@ -38,3 +38,35 @@ def test_a_draught_lengthens_a_way_little_where_ships_sail(start, goal, draught)
 def test_a_detour_round_shoals_is_stated():
     way = sea_distance("Rio Grande", "Montevideo", draught_m=8.0)
     assert any("31 nm shorter, over that water" in note for note in way.notes)
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "draught", "closed", "miles"),
+    [
+        ("Hamburg", "Gdansk", 12.0, "Kiel Canal: the draught of 12 m is over the 9.5 m", 426),
+        ("Rotterdam", "Mumbai", 21.0, "Suez Canal: the draught of 21 m is over the 20.12 m", 4489),
+        (
+            "Ras Tanura",
+            "Yokohama",
+            20.8,
+            "Malacca: One Fathom Bank, Malacca-Singapore west, Singapore Main Strait and Horsburgh "
+            "(Middle Channel): the draught of 20.8 m is over the 20.5 m",
+            929,
+        ),
+    ],
+)
+def test_canals_and_passages_that_a_draught_closes_are_named(start, goal, draught, closed, miles):
+    """Ways that shoals had made longer were compared, and canals stayed closed in both."""
+    (note,) = [
+        one for one in sea_distance(start, goal, draught_m=draught).notes if " closed: " in one
+    ]
+    assert closed in note
+    saved = float(note.split("about ")[1].split(" nm")[0].replace(",", ""))
+    assert saved == pytest.approx(miles, abs=5.0)
+
+
+def test_canals_that_are_avoided_or_elsewhere_are_not_named():
+    avoided = sea_distance("Rotterdam", "Mumbai", draught_m=21.0, avoid=["suez"])
+    elsewhere = sea_distance("Rotterdam", "New York", draught_m=17.0)
+    for way in (avoided, elsewhere):
+        assert not any(" closed: " in note for note in way.notes)

@@ -12,12 +12,18 @@ import pytest
 from thalweg import Chart, Sea, Ship, Voyage, evaluate
 from thalweg.planning.report.land_report import closed_passage_notes, nearest_land_notes
 from thalweg.planning.report.note_order import count_of_dangers
+from thalweg.planning.request.chart_restrictions import exclude_closed_canals
 from thalweg.planning.request.offing_choice import restrict_passages
+from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route.indicator_columns import indicator_value
 from thalweg.route.route_tables import LEG_KINDS
 
 TANKER = Ship.load("kvlcc2")  # draught 20.8 m
 BULKER = Ship.simple(speed_kn=12.0, draught_m=9.5, length_m=190.0)
+CAPESIZE = Ship.simple(speed_kn=13.0, draught_m=15.5, length_m=230.0)
+BY_GOOD_HOPE = [
+    (34.9, 139.8), (-8.0, 105.0), (-35.5, 20.0), (10.0, -40.0), (40.4, -73.7)
+]  # fmt: skip
 BY_LOMBOK = [
     (26.8, 50.3), (25.0, 57.0), (5.5, 80.0), (-9.5, 115.7), (1.0, 119.0), (5.0, 119.5),
     (13.0, 120.0), (30.3, 122.5),
@@ -37,8 +43,12 @@ def notes_on(
     voyage = Voyage(start=places[0], goal=places[-1], depart=0.0, avoid=avoid)
     lat, lon = zip(*places)
     route: Any = SimpleNamespace(track=SimpleNamespace(lat=lat, lon=lon))
+    ends = [Endpoint("", *place, 0.0) for place in (places[0], places[-1])]
     closed = restrict_passages(chart, voyage, ship, offing=3704.0)
-    context: Any = SimpleNamespace(voyage=voyage, ship=ship, chart=closed)
+    closed, canals = exclude_closed_canals(closed, voyage, ship, ends)
+    context: Any = SimpleNamespace(
+        voyage=voyage, ship=ship, chart=closed, needs=SimpleNamespace(notes=canals)
+    )
     return closed_passage_notes(context, route)
 
 
@@ -48,7 +58,7 @@ def test_passages_of_the_way_that_a_draught_closes_share_a_note(world):
     assert note == (
         "Passages closed: Malacca: One Fathom Bank, Malacca-Singapore west, Singapore Main Strait "
         "and Horsburgh (Middle Channel): the draught of 20.8 m is over the 20.5 m allowed (--open "
-        "NAME opens one)."
+        "NAME opens one). The way through is about 1,172 nm shorter."
     )
     assert count_of_dangers([note]) == 1
 
@@ -60,9 +70,24 @@ def test_passages_that_the_voyage_avoids_are_not_named(world):
 
 def test_a_single_closed_passage_says_how_to_open_it(world):
     assert notes_on(world, BULKER, ROUND_VANCOUVER_ISLAND) == [
-        "Passage closed: Johnstone and Seymour Narrows: it is for ships below 120 m "
-        "(--open 'Johnstone and Seymour Narrows' opens it)."
+        "Passage closed: Johnstone and Seymour Narrows: it is for ships below 120 m (--open "
+        "'Johnstone and Seymour Narrows' opens it). The way through is about 143 nm shorter."
     ]
+
+
+def test_a_canal_that_is_far_from_the_straight_line_is_named(world):
+    """Nothing said why Yokohama to New York led by Good Hope, as only straight lines counted."""
+    (note,) = notes_on(world, CAPESIZE, BY_GOOD_HOPE)
+    assert note == (
+        "Passage closed: Panama Canal: the draught of 15.5 m is over the 15.24 m allowed. The way "
+        "through is about 3,520 nm shorter."
+    )
+    assert notes_on(world, CAPESIZE, BY_GOOD_HOPE, avoid=("panama",)) == []
+
+
+def test_a_canal_of_which_the_request_has_a_note_has_no_second_one(world):
+    by_the_skaw = [(54.0, 8.0), (57.9, 10.7), (54.7, 18.8)]
+    assert not any("Kiel" in note for note in notes_on(world, CAPESIZE, by_the_skaw))
 
 
 def test_closed_passages_beside_a_way_that_is_as_short_are_not_named(world):

@@ -127,7 +127,7 @@ class Canal:
         sizes = (draught, beam, length, air_draught)
         limits = (deepest, self.max_beam, self.max_length, self.max_air_draught)
         for what, over in sizes_over_limits(sizes, limits):
-            reasons.append(f"its {what} of {over}")
+            reasons.append(f"the {what} of {over}")
             if what == "draught" and is_long:
                 reasons[-1] += f" above {self.long_ship_limit[0]:g} m of length"
         return f"{self.title}: " + " and ".join(reasons) if reasons else ""

@@ -94,6 +94,11 @@ class Passage:
         lat, lon = np.array(self.line, float).T
         return lat, lon
 
+    @property
+    def ends(self) -> tuple[Position, Position]:
+        """The two ends of the line (lat, lon) [deg]."""
+        return self.line[0], self.line[-1]
+
     @cached_property
     def length(self) -> float:
         """Length of the line [m]."""

@@ -25,7 +25,10 @@ from thalweg.core.geodesy import Position, distance, line_length
 from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.limits import DEEPEST_DRAUGHT
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
-from thalweg.planning.network_selection.closed_ways import closed_way_error
+from thalweg.planning.network_selection.closed_ways import (
+    closed_way_error,
+    ways_closed_to_draught_notes,
+)
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.report.approach_report import (
     port_depth_note,
@@ -34,7 +37,6 @@ from thalweg.planning.report.approach_report import (
 )
 from thalweg.planning.report.distance_report import (
     LEAST_DEPTH,
-    passages_closed_to_draught_notes,
     roundabout_notes,
     shoal_detour_notes,
     shoal_notes,
@@ -229,10 +231,10 @@ def _way_over_seas(
     draught: float | None,
 ) -> SeaDistance:
     """Return the shortest way with some passages for small ships open; offing and draught [m]."""
-    seas = Seaways.of_chart(chart, closed, opened=opened)
-    avoided = seas.passages
+    seas = every = Seaways.of_chart(chart, closed, opened=opened)
     if draught is not None:
         seas = _seas_for_draught(seas, draught, ends)
+    given = ends
     ends = with_chosen_ways(ends, lambda: seas, draught=draught or 0.0)
     if draught is None:
         seas = replace(seas, shoals=_usual_shoals(chart, ends))
@@ -258,24 +260,29 @@ def _way_over_seas(
         named = closed_way_error(seas, ends, draught=draught, length=0.0)
         raise named or error from None
     length, canals = path_length_and_canals(chart, path)
+    approaches = tuple((a.label, a.length) for a in (first, last) if a is not None)
+    near = sum(miles for _, miles in approaches)
+    total = length + near
     notes += shoal_notes(seas, path, draught)
     if draught is not None:
-        notes += passages_closed_to_draught_notes(seas, ends, draught, avoided)
         without = replace(seas, shoals=None)
-        legs = tuple(itertools.pairwise(ends))
+        over_shoals = sum(
+            path_length_and_canals(chart, without.graph_path(*leg))[0]
+            for leg in itertools.pairwise(ends)
+        )
+        too_deep = tuple(seas.closed_names - every.closed_names)
+        notes += ways_closed_to_draught_notes(every, too_deep, given, draught, over_shoals + near)
         notes += shoal_detour_notes(
             length,
-            sum(line_length(without.graph_path(*leg)) for leg in legs),
+            over_shoals,
             lambda: path_length_and_canals(chart, _path_by(without, ends, offing))[0],
         )
     notes += seas.near_land_notes(path, ends, offing=offing)
-    approaches = tuple((a.label, a.length) for a in (first, last) if a is not None)
     line = (
         *(first.line[:-1] if first else ()),
         *path,
         *(last.line[-2::-1] if last else ()),
     )
-    total = length + sum(miles for _, miles in approaches)
     if (first and first.through) or (last and last.through):
         canals = _canals_entered(chart, line)
     lat, lon = np.array(line, float).T

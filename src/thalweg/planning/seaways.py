@@ -119,6 +119,11 @@ class Seaways:
         return replace(self, passages=(*self.passages, name))
 
     @property
+    def closed_names(self) -> frozenset[str]:
+        """Names of the canals and passages that are not used."""
+        return frozenset((*self.canals, *self.passages))
+
+    @property
     def _open_chart(self) -> Chart:
         return self.chart.without_passages(*self.passages) if self.passages else self.chart
 

@@ -3,28 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
-from itertools import chain, pairwise
 from typing import Final
 
 import numpy as np
 
 from thalweg.chart.depth.global_depth import NAME
 from thalweg.chart.depth.shoals import EXCESS
-from thalweg.chart.passage_crossings import passages_crossed
-from thalweg.core.geodesy import Position, densify, distance, line_length
+from thalweg.core.geodesy import Position, densify, distance
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways
 
 #: Ways without a draught have a note where they do not keep off water shallower than this [m].
 LEAST_DEPTH: Final = 2.5
 _CLEARLY_LONGER: Final = 1.05
-PASSAGE_CLOSED: Final = "Passage closed"  #: a note on passages that are closed begins so
-PASSAGES_CLOSED: Final = "Passages closed"  #: ... or so, where it is on several
-#: Closed passages are named that save so much of the way, and at least so much [m].
-_LEAST_SHARE: Final = 0.02
-_LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE
 #: Ways so much longer than the straight line, up to so long [m], may miss a channel.
 _ROUNDABOUT: Final = 2.5
 _LONGEST_STRAIGHT: Final = 100.0 * NAUTICAL_MILE
@@ -69,41 +60,6 @@ def shoal_detour_notes(
     return (
         f"Keeps off shoal water by the {NAME}, which is coarse: the shortest way for this draught "
         f"is {longer:.0f} nm shorter, over that water. See the chart.",
-    )
-
-
-def passages_closed_to_draught_notes(
-    seas: Seaways, ends: Sequence[Endpoint], draught: float, avoided: Sequence[str]
-) -> tuple[str, ...]:
-    """Return a note on passages closed to a draught that would make a way clearly shorter.
-
-    Parameters
-    ----------
-    seas : With what the draught closes.
-    ends : With via points between them.
-    draught : [m].
-    avoided : Names of the passages that are closed at any draught.
-    """
-    if set(seas.passages) <= set(avoided):
-        return ()
-    opened = replace(seas, passages=tuple(avoided))
-    legs = list(pairwise(ends))
-    paths = [opened.graph_path(*leg) for leg in legs]
-    length = sum(line_length(seas.graph_path(*leg)) for leg in legs)
-    saved = length - sum(line_length(path) for path in paths)
-    if saved < max(_LEAST_SAVED, _LEAST_SHARE * length):
-        return ()
-    lat, lon = np.array(list(chain.from_iterable(paths))).T
-    why = [
-        passage.ship_restriction(draught=draught)
-        for _, passage in passages_crossed(seas.chart.coastline, seas.chart.passages, lat, lon)
-        if passage.name in seas.passages and passage.name not in avoided
-    ]
-    if not why:
-        return ()
-    return (
-        f"{PASSAGE_CLOSED}: {'; '.join(why)}. The way through is about "
-        f"{saved / NAUTICAL_MILE:.0f} nm shorter.",
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.core.geodesy import format_position
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.planning.report.distance_report import PASSAGE_CLOSED
+from thalweg.planning.report.closed_way_report import PASSAGE_CLOSED
 from thalweg.planning.report.land_report import time_of_passing
 from thalweg.planning.report.lane_report import lane_notes
 from thalweg.planning.request.lane_choice import chart_with_schemes

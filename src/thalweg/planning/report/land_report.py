@@ -3,26 +3,32 @@
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Collection, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from thalweg.chart import Chart
-from thalweg.chart.passage_crossings import passages_crossed
-from thalweg.chart.passages import Passage, split_avoided
+from thalweg.chart.canals import CANALS, Canal, exclude_canals
+from thalweg.chart.passages import split_avoided
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.geodesy import densify, distance, format_position, line_length
+from thalweg.core.geodesy import densify, distance, format_position
 from thalweg.core.time import format_time
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.planning_context import PlanningContext
-from thalweg.planning.report.distance_report import PASSAGE_CLOSED, PASSAGES_CLOSED
+from thalweg.planning.report.closed_way_report import (
+    NarrowWay,
+    notes_by_reason,
+    title_of_way,
+    ways_of_names,
+    ways_on_line,
+)
+from thalweg.planning.request.chart_restrictions import canal_restriction, excluded_canal_note
 from thalweg.planning.request.offing_choice import size_restriction
 from thalweg.planning.request.voyage_endpoints import Endpoint
-from thalweg.planning.seaways import Seaways
+from thalweg.planning.seaways import Seaways, path_length_and_canals
 from thalweg.route import Route
 from thalweg.route.passages_used import passages_used
 from thalweg.route.referee.land_clearance import least_land_clearance
@@ -95,71 +101,83 @@ def time_of_passing(route: Route, leg: int, lat: float, lon: float) -> str:
 
 
 def closed_passage_notes(context: PlanningContext, route: Route) -> list[str]:
-    """Return a note for each reason why a ship may not use passages of a shorter way.
+    """Return a note for each reason why a ship may not use passages or canals of a shorter way.
 
-    They are those that the shortest way between the ends of the route uses where all passages are
-    open that are closed to a ship of this size.
+    They are those that the shortest way between the ends of the route uses where all are open that
+    are closed to a ship of this size. Canals of which the request has a note already are left out.
     """
-    avoided = split_avoided(context.voyage.avoid)[1]
-    closed: dict[str, str] = {}
-    for passage in context.chart.closed_passages:
-        why = "" if passage in avoided else size_restriction(passage, context.ship)
-        if why:
-            closed[passage.name] = why.removeprefix(f"{passage.name}: ")
-    if not any(
-        passage.name in closed and saved_length(route, passage) >= _LEAST_SAVED
-        for passage in context.chart.closed_passages
-    ):
+    closed = _closed_to_size(context)
+    if not any(saved_length(route, way) >= _LEAST_SAVED for way, _ in closed.values()):
         return []
-    names: dict[str, list[str]] = {}
-    for name in _closed_on_shorter_way(context.chart, route, closed):
-        names.setdefault(closed[name], []).append(name)
-    return [_closed_note(reason, alike) for reason, alike in names.items()]
+    saved, names = _closed_on_shorter_way(context.chart, route, closed)
+    shorter = f"The way through is about {saved / NAUTICAL_MILE:,.0f} nm shorter"
+    found = []
+    for alike, note in notes_by_reason({name: closed[name][1] for name in names}):
+        remedy = "" if isinstance(closed[alike[0]][0], Canal) else " (--open NAME opens one)"
+        if remedy and len(alike) == 1:
+            remedy = f" (--open {alike[0]!r} opens it)"
+        found.append(f"{note}{remedy}. {shorter}.")
+    return found
 
 
-def _closed_on_shorter_way(chart: Chart, route: Route, closed: Collection[str]) -> list[str]:
-    """Return the passages on the way that is shorter where closed ones are open, in its order."""
+def _closed_to_size(context: PlanningContext) -> dict[str, tuple[NarrowWay, str]]:
+    """Return the passages and canals that are closed to a ship of this size, and why, by title."""
+    voyage, ship, chart = context.voyage, context.ship, context.chart
+    canals, avoided = split_avoided(voyage.avoid)
+    found: dict[str, tuple[NarrowWay, str]] = {}
+    for passage in chart.closed_passages:
+        why = "" if passage in avoided else size_restriction(passage, ship)
+        if why:
+            found[passage.name] = passage, why
+    open_names = {canal.name for canal in chart.canals}
+    for canal in exclude_canals(CANALS, (*canals, *voyage.forbid)):
+        why = "" if canal.name in open_names else canal_restriction(canal, ship)
+        if why and excluded_canal_note(why) not in context.needs.notes:
+            found[canal.title] = canal, why
+    return found
+
+
+def _closed_on_shorter_way(
+    chart: Chart, route: Route, closed: Mapping[str, tuple[NarrowWay, str]]
+) -> tuple[float, list[str]]:
+    """Return by how much a way by closed passages and canals is shorter [m], and their titles."""
     ends = [
         Endpoint("", float(route.track.lat[k]), float(route.track.lon[k]), 0.0) for k in (0, -1)
     ]
     now = Seaways.of_ship_chart(chart, every_passage=True)
-    opened = replace(now, passages=tuple(name for name in now.passages if name not in closed))
+    names = {way.name for way, _ in closed.values()}
+    opened = replace(
+        now,
+        canals=tuple(name for name in now.canals if name not in names),
+        passages=tuple(name for name in now.passages if name not in names),
+    )
     try:
-        length = line_length(now.graph_path(*ends))
+        length, _ = path_length_and_canals(now.chart, now.graph_path(*ends))
         path = opened.graph_path(*ends)
     except (InputError, NoRouteError):  # an end that the chart of all seas has on land
-        return []
-    if length - line_length(path) < _LEAST_SAVED:
-        return []
-    crossed = passages_crossed(now.chart.coastline, now.chart.passages, *np.array(path).T)
-    return [passage.name for _, passage in crossed if passage.name in closed]
+        return 0.0, []
+    saved = length - path_length_and_canals(now.chart, path)[0]
+    if saved < _LEAST_SAVED:
+        return 0.0, []
+    used = ways_on_line(now, ways_of_names(now, sorted(names)), path)
+    return saved, [title_of_way(way) for way in used]
 
 
-def _closed_note(reason: str, names: Sequence[str]) -> str:
-    """Return a note on passages that are closed for one reason."""
-    if len(names) == 1:
-        why = reason if reason.startswith(names[0]) else f"{names[0]}: {reason}"
-        return f"{PASSAGE_CLOSED}: {why} (--open {names[0]!r} opens it)."
-    listed = f"{', '.join(names[:-1])} and {names[-1]}"
-    reason = re.sub(r"^it is\b", "they are", reason)
-    return f"{PASSAGES_CLOSED}: {listed}: {reason} (--open NAME opens one)."
-
-
-def saved_length(route: Route, passage: Passage) -> float:
-    """Return by how much a route would be shorter through a passage, at most [m].
+def saved_length(route: Route, way: NarrowWay) -> float:
+    """Return by how much a route would be shorter through a passage or canal, at most [m].
 
     The ship would leave the route at one of its positions, sail straight to the passage and back
     to the route at a later one; land is not considered.
 
     Returns
     -------
-    float : Negative if the passage is out of the way.
+    float : Negative if it is out of the way.
     """
     lat, lon, _leg = densify(np.asarray(route.track.lat), np.asarray(route.track.lon), _PIECE)
     sailed = cumulative_sums(distance(lat[:-1], lon[:-1], lat[1:], lon[1:]))
-    ends = passage.line[0], passage.line[-1]
+    ends = way.ends
     most = -np.inf
     for first, last in (ends, ends[::-1]):
         left = np.maximum.accumulate(-sailed - distance(lat, lon, *first))
         most = max(most, float(np.max(sailed - distance(lat, lon, *last) + left)))
-    return most - passage.length
+    return most - way.length

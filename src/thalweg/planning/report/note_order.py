@@ -7,8 +7,8 @@ from typing import Final
 
 from thalweg.network.layered.sections_round_land import OTHER_WAYS
 from thalweg.planning.report.approach_report import PORT_TOO_SHALLOW, TURNS_BACK
+from thalweg.planning.report.closed_way_report import PASSAGE_CLOSED, PASSAGES_CLOSED
 from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
-from thalweg.planning.report.distance_report import PASSAGE_CLOSED, PASSAGES_CLOSED
 from thalweg.planning.report.filled_weather import FILLED
 from thalweg.planning.report.given_route_report import NEAR_LAND
 from thalweg.planning.report.ice_report import REACHES_ICE

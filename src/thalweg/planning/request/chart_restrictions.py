@@ -41,21 +41,32 @@ def exclude_closed_canals(
     if voyage.forbid:
         chart = chart.without_canals(*voyage.forbid)
     chart = replace(chart, canals=canals_with_dues(chart.canals, ship.file.hull))
-    beam = ship.breadth
     currency = _foreign_currency(voyage, ship)
     notes, closed = [], []
     for canal in chart.canals:
-        draught = float(ship.draught) or None
-        why = canal.transit_restriction(
-            draught=draught, beam=beam, length=ship.length, air_draught=ship.air_draught
-        )
+        why = canal_restriction(canal, ship)
         if not why and currency and canal.fee > 0.0:
             why = f"{canal.title}: its dues are in USD, the prices in {currency}"
         if why:
             closed.append(canal.name)
             if any(_near_geodesic(canal, *pair) for pair in itertools.pairwise(ends)):
-                notes.append(f"Canal excluded: {why}.")
+                notes.append(excluded_canal_note(why))
     return (chart.without_canals(*closed) if closed else chart), notes
+
+
+def canal_restriction(canal: Canal, ship: Ship) -> str:
+    """Return why a canal is closed to a ship of this size, as text; empty if it is open."""
+    return canal.transit_restriction(
+        draught=float(ship.draught) or None,
+        beam=ship.breadth,
+        length=ship.length,
+        air_draught=ship.air_draught,
+    )
+
+
+def excluded_canal_note(why: str) -> str:
+    """Return a note on a canal that a voyage may not use, by the reason that begins with it."""
+    return f"Canal excluded: {why}."
 
 
 def _foreign_currency(voyage: Voyage, ship: Ship) -> str:
