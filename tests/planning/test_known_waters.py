@@ -113,7 +113,12 @@ def test_a_distance_names_passages_that_its_draught_closes():
     [
         ("Seward", 12.0, "The port is too shallow: the largest draught in Seward, US is 11 m"),
         ("Seward", 10.0, None),
-        ("Valdez", 14.5, "No largest draught in Valdez, US is known: ask the port."),
+        (
+            "Valdez",
+            14.5,
+            "No largest draught in Valdez, US is known, nor the depth along its "
+            "approach of 25 nm: ask the port.",
+        ),
         ("Valdez", 12.0, None),
     ],
 )
@@ -123,6 +128,16 @@ def test_deep_ships_are_warned_of_ports_that_are_shallow_or_of_unknown_depth(goa
     about = [note for note in notes if "largest draught" in note]
     assert len(about) == (begins is not None)
     assert begins is None or about[0].startswith(begins)
+
+
+@pytest.mark.parametrize("draught", [15.0, 20.0])
+@pytest.mark.parametrize("port", ["Guangzhou", "Huangpu"])
+def test_deep_ships_are_warned_of_the_channel_to_guangzhou(port, draught):
+    """A draught of 15 or 20 m had no word on the depth of the channel."""
+    notes = sea_distance("Hong Kong", port, draught_m=draught).notes
+    (note,) = (one for one in notes if f"largest draught in {port}" in one)
+    assert note.startswith("The port is too shallow")
+    assert "13 m (channel above Nansha dredged to about 13 m" in note
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import numpy as np
 from thalweg.chart.approaches import PortApproach
 from thalweg.core.geodesy import format_position
 from thalweg.core.types import FloatArray
+from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route import Route
 from thalweg.route.refinement.track_geometry import course_changes
 from thalweg.route.route_tables import LEG_KINDS
@@ -19,6 +20,7 @@ TURNS_BACK: Final = "Turns back"  #: a note on such a way begins so
 PORT_TOO_SHALLOW: Final = "The port is too shallow"  #: a note on such a port begins so
 _SHARP: Final = math.radians(120.0)
 _DEEP_SHIP: Final = 14.0  # draught that many ports do not take [m]
+_LONG_APPROACH: Final = 5.0  # [nm]
 
 
 def port_depth_note(approach: PortApproach, draught: float) -> str:
@@ -41,13 +43,17 @@ def port_depth_note(approach: PortApproach, draught: float) -> str:
 def unknown_depth_text(approach: PortApproach, draught: float) -> str:
     """Return a sentence for deep ships on a port of which no largest draught is known, or "".
 
+    It names the approach where that is long: no table has the depth along it.
+
     Parameters
     ----------
     draught : Of the ship [m].
     """
     if draught < _DEEP_SHIP or not math.isnan(approach.max_draught):
         return ""
-    return f" No largest draught in {approach.port.label} is known: ask the port."
+    miles = approach.length / NAUTICAL_MILE
+    way = "" if miles < _LONG_APPROACH else f", nor the depth along its approach of {miles:.0f} nm"
+    return f" No largest draught in {approach.port.label} is known{way}: ask the port."
 
 
 def turn_back_notes(lat: FloatArray, lon: FloatArray, ends: Iterable[int]) -> list[str]:
