@@ -1,5 +1,7 @@
 """Distances for a draught where the depth layer is coarse, and where a strait is deep in part."""
 
+from itertools import pairwise
+
 import pytest
 
 from thalweg.planning.sea_distance import sea_distance
@@ -37,7 +39,7 @@ def test_a_draught_lengthens_a_way_little_where_ships_sail(start, goal, draught)
 
 def test_a_detour_round_shoals_is_stated():
     way = sea_distance("Rio Grande", "Montevideo", draught_m=8.0)
-    assert any("31 nm shorter, over that water" in note for note in way.notes)
+    assert any("32 nm shorter, over that water" in note for note in way.notes)
 
 
 @pytest.mark.parametrize(
@@ -70,3 +72,15 @@ def test_canals_that_are_avoided_or_elsewhere_are_not_named():
     elsewhere = sea_distance("Rotterdam", "New York", draught_m=17.0)
     for way in (avoided, elsewhere):
         assert not any(" closed: " in note for note in way.notes)
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "nm"),
+    [("Bergen", "Alesund", 166.7), ("Wellington", "Nelson, NZ", 125.7), ("Osaka", "Nagoya", 235.0)],
+)
+def test_a_draught_does_not_shorten_a_way(start, goal, nm):
+    """Ways without a draught were found by another search: 168.3 nm, and 167.0 with 9 m."""
+    found = [sea_distance(start, goal, draught_m=draught).nm for draught in (None, 5.0, 8.0, 12.0)]
+    assert found[0] == pytest.approx(nm, rel=0.005)
+    for shallow, deep in pairwise(found):
+        assert deep >= 0.999 * shallow

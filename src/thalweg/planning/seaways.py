@@ -26,7 +26,6 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.alternatives.clear_water import (
     ROUNDS,
     ClearWater,
-    length_of_line,
     positions_of,
 )
 from thalweg.network.alternatives.path_shortening import (
@@ -42,11 +41,11 @@ from thalweg.network.global_grid.sea_graph import (
 from thalweg.network.global_grid.sea_graph_cache import edge_excess, sea_graph
 from thalweg.planning.request.voyage_endpoints import Endpoint
 
-#: A way off land that is longer than the one along the coast by more than this has bends.
+#: A way that shoals make longer than this is compared with the one over them.
 _MOST_LONGER: Final = 1.01
 _STEP: Final = 0.25 * NAUTICAL_MILE  # at which the distance from land is looked up for a note
 _TOLERANCE: Final = 0.1 * NAUTICAL_MILE
-_BEND: Final = 6.0 * NAUTICAL_MILE
+_LEAST_GAIN: Final = 1e-5  # share of the cost that each waypoint saves
 
 
 #: Which legs (lat1, lon1, lat2, lon2) [deg] something is true of.
@@ -237,15 +236,24 @@ class Seaways:
         if len(part) < 3:
             return positions_of(*part.T)
         clear = ClearWater(off_land, self.shoals)
-        if self._has_wide_shoals:
-            line = string_pull_path(chart, *part.T, leg_cost=clear.cost, rounds=ROUNDS)
-            line = clear.moved(chart, line, off_shoals=False)
-            return positions_of(*clear.round_land(chart, line))
-        found = clear.moved(chart, string_pull_path(clear, *part.T, rounds=ROUNDS))
-        along = string_pull_path(chart, *part.T, rounds=ROUNDS)
-        if length_of_line(found) > _MOST_LONGER * length_of_line(along) + _BEND:
-            found = min(found, clear.moved(chart, along), key=clear.cost_of)
-        return positions_of(*clear.round_land(chart, found))
+        line = string_pull_path(chart, *part.T, leg_cost=clear.cost, rounds=ROUNDS)
+        line = clear.round_land(chart, clear.moved(chart, line))
+        return positions_of(*self._pulled_again(chart, clear, line))
+
+    def _pulled_again(
+        self, chart: Chart, clear: ClearWater, line: PolylineCoordinates
+    ) -> PolylineCoordinates:
+        """Return a way off land after more string pulling, if that costs less.
+
+        One pull leaves such ways up to 6 % longer than the next, and differently for each draught.
+        """
+        lat, lon = line
+        if np.any(clear.off_land.legs_blocked(lat[:-1], lon[:-1], lat[1:], lon[1:])):
+            return line
+        again = string_pull_path(
+            chart, lat, lon, leg_cost=clear.cost, rounds=ROUNDS, least_gain=_LEAST_GAIN
+        )
+        return min(line, clear.moved(chart, again), key=clear.cost_of)
 
 
 def _cost_with_canals(clear: ClearWater, way: Sequence[Position]) -> float:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from thalweg.chart import Chart
-from thalweg.chart.canals import Canal
 from thalweg.chart.depth.shoals import Shoals
 from thalweg.chart.offing import required_offing
 from thalweg.core.arrays.numbered_parts import numbered_parts
@@ -21,7 +19,7 @@ from thalweg.core.geodesy import (
     geocentric_unit_vectors,
     line_length,
 )
-from thalweg.core.types import BoolArray, FloatArray, IntArray
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.alternatives.lattice_detour import lattice_detour
 from thalweg.network.alternatives.path_shortening import (
@@ -58,31 +56,10 @@ class ClearWater:
     off_land: Chart
     shoals: Shoals | None
 
-    @property
-    def canals(self) -> Sequence[Canal]:
-        """The canals of the chart."""
-        return self.off_land.canals
-
-    def canal_of_legs(self, *ends: FloatArray) -> IntArray:
-        """Return the number of the canal that each leg leads through, -1 at sea."""
-        return np.asarray(self.off_land.canal_of_legs(*ends))
-
-    def legs_blocked(self, *ends: FloatArray) -> BoolArray:
-        """Return which legs are too near to land, or lead over shoals."""
-        blocked = np.asarray(self.off_land.legs_blocked(*ends))
-        return blocked if self.shoals is None else blocked | (self.shoals.excess(*ends) > 0.0)
-
-    def moved(
-        self, chart: Chart, line: PolylineCoordinates, *, off_shoals: bool = True
-    ) -> PolylineCoordinates:
-        """Return a way whose legs near land and over shoals are moved as far as costs fall.
-
-        Parameters
-        ----------
-        off_shoals : Whether legs over shoals are moved that are not near land.
-        """
+    def moved(self, chart: Chart, line: PolylineCoordinates) -> PolylineCoordinates:
+        """Return a way whose legs near land are moved as far as costs fall."""
         lat, lon = line
-        blocked = self.legs_blocked if off_shoals else self.off_land.legs_blocked
+        blocked = self.off_land.legs_blocked
         near = np.asarray(blocked(lat[:-1], lon[:-1], lat[1:], lon[1:]))
         edges = np.flatnonzero(np.diff(np.concatenate([[0], near.astype(int), [0]]))).reshape(-1, 2)
         first = np.maximum(edges[:, 0] - 1, np.append(0, edges[:-1, 1]))  # with the leg before ...
