@@ -194,7 +194,7 @@ def test_ships_keep_off_the_sand_ridges_of_jiangsu(draught):
 def test_manila_to_cebu_is_as_far_for_all_draughts(draught):
     found = sea_distance("Manila", "Cebu", draught_m=draught)  # 423, 437 and 426 before
     assert "Hilutangan Channel (Cebu)" in found.straits
-    assert found.nm == pytest.approx(414.5, abs=2.0)
+    assert found.nm == pytest.approx(410.0, abs=2.5)
 
 
 @pytest.mark.parametrize(
