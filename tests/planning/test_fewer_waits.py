@@ -151,9 +151,18 @@ def test_waits_are_joined_at_the_berth_where_all_can_be():
     assert found.arrive == pytest.approx(route.arrive, abs=1.0)
 
 
-@pytest.mark.parametrize("wait_h", [[0.0, 5.1, 0.0, 0.0, 0.0], [0.05, 0.04, 0.0, 0.0, 0.0]])
-def test_one_wait_and_short_ones_on_the_direct_way_stay(wait_h):
+@pytest.mark.parametrize("wait_h", [[5.1, 0.0, 0.0, 0.0, 0.0], [0.05, 0.04, 0.0, 0.0, 0.0]])
+def test_one_wait_at_the_berth_and_short_ones_on_the_direct_way_stay(wait_h):
     context = context_in_wind(lambda hour, lon: (np.abs(lon - 0.7) < 0.05) & (hour < 0.0))
     context.voyage.objective = "time"
     route = sailed_with(context, wait_h)
     assert with_fewer_waits(context, route, NO_PATHS, last_departure=0.0) is route
+
+
+def test_one_wait_under_way_is_moved_to_the_berth():
+    context = context_in_wind(lambda hour, lon: (np.abs(lon - 0.7) < 0.05) & (hour < 0.0))
+    context.voyage.objective = "time"
+    route = sailed_with(context, [0.0, 5.1, 0.0, 0.0, 0.0])
+    found = with_fewer_waits(context, route, NO_PATHS, last_departure=0.0)
+    assert np.asarray(found.track.wait).tolist() == [5.1 * HOUR, 0.0, 0.0, 0.0, 0.0]
+    assert found.arrive == pytest.approx(route.arrive)

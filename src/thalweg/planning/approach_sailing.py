@@ -33,6 +33,7 @@ from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, Track
 from thalweg.route import join as join_routes
 from thalweg.route.canal_legs import approach_speed
+from thalweg.ship.fuel_prices import FuelTerms
 
 _NO_CHOICE = "exact: the whole voyage follows the approaches of its ports"
 
@@ -116,14 +117,24 @@ class ApproachSailing:
             return replace(plan, plot_context=plots)
         sailing = SailedApproaches(self, context)
         routes = tuple(sailing.joined(route) for route in plan.routes)
-        added = _difference(routes[0], plan, voyage, context)
+        at_sea = sailing.joined(plan.best, at_berth=False)  # what every route has, however it waits
+        added = _difference(at_sea, plan.best, voyage, context, plan.front)
         more = added[0] if voyage.objective == "front" else added[1]  # a front is bounded in time
         proof = Proof(
             plan.proof.certain + more,
             f"{plan.proof.kind}; with the approaches of the ports",
             plan.proof.solver_total + more,
         )
-        front = plan.front and _front_with_approaches(plan.front, added, sailing)
+        front = plan.front
+        if front is not None:
+            more_each = [
+                _difference(whole, part, voyage, context, front)[1]
+                for whole, part in zip(routes, plan.routes, strict=True)
+            ]
+            front = replace(
+                _front_with_approaches(front, added, sailing),
+                values=np.asarray(front.values) + more_each,
+            )
         return replace(
             plan,
             voyage=voyage,
@@ -163,9 +174,13 @@ class ApproachSailing:
         lat, lon = np.array(line, float).T
         waits = np.append(wait, np.zeros(len(lat) - 1))
         track = Track(lat, lon, depart, waits, np.full(len(lat) - 1, self.setting))
-        voyage = context.voyage
-        terms = priced_objective(voyage, context.ship).terms if voyage.chooses_speeds else None
-        return context.evaluate(track, terms)
+        return context.evaluate(track, _terms(context))
+
+
+def _terms(context: PlanningContext) -> FuelTerms | None:
+    """Return how the objective of a voyage prices fuel; None where it does not choose speeds."""
+    voyage = context.voyage
+    return priced_objective(voyage, context.ship).terms if voyage.chooses_speeds else None
 
 
 class SailedApproaches:
@@ -175,7 +190,7 @@ class SailedApproaches:
         self._sailing = sailing
         self._sail = cache(partial(sailing.sail, context=context))
         at_sea = replace(context, chart=replace(context.chart, approaches=None))
-        self._evaluate = None if context.voyage.chooses_speeds else at_sea.evaluate
+        self._evaluate = partial(at_sea.evaluate, terms=_terms(context))
 
     def joined_at_sea_ends(self, route: Route) -> Route:
         """Return a route, or a stretch of it, with the approaches that begin where it ends."""
@@ -187,25 +202,27 @@ class SailedApproaches:
             inward if inward and float(distance(*inward.sea_end, *last)) < 1.0 else None,
         )
 
-    def joined(self, route: Route) -> Route:
-        """Return a route with the approaches at its ends."""
-        return self._joined(route, self._sailing.outward, self._sailing.inward)
+    def joined(self, route: Route, *, at_berth: bool = True) -> Route:
+        """Return a route with the approaches at its ends; a first wait is moved to the berth."""
+        return self._joined(route, self._sailing.outward, self._sailing.inward, at_berth)
 
     def _joined(
-        self, route: Route, outward: PortApproach | None, inward: PortApproach | None
+        self,
+        route: Route,
+        outward: PortApproach | None,
+        inward: PortApproach | None,
+        at_berth: bool = True,
     ) -> Route:
         """Return a route with approaches at its ends; None adds none."""
         parts = [route]
         if outward is not None and outward.length > 1.0:
             depart = route.depart - outward.duration(self._sailing.speed)
-            wait = float(route.track.wait[0])
-            if wait > 0.0 and self._evaluate is not None:  # at the berth, not at the sea end
+            wait = float(route.track.wait[0]) if at_berth else 0.0
+            if wait > 0.0:  # at the berth, not at the sea end
                 waits = np.append(0.0, route.track.wait[1:])
                 parts = [
                     self._evaluate(route.track.replaced(depart=route.depart + wait, wait=waits))
                 ]
-            else:
-                wait = 0.0
             parts.insert(0, self._sail(tuple(outward.line), depart, wait=wait))
         if inward is not None and inward.length > 1.0 and math.isfinite(route.arrive):
             parts.append(self._sail(tuple(inward.line[::-1]), route.arrive))
@@ -230,7 +247,6 @@ def _front_with_approaches(
     more = np.array(added)[:, None]
     return replace(
         front,
-        values=np.asarray(front.values) + added[1],
         certain=np.asarray(front.certain) + more,
         comparison=comparison,
     )
@@ -256,19 +272,22 @@ def _percent(saved: float | None, value: float) -> float | None:
 
 
 def _difference(
-    whole: Route, plan: Plan, voyage: Voyage, context: PlanningContext
+    whole: Route,
+    part: Route,
+    voyage: Voyage,
+    context: PlanningContext,
+    front: ParetoFront | None,
 ) -> tuple[float, float]:
-    """Return the time [h] and value [unit of the objective] of a route beyond that of its plan.
+    """Return the time [h] and value [unit of the objective] of a route beyond that of its part.
 
     Raises
     ------
     InputError
         If the value of the approaches is not known, such as their traffic.
     """
-    part = plan.best
     hours = whole.time_h - part.time_h
     if voyage.chooses_speeds:
-        own = plan.front.objective if plan.front is not None else None
+        own = front.objective if front is not None else None
         objective = own or priced_objective(voyage, context.ship).objective
         value = objective.value(whole) - objective.value(part)
         if math.isinf(value):

@@ -89,7 +89,7 @@ def cheapest_shift(
             fast, slow = int(setting[piece]), int(setting[other])
             more = time[piece, slow] - time[piece, fast]
             saved = cost[piece, fast] - cost[piece, slow]
-            if not (more > left > 0.0 and saved * left / more > most):
+            if not (np.isfinite(more) and more > left > 0.0 and saved * left / more > most):
                 continue
             share = left / more
             if lasting[own] - share * time[piece, fast] < least:

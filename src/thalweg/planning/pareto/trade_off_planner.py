@@ -39,6 +39,10 @@ from thalweg.planning.pareto.trade_off_context import (
     scored_candidate,
 )
 from thalweg.planning.pareto.turn_reduction import scored_with_fewer_turns
+from thalweg.planning.pareto.waits_of_fronts import (
+    with_fewer_waits_of_front,
+    with_waits_long_enough,
+)
 from thalweg.planning.pareto.weighted_sums import normalised_trade_off
 from thalweg.planning.plan import Plan
 from thalweg.planning.planning_context import PlanningContext
@@ -94,6 +98,7 @@ def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
                 steps.appendleft(step)
         if not interrupt_guard.stopped() and any(item.route.feasible for item in scored):
             scored = non_dominated_candidates(in_speed_blocks(trade_off, scored))
+            scored = [_with_fewer_waits(trade_off, item) for item in scored]
         return assemble_trade_off_plan(trade_off, ends, explored, scored)
 
 
@@ -251,6 +256,9 @@ def _refereed(
                 break
         candidate = candidates[k]
         route = scored_with_fewer_turns(trade_off, candidate.track, candidate.time)
+        route = with_waits_long_enough(
+            context, route, lambda track: context.evaluate(track, trade_off.objective.terms)
+        )
         by_index[k] = scored_candidate(
             trade_off, candidate, route, trade_off.objective.value(route)
         )
@@ -267,6 +275,14 @@ def _refereed(
     different = {(gap.reason, gap.lat, gap.lon, gap.time): gap for gap in gaps}
     sailed = [item for item in scored if math.isfinite(item.route.arrive)]
     return sailed, tuple(different.values())[:MAX_GAPS]
+
+
+def _with_fewer_waits(trade_off: TradeOffContext, item: RefereedCandidate) -> RefereedCandidate:
+    context, objective = trade_off.context, trade_off.objective
+    route = with_fewer_waits_of_front(
+        item.route, lambda track: context.evaluate(track, objective.terms), objective.value, context
+    )
+    return item if route is item.route else replace(item, route=route, value=objective.value(route))
 
 
 def _from_coarse_to_fine(count: int) -> list[int]:

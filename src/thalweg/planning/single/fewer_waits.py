@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
@@ -108,7 +109,7 @@ def with_fewer_waits(
     if not route.feasible or route.waiting_h <= LEAST_WAIT_H:
         return route
     latest = latest_allowed(context, route)
-    best = _with_joined_waits(context, route, latest)
+    best = _with_joined_waits(context, _with_wait_at_start(context, route, latest), latest)
     if context.voyage.objective == "distance":
         return best
     if _count(best) == 1 and _times_direct(best) < 1.0 + _WORTH:
@@ -199,6 +200,16 @@ def _is_allowed(context: PlanningContext, tried: Route, route: Route, latest: fl
         return False
     met = [len(waiting_weather_warnings(one, context.ship)) for one in (tried, route)]
     return met[0] <= met[1]
+
+
+def _with_wait_at_start(context: PlanningContext, route: Route, latest: float) -> Route:
+    """Return a route with its only wait at its start, if arrival and limits allow that."""
+    if _count(route) != 1 or route.track.wait[0]:
+        return route
+    for tried in islice(routes_with_one_wait(context, route), 2):  # of the first waypoint
+        if _is_allowed(context, tried, route, latest):
+            return tried
+    return route
 
 
 def _with_joined_waits(context: PlanningContext, route: Route, latest: float) -> Route:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Final
 
 import numpy as np
 
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.waiting_report import waiting_weather_warnings
-from thalweg.route import Route
+from thalweg.route import Route, Track
 
 _MOST_PLACES: Final = 16  # at which the wait is tried
 _MORE: Final = (0.0, 20.0)  # of the wait [s]: a limit may open between two points of the referee
@@ -39,13 +39,17 @@ def with_sheltered_waits(context: PlanningContext, route: Route, latest: float) 
     return route
 
 
-def routes_with_one_wait(context: PlanningContext, route: Route) -> Iterator[Route]:
+def routes_with_one_wait(
+    context: PlanningContext, route: Route, score: Callable[[Track], Route] | None = None
+) -> Iterator[Route]:
     """Yield a route with all its waits at one waypoint, from the first to the last where it waits.
 
     Parameters
     ----------
     route : With one wait or more.
+    score : Evaluates a track; that of the context by default.
     """
+    score = score or context.evaluate
     wait = np.asarray(route.track.wait, float)
     last = int(np.flatnonzero(wait)[-1])
     for place in np.unique(np.linspace(0, last, min(last + 1, _MOST_PLACES)).astype(int)):
@@ -55,4 +59,4 @@ def routes_with_one_wait(context: PlanningContext, route: Route) -> Iterator[Rou
         for more in _MORE:
             moved = np.zeros(wait.size)
             moved[place] = wait.sum() + more
-            yield context.evaluate(route.track.replaced(wait=moved))
+            yield score(route.track.replaced(wait=moved))

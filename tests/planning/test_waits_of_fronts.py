@@ -1,0 +1,145 @@
+"""Least fuel and cost of ships that wait: the limits open between the times of the network."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from thalweg import Chart, Sea, Ship, Track, Voyage, plan
+from thalweg.planning.pareto.waits_of_fronts import (
+    with_fewer_waits_of_front,
+    with_waits_long_enough,
+)
+from thalweg.planning.request.network_choice import NetworkChoice
+from thalweg.planning.voyage_context import voyage_context
+
+TUG = """
+name: Tug
+hull:
+  {length_between_perpendiculars_m: 28.0, breadth_m: 9.8, draught_m: 4.4, block_coefficient: 0.55}
+speeds_kn: [6, 8, 10, 12]
+engine: {reference_speed_kn: 12, reference_power_kw: 2400, sfoc_g_per_kwh: 205, hotel_load_kw: 60}
+fuel: {type: mgo, price_per_t: 780}
+costs: {hire_per_day: 4500}
+models: {calm_water: cubic, speed_loss: kwon_2008}
+limits: {max_significant_wave_height_m: 2.5, min_under_keel_clearance_m: 2.4}
+"""
+START, GOAL, DEPART = (10.15, 123.55), (10.15, 123.95), "2026-07-01T00:00Z"
+CHART = Chart.open_water(10.0, 10.3, 123.5, 124.0)
+
+
+@pytest.fixture(scope="module")
+def tug(tmp_path_factory):
+    path = tmp_path_factory.mktemp("ship") / "tug.yaml"
+    path.write_text(TUG)
+    return Ship.load(path)
+
+
+@pytest.fixture(scope="module")
+def bar():
+    """A bar with a gully of 6.2 m, over which the tide is high enough from 06:50 on."""
+    lat, lon = np.arange(10.0, 10.3001, 0.01), np.arange(123.5, 124.001, 0.01)
+    depth = np.full((lat.size, lon.size), 18.0)
+    on_bar = (lon > 123.705) & (lon < 123.765)
+    depth[:, on_bar] = 1.0
+    depth[np.ix_(np.abs(lat - 10.15) < 0.016, on_bar)] = 6.2
+    hours = np.arange(0.0, 36.0, 1.0 / 6.0)
+    level = 1.2 * np.cos(2 * np.pi * (hours - 9.0) / 12.42)
+    level += 0.15 * np.cos(2 * np.pi * (hours - 8.0) / 6.21)
+    times = np.datetime64("2026-07-01", "ns") + (60 * hours).astype(int) * np.timedelta64(1, "m")
+    names = {
+        "zeta": "sea_surface_height_above_geopotential_datum",
+        "h": "sea_floor_depth_below_geoid",
+    }
+    everywhere = np.broadcast_to(level[:, None, None], (hours.size, lat.size, lon.size))
+    data = xr.Dataset(
+        {
+            "zeta": (
+                ("time", "lat", "lon"),
+                everywhere,
+                {"standard_name": names["zeta"], "units": "m"},
+            ),
+            "h": (("lat", "lon"), depth, {"standard_name": names["h"], "units": "m"}),
+        },
+        {
+            "time": times,
+            "lat": ("lat", lat, {"units": "degrees_north"}),
+            "lon": ("lon", lon, {"units": "degrees_east"}),
+        },
+    )
+    return Sea.open(data).filled(waves=0.0, wind=0.0, currents=0.0)
+
+
+def planned(tug, bar, **conditions):
+    voyage = Voyage(
+        start=START, goal=GOAL, depart=DEPART, arrive_by="2026-07-01T16:00Z", **conditions
+    )
+    return plan(voyage, ship=tug, sea=bar, chart=CHART)
+
+
+def context_of(tug, bar):
+    voyage = Voyage(start=START, goal=GOAL, depart=DEPART)
+    return voyage_context(voyage, tug, bar, CHART, NetworkChoice("auto", None, None))[0]
+
+
+@pytest.fixture(scope="module")
+def at_lowest_speed(tug, bar):
+    return planned(tug, bar, speed_kn=6.0).best
+
+
+def test_the_least_fuel_past_a_bar_is_that_of_the_lowest_speed(tug, bar, at_lowest_speed):
+    """It was that of the highest speed, three times as much: all others came too early."""
+    found = planned(tug, bar, objective="fuel")
+    assert found.best.feasible
+    assert found.best.fuel_t == pytest.approx(at_lowest_speed.fuel_t, rel=0.01)
+    assert len(found.routes) > 3
+    assert all(route.feasible for route in found.routes)
+    assert all(np.count_nonzero(route.track.wait) <= 1 for route in found.routes)
+
+
+@pytest.mark.parametrize("conditions", [{"objective": "time"}, {"speed_kn": 8.0}])
+def test_the_wait_for_the_tide_is_at_the_start(tug, bar, conditions):
+    """It was 4 nm out, although the ship arrives as early from her berth."""
+    route = planned(tug, bar, **conditions).best
+    assert route.feasible
+    assert np.flatnonzero(route.track.wait).tolist() == [0]
+
+
+def test_a_limit_of_fuel_that_a_slower_ship_keeps_is_no_refusal(tug, bar):
+    found = planned(tug, bar, at_most={"fuel": 0.6})
+    assert found.best.feasible
+    assert found.best.fuel_t < 0.6
+
+
+def test_a_wait_is_lengthened_until_the_limit_is_kept(tug, bar, at_lowest_speed):
+    context = context_of(tug, bar)
+    track = at_lowest_speed.track
+    assert at_lowest_speed.feasible and np.count_nonzero(track.wait) == 1
+    total = float(track.wait.sum())
+    early = np.zeros(track.wait.size)
+    early[0] = total - 600.0
+    broken = context.evaluate(track.replaced(wait=early))
+    assert not broken.feasible
+    kept = with_waits_long_enough(context, broken, context.evaluate)
+    assert kept.feasible
+    assert np.flatnonzero(kept.track.wait).tolist() == [0]
+    assert float(kept.track.wait[0]) == pytest.approx(total, abs=60.0)
+    # the route without a breach stays, and no wait helps against water that is always too shallow
+    assert with_waits_long_enough(context, kept, context.evaluate) is kept
+    deep = context.evaluate(track.replaced(lat=track.lat + 0.1))
+    assert with_waits_long_enough(context, deep, context.evaluate) is deep
+
+
+def test_many_waits_become_one_at_the_start(tug, bar, at_lowest_speed):
+    context = context_of(tug, bar)
+    ends = at_lowest_speed.track.lat[[0, -1]], at_lowest_speed.track.lon[[0, -1]]
+    lat, lon = (np.linspace(*two, 9) for two in ends)
+    wait = np.zeros(9)
+    wait[:3] = at_lowest_speed.track.wait.sum() / 3.0 + 120.0
+    wait[5:7] = 300.0
+    track = Track(lat, lon, at_lowest_speed.depart, wait, np.zeros(8, int))
+    many = context.evaluate(track)
+    assert many.feasible
+    found = with_fewer_waits_of_front(many, context.evaluate, lambda route: route.time_h, context)
+    assert found.feasible
+    assert np.flatnonzero(found.track.wait).tolist() == [0]
+    assert found.time_h <= many.time_h
