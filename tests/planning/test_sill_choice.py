@@ -41,6 +41,12 @@ def test_a_sill_that_no_table_knows_is_crossed_with_a_note(tmp_path, monkeypatch
     assert note.startswith("Check the depth") and "nm longer" in note
 
 
+def test_a_ship_of_14_m_keeps_to_the_north_west_bound_lane(tmp_path):
+    """The lane counted as shoal: 11 nm were against the traffic."""
+    against = [note for note in planned(tmp_path).notes if note.startswith("Runs against")]
+    assert not any("Malacca" in note for note in against)
+
+
 @pytest.mark.parametrize(("draught", "longest"), [(12.0, 1_650.0), (20.0, 1_650.0)])
 def test_distances_of_deep_ships_lead_through_it(draught, longest):
     assert sea_distance("Singapore", "Colombo", draught_m=draught).nm < longest
