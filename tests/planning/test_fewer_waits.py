@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 from thalweg import Chart, Sea, Ship, Track, Voyage, evaluate, plan
+from thalweg.core.errors import NoRouteError
 from thalweg.core.units import HOUR
 from thalweg.planning.report.note_order import danger_first
 from thalweg.planning.report.waiting_report import PASSES_TIME
@@ -96,6 +97,16 @@ def test_a_ship_that_may_not_wait_is_shown_what_it_costs(planned):
 def test_a_ship_that_may_not_wait_and_need_not_has_no_such_note(planned):
     found = planned(lambda t, lat, lon: 1.0 + 0.0 * t, wait=False)
     assert not any(note.startswith(PASSES_TIME) for note in found.notes)
+
+
+def test_a_refusal_of_a_ship_that_may_not_wait_names_waits(planned):
+    def closes_the_goal(t, lat, lon):
+        return 1.0 + 8.0 * (lon > 2.0) * (t < 60.0) + 0.0 * lat
+
+    with pytest.raises(NoRouteError, match="short") as refusal:
+        planned(closes_the_goal, wait=False)
+    assert "permit waits where --no-wait forbids them" in str(refusal.value)
+    assert "--depart-window" in str(refusal.value)
 
 
 def context_in_wind(closed):

@@ -278,11 +278,15 @@ _ADVICE_ENDED = (
     "Add a longer forecast, or depart earlier. If this was not for the least time, such a plan may "
     "still arrive in time: its last step is not bound to the network of this search."
 )
+_ADVICE_WEATHER = (
+    "Depart later, search a window of departures (--depart-window), permit waits where --no-wait "
+    "forbids them, or raise the limit of the ship."
+)
 _ADVICE = {
     codes.DEPTH: "Load less (--load-factor), require less clearance (--ukc), or allow waiting for "
     "the tide.",
-    codes.WAVE_HEIGHT: "Depart later, or raise the limit of the ship.",
-    codes.WIND_SPEED: "Depart later, or raise the limit of the ship.",
+    codes.WAVE_HEIGHT: _ADVICE_WEATHER,
+    codes.WIND_SPEED: _ADVICE_WEATHER,
     codes.NO_DATA: "The data have gaps: add a layer that covers them, or fill them by name, for "
     "example --fill currents=nearest:25 or currents=0.",
     codes.CURRENT: "The current is faster than the ship: depart at another time.",
