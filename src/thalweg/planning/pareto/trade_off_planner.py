@@ -98,7 +98,8 @@ def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
                 steps.appendleft(step)
         if not interrupt_guard.stopped() and any(item.route.feasible for item in scored):
             scored = non_dominated_candidates(in_speed_blocks(trade_off, scored))
-            scored = [_with_fewer_waits(trade_off, item) for item in scored]
+            waiting_once = [_with_fewer_waits(trade_off, item) for item in scored]
+            scored = non_dominated_candidates(waiting_once)
         return assemble_trade_off_plan(trade_off, ends, explored, scored)
 
 
