@@ -6,7 +6,7 @@ import pytest
 
 from thalweg import Chart, Sea, Ship, Track, Voyage, evaluate, plan
 from thalweg.chart.canals import KIEL, canals_with_dues
-from thalweg.core.units import KNOT, NAUTICAL_MILE
+from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
 from thalweg.planning.passage_alternatives import MAX_DETOUR, passage_alternatives
 
 DEPART = "2026-01-01T00:00Z"
@@ -50,6 +50,17 @@ def test_ways_by_and_round_the_kiel_canal(planned):
     assert "Skagerrak-Kattegat (Skaw)" in round_it.passes
     assert first.distance < round_it.distance < MAX_DETOUR * first.distance
     assert round_it.time == pytest.approx(round_it.distance / (12.0 * KNOT), rel=0.01)
+
+
+@pytest.mark.slow
+def test_waits_of_the_plan_do_not_count_as_sailing(planned):
+    """The speed of the ways is the speed at sea; a wait is no part of the time of a leg."""
+    context, track = planned.plot_context, planned.best.track
+    waiting = replace(track, wait=(46.5 * HOUR, *track.wait[1:]))
+    route = evaluate(waiting, ship=context.ship, sea=context.sea, chart=Chart.gshhg("i"))
+    assert route.waiting_h == pytest.approx(46.5)
+    with_wait = passage_alternatives(replace(planned, routes=(route,)))
+    assert with_wait[0].time == pytest.approx(passage_alternatives(planned)[0].time)
 
 
 @pytest.mark.slow

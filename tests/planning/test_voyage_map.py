@@ -5,9 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
+from matplotlib.quiver import Quiver
 
 from tests.conftest import data_file
 from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.core.arrays.shown_arrows import shown_arrows
 from thalweg.core.file_writing import new_figure
 from thalweg.core.time import parse_time
 from thalweg.planning.plan_front import ParetoFront
@@ -197,6 +199,47 @@ def test_profiles_have_times_in_utc_and_state_that_no_depth_is_known(lagoon):
     assert profile.axes[-1].get_xlabel() == "UTC, departure 1998-08-30 05:10"
     assert "30 Aug 06:00" in [tick.get_text() for tick in profile.axes[-1].get_xticklabels()]
     assert "not known" in profile.axes[-1].texts[0].get_text()
+
+
+@pytest.mark.slow
+def test_arrows_are_those_of_the_strong_currents():
+    """Currents near zero have none, and the strongest reaches to the next arrow."""
+
+    def eastward(time, lat, lon):
+        return 1.5 * np.exp(-(((np.asarray(lat) - 31.0) / 0.1) ** 2)) + 0.0 * np.asarray(lon)
+
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": eastward,
+            "northward_sea_water_velocity": lambda t, a, o: np.zeros(np.shape(a)),
+        }
+    )
+    voyage = Voyage(start=(30.0, -40.0), goal=(32.0, -38.0), depart=0.0)
+    found = plan(voyage, ship=SHIP, sea=sea, chart=Chart.open_water(), proof=0.0)
+    (axes, *_) = draw_map(found).axes
+    (arrows,) = [item for item in axes.collections if isinstance(item, Quiver)]
+    assert 0 < len(arrows.U) < 100
+    assert arrows.U.min() >= 0.1 * arrows.U.max() > 0.1
+    assert arrows.U.max() / arrows.scale == pytest.approx(1.0 / 20.0)  # of the width of the map
+
+
+def test_no_arrow_is_shown_where_all_currents_are_weak():
+    shown, strongest = shown_arrows(np.array([0.01, np.nan, 0.04]), np.array([0.0, 0.0, 0.01]))
+    assert not shown.any() and strongest == 0.0
+    shown, strongest = shown_arrows(np.array([1.0, 0.09, 0.2]), np.zeros(3))
+    assert shown.tolist() == [True, False, True] and strongest == 1.0
+
+
+@pytest.mark.slow
+def test_waits_are_drawn_above_the_mark_of_the_port(lagoon):
+    track = lagoon.best.track
+    waiting = replace(track, wait=(3600.0, *track.wait[1:]))
+    waited = replace(lagoon, routes=(replace(lagoon.best, track=waiting),))
+    (axes, *_) = draw_map(waited).axes
+    (waits,) = [line for line in axes.lines if line.get_label() == "waits"]
+    ports = [line for line in axes.lines if line.get_marker() == "o" and line.get_markersize() == 7]
+    assert len(ports) == 2
+    assert waits.get_zorder() > max(line.get_zorder() for line in ports)
 
 
 @pytest.mark.slow

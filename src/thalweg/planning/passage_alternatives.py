@@ -164,7 +164,7 @@ def _question(plan: PlanData) -> _Question | None:
     legs = plan.best.legs
     duration = np.asarray(legs["arrive"]) - np.asarray(legs["depart"])
     sailed = float(np.sum(np.asarray(legs["length"])[at_sea]))
-    time = float(np.sum(duration[at_sea])) - plan.best.waiting_h * HOUR
+    time = float(np.sum(duration[at_sea]))  # without waits: a leg departs after its wait
     speed = sailed / time if sailed > 0.0 and time > 0.0 else MAX_APPROACH_SPEED
     canals = canals_with_dues(chart.canals, context.ship.file.hull)
     return _Question(

@@ -11,6 +11,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.arrays.shown_arrows import shown_arrows
 from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import new_figure, save_figure
@@ -257,15 +258,17 @@ def _draw_arrows(
     samples = sample_stack(layers, list(panel.arrows), time, lat[:, None], lon[None, :])
     u, v = (samples[n] for n in panel.arrows)
     speed = np.hypot(u, v)
-    known = speed > 1e-6
-    if not known.any():
+    if panel.values == nm.WAVE_HEIGHT:  # directions, all of one length
+        shown, typical = speed > 1e-6, 1.0
+        u, v = u / np.where(shown, speed, 1.0), v / np.where(shown, speed, 1.0)
+    else:
+        shown, _ = shown_arrows(u, v)
+        typical = float(np.percentile(speed[shown], 95)) if shown.any() else 0.0
+    if not shown.any():
         return
-    typical = float(np.percentile(speed[known], 95))
-    if panel.values == nm.WAVE_HEIGHT:
-        u, v, typical = u / np.where(known, speed, 1.0), v / np.where(known, speed, 1.0), 1.0
-    rows, columns = np.nonzero(known)
+    rows, columns = np.nonzero(shown)
     axis.quiver(
-        lon[columns], lat[rows], u[known], v[known],
+        lon[columns], lat[rows], u[shown], v[shown],
         scale=typical * ARROWS_ALONG_SIDE * 1.25,
         color=TEXT_COLOUR, alpha=0.8, width=0.0028, headwidth=3.6, headlength=4.2,
         headaxislength=3.8,

@@ -29,6 +29,7 @@ _WEATHER: Final = (
 )
 _OTHER_COLOURS: Final = ("#9ccc9c", "#0b3d0b")  # from the least to the most, on blue and beige
 _OTHERS, _BEST, _CHECK = 4.8, 5.2, 5.6  # order of drawing
+_WAITS = 7.5  # above the marks of the ends: a ship often waits in port
 BAR_HEIGHT: Final = 0.6  #: that bars of colours of a front take below a map [inch]
 _ROUND_MAP: Final = 0.9 + BAR_HEIGHT  # what the figure is higher than the map, about [inch]
 _BELOW_MAP, _BAR = 0.45, 0.13  # from the map to the lower edge of the bars, and their height [inch]
@@ -61,8 +62,9 @@ def draw_routes_of_plan(
     waits = track.wait > 0
     if waits.any():
         axes.plot(
-            track_lon[waits], track.lat[waits], "s", color="#ff8f00", ms=6, zorder=7, label="waits"
-        )
+            track_lon[waits], track.lat[waits], "s", color="#ff8f00", ms=5, zorder=_WAITS,
+            label="waits",
+        )  # fmt: skip
     for index in (0, -1):
         axes.plot(
             track_lon[index], track.lat[index], "o", mfc="white", mec=ROUTE_COLOUR, mew=1.6, ms=7,

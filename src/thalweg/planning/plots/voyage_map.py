@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thalweg.core.arrays.shown_arrows import shown_arrows
 from thalweg.core.file_writing import new_figure, save_figure
 from thalweg.core.geodesy import wrap_longitude
 from thalweg.core.time import duration_text, utc_text
@@ -174,8 +175,13 @@ def _draw_arrows(
             continue
         samples = context.sea.sample(list(pair), moment, lat, wrap_longitude(lon))
         east, north = samples[pair[0]], samples[pair[1]]
-        if _varies(np.hypot(east, north)):
-            axes.quiver(lon, lat, east, north, color=_INK, alpha=0.45, width=0.0013)
+        shown, strongest = shown_arrows(east, north)
+        if shown.any() and _varies(np.hypot(east, north)):
+            # the strongest reaches to the next arrow
+            axes.quiver(
+                lon[shown], lat[shown], east[shown], north[shown], scale=strongest * lat.shape[1],
+                color=_INK, alpha=0.45, width=0.0013,
+            )  # fmt: skip
             return
 
 
