@@ -102,8 +102,9 @@ def _add_time_options(parser: argparse.ArgumentParser) -> None:
         "--speed",
         type=float,
         metavar="KN",
-        help="ordered speed through calm water [kn], also between the settings of the ship file; "
-        "default: its highest (for time and distance), or a choice leg by leg",
+        help="ordered speed through calm water [kn], also between the settings of the ship file, "
+        "and below them unless its power is a table (a note says so); default: its highest (for "
+        "time and distance), or a choice leg by leg",
     )
     options.add_hold_option(parser, with_arrival=True)
     parser.add_argument(

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from thalweg.core.units import KNOT
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.hull.estimate import method_assumptions
 from thalweg.ship.methods.speed_loss import ShipType
@@ -15,11 +16,13 @@ from thalweg.ship.schema.unusual_numbers import unusual_numbers
 from thalweg.ship.ship import Ship
 
 KWON_FORM: Final = "Kwon's form"  #: a note on the form of his speed loss begins so
+BELOW_LOWEST: Final = "Below the lowest speed of the ship file"  #: a note on such speeds begins so
 _FINE_SHIPS: Final = (
     *("ro-ro", "roro", "ropax", "ferry", "passenger", "cruise", "vehicle", "car carrier"),
     *("refrigerated", "reefer"),
 )
 _FULL_SHIPS: Final = ("bulk", "tanker")
+_SAME_SPEED: Final = 1e-3  # relative
 _BEAUFORT_5: Final = 9.35  # [m/s]
 _KEYS_OF_THE_EMPTY_SHIP = (
     "draught_empty_m",
@@ -74,6 +77,53 @@ def kwon_form_notes(ship: Ship) -> list[str]:
         f"{container:.0f} % by 'container' (fine ships). Give the one that suits her as "
         "models.kwon_ship_type."
     ]
+
+
+def low_speed_notes(ship: Ship, ordered: float) -> list[str]:
+    """Return a note where an ordered speed is below all speeds of the ship file.
+
+    Parameters
+    ----------
+    ship : Also with settings other than those of its file.
+    ordered : The lowest ordered speed [m/s].
+
+    Returns
+    -------
+    list of str : One text that says what power and fuel follow there, or none.
+    """
+    file, load_factor = ship.file, ship.loading.load_factor
+    table = None if file.table is None else file.table.speed_kn
+    loaded, empty = file.loading.speeds_full_kn, file.loading.speeds_empty_kn
+    known = [min(speeds) for speeds in (file.speeds_kn, table, loaded) if speeds]
+    if not known:
+        return []
+    lowest = min(known)
+    if loaded and empty:
+        lowest = load_factor * min(loaded) + (1.0 - load_factor) * min(empty)
+    if not ordered < lowest * KNOT * (1.0 - _SAME_SPEED):
+        return []
+    return [
+        f"{BELOW_LOWEST}, {lowest:g} kn: {ordered / KNOT:.2f} kn is ordered." + _slow_power(ship)
+    ]
+
+
+def _slow_power(ship: Ship) -> str:
+    """Return a sentence on what power and fuel follow below the speeds of a ship file."""
+    engine, model = ship.file.engine, getattr(ship.model, "base", ship.model)  # of a held speed
+    law, plant = getattr(model, "law", None), getattr(model, "plant", None)
+    if getattr(law, "name", None) == "none":
+        return ""
+    by_load = engine.sfoc_g_per_kwh is None and engine.gives("type", "sfoc_curve_g_per_kwh")
+    if plant is not None:
+        by_load = bool(plant.curve[0]) or bool(np.isfinite(plant.rating))
+    by_law = law is not None or ship.file.models.calm_water == "cubic"
+    power = "is extrapolated by the cubic law" if by_law else "follows from the resistance"
+    fuel = (
+        "the consumption follows the engine load"
+        if by_load
+        else "the higher consumption of engines at low load is not counted"
+    )
+    return f" Power there {power}; {fuel}."
 
 
 def load_factor_without_effect(ship: Ship) -> list[str]:

@@ -26,7 +26,7 @@ from thalweg.route.referee.route_assembly import OUT_OF_RANGE
 from thalweg.route.stated_times import TIMES_UNUSED
 from thalweg.sea.doubtful_values import NO_TIME, NO_UNITS
 from thalweg.ship.schema.unusual_numbers import UNUSUAL
-from thalweg.ship.ship_assumptions import KWON_FORM
+from thalweg.ship.ship_assumptions import BELOW_LOWEST, KWON_FORM
 
 LIMIT_EXCEEDED: Final = "The referee finds a limit exceeded"  #: a note on a limit begins so
 #: First words of notes that no summary may leave out, the most dangerous first.
@@ -57,7 +57,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     (NO_UNITS, NO_TIME),
     UNUSUAL,
     KWON_FORM,
-    OUT_OF_RANGE,
+    (OUT_OF_RANGE, BELOW_LOWEST),
 )
 
 

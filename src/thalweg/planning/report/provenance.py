@@ -32,6 +32,7 @@ from thalweg.sea import Sea
 from thalweg.sea.doubtful_values import guesses_of_files
 from thalweg.sea.inspection import data_gaps
 from thalweg.ship import Ship
+from thalweg.ship.ship_assumptions import BELOW_LOWEST
 
 _LEAST_KEPT, _SHORTEST_SLOW = 0.25, 1.0  # of the ordered speed; [h]
 #: Years between which a departure needs no warning: the reanalysis ERA5 begins in 1940.
@@ -54,7 +55,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     notes += turn_back_notes_of_route(route)
     notes += ice_warnings(route, context.sea)
     notes += data_gap_warnings(context.sea, route)
-    notes += [text for text in route.assumptions if text.startswith(OUT_OF_RANGE)]
+    notes += [text for text in route.assumptions if text.startswith((OUT_OF_RANGE, BELOW_LOWEST))]
     notes += slow_speed_warnings(route) + steep_wave_warnings(route, context.sea)
     if not any(note.startswith(UNREAD) for note in context.needs.notes):  # it says so already
         notes += unread_weather_notes(route, context.sea, context.ship)

@@ -41,6 +41,7 @@ from thalweg.route.track import Track
 from thalweg.ship.consumption import engine_order
 from thalweg.ship.fuel_prices import FuelTerms
 from thalweg.ship.models.known_speed_model import SpeedLossModel
+from thalweg.ship.ship_assumptions import low_speed_notes
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -92,7 +93,9 @@ def assemble_route(
         values[~np.isfinite(arrives)] = math.nan
     samples |= at_samples
     assumptions = (*world.assumptions, *spent.notes, *_range_notes(world, points, time, motion))
-    assumptions = (*assumptions, *notes, *more)
+    at_sea = legs["leg_kind"] == 0.0
+    slowest = float(np.min(legs["ordered_speed"][at_sea], initial=math.inf))
+    assumptions = (*assumptions, *notes, *more, *low_speed_notes(world.ship, slowest))
     legs |= {**spent.legs, **columns}
     return Route(
         pieces.track,
