@@ -200,7 +200,15 @@ def test_inspect(capsys, currents):
     text = json.dumps(found)
     assert "eastward_sea_water_velocity" in text and "uo" in text
     assert main(["inspect", currents]) == 0
-    assert "eastward_sea_water_velocity" in capsys.readouterr().out
+    text = capsys.readouterr().out
+    assert "eastward_sea_water_velocity" in text and "not all read" not in text
+
+
+def test_inspect_states_that_it_did_not_read_all_times(capsys, currents, monkeypatch):
+    monkeypatch.setattr("thalweg.sea.inspection._ALL_TIMES", 0)
+    monkeypatch.setattr("thalweg.sea.inspection.SAMPLED_TIMES", 1)
+    assert main(["inspect", currents]) == 0
+    assert "; values at 1 of 8 times, not all read" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

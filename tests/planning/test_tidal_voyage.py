@@ -5,7 +5,11 @@ import pytest
 import xarray as xr
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.core.errors import NoRouteError
 from thalweg.core.time import parse_time
+from thalweg.planning import alternative_plans
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.single.no_route_diagnosis import no_path_error
 from thalweg.sea import standard_names as nm
 from thalweg.sea.models.stratified_coast import stratified_coast_current
 from thalweg.sea.tides.constituents import Constituents
@@ -38,6 +42,47 @@ def test_a_bar_is_crossed_when_the_tide_of_that_day_allows(gauge):
     opening = times[np.flatnonzero((times > low) & (level > 0.5))[0]]
     assert best.arrive >= opening
     assert best.arrive < opening + 2.5 * 3600.0
+
+
+@pytest.mark.slow
+def test_alternatives_wait_for_the_tide_where_no_other_route_is_found(gauge):
+    """Prices of miles are searched without waits first, and with waits where none keeps depth."""
+    times = parse_time("2031-07-05T00:00Z") + 600.0 * np.arange(150)
+    low = times[int(np.argmin(gauge.predict(nm.WATER_LEVEL, times)[0]))]
+    sea = Sea.from_tides(gauge, area=AREA) + Sea.from_functions({nm.BED_DEPTH: _bar})
+    ship = Ship.from_dict(
+        {
+            "name": "tug",
+            "hull": {"draught_m": 4.4},
+            "speeds_kn": [6, 12],
+            "engine": {"reference_power_kw": 2400, "sfoc_g_per_kwh": 205},
+            "models": {"calm_water": "cubic"},
+        }
+    )
+    ends = {"start": (51.71, 3.45), "goal": (51.77, 3.70), "depart": float(low), "min_ukc_m": 3.1}
+    given = {"ship": ship, "sea": sea, "chart": Chart.open_water(*AREA), "resolution": 1000.0}
+    found = alternative_plans(Voyage(**ends), **given)
+    assert found.choices[0].route.waiting_h > 1.0
+    notes = " ".join(found.notes)
+    assert "node" not in notes and "No route for distance" not in notes
+    inshore = plan(Voyage(**ends, objective="inshore"), **given).best
+    assert inshore.feasible and inshore.waiting_h > 1.0
+
+
+def test_a_search_without_a_path_is_reported_in_the_words_of_the_voyage():
+    error = NoRouteError(
+        "There is no path from node 879 to node 880.",
+        reasons={"under-keel clearance": 473, "no data": 795},
+        nearest=(0.0, 0.5),
+    )
+    ends = Endpoint("A", 0.0, 0.0, 0.0), Endpoint("B", 0.0, 1.0, 0.0)
+    told = no_path_error(error, ends, 0.0, wait=False)
+    assert str(told) == (
+        "No route from A to B keeps the limits without a wait, departing 1970-01-01T00:00:00Z. "
+        "The nearest point reached is 0.0000N 0.5000E, 30.1 nm short. Load less (--load-factor), "
+        "require less clearance (--ukc), or allow waiting for the tide."
+    )
+    assert told.reasons == error.reasons
 
 
 @pytest.mark.slow

@@ -345,3 +345,16 @@ def test_units_and_times_that_are_not_stated_have_a_note(tmp_path) -> None:
     assert note.startswith("No time in the data: the values of swh in ")
     assert guesses_of_files(still.layers, {HS}) == (note,)
     assert guesses_of_files(still.layers, {EAST}) == ()  # a plan that does not read it
+
+
+def test_every_time_of_a_small_file_is_inspected(monkeypatch) -> None:
+    """One of 40 times holds 9999 m; of a large file eight times are read, and that is stated."""
+    data = regular(hours=np.arange(40.0), field=same(2.0))
+    data["swh"].values[7] = 9999.0
+    with pytest.raises(DatasetError, match="reaches 9999 m"):
+        Sea.open(data).describe()
+    monkeypatch.setattr("thalweg.sea.inspection._ALL_TIMES", 100)
+    found = Sea.open(data).describe()
+    assert list(found.times_read.values()) == [(8, 40)]
+    assert list(found.as_dict()["times_read"].values()) == [[8, 40]]
+    assert list(found.ranges.values()) == [(2.0, 2.0)]

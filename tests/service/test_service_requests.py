@@ -240,6 +240,38 @@ def test_a_departure_within_one_of_several_seas_is_taken(client):
             check_plan_order(request, voyage, client.app.state.service)
 
 
+@pytest.mark.parametrize(
+    ("fill", "refused"),
+    [
+        ({"waves": 0}, True),
+        ({"wind": "nearest:20"}, True),
+        ({"wind": [0, "nearest:20"]}, False),
+        ({"wind": 0, "waves": 0}, False),
+    ],
+)
+def test_departures_beyond_the_data_are_refused_unless_all_of_them_is_filled(client, fill, refused):
+    import xarray as xr
+
+    times = np.array(["2026-01-01", "2026-01-03"], "M8[ns]")
+    axes = {"time": times, "latitude": [40.0, 50.0], "longitude": [-20.0, 0.0]}
+    calm = xr.DataArray(np.zeros((2, 2, 2)), axes, list(axes), attrs={"units": "m s-1"})
+    path = client.app.state.service.settings.folder / "beyond.nc"
+    xr.Dataset({"u10": calm, "v10": calm}).to_netcdf(path)
+    url = "/api/v1/seas"
+    sent = client.post(url, params={"name": "beyond.nc"}, content=path.read_bytes()).json()
+    from thalweg.planning import Voyage
+    from thalweg.service.endpoints.order_checks import check_plan_order
+    from thalweg.service.jobs.plan_request import PlanRequest
+
+    voyage = Voyage.from_dict({**SHORT["voyage"], "depart": "2027-01-01"})
+    request = PlanRequest.model_validate({**SHORT, "seas": [sent["id"]], "fill": fill})
+    if refused:
+        with pytest.raises(OutsidePeriodError, match="outside the data"):
+            check_plan_order(request, voyage, client.app.state.service)
+    else:
+        check_plan_order(request, voyage, client.app.state.service)
+
+
 def test_variables_that_are_named_with_an_upload_are_used(client):
     import xarray as xr
 

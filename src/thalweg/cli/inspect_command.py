@@ -71,9 +71,13 @@ def _print_inspection(inspection: dict[str, Any]) -> None:
         print(f"  {names} [{row['units']}]: {row['how']}")
         for variable in row["variables"]:
             print(f"    {variable}")
-    print("Coverage, and values in SI at up to 8 times")
+    print("Coverage, and values in SI")
     for row in _merged(inspection["coverage"], _EXTENT_KEYS):
-        print(f"  {row['source']}: {_extent_text(row)}")
+        read = inspection["times_read"].get(row["source"], [1, 1])
+        part = (
+            f"; values at {read[0]} of {read[1]} times, not all read" if read[0] < read[1] else ""
+        )
+        print(f"  {row['source']}: {_extent_text(row)}{part}")
         for variable in row["variables"]:
             missing = inspection["missing_fraction"].get(f"{row['source']}: {variable}", 0.0)
             share = f", no value at {100 * missing:.1f} % of the positions" if missing else ""

@@ -114,6 +114,21 @@ def layers_filled(
     return tuple(filled), tuple(assumptions)
 
 
+def variables_filled(policies: Sequence[tuple[str, FillValue]]) -> frozenset[str]:
+    """Return the variables that fills make known at all times, also beyond the data.
+
+    Parameters
+    ----------
+    policies : Quantity and value; values of a known position nearby hold within the data only.
+    """
+    everywhere = {
+        name
+        for name, value in policies
+        if not (isinstance(value, str) and value.strip().startswith((NEAREST, SHELTER)))
+    }
+    return frozenset(name for one in everywhere for name in FILLABLE_VARIABLES.get(one, ()))
+
+
 def layers_without_fills(layers: Sequence[Layer]) -> tuple[Layer, ...]:
     """Return the layers that hold data or models, without those of fill values and policies.
 

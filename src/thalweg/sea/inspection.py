@@ -18,7 +18,8 @@ from thalweg.sea.grids.source_variables import GridWindow
 from thalweg.sea.layer import Layer
 from thalweg.sea.recognition_record import RecognisedVariable
 
-SAMPLED_TIMES = 8  #: times at which the fraction of missing values is measured
+SAMPLED_TIMES = 8  #: times of a large file that are read
+_ALL_TIMES = 4_000_000  # values of a variable up to which all times are read
 _MOST_VALUES = 20_000  # of each variable and time that are judged for a warning
 
 
@@ -48,9 +49,12 @@ class Inspection:
         Variables that are not used.
     coverage : Where and when each variable is known.
     missing : Fraction of grid points without a value (land, ice, gaps), 0 to 1, by source and
-        variable, measured at up to 8 times spread over the period.
+        variable, measured at the times that were read.
     ranges : mapping of str to (float, float)
         Least and greatest value [SI] at these times, by source and variable.
+    times_read : mapping of str to (int, int)
+        How many times were read, and how many there are, by source: all of a small file, 8 spread
+        over the period of a large one.
     gaps : Gaps in time axes; values are not interpolated across them.
     warnings : Values that look like those of another unit; units and times that are not stated.
     members : Size of the ensemble, of which the first member is reported; 0 for a single sea.
@@ -61,6 +65,7 @@ class Inspection:
     coverage: tuple[Coverage, ...]
     missing: dict[str, float]
     ranges: dict[str, tuple[float, float]]
+    times_read: dict[str, tuple[int, int]]
     gaps: tuple[DataGap, ...]
     warnings: tuple[str, ...] = ()
     members: int = 0
@@ -73,6 +78,7 @@ class Inspection:
             "coverage": [asdict(c) for c in self.coverage],
             "missing_fraction": dict(self.missing),
             "ranges": {name: list(pair) for name, pair in self.ranges.items()},
+            "times_read": {name: list(pair) for name, pair in self.times_read.items()},
             "gaps": [asdict(g) for g in self.gaps],
             "warnings": list(self.warnings),
             "members": self.members,
@@ -91,7 +97,8 @@ def _time_text(time: float | None) -> str | None:
 def inspect_layers(layers: Sequence[Layer]) -> Inspection:
     """Return the variables recognised and ignored in the files, coverage, missing data and gaps.
 
-    A few times of every file are read. Of an ensemble, the first member is reported.
+    Files are read at all times where they are small, else at a few. Of an ensemble, the first
+    member is reported.
 
     Returns
     -------
@@ -119,6 +126,7 @@ def inspect_layers(layers: Sequence[Layer]) -> Inspection:
         tuple(row for layer in single for row in layer.coverage()),
         missing,
         ranges,
+        {layer.source: (len(_levels(layer)), max(1, layer.axis.times.size)) for layer in gridded},
         data_gaps(single),
         tuple(warnings),
         members,
@@ -140,13 +148,21 @@ def data_gaps(layers: Sequence[Layer]) -> tuple[DataGap, ...]:
     )
 
 
+def _levels(layer: GridLayer) -> NDArray[np.int64]:
+    """Return the numbers of the times of a layer that are read."""
+    rows, columns = layer.grid.shape
+    count = max(1, layer.axis.times.size)
+    if count * rows * columns <= _ALL_TIMES:
+        return np.arange(count)
+    return np.unique(np.linspace(0, count - 1, SAMPLED_TIMES).round().astype(np.int64))
+
+
 def _value_ranges(
     layer: GridLayer,
 ) -> tuple[dict[str, tuple[float, float, float]], dict[str, NDArray[Any]]]:
     """Return the fraction of grid points without a value and the range, and some values."""
     rows, columns = layer.grid.shape
-    count = max(1, layer.axis.times.size)
-    levels = np.unique(np.linspace(0, count - 1, SAMPLED_TIMES).round().astype(int))
+    levels = _levels(layer)
     ranges: dict[str, list[tuple[float, float, float]]] = {}
     some: dict[str, list[NDArray[Any]]] = {}
     for level in levels:
@@ -156,7 +172,7 @@ def _value_ranges(
                 low, high = np.nanmin(values, initial=np.inf), np.nanmax(values, initial=-np.inf)
                 share = float(np.isnan(values).mean())
                 ranges.setdefault(name, []).append((share, float(low), float(high)))
-                stride = 1 + values.size // _MOST_VALUES
+                stride = 1 + values.size * len(levels) // (SAMPLED_TIMES * _MOST_VALUES)
                 some.setdefault(name, []).append(values.reshape(-1)[::stride].copy())
     found = {
         name: (float(np.mean(shares)), min(lows), max(highs))

@@ -26,7 +26,11 @@ from thalweg.planning.pareto.trade_off_context import (
     spread_settings,
 )
 from thalweg.planning.planning_context import PlanningContext
-from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
+from thalweg.planning.single.no_route_diagnosis import (
+    late_arrival_error,
+    no_path_error,
+    no_route_error,
+)
 from thalweg.planning.single.route_candidates import refine_track, track_from_result
 from thalweg.planning.single.stretch import isochrones, plan_stretch
 from thalweg.planning.single.stretch_result import StretchResult
@@ -222,6 +226,7 @@ def network_pareto_front(
     Raises
     ------
     SearchInterrupted : If Ctrl-C is pressed before there is a front.
+    NoRouteError : If no path keeps the limits, also with waits where the voyage allows them.
     """
 
     def progress(share: float) -> None:
@@ -234,9 +239,27 @@ def network_pareto_front(
         query = replace(query, settings=spread_settings(trade_off.settings, _REFINED_SETTINGS))
         tolerance = _REFINED_TABLE_TOLERANCE
     bin_s = (latest - query.depart) / _TIME_BINS
-    return pareto_front(
-        ship, query, bin_s=bin_s, table_tolerance=tolerance, lower=False, progress=progress
-    )
+    may_wait = trade_off.context.voyage.wait
+
+    def search(wait: bool) -> NetworkFront:
+        return pareto_front(
+            ship,
+            replace(query, wait=wait),
+            bin_s=bin_s,
+            table_tolerance=tolerance,
+            lower=False,
+            progress=progress,
+        )
+
+    try:
+        try:
+            return search(query.wait)
+        except NoRouteError:
+            if query.wait or not may_wait:
+                raise
+            return search(True)  # at a bar that is closed until the tide rises
+    except NoRouteError as error:
+        raise no_path_error(error, trade_off.ends, query.depart, wait=may_wait) from error
 
 
 def front_search(

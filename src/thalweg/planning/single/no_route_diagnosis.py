@@ -102,6 +102,35 @@ def no_route_error(
     )
 
 
+def no_path_error(
+    error: NoRouteError, ends: tuple[Endpoint, ...], depart: float, *, wait: bool
+) -> NoRouteError:
+    """Return the error of a search between two nodes in the words of the voyage.
+
+    Parameters
+    ----------
+    error : As the search raised it.
+    ends : Start, via points and goal.
+    depart : Departure [s since 1970].
+    wait : Whether the ship might wait.
+    """
+    where = "No point beyond the start can be reached."
+    if error.nearest is not None:
+        left = float(distance(*error.nearest, ends[-1].lat, ends[-1].lon)) / NAUTICAL_MILE
+        where = (
+            f"The nearest point reached is {format_position(*error.nearest)}, {left:.1f} nm short."
+        )
+    waits = "" if wait else " without a wait"
+    return NoRouteError(
+        f"No route from {ends[0].name} to {ends[-1].name} keeps the limits{waits}, "
+        f"departing {format_time(depart)}.",
+        where,
+        _advice(_without_gaps(error.reasons), ended=False, is_tidal=False),
+        reasons=error.reasons,
+        nearest=error.nearest,
+    )
+
+
 class _Reached(NamedTuple):
     """The node from which the way to the goal is shortest, of those that were reached.
 

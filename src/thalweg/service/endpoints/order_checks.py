@@ -17,6 +17,7 @@ from thalweg.core.units import KNOT
 from thalweg.operations.dredging import Project
 from thalweg.planning.request.ordered_speed import with_exact_speed, with_order
 from thalweg.planning.voyage import Voyage
+from thalweg.sea.fill_policies import variables_filled
 from thalweg.service.jobs.named_uploads import ESTUARY, named_uploads
 from thalweg.service.jobs.plan_request import EvaluationRequest, PlanRequest, ShipAndSea
 from thalweg.service.jobs.request_objects import open_seas, open_ship_of
@@ -24,6 +25,7 @@ from thalweg.service.jobs.sea_facts import sea_facts
 from thalweg.service.problem_details import ServiceError
 from thalweg.service.service_state import ServiceState
 from thalweg.studies import Study
+from thalweg.studies.study_axes import fill_policies
 
 _WITHOUT_TIMES = ("sea_floor_depth",)  # begins the names of variables that do not change
 
@@ -89,9 +91,10 @@ def check_plan_order(request: PlanRequest, voyage: Voyage, state: ServiceState) 
     if voyage.speed_kn is not None:
         with errors_about("speed_kn"):
             with_order(open_ship_of(request, _ship_files(request.ship, state)), voyage)
-    if not voyage.departure_is_open and not request.fill:
+    if not voyage.departure_is_open:
         times = voyage.earliest_departure, voyage.latest_departure
-        _check_period(times, request.seas, state, "depart")
+        filled = variables_filled(request.fill_policies)
+        _check_period(times, request.seas, state, "depart", filled)
 
 
 def check_evaluation_order(request: EvaluationRequest, state: ServiceState) -> None:
@@ -107,8 +110,9 @@ def check_evaluation_order(request: EvaluationRequest, state: ServiceState) -> N
             ship = open_ship_of(request, _ship_files(request.ship, state))
             with_exact_speed(ship, request.speed_kn, request.hold)
     given = request.depart or state.routes.get(request.route).facts.get("depart")
-    if given is not None and not request.fill:
-        _check_period((parse_time(given),) * 2, request.seas, state, "depart")
+    if given is not None:
+        filled = variables_filled(request.fill_policies)
+        _check_period((parse_time(given),) * 2, request.seas, state, "depart", filled)
 
 
 def check_project_order(project: Project, sea: str | Sequence[str], state: ServiceState) -> None:
@@ -137,14 +141,14 @@ def check_study_order(study: Study, state: ServiceState) -> None:
     tried = set()
     for row in study.rows():
         sea, depart = row.request.get("sea"), row.request["voyage"].get("depart")
-        if sea is None or depart is None or row.request.get("fill"):
+        if sea is None or depart is None:
             return
-        seas = _sea_names(sea)
-        if (seas, depart) in tried:
+        seas, filled = _sea_names(sea), variables_filled(fill_policies(row.request.get("fill")))
+        if (seas, depart, filled) in tried:
             continue
-        tried.add((seas, depart))
+        tried.add((seas, depart, filled))
         try:
-            _check_period((parse_time(depart),) * 2, seas, state, "depart")
+            _check_period((parse_time(depart),) * 2, seas, state, "depart", filled)
         except OutsidePeriodError as error:
             first = first or error
         else:
@@ -207,16 +211,22 @@ def _ship_files(ship: str, state: ServiceState) -> dict[str, str]:
 
 
 def _check_period(
-    departure: tuple[float, float], seas: Sequence[str], state: ServiceState, field: str
+    departure: tuple[float, float],
+    seas: Sequence[str],
+    state: ServiceState,
+    field: str,
+    filled: frozenset[str] = frozenset(),
 ) -> None:
     """Check that seas have data at the earliest and the latest departure.
 
-    A sea without times, which holds always, makes every departure possible.
+    A sea without times, which holds always, makes every departure possible. Variables that are
+    ``filled`` at all times need no data.
     """
     periods = []
     for name in seas:
         facts = _facts(name, state)
-        if all(one.startswith(_WITHOUT_TIMES) for one in facts["variables"]):
+        needed = set(facts["variables"]) - filled
+        if all(one.startswith(_WITHOUT_TIMES) for one in needed):
             continue
         if facts["start"] is None or facts["end"] is None:
             return
