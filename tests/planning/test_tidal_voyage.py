@@ -9,7 +9,7 @@ from thalweg.core.errors import NoRouteError
 from thalweg.core.time import parse_time
 from thalweg.planning import alternative_plans
 from thalweg.planning.request.voyage_endpoints import Endpoint
-from thalweg.planning.single.no_route_diagnosis import no_path_error
+from thalweg.planning.single.no_route_diagnosis import unreached_goal_error
 from thalweg.sea import standard_names as nm
 from thalweg.sea.models.stratified_coast import stratified_coast_current
 from thalweg.sea.tides.constituents import Constituents
@@ -76,7 +76,7 @@ def test_a_search_without_a_path_is_reported_in_the_words_of_the_voyage():
         nearest=(0.0, 0.5),
     )
     ends = Endpoint("A", 0.0, 0.0, 0.0), Endpoint("B", 0.0, 1.0, 0.0)
-    told = no_path_error(error, ends, 0.0, wait=False)
+    told = unreached_goal_error(error, ends, 0.0, wait=False)
     assert str(told) == (
         "No route from A to B keeps the limits without a wait, departing 1970-01-01T00:00:00Z. "
         "The nearest point reached is 0.0000N 0.5000E, 30.1 nm short. Load less (--load-factor), "

@@ -240,6 +240,34 @@ def test_a_departure_within_one_of_several_seas_is_taken(client):
             check_plan_order(request, voyage, client.app.state.service)
 
 
+def test_too_few_routes_to_compare_are_named_in_plain_words(client):
+    found = problem(client.post("/api/v1/compare", json={"routes": []}), 422)
+    assert found["asked"] == "routes has 0 entries." and found["possible"] == "It has at least 2."
+    found = problem(client.post("/api/v1/plans", json={**SHORT, "seas": ["calm"] * 21}), 422)
+    assert found["asked"] == "seas has 21 entries." and found["possible"] == "It has at most 20."
+
+
+def test_messages_advise_entries_of_the_request_and_no_options():
+    from thalweg.core.errors import InputError
+    from thalweg.service.problem_details import problem_of
+
+    error = InputError(
+        "No depth (--depth FILE).",
+        "Load less (--load-factor), require less clearance (--ukc), or --depart-window.",
+        "Start it with --allow-host NAME; plan without waits (--no-wait).",
+    )
+    found = problem_of(error)
+    assert found["asked"] == "No depth (depths)."
+    assert found["possible"] == (
+        "Load less (load_factor), require less clearance (voyage.min_ukc_m), or "
+        "voyage.depart_window."
+    )
+    assert found["remedy"] == (
+        "Start it with --allow-host NAME; plan without waits (voyage.wait: false)."
+    )
+    assert found["detail"] == " ".join(found[key] for key in ("asked", "possible", "remedy"))
+
+
 @pytest.mark.parametrize(
     ("fill", "refused"),
     [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
@@ -56,6 +57,27 @@ _FORMS: Final = {
     "seas": "'calm', 'storm', or the id of an uploaded sea (GET /seas lists them)",
     "sampling": "nearest, nearest:HOURS or step",
 }
+#: Entries of a request in place of options of the command line, which errors advise.
+_ENTRIES: Final = {
+    "--arrive": "voyage.arrive",
+    "--avoid": "voyage.avoid",
+    "--depart": "voyage.depart",
+    "--depart-window": "voyage.depart_window",
+    "--depth": "depths",
+    "--fill": "fill",
+    "--fuel-price": "voyage.fuel_price_usd",
+    "--hold": "voyage.hold",
+    "--load-factor": "load_factor",
+    "--no-eca": "eca: false",
+    "--no-wait": "voyage.wait: false",
+    "--offing": "voyage.offing_nm",
+    "--open": "voyage.open",
+    "--resolution": "resolution_nm",
+    "--speed": "voyage.speed_kn",
+    "--traffic": "traffic",
+    "--ukc": "voyage.min_ukc_m",
+}
+_OPTION: Final = re.compile(r"(--[a-z]+(?:-[a-z]+)*)( (?:FILE|NAME|USD)\b)?")
 
 
 class ServiceError(ThalwegError):
@@ -94,6 +116,7 @@ def problem_of(error: ThalwegError, status: int = 422) -> dict[str, Any]:
         and ``details``.
     """
     plain = error.as_dict()
+    plain |= {key: with_entries(plain[key]) for key in _PARTS}
     status = getattr(error, "status", status)
     details = plain["details"]
     problem = {
@@ -114,6 +137,11 @@ def problem_of(error: ThalwegError, status: int = 422) -> dict[str, Any]:
     return problem
 
 
+def with_entries(text: str) -> str:
+    """Return a message with the entries of a request in place of command line options."""
+    return _OPTION.sub(lambda found: _ENTRIES.get(found[1], found[0]), text)
+
+
 def problem_response(
     error: ThalwegError,
     headers: Mapping[str, str] | None = None,
@@ -123,7 +151,8 @@ def problem_response(
     problem = problem_of(error, 422)
     if problem["status"] in (404, 422) and problem["field"]:
         problem["errors"] = [
-            {"field": one.details.get("field")} | {key: getattr(one, key) for key in _PARTS}
+            {"field": one.details.get("field")}
+            | {key: with_entries(getattr(one, key)) for key in _PARTS}
             for one in faults or [error]
         ]
     return JSONResponse(
@@ -207,6 +236,15 @@ def _fault_of_shape(first: Any, model: type[BaseModel] | None = None) -> Service
     possible = "The form of requests is in /openapi.json, with examples."
     if first["type"] == "extra_forbidden" and model is not None and len(place) == 1:
         possible = f"A request has the entries {', '.join(sorted(model.model_fields))}."
+    if first["type"] in ("too_short", "too_long"):
+        given, context = first["input"], first["ctx"]
+        least, most = context.get("min_length"), context.get("max_length")
+        what = f"has {len(given)} {'entry' if len(given) == 1 else 'entries'}"
+        possible = (
+            f"It has at least {least}."
+            if first["type"] == "too_short"
+            else (f"It has at most {most}.")
+        )
     if first["type"] in _BOUNDS:
         what = f"is {shortened_repr(first['input'])}"
         possible = _BOUNDS[first["type"]].format(**first.get("ctx") or {})

@@ -28,8 +28,8 @@ from thalweg.planning.pareto.trade_off_context import (
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.single.no_route_diagnosis import (
     late_arrival_error,
-    no_path_error,
     no_route_error,
+    unreached_goal_error,
 )
 from thalweg.planning.single.route_candidates import refine_track, track_from_result
 from thalweg.planning.single.stretch import isochrones, plan_stretch
@@ -259,7 +259,7 @@ def network_pareto_front(
                 raise
             return search(True)  # at a bar that is closed until the tide rises
     except NoRouteError as error:
-        raise no_path_error(error, trade_off.ends, query.depart, wait=may_wait) from error
+        raise unreached_goal_error(error, trade_off.ends, query.depart, wait=may_wait) from error
 
 
 def front_search(

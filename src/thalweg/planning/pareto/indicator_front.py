@@ -24,7 +24,7 @@ from thalweg.planning.pareto.search_horizon import (
 )
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
 from thalweg.planning.pareto.weighted_sums import key_figure, with_objective
-from thalweg.planning.single.no_route_diagnosis import no_path_error, no_route_error
+from thalweg.planning.single.no_route_diagnosis import no_route_error, unreached_goal_error
 from thalweg.route import Route
 from thalweg.route.indicator_columns import indicator_table
 from thalweg.search import FrontPoint, FrontQuery, pareto_front, path_costs
@@ -196,7 +196,9 @@ class _WeightedSearches:
         try:
             front = pareto_front(ship, query, bin_s=bin_s)
         except NoRouteError as error:
-            raise no_path_error(error, self.trade_off.ends, query.depart, wait=False) from error
+            raise unreached_goal_error(
+                error, self.trade_off.ends, query.depart, wait=False
+            ) from error
         if not front.points:
             raise NoRouteError(
                 "No route arrives within the period of the front.",

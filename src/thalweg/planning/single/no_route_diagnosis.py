@@ -102,7 +102,7 @@ def no_route_error(
     )
 
 
-def no_path_error(
+def unreached_goal_error(
     error: NoRouteError, ends: tuple[Endpoint, ...], depart: float, *, wait: bool
 ) -> NoRouteError:
     """Return the error of a search between two nodes in the words of the voyage.
