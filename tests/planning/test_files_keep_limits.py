@@ -61,5 +61,5 @@ def test_files_of_a_route_that_waits_for_lower_waves_keep_the_limit(found, tmp_p
 
 def test_a_value_and_its_limit_differ_in_messages():
     over = Violation("wave height above the limit", START, 0.0, 1.0, LIMIT + 3e-5, LIMIT)
-    assert str(over).endswith("(4.00003, limit 4.00000)")
+    assert str(over).endswith("(4.00003 m, limit 4.00000 m)")
     assert str(Violation("waves", START, 0.0, 1.0, 5.1, LIMIT)).endswith("(5.10, limit 4.00)")

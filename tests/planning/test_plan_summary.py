@@ -7,6 +7,7 @@ import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.chart.canals import KIEL, Canal, canals_with_dues
+from thalweg.cli.tables import _print_details
 from thalweg.core.geodesy import format_position_minutes, parse_position
 from thalweg.core.time import duration_text, utc_text
 from thalweg.planning.plan_front import ParetoFront
@@ -15,6 +16,7 @@ from thalweg.planning.report.note_order import notes_of_routes
 from thalweg.planning.report.plan_summary import (
     MAX_LINES,
     limits_text,
+    notes_lines,
     quality_text,
     summary_with_notes,
 )
@@ -75,6 +77,7 @@ def test_notes_that_do_not_fit_are_counted(answer):
     assert len(lines) == MAX_LINES
     assert lines[-1] == "Note      note 1 (7 more notes: --verbose, plan.notes)"
     assert "No depth" not in "".join(lines)
+    assert notes_lines(["a", "b"], 1) == ["Note      a (1 more note: --verbose)"]
 
 
 def test_notes_on_danger_come_first_and_are_never_hidden(answer):
@@ -118,6 +121,13 @@ def test_the_summary_states_the_certain_bound_or_why_there_is_none(answer, certa
     assert quality_text(with_bound(answer, certain, kind)) == text
 
 
+def test_details_round_the_gap_as_the_summary_does(answer, capsys):
+    bounded = with_bound(answer, 0.8707)
+    assert quality_text(bounded) == "at most 13.0 % less time is possible"
+    _print_details(bounded)
+    assert "at most 13.0 % less than this one (the gap)" in capsys.readouterr().out
+
+
 def test_a_bound_above_the_route_is_an_error_and_not_hidden(answer):
     with pytest.raises(AssertionError, match="above the value"):
         assert with_bound(answer, 1.158).gap < 0.0
@@ -128,8 +138,8 @@ def test_an_interrupted_plan_and_one_that_breaks_a_limit(answer):
     violation = Violation("wave height above the limit", answer.best.depart, 51.2, 2.5, 4.0, 3.0)
     broken = replace(answer, routes=(replace(answer.best, violations=(violation, violation)),))
     assert quality_text(broken) == "not stated: the route breaks a limit"
-    assert limits_text(broken).startswith("NOT KEPT: wave height above the limit at 51.2")
-    assert limits_text(broken).endswith("(4.00, limit 3.00), and 1 more")
+    assert limits_text(broken).startswith("NOT KEPT: wave height above the limit at 51 12.0N")
+    assert limits_text(broken).endswith("(4.00 m, limit 3.00 m), and 1 more")
 
 
 def test_only_with_known_depth_all_limits_are_called_kept(answer):
@@ -250,7 +260,7 @@ def test_an_evaluated_route_names_every_limit_that_it_breaks(answer):
         "Depth",
         *2 * ["Limits"],
     ]
-    assert rows[-1][1].startswith("NOT KEPT: wave height above the limit at 51.2")
+    assert rows[-1][1].startswith("NOT KEPT: wave height above the limit at 51 12.0N")
     sound = route_items(answer.best, sea=known.sea, chart=known.chart, ship=known.ship)
     assert sound[-1] == ("Limits", "all kept")
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.route.planar import ship
+from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
 from thalweg.planning.report.note_order import count_of_dangers
 from thalweg.route import RouteFileOptions, Track, evaluate, write_route_files
@@ -85,3 +86,13 @@ def test_schedules_of_rtz_count(tmp_path, eta, noted):
         "</schedule></schedules></route>"
     )
     assert bool(notes_of(tmp_path / "a.rtz")) == noted
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_what_is_no_time_is_refused_at_each_waypoint(tmp_path, number):
+    rows = ["0,0.0,2026-03-01T06:00Z", "0,0.1,", "0,0.2,2026-03-01T07:00Z"]
+    rows[number - 1] = rows[number - 1].rpartition(",")[0] + ",yesterday"
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(["lat,lon,time", *rows]))
+    with pytest.raises(InputError, match=f"Waypoint {number} has 'yesterday', which is not a time"):
+        route_file_contents(path)

@@ -57,8 +57,11 @@ def test_route_is_plain_data_on_demand():
 
 def test_violation_has_a_position():
     text = str(Violation("under-keel clearance", 0.0, 52.0, 4.1, -0.5, 1.0))
-    assert "52.0000N 4.1000E" in text
-    assert "(-0.50, limit 1.00)" in text
+    assert text == (
+        "under-keel clearance at 52 00.0N 004 06.0E on 1970-01-01 00:00 UTC (-0.50 m, limit 1.00 m)"
+    )
+    windy = Violation("wind speed above the limit (waiting)", np.nan, 52.0, 4.1, 10.0, 5.0)
+    assert str(windy).endswith("at 52 00.0N 004 06.0E (19.44 kn, limit 9.72 kn)")
     assert Violation("land: leg 2", float("nan"), 0.0, 0.0).as_dict()["time"] is None
 
 

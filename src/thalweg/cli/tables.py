@@ -82,13 +82,15 @@ def _print_details(plan: Plan) -> None:
     from rich.console import Console
     from rich.markup import escape
 
+    from thalweg.planning.report.plan_summary import bounding_percent
+
     console = Console()
     title = f"{plan.provenance['from']} to {plan.provenance['to']}, least {plan.voyage.objective}"
     print_waypoints(console, plan.best.waypoints(), title)
     console.print(
         escape(
             f"Lower bound {plan.lower_bound:.2f} {plan.unit}: no route can be below it, at most "
-            f"{100 * plan.gap:.1f} % less than this one (the gap); "
+            f"{bounding_percent(plan.gap)} % less than this one (the gap); "
             if plan.gap < 1.0
             else ""
         )

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from thalweg.core.geodesy import format_position
+from thalweg.core.geodesy import format_position_minutes
 from thalweg.core.given_numbers import finite_or_none
-from thalweg.core.time import format_time
+from thalweg.core.time import format_time, utc_text
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
+from thalweg.kernels import codes
 from thalweg.route.cost_parts import COST_PARTS
 from thalweg.route.indicator_columns import indicator_table, indicator_value
 from thalweg.route.number_texts import amount_text
@@ -25,6 +26,16 @@ if TYPE_CHECKING:
 
 
 ORDERED_TOO_FAST: Final = "ordered speed above the greatest of the ship"  #: start of a reason
+#: Value [SI] and name of the unit in which a limit is stated, by the start of its reason.
+_UNITS: Final = MappingProxyType(
+    {
+        ORDERED_TOO_FAST: (KNOT, " kn"),
+        codes.REASONS[codes.DEPTH]: (1.0, " m"),
+        codes.REASONS[codes.WAVE_HEIGHT]: (1.0, " m"),
+        codes.REASONS[codes.WIND_SPEED]: (KNOT, " kn"),
+        codes.REASONS[codes.OFFING]: (NAUTICAL_MILE, " nm"),
+    }
+)
 _MOST_DIGITS = 9  # after the point, of numbers that differ little
 
 
@@ -52,9 +63,12 @@ class Violation:
     limit: float = float("nan")
 
     def __str__(self) -> str:
-        text = f"{self.reason} at {format_position(self.lat, self.lon)}, {format_time(self.time)}"
+        place = format_position_minutes(self.lat, self.lon)
+        when = f" on {utc_text(self.time)}" if np.isfinite(self.time) else ""
+        text = f"{self.reason} at {place}{when}"
         if np.isfinite(self.value) and np.isfinite(self.limit):
-            unit, name = (KNOT, " kn") if self.reason.startswith(ORDERED_TOO_FAST) else (1.0, "")
+            units = (unit for start, unit in _UNITS.items() if self.reason.startswith(start))
+            unit, name = next(units, (1.0, ""))
             value, limit = _distinct(self.value / unit, self.limit / unit)
             text += f" ({value}{name}, limit {limit}{name})"
         return text

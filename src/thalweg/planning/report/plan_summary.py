@@ -74,7 +74,8 @@ def notes_lines(notes: Sequence[str], room: int, where: str = "--verbose") -> li
     notes = danger_first(note for note in notes if not note.startswith(_STATED))
     shown = notes[: max(1, room, count_of_dangers(notes))]
     if len(shown) < len(notes):
-        shown[-1] += f" ({len(notes) - len(shown)} more notes: {where})"
+        more = len(notes) - len(shown)
+        shown[-1] += f" ({more} more {'note' if more == 1 else 'notes'}: {where})"
     return [f"Note      {note}" for note in shown]
 
 
@@ -166,7 +167,7 @@ def _figure_words(name: str) -> str:
 
 def _at_most(gap: float, figure: str) -> str:
     """Return how much less of a key figure is possible, with few words."""
-    return f"at most {_percent(gap)} % less {figure} is possible"
+    return f"at most {bounding_percent(gap)} % less {figure} is possible"
 
 
 def _quality_of_front(plan: PlanData) -> str:
@@ -186,7 +187,7 @@ def _quality_of_front(plan: PlanData) -> str:
         alone = f"how much less {value} is possible at the same time is hardly known"
     if max(both) > _WEAK:
         return f"; {alone}"
-    share = _percent(max(both))
+    share = bounding_percent(max(both))
     return f"; over the front no route is {share} % better in both time and {value}; {alone}"
 
 
@@ -195,11 +196,16 @@ def _quality_at_this_time(plan: PlanData, front: ParetoFront) -> str:
     gaps = [gap for gap, one in zip(front.gaps(plan.routes), plan.routes) if one is plan.best]
     if not gaps or gaps[0] is None or gaps[0] > plan.gap - _CLEARLY_LESS:
         return ""
-    return f", and at most {_percent(gaps[0])} % less without taking longer"
+    return f", and at most {bounding_percent(gaps[0])} % less without taking longer"
 
 
-def _percent(share: float) -> str:
-    """Return a share in per cent, rounded up to a tenth, as it bounds something."""
+def bounding_percent(share: float) -> str:
+    """Return a share in per cent, rounded up to a tenth, as it bounds something.
+
+    Parameters
+    ----------
+    share : 0 to 1.
+    """
     return f"{max(0.1, math.ceil(1000.0 * share - 1e-6) / 10.0):.1f}"
 
 

@@ -120,10 +120,18 @@ def waypoint_track(
 
     Raises
     ------
-    InputError : If a time is before that of an earlier waypoint.
+    InputError : If a time is before that of an earlier waypoint, or no time.
     """
     time = times[0] if times else None
     moments = stated_moments(times)
+    for number, (value, moment) in enumerate(zip(times, moments), start=1):
+        if math.isnan(moment) and value not in (None, ""):
+            raise InputError(
+                f"Waypoint {number} has {shortened_repr(value)}, which is not a time.",
+                "Times are ISO 8601 in UTC, such as 2026-03-01T06:00Z.",
+                "Correct it, or leave it empty.",
+                waypoint=number,
+            )
     _check_times_rise(moments)
     orders = [waypoint_order(values, i) for i, values in enumerate(given, start=1)]
     rhumb = [is_rhumb_line(values.get(GEOMETRY), i) for i, values in enumerate(given[:-1], start=1)]
