@@ -23,6 +23,13 @@ def test_a_port_between_closed_passages_has_no_way_out():
         sea_distance("Singapore", "Ras Tanura", draught_m=20.8)
 
 
+def test_what_has_a_way_round_it_is_not_named():
+    """The Alderney Race and Suez are closed on the shortest way, but not the reason."""
+    with pytest.raises(NoPathError, match="Malacca-Singapore west: the draught") as refused:
+        sea_distance("Rotterdam", "Singapore", draught_m=20.8)
+    assert refused.value.details["closed"] == ["Malacca-Singapore west"]
+
+
 def test_a_passage_that_was_avoided_is_named_as_closed():
     with pytest.raises(NoPathError, match="Kerch Strait, which is closed here") as refused:
         sea_distance("Istanbul", "Mariupol", avoid=["Kerch"])

@@ -33,6 +33,13 @@ def test_a_table_of_rows_is_read_in_order_of_speed(tmp_path):
     assert ship.limits.wind_speed == 20.0
 
 
+def test_a_ship_is_shown_in_one_line(tmp_path):
+    assert repr(Ship.load(_write(tmp_path, GOOD))) == "<Ship 'Test ship': 10 to 12 kn, draught 7 m>"
+    assert repr(Ship.simple()) == "<Ship 'simple ship': 8 kn, draught 5 m>"
+    field = Ship.from_speed_function(lambda c: 2.0 + np.abs(c.lat), draught_m=2.0)
+    assert repr(field).endswith(": speed by place, draught 2 m>")
+
+
 def test_a_table_of_columns_is_the_same_ship(tmp_path):
     columns = GOOD.split("table:")[0] + (
         "table: {speed_kn: [10, 12], fuel_t_per_day: [9, 14], power_kw: [1900, 3000]}\n"

@@ -236,6 +236,12 @@ class Ship:
     greatest_order = delegated(queries.ship_greatest_order)
     fingerprint = delegated(ship_tabulation.ship_fingerprint)
 
+    def __repr__(self) -> str:
+        """Return the ship in one line, such as ``<Ship 'tug': 6 to 12 kn, draught 4.4 m>``."""
+        ends = dict.fromkeys(f"{speed / KNOT:.3g}" for speed in self.speeds[[0, -1]])
+        speeds = "speed by place" if "nan" in ends else f"{' to '.join(ends)} kn"
+        return f"<Ship {self.name!r}: {speeds}, draught {self.draught:g} m>"
+
     @property
     def speeds(self) -> FloatArray:
         """Calm-water speed of every setting at the load factor [m/s], ascending."""

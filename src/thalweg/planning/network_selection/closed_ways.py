@@ -113,20 +113,49 @@ def _has_way(seas: Seaways, start: Endpoint, goal: Endpoint) -> bool:
 
 
 def _closed_on_the_way(seas: Seaways, start: Endpoint, goal: Endpoint) -> list[NarrowWay]:
-    """Return the closed passages and canals of the shortest way with all of them open."""
+    """Return what is closed on the shortest way with all of it open, and has no way round it."""
     world = world_chart()
     try:
         line = Seaways(world).graph_path(start, goal)
     except NoRouteError:
         return []
     lat, lon = np.array(line).T
-    open_here = {passage.name for passage in seas.chart.passages} - set(seas.passages)
+    open_passages = {passage.name for passage in seas.chart.passages} - set(seas.passages)
     crossed = passages_crossed(world.coastline, world.passages, lat, lon)
-    found: list[NarrowWay] = [one for _, one in crossed if one.name not in open_here]
+    found: list[NarrowWay] = [one for _, one in crossed if one.name not in open_passages]
     canal = np.asarray(world.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:]))
-    canals = {one.name for one in seas.chart.canals} - set(seas.canals)
+    open_canals = {one.name for one in seas.chart.canals} - set(seas.canals)
     used = [world.canals[k] for k in canal[canal >= 0].tolist()]
-    return found + [one for one in used if one.name not in canals]
+    found += [one for one in used if one.name not in open_canals]
+    closed = Seaways(
+        world,
+        tuple(one.name for one in world.canals if one.name not in open_canals),
+        tuple(one.name for one in world.passages if one.name not in open_passages),
+    )
+    return _without_ways_round(closed, found, start, goal)
+
+
+def _without_ways_round(
+    seas: Seaways, found: list[NarrowWay], start: Endpoint, goal: Endpoint
+) -> list[NarrowWay]:
+    """Return those of some closed passages and canals that all have to be open for a way.
+
+    Parameters
+    ----------
+    seas : All of the world, with what is closed.
+    found : What is closed on one way.
+    """
+    needed = found
+    for one in reversed(found):  # the first ones on a way stay where another could stand for them
+        others = [other for other in needed if other is not one]
+        names = {other.name for other in others}
+        opened = replace(
+            seas,
+            canals=tuple(name for name in seas.canals if name not in names),
+            passages=tuple(name for name in seas.passages if name not in names),
+        )
+        needed = others if _has_way(opened, start, goal) else needed
+    return needed or found
 
 
 def _restriction(closed: NarrowWay, **dimensions: float | None) -> str:
