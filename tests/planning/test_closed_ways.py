@@ -24,10 +24,16 @@ def test_a_port_between_closed_passages_has_no_way_out():
 
 
 def test_what_has_a_way_round_it_is_not_named():
-    """The Alderney Race and Suez are closed on the shortest way, but not the reason."""
+    """The Alderney Race and Suez are closed on the shortest way, but not the reason.
+
+    With Malacca-Singapore west alone the way would lead over shoals from the south.
+    """
     with pytest.raises(NoPathError, match="Malacca-Singapore west: the draught") as refused:
         sea_distance("Rotterdam", "Singapore", draught_m=20.8)
-    assert refused.value.details["closed"] == ["Malacca-Singapore west"]
+    assert refused.value.details["closed"] == [
+        "Malacca: One Fathom Bank",
+        "Malacca-Singapore west",
+    ]
 
 
 def test_a_passage_that_was_avoided_is_named_as_closed():

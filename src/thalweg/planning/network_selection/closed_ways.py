@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -12,6 +13,7 @@ import numpy as np
 
 from thalweg.chart.approaches import line_between
 from thalweg.chart.canals import Canal
+from thalweg.chart.depth.shoals_of_draught import shoals_of_draught
 from thalweg.chart.passage_crossings import passages_crossed
 from thalweg.chart.passages import Passage
 from thalweg.core.errors import NoPathError, NoRouteError
@@ -25,6 +27,7 @@ from thalweg.planning.report.closed_way_report import (
     ways_of_names,
     ways_on_line,
 )
+from thalweg.planning.report.distance_report import shoal_miles
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways, path_length_and_canals, world_chart
 
@@ -32,6 +35,8 @@ from thalweg.planning.seaways import Seaways, path_length_and_canals, world_char
 _LEAST_SHARE: Final = 0.02
 _LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE
 _PIECE: Final = 10.0 * NAUTICAL_MILE  # of the line of a closed way, to see how far off it is
+
+_MORE_SHOALS: Final = 5.0  # on a way round a passage [nm]
 
 
 def closed_way_error(
@@ -57,7 +62,7 @@ def closed_way_error(
     for start, goal in pairwise(ends):
         if _has_way(seas, start, goal):
             continue
-        closed = _closed_on_the_way(seas, start, goal)
+        closed = _closed_on_the_way(seas, start, goal, draught)
         if closed:
             return NoPathError(
                 f"There is no way by water from {start.name} to {goal.name}.",
@@ -112,7 +117,9 @@ def _has_way(seas: Seaways, start: Endpoint, goal: Endpoint) -> bool:
     return True
 
 
-def _closed_on_the_way(seas: Seaways, start: Endpoint, goal: Endpoint) -> list[NarrowWay]:
+def _closed_on_the_way(
+    seas: Seaways, start: Endpoint, goal: Endpoint, draught: float | None
+) -> list[NarrowWay]:
     """Return what is closed on the shortest way with all of it open, and has no way round it."""
     world = world_chart()
     try:
@@ -132,6 +139,9 @@ def _closed_on_the_way(seas: Seaways, start: Endpoint, goal: Endpoint) -> list[N
         tuple(one.name for one in world.canals if one.name not in open_canals),
         tuple(one.name for one in world.passages if one.name not in open_passages),
     )
+    if draught:
+        ends = [(end.lat, end.lon) for end in (start, goal)]
+        closed = replace(closed, shoals=shoals_of_draught(world, draught, draught, ends))
     return _without_ways_round(closed, found, start, goal)
 
 
@@ -140,21 +150,31 @@ def _without_ways_round(
 ) -> list[NarrowWay]:
     """Return those of some closed passages and canals that all have to be open for a way.
 
+    A way round one of them counts if it leads over no more shoal water.
+
     Parameters
     ----------
-    seas : All of the world, with what is closed.
+    seas : All of the world, with what is closed and with shoals.
     found : What is closed on one way.
     """
-    needed = found
-    for one in reversed(found):  # the first ones on a way stay where another could stand for them
-        others = [other for other in needed if other is not one]
-        names = {other.name for other in others}
-        opened = replace(
+
+    def shoal_water(opened: list[NarrowWay]) -> float:
+        names = {one.name for one in opened}
+        part = replace(
             seas,
             canals=tuple(name for name in seas.canals if name not in names),
             passages=tuple(name for name in seas.passages if name not in names),
         )
-        needed = others if _has_way(opened, start, goal) else needed
+        try:
+            return shoal_miles(part, part.graph_path(start, goal))
+        except NoRouteError:
+            return math.inf
+
+    needed, most = found, shoal_water(found) + _MORE_SHOALS
+    for one in reversed(found):  # the first ones on a way stay where another could stand for them
+        others = [other for other in needed if other is not one]
+        if shoal_water(others) <= most:
+            needed = others
     return needed or found
 
 

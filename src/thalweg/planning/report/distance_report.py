@@ -30,7 +30,7 @@ def shoal_notes(seas: Seaways, path: Sequence[Position], draught: float | None) 
     path : Positions (lat, lon) [deg].
     draught : [m]; None: not known.
     """
-    miles = _shoal_miles(seas, path)
+    miles = shoal_miles(seas, path)
     if miles < 1.0:
         return ()
     depth = "the draught" if draught is not None else f"{LEAST_DEPTH:g} m"
@@ -75,8 +75,14 @@ def roundabout_notes(line: Sequence[Position], length: float) -> tuple[str, ...]
     )
 
 
-def _shoal_miles(seas: Seaways, path: Sequence[Position]) -> float:
-    """Return how many miles of a way have less water than required."""
+def shoal_miles(seas: Seaways, path: Sequence[Position]) -> float:
+    """Return how many miles of a way have less water than required.
+
+    Parameters
+    ----------
+    seas : With shoals; 0 without.
+    path : Positions (lat, lon) [deg].
+    """
     if seas.shoals is None or len(path) < 2:
         return 0.0
     way = np.array(path, float)
