@@ -194,6 +194,29 @@ def test_thousands_of_islands_are_one_artist_and_specks_are_none():
     assert len(axes.collections[0].get_segments()) == 500
 
 
+def test_maps_of_a_sea_have_the_arrows_of_its_strong_currents_only():
+    """A narrow jet: arrows near zero set the scale, and one lay across the map."""
+    from matplotlib.figure import Figure
+
+    from thalweg import Sea
+    from thalweg.core.bounding_box import BoundingBox
+    from thalweg.sea.sea_maps import ARROWS_ALONG_SIDE, MAP_PANELS, _draw_arrows
+
+    def eastward(time, lat, lon):
+        return 1e-5 + 1.5 * np.exp(-(((np.asarray(lat) - 51.0) / 0.02) ** 2)) + 0.0 * lon
+
+    north = "northward_sea_water_velocity"
+    sea = Sea.from_functions(
+        {"eastward_sea_water_velocity": eastward, north: lambda t, a, o: 0.0 * (a + o)}
+    )
+    panel = next(one for one in MAP_PANELS if north in one.arrows)
+    axes = Figure().add_subplot()
+    _draw_arrows(axes, sea.layers, panel, 0.0, BoundingBox(50.0, 51.95, 0.0, 3.0))
+    (arrows,) = axes.collections
+    assert arrows.U.min() > 0.15
+    assert arrows.U.max() / arrows.scale < 1.5 / ARROWS_ALONG_SIDE  # of the width of the map
+
+
 def test_inspect(capsys, currents):
     code, found = run_json(capsys, "inspect", currents)
     assert code == 0
