@@ -9,6 +9,7 @@ from thalweg import Chart, Sea, Ship, Voyage, evaluate, plan
 from thalweg.core.errors import InputError
 from thalweg.planning.plots.channel_closures import find_closures
 from thalweg.planning.plots.space_time_diagram import (
+    _window_limits,
     draw_space_time_diagram,
     write_space_time_diagram,
 )
@@ -169,3 +170,11 @@ def test_a_window_of_departure_is_drawn() -> None:
     found = plan(voyage, ship=SHIP, sea=bar(), chart=Chart.open_water(*AREA), resolution=1000.0)
     figure = draw_space_time_diagram(found)
     assert "departure window" in [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+def test_a_voyage_of_a_given_arrival_has_no_window_of_departure() -> None:
+    """Its files were not written: "None is not a time"."""
+    arriving = Voyage(start=(0.0, 0.0), goal=(0.0, 1.0), arrive="2026-03-02T06:00Z")
+    assert _window_limits(arriving) == []
+    departing = Voyage(start=(0.0, 0.0), goal=(0.0, 1.0), depart=3600.0, arrive_by=9e4)
+    assert _window_limits(departing) == [3600.0, 3600.0, 9e4]

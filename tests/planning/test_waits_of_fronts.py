@@ -96,6 +96,17 @@ def test_the_least_fuel_past_a_bar_is_that_of_the_lowest_speed(tug, bar, at_lowe
     assert all(np.count_nonzero(route.track.wait) <= 1 for route in found.routes)
 
 
+def test_no_speed_held_throughout_beats_the_front(tug, bar):
+    """Between the routes of the network were gaps of an hour."""
+    found = planned(tug, bar, objective="fuel")
+    for speed in (6.0, 8.0, 10.0):
+        held = planned(tug, bar, speed_kn=speed).best
+        assert any(
+            route.time_h <= 1.002 * held.time_h and route.fuel_t <= 1.005 * held.fuel_t
+            for route in found.routes
+        )
+
+
 @pytest.mark.parametrize("conditions", [{"objective": "time"}, {"speed_kn": 8.0}])
 def test_the_wait_for_the_tide_is_at_the_start(tug, bar, conditions):
     """It was 4 nm out, although the ship arrives as early from her berth."""

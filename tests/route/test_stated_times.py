@@ -52,6 +52,14 @@ def test_times_too_late_and_gaps_between_them_are_noted(tmp_path):
     assert "leg 1 would take no time, not 4 h 24 min" in note
 
 
+def test_legs_too_fast_for_the_ship_come_before_those_that_are_slow(tmp_path):
+    """The note named the slow leg alone, since its time differs most."""
+    (note,) = notes_of(csv_route(tmp_path, "01:00", "03:00", "19:00"))
+    assert "leg 1 would need 26.4 kn and is sailed at 12.0 kn" in note
+    (note,) = notes_of(csv_route(tmp_path, "06:00", "08:00", "09:00"))
+    assert "leg 2 would need 52.9 kn and is sailed at 12.0 kn, and 1 more leg as well" in note
+
+
 def test_small_differences_of_many_legs_add_up(tmp_path):
     path = csv_route(tmp_path, "06:00", "06:23", "06:46", "07:09", "07:32", step=0.088)
     (note,) = notes_of(path)  # 3.4 min later each

@@ -62,8 +62,9 @@ class ParetoFront:
     stages : tuple of str (n,)
         Source of each route: ``"fastest"`` (refined for time), ``"exact"``,
         ``"alternative path"`` (a fixed route past other land or through other canals, with its
-        best speeds), ``"local search"``, the evolutionary method, or ``"constant speed"`` (of
-        the weather-blind route). The earlier name ``"polish"`` is read as ``"local search"``.
+        best speeds), ``"one wait"`` (at one speed after a wait at the start), ``"local search"``,
+        the evolutionary method, or ``"constant speed"`` (of the weather-blind route). The earlier
+        name ``"polish"`` is read as ``"local search"``.
     ways : tuple of str (n,)
         Label of each route: its canals, or ``"open sea"``, and the sides of land where these
         differ (`thalweg.planning.pareto.route_names.route_labels`).

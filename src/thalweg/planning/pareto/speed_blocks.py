@@ -20,6 +20,7 @@ from thalweg.route.refinement.speed_profile import times_and_costs_by_setting
 #: A block is at least this share of the voyage where that is less than the requested duration.
 _SHARE_OF_PASSAGE = 0.25
 _PIECE_SHARE = 0.25  # of a block: the longest piece whose setting is chosen
+_CLEARLY_WORSE = 0.02  # share of time or value that blocks add, for which other ones are tried
 _ROUNDS = 2  # choices of blocks, each at the times of passage of the one before
 
 
@@ -47,8 +48,8 @@ def in_speed_blocks(
     around = evaluator_around_routes(trade_off, [item.route for item in scored])
     evaluator = CostEvaluator(around, 0.0)
     found = [_blocked(trade_off, item, block_duration, evaluator) for item in scored]
-    _note_costs(trade_off, scored, found)
-    return found
+    _note_costs(trade_off, scored, [ways[0] for ways in found])
+    return [one for ways in found for one in ways]
 
 
 def merged_settings(
@@ -93,16 +94,20 @@ def _blocked(
     item: RefereedCandidate,
     block_duration: float,
     evaluator: CostEvaluator,
-) -> RefereedCandidate:
-    """Return a route in blocks; the same where none within the limits is found."""
+) -> list[RefereedCandidate]:
+    """Return a route in blocks, in several ways where these are clearly later or dearer.
+
+    The least change comes first. The same route is returned where none within the limits is found.
+    """
     route, context = item.route, trade_off.context
     hours = route.legs["arrive"] - route.legs["depart"]
     least = min(block_duration, _SHARE_OF_PASSAGE * float(hours.sum()))
     speeds = np.asarray(context.ship.speeds, float)
     merged = merged_settings(route.track.setting, hours, speeds, least, late=True)
     if np.array_equal(merged, route.track.setting):
-        return item
+        return [item]
     not_late = merged_settings(route.track.setting, hours, speeds, least, late=False)
+    found: list[tuple[float, RefereedCandidate]] = []
     for track in (
         _in_cheapest_blocks(route, least, evaluator),
         _with_settings(route.track, merged),
@@ -114,8 +119,11 @@ def _blocked(
         in_time = tried.arrive <= context.latest_arrival + 1.0
         value = trade_off.objective.value(tried)
         if tried.feasible and in_time and np.isfinite(value):
-            return replace(item, route=tried, value=value)
-    return item
+            worse = max(tried.time_h / route.time_h, value / max(item.value, 1e-12))
+            found.append((worse, replace(item, route=tried, value=value)))
+            if worse < 1.0 + _CLEARLY_WORSE:
+                break
+    return [one for _, one in sorted(found, key=lambda pair: pair[0])] or [item]
 
 
 def _in_cheapest_blocks(route: Route, least: float, evaluator: CostEvaluator) -> Track | None:

@@ -27,6 +27,7 @@ from thalweg.planning.network_selection.route_alternatives import (
 )
 from thalweg.planning.pareto.exploration import explore_alternative, without_unknown_water
 from thalweg.planning.pareto.front_points import track_from_front_point
+from thalweg.planning.pareto.one_wait_candidates import one_wait_candidates
 from thalweg.planning.pareto.plan_assembly import assemble_trade_off_plan
 from thalweg.planning.pareto.single_speed import has_single_speed, refined_cheapest
 from thalweg.planning.pareto.speed_blocks import in_speed_blocks
@@ -96,10 +97,9 @@ def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
                     without_unknown_water(context, one.alternative, gaps) for one in explored
                 ]
                 steps.appendleft(step)
-        if not interrupt_guard.stopped() and any(item.route.feasible for item in scored):
-            scored = non_dominated_candidates(in_speed_blocks(trade_off, scored))
-            waiting_once = [_with_fewer_waits(trade_off, item) for item in scored]
-            scored = non_dominated_candidates(waiting_once)
+        if any(item.route.feasible for item in scored):
+            stopped = interrupt_guard.stopped()
+            scored = non_dominated_candidates(scored) if stopped else _ordered(trade_off, scored)
         return assemble_trade_off_plan(trade_off, ends, explored, scored)
 
 
@@ -174,6 +174,7 @@ def _candidates(
     candidates = [candidate for one in explored for candidate in _exact_candidates(one)]
     if not candidates:  # interrupted before there was a front
         return fastest
+    fastest += one_wait_candidates(trade_off, explored)
     candidates += _refined_candidates(trade_off, explored, candidates)
     non_dominated = non_dominated_indices(
         *_times_and_values(candidates), tolerance=ROUNDING_TOLERANCE
@@ -242,7 +243,7 @@ def _times_and_values(candidates: list[TrackCandidate]) -> tuple[np.ndarray, np.
 def _refereed(
     trade_off: TradeOffContext, candidates: list[TrackCandidate]
 ) -> tuple[list[RefereedCandidate], tuple[Violation, ...]]:
-    """Evaluate candidates; without those that exceed limits or are dominated.
+    """Evaluate candidates; without those that exceed limits.
 
     Where none is left, the gaps in the data that they meet are returned as well.
     """
@@ -271,11 +272,25 @@ def _refereed(
         if item.route.feasible and math.isfinite(item.value) and item.route.arrive <= latest + 1.0
     ]
     if usable:
-        return non_dominated_candidates(usable), ()
+        return usable, ()
     gaps = [gap for item in scored for gap in data_gaps_on_route(item.route)]
     different = {(gap.reason, gap.lat, gap.lon, gap.time): gap for gap in gaps}
     sailed = [item for item in scored if math.isfinite(item.route.arrive)]
     return sailed, tuple(different.values())[:MAX_GAPS]
+
+
+def _ordered(
+    trade_off: TradeOffContext, scored: list[RefereedCandidate]
+) -> list[RefereedCandidate]:
+    """Return a front of routes that a bridge can order: with blocks of speed and few waits.
+
+    Routes at one speed need no blocks.
+    """
+    steady = [one for one in scored if one.candidate.stage == "one wait"]
+    others = [one for one in scored if one.candidate.stage != "one wait"]
+    blocked = in_speed_blocks(trade_off, non_dominated_candidates(others)) if others else []
+    found = non_dominated_candidates([*blocked, *steady])
+    return non_dominated_candidates([_with_fewer_waits(trade_off, one) for one in found])
 
 
 def _with_fewer_waits(trade_off: TradeOffContext, item: RefereedCandidate) -> RefereedCandidate:

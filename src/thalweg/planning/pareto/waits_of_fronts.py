@@ -18,8 +18,11 @@ from thalweg.route import Route, Track
 _OPENING: Final = {
     codes.REASONS[code] for code in (codes.DEPTH, codes.WAVE_HEIGHT, codes.WIND_SPEED)
 }
-#: By how much waits are lengthened, one after the other [s].
-_LONGER: Final = (0.0, 20.0, 60.0, 180.0, 420.0, 900.0, 1800.0, 3600.0, 7200.0)
+#: By how much waits are lengthened, or else shortened where a limit closes, in turn [s].
+_CHANGES: Final = (
+    *(0.0, 20.0, 60.0, 180.0, 420.0, 900.0, 1800.0, 3600.0, 7200.0),
+    *(-60.0, -180.0, -420.0, -900.0, -1800.0),
+)
 _ACCURACY: Final = 30.0  # of a wait that is lengthened [s]
 _MANY: Final = 4  # waits of a route in place of which one wait is worth ...
 _WORTH: Final = 0.02  # ... this share of the time and of the value
@@ -43,8 +46,8 @@ def with_waits_long_enough(
     -------
     Route
         At the same speeds, with all waits at the start, or else with the last one before the
-        breach lengthened. The given one where it is feasible, breaks a limit that does not open,
-        may not wait, or where no wait up to two hours longer keeps the limits in time.
+        breach changed. The given one where it is feasible, breaks a limit that does not open, may
+        not wait, or where no wait up to two hours longer or half an hour shorter keeps the limits.
     """
     if route.feasible or not context.voyage.wait or not math.isfinite(route.arrive):
         return route
@@ -130,7 +133,7 @@ def _with_least_wait(
     place: int,
     score: Callable[[Track], Route],
 ) -> Route | None:
-    """Return the track with the least longer wait at a waypoint that keeps all limits."""
+    """Return the track with the wait at a waypoint changed least so that it keeps all limits."""
 
     def tried(more: float) -> Route | None:
         longer = np.array(wait)
@@ -139,19 +142,21 @@ def _with_least_wait(
         kept = route.feasible and route.arrive <= context.latest_arrival + 1.0
         return route if kept else None
 
-    too_short = -math.inf
-    for more in _LONGER:
-        found = tried(more)
-        if found is not None:
+    too_short, kept = -math.inf, None
+    for more in _CHANGES:
+        if more < 0.0 and wait[place] + more < 0.0:
+            continue
+        kept = tried(more)
+        if kept is not None:
             break
-        too_short = more
-    else:
-        return None
-    while more - too_short > _ACCURACY and math.isfinite(too_short):
+        too_short = max(too_short, more)
+    if kept is None or more <= 0.0:
+        return kept
+    while more - too_short > _ACCURACY:
         middle = 0.5 * (too_short + more)
         shorter = tried(middle)
         if shorter is None:
             too_short = middle
         else:
-            more, found = middle, shorter
-    return found
+            more, kept = middle, shorter
+    return kept

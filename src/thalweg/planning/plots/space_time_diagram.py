@@ -132,7 +132,7 @@ def _times(route: Route, voyage: Voyage | None) -> np.ndarray:
 
 
 def _window_limits(voyage: Voyage | None) -> list[float]:
-    if voyage is None:
+    if voyage is None or voyage.departure_is_open:
         return []
     latest = [] if voyage.arrive_by is None else [parse_time(voyage.arrive_by)]
     return [voyage.earliest_departure, voyage.latest_departure, *latest]

@@ -1,0 +1,107 @@
+"""Candidates of a front that wait once, at the start, and sail on at one speed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from thalweg.network import Network, fixed_route
+from thalweg.planning.pareto.search_horizon import SearchHorizon, extend_horizon
+from thalweg.planning.pareto.trade_off_context import (
+    ExploredAlternative,
+    TrackCandidate,
+    TradeOffContext,
+    spread_settings,
+)
+from thalweg.planning.report.waiting_report import LEAST_WAIT_H
+from thalweg.planning.single.route_candidates import track_from_result
+from thalweg.route import Route, Track
+from thalweg.search import ShipOnNetwork, earliest_arrival
+from thalweg.search.earliest_arrival import ArrivalQuery
+from thalweg.search.latest_departure import latest_departure
+
+_MOST_SETTINGS: Final = 8
+_EDGES: Final = 60  # of a line
+_LATER: Final = 30.0  # than the earliest arrival at a speed [s]
+_STEP, _STEPS = 3600.0, 12  # of later arrivals [s]: half a day, as tides
+
+
+def one_wait_candidates(
+    trade_off: TradeOffContext, explored: Sequence[ExploredAlternative]
+) -> list[TrackCandidate]:
+    """Return candidates at each speed that leave as late as arrives first, on known lines.
+
+    Where a ship has to wait for a tide or a storm, a front over time bins has the paths that wait
+    least; between them a lower speed held throughout may be cheaper and as early.
+
+    Parameters
+    ----------
+    explored : Alternatives; on the lines of the fastest routes that wait.
+    """
+    context = trade_off.context
+    if not (context.voyage.wait and trade_off.is_refined) or len(trade_off.settings) < 2:
+        return []
+    found = []
+    for one in explored:
+        if trade_off.interrupt_guard.stopped():
+            break
+        if not one.fastest.feasible or one.fastest.waiting_h <= LEAST_WAIT_H:
+            continue
+        network = _network_of(trade_off, one.fastest)
+        horizon = extend_horizon(trade_off, network)
+        for setting in spread_settings(trade_off.settings, _MOST_SETTINGS).tolist():
+            found += [
+                TrackCandidate(track, "one wait", one.alternative.name, math.nan, math.nan)
+                for track in _waiting_once(trade_off, network, horizon, setting)
+            ]
+    return found
+
+
+def _network_of(trade_off: TradeOffContext, route: Route) -> Network:
+    """Return the line of a route as a network."""
+    lat, lon = np.asarray(route.track.lat), np.asarray(route.track.lon)
+    moves = np.append(True, np.asarray(route.legs["length"]) > 1.0)
+    spacing = max(float(np.sum(route.legs["length"])) / _EDGES, 1.0)
+    line = list(zip(lat[moves].tolist(), lon[moves].tolist(), strict=True))
+    return fixed_route(trade_off.context.chart, line, spacing=spacing)
+
+
+def _waiting_once(
+    trade_off: TradeOffContext, network: Network, horizon: SearchHorizon, setting: int
+) -> list[Track]:
+    """Return the tracks of the latest departures at a setting.
+
+    One arrives first, the other is least under way: a later tide may carry the ship.
+    """
+    context, meta, frozen = trade_off.context, network.meta, horizon.frozen
+    depart = context.voyage.earliest_departure
+    ship = ShipOnNetwork(
+        network,
+        frozen.stations,
+        context.table,
+        setting=setting,
+        limits=trade_off.limits,
+        top_speed=frozen.top_speed,
+    )
+    first = earliest_arrival(ship, start=meta.start, goal=meta.goal, depart=depart, wait=True)
+    last = min(context.latest_arrival, horizon.latest) + 1.0
+    if not first.found or first.arrive > last:
+        return []
+    query = ArrivalQuery(meta.start, meta.goal, depart, wait=True)
+    arrivals = first.arrive + np.append(_LATER, _STEP * np.arange(1, _STEPS + 1))
+    later = [latest_departure(ship, query, float(by)) for by in arrivals if by <= last]
+    found = [later[0] if later and later[0] else first, *filter(None, later[1:])]
+    shortest = min(found, key=lambda result: result.duration - result.waiting)
+    chosen = [found[0]]
+    if shortest.duration - shortest.waiting < found[0].duration - found[0].waiting - _LATER:
+        chosen.append(shortest)
+    tracks = []
+    for result in chosen:
+        track = track_from_result(network, result, setting)
+        wait = np.array(track.wait, float)
+        wait[0] += track.depart - depart
+        tracks.append(track.replaced(depart=depart, wait=wait))
+    return tracks
