@@ -16,6 +16,7 @@ from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.offing_choice import (
     chart_off_land,
     offing_note,
+    ship_dimensions,
 )
 from thalweg.planning.request.shoal_choice import SHOALS_OPENED, close_shoals
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -110,12 +111,6 @@ def plan_off_land(
 
 def _closed_way(context: PlanningContext, ends: Sequence[Endpoint]) -> NoRouteError | None:
     """Return an error that names what is closed to the ship on the only way; None if nothing is."""
-    ship = context.ship
     return closed_way_error(
-        Seaways.of_ship_chart(context.chart),
-        ends,
-        draught=float(ship.draught) or None,
-        beam=ship.breadth,
-        length=ship.length,
-        air_draught=ship.air_draught,
+        Seaways.of_ship_chart(context.chart), ends, **ship_dimensions(context.ship)
     )

@@ -25,7 +25,7 @@ def shown_arrows(east: FloatArray, north: FloatArray) -> tuple[BoolArray, float]
     tuple : A mask of those of at least 0.1 kn and a tenth of the strongest, and the strongest
         [m/s]; 0 where none is shown.
     """
-    speed = np.nan_to_num(np.hypot(east, north), nan=0.0)
-    strongest = float(np.max(speed, initial=0.0))
+    speed = np.hypot(east, north)
+    strongest = float(np.nanmax(speed, initial=0.0))
     shown = speed >= max(_LEAST_SPEED, _LEAST_SHARE * strongest)
     return shown, strongest if shown.any() else 0.0

@@ -9,7 +9,12 @@ from typing import Final
 import numpy as np
 
 from thalweg.network import Network, fixed_route
-from thalweg.planning.pareto.search_horizon import SearchHorizon, extend_horizon
+from thalweg.planning.pareto.search_horizon import (
+    SearchHorizon,
+    extend_horizon,
+    fastest_path,
+    ship_on_network,
+)
 from thalweg.planning.pareto.trade_off_context import (
     ExploredAlternative,
     TrackCandidate,
@@ -19,7 +24,6 @@ from thalweg.planning.pareto.trade_off_context import (
 from thalweg.planning.report.waiting_report import LEAST_WAIT_H
 from thalweg.planning.single.route_candidates import track_from_result
 from thalweg.route import Route, Track
-from thalweg.search import ShipOnNetwork, earliest_arrival
 from thalweg.search.earliest_arrival import ArrivalQuery
 from thalweg.search.latest_departure import latest_departure
 
@@ -76,20 +80,13 @@ def _waiting_once(
 
     One arrives first, the other is least under way: a later tide may carry the ship.
     """
-    context, meta, frozen = trade_off.context, network.meta, horizon.frozen
+    context, meta = trade_off.context, network.meta
     depart = context.voyage.earliest_departure
-    ship = ShipOnNetwork(
-        network,
-        frozen.stations,
-        context.table,
-        setting=setting,
-        limits=trade_off.limits,
-        top_speed=frozen.top_speed,
-    )
-    first = earliest_arrival(ship, start=meta.start, goal=meta.goal, depart=depart, wait=True)
+    first = fastest_path(trade_off, network, horizon.frozen, setting)
     last = min(context.latest_arrival, horizon.latest) + 1.0
     if not first.found or first.arrive > last:
         return []
+    ship = ship_on_network(trade_off, network, horizon.frozen, setting)
     query = ArrivalQuery(meta.start, meta.goal, depart, wait=True)
     arrivals = first.arrive + np.append(_LATER, _STEP * np.arange(1, _STEPS + 1))
     later = [latest_departure(ship, query, float(by)) for by in arrivals if by <= last]

@@ -205,20 +205,26 @@ def fastest_path(
 ) -> SearchResult:
     """Search the fastest path over a network at one setting."""
     context = trade_off.context
-    ship = ShipOnNetwork(
-        network,
-        frozen.stations,
-        context.table,
-        setting=setting,
-        limits=trade_off.limits,
-        top_speed=frozen.top_speed,
-    )
     return earliest_arrival(
-        ship,
+        ship_on_network(trade_off, network, frozen, setting),
         start=network.meta.start,
         goal=network.meta.goal,
         depart=context.voyage.earliest_departure,
         wait=context.voyage.wait,
+    )
+
+
+def ship_on_network(
+    trade_off: TradeOffContext, network: Network, frozen: FrozenSea, setting: int
+) -> ShipOnNetwork:
+    """Return the ship at one setting on a network in a frozen sea."""
+    return ShipOnNetwork(
+        network,
+        frozen.stations,
+        trade_off.context.table,
+        setting=setting,
+        limits=trade_off.limits,
+        top_speed=frozen.top_speed,
     )
 
 

@@ -12,6 +12,7 @@ from thalweg.chart.canals import Canal, canals_with_dues
 from thalweg.core.errors import ThalwegWarning
 from thalweg.core.geodesy import distance
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.request.offing_choice import ship_dimensions
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import priced_objective
 from thalweg.planning.voyage import Voyage
@@ -56,12 +57,7 @@ def exclude_closed_canals(
 
 def canal_restriction(canal: Canal, ship: Ship) -> str:
     """Return why a canal is closed to a ship of this size, as text; empty if it is open."""
-    return canal.transit_restriction(
-        draught=float(ship.draught) or None,
-        beam=ship.breadth,
-        length=ship.length,
-        air_draught=ship.air_draught,
-    )
+    return canal.transit_restriction(**ship_dimensions(ship))
 
 
 def excluded_canal_note(why: str) -> str:

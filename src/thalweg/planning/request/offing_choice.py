@@ -84,12 +84,17 @@ def restrict_passages(chart: Chart, voyage: Voyage, ship: Ship, offing: float) -
 
 def size_restriction(passage: Passage, ship: Ship) -> str:
     """Return why a passage is closed to a ship of this size, as text; empty if it is open."""
-    return passage.ship_restriction(
-        draught=float(ship.draught) or None,
-        beam=ship.breadth,
-        length=ship.length,
-        air_draught=ship.air_draught,
-    )
+    return passage.ship_restriction(**ship_dimensions(ship))
+
+
+def ship_dimensions(ship: Ship) -> dict[str, float | None]:
+    """Return the draught, beam, length and air draught of a ship [m], None where unknown."""
+    return {
+        "draught": float(ship.draught) or None,
+        "beam": ship.breadth,
+        "length": ship.length,
+        "air_draught": ship.air_draught,
+    }
 
 
 def chart_off_land(
