@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from thalweg import Chart, Sea, Ship, Track, Voyage, plan
-from thalweg.planning.pareto.waits_of_fronts import (
+from thalweg.planning.pareto.waiting.waits_of_fronts import (
     with_fewer_waits_of_front,
     with_waits_long_enough,
 )
@@ -105,6 +105,32 @@ def test_no_speed_held_throughout_beats_the_front(tug, bar):
             route.time_h <= 1.002 * held.time_h and route.fuel_t <= 1.005 * held.fuel_t
             for route in found.routes
         )
+
+
+def test_a_ship_between_two_speeds_does_not_wait_longer_than_needed(tug, bar, at_lowest_speed):
+    """The first part of the way at 6 knots and the rest at 8 is cheaper than each speed held."""
+    found = planned(tug, bar, objective="cost")
+    held = [at_lowest_speed, *(planned(tug, bar, speed_kn=speed).best for speed in (7.0, 8.0))]
+    assert found.objective_value < 0.99 * min(route.cost for route in held)
+    assert np.flatnonzero(found.best.track.wait).tolist() == [0]
+    assert np.unique(found.best.track.setting).tolist() == [0, 1]
+
+
+def test_the_bound_of_the_cost_counts_the_wait_that_no_ship_is_spared(
+    tug, bar, at_lowest_speed, monkeypatch
+):
+    """The hire of the least time, and the hotel load, are paid by all: 11 %, it was 53."""
+    monkeypatch.setattr("thalweg.planning.pareto.front_bound.least_ways._SECONDS", 4.0)
+    found = planned(tug, bar, objective="cost")
+    assert found.gap < 0.13
+    least_time = planned(tug, bar, objective="time").proof.certain
+    assert found.proof.certain > 4500.0 / 24.0 * least_time
+    assert (
+        found.front.values >= [np.interp(r.time_h, *found.front.certain) for r in found.routes]
+    ).all()
+    fuel = planned(tug, bar, objective="fuel")
+    assert fuel.gap < 0.06
+    assert fuel.proof.certain <= at_lowest_speed.fuel_t
 
 
 @pytest.mark.parametrize("conditions", [{"objective": "time"}, {"speed_kn": 8.0}])

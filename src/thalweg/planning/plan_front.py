@@ -62,9 +62,9 @@ class ParetoFront:
     stages : tuple of str (n,)
         Source of each route: ``"fastest"`` (refined for time), ``"exact"``,
         ``"alternative path"`` (a fixed route past other land or through other canals, with its
-        best speeds), ``"one wait"`` (at one speed after a wait at the start), ``"local search"``,
-        the evolutionary method, or ``"constant speed"`` (of the weather-blind route). The earlier
-        name ``"polish"`` is read as ``"local search"``.
+        best speeds), ``"one wait"`` (at one or two speeds after a wait at the start),
+        ``"local search"``, the evolutionary method, or ``"constant speed"`` (of the weather-blind
+        route). The earlier name ``"polish"`` is read as ``"local search"``.
     ways : tuple of str (n,)
         Label of each route: its canals, or ``"open sea"``, and the sides of land where these
         differ (`thalweg.planning.pareto.route_names.route_labels`).
@@ -123,11 +123,12 @@ class ParetoFront:
     def _joint_gap(self, time_h: float, value: float, least_time_h: float) -> float:
         """Return the share by which no route is better in both time and value."""
         least_time_h = float(np.fmax(least_time_h, self.certain[0, 0]))
+        falling = not_rising(self.certain)
         low, high = 0.0, 1.0
         for _ in range(_HALVINGS):
             share = 0.5 * (low + high)
             time = (1.0 - share) * time_h
-            better = time > least_time_h and certain_at(self.certain, time) < (1.0 - share) * value
+            better = time > least_time_h and certain_at(falling, time) < (1.0 - share) * value
             low, high = (share, high) if better else (low, share)
         return high
 
@@ -178,6 +179,11 @@ def certain_at(certain: FloatArray, time_h: float) -> float:
     if not certain.size or math.isnan(time_h):
         return math.nan
     return float(np.interp(time_h, certain[0], certain[1]))
+
+
+def not_rising(certain: FloatArray) -> FloatArray:
+    """Return a certain front (2, m) of routes that take at most as long, not just as long."""
+    return np.array([certain[0], np.minimum.accumulate(certain[1])])
 
 
 def knee(time: FloatArray, value: FloatArray) -> int:

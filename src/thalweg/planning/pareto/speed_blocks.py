@@ -12,6 +12,7 @@ from thalweg.core.units import HOUR
 from thalweg.planning.pareto.cheapest_blocks import cheapest_blocks, cheapest_shift
 from thalweg.planning.pareto.front_points import essential_nodes
 from thalweg.planning.pareto.trade_off_context import RefereedCandidate, TradeOffContext
+from thalweg.planning.pareto.waiting.waits_of_fronts import with_waits_long_enough
 from thalweg.route import Route, Track
 from thalweg.route.evaluators.cost_evaluator import CostEvaluator
 from thalweg.route.evaluators.polyline import polyline_of_track, track_of_polyline
@@ -108,6 +109,10 @@ def _blocked(
         return [item]
     not_late = merged_settings(route.track.setting, hours, speeds, least, late=False)
     found: list[tuple[float, RefereedCandidate]] = []
+
+    def score(track: Track) -> Route:
+        return context.evaluate(track, trade_off.objective.terms)
+
     for track in (
         _in_cheapest_blocks(route, least, evaluator),
         _with_settings(route.track, merged),
@@ -115,7 +120,7 @@ def _blocked(
     ):
         if track is None:
             continue
-        tried = context.evaluate(track, trade_off.objective.terms)
+        tried = with_waits_long_enough(context, score(track), score)
         in_time = tried.arrive <= context.latest_arrival + 1.0
         value = trade_off.objective.value(tried)
         if tried.feasible and in_time and np.isfinite(value):

@@ -143,6 +143,15 @@ class TradeOffContext:
         return 1.0 / (np.array(speed, float) + current), rates[self.settings]
 
     @cached_property
+    def least_price_of_consumption(self) -> float:
+        """What the consumption of a second costs at least, under way, in canals or waiting."""
+        prices = self.objective.prices
+        _, rates = self.slowness_and_rates(0.0)
+        rate = self.table_margin * np.min([rates.min(), self.least_rate_in_canals])
+        least = np.min([prices.waiting, min(prices.inside, prices.outside) * rate])
+        return self.least_zone_factor * float(least) if np.isfinite(least) else 0.0
+
+    @cached_property
     def _calm_rates(self) -> FloatArray:
         """Consumption in a second in calm, deep water at every setting of the ship."""
         prices = self.objective.prices

@@ -27,7 +27,6 @@ from thalweg.planning.network_selection.route_alternatives import (
 )
 from thalweg.planning.pareto.exploration import explore_alternative, without_unknown_water
 from thalweg.planning.pareto.front_points import track_from_front_point
-from thalweg.planning.pareto.one_wait_candidates import one_wait_candidates
 from thalweg.planning.pareto.plan_assembly import assemble_trade_off_plan
 from thalweg.planning.pareto.single_speed import has_single_speed, refined_cheapest
 from thalweg.planning.pareto.speed_blocks import in_speed_blocks
@@ -40,7 +39,9 @@ from thalweg.planning.pareto.trade_off_context import (
     scored_candidate,
 )
 from thalweg.planning.pareto.turn_reduction import scored_with_fewer_turns
-from thalweg.planning.pareto.waits_of_fronts import (
+from thalweg.planning.pareto.waiting.one_wait_candidates import one_wait_candidates
+from thalweg.planning.pareto.waiting.two_speeds_after_wait import two_speeds_after_wait
+from thalweg.planning.pareto.waiting.waits_of_fronts import (
     with_fewer_waits_of_front,
     with_waits_long_enough,
 )
@@ -287,6 +288,7 @@ def _ordered(
     Routes at one speed need no blocks.
     """
     steady = [one for one in scored if one.candidate.stage == "one wait"]
+    steady += two_speeds_after_wait(trade_off, steady)
     others = [one for one in scored if one.candidate.stage != "one wait"]
     blocked = in_speed_blocks(trade_off, non_dominated_candidates(others)) if others else []
     found = non_dominated_candidates([*blocked, *steady])

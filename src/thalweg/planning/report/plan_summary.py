@@ -5,13 +5,14 @@ from __future__ import annotations
 import html
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from thalweg.core.time import utc_text
 from thalweg.kernels.codes import NO_GO, OUTSIDE_PERIOD, REASONS
-from thalweg.planning.plan_front import least_words, words_of_points
+from thalweg.planning.plan_front import least_words, not_rising, words_of_points
 from thalweg.planning.report.note_order import count_of_dangers, danger_first
 from thalweg.planning.report.route_summary import (
     arrival_text,
@@ -193,6 +194,7 @@ def _quality_of_front(plan: PlanData) -> str:
 
 def _quality_at_this_time(plan: PlanData, front: ParetoFront) -> str:
     """Return how much better routes can be that take no longer, if that is less."""
+    front = replace(front, certain=not_rising(front.certain))
     gaps = [gap for gap, one in zip(front.gaps(plan.routes), plan.routes) if one is plan.best]
     if not gaps or gaps[0] is None or gaps[0] > plan.gap - _CLEARLY_LESS:
         return ""

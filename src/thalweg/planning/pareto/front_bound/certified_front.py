@@ -6,7 +6,7 @@ import itertools
 import math
 import time as clock
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,7 +19,6 @@ from thalweg.planning.pareto.front_bound.fair_current_lines import (
     fair_current_lines,
 )
 from thalweg.planning.pareto.front_bound.least_ways import (
-    LeastWay,
     certain_front,
     least_ways,
     passes_counted_canal,
@@ -122,7 +121,10 @@ def _certified_fronts(
     reached = _currents_in_reach(trade_off, routes)
     current, kind = strongest_current_of_plan(trade_off, explored, reached)
     ways = least_ways(trade_off, [*routes, *(one.fastest for one in explored)], current)
-    points = certain_front(trade_off, ways, current)
+    longest = max((item.route.time_h for item in ordered if item.route.feasible), default=0.0)
+    price = trade_off.objective.prices.time + trade_off.least_price_of_consumption
+    unpriced = certain_front(trade_off, ways, current)
+    points = with_priced_time(unpriced, price, longest)
     if len(ways) > 1 and passes_counted_canal(trade_off, routes):
         kind = f"{kind}; {WITH_DUES}"
     if context.data_end < context.latest_arrival:
@@ -133,16 +135,18 @@ def _certified_fronts(
     if trade_off.interrupt_guard.stopped():
         return fronts
     fair, until_fair, least = fair_current_lines(trade_off, routes, reached)
-    by_currents = _not_before(raised_by_lines(points, fair, until_fair), least)
-    by_currents = _with_priced_time(trade_off, by_currents, until_fair, ways, current)
+    unpriced = _not_before(raised_by_lines(unpriced, fair, until_fair), least)
+    by_currents = with_priced_time(unpriced, price, longest)
     if _gains(by_currents, points):
         kind = f"{kind}; {WITH_FAIR_CURRENTS}"
     waits = any(route.waiting_h > 0.0 for route in routes)  # for limits that open
-    if (current > 0.0 or waits) and context.voyage.objective == "front":
+    if (waits and price > 0.0) or (
+        (current > 0.0 or waits) and context.voyage.objective == "front"
+    ):
         certified = _certified_least_time(trade_off, routes, float(by_currents[0, 0]))
         if certified > max(least, float(by_currents[0, 0])):
-            least, kind = certified, f"{kind}; {WITH_LEAST_TIME}"
-            by_currents = _not_before(by_currents, least)
+            kind = f"{kind}; {WITH_LEAST_TIME}"
+            by_currents = with_priced_time(_not_before(unpriced, certified), price, longest)
     fronts.append(CertifiedFront(by_currents, kind, allowed))
     if not context.proof_seconds:
         return fronts
@@ -200,23 +204,20 @@ def _is_fastest_setting(trade_off: TradeOffContext) -> bool:
     return context.table.finish is None and rising
 
 
-def _with_priced_time(
-    trade_off: TradeOffContext,
-    certain: FloatArray,
-    until: float,
-    ways: Sequence[LeastWay],
-    current: float,
-) -> FloatArray:
-    """Return a certain front where routes slower than a time pay for that time as well [h]."""
-    price = trade_off.objective.prices.time
-    later = certain[0] > until
-    if not (price > 0.0 and 0.0 < until < certain[0, -1] * (1.0 + _AFTER) and later.any()):
+def with_priced_time(certain: FloatArray, price: float, longest: float) -> FloatArray:
+    """Return a certain front where every route pays for all of its time, waits included.
+
+    Parameters
+    ----------
+    certain : Times [h] and values beyond the price of time, to be joined by lines, (2, n).
+    price : Of time [1/s], with the least consumption in a second.
+    longest : Time of the slowest route that counts [h].
+    """
+    if not (price > 0.0 and certain.size):
         return certain
-    unpriced = replace(trade_off.objective, prices=replace(trade_off.objective.prices, time=0.0))
-    least = certain_front(replace(trade_off, objective=unpriced), ways, current)[1].min()
-    raised = certain.copy()
-    raised[1, later] = np.maximum(certain[1, later], least + price * HOUR * until)
-    return raised
+    if longest > certain[0, -1]:
+        certain = np.append(certain, [[longest], [certain[1, -1]]], axis=1)
+    return np.array([certain[0], certain[1] + price * HOUR * certain[0]])
 
 
 def _gains(raised: FloatArray, points: FloatArray) -> bool:

@@ -43,8 +43,8 @@ def fair_current_lines(
     Returns
     -------
     lines : float64 array (2, n)
-        Prices of time [1/h], and the least values plus priced time; none with via points, canals
-        in reach or a window of departures, and without currents.
+        Slopes [1/h], turned round, and values at no time, both beyond what all time costs; none
+        with via points, canals in reach or a window of departures, and without currents.
     until : float
         Longest time that they hold for [h]: that of the slowest route.
     least : float
@@ -73,7 +73,8 @@ def fair_current_lines(
     prices, (areas, in_area) = trade_off.objective.prices, _areas(trade_off, domain)
     cheapest = min(prices.inside, prices.outside)
     of_area = [prices.inside if inside else cheapest for inside in in_area]
-    costs = [trade_off.least_zone_factor * price * rates for price in of_area]
+    everywhere = trade_off.least_price_of_consumption
+    costs = [trade_off.least_zone_factor * price * rates - everywhere for price in of_area]
     count = _MOST_NUMBERS / (domain.raster.times.size * slow.size)
     first = min(_SHORTER * passage.length / fastest, passage.known)
     times = np.linspace(first, passage.known, int(min(max(count, 8), _VOYAGES)))
@@ -87,7 +88,7 @@ def fair_current_lines(
         np.maximum(values, least_costs(currents, speeds, costs, rise), out=values)
     least, values = trade_off.table_margin * least, trade_off.table_margin * values
     # a voyage between two of the times costs no less than one of the later of them
-    values, times = values[1:] + prices.time * times[:-1], times[:-1]
+    values, times = values[1:], times[:-1]
     values, times = values[times >= least], times[times >= least]
     if times.size < 2:
         return np.empty((2, 0)), 0.0, least / HOUR

@@ -107,7 +107,7 @@ class LeastWay:
     ----------
     lengths : A route costs no less than a mixture of these pairs of lengths [m], inside the control
         areas and in all, at any speeds, without those of its canals.
-    hours, value : Time [h] and value of the canals on the way.
+    hours, value : Time [h] of the canals on the way, and their value beyond what all time costs.
     """
 
     lengths: tuple[tuple[float, float], ...]
@@ -119,6 +119,9 @@ def certain_front(
     trade_off: TradeOffContext, ways: Sequence[LeastWay], current: float
 ) -> FloatArray:
     """Return a lower front that holds for every route: hours and values (2, m), to join by lines.
+
+    The values are those beyond the price of time and the least price of consumption: for these a
+    route pays all of its time, waits included.
 
     Parameters
     ----------
@@ -148,11 +151,12 @@ def _front_of_lengths(
     prices = trade_off.objective.prices
     zone_factor = trade_off.least_zone_factor
     slow, rates = trade_off.slowness_and_rates(current)
+    everywhere = trade_off.least_price_of_consumption
     seconds, values = np.empty(0), np.empty(0)
     for inside, whole in lengths:
         parts = [(inside, prices.inside), (whole - inside, min(prices.inside, prices.outside))]
         (time, value), (more_time, more_value) = (
-            (part * slow, part * slow * (zone_factor * price * rates + prices.time))
+            (part * slow, part * slow * (zone_factor * price * rates - everywhere))
             for part, price in parts
         )
         seconds = np.append(seconds, np.add.outer(time, more_time))
@@ -243,9 +247,9 @@ def passes_counted_canal(trade_off: TradeOffContext, routes: Sequence[Route]) ->
 
 
 def _value_of_canal(trade_off: TradeOffContext, canal: Canal) -> float:
-    """Return the least value of the passage of a canal: dues, time and fuel."""
+    """Return the least value of the passage of a canal beyond what all time costs."""
     prices, zones = trade_off.objective.prices, trade_off.context.chart.zones
-    value = prices.dues * canal.fee + prices.time * canal.transit_time
+    value = prices.dues * canal.fee - trade_off.least_price_of_consumption * canal.transit_time
     if prices.consumption != "fuel":
         return value
     inside = float(zones.eca_fraction(*canal.ends[0], *canal.ends[1]))
