@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import zipfile
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -12,7 +13,6 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from thalweg.chart.depth.shoals import CONTOURS
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.file_writing import replacing_file
 from thalweg.network.global_grid.endpoint_attachment import ConnectedWaters
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from thalweg.chart.depth.shoals import Shoals
     from thalweg.core.types import FloatArray
 
+_DRAUGHTS_KEPT: Final = 8  # on disk, of each graph
 _FORMAT: Final = 5  # increase when the arrays or their construction change
 
 
@@ -46,8 +47,7 @@ def sea_graph(chart: Chart) -> SeaGraph:
 def edge_excess(chart: Chart, shoals: Shoals) -> FloatArray:
     """Return by how much a mile counts more on each edge of the graph of a chart.
 
-    Those for water shallower than the first contour, which count where no draught is given, are
-    kept on disk.
+    Those of the last few draughts are kept on disk.
 
     Parameters
     ----------
@@ -110,8 +110,6 @@ def _excess(request: _GraphRequest, shoals: Shoals) -> FloatArray:
 @lru_cache(maxsize=2)
 def _excess_elsewhere(request: _GraphRequest, shoals: Shoals) -> FloatArray:
     graph = _load_or_make(request)
-    if shoals.contour > CONTOURS[0]:  # as many as there are draughts
-        return graph.shoal_excess(shoals)
     facts = _FORMAT, shoals.text(), hashlib.sha256(shoals.arrays.code.tobytes()).hexdigest()
     layer = hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
     path = request.path.with_name(f"{request.path.stem}-shoals-{layer}.npy")
@@ -122,7 +120,16 @@ def _excess_elsewhere(request: _GraphRequest, shoals: Shoals) -> FloatArray:
     excess = graph.shoal_excess(shoals)
     with contextlib.suppress(OSError), replacing_file(path) as file:
         np.save(file, excess, allow_pickle=False)
+    with contextlib.suppress(OSError):
+        _delete_all_but_newest(path.parent.glob(f"{request.path.stem}-shoals-*.npy"))
     return excess
+
+
+def _delete_all_but_newest(paths: Iterable[Path]) -> None:
+    """Delete files of draughts, except for those that were made last."""
+    oldest_first = sorted(paths, key=lambda path: path.stat().st_mtime)
+    for path in oldest_first[:-_DRAUGHTS_KEPT]:
+        path.unlink(missing_ok=True)
 
 
 def _load_graph(path: Path) -> SeaGraph:

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage
 
 from thalweg.core.geodesy import inverse
 from thalweg.core.types import BoolArray, FloatArray
@@ -110,6 +109,8 @@ def find_barrier(task: BarrierTask, rounds: int) -> CheckedBarrier | None:
     -------
     CheckedBarrier or None : None where no function passed the check.
     """
+    from scipy import ndimage
+
     mesh, known = task.mesh, task.known
     shape = mesh.shape
     cells = shape[0] - 1, shape[1] - 1
@@ -269,6 +270,8 @@ def correct_factors(f: FloatArray, excess: FloatArray, closing: int) -> None:
     Corners of cells that rise too fast are corrected in full, and nodes beside them by half.
     In the closing rounds nothing is raised, and more is corrected from round to round.
     """
+    from scipy import ndimage
+
     node = -_node_minimum(-excess)
     unused = node <= -1.0
     beside = 1.0 if closing > _GENTLE_ROUNDS else _BESIDE_EXCESS

@@ -7,7 +7,6 @@ from typing import Final
 
 import numpy as np
 import shapely
-from scipy import ndimage
 
 from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
@@ -60,6 +59,8 @@ def _way_back(
         return np.asarray((np.array([position[0], turned]) - corner) / steps)
 
     start, at = place(passage.start), place(passage.goal)
+    from scipy import ndimage
+
     found = [at]
     for _ in range(20 * sum(phi.shape)):
         if np.hypot(*(at - start)) < 1.5 * _STEP:
