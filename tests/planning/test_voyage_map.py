@@ -8,7 +8,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.quiver import Quiver
 
 from tests.conftest import data_file
-from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg import Chart, Sea, Ship, Track, Voyage, evaluate, plan
 from thalweg.core.arrays.shown_arrows import shown_arrows
 from thalweg.core.file_writing import new_figure
 from thalweg.core.time import parse_time
@@ -24,7 +24,7 @@ from thalweg.planning.plots.map_extent import (
 from thalweg.planning.plots.map_labels import LabelPlacer, marked_times, time_label
 from thalweg.planning.plots.map_overlays import _draw_arrow, draw_zones, place_labels
 from thalweg.planning.plots.route_profile import LIMIT_COLOUR, draw_profile
-from thalweg.planning.plots.voyage_map import draw_map
+from thalweg.planning.plots.voyage_map import draw_map, time_when_nearest
 
 SHIP = Ship.simple(speed_kn=12.0, draught_m=5.0)
 
@@ -55,10 +55,23 @@ def test_maps_across_the_antimeridian(tmp_path):
     assert f"depart {departs}, arrive {arrives}" in title and f": {lasts}, " in title
     west, east = axes.get_xlim()
     assert all(west <= x.min() and x.max() <= east for x in lines)
-    assert figure.axes[1].get_ylabel() == "water depth at passage [m]"
+    assert figure.axes[1].get_ylabel() == "water depth when the ship is nearest [m]"
     profile = draw_profile(found.best, tmp_path / "profile.png")
     assert [a.get_ylabel() for a in profile.axes] == ["speed [kn]", "clearance [m]"]
     assert (tmp_path / "map.png").stat().st_size > 10_000
+
+
+def test_weather_is_shown_at_the_time_when_the_ship_is_nearest():
+    """It was that of the earliest passage at full speed, or of the departure where no ship came."""
+    track = Track([0.0, 0.0], [0.0, 2.0], parse_time("2026-01-01"), [3600.0, 0.0], [0])
+    route = evaluate(track, ship=SHIP, sea=Sea.calm(), chart=Chart.open_water(-2.0, 2.0, -1.0, 3.0))
+    lat, lon = np.array([[1.0, 0.0, -1.0]]), np.array([[1.0, 0.0, 362.0]])
+    found = time_when_nearest(route, lat, lon) - route.depart
+    assert found[0, 0] == pytest.approx(
+        3600.0 + 0.5 * (route.arrive - route.depart - 3600.0), abs=300.0
+    )
+    assert found[0, 1] == pytest.approx(3600.0)  # when she leaves the place of the wait
+    assert found[0, 2] == pytest.approx(route.arrive - route.depart)
 
 
 def lines_in_a_map(figure, south, north, west, east):

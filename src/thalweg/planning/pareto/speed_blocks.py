@@ -120,13 +120,14 @@ def _blocked(
     ):
         if track is None:
             continue
-        tried = with_waits_long_enough(context, score(track), score)
+        as_timed = score(track)
+        tried = with_waits_long_enough(context, as_timed, score)
         in_time = tried.arrive <= context.latest_arrival + 1.0
         value = trade_off.objective.value(tried)
         if tried.feasible and in_time and np.isfinite(value):
             worse = max(tried.time_h / route.time_h, value / max(item.value, 1e-12))
             found.append((worse, replace(item, route=tried, value=value)))
-            if worse < 1.0 + _CLEARLY_WORSE:
+            if worse < 1.0 + _CLEARLY_WORSE and tried is as_timed:
                 break
     return [one for _, one in sorted(found, key=lambda pair: pair[0])] or [item]
 

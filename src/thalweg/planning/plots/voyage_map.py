@@ -1,4 +1,4 @@
-"""The map of a plan: coast, sea state at the moment of passage, isochrones, routes and times."""
+"""The map of a plan: coast, sea state as the ship passes, isochrones, routes and times."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from thalweg.core.arrays.shown_arrows import shown_arrows
 from thalweg.core.file_writing import new_figure, save_figure
-from thalweg.core.geodesy import wrap_longitude
+from thalweg.core.geodesy import geocentric_unit_vectors, wrap_longitude
 from thalweg.core.time import duration_text, utc_text
 from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.plots.map_extent import MapExtent
@@ -92,8 +92,7 @@ def _weather_blind(plan: PlanData) -> Route | None:
 def _draw_sea(figure: Any, axes: Any, plan: PlanData, context: PlotContext, box: MapExtent) -> None:
     lat, lon = box.grid(240, 180)
     stages = stage_arrival_times(context, lat, lon, box.unwrapped)
-    reached = np.fmin.reduce([np.full(lat.shape, np.nan), *stages])
-    moment = np.where(np.isfinite(reached), reached, plan.best.depart)
+    moment = time_when_nearest(plan.best, lat, lon)
     on_water = _water_mask(context, moment, lat, wrap_longitude(lon))
     shown = _shading_field(context, moment, lat, lon)
     if shown is not None:
@@ -107,6 +106,33 @@ def _draw_sea(figure: Any, axes: Any, plan: PlanData, context: PlotContext, box:
     _draw_arrows(axes, context, moment, lat, lon)
     for times in stages:
         _draw_isochrones(axes, plan, times, (lat, lon), on_water)
+
+
+def time_when_nearest(route: Route, lat: np.ndarray, lon: np.ndarray) -> np.ndarray:
+    """Return when a ship on a route is nearest to each place of a raster [s since 1970].
+
+    Parameters
+    ----------
+    lat, lon : Raster [deg], of one shape.
+
+    Returns
+    -------
+    float64 array
+        Where the ship waits, when she leaves; the departure for a route without times.
+    """
+    from scipy.spatial import cKDTree
+
+    samples = route.samples
+    known = np.isfinite(samples["time"])
+    if not known.any():
+        return np.full(lat.shape, route.depart)
+    line = geocentric_unit_vectors(samples["lat"][known], samples["lon"][known])
+    places = geocentric_unit_vectors(lat.ravel(), wrap_longitude(lon.ravel()))
+    _, nearest = cKDTree(line).query(places)
+    same_as_next = np.append(np.all(line[1:] == line[:-1], axis=1), False)
+    leaves = np.flatnonzero(~same_as_next)
+    nearest = leaves[np.searchsorted(leaves, nearest)]
+    return np.asarray(samples["time"][known][nearest].reshape(lat.shape))
 
 
 def _water_mask(
@@ -130,16 +156,16 @@ def _shading_field(
     if _WAVES in names:
         waves = context.sea.sample([_WAVES], *at)[_WAVES]
         if _varies(waves):
-            return waves, "significant wave height at passage [m]", "waves"
+            return waves, "significant wave height when the ship is nearest [m]", "waves"
     for pair, word, colours in ((_CURRENT, "current", "PuBu"), (_WIND, "wind", "BuPu")):
         if all(name in names for name in pair):
             samples = context.sea.sample(list(pair), *at)
             speed = np.hypot(samples[pair[0]], samples[pair[1]]) / KNOT
             if _varies(speed):
-                return speed, f"{word} speed at passage [kn]", colours
+                return speed, f"{word} speed when the ship is nearest [kn]", colours
     depth = _depth(context, *at)
     if depth is not None and _varies(depth):
-        return np.maximum(depth, 0.0), "water depth at passage [m]", "Blues"
+        return np.maximum(depth, 0.0), "water depth when the ship is nearest [m]", "Blues"
     return None
 
 
