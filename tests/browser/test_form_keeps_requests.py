@@ -57,6 +57,7 @@ VOYAGE = {
     "ignore_lanes": True,
     "method": "exact",
     "ensemble": "cvar",
+    "speed_step_kn": 0.5,
     "speed_block_h": 0,
     "layered": {"layers": [8, 9], "near_coast_nm": 3, "contain": [[47.5, -6.0]]},
     "weights": {"fuel": 1, "comfort": 0.5},

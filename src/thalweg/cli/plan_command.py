@@ -108,6 +108,13 @@ def _add_time_options(parser: argparse.ArgumentParser) -> None:
     )
     options.add_hold_option(parser, with_arrival=True)
     parser.add_argument(
+        "--speed-step",
+        type=float,
+        metavar="KN",
+        help="where speeds are chosen leg by leg: speeds between the settings of the ship file "
+        "count too, none farther from the next than this [kn] (default: the settings alone)",
+    )
+    parser.add_argument(
         "--speed-block",
         type=float,
         metavar="H",
@@ -283,6 +290,7 @@ def _voyage(arguments: argparse.Namespace, sea: Sea, ship: Ship) -> Voyage:
         wait=arguments.wait,
         speed_kn=arguments.speed,
         hold=arguments.hold,
+        speed_step_kn=arguments.speed_step,
         speed_block_h=arguments.speed_block,
         min_ukc_m=arguments.ukc,
         seed=arguments.seed,

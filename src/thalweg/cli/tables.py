@@ -85,12 +85,13 @@ def _print_details(plan: Plan) -> None:
     from thalweg.planning.report.plan_summary import bounding_percent
 
     console = Console()
+    at = "" if plan.front is None else " at the speeds of the plan"
     title = f"{plan.provenance['from']} to {plan.provenance['to']}, least {plan.voyage.objective}"
     print_waypoints(console, plan.best.waypoints(), title)
     console.print(
         escape(
-            f"Lower bound {plan.lower_bound:.2f} {plan.unit}: no route can be below it, at most "
-            f"{bounding_percent(plan.gap)} % less than this one (the gap); "
+            f"Lower bound {plan.lower_bound:.2f} {plan.unit}: no route{at} can be below it, "
+            f"at most {bounding_percent(plan.gap)} % less than this one (the gap); "
             if plan.gap < 1.0
             else ""
         )

@@ -29,7 +29,8 @@ _ENTRIES: Final = (
     "start", "goal", "depart", "depart_window", "objective", "via", "arrive_by", "arrive", "wait",
     "speed_kn", "hold", "min_ukc_m", "seed", "fuel_price_usd", "eca_price_factor",
     "time_price_usd_per_h", "forbid", "open", "avoid", "offing_nm", "ignore_shoals", "ignore_lanes",
-    "method", "ensemble", "speed_block_h", "layered", "weights", "at_most", "at_least",
+    "method", "ensemble", "speed_step_kn", "speed_block_h", "layered", "weights", "at_most",
+    "at_least",
 )  # fmt: skip
 #: Entries that are left out of plain data where they are empty.
 _MAY_BE_EMPTY: Final = ("via", "forbid", "open", "avoid", "weights", "at_most", "at_least")
@@ -140,6 +141,10 @@ class Voyage(IndicatorRequest, SearchRequest, VoyagePrices, Schedule, Itinerary)
     ensemble : {"mean", "cvar"}, optional
         With a forecast of several members: choose the route with the least mean, or the least mean
         of the worst tenth (conditional value at risk).
+    speed_step_kn : float, optional
+        Where speeds are chosen leg by leg: speeds between the settings of the ship count too, so
+        that none is farther from the next than this [kn], 0.1 or more. By default the settings of
+        the ship file alone.
     speed_block_h : float, optional
         Where speeds are chosen leg by leg: least time that a speed is held [h], or a quarter of the
         passage where that is less; 0 lets the speed change at will. By default 6, and 0 with the

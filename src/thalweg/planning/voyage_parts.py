@@ -191,11 +191,10 @@ class SearchRequest:
     objective : Among `OBJECTIVES`.
     method : {"default", "exact", "nsga2", "spea2", "mpaes"}
     ensemble : {"mean", "cvar"}, optional
-    speed_kn : [kn].
+    speed_kn, speed_step_kn : [kn].
     hold : {"speed", "power", "ground"}, optional
     min_ukc_m : [m].
-    speed_block_h : [h].
-    offing_nm : [nm].
+    speed_block_h, offing_nm : [h], [nm].
     layered : Shape of a layered network.
     """
 
@@ -206,6 +205,7 @@ class SearchRequest:
     speed_kn: float | None = None
     hold: str | None = None
     min_ukc_m: float | None = None
+    speed_step_kn: float | None = None
     speed_block_h: float | None = None
     offing_nm: float | None = None
     ignore_shoals: bool = False
@@ -230,6 +230,7 @@ class SearchRequest:
                 "objective", str(self.objective), OBJECTIVES, field="objective"
             )
         _check_number("speed_kn", self.speed_kn, above=0.0, below=100.0, unit="kn")
+        _check_number("speed_step_kn", self.speed_step_kn, above=0.0999, below=100.0, unit="kn")
         _check_number("speed_block_h", self.speed_block_h, above=-1e-9, below=1000.0, unit="h")
         _check_number("min_ukc_m", self.min_ukc_m, above=-1e-9, below=100.0, unit="m")
         _check_number("offing_nm", self.offing_nm, above=-1e-9, below=50.0, unit="nm")

@@ -28,6 +28,7 @@ from thalweg.planning.pareto.front_bound.least_ways import (
 )
 from thalweg.planning.pareto.route_names import route_labels
 from thalweg.planning.pareto.search_horizon import shortest_path_length
+from thalweg.planning.pareto.speeds_between import note_on_speeds_between
 from thalweg.planning.pareto.trade_off_context import (
     ExploredAlternative,
     RefereedCandidate,
@@ -95,6 +96,7 @@ def assemble_trade_off_plan(
         notes += [note] if note else []
     proof = derive_proof(trade_off, explored, certain.points, certain.kind, until=certain.until)
     notes += _dues_notes(trade_off, ordered[0], proof)
+    notes += filter(None, [note_on_speeds_between(trade_off)])
     return Plan(
         voyage=context.voyage,
         routes=tuple(item.route for item in ordered),

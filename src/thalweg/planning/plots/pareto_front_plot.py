@@ -156,7 +156,9 @@ def _draw_bound(axes: Any, plan: PlanData) -> None:
     first = float(front.certain[0, 0])
     times = np.linspace(max(first, west), east, 200)
     bound = np.interp(times, *front.certain)
-    axes.plot(times, bound, color=_BOUND, lw=1.2, label="no route can be below this line")
+    axes.plot(
+        times, bound, color=_BOUND, lw=1.2, label="no route at these speeds can be below this line"
+    )
     axes.fill_between(times, bound, min(low, float(bound.min())), color=_BOUND, alpha=0.12)
     axes.set_ylim(low, high)
     axes.set_xlim(west, east)

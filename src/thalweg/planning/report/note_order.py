@@ -29,6 +29,8 @@ from thalweg.ship.schema.unusual_numbers import UNUSUAL
 from thalweg.ship.ship_assumptions import BELOW_LOWEST, KWON_FORM
 
 LIMIT_EXCEEDED: Final = "The referee finds a limit exceeded"  #: a note on a limit begins so
+#: A note on speeds between those that a plan chooses among begins so.
+SPEEDS_CHOSEN: Final = "The plan chooses among"
 #: First words of notes that no summary may leave out, the most dangerous first.
 _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     NOT_REACHED,
@@ -58,6 +60,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     UNUSUAL,
     KWON_FORM,
     (OUT_OF_RANGE, BELOW_LOWEST),
+    SPEEDS_CHOSEN,
 )
 
 

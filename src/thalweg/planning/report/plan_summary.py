@@ -159,7 +159,7 @@ def quality_text(plan: PlanData) -> str:
             f"{early}little is proved: the least possible {figure} is between {least} and 100 % "
             "of this"
         )
-    return f"{early}{_at_most(plan.gap, figure)}{_quality_of_front(plan)}"
+    return f"{early}{_at_most(plan.gap, figure)}{_at_speeds(plan)}{_quality_of_front(plan)}"
 
 
 def _figure_words(name: str) -> str:
@@ -169,6 +169,14 @@ def _figure_words(name: str) -> str:
 def _at_most(gap: float, figure: str) -> str:
     """Return how much less of a key figure is possible, with few words."""
     return f"at most {bounding_percent(gap)} % less {figure} is possible"
+
+
+def _at_speeds(plan: PlanData) -> str:
+    """Return among how many speeds a plan chooses, where the bound is for these."""
+    speeds = plan.provenance.get("ship", {}).get("speed_kn")
+    if plan.voyage.objective == "front" or not isinstance(speeds, list | tuple):
+        return ""
+    return f" at the {len(speeds)} speeds of the plan"
 
 
 def _quality_of_front(plan: PlanData) -> str:

@@ -10,6 +10,7 @@ from thalweg.planning.voyage import Voyage
 from thalweg.ship import Ship
 from thalweg.ship.held_speed import with_held_power, with_held_speed
 
+_MOST_SPEEDS = 40
 _SAME_SPEED_KN = 1e-6  #: an ordered speed this near to a setting is that setting
 
 
@@ -68,19 +69,54 @@ def with_exact_speed(ship: Ship, speed_kn: float, hold: str | None) -> Ship:
 
 
 def with_order(ship: Ship, voyage: Voyage) -> Ship:
-    """Return a ship that can sail at the ordered speed of a voyage, held as it asks.
+    """Return a ship that can sail at the ordered speeds of a voyage, held as it asks.
 
     Parameters
     ----------
-    voyage : Its `speed_kn` and `hold` count.
+    voyage : Its `speed_kn` and `hold` count, and `speed_step_kn` where speeds are chosen.
 
     Raises
     ------
     InputError : If the ship does not reach the speed, or cannot hold it.
     """
+    if voyage.speed_step_kn is not None:
+        if voyage.speed_kn is not None:
+            raise InputError(
+                f"One speed is ordered ({voyage.speed_kn:g} kn), and a step of speeds is given.",
+                "A step makes speeds for plans that choose among several.",
+                "Give one of them.",
+                field="speed_step_kn",
+            )
+        return with_speeds_between(ship, voyage.speed_step_kn)
     if voyage.hold is None or voyage.speed_kn is None:
         return with_ordered_speed(ship, voyage.speed_kn)
     return with_exact_speed(ship, voyage.speed_kn, voyage.hold)
+
+
+def with_speeds_between(ship: Ship, step_kn: float) -> Ship:
+    """Return a ship that may also order speeds between its settings.
+
+    Parameters
+    ----------
+    step_kn : No speed is farther from the next than this [kn].
+
+    Raises
+    ------
+    InputError : If no speed can be ordered, or more than 40 speeds are asked for.
+    """
+    speeds = np.asarray(ship.speeds, float)
+    parts = np.maximum(np.ceil(np.diff(speeds) / (step_kn * KNOT) - 1e-6), 1.0).astype(int)
+    if parts.sum() + 1 > _MOST_SPEEDS:
+        raise InputError(
+            f"A step of {step_kn:g} kn makes {parts.sum() + 1} speeds of those of {ship.name!r}.",
+            f"Plans choose among at most {_MOST_SPEEDS} speeds.",
+            "Give a larger step.",
+            field="speed_step_kn",
+        )
+    if (parts == 1).all():
+        return ship
+    between = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(speeds, speeds[1:], parts)]
+    return ship.with_speeds(np.concatenate([*between, speeds[-1:]]))
 
 
 def ordered_setting(ship: Ship, speed_kn: float | None) -> int:

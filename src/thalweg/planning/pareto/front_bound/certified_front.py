@@ -6,7 +6,7 @@ import itertools
 import math
 import time as clock
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -58,6 +58,7 @@ _NEAR_ENOUGH = 0.995  # of the time of the fastest route
 WITH_DUES = "with the time, dues and fuel of canals, or the way round them"
 _MOST_PRICES = 8
 _LEAST_GAIN = 1e-5  # share of the greatest value, below which the lines add nothing
+AT_SPEEDS = "for routes at the {count} speeds of the plan"  #: part of the kind of a bound
 UNTIL_DATA_END = "for arrivals until the data end"  #: part of the kind of a bound
 _AFTER = 1e-9  # share of a time, to its next point
 
@@ -93,6 +94,9 @@ def certified_front(
     ordered : The front, with routes within the limits or not.
     """
     found = _certified_fronts(trade_off, explored, ordered)
+    if (count := len(trade_off.settings)) > 1:
+        at_speeds = AT_SPEEDS.format(count=count)
+        found = [replace(one, kind=f"{one.kind}; {at_speeds}") for one in found]
     for front in reversed(found):
         if not any(_is_above(front.points, item) for item in ordered):
             return front

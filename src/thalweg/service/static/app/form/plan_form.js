@@ -87,8 +87,8 @@ export class PlanForm extends EventTarget {
         this.#details("time", "Time and speed", [
           fields.pair("arrive_by", "speed_kn", ".time"),
           h("div.field", { "data-field": "depart_window" }, h("label.label", { for: "latest" }, "Latest departure"), withUnit(this.latest, "UTC"), h("div.slot")),
-          fields.field("wait"), fields.pair("arrive", "speed_block_h", ".time"), fields.field("hold"),
-          h("p.facts", {}, "Latest departure: the best time between is found. Arrive at: one speed is found that arrives in the minute before it. Hold for: a chosen speed is kept for at least so long."),
+          fields.field("wait"), fields.pair("arrive", "speed_block_h", ".time"), fields.field("speed_step_kn"), fields.field("hold"),
+          h("p.facts", {}, "Latest departure: the best time between is found. Arrive at: one speed is found that arrives in the minute before it. Hold for: a chosen speed is kept for at least so long. Also speeds between: a plan that chooses speeds takes others than the settings of the ship, too."),
         ]),
         this.#details("limits", "Limits", [
           fields.pair("wave_height_m", "wind_speed_kn"), fields.pair("min_ukc_m", "offing_nm"), fields.field("motion_sickness_percent"),
@@ -142,7 +142,7 @@ export class PlanForm extends EventTarget {
   #summaries() {
     const set = (...names) => this.fields.words(names);
     const said = {
-      time: [...set("speed_kn", "arrive_by"), this.latest.value ? "window" : "", ...set("wait", "arrive", "speed_block_h", "hold")],
+      time: [...set("speed_kn", "arrive_by"), this.latest.value ? "window" : "", ...set("wait", "arrive", "speed_step_kn", "speed_block_h", "hold")],
       limits: set("wave_height_m", "wind_speed_kn", "motion_sickness_percent", "min_ukc_m", "offing_nm"),
       areas: [this.areas.list.length + this.areas.kept.length ? `${this.areas.list.length + this.areas.kept.length} drawn` : ""],
       canals: [...this.forbid.filter(([, input]) => input.checked).map(([, , name]) => `no ${name}`), ...set("avoid", "open")],

@@ -13,6 +13,7 @@ const FIELDS = {
   arrive: ["voyage", "Arrive at", "time"],
   hold: ["voyage", "Hold at this speed", "choice", [["", "as the ship file orders"], ["speed", "speed through water"], ["power", "power"], ["ground", "speed over ground"]]],
   wait: ["voyage", "The ship may stop and wait", "tick", false],
+  speed_step_kn: ["voyage", "Also speeds between, every", "number", "kn"],
   speed_block_h: ["voyage", "Hold for", "number", "h"],
   wave_height_m: ["limits", "Waves at most", "number", "m"],
   wind_speed_kn: ["limits", "Wind at most", "number", "kn"],
