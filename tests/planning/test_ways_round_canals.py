@@ -14,7 +14,7 @@ from thalweg.core.time import parse_time
 from thalweg.planning import alternative_plans
 from thalweg.planning.indicators import alternative_plans as module_of_plans
 from thalweg.planning.indicators import ways_not_offered
-from thalweg.planning.indicators.route_choices import ways_apart
+from thalweg.planning.indicators.route_choices import _label, ways_apart
 from thalweg.planning.indicators.route_figures import COMPARED_FIGURES, difference_in_words
 from thalweg.planning.indicators.ways_not_offered import (
     canal_notes,
@@ -93,6 +93,13 @@ def test_the_fastest_without_each_canal_is_always_chosen(monkeypatch):
     routes = [suez, slow_cape, cape]
     assert fastest_without_canals(routes, None) == [(SUEZ, cape)]
     assert module_of_plans._chosen(routes, 2, None) == [suez, cape]
+
+
+def test_names_of_ways_have_the_article_where_one_speaks_so():
+    """Routes were called "by the Dover"."""
+    route = SimpleNamespace(legs={})  # how near to land it runs is not known
+    assert _label(route, ["Dover", "North Minch"], True) == "by Dover and the North Minch"
+    assert _label(route, ["Cape of Good Hope"], True) == "by the Cape of Good Hope"
 
 
 @pytest.mark.usefixtures("made")

@@ -29,6 +29,10 @@ if TYPE_CHECKING:
     from thalweg.ship.schema.ship_schema import HullSection
 
 SLOWER: Final = 0.05  #: routes on the same way differ where one takes this share longer
+#: Names with one of these words have the article.
+_KINDS: Final = frozenset(
+    "Canal Channel Strait Straits Passage Belt Minch Sound Narrows Trench Race Sea".split()
+)
 _INSHORE, _OFFSHORE = 50.0, 15.0  # share of the length near land above and below which [%]
 
 
@@ -38,7 +42,7 @@ class RouteChoice:
 
     Attributes
     ----------
-    name, best_in : Such as ``"inshore by the Naeroysund"``; what it is best in, in words.
+    name, best_in : Such as ``"inshore by Naeroysund"``; what it is best in, in words.
     difference : From the fastest one, in words.
     passes : Named passages and capes that it passes, in order.
     canals, canal_dues_usd : Titles of its canals, in order; the dues of the ship there [USD].
@@ -143,6 +147,12 @@ def passages_of(route: Route, chart: Chart) -> tuple[str, ...]:
     return names_passed(chart.coastline, chart.passages, lat, lon)
 
 
+def _with_article(name: str) -> str:
+    """Return "the Suez Canal", but "Dover" and "Malacca"."""
+    has_kind = name.startswith("Cape ") or not _KINDS.isdisjoint(name.replace("(", "").split())
+    return f"the {name}" if has_kind else name
+
+
 def _label(route: Route, names: Sequence[str], has_canals: bool) -> str:
     """Return how a route goes: by which canals and passages, else how near to land.
 
@@ -153,7 +163,8 @@ def _label(route: Route, names: Sequence[str], has_canals: bool) -> str:
         "inshore" if share >= _INSHORE else "offshore" if share <= _OFFSHORE else "along the coast"
     )
     where = "direct" if not np.isfinite(share) else where
-    by = " and the ".join(filter(None, (", the ".join(names[:-1]), *names[-1:])))
+    called = [_with_article(name) for name in names]
+    by = " and ".join(filter(None, (", ".join(called[:-1]), *called[-1:])))
     if by and has_canals:
-        return f"by the {by}"
-    return f"{where} by the {by}" if by else where
+        return f"by {by}"
+    return f"{where} by {by}" if by else where
