@@ -31,7 +31,20 @@ if TYPE_CHECKING:
 SLOWER: Final = 0.05  #: routes on the same way differ where one takes this share longer
 #: Names with one of these words have the article.
 _KINDS: Final = frozenset(
-    "Canal Channel Strait Straits Passage Belt Minch Sound Narrows Trench Race Sea".split()
+    [
+        "Canal",
+        "Channel",
+        "Strait",
+        "Straits",
+        "Passage",
+        "Belt",
+        "Minch",
+        "Sound",
+        "Narrows",
+        "Trench",
+        "Race",
+        "Sea",
+    ]
 )
 _INSHORE, _OFFSHORE = 50.0, 15.0  # share of the length near land above and below which [%]
 
