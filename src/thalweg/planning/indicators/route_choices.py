@@ -32,18 +32,8 @@ SLOWER: Final = 0.05  #: routes on the same way differ where one takes this shar
 #: Names with one of these words have the article.
 _KINDS: Final = frozenset(
     [
-        "Canal",
-        "Channel",
-        "Strait",
-        "Straits",
-        "Passage",
-        "Belt",
-        "Minch",
-        "Sound",
-        "Narrows",
-        "Trench",
-        "Race",
-        "Sea",
+        *("Belt", "Canal", "Channel", "Minch", "Narrows", "Passage", "Race", "Sea", "Sound"),
+        *("Strait", "Straits", "Trench"),
     ]
 )
 _INSHORE, _OFFSHORE = 50.0, 15.0  # share of the length near land above and below which [%]
