@@ -91,9 +91,8 @@ def test_every_sum_names_its_currency_its_prices_and_their_source(capsys, track)
     assert prices["time_per_day"] == {"value": pytest.approx(2400.0), "source": "request"}
 
 
-def test_a_route_that_breaks_a_limit_ends_with_code_4_and_shows_its_clearance(
-    capsys, track, tmp_path
-):
+@pytest.fixture
+def depth_file(tmp_path):
     depth = tmp_path / "depth.nc"
     lat, lon = np.linspace(54.5, 55.5, 11), np.linspace(3.5, 5.5, 21)
     grid = xr.DataArray(
@@ -101,12 +100,41 @@ def test_a_route_that_breaks_a_limit_ends_with_code_4_and_shows_its_clearance(
     )
     grid.attrs = {"standard_name": "height_above_mean_sea_level", "units": "m"}
     xr.Dataset({"elevation": grid}).to_netcdf(depth)
-    charted = ("evaluate", track, *SHIP, *DEPART, "--depth", str(depth))
+    return str(depth)
+
+
+def test_a_route_that_breaks_a_limit_ends_with_code_4_and_shows_its_clearance(
+    capsys, track, depth_file
+):
+    charted = ("evaluate", track, *SHIP, *DEPART, "--depth", depth_file)
     assert main([*charted]) == 0
     assert "least under-keel clearance 2.5 m" in capsys.readouterr().out  # draught 9.5 m
     code, scored = run_json(capsys, *charted, "--ukc", "3")
     assert code == 4 and not scored["feasible"]
     assert scored["min_ukc_m"] == pytest.approx(2.5)
+
+
+def test_evaluate_requires_the_clearance_of_the_ship_file(capsys, track, tmp_path, depth_file):
+    ship = tmp_path / "ship.yaml"
+    ship.write_text(
+        "name: coaster\nspeeds_kn: [10]\nhull: {draught_m: 9.5}\nmodels: {calm_water: none}\n"
+        "limits: {min_under_keel_clearance_m: 3}\n"
+    )
+    words = ("evaluate", track, "--ship", str(ship), "--calm", "--coast", "none", *DEPART)
+    charted = (*words, "--depth", depth_file)
+    code, scored = run_json(capsys, *charted)
+    assert code == 4 and scored["violations"][0]["limit"] == 3.0
+    assert scored["min_ukc_m"] == pytest.approx(2.5)
+    assert main([*charted, "--ukc", "2"]) == 0
+    assert "all kept" in capsys.readouterr().out
+    assert main([*words]) == 0
+    told = "depth under the keel NOT checked (the ship file requires 3 m: give --depth FILE)"
+    assert told in capsys.readouterr().out
+    main(["plan", "55,4", "55,5", *words[2:]])
+    assert told in capsys.readouterr().out
+    note = "The ship file requires 3 m: give a depth file (--depth)."
+    for command in (words, ("plan", "55,4", "55,5", *words[2:])):
+        assert any(note in text for text in run_json(capsys, *command)[1]["notes"])
 
 
 def test_charges_of_the_european_union_are_a_part_of_the_cost(capsys, track):

@@ -67,8 +67,38 @@ def test_units_and_times_that_a_file_does_not_state_have_a_note():
     ship = Ship.simple(speed_kn=10.0, draught_m=5.0)
     places = [(50.5, 1.5), (50.5, 2.5)]
     route = evaluate(places, ship=ship, sea=sea, chart=water, depart="2026-01-01T06:00Z")
-    notes = given_route_warnings(route, chart=water, sea=sea, ship=ship, min_ukc=None)
+    notes = given_route_warnings(route, chart=water, sea=sea, ship=ship, min_ukc=0.0)
     (units,) = [note for note in notes if note.startswith("Units not stated")]
     assert "uo and vo as m/s" in units and "swh" not in units  # this ship does not read waves
     (still,) = [note for note in notes if note.startswith("No time in the data")]
     assert "the values of uo and vo" in still
+
+
+def test_a_line_that_a_plan_would_keep_within_its_tolerance_has_no_note(chart):
+    """1.96 and 1.82 nm off the cape: lines of files are up to 0.1 nm off those of plans."""
+    for west, noted in ((-9.541, False), (-9.538, True)):
+        line = [(38.30, -9.60), (38.775, west), (39.30, -9.70)]
+        notes = [note for note in notes_of(line, chart) if note.startswith("Nearer to land")]
+        assert bool(notes) is noted, notes
+
+
+#: Out of Balboa: berth, along the approach to its sea end, and on to the open sea, over 14 m.
+BALBOA = [
+    *[(8.95, -79.5667), (8.945, -79.5667), (8.92, -79.5481), (8.8733, -79.5313)],
+    *[(8.815578, -79.48), (8.76, -79.4933), (8.0, -79.5)],
+]
+
+
+def is_depth_to_check(line, chart):
+    ship = Ship.simple(speed_kn=12.0, draught_m=14.8)
+    route = evaluate(line, ship=ship, sea=Sea.calm(), chart=chart, depart=0)
+    notes = given_route_warnings(route, chart=chart, sea=Sea.calm(), ship=ship, min_ukc=0.0)
+    return any(note.startswith("Check the depth") for note in notes)
+
+
+def test_depth_is_not_read_near_the_sea_ends_of_approaches_as_in_plans(chart):
+    """It was read from 12 nm off the berth, and in plans from 12 nm off the sea end."""
+    at_sea = BALBOA[3:]
+    for line in (BALBOA, BALBOA[::-1], at_sea, at_sea[::-1]):
+        assert not is_depth_to_check(line, chart)
+    assert is_depth_to_check([(9.0, -79.3), *at_sea[1:]], chart)  # from elsewhere

@@ -126,7 +126,7 @@ def test_ships_keep_off_the_grounds_between_the_points_of_the_layer(start, goal,
 def test_a_route_from_a_file_gets_the_same_depth_warnings():
     line = [(41.0, -70.3), (41.2, -69.9), (41.5, -69.6)]  # across Nantucket Shoals
     route = evaluate(line, ship=BULKER, sea=Sea.calm(), chart=WORLD, depart=0)
-    found = given_route_warnings(route, chart=WORLD, sea=Sea.calm(), ship=BULKER, min_ukc=None)
+    found = given_route_warnings(route, chart=WORLD, sea=Sea.calm(), ship=BULKER, min_ukc=0.0)
     assert any(note.startswith("Crosses Nantucket Shoals") for note in found)
     (note,) = (note for note in found if note.startswith("Check the depth: 12.0 m "))
     assert " has 12 m near 41 " in note and "passed at 1970-01-01T0" in note
@@ -137,7 +137,7 @@ def test_a_route_from_a_file_gets_the_same_depth_warnings():
     assert any(note.startswith("Check the depth: 14.0 m are required") for note in more)
     charted = Chart.open_water().with_depth(lambda lat, lon: 50.0 + 0.0 * lat)
     checked = evaluate(line, ship=BULKER, sea=Sea.calm(), chart=charted, depart=0)
-    assert not given_route_warnings(checked, chart=WORLD, sea=Sea.calm(), ship=BULKER, min_ukc=None)
+    assert not given_route_warnings(checked, chart=WORLD, sea=Sea.calm(), ship=BULKER, min_ukc=0.0)
 
 
 @pytest.mark.slow

@@ -157,7 +157,23 @@ def test_waiting_passes_time_and_the_bar_is_judged_when_it_is_met():
         route = evaluate(track, ship=boat, sea=sea, min_ukc=1.0)
         assert route.feasible is fine
         assert route.waiting_h == pytest.approx((wait + extra) / 3600)
-    assert evaluate([(0, 0), (0, 0.3)], ship=boat, sea=sea, depart=0, min_ukc=None).feasible
+
+
+def test_the_clearance_of_the_ship_file_is_required_unless_another_is_given():
+    sea = Sea.from_functions({BED: lambda t, a, o: 6.0 + 0.0 * a})
+    given = {
+        "name": "tender",
+        "speeds_kn": [10],
+        "hull": {"draught_m": 4.0},
+        "limits": {"min_under_keel_clearance_m": 2.5},
+        "models": {"calm_water": "none"},
+    }
+    boat, ends = Ship.from_dict(given), [(0, 0), (0, 0.3)]
+    (found,) = evaluate(ends, ship=boat, sea=sea, depart=0).violations
+    assert (found.reason, found.limit) == ("under-keel clearance", 2.5)
+    assert found.value == pytest.approx(2.0)
+    assert evaluate(ends, ship=boat, sea=sea, depart=0, min_ukc=1.5).feasible
+    assert evaluate(ends, ship=ship(5.0, draught=4.0), sea=sea, depart=0).feasible
 
 
 def test_waiting_where_the_tide_falls_away_is_a_grounding():

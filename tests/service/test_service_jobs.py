@@ -398,3 +398,29 @@ def test_a_plan_keeps_limits_of_indicators_and_states_encounters(client):
     plan = client.get(f"/api/v1/plans/{job['id']}/result").json()
     assert 0.0 < plan["routes"][0]["indicators"]["encounters"] < 50.0
     assert plan["voyage"]["at_most"] == {"encounters": 50.0}
+
+
+def test_an_evaluation_requires_the_clearance_of_the_ship_unless_it_gives_one(client, tmp_path):
+    import xarray as xr
+
+    axes = {"lat": np.linspace(46.5, 47.5, 11), "lon": np.linspace(-6.0, -4.5, 16)}
+    attrs = {"standard_name": "height_above_mean_sea_level", "units": "m"}
+    bed = xr.DataArray(np.full((11, 16), -12.0), axes, ("lat", "lon"), attrs=attrs)
+    xr.Dataset({"elevation": bed}).to_netcdf(tmp_path / "depth.nc")
+    content = (tmp_path / "depth.nc").read_bytes()
+    depth = client.post("/api/v1/seas", params={"name": "depth.nc"}, content=content).json()["id"]
+    line = b"lat,lon\n47.0,-5.0\n47.1,-5.2\n"
+    route = client.post("/api/v1/routes", files={"file": ("r.csv", line)}).json()["id"]
+    text = (
+        b"name: coaster\nspeeds_kn: [10]\nhull: {draught_m: 9.5}\nmodels: {calm_water: none}\n"
+        b"limits: {min_under_keel_clearance_m: 3}\n"
+    )
+    ship = client.post("/api/v1/ships", files={"file": ("own.yaml", text)}).json()["id"]
+    order = {"ship": ship, "seas": ["calm"], "coast": "c", "depths": [depth], "route": route}
+    order["depart"] = "2026-01-01T00:00Z"
+    for given, feasible in (({}, False), ({"min_ukc_m": 2}, True)):
+        started = client.post("/api/v1/evaluate", json=order | given).json()
+        job = ended(client.get, started["id"])
+        assert job["state"] == "done", job["problem"]
+        result = client.get(f"/api/v1/plans/{job['id']}/result").json()
+        assert result["feasible"] is feasible and result["min_ukc_m"] == pytest.approx(2.5)

@@ -24,7 +24,7 @@ def add_command(commands: Any) -> None:
     parser.add_argument(
         "route", metavar="ROUTE", help="route file: RTZ, S-421, GPX, GeoJSON, KML or CSV"
     )
-    options.add_ship_and_chart_options(parser, default_ukc="0")
+    options.add_ship_and_chart_options(parser, default_ukc="that of the ship file")
     options.add_verbose_option(parser)
     parser.add_argument(
         "--depart", metavar="TIME", help="departure (ISO 8601, UTC); default: that of the file"
@@ -66,12 +66,13 @@ def run(arguments: argparse.Namespace) -> int:
         chart=chart,
         depart=arguments.depart,
         speed_kn=arguments.speed,
-        min_ukc=arguments.ukc or 0.0,
+        min_ukc=arguments.ukc,
     )
+    required = ship.min_under_keel_clearance if arguments.ukc is None else arguments.ukc
     files = []
     if arguments.out:
-        files = write_route(route, arguments.out, files_as, min_ukc=arguments.ukc)
-    notes = given_route_warnings(route, chart=chart, sea=sea, ship=ship, min_ukc=arguments.ukc)
+        files = write_route(route, arguments.out, files_as, min_ukc=required)
+    notes = given_route_warnings(route, chart=chart, sea=sea, ship=ship, min_ukc=required)
     notes += route.assumptions
     if arguments.json:
         print(json.dumps({**route_dict(route, "given"), "notes": notes}, indent=2, allow_nan=False))

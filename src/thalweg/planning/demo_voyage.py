@@ -26,4 +26,11 @@ def weather_blind(found: Plan, *, ship: Ship, sea: Sea, chart: Chart) -> Route:
     """Return the route planned without weather, evaluated in the weather of the plan."""
     calm = plan(found.voyage, ship=ship, sea=Sea.calm(), chart=chart, proof=0.0)
     ordered = with_order(ship, found.voyage)  # the settings of the track are those of this ship
-    return evaluate(calm.best.track, ship=ordered, sea=sea, chart=chart, strict=False)
+    return evaluate(
+        calm.best.track,
+        ship=ordered,
+        sea=sea,
+        chart=chart,
+        min_ukc=found.voyage.min_ukc_m,
+        strict=False,
+    )

@@ -220,7 +220,8 @@ def usual_against_optimal(
     best = plan_one(replace(voyage, start=start, goal=goal))
     usual = evaluate(
         history.line, ship=with_order(ship, voyage), sea=sea, chart=chart,
-        depart=voyage.earliest_departure, speed_kn=voyage.speed_kn, strict=False,
+        depart=voyage.earliest_departure, speed_kn=voyage.speed_kn, min_ukc=voyage.min_ukc_m,
+        strict=False,
     )  # fmt: skip
     sailed = chart if best.plot_context is None else best.plot_context.chart
     broken = [note for note in lane_notes(sailed, usual) if note.startswith(_BREAKS_RULES)]

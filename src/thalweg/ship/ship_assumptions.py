@@ -16,6 +16,7 @@ from thalweg.ship.schema.unusual_numbers import unusual_numbers
 from thalweg.ship.ship import Ship
 
 KWON_FORM: Final = "Kwon's form"  #: a note on the form of his speed loss begins so
+NO_DEPTH: Final = "No depth in the data"  #: a note on clearance that is not checked begins so
 BELOW_LOWEST: Final = "Below the lowest speed of the ship file"  #: a note on such speeds begins so
 _FINE_SHIPS: Final = (
     *("ro-ro", "roro", "ropax", "ferry", "passenger", "cruise", "vehicle", "car carrier"),
@@ -45,6 +46,13 @@ def stated_assumptions(ship: Ship) -> list[str]:
     european = [f"Charges of the European Union: {charges.share_source}."] if found else []  # type: ignore[union-attr]
     unusual = [*unusual_numbers(ship.file), *kwon_form_notes(ship)]
     return [*unusual, *method_assumptions(ship.estimated), *idle, *european]
+
+
+def unchecked_depth_note(ship: Ship) -> str:
+    """Return what a result without any depth in the data states about the under-keel clearance."""
+    required = ship.min_under_keel_clearance
+    wanted = f" The ship file requires {required:g} m: give a depth file (--depth)."
+    return f"{NO_DEPTH}: under-keel clearance was not checked.{wanted if required else ''}"
 
 
 def kwon_form_notes(ship: Ship) -> list[str]:

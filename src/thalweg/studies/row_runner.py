@@ -247,7 +247,7 @@ def _evaluated(
         sea=sea,
         chart=chart,
         depart=voyage.get("depart"),
-        min_ukc=voyage.get("min_ukc_m", 0.0),
+        min_ukc=voyage.get("min_ukc_m"),
         speed_kn=voyage.get("speed_kn"),
         strict=False,
     )

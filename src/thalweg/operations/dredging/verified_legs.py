@@ -106,7 +106,7 @@ class SiteLegPlanner:
             ship=loaded.ship,
             sea=environment.sea,
             chart=environment.chart,
-            min_ukc=environment.min_ukc if math.isfinite(loaded.required_depth) else None,
+            min_ukc=environment.min_ukc,
             step=self.step,
             strict=False,
         )

@@ -76,7 +76,11 @@ def draw_space_time_diagram(
             "Give ship and sea.",
         )
     if min_ukc is None:
-        min_ukc = 0.0 if voyage is None else required_under_keel_clearance(voyage, ship)
+        min_ukc = (
+            ship.min_under_keel_clearance
+            if voyage is None
+            else required_under_keel_clearance(voyage, ship)
+        )
     closures = find_closures(
         route,
         ship=ship,

@@ -28,6 +28,7 @@ from thalweg.planning.report.route_summary import (
 )
 from thalweg.route.indicator_columns import indicator_value
 from thalweg.route.number_texts import amount_column, amount_text, hours_texts
+from thalweg.ship.ship_assumptions import NO_DEPTH
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
 
 MAX_LINES = 12  #: of a summary with its notes
 #: Notes whose contents the summary states in its own lines.
-_STATED = ("No depth in the data",)
+_STATED = (NO_DEPTH,)
 _HELD = {"speed": "speed through water", "power": "power", "ground": "speed over ground"}
 _WEAK: Final = 0.5  # gap from which a bound says little of a route
 _CLEARLY_LESS: Final = 0.01  # of a gap, for which another one is stated beside it

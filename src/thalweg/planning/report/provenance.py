@@ -88,7 +88,7 @@ def slow_speed_warnings(route: Route) -> list[str]:
 
 
 def given_route_warnings(
-    route: Route, *, chart: Chart, sea: Sea, ship: Ship, min_ukc: float | None
+    route: Route, *, chart: Chart, sea: Sea, ship: Ship, min_ukc: float
 ) -> list[str]:
     """Return the warnings about a route from a file, as those about the routes of a plan.
 
@@ -99,7 +99,7 @@ def given_route_warnings(
     ----------
     route : The evaluated route.
     chart, sea, ship : With which it was evaluated.
-    min_ukc : Required under the keel [m]; None: by the ship file.
+    min_ukc : Required under the keel [m].
     """
     notes = year_warnings(route) + ice_warnings(route, sea) + data_gap_warnings(sea, route)
     notes += guesses_of_files(sea.layers, frozenset(route.samples))
@@ -109,8 +109,7 @@ def given_route_warnings(
     notes += given_route_notes(route, chart=chart, ship=ship)
     if route.min_ukc_m is not None:
         return notes
-    clearance = ship.min_under_keel_clearance if min_ukc is None else min_ukc
-    return notes + depth_notes(chart, route, ship, clearance)
+    return notes + depth_notes(chart, route, ship, min_ukc)
 
 
 def year_warnings(route: Route) -> list[str]:

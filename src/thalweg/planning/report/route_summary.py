@@ -283,6 +283,8 @@ def kept_text(route: Route, ship: Ship | None, notes: Sequence[str]) -> str:
     shallow = any(note.startswith(CHECK_DEPTH) for note in notes)
     depth = "TO BE CHECKED: the depth layer has too little, see the note"
     depth = depth if shallow else "NOT checked"
+    required = 0.0 if ship is None else ship.min_under_keel_clearance
+    depth += f" (the ship file requires {required:g} m: give --depth FILE)" if required else ""
     return f"kept: {', '.join(checked)}; depth under the keel {depth}"
 
 

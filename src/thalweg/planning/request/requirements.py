@@ -16,7 +16,7 @@ from thalweg.sea import Sea, standard_names
 from thalweg.sea.fill_policies import fill_hint
 from thalweg.ship import Ship
 from thalweg.ship.condition_variables import WAVES
-from thalweg.ship.ship_assumptions import stated_assumptions
+from thalweg.ship.ship_assumptions import stated_assumptions, unchecked_depth_note
 
 _CHANNEL_OF = {name: channel for channel, name in standard_names.CHANNEL_VARIABLES.items()}
 
@@ -130,7 +130,7 @@ def _required_depth(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, notes: l
             "Add depth, or use a ship file without a shallow-water method.",
         )
     if not known:
-        notes.append("No depth in the data: under-keel clearance was not checked.")
+        notes.append(unchecked_depth_note(ship))
         return -math.inf
     return float(ship.draught) + required_under_keel_clearance(voyage, ship)
 

@@ -57,7 +57,7 @@ class CheckedPoints:
 
 
 def checked_points(
-    sailed: SailedTrack, points: TrackPoints, time: FloatArray, min_ukc: float | None
+    sailed: SailedTrack, points: TrackPoints, time: FloatArray, min_ukc: float
 ) -> CheckedPoints:
     """Return closely spaced points where limits are checked.
 
@@ -67,7 +67,7 @@ def checked_points(
     Parameters
     ----------
     points, time : Where and when the track was sailed, in order [s].
-    min_ukc : Least under-keel clearance [m]; None: depth is not checked.
+    min_ukc : Least under-keel clearance [m].
     """
     world, pieces = sailed.world, sailed.pieces
     spacing = float(pieces.length.sum()) / MAX_CHECK_POINTS
@@ -97,9 +97,7 @@ def checked_points(
     return found
 
 
-def _doubtful_intervals(
-    sailed: SailedTrack, checked: CheckedPoints, min_ukc: float | None
-) -> IntArray:
+def _doubtful_intervals(sailed: SailedTrack, checked: CheckedPoints, min_ukc: float) -> IntArray:
     """Return the intervals, by their first points, in which a limit may be exceeded.
 
     Both ends keep it, and the sea would exceed it if it changed once more as in this interval or in

@@ -53,7 +53,7 @@ def evaluate(
     sea: Sea,
     chart: Chart | None = None,
     depart: TimeLike | None = None,
-    min_ukc: float | None = 0.0,
+    min_ukc: float | None = None,
     step: float | None = None,
     load_factor: float | None = None,
     speed_kn: float | None = None,
@@ -73,9 +73,9 @@ def evaluate(
         route states this assumption.
     depart : time, optional
         Departure; required unless the track or the file gives it.
-    min_ukc : float or None
-        Least under-keel clearance [m], checked where the chart or the sea gives a depth;
-        None: not checked.
+    min_ukc : float, optional
+        Least under-keel clearance [m], checked where the chart or the sea gives a depth; by default
+        that of the ship file, 0 if it gives none.
     step : float, optional
         Length of a piece [m]. By default the least of an eighth of the leg, half a nautical mile
         and a quarter of the spacing of the data, but not below 1/2000 of the route.
@@ -136,7 +136,7 @@ def evaluate(
     is lower, at the fuel rate of that speed in calm water; sea, land and depth are not checked.
     """
     _check_given(ship, sea, chart)
-    _check_clearance(min_ukc)
+    least_ukc = _checked_clearance(ship, min_ukc)
     terms = _checked_terms(ship, terms)
     ship = ship if load_factor is None else ship.with_load_factor(load_factor)
     track = _with_ordered_speed(as_track(route, depart), speed_kn)
@@ -146,7 +146,7 @@ def evaluate(
     step = None if step is None else _checked_step(step)
     pieces = cut_into_pieces(track, step or _default_step(world, track), MIN_PIECES, chart, ship)
     sailed, tolerance = sail_to_tolerance(world, pieces, adapt=step is None)
-    result = assemble_route(sailed, min_ukc, tolerance, terms)
+    result = assemble_route(sailed, least_ukc, tolerance, terms)
     result = _with_too_fast_legs(result, wanted)
     if isinstance(route, (str, Path)):
         from thalweg.route.formats import cross_track_notes, route_file_contents
@@ -290,14 +290,18 @@ def _check_given(ship: Ship, sea: Sea, chart: Chart | None) -> None:
             )
 
 
-def _check_clearance(min_ukc: float | None) -> None:
-    if min_ukc is not None and not (is_number(min_ukc) and 0.0 <= min_ukc < 100.0):
+def _checked_clearance(ship: Ship, min_ukc: float | None) -> float:
+    """Return the required clearance [m]; None: that of the ship file."""
+    if min_ukc is None:
+        return ship.min_under_keel_clearance
+    if not (is_number(min_ukc) and 0.0 <= min_ukc < 100.0):
         raise InputError(
             f"An under-keel clearance of {shortened_repr(min_ukc)} m is not possible.",
             "It is between 0 and 100 m.",
             "Correct it.",
             field="min_ukc",
         )
+    return float(min_ukc)
 
 
 def _checked_terms(ship: Ship, terms: FuelTerms | None) -> FuelTerms:

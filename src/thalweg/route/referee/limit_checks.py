@@ -42,7 +42,7 @@ def limit_violations(
     *,
     sampled: Mapping[str, FloatArray],
     depth: FloatArray,
-    min_ukc: float | None,
+    min_ukc: float,
 ) -> list[Violation]:
     """Return the violated limits and the gaps in the data, one for each stretch and reason.
 
@@ -52,7 +52,7 @@ def limit_violations(
     time : [s since 1970-01-01T00:00Z]; NaN beyond a point the ship cannot pass.
     sampled : The sea at these points and times.
     depth : Water depth at these points and times [m].
-    min_ukc : Least under-keel clearance [m]; None: depth is not checked.
+    min_ukc : Least under-keel clearance [m].
     """
     reached = np.isfinite(time)
     found: list[Violation] = []
@@ -256,7 +256,7 @@ def limit_excesses(
     world: SailingEnvironment,
     sampled: Mapping[str, FloatArray],
     depth: FloatArray,
-    min_ukc: float | None,
+    min_ukc: float,
 ) -> list[FloatArray]:
     """Return by how much each limit is exceeded, in its own unit; below 0 where it is kept."""
     return [excess for _, excess, _, _ in _limit_checks(world, sampled, depth, min_ukc)]
@@ -266,11 +266,11 @@ def _limit_checks(
     world: SailingEnvironment,
     sampled: Mapping[str, FloatArray],
     depth: FloatArray,
-    min_ukc: float | None,
+    min_ukc: float,
 ) -> Iterator[tuple[str, FloatArray, FloatArray, float]]:
     """Yield of every limit its name, by how much it is exceeded, what is limited, and the limit."""
     limits, draught = world.ship.limits, world.ship.draught
-    if min_ukc is not None and world.has_depth:
+    if world.has_depth:
         clearance = depth - draught
         yield REASONS[codes.DEPTH], min_ukc - clearance, clearance, min_ukc
     if math.isfinite(limits.wave_height):

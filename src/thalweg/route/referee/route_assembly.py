@@ -51,13 +51,13 @@ WAITING_NOT_ALLOWED = "waiting not allowed"
 
 
 def assemble_route(
-    sailed: SailedTrack, min_ukc: float | None, tolerance: float, terms: FuelTerms
+    sailed: SailedTrack, min_ukc: float, tolerance: float, terms: FuelTerms
 ) -> Route:
     """Return the route of a sailed track, with every limit checked.
 
     Parameters
     ----------
-    min_ukc : Least under-keel clearance [m]; None: depth is not checked.
+    min_ukc : Least under-keel clearance [m].
     tolerance : Of the time of sailing [s].
     terms : Prices of fuel and time.
     """
@@ -121,7 +121,7 @@ def _check_limits(
     sailed: SailedTrack,
     checked: CheckedPoints,
     waits: Sequence[WaitConditions],
-    min_ukc: float | None,
+    min_ukc: float,
 ) -> tuple[list[Violation], FloatArray]:
     """Return the violations at close points, and the least clearance of every leg [m]."""
     world, track = sailed.world, sailed.pieces.track

@@ -25,7 +25,7 @@ from thalweg.ship.condition_variables import (
 )
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.current_triangle import crab_angle, current_triangle
-from thalweg.ship.ship_assumptions import stated_assumptions
+from thalweg.ship.ship_assumptions import stated_assumptions, unchecked_depth_note
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -130,7 +130,7 @@ def make_sailing_environment(ship: Ship, sea: Sea, chart: Chart | None) -> Saili
         else:
             assumptions.append("No water levels in the data: depths are taken at chart datum.")
     else:
-        assumptions.append("No depth in the data: under-keel clearance was not checked.")
+        assumptions.append(unchecked_depth_note(ship))
     if chart is None:
         assumptions.append("No chart: land was not checked.")
     return SailingEnvironment(

@@ -31,7 +31,7 @@ def surroundings_columns(
     points: TrackPoints,
     time: FloatArray,
     motion: SailingState,
-    min_ukc: float | None,
+    min_ukc: float,
 ) -> tuple[dict[str, FloatArray], list[str]]:
     """Return columns of legs (`thalweg.route.indicator_columns`), and notes.
 
@@ -49,7 +49,7 @@ def surroundings_columns(
     notes: list[str] = []
     chart = world.chart
     if chart is not None and hasattr(chart, "coastline"):
-        required = world.ship.draught + (min_ukc or 0.0)
+        required = world.ship.draught + min_ukc
         legs |= _land_columns(chart, sailed, points, weights, required)
     if world.has_depth:
         shallow = motion.depth < 2.0 * world.ship.draught

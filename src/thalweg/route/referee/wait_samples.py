@@ -101,17 +101,15 @@ def wait_samples(
 
 
 def wait_depth_violations(
-    track: Track, waits: Sequence[WaitConditions], min_ukc: float | None
+    track: Track, waits: Sequence[WaitConditions], min_ukc: float
 ) -> list[Violation]:
     """Return the waits under way during which there is too little water.
 
     Parameters
     ----------
-    min_ukc : Least under-keel clearance [m]; None: depth is not checked.
+    min_ukc : Least under-keel clearance [m].
     """
     found: list[Violation] = []
-    if min_ukc is None:
-        return found
     for one in waits:
         worst = int(np.argmin(one.clearance))
         if not one.clearance[worst] >= min_ukc - 1e-9:

@@ -70,7 +70,7 @@ class RefinementConditions:
         Speed through water of the ship [m/s].
     limits : Limits
         Limits along the route (`thalweg.core.limits.Limits`).
-    min_ukc : float or None
+    min_ukc : float, optional
         As for `evaluate`.
     holds_settings : bool
         Whether the ship keeps the speed settings of the route where speeds would be chosen.
@@ -81,7 +81,7 @@ class RefinementConditions:
     chart: Chart | None
     table: PerformanceTable | TableArrays
     limits: Limits
-    min_ukc: float | None = 0.0
+    min_ukc: float | None = None
     holds_settings: bool = False
 
 

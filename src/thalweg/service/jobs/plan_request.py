@@ -335,7 +335,7 @@ class EvaluationRequest(ShipAndSea):
     hold: Literal["power", "speed"] | None = Field(
         None, description="what is held at speed_kn; default: as the ship file orders"
     )
-    min_ukc_m: float = Field(0.0, ge=0, lt=100)
+    min_ukc_m: float | None = Field(None, ge=0, lt=100, description="default: of the ship file")
     fuel_price_usd: float | None = Field(None, ge=0, le=1e5, description="per tonne")
     eca_price_factor: float | None = Field(
         None, gt=0, le=100, description="price of fuel inside control areas over that outside"

@@ -79,7 +79,7 @@ def open_ship_of(request: ShipAndSea, files: Mapping[str, str]) -> Ship:
 
 
 def with_orders_of(ship: Ship, request: EvaluationRequest) -> Ship:
-    """Return a ship with the prices of an evaluation, and what it holds at the ordered speed."""
+    """Return a ship with prices and clearance of an evaluation, holding the ordered speed."""
     from thalweg.ship.held_speed import with_held_power, with_held_speed
 
     hourly = request.time_price_usd_per_h
@@ -88,6 +88,8 @@ def with_orders_of(ship: Ship, request: EvaluationRequest) -> Ship:
         request.eca_price_factor,
         time_usd_per_day=None if hourly is None else hourly * DAY / HOUR,
     )
+    if request.min_ukc_m is not None:
+        ship = ship.with_clearance(request.min_ukc_m)
     if request.hold is None or request.speed_kn is None:
         return ship
     hold = with_held_speed if request.hold == "speed" else with_held_power
