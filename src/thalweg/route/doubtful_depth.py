@@ -62,6 +62,9 @@ def is_too_shallow(chart: Chart, route: Route, ship: Ship, too_little: BoolArray
     lat, lon, leg = positions_with_legs(route)
     canal_or_approach = canal_legs(route.track, chart, ship)
     judged = _judged(chart, route, lat, lon) & (canal_or_approach.number[leg] < 0)
+    for k in _ends_at_sea(canal_or_approach.approach):  # as plans, which join approaches last
+        end = float(route.track.lat[k]), float(route.track.lon[k])
+        judged &= np.asarray(distance(lat, lon, *end)) >= _ENDS
     in_canals = canal_or_approach.number[
         (canal_or_approach.number >= 0) & ~canal_or_approach.approach
     ]
@@ -71,12 +74,16 @@ def is_too_shallow(chart: Chart, route: Route, ship: Ship, too_little: BoolArray
     return np.asarray(too_little & judged)
 
 
+def _ends_at_sea(approach: BoolArray) -> tuple[int, int]:
+    """Return the first and last waypoint at sea of a track, by its legs along approaches."""
+    at_sea = np.flatnonzero(~approach)
+    return (int(at_sea[0]), int(at_sea[-1]) + 1) if len(at_sea) else (0, -1)
+
+
 def _judged(chart: Chart, route: Route, lat: FloatArray, lon: FloatArray) -> np.ndarray:
-    """Return where the layer says something: off land, the ends and narrow passages."""
+    """Return where the layer says something: off land and narrow passages."""
     shore = np.asarray(chart.coastline.shore_distance(lat, lon, cap=2.0 * _NOT_JUDGED))
     judged = shore >= _NOT_JUDGED
-    for end in (0, -1):
-        judged &= distance(lat, lon, lat[end], lon[end]) >= _ENDS
     for passage in passages_used(chart, route):
         if passage.half_width < _NARROW:
             y, x, _ = densify(*passage.positions, 2.0 * _STEP)

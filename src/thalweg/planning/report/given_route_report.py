@@ -26,6 +26,9 @@ from thalweg.route.route_tables import LEG_KINDS
 from thalweg.ship import Ship
 
 NEAR_LAND: Final = "Nearer to land than usual"  #: a note on such legs begins so
+_AS_WRITTEN: Final = (
+    0.95  # of the usual distance: lines of files are up to 0.1 nm off those of plans
+)
 _ROUND_PORTS: Final = 40.0 * NAUTICAL_MILE  # legs to and from ends near land, in rivers and bays
 
 
@@ -67,7 +70,11 @@ def _near_land(route: Route, chart: Chart, ship: Ship) -> list[str]:
     )
     kind = np.asarray(route.legs.get("leg_kind", np.zeros(len(route.legs["length"]))))
     in_approach = kind == LEG_KINDS.index("approach")
-    breaches = [at for at, _ in offing_breaches(off_land, track) if not in_approach[at.leg]]
+    breaches = [
+        at
+        for at, _ in offing_breaches(off_land, track)
+        if not in_approach[at.leg] and at.distance < _AS_WRITTEN * offing
+    ]
     if not breaches:
         return []
     worst = min(breaches, key=lambda at: at.distance)
