@@ -7,6 +7,7 @@ import pytest
 
 from thalweg.ship.file.part_builders import SPEED_LOSSES
 from thalweg.ship.file.resistance_ship_builder import RUDDER_METHODS
+from thalweg.ship.methods.added_resistance.wind_resistance import BLENDERMANN, ITTC_CURVES
 from thalweg.ship.methods.engine.specific_consumption import BASE_SFOC
 from thalweg.ship.models.added_resistance_model import WAVE_METHODS, WIND_METHODS
 from thalweg.ship.models.calm_water_model import (
@@ -32,6 +33,7 @@ NAMES = {
     "friction": set(FRICTION_LINES),
     "propulsion": set(PROPULSION_METHODS),
     "speed_loss": set(SPEED_LOSSES),
+    "wind_type": {*BLENDERMANN, *ITTC_CURVES, "blendermann_1994", "ittc", "iso_15016"},
     "rudder": set(RUDDER_METHODS),
 }
 
@@ -47,6 +49,12 @@ def test_every_key_is_on_the_page_and_no_other():
 @pytest.mark.parametrize("key", NAMES)
 def test_every_method_is_on_the_page_and_no_other(key):
     assert set(re.findall(r"`([a-z0-9_]+)`", ROWS[key])) == NAMES[key]
+
+
+def test_the_curves_of_each_wind_method_are_its_own():
+    by_method = ROWS["wind_type"].split("; ")
+    for text, names in zip(by_method, (BLENDERMANN, ITTC_CURVES), strict=True):
+        assert set(re.findall(r"`([a-z_]+)`", text.partition(": ")[2])) == set(names)
 
 
 def test_engines_and_sterns_are_on_the_page():

@@ -3,6 +3,7 @@
 import pytest
 
 from thalweg import InputError, Ship
+from thalweg.core.units import KNOT
 from thalweg.ship import library_names
 from thalweg.ship.schema.ship_schema import ShipFile
 from thalweg.ship.schema.unusual_numbers import check_possible_numbers, unusual_numbers
@@ -83,6 +84,9 @@ def test_unusual_numbers_are_named_with_the_usual_range(sections, text):
         ({"engine": {"sfoc_g_per_kwh": 0.185}}, "engine.sfoc_g_per_kwh"),
         ({"engine": {"reference_power_kw": 8.5}}, "engine.reference_power_kw"),  # MW
         ({"engine": {"reference_power_kw": 8.5e6}}, "engine.reference_power_kw"),  # W
+        ({"hull": {"length_overall_m": 141.0}}, "hull.length_overall_m"),
+        ({"hull": {"deadweight_t": 13_000}}, "hull.deadweight_t"),  # she displaces 12,080 t
+        ({"hull": {"deadweight_t": 8.5, "type": "general cargo ship"}}, "hull.deadweight_t"),
     ],
 )
 def test_impossible_numbers_are_refused(sections, key):
@@ -91,7 +95,60 @@ def test_impossible_numbers_are_refused(sections, key):
     assert caught.value.key == key if hasattr(caught.value, "key") else key in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    "sections",
+    [
+        {"hull": {"length_overall_m": 142.5, "deadweight_t": 12_000}},
+        {"hull": {"deadweight_t": 8.5, "type": "research vessel"}},
+    ],
+)
+def test_particulars_that_some_ships_have_are_taken(sections):
+    check_possible_numbers(ship_file(**sections))
+
+
+def test_the_deadweight_is_that_of_the_laden_ship():
+    hull = {**HULL, "deadweight_t": 13_000}
+    for more in ({"condition": "ballast"}, {"draught_full_m": 7.0}, {"weight_full_t": 18_000}):
+        data = {"name": "ro-ro", "speeds_kn": [14], "hull": hull, "loading": more}
+        check_possible_numbers(ShipFile.of(data))
+
+
+def test_powers_in_megawatts_are_refused_by_the_speed_that_they_give():
+    given = Ship.load("jbc").file.plain()
+    given.pop("speeds_kn", None)
+    slow = Ship.from_dict({**given, "powers_kw": [600]}).speeds[0]
+    assert 2.0 < slow / KNOT < 6.0
+    with pytest.raises(InputError) as caught:
+        Ship.from_dict({**given, "powers_kw": [4, 6]})
+    words = str(caught.value)
+    assert "at most 6 kW, a ship of 280 m makes 0.99 kn" in words and "6 MW are 6000" in words
+
+
+@pytest.mark.parametrize(
+    ("hull", "words"),
+    [
+        ({"draught_m": 48.6}, "48.6 feet are 14.81 m"),
+        ({"length_between_perpendiculars_m": 768.0}, "768 feet are 234.1 m"),
+        ({"depth_m": 10.0, "draught_m": 19.0}, "19 feet are 5.79 m"),
+    ],
+)
+def test_lengths_that_may_be_feet_are_given_in_metres(hull, words):
+    plain = {"name": "ro-ro", "speeds_kn": [14], "hull": {**HULL, **hull}}
+    with pytest.raises(InputError, match=words):
+        Ship.from_dict({**plain, "models": {"speed_loss": "kwon_2008"}})
+
+
 def test_results_state_unusual_numbers():
     plain = ship_file(hull={"draught_m": 20.0}).plain()
     ship = Ship.from_dict({**plain, "models": {"speed_loss": "kwon_2008"}})
     assert any(note.startswith("Unusual ship: a breadth") for note in stated_assumptions(ship))
+
+
+def test_one_missing_particular_is_it_and_several_are_them():
+    given = {"name": "x", "speeds_kn": [10], "hull": HULL, "models": {"wind": "ittc"}}
+    engine = {"reference_speed_kn": 10, "reference_power_kw": 3000}
+    given["models"]["calm_water"], given["engine"] = "cubic", engine
+    with pytest.raises(InputError, match=r"Add it, or choose wind: yu_2021"):
+        Ship.from_dict(given)
+    with pytest.raises(InputError, match=r"Add them, or choose"):
+        Ship.from_dict({**given, "models": {**given["models"], "wind": "blendermann_1994"}})

@@ -13,3 +13,4 @@ TONNE: Final = 1000.0  #: kilograms
 MEGAWATT_HOUR: Final = 3.6e9  #: joules
 GRAVITY: Final = 9.80665  #: standard gravity [m/s2]
 SEA_WATER_DENSITY: Final = 1025.0  #: [kg/m3]
+FOOT: Final = 0.3048  #: metres

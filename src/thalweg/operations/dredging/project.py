@@ -206,7 +206,7 @@ def _check_keys(data: Mapping[str, Any]) -> None:
         raise InputError(
             f"The project lacks {', '.join(missing)}.",
             f"Needed: {', '.join(_REQUIRED_KEYS)}.",
-            "Add them.",
+            "Add it." if len(missing) == 1 else "Add them.",
             missing=missing,
             field=missing[0],
         )

@@ -24,7 +24,7 @@ from thalweg.ship.model_protocol import DraughtModel, EstimatingModel, ShipModel
 from thalweg.ship.models.function_model import model_of_function
 from thalweg.ship.models.speed_power_laws import SPEED_POWER_LAWS
 from thalweg.ship.schema.ship_schema import ShipFile, empty_ship_file
-from thalweg.ship.schema.unusual_numbers import check_possible_numbers
+from thalweg.ship.schema.unusual_numbers import check_possible_numbers, check_speeds_of_powers
 from thalweg.ship.ship_limits import ShipLimits
 
 
@@ -60,6 +60,8 @@ def ship_parts(data: Mapping[str, Any], source: str) -> ShipParts:
     hull = complete_hull(file.hull.plain())
     loading = build_loading(file, hull)
     model = build_model(file, hull, loading)
+    if file.powers_kw is not None:
+        check_speeds_of_powers(file, model.speeds(loading.load_factor))
     limits = with_safety_limits(build_limits(file), file, hull, loading)
     if isinstance(model, EstimatingModel):
         estimated = model.estimated

@@ -250,7 +250,7 @@ def required_particulars(
         raise InputError(
             f"{method} needs {', '.join(missing)} under 'hull', not given and not estimated.",
             f"It needs {', '.join(keys)}.{_available_regressions(missing)}",
-            f"Add them, or choose {instead}.",
+            f"Add {'it' if len(missing) == 1 else 'them'}, or choose {instead}.",
             missing=missing,
         )
     return [float(hull.values[key]) for key in keys]

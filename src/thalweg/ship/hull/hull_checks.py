@@ -7,6 +7,7 @@ from typing import Final, Protocol
 import numpy as np
 
 from thalweg.core.errors import InputError
+from thalweg.core.units import FOOT
 
 _LENGTH_WORDS: Final = {
     "length_waterline_m": "waterline",
@@ -54,7 +55,7 @@ def check_depth(hull: _HullNumbers, draught: float | None, key: str) -> None:
         raise InputError(
             f"The draught of {draught:g} m is more than the depth of the hull, {depth:g} m.",
             "A ship floats with part of its side above the water.",
-            f"Correct {key} or hull.depth_m.",
+            f"Correct {key} or hull.depth_m; {draught:g} feet are {FOOT * draught:.3g} m.",
             key=key,
         )
 

@@ -164,7 +164,7 @@ def _propeller(given: PropulsionSection) -> Propeller:
         raise InputError(
             f"The B-series propeller needs {', '.join(missing)} under 'propulsion'.",
             f"It needs {', '.join(keys)}.",
-            "Add them, or choose propulsion: efficiencies.",
+            f"Add {'it' if len(missing) == 1 else 'them'}, or choose propulsion: efficiencies.",
             missing=missing,
         )
     return Propeller(diameter=diameter, pitch_ratio=pitch, area_ratio=area, blades=blades)

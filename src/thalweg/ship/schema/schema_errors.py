@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import reprlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, Literal, get_args, get_origin
@@ -11,6 +12,8 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from thalweg.core.errors import InputError, close_matches, nearest_names, unknown_name_error
+from thalweg.core.given_numbers import is_number
+from thalweg.core.units import FOOT
 
 _UNKNOWN_KEY = ("extra_forbidden", "invalid_key")
 #: Sections whose keys are names of the user's own: what they hold, and an example.
@@ -75,7 +78,8 @@ def input_error(
     if kind == "literal_error":
         return unknown_name_error(where, value, _words(schema, keys))
     wanted = _range_words(schema, keys) if kind in _OUT_OF_RANGE else context.get("wanted", kind)
-    return _wrong_value_error(where, value, wanted)
+    most = float(context["le"]) if kind == "less_than_equal" else math.inf
+    return _wrong_value_error(where, value, wanted, most)
 
 
 def _unknown_key_error(
@@ -131,11 +135,14 @@ def _not_names_error(section: str, what: str) -> InputError:
     )
 
 
-def _wrong_value_error(where: str, value: Any, wanted: str) -> InputError:
+def _wrong_value_error(where: str, value: Any, wanted: str, most: float) -> InputError:
+    remedy = "Correct it in the ship file."
+    if where.endswith("_m") and is_number(value) and most < value <= most / FOOT:
+        remedy = f"Give metres; {value:g} feet are {FOOT * value:.4g} m."
     return InputError(
         f"'{where}' is {_abbreviated(value)}.",
         f"It must be {wanted}.",
-        "Correct it in the ship file.",
+        remedy,
         key=where,
     )
 

@@ -9,7 +9,10 @@ from __future__ import annotations
 import math
 from typing import Final
 
+import numpy as np
+
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
 from thalweg.core.units import DAY, HOUR, KNOT, TONNE
 from thalweg.ship.schema.ship_schema import ShipFile
 
@@ -30,10 +33,14 @@ _LEAST_SPECIFIC: Final = 60.0  #: [g/kWh]; no fuel with carbon holds as much ene
 _DEEPEST: Final = 1.5  #: draught as a share of the breadth
 _COMMON_SPECIFIC: Final = 190.0  #: [g/kWh] where a power is estimated from fuel
 _SEA_WATER: Final = 1.025  # [t/m3]
+_LEAST_FROUDE: Final = 0.02  #: of the greatest power: 1.9 kn for 234 m, 0.5 kn for 15 m
+_LEAST_DEADWEIGHT: Final = 0.02  #: of cargo ships, as a share of the displacement
+_CARGO_SHIPS: Final = ("tanker", "bulk", "container", "cargo", "carrier")
+_FULLER: Final = 1.1  #: by which a block coefficient may rise between two draughts
 
 
 def check_possible_numbers(file: ShipFile) -> None:
-    """Raise `InputError` for a draught, breadth or specific consumption that no ship has.
+    """Raise `InputError` for particulars, power or specific consumption that no ship has.
 
     Parameters
     ----------
@@ -56,6 +63,8 @@ def check_possible_numbers(file: ShipFile) -> None:
             "Correct hull.breadth_m or hull.length_m; are they swapped?",
             key="hull.breadth_m",
         )
+    _check_length_overall(file)
+    _check_deadweight(file)
     _check_unit_of_power(file)
     engine = file.engine
     curve = [("sfoc_curve_g_per_kwh", value) for value in engine.sfoc_curve_g_per_kwh]
@@ -67,6 +76,84 @@ def check_possible_numbers(file: ShipFile) -> None:
                 f"Correct engine.{key}.",
                 key=f"engine.{key}",
             )
+
+
+def check_speeds_of_powers(file: ShipFile, speeds: FloatArray) -> None:
+    """Raise `InputError` where every power of a ship file gives next to no speed for the length.
+
+    Parameters
+    ----------
+    file : Contents of a ship file, with ``powers_kw``.
+    speeds : Speeds through calm water at its powers [m/s].
+    """
+    length, powers, highest = file.hull.length_m, file.powers_kw, float(np.max(speeds))
+    if not (length and powers) or not highest < _LEAST_FROUDE * math.sqrt(_GRAVITY * length):
+        return
+    raise InputError(
+        f"With powers_kw of at most {max(powers):g} kW, a ship of {length:g} m makes "
+        f"{highest / KNOT:.2g} kn at most.",
+        f"Even dead slow is more than {_LEAST_FROUDE * math.sqrt(_GRAVITY * length) / KNOT:.2g} kn "
+        "for this length.",
+        "Give kilowatts, not megawatts (6 MW are 6000), or correct the hull.",
+        key="powers_kw",
+    )
+
+
+def _check_length_overall(file: ShipFile) -> None:
+    """Raise `InputError` for a length overall below that of a part of the ship."""
+    hull = file.hull
+    overall = hull.length_overall_m
+    for key, words, part in (
+        ("length_between_perpendiculars_m", "between perpendiculars",
+         hull.length_between_perpendiculars_m),
+        ("length_waterline_m", "on the waterline", hull.length_waterline_m),
+    ):  # fmt: skip
+        if overall is not None and part is not None and overall < part:
+            raise InputError(
+                f"The length overall of {overall:g} m is less than that {words}, {part:g} m.",
+                "It is the greatest of all lengths of a ship.",
+                f"Correct hull.length_overall_m or hull.{key}; are they swapped?",
+                key="hull.length_overall_m",
+            )
+
+
+def _check_deadweight(file: ShipFile) -> None:
+    """Raise `InputError` for a deadweight above the displacement, or far too small for cargo."""
+    deadweight, displacement = file.hull.deadweight_t, _greatest_displacement(file)
+    if deadweight is None or displacement is None:
+        return
+    if deadweight > displacement:
+        raise InputError(
+            f"The deadweight of {deadweight:g} t is more than the displacement of the ship, "
+            f"{displacement:.0f} t.",
+            "The displacement is the deadweight and the weight of the empty ship.",
+            "Correct hull.deadweight_t (in tonnes) or the hull; for a hull at a ballast draught, "
+            "give loading.condition: ballast or the laden ship in loading.",
+            key="hull.deadweight_t",
+        )
+    # a note would not do: the carbon intensity is per tonne of deadweight
+    kind = (file.hull.type or "").casefold()
+    cargo = any(word in kind for word in _CARGO_SHIPS)
+    if cargo and deadweight < _LEAST_DEADWEIGHT * displacement:
+        raise InputError(
+            f"The deadweight of {deadweight:g} t is {100.0 * deadweight / displacement:.2g} % of "
+            f"the displacement of {displacement:.0f} t.",
+            f"No {file.hull.type} carries less than {100.0 * _LEAST_DEADWEIGHT:g} % of it.",
+            "Give hull.deadweight_t in tonnes, not in thousands of tonnes, or correct the hull.",
+            key="hull.deadweight_t",
+        )
+
+
+def _greatest_displacement(file: ShipFile) -> float | None:
+    """Return the displacement of the full ship [t]; None if unknown, and for hulls in ballast."""
+    volume, loading, draught = _volume(file), file.loading, file.hull.draught_m
+    if not volume or loading.condition == "ballast":
+        return None
+    full = loading.draught_full_m
+    if full and draught and full > draught:
+        volume *= _FULLER * full / draught
+    volume = max(volume, loading.displacement_full_m3 or 0.0)
+    return max(_SEA_WATER * volume, loading.weight_full_t or 0.0)
 
 
 def _check_unit_of_power(file: ShipFile) -> None:
