@@ -10,6 +10,7 @@ from thalweg import Chart, NoRouteError, Sea, Ship, Voyage, plan
 from thalweg.core.errors import InputError, OutsidePeriodError
 from thalweg.core.geodesy import distance
 from thalweg.core.units import HOUR, KNOT
+from thalweg.planning.report.plan_summary import quality_text
 from thalweg.planning.request.requirements import period_of_data
 
 DEPART = 1767225600.0
@@ -56,6 +57,8 @@ def test_the_speed_found_is_that_of_length_time_and_current(hold) -> None:
     assert found.notes[0].startswith("Constant ")
     lowest = "lowest speed through water" if hold == "speed" else "lowest power"
     assert f", {lowest}, to arrive at " in str(found).splitlines()[0]
+    constant = f"; the {lowest.removeprefix('lowest ')} is constant: other speeds on the way may "
+    assert f"{constant}take less fuel (--objective fuel --arrive-by TIME)" in quality_text(found)
 
 
 @pytest.mark.slow
@@ -72,6 +75,7 @@ def test_one_speed_over_ground_in_a_current_that_turns() -> None:
     assert route.legs["ordered_speed"] == pytest.approx(over_ground - current, abs=0.05 * KNOT)
     assert {row["held"] for row in route.waypoints()[:-1]} == {"constant speed over ground"}
     assert "set hour by hour" in found.notes[0]
+    assert "the speed over ground is constant: other speeds on" in quality_text(found)
 
 
 @pytest.mark.slow
@@ -84,6 +88,7 @@ def test_the_latest_departure_is_the_arrival_less_the_passage() -> None:
     slower = planned(sea_with_current(1.0), arrive=arrive, speed_kn=10.0)
     assert slower.best.depart == pytest.approx(arrive - LENGTH / (11.0 * KNOT), abs=240.0)
     assert "Latest departure" in slower.notes[0]
+    assert "other speeds" not in quality_text(slower)  # the departure would be earlier
     assert ", latest departure, to arrive at " in str(slower).splitlines()[0]
 
 

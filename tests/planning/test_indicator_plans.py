@@ -105,6 +105,8 @@ def test_weights_are_over_the_range_of_the_single_optima():
         ({"at_least": {"workable_percent": "much"}}, "number"),
         ({"at_least": {"workable_percent": 120.0}}, "in per cent, 0 to 100"),
         ({"at_most": {"sick_percent:mess": -4.0}}, "in per cent, 0 to 100"),
+        ({"at_most": {"time": -3.0}}, "at_most of time is -3.0. It is a number of zero or more"),
+        ({"at_least": {"land_distance_nm": -1.0}}, "of zero or more"),
     ],
 )
 def test_requests_that_are_not_possible_are_refused(given, text):

@@ -82,12 +82,12 @@ def test_notes_that_do_not_fit_are_counted(answer):
 
 def test_notes_on_danger_come_first_and_are_never_hidden(answer):
     dangers = ["Check the depth: x.", "Crosses a bank.", "Runs against the traffic of A.",
-               "Keeping out of B makes the way longer."]  # fmt: skip
+               "Passage closed: D.", "Keeping out of B makes the way longer."]  # fmt: skip
     many = replace(answer, notes=(*(f"note {n}" for n in range(9)), *dangers[::-1]))
     shown = [line.partition("      ")[2] for line in summary_with_notes(many)[10:]]
-    assert shown[:3] == dangers[:3]
-    assert shown[3] == f"{dangers[3]} (9 more notes: --verbose, plan.notes)"
-    assert many.to_dict()["notes"][:4] == dangers
+    assert shown[:4] == dangers[:4]
+    assert shown[4] == f"{dangers[4]} (9 more notes: --verbose, plan.notes)"
+    assert many.to_dict()["notes"][:5] == dangers
 
 
 def test_notes_of_several_routes():

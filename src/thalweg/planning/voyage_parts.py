@@ -312,10 +312,10 @@ def _checked_indicator(kind: str, name: str, value: Any, known: Any) -> float:
         what = "key figure of a weighted sum" if kind == "weights" else "indicator"
         raise unknown_name_error(what, plain, known, field=kind)
     number, highest, range_ = to_number(value), math.inf, ""
-    if kind == "weights":
-        range_ = " of zero or more"
-    elif known[plain][0] == "%":
+    if kind != "weights" and known[plain][0] == "%":
         highest, range_ = 100.0, " in per cent, 0 to 100"
+    elif plain != "min_ukc":  # the only one that may be below zero
+        range_ = " of zero or more"
     if not (math.isfinite(number) and (not range_ or 0.0 <= number <= highest)):
         raise InputError(
             f"{kind} of {name} is {shortened_repr(value)}.",

@@ -54,6 +54,8 @@ _BOUNDS: Final = {
 }
 #: What texts of a form may be, by the last name of their place.
 _FORMS: Final = {
+    "job": "the id of a job (GET /plans lists them)",
+    "route": "the id of an uploaded route (POST /routes returns it)",
     "seas": "'calm', 'storm', or the id of an uploaded sea (GET /seas lists them)",
     "sampling": "nearest, nearest:HOURS or step",
 }
@@ -181,6 +183,9 @@ def add_problem_handlers(
 
     @application.exception_handler(RequestValidationError)
     def _of_shape(request: Request, error: RequestValidationError) -> JSONResponse:
+        for fault in error.errors():
+            if fault["loc"][0] == "path" and fault["type"] == "string_pattern_mismatch":
+                return problem_response(_unknown_path(str(fault["loc"][-1]), fault["input"]))
         faults = faults_of(request, error.body)
         return problem_response(_shape_error(error), faults=faults or shape_faults(error.errors()))
 
@@ -191,6 +196,13 @@ def add_problem_handlers(
         )
         remedy = "The paths are listed at /api/docs and in /openapi.json."
         return problem_response(ServiceError(error.status_code, asked, "", remedy))
+
+
+def _unknown_path(name: str, given: str) -> ServiceError:
+    """Return the error for a name in a path that nothing can have."""
+    kind = name.removesuffix("_id")
+    remedy = "Jobs are listed at /api/v1/plans." if kind == "job" else "Correct the path."
+    return not_found(kind, given[:80], remedy)
 
 
 async def _body_of(request: Request) -> Any:

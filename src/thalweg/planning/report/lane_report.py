@@ -104,9 +104,10 @@ def lane_detour_notes(chart: Chart, networks: Sequence[Network]) -> list[str]:
         return []
     return [
         f"{LANE_DETOUR} {_listed(names)} makes the shortest way about "
-        f"{longer / NAUTICAL_MILE:.0f} nm ({100.0 * longer / free:.0f} %) longer. A plan need not "
-        "keep to the direction of the schemes (ignore_lanes). An inshore traffic zone is open to "
-        "ships under 20 m and to voyages from or to a place inside it (Rule 10 (d))."
+        f"{longer / NAUTICAL_MILE:.0f} nm ({100.0 * longer / free:.0f} %) longer: Rule 10 requires "
+        "it. An inshore traffic zone is open to ships under 20 m and to voyages from or to a place "
+        "inside it (Rule 10 (d)). Only to compare, --ignore-lanes plans without schemes: do not "
+        "sail such a route where the chart shows them."
     ]
 
 

@@ -49,7 +49,6 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     NO_OFFING_ROUTE,
     TURNS_BACK,
     INSHORE_USED,
-    LANE_DETOUR,
     (PASSAGE_CLOSED, PASSAGES_CLOSED),
     OTHER_WAYS,
     FILLED,
@@ -61,6 +60,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     KWON_FORM,
     (OUT_OF_RANGE, BELOW_LOWEST),
     SPEEDS_CHOSEN,
+    LANE_DETOUR,
 )
 
 

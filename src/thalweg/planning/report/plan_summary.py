@@ -148,19 +148,35 @@ def quality_text(plan: PlanData) -> str:
     early = "stopped early; " if plan.cancelled else ""
     if not plan.best.feasible:
         return f"{early}not stated: the route breaks a limit"
+    other_speeds = _other_speeds(plan)
     if plan.voyage.arrive is not None and math.isnan(plan.proof.certain):
-        return "not stated: the times are given, and the speed over ground follows from them"
+        why = "not stated: the times are given, and the speed over ground follows from them"
+        return f"{why}{other_speeds}"
     if not plan.gap < 1.0:
         why = plan.proof.kind if plan.proof.kind.startswith("no bound") else "no bound was found"
-        return f"{early}{why}"
+        return f"{early}{why}{other_speeds}"
     figure = _figure_words(plan.voyage.objective)
     if plan.gap > _WEAK:
         least = math.floor(100.0 * (1.0 - plan.gap) + 1e-9)
         return (
             f"{early}little is proved: the least possible {figure} is between {least} and 100 % "
-            "of this"
+            f"of this{other_speeds}"
         )
-    return f"{early}{_at_most(plan.gap, figure)}{_at_speeds(plan)}{_quality_of_front(plan)}"
+    bounded = f"{_at_most(plan.gap, figure)}{_at_speeds(plan)}{_quality_of_front(plan)}"
+    return f"{early}{bounded}{other_speeds}"
+
+
+def _other_speeds(plan: PlanData) -> str:
+    """Return what may take less fuel than the one order that arrives at a given time."""
+    voyage = plan.voyage
+    one_order = voyage.arrive is not None and voyage.depart is not None
+    if not one_order or voyage.chooses_speeds or plan.best.fuel_t is None:
+        return ""
+    held = _HELD[voyage.hold or "power"]
+    return (
+        f"; the {held} is constant: other speeds on the way may take less fuel (--objective fuel "
+        "--arrive-by TIME)"
+    )
 
 
 def _figure_words(name: str) -> str:
