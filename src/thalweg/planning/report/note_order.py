@@ -22,7 +22,11 @@ from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
 from thalweg.planning.request.shoal_choice import SHOALS_OPENED
 from thalweg.planning.request.swapped_degrees import CHECK_POSITION
 from thalweg.planning.request.voyage_endpoints import NOT_REACHED
-from thalweg.route.referee.route_assembly import OUT_OF_RANGE
+from thalweg.route.referee.method_ranges import (
+    OUT_OF_RANGE,
+    WAVES_OUT_OF_RANGE,
+    WAVES_UNCOUNTED,
+)
 from thalweg.route.stated_times import TIMES_UNUSED
 from thalweg.sea.doubtful_values import NO_TIME, NO_UNITS
 from thalweg.ship.schema.unusual_numbers import UNUSUAL
@@ -39,6 +43,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     WAITS,
     PASSES_TIME,
     TOO_STEEP,
+    WAVES_UNCOUNTED,
     REACHES_ICE,
     CHECK_POSITION,
     CHECK_DEPTH,
@@ -58,6 +63,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     (NO_UNITS, NO_TIME),
     UNUSUAL,
     KWON_FORM,
+    WAVES_OUT_OF_RANGE,
     (OUT_OF_RANGE, BELOW_LOWEST),
     SPEEDS_CHOSEN,
     LANE_DETOUR,

@@ -27,7 +27,11 @@ from thalweg.planning.report.wave_report import comfort_turn_notes, steep_wave_w
 from thalweg.planning.request.coverage_check import UNREAD
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
-from thalweg.route.referee.route_assembly import OUT_OF_RANGE
+from thalweg.route.referee.method_ranges import (
+    OUT_OF_RANGE,
+    WAVES_OUT_OF_RANGE,
+    WAVES_UNCOUNTED,
+)
 from thalweg.sea import Sea
 from thalweg.sea.doubtful_values import guesses_of_files
 from thalweg.sea.inspection import data_gaps
@@ -35,6 +39,8 @@ from thalweg.ship import Ship
 from thalweg.ship.ship_assumptions import BELOW_LOWEST
 
 _LEAST_KEPT, _SHORTEST_SLOW = 0.25, 1.0  # of the ordered speed; [h]
+#: Begins of assumptions of a route that a plan states as warnings.
+_OF_METHODS = (WAVES_UNCOUNTED, WAVES_OUT_OF_RANGE, OUT_OF_RANGE, BELOW_LOWEST)
 #: Years between which a departure needs no warning: the reanalysis ERA5 begins in 1940.
 _FIRST_YEAR, _LAST_YEAR = "1940", "2100"
 
@@ -55,7 +61,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     notes += turn_back_notes_of_route(route)
     notes += ice_warnings(route, context.sea)
     notes += data_gap_warnings(context.sea, route)
-    notes += [text for text in route.assumptions if text.startswith((OUT_OF_RANGE, BELOW_LOWEST))]
+    notes += [text for text in route.assumptions if text.startswith(_OF_METHODS)]
     notes += slow_speed_warnings(route) + steep_wave_warnings(route, context.sea)
     if not any(note.startswith(UNREAD) for note in context.needs.notes):  # it says so already
         notes += unread_weather_notes(route, context.sea, context.ship)

@@ -21,6 +21,7 @@ from thalweg.route.referee.limit_checks import (
     seaway_violations,
     stoppage_violations,
 )
+from thalweg.route.referee.method_ranges import method_range_notes
 from thalweg.route.referee.onboard_indicators import motion_indicators
 from thalweg.route.referee.pricing import ConsumptionRates, cost_breakdown
 from thalweg.route.referee.sailing import SailedTrack, sailing_state_along
@@ -40,13 +41,11 @@ from thalweg.route.route import Route, Violation
 from thalweg.route.track import Track
 from thalweg.ship.consumption import engine_order
 from thalweg.ship.fuel_prices import FuelTerms
-from thalweg.ship.models.known_speed_model import SpeedLossModel
 from thalweg.ship.ship_assumptions import low_speed_notes
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
-OUT_OF_RANGE = "The speed loss is used outside its range"  #: start of a note of a route
 WAITING_NOT_ALLOWED = "waiting not allowed"
 
 
@@ -92,7 +91,10 @@ def assemble_route(
     for values in columns.values():
         values[~np.isfinite(arrives)] = math.nan
     samples |= at_samples
-    assumptions = (*world.assumptions, *spent.notes, *_range_notes(world, points, time, motion))
+    outside = method_range_notes(
+        world, points, time, motion, at_sea=pieces.canals.number[points.leg] < 0
+    )
+    assumptions = (*world.assumptions, *spent.notes, *outside)
     at_sea = legs["leg_kind"] == 0.0
     slowest = float(np.min(legs["ordered_speed"][at_sea], initial=math.inf))
     assumptions = (*assumptions, *notes, *more, *low_speed_notes(world.ship, slowest))
@@ -220,30 +222,6 @@ def _rates(
         for rate, there in zip((power, fuel), in_canals):
             rate[fixed] = there[points.leg[fixed]]
     return power, fuel
-
-
-def _range_notes(
-    world: SailingEnvironment, points: TrackPoints, time: FloatArray, motion: SailingState
-) -> list[str]:
-    """Return where the speed loss of the ship is used outside its range, in sentences."""
-    known = np.isfinite(time)
-    if not known.any() or "wind_speed" not in world.ship.reads:
-        return []
-    sampled = {name: values[known] for name, values in motion.sampled.items()}
-    here = conditions_at(
-        world,
-        points.part(known),
-        time[known],
-        sampled=sampled,
-        depth=motion.depth[known],
-        heading=motion.heading[known],
-    )
-    loaded = here.with_default(load_factor=world.ship.loading.load_factor)
-    model = world.ship.model
-    loss = model.loss if isinstance(model, SpeedLossModel) else None
-    notes = [] if loss is None else loss.notes(loaded)
-    why = "the formula was not made for this; speeds there are not predictions."
-    return [f"{OUT_OF_RANGE}: {note}: {why}" for note in notes]
 
 
 def _least_by_leg(leg: IntArray, values: FloatArray, time: FloatArray, count: int) -> FloatArray:

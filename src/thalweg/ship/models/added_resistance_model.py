@@ -22,6 +22,7 @@ from thalweg.ship.methods.added_resistance.snnm_hull import (
 )
 from thalweg.ship.methods.added_resistance.snnm_table import SnnmTable
 from thalweg.ship.methods.added_resistance.stawave import (
+    HEAD_SECTOR,
     head_sector_validity,
     stawave1,
     stawave1_validity,
@@ -45,6 +46,8 @@ from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.models.calm_water_model import FORM_KEYS, hull_form_of
 from thalweg.ship.schema.ship_schema import ModelsSection
 
+#: Methods that count waves from ahead alone, and the half width of their sector [rad].
+HEAD_SEA_METHODS: Final = MappingProxyType({"stawave_1": HEAD_SECTOR, "stawave_2": HEAD_SECTOR})
 #: entrance to 0.99 B as a share of (1 - C_P) L_WL: 0.17 L for a tanker, 0.36 L for a slender ship
 _ENTRANCE_FRACTION: Final = 0.85
 _PITCH_GYRATION: Final = Estimate("pitch_gyration", 0.25, "usual value, ITTC")

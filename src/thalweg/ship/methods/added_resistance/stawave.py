@@ -30,6 +30,7 @@ from thalweg.ship.methods.resistance.friction_lines import froude_number, ship_s
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
 HEAD_SECTOR: Final = np.pi / 4.0  #: half width of the sector of STAwave-1 and STAwave-2 [rad]
+WAVE_HEIGHT_RANGE: Final = "wave height"  #: the quantity of notes on wave heights
 _LEAST_FROUDE_NUMBER: Final = 1e-3
 _LOG_PEAK_FREQUENCIES: Final = np.linspace(
     np.log(0.02), np.log(20.0), 2001
@@ -346,4 +347,4 @@ def stawave1_validity(
     list of RangeNote : Empty inside the range.
     """
     highest = 2.25 * float(np.sqrt(length_between_perpendiculars / 100.0))
-    return range_notes("stawave1", {"wave height": (wave_height, 0.0, highest)})
+    return range_notes("stawave1", {WAVE_HEIGHT_RANGE: (wave_height, 0.0, highest)})
