@@ -36,10 +36,29 @@ def test_what_has_a_way_round_it_is_not_named():
     ]
 
 
+def test_the_way_that_closes_last_is_named():
+    """The shortest way is by the Sound, of 7.7 m; the way by the Belts takes ships of 15 m."""
+    with pytest.raises(NoPathError, match=r"the draught of 20 m is over the 15 m") as refused:
+        sea_distance("Gdansk", "Gothenburg", draught_m=20.0)
+    assert refused.value.details["closed"] == [
+        "Kadet Trench",
+        "Fehmarn Belt",
+        "Great Belt (Route T)",
+    ]
+
+
+def test_a_distance_advises_what_it_can_do():
+    """It advised --open, which no distance takes for a draught."""
+    with pytest.raises(NoPathError) as refused:
+        sea_distance("Istanbul", "Mariupol", draught_m=9.5)
+    assert refused.value.remedy == "Load less, send a smaller ship or choose another port."
+
+
 def test_a_passage_that_was_avoided_is_named_as_closed():
     with pytest.raises(NoPathError, match="Kerch Strait, which is closed here") as refused:
         sea_distance("Istanbul", "Mariupol", avoid=["Kerch"])
     assert refused.value.details["closed"] == ["Kerch Strait"]
+    assert refused.value.remedy == "Do not avoid it."
 
 
 def test_a_plan_names_it_before_other_distances_from_land_are_tried():
@@ -50,4 +69,4 @@ def test_a_plan_names_it_before_other_distances_from_land_are_tried():
 
 def test_where_there_is_a_way_nothing_is_named():
     ends = resolve_places("Istanbul", (), "Odesa", world_chart())
-    assert closed_way_error(Seaways.of_chart(world_chart(), ()), ends) is None
+    assert closed_way_error(Seaways.of_chart(world_chart(), ()), ends, {}) is None

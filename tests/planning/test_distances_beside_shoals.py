@@ -45,26 +45,59 @@ def test_a_detour_round_shoals_is_stated():
 @pytest.mark.parametrize(
     ("start", "goal", "draught", "closed", "miles"),
     [
-        ("Hamburg", "Gdansk", 12.0, "Kiel Canal: the draught of 12 m is over the 9.5 m", 426),
-        ("Rotterdam", "Mumbai", 21.0, "Suez Canal: the draught of 21 m is over the 20.12 m", 4489),
+        ("Hamburg", "Gdansk", 12.0, "Kiel Canal: the draught of 12 m is over the 9.5 m", 441),
+        ("Rotterdam", "Mumbai", 21.0, "Suez Canal: the draught of 21 m is over the 20.12 m", 4383),
         (
             "Ras Tanura",
             "Yokohama",
             20.8,
             "Malacca: One Fathom Bank, Malacca-Singapore west, Singapore Main Strait and Horsburgh "
             "(Middle Channel): the draught of 20.8 m is over the 20.5 m",
-            929,
+            973,
         ),
     ],
 )
 def test_canals_and_passages_that_a_draught_closes_are_named(start, goal, draught, closed, miles):
-    """Ways that shoals had made longer were compared, and canals stayed closed in both."""
+    """The miles are those to the way of a ship that just fits; ways over shoals were compared."""
     (note,) = [
         one for one in sea_distance(start, goal, draught_m=draught).notes if " closed: " in one
     ]
     assert closed in note
     saved = float(note.split("about ")[1].split(" nm")[0].replace(",", ""))
     assert saved == pytest.approx(miles, abs=5.0)
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "draught", "closed", "shallow"),
+    [
+        ("Baltimore", "New York", 12.0, "the Chesapeake and Delaware Canal: the draught", 10.0),
+        ("Surabaya", "Darwin", 8.0, "Passage closed: Surabaya: Eastern Channel: the draught", 6.5),
+        ("Singapore", "Jakarta", 16.0, "Passage closed: Gelasa (Gaspar): the draught", 15.0),
+    ],
+)
+def test_a_closed_way_is_as_much_shorter_as_its_note_states(start, goal, draught, closed, shallow):
+    """Branches of approaches were not named, and passages by ways over shoals (Bangka 91 nm)."""
+    way = sea_distance(start, goal, draught_m=draught)
+    (note,) = [one for one in way.notes if " closed: " in one]
+    assert closed in note
+    saved = float(note.split("about ")[1].split(" nm")[0])
+    assert sea_distance(start, goal, draught_m=shallow).nm == pytest.approx(
+        way.nm - saved, rel=0.015
+    )
+
+
+@pytest.mark.parametrize("goal", ["Jakarta", "Fremantle"])
+def test_a_closed_passage_that_saves_nothing_is_not_named(goal):
+    """Bangka: 28 and 48 nm shorter over shoals, where a ship of 8 m sails by Gelasa as well."""
+    notes = sea_distance("Singapore", goal, draught_m=12.0).notes
+    assert not any("Bangka" in note for note in notes)
+
+
+def test_a_way_far_round_has_one_reason():
+    """With the Kiel Canal named, the note on narrow channels that no table has adds nothing."""
+    notes = sea_distance("Kiel", "Hamburg", draught_m=12.0).notes
+    assert sum("Kiel Canal: the draught of 12 m is over the 9.5 m" in note for note in notes) == 1
+    assert not any("narrow channels" in note for note in notes)
 
 
 def test_canals_that_are_avoided_or_elsewhere_are_not_named():

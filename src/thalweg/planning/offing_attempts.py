@@ -112,5 +112,5 @@ def plan_off_land(
 def _closed_way(context: PlanningContext, ends: Sequence[Endpoint]) -> NoRouteError | None:
     """Return an error that names what is closed to the ship on the only way; None if nothing is."""
     return closed_way_error(
-        Seaways.of_ship_chart(context.chart), ends, **ship_dimensions(context.ship)
+        Seaways.of_ship_chart(context.chart), ends, ship_dimensions(context.ship)
     )

@@ -4,32 +4,28 @@ from __future__ import annotations
 
 import contextlib
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
 
 from thalweg.chart import Chart
-from thalweg.chart.approaches import (
-    MAX_APPROACH_SPEED,
-    line_between,
-)
+from thalweg.chart.approaches import MAX_APPROACH_SPEED
 from thalweg.chart.canal_parts import first_legs_of_transits, part_number_of_legs
 from thalweg.chart.depth.shoals import DRAUGHTS, Shoals
 from thalweg.chart.depth.shoals_of_draught import shoals_of_draught
 from thalweg.chart.offing import check_offing
 from thalweg.chart.passage_crossings import names_passed
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.geodesy import Position, distance, line_length
+from thalweg.core.geodesy import Position, distance
 from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.limits import DEEPEST_DRAUGHT
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
-from thalweg.planning.network_selection.closed_ways import (
-    closed_way_error,
-    ways_closed_to_draught_notes,
-)
+from thalweg.planning.network_selection.closed_to_draught import closed_to_draught_notes
+from thalweg.planning.network_selection.closed_ways import closed_way_error
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
+from thalweg.planning.network_selection.way_over_seas import WayOverSeas, way_over_seas
 from thalweg.planning.report.approach_report import (
     port_depth_note,
     turn_back_notes,
@@ -232,65 +228,66 @@ def _way_over_seas(
 ) -> SeaDistance:
     """Return the shortest way with some passages for small ships open; offing and draught [m]."""
     seas = every = Seaways.of_chart(chart, closed, opened=opened)
-    if draught is not None:
-        seas = _seas_for_draught(seas, draught, ends)
-    given = ends
-    ends = with_chosen_ways(ends, lambda: seas, draught=draught or 0.0)
     if draught is None:
         seas = replace(seas, shoals=_usual_shoals(chart, ends))
-    notes = tuple(end.note for end in ends if end.note)
-    first, last = ends[0].approach, ends[-1].approach
+    else:
+        seas = _seas_for_draught(seas, draught, ends)
+    try:
+        way = way_over_seas(seas, ends, draught=draught, offing=offing)
+    except NoRouteError as error:
+        chosen = with_chosen_ways(ends, lambda: seas, draught=draught or 0.0)
+        named = closed_way_error(seas, chosen, {"draught": draught, "length": 0.0}, opens=False)
+        raise named or error from None
+    notes = tuple(end.note for end in way.ends if end.note)
     if draught is not None:
-        ports = [end for end in (first, last) if end is not None]
         texts = [
-            port_depth_note(end, draught) or unknown_depth_text(end, draught).strip()
-            for end in ports
+            port_depth_note(one, draught) or unknown_depth_text(one, draught).strip()
+            for one in way.approaches
         ]
         notes += tuple(dict.fromkeys(filter(None, texts)))
-    if len(ends) == 2 and first and last:
-        line = line_between(first, last, legs_blocked=chart.legs_blocked)
-        if line is not None:
-            length = line_length(line)
-            along = ((f"{first.port.label} to {last.port.label}", length),)
-            titles = _canals_entered(chart, line)
-            return SeaDistance(ends[0].name, ends[-1].name, length, titles, (), along, line, notes)
-    try:
-        path = _path_by(seas, ends, offing)
-    except NoRouteError as error:
-        named = closed_way_error(seas, ends, draught=draught, length=0.0)
-        raise named or error from None
-    length, canals = path_length_and_canals(chart, path)
-    approaches = tuple((a.label, a.length) for a in (first, last) if a is not None)
-    near = sum(miles for _, miles in approaches)
-    total = length + near
-    notes += shoal_notes(seas, path, draught)
+    names = ends[0].name, ends[-1].name
+    if not way.at_sea:  # the approaches meet
+        between = " to ".join(approach.port.label for approach in way.approaches)
+        titles = _canals_entered(chart, way.line)
+        return SeaDistance(
+            *names, way.length, titles, (), ((between, way.length),), way.line, notes
+        )
+    notes += shoal_notes(seas, way.at_sea, draught)
+    shut: tuple[str, ...] = ()
     if draught is not None:
-        without = replace(seas, shoals=None)
-        over_shoals = sum(
-            path_length_and_canals(chart, without.graph_path(*leg))[0]
-            for leg in itertools.pairwise(ends)
-        )
-        too_deep = tuple(seas.closed_names - every.closed_names)
-        notes += ways_closed_to_draught_notes(every, too_deep, given, draught, over_shoals + near)
-        notes += shoal_detour_notes(
-            length,
-            over_shoals,
-            lambda: path_length_and_canals(chart, _path_by(without, ends, offing))[0],
-        )
-    notes += seas.near_land_notes(path, ends, offing=offing)
-    line = (
-        *(first.line[:-1] if first else ()),
-        *path,
-        *(last.line[-2::-1] if last else ()),
-    )
-    if (first and first.through) or (last and last.through):
-        canals = _canals_entered(chart, line)
-    lat, lon = np.array(line, float).T
+        too_deep = seas.closed_names - every.closed_names
+        shut = closed_to_draught_notes(seas, too_deep, ends, way, draught=draught, offing=offing)
+        notes += shut + _detours(seas, way, offing)
+    notes += seas.near_land_notes(way.at_sea, way.ends, offing=offing)
+    if any(approach.through for approach in way.approaches):
+        canals = _canals_entered(chart, way.line)
+    else:
+        canals = path_length_and_canals(chart, way.at_sea)[1]
+    lat, lon = np.array(way.line, float).T
     straits = names_passed(chart.coastline, chart.passages, lat, lon)
+    first, last = way.ends[0].approach, way.ends[-1].approach
     joints = [len(first.line) - 1] if first else []
-    joints += [len(line) - len(last.line)] if last else []
-    notes += tuple(turn_back_notes(lat, lon, joints)) + roundabout_notes(line, total)
-    return SeaDistance(ends[0].name, ends[-1].name, total, canals, straits, approaches, line, notes)
+    joints += [len(way.line) - len(last.line)] if last else []
+    notes += tuple(turn_back_notes(lat, lon, joints))
+    notes += () if shut else roundabout_notes(way.line, way.length)
+    approaches = tuple((a.label, a.length) for a in way.approaches)
+    return SeaDistance(*names, way.length, canals, straits, approaches, way.line, notes)
+
+
+def _detours(seas: Seaways, way: WayOverSeas, offing: float) -> tuple[str, ...]:
+    """Return how much longer shoals make a way, as a note; offing [m]."""
+    without = replace(seas, shoals=None)
+    legs = list(itertools.pairwise(way.ends))
+    near = sum(approach.length for approach in way.approaches)
+
+    def length(paths: Iterable[list[Position]]) -> float:
+        return sum(path_length_and_canals(seas.chart, path)[0] for path in paths)
+
+    return shoal_detour_notes(
+        way.length - near,
+        length(without.graph_path(*leg) for leg in legs),
+        lambda: length(without.path(*leg, offing=offing) for leg in legs),
+    )
 
 
 def may_be_shorter_for_small_ships(way: SeaDistance, chart: Chart | None = None) -> bool:
@@ -355,12 +352,6 @@ def _seas_for_draught(seas: Seaways, draught: float, ends: Sequence[Endpoint]) -
         seas.chart, float(draught), float(draught), [(e.lat, e.lon) for e in ends]
     )
     return replace(seas, shoals=shoals)
-
-
-def _path_by(seas: Seaways, ends: Sequence[Endpoint], offing: float) -> list[Position]:
-    """Return the shortest way by several places; offing [m]."""
-    parts = [seas.path(a, b, offing=offing) for a, b in itertools.pairwise(ends)]
-    return [parts[0][0], *(place for part in parts for place in part[1:])]
 
 
 def _usual_shoals(chart: Chart, ends: Sequence[Endpoint]) -> Shoals:
