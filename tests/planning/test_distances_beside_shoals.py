@@ -117,3 +117,22 @@ def test_a_draught_does_not_shorten_a_way(start, goal, nm):
     assert found[0] == pytest.approx(nm, rel=0.005)
     for shallow, deep in pairwise(found):
         assert deep >= 0.999 * shallow
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "draughts", "nm"),
+    [
+        ("Kuwait", "Bandar Abbas", (None, 4.0, 12.0), 524.1),  # 536, 526 and 530
+        ("Sydney", "Brisbane", (None, 4.0, 12.0), 519.1),  # 519, 490 and 490
+        ("Santos", "Buenos Aires", (None, 4.0), 989.8),  # 994 and 990
+        ("Pori", "Stockholm", (4.0, 8.0), 203.0),  # 203 and 197
+        ("Thessaloniki", "Mersin", (None, 8.0), 719.6),  # 732 and 727, round more islands
+        ("Constanta", "Split", (None, 8.0, 16.0), 1171.9),  # 1192, 1171 and 1192, round Kythira
+        ("Bergen", "Trondheim", (8.0, 12.0), 313.5),  # 317 and 314
+    ],
+)
+def test_a_way_that_is_open_to_deep_ships_is_open_to_others(start, goal, draughts, nm):
+    found = [sea_distance(start, goal, draught_m=draught).nm for draught in draughts]
+    assert found[0] == pytest.approx(nm, rel=0.005)
+    for shallow, deep in pairwise(found):
+        assert deep >= 0.998 * shallow

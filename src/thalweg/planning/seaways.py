@@ -41,6 +41,8 @@ from thalweg.network.global_grid.sea_graph import (
 from thalweg.network.global_grid.sea_graph_cache import edge_excess, sea_graph
 from thalweg.planning.request.voyage_endpoints import Endpoint
 
+#: A way whose miles in shoal water count this little more [m] is taken as free of shoals.
+_FREE_OF_SHOALS: Final = 0.5 * NAUTICAL_MILE
 #: A way that shoals make longer than this is compared with the one over them.
 _MOST_LONGER: Final = 1.01
 _STEP: Final = 0.25 * NAUTICAL_MILE  # at which the distance from land is looked up for a note
@@ -182,29 +184,38 @@ class Seaways:
         if outside_ice(*ends):
             chart = chart.within(*ICE_LATITUDES, -180.0, 180.0)
         off_land = _off_land(chart, ends, offing)
-        found = [
-            [place for part in _between_canals(chart, path)
-             for place in self._pulled(chart, off_land, part)]
-            for path in self._candidates(start, goal)
-        ]  # fmt: skip
+        anywhere = replace(self, shoals=None)
+        over = anywhere.graph_path(start, goal)
+        direct = anywhere._pulled_between_canals(chart, off_land, over)
+        if self._shoal_excess_of(direct) <= _FREE_OF_SHOALS:
+            return direct  # the same for every draught that it is free for
+        round_shoals = self.graph_path(start, goal)
+        pulled = [direct, self._pulled_between_canals(chart, off_land, round_shoals)]
+        if _MOST_LONGER * line_length(over) < line_length(round_shoals) and self._has_wide_shoals:
+            pulled.append(self._pulled_between_canals(chart, off_land, over))
         clear = ClearWater(off_land, self.shoals)
-        return min(found, key=partial(_cost_with_canals, clear)) if len(found) > 1 else found[0]
-
-    def _candidates(self, start: Endpoint, goal: Endpoint) -> list[list[Position]]:
-        """Return the way over the graph, and the one without shoals where that is shorter.
-
-        The edges of the graph are long beside shoals: a way past one may cost less than they do.
-        """
-        found = [self.graph_path(start, goal)]
-        if self._has_wide_shoals:
-            without = replace(self, shoals=None).graph_path(start, goal)
-            if _MOST_LONGER * line_length(without) < line_length(found[0]):
-                found.append(without)
-        return found
+        return min(pulled, key=partial(_cost_with_canals, clear))
 
     @property
     def _has_wide_shoals(self) -> bool:
         return self.shoals is not None and self.shoals.contour > CONTOURS[0]
+
+    def _shoal_excess_of(self, path: Sequence[Position]) -> float:
+        """Return how many more metres a way counts for its shoal water, canals without."""
+        if self.shoals is None:
+            return 0.0
+        return sum(
+            float(np.sum(distance(*legs) * self.shoals.excess(*legs)))
+            for part in _between_canals(self.chart, path)
+            for legs in [(*part[:-1].T, *part[1:].T)]
+        )
+
+    def _pulled_between_canals(
+        self, chart: Chart, off_land: Chart, path: Sequence[Position]
+    ) -> list[Position]:
+        """Return a way after string pulling of its parts between canals."""
+        parts = _between_canals(chart, path)
+        return [place for part in parts for place in self._pulled(chart, off_land, part)]
 
     def near_land_notes(
         self, path: Sequence[Position], ends: Sequence[Endpoint], *, offing: float

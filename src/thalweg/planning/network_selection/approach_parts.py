@@ -33,7 +33,9 @@ _LEAST_GAIN: Final = 5.0 * NAUTICAL_MILE  # in the last case
 _SHORTEST_LEFT_OUT: Final = 1.0 * NAUTICAL_MILE
 _USUAL_OFF_LAND: Final = 1.0 * NAUTICAL_MILE  # where a line is left, if that does
 _SPACING: Final = 0.5 * NAUTICAL_MILE  # of the places at which a line may be left
-_USUAL_DRAUGHT: Final = 8.0  # where none is given, for shoals beside the channels [m]
+_USUAL_DRAUGHT: Final = (
+    8.0  # ships of less, and of none that is known, keep to channels as well [m]
+)
 _MOST_SHOAL: Final = EXCESS[0]  # of a mile where the depth is the draught
 
 
@@ -42,10 +44,13 @@ def ends_left_early(
 ) -> tuple[float, list[Endpoint]] | None:
     """Return two ends with their approaches cut where the way between them leaves these.
 
+    What that saves is counted over the shortest ways, whatever their depth. If shoals counted, deep
+    ships would leave channels that others keep to, and would have shorter ways.
+
     Parameters
     ----------
     start, goal : By the ways that make the distance least, as far as their sea ends.
-    seas : The seaways that the voyage may use.
+    seas : The seaways that the voyage may use, without shoals.
     draught : Of the ship [m], 0 where it is not known.
     longest : Distance from berth to berth by those ways [m].
 
@@ -130,7 +135,7 @@ def _cut_that_saves(
     if longest - length < least_gain:
         return None
     harbours = _harbours(ends, cut)
-    depth = draught or _USUAL_DRAUGHT
+    depth = max(draught, _USUAL_DRAUGHT)
     shoals = _shoals(seas, harbours, depth)
     return length, [] if _has_shoals(path, left_out, shoals, depth) else cut
 

@@ -67,8 +67,10 @@ def _best_pair(start: Endpoint, goal: Endpoint, seas: Seaways, draught: float) -
         if length < least:
             best, least = pair, length
     tried = [best] if best is pairs[0] else [best, pairs[0]]
+    anywhere = replace(seas, shoals=None)
+    longest = min(pair.length(anywhere) for pair in tried)
     early = [
-        ends_left_early(pair.start, pair.goal, seas, draught=draught, longest=least)
+        ends_left_early(pair.start, pair.goal, anywhere, draught=draught, longest=longest)
         for pair in tried
     ]
     shortest = min((one for one in early if one is not None), key=lambda one: one[0], default=None)
