@@ -53,7 +53,7 @@ def leg_prices(objective: Objective, ship: Ship, terms: FuelTerms | None = None)
     -------
     LegPrices : Prices [`Objective.unit`] of fuel [kg], energy [J] or, where fuel has no price, of
         the cube of the ordered speed times time [m3/s2] (van Halem 2019); of their mixture where
-        several key figures consume.
+        several key figures consume different ones.
 
     Raises
     ------
@@ -68,6 +68,8 @@ def leg_prices(objective: Objective, ship: Ship, terms: FuelTerms | None = None)
         found = LegPrices(0.0, 0.0, consumption="cubed_speed")
     elif len(parts) == 1:
         found = parts[0]
+    elif len({part.consumption for part in parts}) == 1:
+        found = _added_prices(parts)
     else:
         found = _mixed_prices(parts, tuple(prices))
     return replace(
@@ -76,6 +78,18 @@ def leg_prices(objective: Objective, ship: Ship, terms: FuelTerms | None = None)
         length=objective.distance / NAUTICAL_MILE,
         inshore=objective.inshore / NAUTICAL_MILE,
         encounters=objective.encounters,
+    )
+
+
+def _added_prices(parts: list[LegPrices]) -> LegPrices:
+    """Return the sum of prices of one consumption, such as those of fuel and of its cost."""
+    return replace(
+        parts[0],
+        inside=sum(part.inside for part in parts),
+        outside=sum(part.outside for part in parts),
+        time=sum(part.time for part in parts),
+        waiting=sum(part.waiting for part in parts),
+        dues=max(part.dues for part in parts),
     )
 
 

@@ -30,7 +30,7 @@ from thalweg.planning.indicators.route_figures import (
     compared_values,
 )
 from thalweg.planning.indicators.ways_not_offered import fastest_without_canals, unchosen_notes
-from thalweg.planning.pareto.limited_plan import IndicatorLimit
+from thalweg.planning.pareto.indicator_limit import IndicatorLimit
 from thalweg.planning.report.filled_weather import filled_waves_note
 from thalweg.planning.report.land_report import NEAREST_LAND
 from thalweg.planning.report.note_order import notes_of_routes

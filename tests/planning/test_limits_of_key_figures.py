@@ -1,0 +1,102 @@
+"""Plans whose fuel, cost or time is limited use the whole of what is allowed."""
+
+import pytest
+
+from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.core.objective import Objective
+from thalweg.ship.consumption import leg_prices
+
+SHIP = {
+    "name": "plain cargo ship",
+    "hull": {
+        "length_between_perpendiculars_m": 140,
+        "breadth_m": 22,
+        "draught_m": 8,
+        "block_coefficient": 0.75,
+    },
+    "speeds_kn": [10, 12, 14],
+    "engine": {
+        "reference_speed_kn": 14,
+        "reference_power_kw": 5000,
+        "type": "slow_speed_diesel",
+        "power_kw": 6000,
+        "hotel_load_kw": 300,
+    },
+    "models": {"calm_water": "cubic"},
+    "fuel": {"type": "vlsfo", "eca_type": "mgo", "price_per_t": 520, "eca_price_per_t": 720,
+             "reference_t_per_day": 24},
+    "costs": {"hire_per_day": 20000},
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def planned():
+    """Return plans of one voyage, each made once."""
+    kept = {}
+
+    def one(objective, **limits):
+        key = objective, *limits.items()
+        if key not in kept:
+            voyage = Voyage(
+                start=(0.0, 0.0),
+                goal=(0.0, 8.0),
+                depart="2026-12-01",
+                objective=objective,
+                at_most=limits,
+            )
+            chart = Chart.open_water(-2.0, 2.0, -1.0, 9.0)
+            ship = Ship.from_dict(SHIP)
+            kept[key] = plan(voyage, ship=ship, sea=Sea.calm(), chart=chart, proof=0.0)
+        return kept[key]
+
+    return one
+
+
+def test_the_fastest_within_a_fuel_limit_uses_the_fuel(planned):
+    """Two speeds share the way so that the fuel is just the limit."""
+    limit = 28.1
+    found = planned("time", fuel=limit)
+    assert 0.998 * limit < found.best.fuel_t <= limit
+    assert found.gap < 0.05  # that of the least time without the limit is 0.11
+    note = next(text for text in found.notes if "Limits of the route" in text)
+    more = found.best.time_h - planned("time").best.time_h
+    assert f"They cost {more:.4g} h more" in note
+
+
+def test_the_least_fuel_in_a_time_is_that_with_the_latest_arrival(planned):
+    found = planned("fuel", time=39.0)
+    assert 38.9 < found.best.time_h <= 39.0
+    swapped = planned("time", fuel=found.best.fuel_t)
+    assert swapped.best.time_h == pytest.approx(39.0, rel=3e-3)
+
+
+def test_the_least_cost_within_a_fuel_limit_is_found(planned):
+    """Fuel has another price in control areas: this was refused as a weighted sum."""
+    free = planned("cost")
+    limit = 0.9 * free.best.fuel_t
+    found = planned("cost", fuel=limit)
+    assert 0.998 * limit < found.best.fuel_t <= limit
+    assert found.best.cost > free.best.cost
+    assert found.best.time_h == pytest.approx(planned("time", fuel=limit).best.time_h, rel=1e-3)
+
+
+def test_a_front_within_a_fuel_limit_begins_where_it_is_just_kept(planned):
+    """The front of time and cost ends at the least cost, which burns more."""
+    limit = 0.9 * planned("cost").best.fuel_t
+    found = planned("front", fuel=limit)
+    assert found.front.criterion == "cost"
+    assert all(route.fuel_t <= limit for route in found.routes)
+    assert found.routes[0].fuel_t > 0.998 * limit
+    assert len(found.routes) == len(found.front.values) == len(found.front.ways)
+
+
+def test_prices_of_one_consumption_add_up_in_and_out_of_control_areas():
+    ship = Ship.from_dict(SHIP)
+    cost, fuel = (leg_prices(Objective.of(name), ship) for name in ("cost", "fuel"))
+    both = leg_prices(Objective(cost=1.0, fuel=100.0), ship)
+    assert both.consumption == "fuel" and not both.mix
+    assert both.inside == pytest.approx(cost.inside + 100.0 * fuel.inside)
+    assert both.outside == pytest.approx(cost.outside + 100.0 * fuel.outside)
+    assert both.inside / both.outside != pytest.approx(cost.inside / cost.outside)
+    assert both.time == cost.time and both.dues == cost.dues
+    assert both.waiting == pytest.approx(cost.waiting + 100.0 * fuel.waiting)
