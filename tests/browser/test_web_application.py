@@ -371,6 +371,22 @@ def test_an_exported_route_is_scored_beside_its_plan(visit, planned, tmp_path):
     visit.picture("compare")
 
 
+def test_a_route_is_scored_with_the_clearance_of_the_one_beside_it(visit, tmp_path):
+    line = tmp_path / "mine.csv"
+    line.write_text("lat,lon,time\n47.0,-5.0,2026-01-01T00:00Z\n47.1,-5.2,\n")
+    service = visit.service.http
+    sent = service.post("/api/v1/routes", files={"file": ("a.csv", line.read_bytes())}).json()
+    order = {"route": sent["id"], "ship": "handysize-bulker", "seas": ["calm"], "coast": "c"}
+    first = service.post("/api/v1/evaluate", json={**order, "min_ukc_m": 1.5}).json()["id"]
+    ended(service.get, first)
+    page = visit.open("#view=compare")
+    page.locator(f".jobrow input[value='{first}.1']").check()
+    page.locator("#route-file").set_input_files(str(line))
+    page.locator(".compare-table tbody tr").nth(1).wait_for()
+    jobs = service.get("/api/v1/plans").json()["jobs"]
+    assert jobs[0]["title"] == "mine.csv" and jobs[0]["request"]["min_ukc_m"] == 1.5
+
+
 def test_a_reload_in_the_middle_of_a_job_and_a_killed_service(visit):
     page = visit.open()
     visit.fill_short("47.0N 22.0W", "47.0N 12.0W")

@@ -262,6 +262,8 @@ export class CompareView {
       const route = await uploadForm("/routes", file);
       const { ship, seas, fill: filled, limits, areas, coast, load_factor, depths, traffic, eca, charges, sampling, average_over_m } = first.request;
       const request = { title: file.name, route: route.id, ship, seas, fill: filled, limits, areas, coast, load_factor, depths, traffic, eca, charges, sampling, average_over_m };
+      const clearance = (first.request.voyage || first.request).min_ukc_m;
+      if (clearance != null) request.min_ukc_m = clearance;
       if (speed) request.speed_kn = speed;
       if (!route.depart) request.depart = first.summary.depart;
       await this.#planAll([["/evaluate", request]], (jobs) => jobs.forEach((job) => this.add(job.id, 1, file.name)));
