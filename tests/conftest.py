@@ -60,13 +60,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 @pytest.fixture(scope="session", autouse=True)
 def brief_proofs() -> Iterator[None]:
     """Limit the time for proofs that a test does not set, and the rasters that plans make."""
-    from thalweg.planning import planner
     from thalweg.planning.pareto.front_bound import least_ways
     from thalweg.planning.single import certified_bound
     from thalweg.search.certificate import time_certificate
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(planner, "_LONGEST_DEFAULT_PROOF", 0.2)
+        patch.setattr(certified_bound, "LONGEST_PROOF", 0.2)
         patch.setattr(least_ways, "_SECONDS", 0.2)
         patch.setattr(certified_bound, "_CELLS_OF_PATH", 250)
         patch.setattr(time_certificate, "_CELLS_OF_GEODESIC", 120)

@@ -48,7 +48,7 @@ from thalweg.planning.request.voyage_endpoints import (
     Endpoint,
 )
 from thalweg.planning.request.voyage_objective import with_voyage_prices
-from thalweg.planning.single.certified_bound import certified_total
+from thalweg.planning.single.certified_bound import certified_total, usual_proof_time
 from thalweg.planning.single.stretch import plan_stretch
 from thalweg.planning.single.stretch_result import StretchResult
 from thalweg.planning.voyage import Voyage
@@ -63,8 +63,6 @@ from thalweg.ship import Ship
 _Replan: TypeAlias = Callable[..., Plan]
 
 _LONGEST_PROOF = 3600.0  # [s]
-_LONGEST_DEFAULT_PROOF = 30.0  # [s]
-_SHORTEST_DEFAULT_PROOF = 1.0  # [s]
 
 
 def plan(
@@ -99,7 +97,8 @@ def plan(
         Spacing of the network [m]; by default it depends on the distance.
     proof : float, optional
         Time for the proof of the lower bound [s], 0 for the bound of the geodesic alone; by
-        default as long as the search, 1 s or more. It ends earlier where the gap is below 0.5 %.
+        default as long as the search, 1 s or more, and 15 s or more where a passage that is closed
+        to the ship is within reach. It ends earlier where the gap is below 0.5 %.
     progress : callable, optional
         Called with a short text at each stage. If it also has methods ``show_route`` and
         ``show_front``, these receive each better route, and the times [s] and values of each
@@ -236,12 +235,11 @@ def _plan_at_sea(context: PlanningContext, ends: list[Endpoint]) -> Plan:
         return plan_trade_off(context, ends)
     began = clock.perf_counter()
     stretches = _plan_stretches(context, ends)
+    routes = [stretch.route for stretch in stretches]
     seconds = context.proof_seconds
     if seconds is None:
-        searched = clock.perf_counter() - began
-        seconds = min(max(searched, _SHORTEST_DEFAULT_PROOF), _LONGEST_DEFAULT_PROOF)
+        seconds = usual_proof_time(context.chart, routes, clock.perf_counter() - began)
     window = context.voyage.earliest_departure, context.voyage.latest_departure
-    routes = [stretch.route for stretch in stretches]
     bound = certified_total(context, routes, window, seconds=seconds)
     return _assemble_plan(context, ends, stretches, bound)
 

@@ -23,6 +23,7 @@ from thalweg.search import LowerBound
 from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.barrier_mesh import ShipInBarrier
 from thalweg.search.certificate.departure_certificate import certify_departures
+from thalweg.search.certificate.positions_in_reach import Reach
 from thalweg.search.certificate.raster_path import fast_path_on_raster
 from thalweg.search.certificate.time_certificate import (
     TimeCertificate,
@@ -50,6 +51,10 @@ TABLE_MARGIN = 1e-3
 #: A bound this share above the value of a route contradicts it.
 _CONTRADICTION = 2e-3
 _NOT_SAILED = "no bound: the route breaks a limit"
+LONGEST_PROOF = 30.0  #: by default [s]
+_SHORTEST_PROOF = 1.0
+#: Likewise where a passage is closed: the least length round it needs outlines of all land beside.
+_PROOF_ROUND_CLOSED = 15.0
 _CELLS_FOR_CURRENT = 100  # where the data are no finer
 _CELLS_OF_PATH = 800  # of functions, along the longer side
 #: Cells of functions in the spacing of a network that is coarser than usual, and how many at least.
@@ -96,6 +101,23 @@ def certified_bound(
     if found.reached * margin > passage.known * (1.0 + _CONTRADICTION) + route.tolerance_s:
         return no_bound(_contradicted(found, passage.known, by_length=by_length))
     return LowerBound(min(found.value * margin, passage.known), _kind(context, route, found))
+
+
+def usual_proof_time(chart: Chart, routes: Sequence[Route], searched: float) -> float:
+    """Return the time for the proof of a bound [s]: as long as the search, within limits.
+
+    Parameters
+    ----------
+    chart : With the passages that are closed to the ship.
+    routes : Of the stretches of a voyage.
+    searched : Time of the search [s].
+    """
+    least = _SHORTEST_PROOF
+    for route in routes if chart.closed_passages else ():
+        reach = Reach(*_ends(route), float(route.legs["length"].sum()))
+        if any(reach.has(*passage.positions).any() for passage in chart.closed_passages):
+            least = _PROOF_ROUND_CLOSED
+    return min(max(searched, least), LONGEST_PROOF)
 
 
 def path_through_data(
