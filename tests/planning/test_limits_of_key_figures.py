@@ -1,9 +1,12 @@
 """Plans whose fuel, cost or time is limited use the whole of what is allowed."""
 
+from dataclasses import replace
+
 import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.objective import Objective
+from thalweg.planning.pareto.limited_plan import plan_within_limits
 from thalweg.ship.consumption import leg_prices
 
 SHIP = {
@@ -27,6 +30,7 @@ SHIP = {
              "reference_t_per_day": 24},
     "costs": {"hire_per_day": 20000},
 }  # fmt: skip
+OPEN = Chart.open_water(-2.0, 2.0, -1.0, 9.0)
 
 
 @pytest.fixture(scope="module")
@@ -44,9 +48,8 @@ def planned():
                 objective=objective,
                 at_most=limits,
             )
-            chart = Chart.open_water(-2.0, 2.0, -1.0, 9.0)
             ship = Ship.from_dict(SHIP)
-            kept[key] = plan(voyage, ship=ship, sea=Sea.calm(), chart=chart, proof=0.0)
+            kept[key] = plan(voyage, ship=ship, sea=Sea.calm(), chart=OPEN, proof=0.0)
         return kept[key]
 
     return one
@@ -61,6 +64,7 @@ def test_the_fastest_within_a_fuel_limit_uses_the_fuel(planned):
     note = next(text for text in found.notes if "Limits of the route" in text)
     more = found.best.time_h - planned("time").best.time_h
     assert f"They cost {more:.4g} h more" in note
+    assert "one between them (--speed) may be faster" in note
 
 
 def test_the_least_fuel_in_a_time_is_that_with_the_latest_arrival(planned):
@@ -78,6 +82,22 @@ def test_the_least_cost_within_a_fuel_limit_is_found(planned):
     assert 0.998 * limit < found.best.fuel_t <= limit
     assert found.best.cost > free.best.cost
     assert found.best.time_h == pytest.approx(planned("time", fuel=limit).best.time_h, rel=1e-3)
+
+
+def test_where_one_fuel_is_burnt_a_limit_needs_few_plans(planned):
+    """Sums of cost and fuel were searched five times over, though time and fuel give the cost."""
+    counted = []
+
+    def one(voyage):
+        counted.append(str(voyage.objective))
+        return plan(voyage, ship=Ship.from_dict(SHIP), sea=Sea.calm(), chart=OPEN, proof=0.0)
+
+    limit = 0.9 * planned("cost").best.fuel_t
+    voyage = replace(planned("cost").voyage, at_most={"fuel": limit})
+    found = plan_within_limits(voyage, one)
+    assert counted[:2] == ["cost", "fuel"]
+    assert "weighted" not in counted and len(counted) <= 5
+    assert found.best.fuel_t <= limit
 
 
 def test_a_front_within_a_fuel_limit_begins_where_it_is_just_kept(planned):

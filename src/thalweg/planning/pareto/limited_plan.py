@@ -181,7 +181,7 @@ def _narrow_down(
     """
     if free.depart is None or free.depart_window is not None or free.arrive is not None:
         return
-    early = 0.0  # [s] by which the last plan arrived before it had to
+    early, tried = 0.0, list[float]()  # [s] by which the last plan arrived before it had to
     for _ in range(_ARRIVALS):
         routes = [one for plan in plans for one in plan.routes if one.feasible]
         routes = [one for one in routes if math.isfinite(indicator_value(one, limit.name))]
@@ -194,9 +194,11 @@ def _narrow_down(
             return
         value, other = (indicator_value(one, limit.name) for one in (right, left))
         share = ((1.0 - _AIM) * limit.value - value) / (other - value)
-        latest = right.arrive + share * (left.arrive - right.arrive) + early
-        if latest >= right.arrive:
+        latest = right.arrive + share * (left.arrive - right.arrive)
+        latest += early if latest + early < right.arrive else 0.0
+        if latest in tried:
             return
+        tried.append(latest)
         request = replace(free, objective=limit.name, weights={}, arrive_by=latest)  # type: ignore[arg-type]
         try:
             plans.append(plan_one(request))
@@ -212,12 +214,16 @@ def _hours(route: Route) -> float:
 def _spanned_by_time(own: Mapping[str, float], names: list[str], plans: list[Plan]) -> bool:
     """Return whether an objective and key figures follow from time and fuel on all routes.
 
-    That is so for fuel, its cost and its CO2 out of control areas, where canal dues are the same.
+    That is so for fuel, its cost and its CO2 where all or none of it is burnt in control areas, and
+    canal dues are the same.
     """
     routes = [route for plan in plans for route in plan.routes]
-    one_fuel = all(not route.fuel_eca_t for route in routes)
-    dues = {round(float(np.sum(route.legs.get("canal_dues", 0.0))), 2) for route in routes}
-    return {*own, *names} <= {"time", *_OF_FUEL} and one_fuel and len(dues) == 1
+    inside = {
+        round((route.fuel_eca_t or 0.0) / route.fuel_t, 6) if route.fuel_t else 0.0
+        for route in routes
+    }
+    dues = {route.cost_parts["canal dues"] for route in routes}
+    return {*own, *names} <= {"time", *_OF_FUEL} and inside in ({0.0}, {1.0}) and len(dues) == 1
 
 
 def _weigh(
@@ -321,6 +327,8 @@ def _assembled(
         more = value - free
         note += f" They cost {more:.4g} {objective.unit}".rstrip()
         note += f" more than the best route without them, which breaks {broken}."
+    if voyage.objective == "time" and source.voyage.chooses_speeds:
+        note += " Its speeds are those of the ship file; one between them (--speed) may be faster."
     way = _of_front(source, k)[1]
     front = found.front
     if front is not None:
