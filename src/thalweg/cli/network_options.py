@@ -59,7 +59,7 @@ def add_network_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--proof", type=float, metavar="SECONDS",
         help="time for the proof of the lower bound, 0 to 3600 s; default: as long as the search, "
-        "1 s or more, and 15 s or more where a passage that is closed to the ship is within reach",
+        "1 s or more, and 15 s or more where a strait of trade is closed to the ship",
     )  # fmt: skip
 
 

@@ -97,8 +97,8 @@ def plan(
         Spacing of the network [m]; by default it depends on the distance.
     proof : float, optional
         Time for the proof of the lower bound [s], 0 for the bound of the geodesic alone; by
-        default as long as the search, 1 s or more, and 15 s or more where a passage that is closed
-        to the ship is within reach. It ends earlier where the gap is below 0.5 %.
+        default as long as the search, 1 s or more, and 15 s or more where a passage of trade
+        within reach is closed to the ship. It ends earlier where the gap is below 0.5 %.
     progress : callable, optional
         Called with a short text at each stage. If it also has methods ``show_route`` and
         ``show_front``, these receive each better route, and the times [s] and values of each

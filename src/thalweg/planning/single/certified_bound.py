@@ -53,7 +53,8 @@ _CONTRADICTION = 2e-3
 _NOT_SAILED = "no bound: the route breaks a limit"
 LONGEST_PROOF = 30.0  #: by default [s]
 _SHORTEST_PROOF = 1.0
-#: Likewise where a passage is closed: the least length round it needs outlines of all land beside.
+_FOR_SMALL_SHIPS = "small_or_local"  # use of passages that save little
+#: Likewise where a passage of trade is closed: the least length round it needs outlines of all land beside.
 _PROOF_ROUND_CLOSED = 15.0
 _CELLS_FOR_CURRENT = 100  # where the data are no finer
 _CELLS_OF_PATH = 800  # of functions, along the longer side
@@ -113,9 +114,10 @@ def usual_proof_time(chart: Chart, routes: Sequence[Route], searched: float) -> 
     searched : Time of the search [s].
     """
     least = _SHORTEST_PROOF
-    for route in routes if chart.closed_passages else ():
+    closed = [passage for passage in chart.closed_passages if passage.use != _FOR_SMALL_SHIPS]
+    for route in routes if closed else ():
         reach = Reach(*_ends(route), float(route.legs["length"].sum()))
-        if any(reach.has(*passage.positions).any() for passage in chart.closed_passages):
+        if any(reach.has(*passage.positions).any() for passage in closed):
             least = _PROOF_ROUND_CLOSED
     return min(max(searched, least), LONGEST_PROOF)
 

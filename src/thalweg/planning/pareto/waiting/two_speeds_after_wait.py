@@ -44,7 +44,7 @@ def two_speeds_after_wait(
     def score(track: Track) -> Route:
         return trade_off.context.evaluate(track, trade_off.objective.terms)
 
-    found = []
+    found: list[RefereedCandidate] = []
     for lower, higher, shares in _neighbours(trade_off, steady):
         for track in _mixtures(lower.route.track, higher.route.track, shares):
             if trade_off.interrupt_guard.stopped():
