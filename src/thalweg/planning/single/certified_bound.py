@@ -54,7 +54,7 @@ _NOT_SAILED = "no bound: the route breaks a limit"
 LONGEST_PROOF = 30.0  #: by default [s]
 _SHORTEST_PROOF = 1.0
 _FOR_SMALL_SHIPS = "small_or_local"  # use of passages that save little
-#: Likewise where a passage of trade is closed: the least length round it needs outlines of all land beside.
+#: Likewise where a passage of trade is closed: the way round it needs outlines of all land beside.
 _PROOF_ROUND_CLOSED = 15.0
 _CELLS_FOR_CURRENT = 100  # where the data are no finer
 _CELLS_OF_PATH = 800  # of functions, along the longer side
