@@ -64,7 +64,7 @@ def test_the_fastest_within_a_fuel_limit_uses_the_fuel(planned):
     note = next(text for text in found.notes if "Limits of the route" in text)
     more = found.best.time_h - planned("time").best.time_h
     assert f"They cost {more:.4g} h more" in note
-    assert "one between them (--speed) may be faster" in note
+    assert "--speed-step 0.5 counts those between" in note
 
 
 def test_the_least_fuel_in_a_time_is_that_with_the_latest_arrival(planned):

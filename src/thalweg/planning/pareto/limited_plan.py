@@ -327,8 +327,9 @@ def _assembled(
         more = value - free
         note += f" They cost {more:.4g} {objective.unit}".rstrip()
         note += f" more than the best route without them, which breaks {broken}."
-    if voyage.objective == "time" and source.voyage.chooses_speeds:
-        note += " Its speeds are those of the ship file; one between them (--speed) may be faster."
+    settings_alone = voyage.speed_step_kn is None and source.voyage.chooses_speeds
+    if voyage.objective == "time" and settings_alone:
+        note += " Its speeds are those of the ship file; --speed-step 0.5 counts those between."
     way = _of_front(source, k)[1]
     front = found.front
     if front is not None:
