@@ -47,7 +47,11 @@ def test_a_weak_bound_does_not_squeeze_the_routes():
 
 def test_a_bound_close_to_the_routes_is_shown_whole():
     axes = picture([TIMES, VALUES - 500.0])
-    (bound,) = [line for line in axes.lines if line.get_label().startswith("no route at these speeds can be")]
+    (bound,) = [
+        line
+        for line in axes.lines
+        if line.get_label().startswith("no route at these speeds can be")
+    ]
     assert bound.get_ydata().min() > axes.get_ylim()[0]
     assert not any("at most" in text.get_text() for text in axes.texts)
 
