@@ -184,14 +184,16 @@ class Seaways:
         if outside_ice(*ends):
             chart = chart.within(*ICE_LATITUDES, -180.0, 180.0)
         off_land = _off_land(chart, ends, offing)
-        anywhere = replace(self, shoals=None)
-        over = anywhere.graph_path(start, goal)
-        direct = anywhere._pulled_between_canals(chart, off_land, over)
-        if self._shoal_excess_of(direct) <= _FREE_OF_SHOALS:
-            return direct  # the same for every draught that it is free for
-        round_shoals = self.graph_path(start, goal)
-        pulled = [direct, self._pulled_between_canals(chart, off_land, round_shoals)]
-        if _MOST_LONGER * line_length(over) < line_length(round_shoals) and self._has_wide_shoals:
+        over, pulled = replace(self, shoals=None).graph_path(start, goal), []
+        round_shoals = over if self.shoals is None else self.graph_path(start, goal)
+        longer = line_length(round_shoals) > _MOST_LONGER * line_length(over)
+        if not longer:
+            direct = replace(self, shoals=None)._pulled_between_canals(chart, off_land, over)
+            if self._shoal_excess_of(direct) <= _FREE_OF_SHOALS:
+                return direct  # the same for every draught that it is free for
+            pulled = [direct]
+        pulled.append(self._pulled_between_canals(chart, off_land, round_shoals))
+        if longer and self._has_wide_shoals:
             pulled.append(self._pulled_between_canals(chart, off_land, over))
         clear = ClearWater(off_land, self.shoals)
         return min(pulled, key=partial(_cost_with_canals, clear))
