@@ -31,9 +31,7 @@ _BISECTIONS: Final = 7
 _LONGEST_LEG: Final = 60.0 * NAUTICAL_MILE  # legs are split to this while waypoints are moved
 #: How far waypoints are moved at once. Small steps come first: the long ones lead to the other side
 #: of islands, which pays only where the way beside them is as good as it gets.
-_STEP_LENGTHS: Final = tuple(
-    NAUTICAL_MILE * s for s in (6.0, 3.0, 24.0, 12.0, 3.0, 1.5, 0.75, 0.3)
-)
+_STEP_LENGTHS: Final = tuple(NAUTICAL_MILE * s for s in (6.0, 3.0, 24.0, 12.0, 3.0, 1.5, 0.75, 0.3))
 _MAX_SWEEPS: Final = 6
 _MOVE_DIRECTIONS: Final = np.radians(np.arange(0.0, 360.0, 45.0))
 _MIN_GAIN: Final = 1e-5  # the iteration stops at a smaller relative gain
