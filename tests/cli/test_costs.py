@@ -128,10 +128,10 @@ def test_evaluate_requires_the_clearance_of_the_ship_file(capsys, track, tmp_pat
     assert main([*charted, "--ukc", "2"]) == 0
     assert "all kept" in capsys.readouterr().out
     assert main([*words]) == 0
-    told = "depth under the keel NOT checked (the ship file requires 3 m: give --depth FILE)"
-    assert told in capsys.readouterr().out
+    stated = "depth under the keel NOT checked (the ship file requires 3 m: give --depth FILE)"
+    assert stated in capsys.readouterr().out
     main(["plan", "55,4", "55,5", *words[2:]])
-    assert told in capsys.readouterr().out
+    assert stated in capsys.readouterr().out
     note = "The ship file requires 3 m: give a depth file (--depth)."
     for command in (words, ("plan", "55,4", "55,5", *words[2:])):
         assert any(note in text for text in run_json(capsys, *command)[1]["notes"])

@@ -116,6 +116,17 @@ def test_a_ship_between_two_speeds_does_not_wait_longer_than_needed(tug, bar, at
     assert np.unique(found.best.track.setting).tolist() == [0, 1]
 
 
+def test_a_front_has_routes_at_two_speeds_after_one_wait(tug, bar):
+    found = planned(tug, bar, objective="front")
+    pairs = {
+        tuple(np.unique(route.track.setting).tolist())
+        for route, stage in zip(found.routes, found.front.stages, strict=True)
+        if stage == "one wait" and np.flatnonzero(route.track.wait).tolist() == [0]
+    }
+    assert {len(pair) for pair in pairs} == {1, 2}
+    assert all(route.feasible for route in found.routes)
+
+
 def test_the_bound_of_the_cost_counts_the_wait_that_no_ship_is_spared(
     tug, bar, at_lowest_speed, monkeypatch
 ):

@@ -357,8 +357,8 @@ def test_a_study_or_project_without_data_at_any_departure_is_refused(client, kin
 def test_unknown_jobs_and_paths_are_problems(client):
     problem(client.get("/api/v1/plans/0123456789abcdef"), 404)
     for found in (client.get("/api/v1/plans/nosuch"), client.delete("/api/v1/plans/nosuch")):
-        told = problem(found, 404)
-        assert told["asked"] == "There is no job 'nosuch'." and "/plans" in told["remedy"]
+        stated = problem(found, 404)
+        assert stated["asked"] == "There is no job 'nosuch'." and "/plans" in stated["remedy"]
     named = problem(client.post("/api/v1/compare", json={"routes": [{"job": "no"}] * 2}), 422)
     assert "the id of a job" in named["detail"] and "0-9a-f" not in named["detail"]
     problem(client.get("/api/v1/plans/..%2f..%2fetc"), 404)

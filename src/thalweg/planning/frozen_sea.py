@@ -8,12 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from thalweg.core.errors import InputError
+from thalweg.core.limits import Limits
 from thalweg.core.memory import machine_memory
 from thalweg.kernels import codes
 from thalweg.network import Network
 from thalweg.network.network import Stations
 from thalweg.planning.planning_context import PlanningContext, greatest_speed_of
 from thalweg.sea import StationFields
+from thalweg.search import ShipOnNetwork
 
 #: Greatest size of frozen fields [bytes].
 MEMORY_LIMIT = min(4_000_000_000, machine_memory() // 2)
@@ -30,6 +32,20 @@ class FrozenSea:
 
     stations: StationFields
     top_speed: float
+
+
+def ship_in_frozen_sea(
+    context: PlanningContext, network: Network, frozen: FrozenSea, *, setting: int, limits: Limits
+) -> ShipOnNetwork:
+    """Return the ship at one setting on a network in a frozen sea."""
+    return ShipOnNetwork(
+        network,
+        frozen.stations,
+        context.table,
+        setting=setting,
+        limits=limits,
+        top_speed=frozen.top_speed,
+    )
 
 
 @dataclass

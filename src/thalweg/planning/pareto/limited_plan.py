@@ -26,7 +26,7 @@ _ROUNDS: Final = 5  # halvings of the weight of the limited key figure
 _ARRIVALS: Final = 6  # that are tried to keep a limit just
 _UNUSED: Final = 2e-3  # share of a limit that may be left
 _AIM: Final = 3e-4  # share of a limit by which the search aims below it
-_SAME_TIME: Final = 1e-4  # share of the time by which routes differ that are not told apart
+_SAME_TIME: Final = 1e-4  # share of the time below which two routes count as equally long
 _OF_FUEL: Final = ("fuel", "cost", "co2")  # one price of fuel gives each from fuel and time
 _TRADED: Final = (*_OF_FUEL, "energy")  # against time, by the choice of speeds
 #: Key figure that lowers an indicator.

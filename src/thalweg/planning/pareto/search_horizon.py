@@ -14,7 +14,7 @@ from thalweg.core.geodesy import distance
 from thalweg.core.units import HOUR
 from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network, shortest_path
-from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
+from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations, ship_in_frozen_sea
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
 from thalweg.planning.single.weather_stall import SearchedWater
 from thalweg.search import SearchResult, ShipOnNetwork, earliest_arrival
@@ -217,14 +217,9 @@ def fastest_path(
 def ship_on_network(
     trade_off: TradeOffContext, network: Network, frozen: FrozenSea, setting: int
 ) -> ShipOnNetwork:
-    """Return the ship at one setting on a network in a frozen sea."""
-    return ShipOnNetwork(
-        network,
-        frozen.stations,
-        trade_off.context.table,
-        setting=setting,
-        limits=trade_off.limits,
-        top_speed=frozen.top_speed,
+    """Return the ship at one setting on a network, within the limits of the trade-off."""
+    return ship_in_frozen_sea(
+        trade_off.context, network, frozen, setting=setting, limits=trade_off.limits
     )
 
 

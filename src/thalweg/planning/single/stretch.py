@@ -17,7 +17,7 @@ from thalweg.core.units import HOUR
 from thalweg.kernels.codes import CURRENT, REASONS
 from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network
-from thalweg.planning.frozen_sea import FrozenSea, LastFrozenSea
+from thalweg.planning.frozen_sea import FrozenSea, LastFrozenSea, ship_in_frozen_sea
 from thalweg.planning.network_selection.network_builder import build_network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -358,14 +358,7 @@ def _run_search(
 def _ship_on_network(
     context: PlanningContext, network: Network, frozen: FrozenSea, limits: Limits
 ) -> ShipOnNetwork:
-    return ShipOnNetwork(
-        network,
-        frozen.stations,
-        context.table,
-        setting=context.setting,
-        limits=limits,
-        top_speed=frozen.top_speed,
-    )
+    return ship_in_frozen_sea(context, network, frozen, setting=context.setting, limits=limits)
 
 
 def _bound(
