@@ -24,13 +24,11 @@ from thalweg.core.geodesy import (
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.alternatives.clear_water import (
-    ROUNDS,
     ClearWater,
     positions_of,
 )
 from thalweg.network.alternatives.path_shortening import (
     PolylineCoordinates,
-    string_pull_path,
 )
 from thalweg.network.global_grid.endpoint_attachment import LinePlaces
 from thalweg.network.global_grid.sea_graph import (
@@ -249,8 +247,9 @@ class Seaways:
         if len(part) < 3:
             return positions_of(*part.T)
         clear = ClearWater(off_land, self.shoals)
-        line = string_pull_path(chart, *part.T, leg_cost=clear.cost, rounds=ROUNDS)
-        line = clear.round_land(chart, clear.moved(chart, line))
+        lat, lon = part.T
+        line = clear.moved(chart, clear.pulled(chart, (lat, lon)))
+        line = clear.round_land(chart, line)
         return positions_of(*self._pulled_again(chart, clear, line))
 
     def _pulled_again(
@@ -263,9 +262,7 @@ class Seaways:
         lat, lon = line
         if np.any(clear.off_land.legs_blocked(lat[:-1], lon[:-1], lat[1:], lon[1:])):
             return line
-        again = string_pull_path(
-            chart, lat, lon, leg_cost=clear.cost, rounds=ROUNDS, least_gain=_LEAST_GAIN
-        )
+        again = clear.pulled(chart, line, least_gain=_LEAST_GAIN)
         return min(line, clear.moved(chart, again), key=clear.cost_of)
 
 

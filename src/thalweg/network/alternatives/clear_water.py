@@ -30,7 +30,7 @@ from thalweg.network.alternatives.path_shortening import (
     total_cost,
 )
 
-ROUNDS: Final = 2  #: passes of string pulling; each may double the waypoints of a corner
+_ROUNDS: Final = 2  # passes of string pulling; each may double the waypoints of a corner
 _NEAR_LAND: Final = 3.0  # what a mile nearer to land than required counts more, beside the graph
 _NEAREST: Final = 4.0  # times as much as just inside the offing, at a quarter of it and nearer
 _USUAL: Final = 2.0 * NAUTICAL_MILE  # offings over this are tested as finely as it
@@ -56,6 +56,24 @@ class ClearWater:
     off_land: Chart
     shoals: Shoals | None
 
+    def pulled(
+        self,
+        chart: Chart,
+        line: PolylineCoordinates,
+        *,
+        rounds: int = _ROUNDS,
+        least_gain: float = 0.0,
+    ) -> PolylineCoordinates:
+        """Return a way after string pulling by what it costs: `string_pull_path`."""
+        return string_pull_path(
+            chart,
+            *line,
+            leg_cost=self.cost,
+            rounds=rounds,
+            least_gain=least_gain,
+            least_cost=leg_lengths,
+        )
+
     def moved(self, chart: Chart, line: PolylineCoordinates) -> PolylineCoordinates:
         """Return a way whose legs near land are moved as far as costs fall."""
         lat, lon = line
@@ -67,10 +85,12 @@ class ClearWater:
         found = positions_of(lat, lon)
         for begin, end in reversed(list(zip(first.tolist(), last.tolist()))):
             part = slice(begin, end + 1)
-            y, x = string_pull_path(chart, lat[part], lon[part], leg_cost=self.cost, rounds=ROUNDS)
+            y, x = self.pulled(chart, (lat[part], lon[part]))
             if np.any(blocked(y[:-1], x[:-1], y[1:], x[1:])):
-                y, x = move_waypoints(chart, y, x, leg_cost=self.cost, longest_leg=_FINE_LEG)
-            found[part] = positions_of(*string_pull_path(chart, y, x, leg_cost=self.cost, rounds=0))
+                y, x = move_waypoints(
+                    chart, y, x, leg_cost=self.cost, longest_leg=_FINE_LEG, least_cost=leg_lengths
+                )
+            found[part] = positions_of(*self.pulled(chart, (y, x), rounds=0))
         lat, lon = np.array(found).T
         return lat, lon
 
@@ -100,13 +120,13 @@ class ClearWater:
             half = _AROUND * NAUTICAL_MILE
             reach = min(float(np.sqrt((half + 0.5 * most) ** 2 - half**2)), _REACH)
             way = lattice_detour(chart, part, leg_cost=self.cost, spacing=spacing, reach=reach)
-            way = string_pull_path(chart, *way, leg_cost=self.cost, rounds=ROUNDS)
+            way = self.pulled(chart, way)
             if self.cost_of(way) < self.cost_of(part):
                 found[begin : end + 1] = positions_of(*way)
                 kept = np.ones(len(way[0]), bool)
                 corner = np.concatenate([corner[:begin], kept, corner[end + 1 :]])
         y, x = np.array(found)[corner].T
-        return string_pull_path(chart, y, x, leg_cost=self.cost, rounds=0)
+        return self.pulled(chart, (y, x), rounds=0)
 
     def cost_of(self, line: PolylineCoordinates) -> float:
         """Return the cost of a way."""

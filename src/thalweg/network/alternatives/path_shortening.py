@@ -58,6 +58,7 @@ class _LegRules:
     chart: LegTests
     cost: LegCost
     sides: PassingSides | None
+    least_cost: LegCost | None = None  # that legs have at least, quick to compute
 
     def allowed(self, start: PolylineCoordinates, end: PolylineCoordinates) -> BoolArray:
         """Return which legs touch neither land nor no-go zones."""
@@ -74,8 +75,22 @@ class _LegRules:
         self, start: PolylineCoordinates, by: PolylineCoordinates, end: PolylineCoordinates
     ) -> FloatArray:
         """Return the cost of both legs, to a position and on from it."""
-        first, second = _two_legs(start, by, end)
-        return np.asarray(self.cost(*first, *second).reshape(2, -1).sum(axis=0))
+        return _cost_by(self.cost, start, by, end)
+
+    def cost_below(
+        self,
+        most: FloatArray,
+        start: PolylineCoordinates,
+        by: PolylineCoordinates,
+        end: PolylineCoordinates,
+    ) -> tuple[IntArray, FloatArray]:
+        """Return where both legs cost less than ``most``, and what they cost there."""
+        which = np.arange(len(most))
+        if self.least_cost is not None:
+            which = np.flatnonzero(_cost_by(self.least_cost, start, by, end) < most)
+        price = self.cost_by(*(_select_points(points, which) for points in (start, by, end)))
+        less = price < most[which]
+        return which[less], price[less]
 
     def same_side(
         self, start: PolylineCoordinates, by: PolylineCoordinates, end: PolylineCoordinates
@@ -96,6 +111,7 @@ def string_pull_path(
     sides: PassingSides | None = None,
     rounds: int = 12,
     least_gain: float = 0.0,
+    least_cost: LegCost | None = None,
 ) -> PolylineCoordinates:
     """Return a path after string pulling: waypoints removed and corners cut by allowed legs.
 
@@ -110,6 +126,7 @@ def string_pull_path(
     rounds : Largest number of passes that cut corners; with 0, waypoints are only removed.
     least_gain : Share of the whole cost that each waypoint must save, or it is removed (0 to 1).
         Round a curved outline, the cheapest path has a waypoint at each of its points.
+    least_cost : What legs cost at least: quicker to compute, it spares those that cost too much.
 
     Returns
     -------
@@ -120,7 +137,7 @@ def string_pull_path(
     The search is local. Without ``sides`` a leg between two waypoints may pass a small island on
     the other side if that is cheaper.
     """
-    rules = _LegRules(chart, leg_cost or leg_lengths, sides)
+    rules = _LegRules(chart, leg_cost or leg_lengths, sides, least_cost)
     move = leg_cost is not None
     line = np.asarray(lat, float), geodesy.wrap_longitude(lon)
     if chart.canals:
@@ -284,7 +301,13 @@ def _cut_is_better(
 
 
 def move_waypoints(
-    chart: LegTests, lat: FloatArray, lon: FloatArray, *, leg_cost: LegCost, longest_leg: float
+    chart: LegTests,
+    lat: FloatArray,
+    lon: FloatArray,
+    *,
+    leg_cost: LegCost,
+    longest_leg: float,
+    least_cost: LegCost | None = None,
 ) -> PolylineCoordinates:
     """Return a path whose waypoints, and new ones between them, are moved to where it costs less.
 
@@ -294,12 +317,13 @@ def move_waypoints(
     lat, lon : Path of allowed legs [deg].
     leg_cost : Cost of legs.
     longest_leg : Legs are split to this [m], and waypoints are moved by no more at once.
+    least_cost : What legs cost at least, as in `string_pull_path`.
 
     Returns
     -------
     lat, lon : The path [deg].
     """
-    rules = _LegRules(chart, leg_cost, None)
+    rules = _LegRules(chart, leg_cost, None, least_cost)
     return _move_waypoints(rules, (lat, geodesy.wrap_longitude(lon)), longest_leg)
 
 
@@ -309,27 +333,39 @@ def _move_waypoints(
     """Split a line into short legs and move its waypoints to where it costs less."""
     lat, lon, _ = geodesy.densify(*line, longest_leg)
     for step in (one for one in _STEP_LENGTHS if one <= longest_leg):
+        untested = np.ones(len(lat), bool)
         for _ in range(_MAX_SWEEPS):
-            gained = sum(_move_some(rules, lat, lon, step, odd) for odd in (1, 2))
+            gained = sum(_move_some(rules, lat, lon, step, odd, untested) for odd in (1, 2))
             if gained <= _MIN_GAIN * total_cost((lat, lon), rules.cost):
                 break
     return lat, lon
 
 
 def _move_some(
-    rules: _LegRules, lat: FloatArray, lon: FloatArray, step: float, first: int
+    rules: _LegRules,
+    lat: FloatArray,
+    lon: FloatArray,
+    step: float,
+    first: int,
+    untested: BoolArray,
 ) -> float:
-    """Move every other waypoint one step in its best direction, in place; return the gain."""
+    """Move every other waypoint one step in its best direction, in place; return the gain.
+
+    Waypoints that stayed, and whose neighbours stayed since, are not tested again: ``untested``.
+    """
     k = np.arange(first, len(lat) - 1, 2)
+    k = k[untested[k]]
     if not len(k):
         return 0.0
+    untested[k] = False
     size = len(_MOVE_DIRECTIONS)
     back, here, on = ((lat[k + i], lon[k + i]) for i in (-1, 0, 1))
     old = rules.cost_by(back, here, on)
     many = np.repeat(np.arange(len(k)), size)
     new = geodesy.direct(here[0][many], here[1][many], np.tile(_MOVE_DIRECTIONS, len(k)), step)
-    price = rules.cost_by(_select_points(back, many), new, _select_points(on, many))
-    better = np.flatnonzero(price < old[many] * (1.0 - 1e-9))
+    better, cost = rules.cost_below(
+        old[many] * (1.0 - 1e-9), _select_points(back, many), new, _select_points(on, many)
+    )
     ends = (
         _select_points(back, many[better]),
         _select_points(new, better),
@@ -338,14 +374,24 @@ def _move_some(
     free = rules.both_allowed(*ends)
     current = _select_points(here, many[better])
     free &= rules.same_side(ends[0], current, ends[1]) & rules.same_side(ends[1], current, ends[2])
-    allowed = np.zeros(len(many), bool)
-    allowed[better[free]] = True
-    price = np.where(allowed, price, np.inf).reshape(len(k), size)
+    price = np.full(len(many), np.inf)
+    price[better[free]] = cost[free]
+    price = np.reshape(price, (len(k), size))
     best = price.argmin(axis=1)
     moved = np.flatnonzero(np.isfinite(price[np.arange(len(k)), best]))
     take = moved * size + best[moved]
     lat[k[moved]], lon[k[moved]] = new[0][take], new[1][take]
+    for neighbour in (-1, 0, 1):
+        untested[k[moved] + neighbour] = True
     return float(np.sum(old[moved] - price[moved, best[moved]]))
+
+
+def _cost_by(
+    cost: LegCost, start: PolylineCoordinates, by: PolylineCoordinates, end: PolylineCoordinates
+) -> FloatArray:
+    """Return the cost of both legs, to a position and on from it."""
+    first, second = _two_legs(start, by, end)
+    return np.asarray(cost(*first, *second).reshape(2, -1).sum(axis=0))
 
 
 def _two_legs(
