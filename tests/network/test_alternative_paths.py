@@ -160,6 +160,18 @@ def test_pulling_with_a_cost_avoids_expensive_areas():
     y, x = string_pull_path(chart, lat, lon, leg_cost=cost)
     assert total_cost((y, x), cost) < 0.75 * total_cost((lat, lon), cost)
     assert np.abs(y).max() > 0.2
+    tested = []
+
+    def counted_cost(*ends):
+        tested.append(len(ends[0]))
+        return cost(*ends)
+
+    string_pull_path(chart, lat, lon, leg_cost=counted_cost)
+    every = sum(tested)
+    tested.clear()
+    same = string_pull_path(chart, lat, lon, leg_cost=counted_cost, least_cost=geodesy.distance)
+    assert np.array_equal(same, (y, x))
+    assert sum(tested) < 0.8 * every
 
 
 def test_canals_stay_in_shortened_paths_with_their_length():

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from thalweg.cli.exit_codes import SUCCESS
@@ -78,8 +77,8 @@ def run(arguments: argparse.Namespace) -> int:
     from thalweg.planning.sea_distance import (
         SMALL_CANALS,
         USUAL_DEPTH,
-        may_be_shorter_for_small_ships,
         sea_distance,
+        small_ship_distance,
     )
 
     avoid: tuple[str, ...] = SMALL_CANALS
@@ -87,16 +86,11 @@ def run(arguments: argparse.Namespace) -> int:
         names = [name for text in arguments.avoid for name in names_in_list(text)]
         avoid = tuple(name for name in names if name != "none")
     arguments.progress("finding the shortest way")
-    find = partial(
-        sea_distance,
-        arguments.start,
-        arguments.goal,
-        via=arguments.via,
-        avoid=avoid,
-        offing_nm=arguments.offing,
-        draught_m=arguments.draught,
-    )
-    way = find(open=tuple(arguments.open))
+    ends = arguments.start, arguments.goal
+    options: dict[str, Any] = {
+        "avoid": avoid, "offing_nm": arguments.offing, "draught_m": arguments.draught,
+    }  # fmt: skip
+    way = sea_distance(*ends, via=arguments.via, open=tuple(arguments.open), **options)
     days = None if arguments.speed is None else way.days(arguments.speed)
     if arguments.json:
         more = {} if days is None else {"speed_kn": arguments.speed, "days": days}
@@ -108,8 +102,10 @@ def run(arguments: argparse.Namespace) -> int:
                 f"  keeps off water shallower than {USUAL_DEPTH:g} m; draught was not considered: "
                 "give --draught for a ship"
             )
-        if not (arguments.open or arguments.via) and may_be_shorter_for_small_ships(way):
-            _print_small_ships(way, find(open=("all",)))
+        if not (arguments.open or arguments.via):
+            small = small_ship_distance(way, *ends, **options)
+            if small is not None:
+                _print_small_ships(way, small)
     return SUCCESS
 
 
@@ -125,11 +121,7 @@ def names_in_list(text: str) -> list[str]:
 
 
 def _print_small_ships(way: SeaDistance, small: SeaDistance) -> None:
-    """Print the way by passages for small ships, if it is clearly shorter."""
-    from thalweg.planning.sea_distance import LEAST_SHORTER
-
-    if small.length > (1.0 - LEAST_SHORTER) * way.length:
-        return
+    """Print the way by passages for small ships."""
     by = [name for name in small.straits if name not in way.straits]
     through = f" by {', '.join(by)}" if by else ""
     print(f"  ships shorter than 120 m: {_miles(small)} nm{through} (--open all)")

@@ -6,6 +6,7 @@ import contextlib
 import itertools
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -53,7 +54,8 @@ from thalweg.planning.voyage_parts import Place
 SMALL_CANALS: Final = ("corinth",)
 #: Distance from land that ways keep outside passages, where they can [nm].
 DEFAULT_OFFING_NM: Final = 2.0
-LEAST_SHORTER: Final = 0.05  #: share by which a way is clearly shorter
+_LEAST_SHORTER: Final = 0.05  # share by which a way is clearly shorter
+_LEAST_OVER_GRAPH: Final = 0.02  # the same for ways over the graph, which are not as exact
 _SHORT_WAY: Final = 500.0 * NAUTICAL_MILE  # small passages may shorten it wherever they are
 _NEAR_END: Final = 150.0 * NAUTICAL_MILE  # else they are so near an end ...
 _NEAR_DIRECT: Final = 1.02  # ... or their detour from the direct line is at most this
@@ -227,11 +229,7 @@ def _way_over_seas(
     draught: float | None,
 ) -> SeaDistance:
     """Return the shortest way with some passages for small ships open; offing and draught [m]."""
-    seas = every = Seaways.of_chart(chart, closed, opened=opened)
-    if draught is None:
-        seas = replace(seas, shoals=_usual_shoals(chart, ends))
-    else:
-        seas = _seas_for_draught(seas, draught, ends)
+    seas, every = _seas_and_every(chart, ends, closed, opened, draught)
     try:
         way = way_over_seas(seas, ends, draught=draught, offing=offing)
     except NoRouteError as error:
@@ -274,6 +272,20 @@ def _way_over_seas(
     return SeaDistance(*names, way.length, canals, straits, approaches, way.line, notes)
 
 
+def _seas_and_every(
+    chart: Chart,
+    ends: Sequence[Endpoint],
+    closed: Sequence[str],
+    opened: Sequence[str],
+    draught: float | None,
+) -> tuple[Seaways, Seaways]:
+    """Return the seaways for a draught [m], and those of which it closes nothing."""
+    every = Seaways.of_chart(chart, closed, opened=opened)
+    if draught is None:
+        return replace(every, shoals=_usual_shoals(chart, ends)), every
+    return _seas_for_draught(every, draught, ends), every
+
+
 def _detours(seas: Seaways, way: WayOverSeas, offing: float) -> tuple[str, ...]:
     """Return how much longer shoals make a way, as a note; offing [m]."""
     without = replace(seas, shoals=None)
@@ -290,18 +302,46 @@ def _detours(seas: Seaways, way: WayOverSeas, offing: float) -> tuple[str, ...]:
     )
 
 
-def may_be_shorter_for_small_ships(way: SeaDistance, chart: Chart | None = None) -> bool:
-    """Return whether a passage for small or local ships lies where it may shorten a way.
+def small_ship_distance(
+    way: SeaDistance,
+    start: Place,
+    goal: Place,
+    *,
+    avoid: Sequence[str] = SMALL_CANALS,
+    offing_nm: float = DEFAULT_OFFING_NM,
+    draught_m: float | None = None,
+    chart: Chart | None = None,
+) -> SeaDistance | None:
+    """Return the way by passages for small or local ships where it is 5 % shorter or more.
 
     Parameters
     ----------
-    way : For one over 500 nm the passage is within 150 nm of an end or near the direct line.
-    chart : Chart, optional
-        By default the GSHHG coastline at resolution "i".
+    way : The way without these passages, by `sea_distance` with the same other parameters.
+    start, goal, avoid, offing_nm, draught_m, chart : As of `sea_distance`.
+
+    Returns
+    -------
+    SeaDistance or None : None where it is not so much shorter, and for ways over 500 nm with no
+        such passage within 150 nm of an end or near the direct line.
     """
+    chart = world_chart() if chart is None else chart
+    if not _may_be_shorter(way, chart):
+        return None
+    closed = (avoid,) if isinstance(avoid, str) else tuple(avoid)
+    ends = resolve_places(start, (), goal, chart)
+    opened = _opened(chart, ("all",))
+    usual, more = (_seas_and_every(chart, ends, closed, o, draught_m)[0] for o in ((), opened))
+    over_graph = partial(way_over_seas, ends=ends, draught=draught_m, offing=None)
+    if over_graph(more).length > (1.0 - _LEAST_OVER_GRAPH) * over_graph(usual).length:
+        return None
+    small = _way_over_seas(chart, ends, closed, opened, offing_nm * NAUTICAL_MILE, draught_m)
+    return small if small.length <= (1.0 - _LEAST_SHORTER) * way.length else None
+
+
+def _may_be_shorter(way: SeaDistance, chart: Chart) -> bool:
+    """Return whether a passage for small or local ships lies where it may shorten a way."""
     if len(way.line) < 2:
         return False
-    chart = world_chart() if chart is None else chart
     ends = np.array([way.line[0], way.line[-1]])
     direct = float(distance(*ends[0], *ends[1]))
     for name in small_passages(chart):
@@ -311,7 +351,7 @@ def may_be_shorter_for_small_ships(way: SeaDistance, chart: Chart | None = None)
         near = near or parts.sum() <= _NEAR_DIRECT * direct
         if name in way.straits or not near:
             continue
-        if parts.sum() < (1.0 - LEAST_SHORTER) * way.length:
+        if parts.sum() < (1.0 - _LEAST_SHORTER) * way.length:
             return True
     return False
 

@@ -182,17 +182,31 @@ class Seaways:
         if outside_ice(*ends):
             chart = chart.within(*ICE_LATITUDES, -180.0, 180.0)
         off_land = _off_land(chart, ends, offing)
-        over, pulled = replace(self, shoals=None).graph_path(start, goal), []
+        over = replace(self, shoals=None).graph_path(start, goal)
         round_shoals = over if self.shoals is None else self.graph_path(start, goal)
-        longer = line_length(round_shoals) > _MOST_LONGER * line_length(over)
+        parts = list(zip(*(_between_canals(chart, way) for way in (over, round_shoals))))
+        if not all(np.array_equal(a[[0, -1]], b[[0, -1]]) for a, b in parts):  # by other canals
+            parts = [(np.array(over), np.array(round_shoals))]
+        return [place for part in parts for place in self._cheapest(chart, off_land, *part)]
+
+    def _cheapest(
+        self, chart: Chart, off_land: Chart, over: FloatArray, round_shoals: FloatArray
+    ) -> list[Position]:
+        """Return the cheaper of two ways after string pulling: over shoals, and round them.
+
+        A way free of shoals is the same for every draught that it is free for.
+        """
+        over_shoals, past_shoals = positions_of(*over.T), positions_of(*round_shoals.T)
+        pulled = []
+        longer = line_length(past_shoals) > _MOST_LONGER * line_length(over_shoals)
         if not longer:
-            direct = replace(self, shoals=None)._pulled_between_canals(chart, off_land, over)
+            direct = replace(self, shoals=None)._pulled_between_canals(chart, off_land, over_shoals)
             if self._shoal_excess_of(direct) <= _FREE_OF_SHOALS:
-                return direct  # the same for every draught that it is free for
+                return direct
             pulled = [direct]
-        pulled.append(self._pulled_between_canals(chart, off_land, round_shoals))
+        pulled.append(self._pulled_between_canals(chart, off_land, past_shoals))
         if longer and self._has_wide_shoals:
-            pulled.append(self._pulled_between_canals(chart, off_land, over))
+            pulled.append(self._pulled_between_canals(chart, off_land, over_shoals))
         clear = ClearWater(off_land, self.shoals)
         return min(pulled, key=partial(_cost_with_canals, clear))
 

@@ -128,7 +128,7 @@ def _arrays_without_harbours(shoals: Shoals) -> ShoalArrays:
     code[_beside_shoals(code, shoals)] = deep
     _shoal_inside(code, SHOAL_AREAS)  # ... and those in them do not become deeper by that
     for channel in shoals.channels:
-        _deepen(code, _points_near(channel, _MARGIN), deep)
+        _deepen(code, _points_of_channel(channel), deep)
     depths = np.array([shoals.contour, shoals.least])
     return ShoalArrays(code, _free_tiles((code > 0) & (code < deep)), depths, np.array(EXCESS))
 
@@ -180,6 +180,7 @@ def _beside_shoals(code: NDArray[np.uint8], shoals: Shoals) -> NDArray[np.bool_]
     return gentle & (least < shoals.least + 1.0)
 
 
+@cache
 def _points_inside(area: ShoalArea) -> GridPoints:
     """Return rows and columns of the points of the grid inside an area, or nearly."""
     wide = _widened(area)
@@ -193,6 +194,11 @@ def _points_inside(area: ShoalArea) -> GridPoints:
 @cache
 def _widened(area: ShoalArea) -> Any:
     return area.polygon.buffer(0.5 / POINTS_OF_DEGREE)
+
+
+@lru_cache(maxsize=512)  # the same for all draughts
+def _points_of_channel(line: tuple[Position, ...]) -> GridPoints:
+    return _points_near(line, _MARGIN)
 
 
 def _points_near(line: tuple[Position, ...], margin: float) -> GridPoints:

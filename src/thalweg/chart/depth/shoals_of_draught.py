@@ -11,7 +11,7 @@ import csv
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from importlib import resources
 from typing import TYPE_CHECKING, Final
 
@@ -24,6 +24,7 @@ from thalweg.core.units import NAUTICAL_MILE
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.chart.coast.coastline import Coastline
 
 _STEP: Final = 1.0 * NAUTICAL_MILE
 _NARROW: Final = 3.0 * NAUTICAL_MILE  # half width of passages that the depth layer does not show
@@ -63,12 +64,19 @@ def shoals_of_draught(
     harbours : (lat, lon) [deg]: round them the layer does not count.
     """
     contour = safety_contour(draught)
-    lines = [line for passage in chart.passages for line in _channels(chart, passage)]
+    lines = list(_passage_channels(chart.coastline, tuple(chart.passages)))
     lines += [channel.line for channel in deep_channels() if draught <= channel.max_draught]
     return Shoals(contour, min(least, 0.9 * contour), tuple(lines), tuple(harbours))
 
 
-def _channels(chart: Chart, passage: Passage) -> list[tuple[Position, ...]]:
+@lru_cache(maxsize=2)  # the same for all draughts
+def _passage_channels(
+    coastline: Coastline, passages: tuple[Passage, ...]
+) -> tuple[tuple[Position, ...], ...]:
+    return tuple(line for passage in passages for line in _channels(coastline, passage))
+
+
+def _channels(coastline: Coastline, passage: Passage) -> list[tuple[Position, ...]]:
     """Return the parts of the line of a passage that count as deep.
 
     Its line is the widest way between coasts and may lead over banks far from land. It counts as a
@@ -81,7 +89,7 @@ def _channels(chart: Chart, passage: Passage) -> list[tuple[Position, ...]]:
     if passage.half_width >= _NARROW:
         return []
     lat, lon, _ = densify(*passage.positions, _STEP)
-    near = np.asarray(chart.coastline.shore_distance(lat, lon, cap=2.0 * _NARROW)) < _NARROW
+    near = np.asarray(coastline.shore_distance(lat, lon, cap=2.0 * _NARROW)) < _NARROW
     starts = np.flatnonzero(near & ~np.append(False, near[:-1]))
     ends = np.flatnonzero(near & ~np.append(near[1:], False))
     return [
