@@ -14,8 +14,9 @@ from thalweg.core.errors import InputError, NoRouteError
 from thalweg.kernels.network.static_paths import meridian_crossings
 from thalweg.network import EdgeWeights, alternative_paths, globe, lattice, paths_without_canals
 from thalweg.network.alternatives.homotopy import obstacles
+from thalweg.network.alternatives.leg_rules import total_cost
 from thalweg.network.alternatives.path_search import _best_of_each_class, without_each_set_of_canals
-from thalweg.network.alternatives.path_shortening import string_pull_path, total_cost
+from thalweg.network.alternatives.path_shortening import string_pull_path
 
 WEST, EAST = (0.0, -1.0), (0.0, 1.0)
 #: An island north of the line between, wider to the south of it, and a rock further south.

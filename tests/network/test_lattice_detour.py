@@ -9,7 +9,7 @@ from thalweg.chart import Chart
 from thalweg.core.geodesy import wrap_longitude
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.alternatives.lattice_detour import lattice_detour
-from thalweg.network.alternatives.path_shortening import leg_lengths, total_cost
+from thalweg.network.alternatives.leg_rules import leg_lengths, total_cost
 
 WATER = Chart.open_water(-2.0, 2.0, 178.0, 182.0)
 LINE = np.zeros(31), wrap_longitude(np.linspace(179.75, 180.25, 31))  # over the date line

@@ -27,9 +27,7 @@ from thalweg.network.alternatives.clear_water import (
     ClearWater,
     positions_of,
 )
-from thalweg.network.alternatives.path_shortening import (
-    PolylineCoordinates,
-)
+from thalweg.network.alternatives.leg_rules import PolylineCoordinates
 from thalweg.network.global_grid.endpoint_attachment import LinePlaces
 from thalweg.network.global_grid.sea_graph import (
     ICE_LATITUDES,

@@ -11,13 +11,8 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray, IntArray
-from thalweg.network.alternatives.path_shortening import (
-    LegCost,
-    PassingSides,
-    leg_lengths,
-    string_pull_path,
-    total_cost,
-)
+from thalweg.network.alternatives.leg_rules import LegCost, PassingSides, leg_lengths, total_cost
+from thalweg.network.alternatives.path_shortening import string_pull_path
 from thalweg.network.network import Network
 
 if TYPE_CHECKING:

@@ -22,13 +22,14 @@ from thalweg.core.geodesy import (
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.alternatives.lattice_detour import lattice_detour
-from thalweg.network.alternatives.path_shortening import (
+from thalweg.network.alternatives.leg_rules import (
+    LegRules,
     PolylineCoordinates,
     leg_lengths,
-    move_waypoints,
-    string_pull_path,
     total_cost,
 )
+from thalweg.network.alternatives.path_shortening import string_pull_path
+from thalweg.network.alternatives.waypoint_moves import move_waypoints
 
 _ROUNDS: Final = 2  # passes of string pulling; each may double the waypoints of a corner
 _NEAR_LAND: Final = 3.0  # what a mile nearer to land than required counts more, beside the graph
@@ -87,9 +88,8 @@ class ClearWater:
             part = slice(begin, end + 1)
             y, x = self.pulled(chart, (lat[part], lon[part]))
             if np.any(blocked(y[:-1], x[:-1], y[1:], x[1:])):
-                y, x = move_waypoints(
-                    chart, y, x, leg_cost=self.cost, longest_leg=_FINE_LEG, least_cost=leg_lengths
-                )
+                rules = LegRules(chart, self.cost, None, leg_lengths)
+                y, x = move_waypoints(rules, (y, x), longest_leg=_FINE_LEG)
             found[part] = positions_of(*self.pulled(chart, (y, x), rounds=0))
         lat, lon = np.array(found).T
         return lat, lon

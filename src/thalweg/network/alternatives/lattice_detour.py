@@ -9,7 +9,7 @@ import numpy as np
 from thalweg.core.geodesy import wrap_longitude
 from thalweg.core.types import IntArray
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.network.alternatives.path_shortening import LegCost, LegTests, PolylineCoordinates
+from thalweg.network.alternatives.leg_rules import LegCost, LegTests, PolylineCoordinates
 
 _STEPS: Final = ((0, 1), (1, 0), (1, 1), (1, -1), (1, 2), (2, 1), (1, -2), (2, -1))
 _JOINED: Final = 1.6  # of the spacing: nodes so near to a position of the line are joined to it

@@ -23,7 +23,7 @@ from thalweg.network.alternatives.alternative_path import (
     shortened_path,
 )
 from thalweg.network.alternatives.homotopy import Obstacles, obstacles
-from thalweg.network.alternatives.path_shortening import total_cost
+from thalweg.network.alternatives.leg_rules import total_cost
 from thalweg.network.network import Network
 from thalweg.network.shortest_paths import reversed_graph, shortest_path_tree
 

@@ -7,7 +7,8 @@ from typing import Final
 import numpy as np
 
 from thalweg.core.types import FloatArray
-from thalweg.network.alternatives.path_shortening import leg_lengths, string_pull_path, total_cost
+from thalweg.network.alternatives.leg_rules import leg_lengths, total_cost
+from thalweg.network.alternatives.path_shortening import string_pull_path
 from thalweg.planning.pareto.edge_costs import costs_of_water
 from thalweg.planning.pareto.evolutionary_refinement import freeze_around_tracks
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
