@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
 from thalweg.cli.main import main
 
@@ -35,6 +36,47 @@ def test_the_hotel_load_of_the_ship_ends_all_waiting(capsys):
     rows = pd.DataFrame(found["rows"])
     assert rows[rows.rule == "current"].saving_percent.max() <= 0.0
     assert rows[rows.rule == "optimum"].saving_percent.max() < 0.01
+
+
+def test_ships_with_other_speeds_when_empty_sail_to_and_fro_and_keep_their_clearance(
+    tmp_path, capsys
+):
+    """A bar of 7.7 m at low water and 10.3 m at high water: a ship of 8 m with 1 m waits."""
+    ship = tmp_path / "hopper.yaml"
+    ship.write_text(
+        "name: hopper\n"
+        "hull: {length_between_perpendiculars_m: 113, breadth_m: 23, draught_m: 8}\n"
+        "loading: {draught_full_m: 8.0, draught_empty_m: 4.2, speeds_full_kn: [12.0], "
+        "speeds_empty_kn: [13.5]}\n"
+        "engine: {reference_speed_kn: 12.0, reference_power_kw: 6000, sfoc_g_per_kwh: 200}\n"
+        "limits: {min_under_keel_clearance_m: 1.0}\n"
+    )
+    hours = np.arange(0, 60)
+    level = 1.3 * np.cos(2.0 * np.pi * hours / 12.42)[:, None, None] * np.ones((1, 3, 3))
+    day = np.datetime64("2026-04-05T00", "ns")
+    axes = {"time": day + hours.astype("timedelta64[h]"), "latitude": [51.4, 51.5, 51.6]}
+    axes["longitude"] = [3.1, 3.3, 3.5]
+    names = {"zos": "sea_surface_height_above_geoid", "depth": "sea_floor_depth_below_geoid"}
+    names |= {"uo": "eastward_sea_water_velocity", "vo": "northward_sea_water_velocity"}
+    values = {"zos": level, "depth": np.full_like(level, 9.0)}
+    values |= {"uo": np.zeros_like(level), "vo": np.zeros_like(level)}
+    place = ("time", "latitude", "longitude")
+    attributes = {n: {"standard_name": s, "units": "m"} for n, s in names.items()}
+    attributes["uo"]["units"] = attributes["vo"]["units"] = "m s-1"
+    fields = {n: (place, values[n], attributes[n]) for n in names}
+    xr.Dataset(fields, axes).to_netcdf(tmp_path / "bar.nc")
+    given = ["51.48,3.20", "51.48,3.30", "--ship", str(ship), "--sea", str(tmp_path / "bar.nc")]
+    given += ["--coast", "none", "--depart", "2026-04-05T05:00Z", "--cycles", "1"]
+    assert main(["waiting", *given, "--max-wait", "6", "--starts", "1", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["trips"] == ["there", "back"]
+    frame = pd.DataFrame(found["rows"])
+    without = frame[frame.rule == "none"].duration_h.to_numpy()
+    hour = np.arange(5.0, 12.42, 1.0 / 60.0)
+    deep = np.interp(hour, hours, level[:, 0, 0]) + 9.0 >= 9.0
+    opens = hour[np.argmax(deep)] - 5.0
+    sailing = 3.74 / 12.0 + 3.74 / 13.5
+    assert without == pytest.approx(opens + sailing, abs=0.3)
 
 
 @pytest.mark.slow

@@ -229,6 +229,32 @@ def test_waves_above_the_limit_for_less_than_a_minute_are_found(wait, allowed, t
         assert found.value == pytest.approx(4.0 + (8356.0 - wait) / 600.0, abs=tolerance)
 
 
+@pytest.mark.parametrize(("peak", "allowed"), [(5.15, False), (5.02, False), (4.99, True)])
+def test_waves_above_the_limit_are_found_between_near_points_of_a_slow_ship(peak, allowed):
+    """A ship of 0.1 kn over ground takes a day between two points an eighth of a cell apart."""
+    lat, lon, hour = np.arange(-3, 4) * 0.25, np.arange(-3, 4) * 0.25, np.arange(0, 49, 3.0)
+    height = np.interp(hour, [9.0, 12.0, 15.0], [4.2, peak, 4.2])
+    ones = np.ones((hour.size, lat.size, lon.size))
+    values = {
+        "sea_surface_wave_significant_height": height[:, None, None] * ones,
+        UE: -4.9 * KNOT * ones,
+        UN: 0.0 * ones,
+    }
+    dims = ("time", "latitude", "longitude")
+    fields = {name: (dims, array, {"standard_name": name}) for name, array in values.items()}
+    time = ("time", hour * 3600.0, {"units": "seconds since 1970-01-01"})
+    places = {"latitude": lat, "longitude": lon, "time": time}
+    sea = Sea.open(xr.decode_cf(xr.Dataset(fields, places)))
+    boat = Ship.simple(speed_kn=5.0, draught_m=5.0, max_wave_height_m=5.0)
+    goal = 2.4 / 60.0  # degrees east: 24 h
+    route = evaluate([(0, 0), (0, goal)], ship=boat, sea=sea, depart=4 * 3600.0)
+    assert route.time_h == pytest.approx(24.0, rel=0.01)
+    assert route.feasible is allowed
+    if not allowed:
+        (found,) = route.violations
+        assert found.value == pytest.approx(peak, abs=0.05)
+
+
 @pytest.mark.filterwarnings("error")
 def test_water_without_a_bed_is_deep_enough():
     """The differences of its depths were once of infinities, with a warning of numpy."""

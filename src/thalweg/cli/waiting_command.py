@@ -20,6 +20,7 @@ from thalweg.core.units import HOUR
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.operations.waiting import Departures
     from thalweg.operations.waiting.trip_table import TripTable
     from thalweg.sea import Sea
     from thalweg.ship import Ship
@@ -42,7 +43,7 @@ def add_command(commands: Any) -> None:
     )
     parser.add_argument("start", metavar="FROM", help="LAT,LON [deg] where the ship loads")
     parser.add_argument("goal", metavar="TO", help="LAT,LON [deg] where the ship unloads")
-    options.add_ship_and_chart_options(parser, default_ukc="the clearance is not checked")
+    options.add_ship_and_chart_options(parser, default_ukc="that of the ship file, or 0")
     parser.add_argument(
         "--ship-back",
         metavar="NAME|FILE",
@@ -173,10 +174,15 @@ def _trips(arguments: argparse.Namespace) -> list[TripTable]:
     """Return the tables of all trips, in the order in which they are sailed."""
     there, back = _ships(arguments)
     ends, chart = _ends(arguments), option_values.open_chart(arguments)
-    outward = _trip(arguments, "there", there, ends, chart)
+    slowest = min(
+        float(ship.speeds[-1]) for ship in ((there, back) if arguments.cycles else (there,))
+    )
+    departures = _departures(arguments, ends, slowest)  # the same for both trips
+    outward = _trip(arguments, "there", there, ends, chart, departures)
     if arguments.cycles == 0:
         return [outward]
-    return [outward, _trip(arguments, "back", back, ends[::-1], chart)] * arguments.cycles
+    back_trip = _trip(arguments, "back", back, ends[::-1], chart, departures)
+    return [outward, back_trip] * arguments.cycles
 
 
 def _ends(arguments: argparse.Namespace) -> tuple[Position, Position]:
@@ -211,10 +217,10 @@ def _trip(
     ship: Ship,
     track: tuple[Position, Position],
     chart: Chart,
+    departures: Departures,
 ) -> TripTable:
     """Return the table of one trip along a straight leg."""
-    from thalweg.operations.waiting import Departures, trip_table
-    from thalweg.sea.models.stratified_coast import M2_PERIOD
+    from thalweg.operations.waiting import trip_table
 
     if bool(chart.legs_blocked(*track[0], *track[1]).any()):
         raise InputError(
@@ -222,12 +228,6 @@ def _trip(
             "It crosses land or a closed zone.",
             "Choose positions with open water between them, or --coast none.",
         )
-    start, step = parse_time(arguments.depart), 60.0 * arguments.step
-    departures = (
-        Departures(start, period=M2_PERIOD, step=step)
-        if arguments.north_sea
-        else Departures(start, end=start + _window(arguments, track, ship), step=step)
-    )
     return trip_table(
         track,
         ship=ship,
@@ -239,11 +239,19 @@ def _trip(
     ).refined(TABLE_REFINEMENT)
 
 
-def _window(arguments: argparse.Namespace, track: tuple[Position, Position], ship: Ship) -> float:
-    """Return for how long departures are needed [s]."""
-    longest = _MAX_DURATION_RATIO * float(inverse(*track[0], *track[1])[0]) / float(ship.speeds[-1])
+def _departures(
+    arguments: argparse.Namespace, ends: tuple[Position, Position], speed: float
+) -> Departures:
+    """Return the departures of all trips; the highest speed [m/s] is that of the slower ship."""
+    from thalweg.operations.waiting import Departures
+    from thalweg.sea.models.stratified_coast import M2_PERIOD
+
+    start, step = parse_time(arguments.depart), 60.0 * arguments.step
+    if arguments.north_sea:
+        return Departures(start, period=M2_PERIOD, step=step)
+    longest = _MAX_DURATION_RATIO * float(inverse(*ends[0], *ends[1])[0]) / speed
     trips = max(1, 2 * arguments.cycles)
-    return trips * (longest + arguments.max_wait * HOUR)
+    return Departures(start, end=start + trips * (longest + arguments.max_wait * HOUR), step=step)
 
 
 def _sea(arguments: argparse.Namespace, draught: float) -> Sea:

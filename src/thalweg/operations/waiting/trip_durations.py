@@ -80,7 +80,7 @@ def trip_table(
         For its depth.
     min_ukc : float, optional
         Minimum under-keel clearance [m] at static draught; departures with less are left out.
-        None: not checked.
+        None: that of the ship file (0 where it has none), if the sea or the chart has depths.
     name : str
         Name of the trip in tables and plots.
     setting : int
@@ -110,6 +110,8 @@ def trip_table(
     ship, track = resolve_settings(ship, track)
     environment = make_sailing_environment(ship, with_wind_speed(ship, sea), chart)
     check_depth_available(environment)
+    if min_ukc is None and environment.has_depth:
+        min_ukc = ship.min_under_keel_clearance
     pieces = cut_into_pieces(track, float(track.lengths.sum()) / MIN_STEPS, 1)
     midpoints = _segment_midpoints(environment, pieces)
     times = departures.times

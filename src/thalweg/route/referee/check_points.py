@@ -17,6 +17,7 @@ from thalweg.route.referee.sailing_physics import sample_sea_and_depth
 
 MAX_CHECK_POINTS = 10_000  #: points at which limits are checked first (fewer on coarse data)
 CHECK_POINTS_PER_CELL = 8  #: of gridded data
+_LONGEST_INTERVAL: Final = 1800.0  # between two points, or half the time step of data [s]
 _PARTS: Final = 8  # of an interval in which a limit may be exceeded between two points
 _ROUNDS: Final = 3
 _MOST_DIVIDED: Final = 500  # intervals in a round
@@ -86,6 +87,11 @@ def checked_points(
     at_sea = pieces.canals.number[leg] < 0
     share = (number / (count[leg] - 1))[at_sea]
     found = looked_at(leg[at_sea], share * pieces.length[leg[at_sea]])
+    for _ in range(_ROUNDS):  # a slow ship meets much weather between two near points
+        longer = _between_points(found, _longest_interval(sailed, found))
+        if not len(longer[0]):
+            break
+        found = found.joined(looked_at(*longer))
     for _ in range(_ROUNDS):
         first = _doubtful_intervals(sailed, found, min_ukc)
         if not len(first):
@@ -95,6 +101,28 @@ def checked_points(
         along = (begin[:, None] + (end - begin)[:, None] * shares).ravel()
         found = found.joined(looked_at(np.repeat(found.points.leg[first], _PARTS - 1), along))
     return found
+
+
+def _longest_interval(sailed: SailedTrack, checked: CheckedPoints) -> float:
+    """Return how long two points of a leg may be apart [s]."""
+    world = sailed.world
+    steps = [row.step_s for row in world.sea.coverage() if row.variable in world.names]
+    half = 0.5 * min((step for step in steps if step), default=2.0 * _LONGEST_INTERVAL)
+    passed = checked.moments[np.isfinite(checked.moments)]
+    whole = float(np.ptp(passed)) if len(passed) else 0.0
+    return max(min(half, _LONGEST_INTERVAL), whole / MAX_CHECK_POINTS)
+
+
+def _between_points(checked: CheckedPoints, longest: float) -> tuple[IntArray, FloatArray]:
+    """Return leg and distance along it [m] of places between points that are longer apart [s]."""
+    leg, along = checked.points.leg, checked.points.along
+    apart = np.where(np.diff(leg) == 0, np.diff(checked.moments), 0.0)
+    parts = np.ceil(np.nan_to_num(apart) / longest - 1e-9).astype(np.int64)  # NaN: not reached
+    first = np.flatnonzero(parts > 1)
+    which, number = numbered_parts(parts[first] - 1)
+    at = first[which]
+    share = (number + 1) / parts[at]
+    return leg[at], along[at] + share * (along[at + 1] - along[at])
 
 
 def _doubtful_intervals(sailed: SailedTrack, checked: CheckedPoints, min_ukc: float) -> IntArray:
