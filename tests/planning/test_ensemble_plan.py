@@ -63,6 +63,13 @@ def test_a_member_that_closes_every_route_leaves_the_choice_to_the_others(object
     assert row["time_h"]["mean"] == pytest.approx(sum(hours) / 2.0, rel=1e-6)
     assert any("No route of these plans" in note for note in found.notes)
     assert json.loads(json.dumps(found.to_dict(), allow_nan=False))["ensemble"][0]["members"] == 3
+    text = str(found)
+    if objective == "fuel":
+        assert (
+            "Members   mean of 2 of 3 that keep the limits, with 10 and 90 %: time 5.15 h" in text
+        )
+        assert "fuel 644 kg (558 to 730); the other lines are those of member 0" in text
+    assert "Limits    NOT KEPT in member 2 (1 of 3): wave height above the limit" in text
     times = [route.time_h for route in found.routes]
     assert times == sorted(times) and len(times) >= (2 if objective == "front" else 1)
 
@@ -73,3 +80,4 @@ def test_with_a_route_open_in_all_members_the_risk_is_of_all():
     row = found.ensemble[0]
     assert row["infeasible"] == [] and row["time_risk_h"] == row["time_h"]["mean"]
     assert not any("No route of these plans" in note for note in found.notes)
+    assert "mean of all 2" in str(found) and "NOT KEPT" not in str(found)

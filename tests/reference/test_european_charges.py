@@ -63,6 +63,32 @@ def test_charges_are_a_part_of_the_cost_by_the_share_of_the_voyage():
     assert route.cost_parts["EU charges"] == pytest.approx(1.1 * 62.2 * plain.fuel_t, rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("tonnage", "share", "words"),
+    [
+        (2990.0, 0.0, "0 % for a ship of 2,990 GT; they apply from 5,000 GT on"),
+        (5000.0, 1.0, None),
+        (None, 1.0, "are counted as for a ship of 5,000 GT or more"),
+    ],
+)
+def test_ships_below_5000_gross_tons_pay_none(tonnage, share, words):
+    engine = {"sfoc_g_per_kwh": 190, "reference_power_kw": 900, "reference_speed_kn": 10.0}
+    boat = Ship.from_dict(
+        {
+            "name": "coaster",
+            "hull": {"draught_m": 5.0} | ({} if tonnage is None else {"gross_tonnage": tonnage}),
+            "speeds_kn": [10],
+            "engine": engine,
+            "fuel": {"type": "mgo", "price_per_t": 700},
+        }
+    ).with_charges(EuropeanCharges(1.0, 80.0, year=2026))
+    route = evaluate(AT_SEA, ship=boat, sea=Sea.calm(), depart=0)
+    expected = share * 80.0 * route.co2_t
+    assert route.cost_parts["EU charges"] == pytest.approx(expected, rel=0.02, abs=1e-9)
+    notes = [text for text in route.assumptions if "European Union" in text]
+    assert (words is None and not notes) or words in notes[0]
+
+
 def test_charges_need_a_price_of_fuel_and_a_share_of_the_rules():
     with pytest.raises(InputError, match="fuel has no price"):
         Ship.simple(8.0, 5.0).with_charges(EuropeanCharges(1.0, 80.0))

@@ -218,7 +218,7 @@ def _select_plan(
         routes=routes,
         front=_front(order, routes, objective),
         notes=tuple(dict.fromkeys(notes)),
-        ensemble=tuple(_distribution_row(item) for item in order),
+        ensemble=tuple(_distribution_row(item, shown) for item in order),
     )
 
 
@@ -265,9 +265,10 @@ def _front(
     )
 
 
-def _distribution_row(item: EnsembleCandidate) -> dict[str, Any]:
+def _distribution_row(item: EnsembleCandidate, shown: int) -> dict[str, Any]:
     """Return the distribution of a route as plain data; a risk is None if it is not finite."""
     return {
+        "shown_member": shown,
         "time_risk_h": finite_or_none(item.time_risk),
         "value_risk": finite_or_none(item.value_risk),
         **item.distribution.as_dict(),

@@ -261,13 +261,14 @@ class EnsembleResult:
         Returns
         -------
         dict
-            Number of members, infeasible ones, statistics of each quantity (None if
-            unknown) and notes.
+            Number of members, infeasible ones with the first reason, statistics of each
+            quantity (None if unknown) and notes.
         """
         spreads = {name: self.spread(name) for name in QUANTITIES}
         return {
             "members": len(self.routes),
             "infeasible": list(self.infeasible),
+            "first_reason": self._first_reason() if self.infeasible else None,
             "alpha": self.alpha,
             **{name: None if s is None else s.as_dict() for name, s in spreads.items()},
             "notes": list(self.notes),

@@ -41,11 +41,25 @@ def stated_assumptions(ship: Ship) -> list[str]:
     list of str : Sentences; empty for most ships.
     """
     idle = [f"{text[0].upper()}{text[1:]}." for text in load_factor_without_effect(ship)]
-    charges = ship.fuel_terms.charges
-    found = charges is not None and charges.share_source != "given"
-    european = [f"Charges of the European Union: {charges.share_source}."] if found else []  # type: ignore[union-attr]
+    european = _notes_on_charges(ship)
     unusual = [*unusual_numbers(ship.file), *kwon_form_notes(ship)]
     return [*unusual, *method_assumptions(ship.estimated), *idle, *european]
+
+
+def _notes_on_charges(ship: Ship) -> list[str]:
+    """Return where the share of charges of the European Union comes from, and a missing tonnage."""
+    charges = ship.fuel_terms.charges
+    if charges is None:
+        return []
+    notes = []
+    if charges.share_source != "given":
+        notes.append(f"Charges of the European Union: {charges.share_source}.")
+    if charges.voyage_share > 0.0 and ship.file.hull.gross_tonnage is None:
+        notes.append(
+            "Charges of the European Union are counted as for a ship of 5,000 GT or more: smaller "
+            "ships pay none. Give hull.gross_tonnage."
+        )
+    return notes
 
 
 def unchecked_depth_note(ship: Ship) -> str:

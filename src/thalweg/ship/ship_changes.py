@@ -59,13 +59,15 @@ def ship_with_charges(ship: Any, charges: EuropeanCharges | None) -> Any:
     Returns
     -------
     Ship
-        Its ``fuel_terms`` hold the charges.
+        Its ``fuel_terms`` hold the charges: none for a ship below 5,000 GT.
 
     Raises
     ------
     InputError
         If its fuel has no price.
     """
+    if charges is not None:
+        charges = charges.for_tonnage(ship.file.hull.gross_tonnage)
     return replace(ship, terms=ship.fuel_terms.with_charges(charges))
 
 

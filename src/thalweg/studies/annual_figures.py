@@ -15,6 +15,7 @@ from thalweg.core.given_numbers import finite_or_none, is_number
 from thalweg.ship import Ship
 from thalweg.ship.methods.carbon_intensity import REDUCTION_PERCENT
 from thalweg.ship.methods.engine.european_charges import (
+    LEAST_GROSS_TONNAGE,
     WELL_TO_WAKE,
     ets_phase_in,
     fueleu_penalty,
@@ -34,10 +35,6 @@ ANNUAL_ENTRIES: Final = {
     "euro_price": (0.0, 1e3),
     "eu_share": (0.0, 100.0),
 }
-#: Gross tonnage from which the rating (MARPOL Annex VI, regulation 28), emission allowances
-#: (Directive 2003/87/EC, annex I, by Regulation (EU) 2015/757, article 2) and FuelEU (Regulation
-#: (EU) 2023/1805, article 2) apply; the texts were not compared.
-LEAST_TONNAGE: Final = 5000.0
 _HOURS: Final = 8760.0
 
 
@@ -106,7 +103,7 @@ def annual_figures(
         [g/(t nm)] or [g/(GT nm)]), ``cii_required`` and ``cii_rating``, None where the ship file
         has no capacity or another type; ``eu_ets_cost`` and ``fueleu_penalty`` by
         `european_charges_of_year`, None where a price, the share or the fuel is not known. All
-        are None for ships below `LEAST_TONNAGE`. Time and emissions in port are not counted.
+        are None for ships below `LEAST_GROSS_TONNAGE`. Time and emissions in port are not counted.
     """
     found = []
     for key, group in rows.groupby(by, dropna=False) if by else [((), rows)]:
@@ -137,9 +134,9 @@ def annual_figures(
 
 
 def is_below_tonnage(ship: Ship | None) -> bool:
-    """Return whether the gross tonnage of a ship is known and below `LEAST_TONNAGE`."""
+    """Return whether the gross tonnage of a ship is known and below `LEAST_GROSS_TONNAGE`."""
     tonnage = None if ship is None else ship.file.hull.gross_tonnage
-    return tonnage is not None and tonnage < LEAST_TONNAGE
+    return tonnage is not None and tonnage < LEAST_GROSS_TONNAGE
 
 
 def european_charges_of_year(

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import html
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -89,6 +89,8 @@ def summary_items(plan: PlanData) -> list[tuple[str, str]]:
     items = [("Depart", utc_text(best.depart)), ("Arrive", arrival_text(best))]
     items += [("Distance", distance_text(best, canals)), ("Fuel", fuel_text(best))]
     items.append(("Cost", cost_text(best, canals)))
+    if plan.ensemble:
+        items.append(("Members", members_text(_row_of_best(plan), best.currency)))
     if plan.voyage.objective == "energy" and best.energy_mwh is not None:
         items.append(("Energy", amount_text(best.energy_mwh, "MWh")))
     if plan.front is not None and len(plan.routes) > 1:
@@ -125,6 +127,12 @@ def one_line(plan: PlanData) -> str:
 
 def limits_text(plan: PlanData) -> str:
     """Return the limit that the route violates, or the limits that closed other water."""
+    if plan.ensemble and _row_of_best(plan)["infeasible"]:
+        row = _row_of_best(plan)
+        return (
+            f"NOT KEPT in {_members(row['infeasible'])} ({len(row['infeasible'])} of "
+            f"{row['members']}): {row['first_reason']}"
+        )
     if plan.best.violations:
         first, more = plan.best.violations[0], len(plan.best.violations) - 1
         return f"NOT KEPT: {first}" + (f", and {more} more" if more else "")
@@ -141,6 +149,40 @@ def limits_text(plan: PlanData) -> str:
     if known is not None and known.chart.zones.closed_shoals is not None:
         met = [f"{reason} or shoal" if reason == REASONS[NO_GO] else reason for reason in met]
     return f"{kept}; other water was refused: {', '.join(met[:3])}"
+
+
+def members_text(row: Mapping[str, Any], currency: str) -> str:
+    """Return the mean and the spread of a route over the members of an ensemble.
+
+    Parameters
+    ----------
+    row : Of `Plan.ensemble`.
+    currency : Of the cost.
+    """
+    kept = row["members"] - len(row["infeasible"])
+    here = f"the other lines are those of member {row['shown_member']}"
+    if row["time_h"] is None:
+        return f"the route keeps the limits in none of {row['members']}; {here}"
+    of = f"{kept} of {row['members']} that keep the limits" if row["infeasible"] else f"all {kept}"
+    parts = []
+    for name, unit in (("time_h", "h"), ("fuel_t", "t"), ("cost", currency)):
+        spread = row[name]
+        if spread is not None:
+            column = amount_column([spread[k] for k in ("p10", "mean", "p90")], unit)
+            low, mean, high = column.texts
+            parts.append(f"{name.split('_')[0]} {mean} {column.unit} ({low} to {high})")
+    return f"mean of {of}, with 10 and 90 %: {', '.join(parts)}; {here}"
+
+
+def _row_of_best(plan: PlanData) -> Mapping[str, Any]:
+    """Return the distribution of the best route over the members."""
+    best = next((k for k, route in enumerate(plan.routes) if route is plan.best), 0)
+    return plan.ensemble[min(best, len(plan.ensemble) - 1)]
+
+
+def _members(numbers: Sequence[int]) -> str:
+    word = "member" if len(numbers) == 1 else "members"
+    return f"{word} {', '.join(map(str, numbers))}"
 
 
 def quality_text(plan: PlanData) -> str:

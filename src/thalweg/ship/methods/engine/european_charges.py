@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
@@ -33,6 +33,10 @@ PORTS_IN_SCOPE: Final = frozenset(
         *("GF", "GP", "MF", "MQ", "RE", "YT", "IS", "NO"),
     )
 )
+#: Gross tonnage from which emission allowances (Directive 2003/87/EC, annex I, by Regulation (EU)
+#: 2015/757, article 2), FuelEU (Regulation (EU) 2023/1805, article 2) and the rating of carbon
+#: intensity (MARPOL Annex VI, regulation 28) apply; the texts were not compared.
+LEAST_GROSS_TONNAGE: Final = 5000.0
 REFERENCE_INTENSITY: Final = 91.16  #: Regulation (EU) 2023/1805, article 4(2) [gCO2eq/MJ]
 _PENALTY_EUR_PER_T: Final = 2400.0  # annex IV, part B, per tonne of VLSFO
 _VLSFO_HEAT: Final = 41_000.0  # annex IV, part B [MJ/t]
@@ -164,6 +168,24 @@ class EuropeanCharges:
             "Correct them.",
             field="voyage_share",
         )
+
+    def for_tonnage(self, gross_tonnage: float | None) -> EuropeanCharges:
+        """Return the charges of a ship: none below `LEAST_GROSS_TONNAGE`.
+
+        Parameters
+        ----------
+        gross_tonnage : float or None
+            [GT]; None if it is not known: the charges stay.
+
+        Returns
+        -------
+        EuropeanCharges
+            With a share of 0 for a smaller ship, and ``share_source`` states why.
+        """
+        if gross_tonnage is None or gross_tonnage >= LEAST_GROSS_TONNAGE:
+            return self
+        why = f"0 % for a ship of {gross_tonnage:,.0f} GT; they apply from 5,000 GT on"
+        return replace(self, voyage_share=0.0, share_source=why)
 
     def per_kg(self, fuel_name: str, co2: float) -> float:
         """Return the charge of a kilogram of fuel.
