@@ -1,6 +1,7 @@
 """A plan in words: what a master reads, and which proofs are stated."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -20,7 +21,14 @@ from thalweg.planning.report.plan_summary import (
     quality_text,
     summary_with_notes,
 )
-from thalweg.planning.report.route_summary import cost_text, prices_text, route_items, weather_text
+from thalweg.planning.report.route_summary import (
+    cost_text,
+    kept_text,
+    least_clearance_text,
+    prices_text,
+    route_items,
+    weather_text,
+)
 from thalweg.planning.request.shoal_choice import SHOALS_OPENED
 from thalweg.route import Violation
 from thalweg.route.route_tables import LEG_KINDS
@@ -247,7 +255,8 @@ def test_the_prices_and_their_sources_stand_beside_the_cost(answer):
 def test_an_evaluated_route_names_every_limit_that_it_breaks(answer):
     known = answer.plot_context
     violation = Violation("wave height above the limit", answer.best.depart, 51.2, 2.5, 4.0, 3.0)
-    broken = replace(answer.best, violations=(violation, violation))
+    later = replace(violation, time=answer.best.arrive)
+    broken = replace(answer.best, violations=(violation, violation, later))  # the first of two legs
     rows = route_items(broken, sea=known.sea, chart=known.chart, ship=known.ship)
     words = [word for word, _ in rows]
     assert words == [
@@ -342,3 +351,21 @@ def test_an_evaluated_route_states_the_dues_of_the_ship_not_the_mean_of_all(answ
     (own,) = canals_with_dues([KIEL], ship.file.hull)
     cost = dict(route_items(answer.best, sea=known.sea, chart=chart, ship=ship))["Cost"]
     assert own.fee != KIEL.fee and f"canal dues {own.fee:,.0f} USD (by {own.fee_basis})" in cost
+
+
+@pytest.mark.parametrize(
+    ("least", "text"), [(0.97, "0.9 m"), (1.0, "1.0 m"), (0.99995, "1.0 m"), (-3.16, "-3.2 m")]
+)
+def test_the_least_clearance_is_never_rounded_up(least, text):
+    route = SimpleNamespace(min_ukc_m=least, samples={"under_keel_clearance": np.full(3, np.nan)})
+    assert least_clearance_text(route) == f"least under-keel clearance {text}"
+
+
+def test_kept_limits_name_safety_and_comfort_in_waves():
+    hull = {"length_between_perpendiculars_m": 55.0, "breadth_m": 12.5, "draught_m": 4.2}
+    hull |= {"block_coefficient": 0.55, "roll_period_s": 8.5, "metacentric_height_m": 1.1}
+    ship = {"name": "research", "hull": hull, "speeds_kn": [8.0], "places": {"mess": 0.0}}
+    limits = {"max_motion_sickness_percent": 8, "max_significant_wave_height_m": 4.5}
+    comfort = Ship.from_dict({**ship, "limits": limits})
+    text = kept_text(SimpleNamespace(min_ukc_m=None), comfort, ())
+    assert text.startswith("kept: land, zones, waves, safety and comfort in waves;")

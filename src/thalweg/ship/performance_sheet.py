@@ -326,9 +326,9 @@ def _missing_results(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]
         missing.append(f"fuel: {keys if known('brake_power_kw') else table}")
     elif not known("co2_kg_per_h"):
         missing.append("CO2: add fuel.type or fuel.carbon_factor")
-    elif not known("cii"):
+    elif not known("cii") and known("speed_kn"):
         missing.append("CII: add hull.deadweight_t, or hull.gross_tonnage for some types of ship")
-    elif all(row["cii"] is None or row["cii"]["rating_2026"] is None for row in rows):
+    elif known("cii") and all((row["cii"] or {}).get("rating_2026") is None for row in rows):
         missing.append("rating of the CII: add hull.type as the regulation has it")
     return missing
 

@@ -71,17 +71,17 @@ def weather_assumptions(ship: Ship, weather: Mapping[str, float]) -> list[str]:
 
 #: names of weather, and the conditions of a ship model that depend on it
 _WEATHER_EFFECTS = {
-    "wave_height": ("waves are", {"wave_height"}),
-    "wind_speed": ("the wind is", {"wind_speed"}),
-    "depth": ("the depth of the water is", {"depth"}),
+    "wave_height": ("waves are given", {"wave_height"}),
+    "wind_speed": ("wind is given", {"wind_speed"}),
+    "depth": ("a depth of the water is given", {"depth"}),
 }
 
 
 def weather_without_model(ship: Ship, weather: Mapping[str, float]) -> list[str]:
     """Warn of given weather for which the ship has no model."""
     return [
-        f"{word} given, but this ship's models leave its speed and power as they are"
-        for name, (word, read) in _WEATHER_EFFECTS.items()
+        f"{words}, which this ship's models do not count: its speed and power are as without"
+        for name, (words, read) in _WEATHER_EFFECTS.items()
         if weather.get(name, 0.0) > 0.0
         and np.isfinite(weather[name])
         and not ship.reads & read

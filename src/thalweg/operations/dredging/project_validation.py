@@ -96,5 +96,5 @@ def positive_number(data: Mapping[str, Any], name: str, default: float | None = 
 
 def check_clearance(name: str, value: Any) -> None:
     """Raise `InputError` unless a clearance is from 0 to 100 m."""
-    if not is_number(value) or not 0.0 <= value < 100.0:
+    if not is_number(value) or not 0.0 <= value <= 100.0:
         raise InputError(f"{name} is {value!r}.", "It is 0 to 100 m.", "Correct it.", field=name)

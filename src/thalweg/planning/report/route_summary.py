@@ -54,7 +54,9 @@ def route_items(
     broken = [str(violation) for violation in route.violations]
     if not broken and not math.isfinite(route.arrive):
         broken = ["the route cannot be sailed to its end"]
-    limits = [f"NOT KEPT: {text}" for text in broken] or [kept_text(route, ship, notes)]
+    limits = [f"NOT KEPT: {text}" for text in dict.fromkeys(broken)] or [
+        kept_text(route, ship, notes)
+    ]
     return [
         ("Depart", utc_text(route.depart)),
         ("Arrive", arrival_text(route)),
@@ -263,11 +265,12 @@ def least_clearance_text(route: Route) -> str:
     least, clearance = route.min_ukc_m, route.samples["under_keel_clearance"]
     if least is None:
         return "not known: no depth in the data"
+    metres = math.floor(10.0 * (least + 1e-4)) / 10.0  # never more than there is
     if not np.isfinite(clearance).any():
-        return f"least under-keel clearance {least:.1f} m"
+        return f"least under-keel clearance {metres:.1f} m"
     at = int(np.nanargmin(clearance))
     where = f" {_place(route, at)}" if clearance[at] <= least + 0.05 else ""
-    return f"least under-keel clearance {least:.1f} m{where}"
+    return f"least under-keel clearance {metres:.1f} m{where}"
 
 
 def kept_text(route: Route, ship: Ship | None, notes: Sequence[str]) -> str:
@@ -279,6 +282,7 @@ def kept_text(route: Route, ship: Ship | None, notes: Sequence[str]) -> str:
     if ship is not None:
         named = (("waves", ship.limits.wave_height), ("wind", ship.limits.wind_speed))
         limited = [what for what, limit in named if math.isfinite(limit)]
+        limited += ["safety and comfort in waves"] if ship.limits.safety is not None else []
         checked += [f"{what} under way" for what in limited] if under_way else limited
     shallow = any(note.startswith(CHECK_DEPTH) for note in notes)
     depth = "TO BE CHECKED: the depth layer has too little, see the note"
