@@ -13,6 +13,10 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
+# Threads of linear algebra that wait for a core of other workers burn the time of these. It is read
+# when NumPy is imported, here and in the processes that tests start.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 from tests.compile_kernels import compile_once
 
 # A gate must not depend on luck: where CI is set, the examples are the same every time.

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from thalweg.chart.depth.shoals_of_draught import shoals_of_draught
+from thalweg.chart.passages import find_passages
 from thalweg.core.geodesy import line_length
 from thalweg.network.global_grid import sea_graph_cache
 from thalweg.network.global_grid.sea_graph import GraphClosures, SeaGraph
@@ -56,3 +57,15 @@ def clear_memory():
     for function in (sea_graph_cache._load_or_make, sea_graph_cache._excess_elsewhere):
         function.cache_clear()
     sea_graph_cache._excess.cache_clear()
+
+
+def test_the_weights_of_closed_water_are_worked_out_once():
+    """Each plan asks for them dozens of times, with charts that are made anew."""
+    world = world_chart()
+    graph, ends = sea_graph(world), ((51.0, 1.5), (50.0, -2.0))
+    closed = GraphClosures(passages=find_passages(["Dover"]))
+    first, again = (graph._weights(world.without_passages("Dover"), ends, closed) for _ in range(2))
+    assert again is first
+    whole = graph._weights(world, ends, GraphClosures())
+    assert np.isinf(first).sum() > np.isinf(whole).sum()
+    assert np.array_equal(first[np.isfinite(first)], graph.weight[np.isfinite(first)])

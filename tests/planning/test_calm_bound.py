@@ -6,6 +6,7 @@ from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.ship.file.ship_file import library_names
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", library_names())
 def test_the_bound_of_a_straight_voyage_in_calm_water_is_tight_and_not_above_it(name):
     voyage = Voyage(start=(45.0, -30.0), goal=(46.0, -27.0), depart="2026-03-01T00:00Z")
@@ -15,6 +16,7 @@ def test_the_bound_of_a_straight_voyage_in_calm_water_is_tight_and_not_above_it(
     assert 0.0 <= found.gap < 5e-3  # Plan.gap is an error where a bound is above the plan
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["kvlcc2", "gunnerus-2019"])
 def test_the_bound_of_least_fuel_in_calm_water_is_tight_and_not_above_it(name):
     voyage = Voyage(start=(45.0, -30.0), goal=(46.0, -27.0), depart="2026-03-01T00:00Z",

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 import xarray as xr
 
 from thalweg import Chart, Sea, Ship, Voyage
@@ -37,6 +38,7 @@ ISLAND = {
 }
 
 
+@pytest.mark.slow
 def test_a_network_with_longer_paths_does_not_refuse_what_least_time_finds():
     least = 27.597  # [h] round the island by the plan of least time in a longer sea
     voyage = Voyage(start=(45.03, -30.0), goal=(47.31, -20.71), depart=DEPART, objective="fuel")

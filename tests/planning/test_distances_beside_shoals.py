@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import pytest
 
-from thalweg.planning.sea_distance import sea_distance
+from tests.planning.distances import sea_distance
 
 pytestmark = pytest.mark.slow
 

@@ -109,6 +109,7 @@ def plan_of_one_degree(sea, objective):
     return plan(voyage, ship=ship, sea=sea, chart=chart, resolution=20_000.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_no_track_costs_less_than_the_bound_of_its_ends_and_time(seed):
     rng = np.random.default_rng(seed)
@@ -226,6 +227,7 @@ def test_a_current_that_is_assumed_where_data_are_unknown_holds_between_two_time
         assert certain_at(found.front.certain, route.time_h) <= value * 1.001
 
 
+@pytest.mark.slow
 def test_a_bound_in_overlapping_files_is_not_above_the_routes_of_the_plan():
     """Round one unknown value the file below holds in the whole cell, up to the known corners."""
     lat, lon = np.arange(-6, 7) * 0.125, np.arange(-5, 19) * 0.125

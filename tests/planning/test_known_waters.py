@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.planning.distances import sea_distance
 from thalweg import Sea, Ship, Voyage, plan
 from thalweg.core.geodesy import densify, distance
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.report.closed_way_report import PASSAGE_CLOSED
-from thalweg.planning.sea_distance import sea_distance
 
 pytestmark = pytest.mark.slow
 

@@ -55,6 +55,7 @@ def planned():
     return one
 
 
+@pytest.mark.slow
 def test_the_fastest_within_a_fuel_limit_uses_the_fuel(planned):
     """Two speeds share the way so that the fuel is just the limit."""
     limit = 28.1
@@ -67,6 +68,7 @@ def test_the_fastest_within_a_fuel_limit_uses_the_fuel(planned):
     assert "--speed-step 0.5 counts those between" in note
 
 
+@pytest.mark.slow
 def test_the_least_fuel_in_a_time_is_that_with_the_latest_arrival(planned):
     found = planned("fuel", time=39.0)
     assert 38.9 < found.best.time_h <= 39.0
@@ -74,6 +76,7 @@ def test_the_least_fuel_in_a_time_is_that_with_the_latest_arrival(planned):
     assert swapped.best.time_h == pytest.approx(39.0, rel=3e-3)
 
 
+@pytest.mark.slow
 def test_the_least_cost_within_a_fuel_limit_is_found(planned):
     """Fuel has another price in control areas: this was refused as a weighted sum."""
     free = planned("cost")
@@ -84,6 +87,7 @@ def test_the_least_cost_within_a_fuel_limit_is_found(planned):
     assert found.best.time_h == pytest.approx(planned("time", fuel=limit).best.time_h, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_where_one_fuel_is_burnt_a_limit_needs_few_plans(planned):
     """Sums of cost and fuel were searched five times over, though time and fuel give the cost."""
     counted = []
@@ -100,6 +104,7 @@ def test_where_one_fuel_is_burnt_a_limit_needs_few_plans(planned):
     assert found.best.fuel_t <= limit
 
 
+@pytest.mark.slow
 def test_a_front_within_a_fuel_limit_begins_where_it_is_just_kept(planned):
     """The front of time and cost ends at the least cost, which burns more."""
     limit = 0.9 * planned("cost").best.fuel_t

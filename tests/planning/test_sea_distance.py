@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 import thalweg
+from tests.planning.distances import sea_distance
 from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.cli.distance_command import names_in_list
 from thalweg.cli.main import main
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import densify, distance
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.planning.sea_distance import sea_distance, small_ship_distance
+from thalweg.planning.sea_distance import small_ship_distance
 from thalweg.planning.seaways import world_chart
 
 # Distances [nm] as tables commonly quote them, to about 1 %: New York to Colombo is quoted from NGA
@@ -41,6 +42,7 @@ def test_the_same_distance_both_ways(ports):
     assert there.line[0] == pytest.approx(back.line[-1])
 
 
+@pytest.mark.slow
 def test_the_whole_is_the_sum_of_its_line():
     found = sea_distance("Rotterdam", "New York")
     line = np.array(found.line)
@@ -81,6 +83,7 @@ def test_ways_do_not_cross_ice_unless_they_begin_there():
     assert 514.0 < sea_distance("Longyearbyen", "Tromso").nm < 590.0  # great circle: 514 nm
 
 
+@pytest.mark.slow
 def test_only_passages_whose_water_the_way_goes_through_are_named():
     found = sea_distance("New York", "Rotterdam")
     assert "Verrazano Narrows" in found.straits
@@ -155,6 +158,7 @@ def test_errors_of_the_request():
     assert issubclass(NoRouteError, thalweg.ThalwegError)
 
 
+@pytest.mark.slow
 def test_command(capsys):
     assert main(["distance", "Rotterdam", "Hamburg", "--speed", "12", "--quiet"]) == 0
     text = capsys.readouterr().out
@@ -277,6 +281,7 @@ def test_lists_of_passages_keep_names_with_commas():
     assert names_in_list(" , ") == []
 
 
+@pytest.mark.slow
 def test_deep_ships_go_south_of_shikoku():
     inland = sea_distance("Kobe", "Oita", draught_m=14.0)
     outside = sea_distance("Kobe", "Oita", draught_m=20.8)
@@ -286,6 +291,7 @@ def test_deep_ships_go_south_of_shikoku():
     assert any("Bisan Seto" in note for note in outside.notes)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("start", "goal", "miles", "passages"),
     [
@@ -311,6 +317,7 @@ def test_ships_from_belize_pass_between_its_reefs():
         assert not area.contains(lat[north], lon[north]).any(), area.name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("start", "goal", "way", "most"),
     [

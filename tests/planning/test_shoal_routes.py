@@ -157,6 +157,7 @@ def test_ships_that_fit_take_the_kiel_canal_and_others_are_told_why_not():
     assert any("Kiel Canal" in note and "above 160 m of length" in note for note in large.notes)
 
 
+@pytest.mark.slow
 def test_shoals_are_closed_and_open_again_where_no_other_way_exists():
     ends = [Endpoint("A", 40.4, -73.8, 0.0), Endpoint("Sound", 41.45, -70.2, 0.0)]
     chart, _ = add_shoals(WORLD, voyage((40.4, -73.8), (42.4, -70.7)), BULKER, Sea.calm(), ends)

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.planning.distances import sea_distance
 from thalweg import Sea, Ship, Voyage, plan
 from thalweg.chart.depth import shoals_of_draught
-from thalweg.planning.sea_distance import sea_distance
 
 pytestmark = pytest.mark.slow
 

@@ -40,6 +40,7 @@ def test_a_step_makes_speeds_that_are_no_farther_apart(ship):
         with_speeds_between(ship, 0.1)
 
 
+@pytest.mark.slow
 def test_the_cheapest_speed_lies_between_the_settings(ship):
     """At 12 kn the voyage costs 1.8 % less than at the better one of the settings."""
     settings = planned(ship, objective="cost")
@@ -55,6 +56,7 @@ def test_the_cheapest_speed_lies_between_the_settings(ship):
     assert settings.proof.kind.endswith("for routes at the 2 speeds of the plan")
 
 
+@pytest.mark.slow
 def test_the_least_fuel_by_an_arrival_is_at_the_speed_that_takes_all_of_the_time(ship):
     hours = 300.0 / 12.0 + 0.1
     by = f"2026-12-02T01:{round(60 * (hours - 25)) + 1:02d}Z"

@@ -152,6 +152,7 @@ def test_the_front_reaches_to_the_cheapest_however_slow_the_current_makes_it(spe
     assert answer.routes[0].time_h == pytest.approx(fastest, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_the_earliest_arrival_is_reported_however_slow_the_current_makes_it():
     depart = 1767225600.0
     with pytest.raises(NoRouteError) as refusal:

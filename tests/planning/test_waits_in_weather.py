@@ -48,6 +48,7 @@ def planned(tmp_path):
     return of
 
 
+@pytest.mark.slow
 def test_a_ship_waits_at_her_berth_where_waves_are_too_high_at_sea(planned):
     found = planned(until=30, height=KNOWN)
     wait = np.asarray(found.best.track.wait)
@@ -56,6 +57,7 @@ def test_a_ship_waits_at_her_berth_where_waves_are_too_high_at_sea(planned):
     assert not any(note.startswith("Waits at sea") for note in found.notes)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("height", "words"),
     [

@@ -69,11 +69,23 @@ def bar():
     return Sea.open(data).filled(waves=0.0, wind=0.0, currents=0.0)
 
 
-def planned(tug, bar, **conditions):
-    voyage = Voyage(
-        start=START, goal=GOAL, depart=DEPART, arrive_by="2026-07-01T16:00Z", **conditions
-    )
-    return plan(voyage, ship=tug, sea=bar, chart=CHART)
+@pytest.fixture(scope="module")
+def planned(tug, bar):
+    """Plans of the tug over the bar by their conditions, each made once."""
+    made = {}
+
+    def of_conditions(**conditions):
+        key = repr(sorted(conditions.items()))
+        if key not in made:
+            voyage = Voyage(
+                start=START, goal=GOAL, depart=DEPART, arrive_by="2026-07-01T16:00Z", **conditions
+            )
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setattr("thalweg.planning.pareto.front_bound.least_ways._SECONDS", 4.0)
+                made[key] = plan(voyage, ship=tug, sea=bar, chart=CHART)
+        return made[key]
+
+    return of_conditions
 
 
 def context_of(tug, bar):
@@ -82,13 +94,14 @@ def context_of(tug, bar):
 
 
 @pytest.fixture(scope="module")
-def at_lowest_speed(tug, bar):
-    return planned(tug, bar, speed_kn=6.0).best
+def at_lowest_speed(planned):
+    return planned(speed_kn=6.0).best
 
 
-def test_the_least_fuel_past_a_bar_is_that_of_the_lowest_speed(tug, bar, at_lowest_speed):
+@pytest.mark.slow
+def test_the_least_fuel_past_a_bar_is_that_of_the_lowest_speed(planned, at_lowest_speed):
     """It was that of the highest speed, three times as much: all others came too early."""
-    found = planned(tug, bar, objective="fuel")
+    found = planned(objective="fuel")
     assert found.best.feasible
     assert found.best.fuel_t == pytest.approx(at_lowest_speed.fuel_t, rel=0.01)
     assert len(found.routes) > 3
@@ -96,28 +109,31 @@ def test_the_least_fuel_past_a_bar_is_that_of_the_lowest_speed(tug, bar, at_lowe
     assert all(np.count_nonzero(route.track.wait) <= 1 for route in found.routes)
 
 
-def test_no_speed_held_throughout_beats_the_front(tug, bar):
+@pytest.mark.slow
+def test_no_speed_held_throughout_beats_the_front(planned):
     """Between the routes of the network were gaps of an hour."""
-    found = planned(tug, bar, objective="fuel")
+    found = planned(objective="fuel")
     for speed in (6.0, 8.0, 10.0):
-        held = planned(tug, bar, speed_kn=speed).best
+        held = planned(speed_kn=speed).best
         assert any(
             route.time_h <= 1.002 * held.time_h and route.fuel_t <= 1.005 * held.fuel_t
             for route in found.routes
         )
 
 
-def test_a_ship_between_two_speeds_does_not_wait_longer_than_needed(tug, bar, at_lowest_speed):
+@pytest.mark.slow
+def test_a_ship_between_two_speeds_does_not_wait_longer_than_needed(planned, at_lowest_speed):
     """The first part of the way at 6 knots and the rest at 8 is cheaper than each speed held."""
-    found = planned(tug, bar, objective="cost")
-    held = [at_lowest_speed, *(planned(tug, bar, speed_kn=speed).best for speed in (7.0, 8.0))]
+    found = planned(objective="cost")
+    held = [at_lowest_speed, *(planned(speed_kn=speed).best for speed in (7.0, 8.0))]
     assert found.objective_value < 0.99 * min(route.cost for route in held)
     assert np.flatnonzero(found.best.track.wait).tolist() == [0]
     assert np.unique(found.best.track.setting).tolist() == [0, 1]
 
 
-def test_a_front_has_routes_at_two_speeds_after_one_wait(tug, bar):
-    found = planned(tug, bar, objective="front")
+@pytest.mark.slow
+def test_a_front_has_routes_at_two_speeds_after_one_wait(planned):
+    found = planned(objective="front")
     pairs = {
         tuple(np.unique(route.track.setting).tolist())
         for route, stage in zip(found.routes, found.front.stages, strict=True)
@@ -127,33 +143,39 @@ def test_a_front_has_routes_at_two_speeds_after_one_wait(tug, bar):
     assert all(route.feasible for route in found.routes)
 
 
-def test_the_bound_of_the_cost_counts_the_wait_that_no_ship_is_spared(
-    tug, bar, at_lowest_speed, monkeypatch
-):
+@pytest.mark.slow
+def test_the_bound_of_the_cost_counts_the_wait_that_no_ship_is_spared(planned, at_lowest_speed):
     """The hire of the least time, and the hotel load, are paid by all: 11 %, it was 53."""
-    monkeypatch.setattr("thalweg.planning.pareto.front_bound.least_ways._SECONDS", 4.0)
-    found = planned(tug, bar, objective="cost")
+    found = planned(objective="cost")
     assert found.gap < 0.13
-    least_time = planned(tug, bar, objective="time").proof.certain
+    least_time = planned(objective="time").proof.certain
     assert found.proof.certain > 4500.0 / 24.0 * least_time
     assert (
         found.front.values >= [np.interp(r.time_h, *found.front.certain) for r in found.routes]
     ).all()
-    fuel = planned(tug, bar, objective="fuel")
+    fuel = planned(objective="fuel")
     assert fuel.gap < 0.06
     assert fuel.proof.certain <= at_lowest_speed.fuel_t
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("conditions", [{"objective": "time"}, {"speed_kn": 8.0}])
-def test_the_wait_for_the_tide_is_at_the_start(tug, bar, conditions):
+def test_the_wait_for_the_tide_is_at_the_start(planned, conditions):
     """It was 4 nm out, although the ship arrives as early from her berth."""
-    route = planned(tug, bar, **conditions).best
+    route = planned(**conditions).best
     assert route.feasible
     assert np.flatnonzero(route.track.wait).tolist() == [0]
 
 
-def test_a_limit_of_fuel_that_a_slower_ship_keeps_is_no_refusal(tug, bar):
-    found = planned(tug, bar, at_most={"fuel": 0.6})
+@pytest.mark.slow
+def test_a_limit_of_fuel_that_a_slower_ship_keeps_is_no_refusal(bar, tmp_path):
+    """Two speeds on a coarse network suffice: at the higher one she burns more than the limit."""
+    path = tmp_path / "tug.yaml"
+    path.write_text(TUG.replace("[6, 8, 10, 12]", "[6, 12]"))
+    voyage = Voyage(
+        start=START, goal=GOAL, depart=DEPART, arrive_by="2026-07-01T16:00Z", at_most={"fuel": 0.6}
+    )
+    found = plan(voyage, ship=Ship.load(path), sea=bar, chart=CHART, resolution=2500.0)
     assert found.best.feasible
     assert found.best.fuel_t < 0.6
 

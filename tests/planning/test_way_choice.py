@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import thalweg
+from tests.planning.distances import sea_distance
 from thalweg import Chart, Sea, Ship, Voyage
 from thalweg.chart.approaches import PORT_APPROACHES
 from thalweg.chart.canals import KIEL, SUEZ, canals_with_dues
@@ -14,7 +15,6 @@ from thalweg.core.geodesy import densify, distance
 from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.request.voyage_endpoints import resolve_places
-from thalweg.planning.sea_distance import sea_distance
 from thalweg.planning.seaways import Seaways, world_chart
 
 #: Miles as tables quote them, and the tolerance; by the line that the ship takes.

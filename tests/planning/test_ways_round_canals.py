@@ -29,8 +29,10 @@ DEPART = parse_time("2026-01-01T00:00Z")
 def by_kiel():
     """From the German Bight to the Baltic: round the Skaw it is nearly three times as long."""
     voyage = Voyage(start=(54.0, 8.0), goal=(54.5, 13.5), depart=DEPART)
-    ship = Ship.load("handysize-bulker")
-    return alternative_plans(voyage, ship=ship, sea=Sea.calm(), chart=Chart.gshhg("i"))
+    return alternative_plans(
+        voyage, ship=Ship.load("handysize-bulker"), sea=Sea.calm(), chart=Chart.gshhg("l"),
+        resolution=15_000.0,
+    )  # fmt: skip
 
 
 @pytest.mark.slow

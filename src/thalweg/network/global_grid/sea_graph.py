@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -171,8 +172,9 @@ class SeaGraph:
         self, chart: Chart, ends: Sequence[Position], closures: GraphClosures
     ) -> FloatArray:
         """Return the weights for a way between two ends, inf where it may not go."""
-        closed = (*closures.canals, _IN_ICE) if outside_ice(*ends) else closures.canals
-        return self._weight_without(chart, closed, closures.passages)
+        closed = (*closures.canals, _IN_ICE) if outside_ice(*ends) else tuple(closures.canals)
+        closed_here = _Closed(chart.fingerprint(), closed, tuple(closures.passages), chart)
+        return _weight_without(self, closed_here)
 
     def _shortest(
         self,
@@ -209,7 +211,8 @@ class SeaGraph:
         joints = concatenate_pairs(links)
         if closures.shoals is not None:
             more = closures.excess
-            weight *= 1.0 + (self.shoal_excess(closures.shoals) if more is None else more)
+            more = self.shoal_excess(closures.shoals) if more is None else more
+            weight = weight * (1.0 + more)
             a, b = joints.first, joints.second
             excess = closures.shoals.excess(lat[a], lon[a], lat[b], lon[b])
             joints = replace(joints, length=joints.length * (1.0 + excess))
@@ -259,28 +262,6 @@ class SeaGraph:
         head = self.target[edges]
         return lat[tail], lon[tail], lat[head], lon[head]
 
-    def _weight_without(
-        self, chart: Chart, closed: Sequence[int], passages: Sequence[Passage]
-    ) -> FloatArray:
-        """Return the weights, inf for closed canals and where a chart closes passages."""
-        weight = self.weight.copy()
-        if len(closed):
-            weight[np.isin(self.canal, closed)] = np.inf
-        lat, lon = self.waters.lat, self.waters.lon
-        tail = np.repeat(np.arange(len(lat)), np.diff(self.indptr)) if passages else self.target
-        for passage in passages:
-            one, other = geocentric_unit_vectors(
-                *np.array(closing_line(chart.coastline, passage)).T
-            )
-            middle = (one + other) / np.linalg.norm(one + other)
-            half = float(np.arccos(np.clip(one @ middle, -1.0, 1.0)))
-            beside = self.waters.vectors @ middle >= np.cos(half + _LONGEST_EDGE / MEAN_RADIUS)
-            near = np.flatnonzero(beside[tail] & (self.canal < 0))
-            first, second = tail[near], self.target[near]
-            blocked = chart.legs_blocked(lat[first], lon[first], lat[second], lon[second])
-            weight[near[np.asarray(blocked)]] = np.inf
-        return weight
-
     def _with_links(
         self, links: Pairs, count: int, weight: FloatArray
     ) -> tuple[Int32Array, Int32Array, FloatArray]:
@@ -296,6 +277,43 @@ class SeaGraph:
         indptr = (ends + more).astype(np.int32)
         target = np.insert(self.target, at, head)
         return indptr, target, np.insert(weight, at, length)
+
+
+@dataclass(frozen=True)
+class _Closed:
+    """What is closed in a graph: canals by number, and passages where legs of the chart are.
+
+    Charts of one fingerprint block the same legs.
+    """
+
+    fingerprint: str
+    canals: tuple[int, ...]
+    passages: tuple[Passage, ...]
+    chart: Chart = field(compare=False, repr=False)
+
+
+@lru_cache(maxsize=4)  # a plan asks for a few of them dozens of times
+def _weight_without(graph: SeaGraph, closed: _Closed) -> FloatArray:
+    """Return the weights, inf for closed canals and where a chart closes passages; read-only."""
+    weight = graph.weight.copy()
+    if closed.canals:
+        weight[np.isin(graph.canal, closed.canals)] = np.inf
+    lat, lon = graph.waters.lat, graph.waters.lon
+    tail = (
+        np.repeat(np.arange(len(lat)), np.diff(graph.indptr)) if closed.passages else graph.target
+    )
+    for passage in closed.passages:
+        line = np.array(closing_line(closed.chart.coastline, passage)).T
+        one, other = geocentric_unit_vectors(*line)
+        middle = (one + other) / np.linalg.norm(one + other)
+        half = float(np.arccos(np.clip(one @ middle, -1.0, 1.0)))
+        beside = graph.waters.vectors @ middle >= np.cos(half + _LONGEST_EDGE / MEAN_RADIUS)
+        near = np.flatnonzero(beside[tail] & (graph.canal < 0))
+        first, second = tail[near], graph.target[near]
+        blocked = closed.chart.legs_blocked(lat[first], lon[first], lat[second], lon[second])
+        weight[near[np.asarray(blocked)]] = np.inf
+    weight.flags.writeable = False
+    return weight
 
 
 def outside_ice(*places: Position) -> bool:
